@@ -203,7 +203,7 @@ class ShaftPhase:
     @property
     def revolutions(self) -> _Array: ...
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[tuple[str, str, list[tuple[str, float]]]]: ...
     def mean_speed_hz(self, sampling_rate_hz: float) -> float: ...
 
 def tachometer_pulses(
@@ -225,6 +225,15 @@ def find_mismatch(
     pulses_per_revolution: int | None = None,
     speed_hz: float | None = None,
 ) -> tuple[str, float, str, float | None] | None: ...
+def check_recording(
+    signal: _Array,
+    phase: ShaftPhase,
+    sampling_rate_hz: float,
+    teeth: int,
+    mate_teeth: int | None = None,
+    pulses_per_revolution: int | None = None,
+    speed_hz: float | None = None,
+) -> list[tuple[str, str, list[tuple[str, float]]]]: ...
 def process_series(
     signals: Sequence[_Array],
     phases: Sequence[ShaftPhase],

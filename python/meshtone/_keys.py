@@ -108,16 +108,23 @@ class Support(TypedDict, total=False):
     Attributes
     ----------
     mass_kg : float
-        (kg) The mass of each support. Allowed: > 0, ≤ 1e9.
+        (kg) The mass of each support; 1.6 by default where a stiffness is given. Allowed: > 0, ≤ 1e9.
+    base_hz : float
+        (Hz) The natural frequency of the bare supports, moving alike. Allowed: > 0, ≤ 1000000.
+    differential_hz : float
+        (Hz) The natural frequency of the bare supports, moving against each other. Allowed: > 0, ≤ 1000000; more than
+        base_hz.
     stiffness_n_per_m : float
-        (N/m) The stiffness between each support and the base, in x and in y. Allowed: > 0, ≤ 1e15.
+        (N/m) Instead of the frequencies, the stiffness between each support and the base. Allowed: > 0, ≤ 1e15.
     coupling_n_per_m : float
-        (N/m) The stiffness between the two supports, in x and in y. Allowed: ≥ 0, ≤ 1e15.
+        (N/m) Instead of the frequencies, the stiffness between the two supports. Allowed: ≥ 0, ≤ 1e15.
     damping_ratio : float
         (-) The damping ratio of the supports and of what holds them. Allowed: ≥ 0, < 1.
     """
 
     mass_kg: float
+    base_hz: float
+    differential_hz: float
     stiffness_n_per_m: float
     coupling_n_per_m: float
     damping_ratio: float
@@ -143,8 +150,9 @@ SECTION_OF_KEY: dict[str, str] = {
     "material": "gears",
     "flank_relief": "gears",
     "tip_chamfer_mm": "gears",
+    "active_profile_shortening": "gears",
     "backlash_mm": "gears",
-    "crowning_mm": "gears",
+    "uniform_flank_reduction_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
     "speed_fluctuation_hz": "operation",
@@ -227,8 +235,9 @@ class ScenarioChanges(TypedDict, total=False):
     material: Any
     flank_relief: Any
     tip_chamfer_mm: Any
+    active_profile_shortening: Any
     backlash_mm: Any
-    crowning_mm: Any
+    uniform_flank_reduction_mm: Any
     points_per_tooth: Any
     foundation: Any
     speed_fluctuation_hz: Any
@@ -297,8 +306,9 @@ class ScenarioKeys:
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float]
     flank_relief: FlankRelief
     tip_chamfer_mm: float | None
+    active_profile_shortening: float
     backlash_mm: float | None
-    crowning_mm: float
+    uniform_flank_reduction_mm: float
     points_per_tooth: int
     foundation: Foundation
     speed_fluctuation_hz: float
@@ -365,8 +375,9 @@ class ScenarioKeys:
         material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
         flank_relief: FlankRelief | None = None,
         tip_chamfer_mm: float | None = None,
+        active_profile_shortening: float | None = None,
         backlash_mm: float | None = None,
-        crowning_mm: float | None = None,
+        uniform_flank_reduction_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
         speed_fluctuation_hz: float | None = None,
@@ -459,13 +470,16 @@ class ScenarioKeys:
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by published.
         tip_chamfer_mm : float, optional
-            (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module. Default: 0.2
+            (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module. Default: 0.23
             modules. Ignored by published.
+        active_profile_shortening : float, optional
+            (-) By how much the path of contact is shorter than that between the chamfers, in base pitches, half at
+            either end. Allowed: 0…0.5. Default: 0.1. Ignored by linear, published.
         backlash_mm : float, optional
             (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
             distance opens. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens.
             Ignored by linear, published.
-        crowning_mm : float, optional
+        uniform_flank_reduction_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's
             thickness. Default: 0.0.
         points_per_tooth : int, optional
@@ -496,9 +510,9 @@ class ScenarioKeys:
             whole number 0…11. Default: 0. Ignored by published.
         tooth_share : float, optional
             (-) The part of the tolerances of profile slope and form that each tooth has of its own; the rest is common
-            to a wheel's teeth. Allowed: 0…1. Default: 0.4. Ignored by published.
+            to a wheel's teeth. Allowed: 0…1. Default: 0.5. Ignored by published.
         pitch_share : float, optional
-            (-) A wheel's largest single pitch deviation over its tolerance f_p. Allowed: 0…1. Default: 0.15. Ignored by
+            (-) A wheel's largest single pitch deviation over its tolerance f_p. Allowed: 0…1. Default: 0.25. Ignored by
             published.
         run_out_share : float, optional
             (-) A wheel's run-out over its tolerance F_r. Allowed: 0…1. Default: 0.3. Ignored by published.
@@ -548,8 +562,8 @@ class ScenarioKeys:
         pinion_inertia, gear_inertia : WheelInertia, optional
             The wheel's mass and inertias, any of the three. Default: those of a solid disc of pitch radius.
         support : Support, optional
-            What each shaft's bearings sit in. Default: { mass_kg = 1.6, stiffness_n_per_m = 1.6e8, coupling_n_per_m =
-            5e8, damping_ratio = 0.025 }. Ignored by linear, published.
+            What each shaft's bearings sit in. Default: { mass_kg = 2.3, base_hz = 450.0, differential_hz = 2900.0,
+            damping_ratio = 0.025 }. Ignored by linear, published.
         mesh_damping_ratio : float, optional
             (-) The damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh
             stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by published.

@@ -5,9 +5,37 @@ Written by `cargo xtask generate` from the rows of the Rust library: a change be
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
+
+
+class SensorPath(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    plate_hz : float
+        (Hz) The frequency at which the wall under the sensor bends as far as the support moves; 0: no wall. Allowed: ≥
+        0, ≤ 10000000.
+    strength : float
+        (-) The standard deviation of a housing mode's share; 0: no modes. Allowed: ≥ 0, ≤ 100.
+    modes_per_khz : float
+        (1/kHz) The housing modes in a kilohertz. Allowed: > 0, ≤ 1000.
+    band_hz : sequence of 2 floats
+        (Hz) Where the housing has modes. Allowed: > 0, ≤ 10000000; the first less than the second.
+    damping_ratio : float
+        (-) The damping ratio of the housing's modes. Allowed: > 0, ≤ 1.
+    seed : int
+        The seed of the housing's modes. Allowed: whole number.
+    """
+
+    plate_hz: float
+    strength: float
+    modes_per_khz: float
+    band_hz: Sequence[float]
+    damping_ratio: float
+    seed: int
 
 
 @dataclass(frozen=True)
@@ -21,7 +49,7 @@ class Sensor:
         other channel's. Default: place and direction, such as ``gear_support_vertical``.
     at : {'support', 'pinion-support', 'gear-support', 'wheels'}, optional
         Where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the wheels under
-        linear and published. Default: "support". Ignored by linear, published.
+        linear and published. Default: "pinion-support". Ignored by linear, published.
     direction : {'vertical', 'horizontal', 'axial'}, optional
         The direction it measures in; under contact axial only at the wheels. Default: "vertical".
     resonance_hz : float, optional
@@ -38,6 +66,10 @@ class Sensor:
     bits : int, optional
         The resolution: the range from minus to plus has 2^bits steps. Allowed: whole number 8…32; with range_g.
         Default: none.
+    path : SensorPath, optional
+        The wall and the modes of a housing between its place and it; rigid under linear and published. Default: {
+        plate_hz = 4000.0, strength = 0.0, modes_per_khz = 1.43, band_hz = [3500.0, 14000.0], damping_ratio = 0.015,
+        seed = 1 }. Ignored by linear, published.
     frequency_response : dict of frequency_hz, magnitude and phase_deg, optional
         (Hz, -, °) The measured path to the sensor: magnitude and phase over frequency, straight between the points, the
         phase unwrapped; outside them nothing passes. Or { file = "….csv" } with the columns frequency_hz, magnitude,
@@ -61,5 +93,6 @@ class Sensor:
     noise_seed: int | None = None
     range_g: float | None = None
     bits: int | None = None
+    path: SensorPath | None = None
     frequency_response: Mapping[str, Any] | None = None
     response_input: Literal["acceleration", "force"] | None = None

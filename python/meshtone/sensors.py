@@ -5,7 +5,7 @@ The fields of :class:`Sensor` have the names, units and defaults of the scenario
 >>> from meshtone import Sensor, examples, simulate
 >>> scenario = examples.healthy().copy(sampling_rate_hz=2e4, sensors=[Sensor(resonance_hz=6e3, range_g=50, bits=16)])
 >>> simulation = simulate(scenario)
->>> simulation.support_vertical_g is simulation.sensors["support_vertical"]
+>>> simulation.pinion_support_vertical_g is simulation.sensors["pinion_support_vertical"]
 True
 """
 

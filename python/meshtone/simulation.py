@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core, _display, _progress
 from ._names import hint
-from ._warnings import warn
+from ._warnings import typed, warn, warn_of_signal
 from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal import Record, resample
@@ -656,7 +656,7 @@ def _process(
     settings = separation_settings(teeth, sidebands, None)
     values = np.ascontiguousarray(signal, dtype=np.float64)
     parts = _core.process_simulated(scenario._native, values, wheel, start_s, settings)
-    warn(parts["warnings"])
+    warn_of_signal(typed(parts["warnings"]))
     return Record(parts, teeth=teeth, name=channel)
 
 

@@ -13,7 +13,7 @@ from meshtone import MissingTooth, Scenario, Sensor, examples, simulate, simulat
 
 
 def _sensed(**changes: object) -> Scenario:
-    sensors = [Sensor(name="casing", resonance_hz=3e3), Sensor(range_g=0.5, bits=8)]
+    sensors = [Sensor(name="casing", resonance_hz=3e3), Sensor(range_g=0.5, bits=8, path={"plate_hz": 0.0})]
     return examples.healthy().copy(**{"sampling_rate_hz": 2e4, "sensors": sensors, **changes})
 
 
@@ -21,7 +21,7 @@ def test_scenario_with_sensors() -> None:
     scenario = _sensed()
     assert [sensor.name for sensor in scenario.sensors] == ["casing", None]
     assert scenario.sensors[0].resonance_damping_ratio == 0.02
-    assert scenario.channels == ("casing_g", "support_vertical_g", *meshtone.CHANNELS)
+    assert scenario.channels == ("casing_g", "pinion_support_vertical_g", *meshtone.CHANNELS)
     assert Scenario.from_toml(scenario.to_toml()) == scenario == pickle.loads(pickle.dumps(scenario))
     assert scenario.copy(fault=MissingTooth()).sensors == scenario.sensors
     assert scenario.copy(sensors=None) == scenario.copy(sensors=[]) == examples.healthy().copy(sampling_rate_hz=2e4)
@@ -33,7 +33,7 @@ def test_scenario_with_sensors() -> None:
 def test_refused_sensors() -> None:
     with pytest.raises(ValueError, match=r"sensor\.bits = 16: needs sensor\.range_g"):
         _sensed(sensors=[Sensor(bits=16)])
-    with pytest.raises(ValueError, match=r"sensor\[1\]\.name = \"support_vertical\".*sensor\[0\]"):
+    with pytest.raises(ValueError, match=r"sensor\[1\]\.name = \"pinion_support_vertical\".*sensor\[0\]"):
         _sensed(sensors=[Sensor(), Sensor(range_g=1)])
     with pytest.raises(TypeError, match=r"sensors\[0\] = 'support': must be a Sensor"):
         _sensed(sensors=["support"])
@@ -45,12 +45,12 @@ def test_refused_sensors() -> None:
 
 def test_signals_of_sensors() -> None:
     simulation = simulate(_sensed())
-    assert list(simulation.sensors) == ["casing", "support_vertical"]
+    assert list(simulation.sensors) == ["casing", "pinion_support_vertical"]
     assert simulation.casing_g is simulation.sensors["casing"]
     assert simulation.casing_g.shape == simulation.vertical_g.shape
     # A resonance of 3 kHz, below the motion's own: it is not the motion.
     assert not np.allclose(simulation.casing_g, simulation.vertical_g)
-    limited = simulation.support_vertical_g
+    limited = simulation.pinion_support_vertical_g
     assert np.array_equal(limited, np.clip(np.round(np.clip(simulation.vertical_g, -0.5, 0.5) * 256) / 256, -0.5, 0.5))
     plain = simulate(_sensed(sensors=None))
     assert plain.sensors == {}
@@ -64,7 +64,7 @@ def test_first_sensor_leads() -> None:
     simulation = simulate(_sensed())
     assert simulation.process().name == "casing_g"
     assert simulation.process("vertical_g").name == "vertical_g"
-    with pytest.raises(ValueError, match="'sideways': must be one of casing_g, support_vertical_g, horizontal_g"):
+    with pytest.raises(ValueError, match="'sideways': must be one of casing_g, pinion_support_vertical_g, horizontal_g"):
         simulation.process("sideways")
     assert simulation.plot_signal().get_ylabel() == "Casing (g)"
     assert simulation.plot_spectrum("vertical_g").get_ylabel() == "Vertical acceleration,\namplitude (g)"
@@ -72,7 +72,7 @@ def test_first_sensor_leads() -> None:
 
 def test_force_through_a_flat_path() -> None:
     path = {"frequency_hz": np.array([0.0, 1e5]), "magnitude": [1.0, 1.0], "phase_deg": (0.0, 0.0)}
-    simulation = simulate(_sensed(sensors=[Sensor(name="path", response_input="force", frequency_response=path)]))
+    simulation = simulate(_sensed(sensors=[Sensor(name="path", response_input="force", frequency_response=path, path={"plate_hz": 0.0})]))
     assert np.allclose(simulation.path_g, simulation.mesh_force_n / 9.81, rtol=0, atol=1e-10)
 
 

@@ -40,7 +40,7 @@ NEAREST = 0.1
 #: Healthy records of a machine that its records are related to, and that models learn from.
 REFERENCE, HEALTHY = 3, 3
 #: What a record's load and its support's stiffness are multiplied by, and its ratio of signal to noise.
-LOAD, SUPPORT, SNR_DB = (0.95, 1.05), (0.84, 1.19), (20.0, 40.0)
+LOAD, SUPPORT, SNR_DB = (0.95, 1.05), (0.92, 1.09), (20.0, 40.0)
 DRAWS = 200
 VIEWS = {"rms": [0], "kurtosis": [1], "both": [0, 1]}
 MODELS = {
@@ -73,7 +73,7 @@ def simulated(stated: dict[str, Any], rig: str) -> tuple[Values, Values]:
         for fault in faults:
             record = dict(own)
             record["operation.brake_torque_nm"] = torque * float(draw.uniform(*LOAD))
-            record["rig.support.stiffness_n_per_m"] *= float(np.exp(draw.uniform(*np.log(SUPPORT))))
+            record["rig.support.base_hz"] *= float(np.exp(draw.uniform(*np.log(SUPPORT))))
             scenarios.append(rig_with(rig, fault, record))
             snr_db.append(draw.uniform(*SNR_DB))
     values = []

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::path::Path;
 
 use meshtone::scenario::{ScenarioWarning, line_of_key};
+use meshtone::signal::SignalWarning;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::scenario_file::ScenarioFile;
 
@@ -20,7 +21,17 @@ pub fn print<S>(file: &ScenarioFile<S>, warnings: &[ScenarioWarning]) {
 
 /// A warning about a recording.
 pub fn about(source: &Path, message: impl Display) -> WarningEntry {
-    WarningEntry { source: Some(source.to_path_buf()), message: message.to_string() }
+    WarningEntry { source: Some(source.to_path_buf()), message: message.to_string(), kind: None }
+}
+
+/// A warning about the signal of a recording, with the options that help.
+pub fn about_signal(source: &Path, warning: &SignalWarning) -> WarningEntry {
+    let options = match warning.code() {
+        "varying_speed" => " (--tach, --pulse-times, --speed-channel, --speed-profile or --from-mesh-tone)",
+        "nothing-synchronous" => " (--sampling-rate-hz, --shaft-hz, --pulses-per-rev, --teeth)",
+        _ => "",
+    };
+    WarningEntry { kind: Some(warning.clone()), ..about(source, format_args!("{warning}{options}")) }
 }
 
 /// A warning with the recording that it is about.

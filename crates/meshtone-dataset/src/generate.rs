@@ -1,6 +1,7 @@
 //! Generating a data set, from its start or from the point where it was stopped.
 
 use std::collections::HashMap;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +9,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
 use meshtone::batch::{Control, simulate_many};
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{Scenario, ScenarioError};
 use rayon::prelude::*;
 
 use crate::contents::{Contents, SummaryColumns, WRONG_BYTES};
@@ -267,6 +268,11 @@ impl PendingSimulations {
     }
 }
 
+/// Why a record cannot be simulated, with the advice of its own error.
+fn explained(error: &dyn Display, help: Option<&str>) -> String {
+    help.map_or_else(|| error.to_string(), |help| format!("{error}; {help}"))
+}
+
 impl Run<'_> {
     fn generate(&self, missing: &[u64], generated: &mut Generated) -> Result<(), DatasetError> {
         if missing.is_empty() {
@@ -302,7 +308,7 @@ impl Run<'_> {
         simulate_many(scenarios, &keep, &control, |number, result| {
             let Some((role, failed)) = lock(&asked).roles.remove(&number) else { return };
             failed.into_iter().for_each(|failed| send(Item::Failed(failed)));
-            match (result.map_err(|error| error.to_string()).flatten(), role) {
+            match (result.map_err(|error| explained(&error, error.help())).flatten(), role) {
                 (Ok(record), Role::Record(_)) => send(Item::Record(record)),
                 (Ok(record), Role::HealthyTwin(..)) => send(Item::HealthyTwin(record)),
                 (Err(reason), Role::Record(drawn)) => {
@@ -319,7 +325,8 @@ impl Run<'_> {
     /// Draws a record and asks for its simulations: a faulty record that is enhanced has its healthy twin before it.
     fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<Scenario> {
         let drawn = self.sampler.record(index).map_err(|error| error.problem).and_then(|record| {
-            let scenario = self.sampler.scenario(&record).map_err(|error| error.to_string())?;
+            let of_scenario = |error: ScenarioError| explained(&error, error.help.as_deref());
+            let scenario = self.sampler.scenario(&record).map_err(of_scenario)?;
             let scenario = simulated_scenario(&self.plan.content.keep, &record, scenario);
             Ok((record, scenario.map_err(|error| error.to_string())?))
         });

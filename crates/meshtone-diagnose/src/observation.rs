@@ -2,9 +2,9 @@
 
 use meshtone::operation::greatest_common_divisor;
 use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, AngularSignal, Mismatch, SeparationSettings, ShaftPhase,
-    SignalError, StatedFacts, StatedTurning, SynchronousAverage, angular_resample, check_channel,
-    find_mismatch, kurtosis, rms, standard_deviation, synchronous_average,
+    Alternative, AngleZero, AngularSettings, AngularSignal, LinesOffShafts, Mismatch, SeparationSettings,
+    ShaftPhase, SignalError, StatedFacts, StatedTurning, SynchronousAverage, angular_resample, check_channel,
+    find_mismatch, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -158,14 +158,14 @@ impl Observation {
         }
         let [of_pinion, of_gear] = [synchronous_average(pinion)?, synchronous_average(gear)?];
         let ratio = f64::from(teeth[1]) / f64::from(teeth[0]);
-        let mismatch = energy_off_both_shafts(gear, teeth[1], ratio);
+        let mismatch = energy_off_both_shafts(gear, teeth, pinion_speed_hz / ratio);
         Ok(Self {
             signal: SignalKind::Recording,
             pinion_speed_hz: Some(pinion_speed_hz),
             zero: [AngleZero::Given; 2],
             gear: WheelLines::of_average(&of_gear, teeth[1]),
             pinion: Some(WheelLines::of_average(&of_pinion, teeth[0])),
-            noise: [noise(pinion, teeth[0], 1.0 / ratio), noise(gear, teeth[1], ratio)],
+            noise: [noise(pinion, teeth[0], teeth[1]), noise(gear, teeth[1], teeth[0])],
             mismatch,
             doubts: too_short(gear.revolutions(), teeth, pinion_speed_hz / ratio).into_iter().collect(),
         })
@@ -311,51 +311,26 @@ const SEQUENCES: usize = 3;
 const FEWEST_REVOLUTIONS: usize = 6;
 /// (-) Median over mean of the squared magnitude of normal noise.
 const MEDIAN_OF_SQUARES: f64 = std::f64::consts::LN_2;
-/// (lines) How near a line is to an order, to belong to it: the main lobe of Hann's window, and a little.
-const NEAR_LINES: f64 = 2.5;
 /// (-) Mean square of Hann's window.
 const WINDOW_SQUARE: f64 = 0.375;
 /// (-) The same over its middle half: 3/8 + 1/π.
 const MIDDLE_SQUARE: f64 = 0.375 + std::f64::consts::FRAC_1_PI;
 
-/// The spectrum of a signal over whole revolutions, behind Hann's window: the mate's orders lie between lines and must not leak.
-/// And for each line whether it lies beside the orders of both shafts.
-fn lines_off_both_shafts(angular: &AngularSignal, ratio: f64) -> (Vec<Complex64>, Vec<bool>) {
-    let revolutions = angular.revolutions();
-    let whole = revolutions * angular.points_per_revolution;
-    let window = |at: usize| 0.5 - 0.5 * (std::f64::consts::TAU * at as f64 / whole as f64).cos();
-    // Without its mean, which would leak too.
-    let mean = angular.values.iter().take(whole).sum::<f64>() / whole.max(1) as f64;
-    let windowed =
-        angular.values.iter().take(whole).enumerate().map(|(at, value)| window(at) * (value - mean));
-    let spectrum = real_spectrum(&windowed.collect::<Vec<_>>());
-    let is_beside = |line: usize| {
-        let order = line as f64 / revolutions.max(1) as f64;
-        let from_own = (order - order.round()).abs() * revolutions as f64;
-        // Orders of the mate's shaft are `ratio` of these apart: a gear turns once while the pinion turns `ratio` times.
-        let of_mate = order / ratio;
-        let from_mate = (of_mate - of_mate.round()).abs() * ratio * revolutions as f64;
-        from_own > NEAR_LINES && from_mate > NEAR_LINES
-    };
-    let beside = (0..spectrum.len()).map(is_beside).collect();
-    (spectrum, beside)
-}
-
 /// (g) Standard deviation of the noise in the lines of an average, by mesh order: from the median of the lines beside the orders of
 /// both shafts, which tones do not move. Empty where there are too few revolutions.
-fn noise(angular: &AngularSignal, teeth: u32, ratio: f64) -> Vec<f64> {
+fn noise(angular: &AngularSignal, teeth: u32, mate_teeth: u32) -> Vec<f64> {
     let revolutions = angular.revolutions();
     if revolutions < FEWEST_REVOLUTIONS {
         return Vec::new();
     }
-    let (spectrum, beside) = lines_off_both_shafts(angular, ratio);
+    let LinesOffShafts { spectrum, is_off } = lines_off_shafts(angular, teeth, mate_teeth);
     let per_mesh_order = teeth as usize * revolutions;
     let count = (revolutions * angular.points_per_revolution) as f64;
     let last = (PASSED * angular.nyquist_order) as usize * revolutions;
     let band = |mesh: usize| {
         let from = (mesh * per_mesh_order).saturating_sub(per_mesh_order / 2);
         let to = (mesh * per_mesh_order + per_mesh_order / 2).min(last).min(spectrum.len());
-        let squares = (from..to).filter(|&line| beside[line]).map(|line| spectrum[line].norm_sqr());
+        let squares = (from..to).filter(|&line| is_off[line]).map(|line| spectrum[line].norm_sqr());
         Some((median(squares.collect())? / MEDIAN_OF_SQUARES / WINDOW_SQUARE).sqrt() / count)
     };
     (0..=MESH_ORDERS).map_while(band).collect()
@@ -372,39 +347,26 @@ const IMPULSIVE: f64 = 4.5;
 /// (-) Its part of the energy from which on it counts: teeth that strike and part make up to a seventh that repeats with neither
 /// shaft, since it depends on which two teeth meet.
 const COUNTS: f64 = 0.15;
-/// (-) A line is a tone where its square is so many times the median of its neighbours'. Of noise, one in 10⁹ is.
-const TONE: f64 = 30.0;
-/// (-) Part of the energy in tones of neither shaft from which on they count, likewise.
-const TONES_COUNT: f64 = 0.2;
-
 /// Evidence against the recording where the orders of the two shafts do not explain it: impulses, or tones, that repeat with neither.
 ///
-/// The lines of both shafts are left out of the spectrum of the whole recording. Of the others, those that stand out of their band are
+/// The lines of both shafts are left out of the spectrum of the whole recording. Of the others, those that stand out of their surroundings are
 /// tones; and what they make over time is impulsive where something strikes. Impulses are looked for first, since their lines may stand out
 /// like tones.
-fn energy_off_both_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Option<String> {
+fn energy_off_both_shafts(gear: &AngularSignal, [pinion, teeth]: [u32; 2], gear_hz: f64) -> Option<String> {
     if gear.revolutions() < FEWEST_REVOLUTIONS {
         return None;
     }
     let whole = gear.revolutions() * gear.points_per_revolution;
-    let (mut spectrum, beside) = lines_off_both_shafts(gear, ratio);
+    let mut lines = lines_off_shafts(gear, teeth, pinion);
+    let tones = lines.tones(gear, gear_hz);
     let passed = (PASSED * gear.nyquist_order) as usize * gear.revolutions();
-    let energy: f64 = spectrum.iter().take(passed).skip(3).map(Complex64::norm_sqr).sum();
-    let lines = (0..passed.min(spectrum.len())).filter(|&line| beside[line]);
-    let squares: Vec<f64> = lines.map(|line| spectrum[line].norm_sqr()).collect();
-    let bands = squares.chunks(teeth as usize * gear.revolutions());
-    let tones = bands.flat_map(|band| {
-        let median = median(band.to_vec()).unwrap_or(0.0);
-        band.iter().filter(move |square| **square > TONE * median)
-    });
-    let tones: f64 = tones.sum();
-    for (line, value) in spectrum.iter_mut().enumerate() {
-        if !beside[line] || line >= passed {
+    for (line, value) in lines.spectrum.iter_mut().enumerate() {
+        if !lines.is_off[line] || line >= passed {
             *value = Complex64::default();
         }
     }
     // The middle half, where the window is level enough to leave the shape.
-    let rest = from_real_spectrum(spectrum, whole);
+    let rest = from_real_spectrum(lines.spectrum, whole);
     let rest = &rest[whole / 4..3 * whole / 4];
     let part = (rms(rest) / standard_deviation(&gear.values).max(f64::MIN_POSITIVE)).powi(2) / MIDDLE_SQUARE;
     let impulses = kurtosis(rest)?;
@@ -415,13 +377,7 @@ fn energy_off_both_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Optio
             100.0 * part
         ));
     }
-    (tones > TONES_COUNT * energy).then(|| {
-        format!(
-            "tones at no order of either shaft make {:.0} % of the recording's energy: another machine, or teeth or speed that are not \
-             as stated",
-            100.0 * tones / energy
-        )
-    })
+    tones.map(|tones| tones.to_string())
 }
 
 #[cfg(test)]

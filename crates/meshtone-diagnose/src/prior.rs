@@ -111,6 +111,9 @@ impl Prior {
             base: rig.clone().with_faults(Vec::new()),
             spreads: vec![
                 spread("rig.bearing_stiffness_n_per_m", 0.15),
+                // Those of the frequencies or of the stiffnesses that the rig is given by; the others it does not have.
+                spread("rig.support.base_hz", 0.075),
+                spread("rig.support.differential_hz", 0.075),
                 spread("rig.support.stiffness_n_per_m", 0.15),
                 spread("rig.support.coupling_n_per_m", 0.15),
                 spread("rig.support.damping_ratio", 0.3),

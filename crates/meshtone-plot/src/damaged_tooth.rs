@@ -1,5 +1,7 @@
 //! The turns of the damaged teeth within a revolution of their wheel.
 
+use std::collections::BTreeMap;
+
 use meshtone::Stages;
 use meshtone::damage::{Fault, ToothPart};
 use meshtone::wheel::WheelName;
@@ -41,13 +43,21 @@ impl DamagedTooth {
     /// assert_eq!((tooth.tooth, tooth.is_missing), (3, true));
     /// ```
     pub fn of_wheel(faults: &[Fault], wheel: WheelName, teeth: u32, contact_pitches: f64) -> Vec<Self> {
-        let of_fault = |fault: &Fault| {
-            let is_missing = fault.damage.part() == ToothPart::Whole;
-            let numbers = fault.tooth.numbers(teeth).into_iter();
-            numbers.map(move |tooth| Self { tooth, contact_pitches, is_missing })
+        let is_damage = |fault: &&Fault| fault.wheel == wheel && fault.severity != Some(0.0);
+        let faults: Vec<&Fault> = faults.iter().filter(is_damage).collect();
+        let mut on_teeth: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (number, fault) in faults.iter().enumerate() {
+            fault
+                .tooth
+                .numbers(teeth)
+                .into_iter()
+                .for_each(|tooth| on_teeth.entry(tooth).or_default().push(number));
+        }
+        let of_tooth = |(tooth, numbers): (u32, Vec<usize>)| {
+            let is_missing = numbers.iter().any(|&number| faults[number].damage.part() == ToothPart::Whole);
+            (Self { tooth, contact_pitches, is_missing }, numbers)
         };
-        let of_wheel = faults.iter().filter(|fault| fault.wheel == wheel && fault.severity != Some(0.0));
-        Self::in_order(of_wheel.flat_map(of_fault))
+        standing_out(on_teeth.into_iter().map(of_tooth).collect(), teeth)
     }
 
     /// The teeth of a wheel that a simulation has damaged, each once and in the order of their numbers.
@@ -57,23 +67,34 @@ impl DamagedTooth {
     /// * `wheel` - whose teeth
     pub fn of_stages(stages: &Stages, wheel: WheelName) -> Vec<Self> {
         let contact_pitches = stages.teeth.contact.contact_ratio;
-        let of_wheel = stages.damaged.iter().filter(|alike| alike.wheel == wheel);
-        Self::in_order(of_wheel.flat_map(|alike| {
-            let is_missing = alike.is_missing();
-            alike.teeth.iter().map(move |&index| Self {
-                tooth: index as u32 + 1,
-                contact_pitches,
-                is_missing,
+        let of_wheel = stages.damaged.iter().filter(|alike| alike.wheel == wheel).enumerate();
+        let mut damaged: Vec<(Self, usize)> = of_wheel
+            .flat_map(|(group, alike)| {
+                let is_missing = alike.is_missing();
+                let tooth = move |index: usize| Self { tooth: index as u32 + 1, contact_pitches, is_missing };
+                alike.teeth.iter().map(move |&index| (tooth(index), group))
             })
-        }))
+            .collect();
+        damaged.sort_by_key(|(tooth, _)| tooth.tooth);
+        standing_out(damaged, stages.teeth.wheel(wheel).teeth)
     }
+}
 
-    fn in_order(teeth: impl Iterator<Item = Self>) -> Vec<Self> {
-        let mut teeth: Vec<Self> = teeth.collect();
-        teeth.sort_by_key(|tooth| tooth.tooth);
-        teeth.dedup_by_key(|tooth| tooth.tooth);
-        teeth
-    }
+/// The damaged teeth that stand out of the others: all of them, unless most of the wheel's teeth are damaged alike, as by wear, and some have
+/// more.
+///
+/// # Arguments
+/// * `damaged` - teeth in the order of their numbers, each with what those that are damaged alike have in common
+/// * `teeth` - how many teeth the wheel has
+fn standing_out<K: Ord>(damaged: Vec<(DamagedTooth, K)>, teeth: u32) -> Vec<DamagedTooth> {
+    let mut counts: BTreeMap<&K, usize> = BTreeMap::new();
+    damaged.iter().for_each(|(_, alike)| *counts.entry(alike).or_default() += 1);
+    let most = counts.into_iter().max_by_key(|(_, count)| *count);
+    let is_background = |alike: &K| match most {
+        Some((common, count)) => 2 * count > teeth as usize && count < damaged.len() && alike == common,
+        None => false,
+    };
+    damaged.iter().filter(|(_, alike)| !is_background(alike)).map(|(tooth, _)| *tooth).collect()
 }
 
 /// Tints the parts of a wheel's revolution in which its damaged teeth are in contact, or would be.

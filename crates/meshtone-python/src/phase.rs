@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
+use crate::process::{TypedWarning, typed};
 
 /// Angle of a shaft at each sample.
 #[pyclass(frozen, module = "meshtone._core")]
@@ -115,8 +116,8 @@ impl ShaftPhase {
 
     /// Warnings.
     #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.0.warnings.iter().map(ToString::to_string).collect()
+    fn warnings(&self) -> Vec<TypedWarning> {
+        typed(&self.0.warnings)
     }
 
     /// (Hz)

@@ -1,7 +1,8 @@
 //! From a channel to its indicators.
 
 use meshtone::signal::{
-    self, Alternative, AngularSettings, ChainSettings, SeparationSettings, StatedFacts, StatedTurning,
+    self, AngleZero, AngularSettings, ChainSettings, SeparationSettings, SignalError, SignalWarning,
+    StatedFacts, StatedTurning,
 };
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -41,6 +42,14 @@ pub fn separation(
     }
 }
 
+/// Code, words and numbers of a warning.
+pub type TypedWarning = (&'static str, String, Vec<(String, f64)>);
+
+/// Warnings as Python takes them.
+pub fn typed(warnings: &[SignalWarning]) -> Vec<TypedWarning> {
+    warnings.iter().map(|warning| (warning.code(), warning.to_string(), warning.values())).collect()
+}
+
 /// The results of one channel for one wheel, by the names of Python's properties; an indicator that is not defined is NaN.
 pub fn record_parts(py: Python<'_>, record: signal::Record) -> PyResult<Bound<'_, PyDict>> {
     let indicators = record.indicators.table("").into_iter();
@@ -58,7 +67,7 @@ pub fn record_parts(py: Python<'_>, record: signal::Record) -> PyResult<Bound<'_
     parts.set_item("revolutions", record.average.revolutions)?;
     parts.set_item("nyquist_order", record.average.nyquist_order)?;
     parts.set_item("indicators", indicators.into_py_dict(py)?)?;
-    parts.set_item("warnings", record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    parts.set_item("warnings", typed(&record.warnings))?;
     Ok(parts)
 }
 
@@ -121,26 +130,61 @@ pub fn find_mismatch(
     speed_hz: Option<f64>,
 ) -> PyResult<Option<Mismatch>> {
     let signal = samples(&signal)?;
-    let turning = match (pulses_per_revolution, speed_hz) {
-        (Some(per_revolution), _) => StatedTurning::Pulses { per_revolution },
-        (None, Some(speed_hz)) => StatedTurning::ConstantSpeed { speed_hz },
-        (None, None) => StatedTurning::Other,
-    };
-    let stated = StatedFacts { teeth, mate_teeth, turning };
+    let stated = stated_facts(phase, teeth, mate_teeth, pulses_per_revolution, speed_hz);
     let found = py.detach(|| {
         signal::angular_resample(signal, &phase.0, &AngularSettings::default())
             .map(|angular| signal::find_mismatch(&angular, &stated))
     });
     Ok(found.map_err(value_error)?.map(|mismatch| {
-        let (cause, value) = match mismatch.alternative {
-            Alternative::Teeth { teeth } => ("teeth", f64::from(teeth)),
-            Alternative::MateTeeth { teeth, .. } => ("mate_teeth", f64::from(teeth)),
-            Alternative::OtherShaft { mate_teeth } => ("other_shaft", f64::from(mate_teeth)),
-            Alternative::PulsesPerRevolution { pulses, .. } => ("pulses_per_revolution", f64::from(pulses)),
-            Alternative::ShaftSpeed { speed_hz, .. } => ("speed_hz", speed_hz),
-            Alternative::VaryingSpeed { variation, .. } => ("varying_speed", variation),
-            _ => ("other", f64::NAN),
-        };
-        (cause, value, mismatch.to_string(), mismatch.energy_ratio)
+        let alternative = mismatch.alternative;
+        (alternative.code(), alternative.value(), mismatch.to_string(), mismatch.energy_ratio)
     }))
+}
+
+/// Finds all that is doubtful about a recording and what is stated about it.
+#[pyfunction]
+#[pyo3(signature = (signal, phase, sampling_rate_hz, teeth, mate_teeth=None, pulses_per_revolution=None, speed_hz=None))]
+#[expect(clippy::too_many_arguments, reason = "they are those of the function in Python")]
+pub fn check_recording(
+    py: Python<'_>,
+    signal: Signal<'_>,
+    phase: &ShaftPhase,
+    sampling_rate_hz: f64,
+    teeth: u32,
+    mate_teeth: Option<u32>,
+    pulses_per_revolution: Option<u32>,
+    speed_hz: Option<f64>,
+) -> PyResult<Vec<TypedWarning>> {
+    let signal = samples(&signal)?;
+    let stated = stated_facts(phase, teeth, mate_teeth, pulses_per_revolution, speed_hz);
+    let found: Result<_, SignalError> = py.detach(|| {
+        let angular = signal::angular_resample(signal, &phase.0, &AngularSettings::default())?;
+        let mut found = phase.0.warnings.clone();
+        found.extend(signal::check_recording(&angular, &stated, phase.0.mean_speed_hz(sampling_rate_hz)));
+        let part = signal::synchronous_average(&angular)
+            .ok()
+            .and_then(|average| signal::synchronous_part(&angular.values, &average.values));
+        found.extend(part.filter(|part| part.is_noise()).map(SignalWarning::NothingSynchronous));
+        Ok(found)
+    });
+    Ok(typed(&found.map_err(value_error)?))
+}
+
+/// What is stated; a phase that was found in the mesh tone says so itself.
+fn stated_facts(
+    phase: &ShaftPhase,
+    teeth: u32,
+    mate_teeth: Option<u32>,
+    pulses_per_revolution: Option<u32>,
+    speed_hz: Option<f64>,
+) -> StatedFacts {
+    let turning = match (pulses_per_revolution, speed_hz) {
+        (Some(per_revolution), _) => StatedTurning::Pulses { per_revolution },
+        (None, Some(nominal_hz)) if phase.0.zero == AngleZero::Chance => {
+            StatedTurning::MeshTone { nominal_hz }
+        }
+        (None, Some(speed_hz)) => StatedTurning::ConstantSpeed { speed_hz },
+        (None, None) => StatedTurning::Other,
+    };
+    StatedFacts { teeth, mate_teeth, turning }
 }

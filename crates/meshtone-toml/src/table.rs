@@ -50,6 +50,14 @@ impl<'a> TomlTable<'a> {
         if self.path.is_empty() { key.to_string() } else { format!("{}.{key}", self.path) }
     }
 
+    /// Whether the text has a key, which does not allow it.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    pub fn has(&self, key: &str) -> bool {
+        self.table.is_some_and(|table| table.get(key).is_some())
+    }
+
     /// The value of a key, if it is there.
     ///
     /// # Arguments

@@ -253,6 +253,7 @@ warning_kinds! {
     Undercut "undercut" "teeth are undercut, which their profile does not show";
     ThinTips "thin-tips" "tips are so thin that they could break off";
     IgnoredKey "ignored-key" "a key has no effect";
+    FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
@@ -262,6 +263,7 @@ warning_kinds! {
     NoContact "no-contact" "no pair of teeth meets for a part of a revolution, and the linear mesh holds nothing there";
     MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would part";
     Resonance "resonance" "the mesh force is far beyond what a machine survives";
+    BrakedRotation "braked-rotation" "the published model's damping brakes the whole machine, and the mesh carries another mean force than the load's";
     OtherSpeed "other-speed" "a shaft does not turn at the speed that it is driven at";
     StepError "step-error" "the step falsifies the rms by more than 2 %";
 }

@@ -60,7 +60,7 @@ internals! { interpolation machine published solver stiffness }
 
 /// Version of the numbers that a scenario gives. It grows with every change of the simulation that changes them, whatever the version of
 /// the program: what is kept of an older one, as a data set that is continued or a set of reference simulations, is made anew.
-pub const PHYSICS_VERSION: u32 = 2;
+pub const PHYSICS_VERSION: u32 = 3;
 
 pub use error::Error;
 pub use simd::InstructionSet;

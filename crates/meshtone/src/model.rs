@@ -53,6 +53,7 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
     (
         &["linear", "published"],
         &[
+            "gears.active_profile_shortening",
             "gears.backlash_mm",
             "quality.helix_share",
             "quality.pinion_helix_slope_um",
@@ -60,6 +61,7 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
             "rig.misalignment_um",
             "rig.support",
             "sensor.at",
+            "sensor.path",
         ],
     ),
     (

@@ -70,8 +70,10 @@ pub enum Purpose {
     DiagnosisNoise = 28,
     /// Random Fourier features of a diagnosis; index: feature.
     DiagnosisFeature = 29,
+    /// Modes of the housing that a sensor sits on: frequencies and shares; index: 0.
+    HousingModes = 30,
     /// Seed of the deviations of a gearbox's wheel; index: wheel.
-    GearboxWheel = 30,
+    GearboxWheel = 31,
 }
 
 /// A sequence of random numbers.

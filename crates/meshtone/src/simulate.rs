@@ -314,7 +314,11 @@ impl Stages {
             static_force_n,
             face: (closer_um != 0.0).then_some(face),
         };
-        let shape = TipShape { chamfer_mm: gears.chamfer_mm(), relief: gears.flank_relief };
+        let shape = TipShape {
+            chamfer_mm: gears.chamfer_mm(),
+            active_profile_shortening: gears.active_profile_shortening,
+            relief: gears.flank_relief,
+        };
         Ok(vec![Mesh::new(&self.pairs(), shape, sequence, points_per_pitch, parameters)])
     }
 

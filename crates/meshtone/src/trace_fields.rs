@@ -2,6 +2,7 @@
 
 /// A named array.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct TraceField {
     /// Name, with the unit at its end.
     pub name: String,
@@ -16,6 +17,7 @@ pub(crate) const FAULT_STRIDE: usize = 25;
 
 /// Every stage's output; the fields are described in the documentation's chapter "Trace".
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Trace {
     /// The fields, in the order of the stages.
     pub fields: Vec<TraceField>,

@@ -20,10 +20,11 @@ A rig's recording with a tachometer:
 (38, 1.0)
 """
 
+from .._warnings import SignalWarning
 from .angular import AngularSignal, angular_resample, resample, synchronous_average
 from .at_once import difference, tsa
 from .indicators import Indicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
-from .mismatch import Mismatch, find_mismatch
+from .mismatch import Mismatch, check_recording, find_mismatch
 from .phase import ShaftPhase, repair_pulses, tachometer_pulses
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
@@ -36,7 +37,9 @@ __all__ = [
     "Parts",
     "Record",
     "ShaftPhase",
+    "SignalWarning",
     "angular_resample",
+    "check_recording",
     "difference",
     "energy_ratio",
     "envelope",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy.typing as npt
 
 from .. import _core
+from .._warnings import SignalWarning, typed
 from ._arguments import signal_array, teeth_number, whole
 from .phase import ShaftPhase, native_phase
 
@@ -90,14 +91,70 @@ def find_mismatch(
     ...     print(found.cause, round(found.alternative, 4))
     speed_hz 20.0
     """
+    stated = _stated(teeth, mate_teeth, pulses_per_revolution, speed_hz)
+    found = _core.find_mismatch(signal_array(signal), native_phase(phase), *stated)
+    return None if found is None else Mismatch(*found)
+
+
+def check_recording(
+    signal: npt.ArrayLike,
+    phase: ShaftPhase,
+    sampling_rate_hz: float,
+    teeth: int,
+    *,
+    mate_teeth: int | None = None,
+    pulses_per_revolution: int | None = None,
+    speed_hz: float | None = None,
+) -> list[SignalWarning]:
+    """All that ``meshtone indicators`` would warn of: the phase, what does not fit, tones of neither shaft, an average of noise.
+
+    Parameters
+    ----------
+    signal : array_like, shape (samples,)
+        (any unit) The channel.
+    phase : ShaftPhase
+        Of the wheel's shaft, as it is stated.
+    sampling_rate_hz : float
+        (S/s) Of the signal.
+    teeth, mate_teeth, pulses_per_revolution, speed_hz
+        As of :func:`find_mismatch`; tones of neither shaft are only looked for where ``mate_teeth`` is given, and with a phase from the
+        mesh tone ``speed_hz`` is the nominal speed.
+
+    Returns
+    -------
+    list of SignalWarning
+
+    Raises
+    ------
+    ValueError
+        As :func:`find_mismatch`.
+
+    Examples
+    --------
+    A recording at 12.8 kHz, stated as 20 kHz:
+
+    >>> import numpy as np
+    >>> from meshtone import ShaftPhase
+    >>> time_s = np.arange(80_000) / 12_800.0
+    >>> vibration = sum(np.cos(2 * np.pi * 29.75 * 32 * h * time_s) for h in (1, 2, 3))
+    >>> vibration = vibration + np.random.default_rng(1).normal(size=time_s.size)
+    >>> phase = ShaftPhase.constant(30.0, 20_000.0, vibration.size)
+    >>> [warning.code for warning in check_recording(vibration, phase, 20_000.0, 32, speed_hz=30.0)]
+    ['nothing-synchronous']
+    """
+    stated = _stated(teeth, mate_teeth, pulses_per_revolution, speed_hz)
+    return typed(_core.check_recording(signal_array(signal), native_phase(phase), sampling_rate_hz, *stated))
+
+
+def _stated(
+    teeth: int, mate_teeth: int | None, pulses_per_revolution: int | None, speed_hz: float | None
+) -> tuple[int, int | None, int | None, float | None]:
+    """What is stated, checked, as the compiled module takes it."""
     if pulses_per_revolution is not None and speed_hz is not None:
         raise ValueError("pulses_per_revolution and speed_hz: a phase is from one of them; leave the other out")
-    found = _core.find_mismatch(
-        signal_array(signal),
-        native_phase(phase),
+    return (
         teeth_number(teeth),
         None if mate_teeth is None else whole("mate_teeth", mate_teeth, 1),
         None if pulses_per_revolution is None else whole("pulses_per_revolution", pulses_per_revolution, 1),
         speed_hz,
     )
-    return None if found is None else Mismatch(*found)

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy.typing as npt
 
 from .. import _core
-from .._warnings import warn
+from .._warnings import SignalWarning, typed, warn_of_signal
 from ._arguments import Array, positive, read_only, signal_array, teeth_number, whole
 
 
@@ -36,19 +36,20 @@ class ShaftPhase:
 
     def __init__(self, revolutions: npt.ArrayLike, first_sample: int = 0) -> None:
         self._native = _core.ShaftPhase(signal_array(revolutions), whole("first_sample", first_sample))
-        self._warnings = self._native.warnings
+        self._warnings = typed(self._native.warnings)
 
     @classmethod
     def _wrap(cls, native: _core.ShaftPhase) -> ShaftPhase:
         phase = cls.__new__(cls)
         phase._native = native
-        phase._warnings = native.warnings
+        phase._warnings = typed(native.warnings)
         return phase
 
     @classmethod
     def _wrap_and_warn(cls, native: _core.ShaftPhase) -> ShaftPhase:
-        warn(native.warnings)
-        return cls._wrap(native)
+        phase = cls._wrap(native)
+        warn_of_signal(phase._warnings)
+        return phase
 
     @classmethod
     def constant(cls, speed_hz: float, sampling_rate_hz: float, samples: int) -> ShaftPhase:
@@ -230,7 +231,7 @@ class ShaftPhase:
         return read_only(self._native.revolutions)
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[SignalWarning]:
         """What is doubtful about it."""
         return list(self._warnings)
 

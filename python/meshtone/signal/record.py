@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy.typing as npt
 
 from .. import _core, _display
-from .._warnings import warn
+from .._warnings import SignalWarning, typed, warn_of_signal
 from ._arguments import Array, read_only, separation_settings, signal_array, teeth_number
 from .indicators import SHOWN, Indicators
 from .phase import ShaftPhase, native_phase
@@ -89,9 +89,9 @@ class Record:
         return Indicators(self._parts["indicators"])
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[SignalWarning]:
         """What is doubtful."""
-        return list(self._parts["warnings"])
+        return typed(self._parts["warnings"])
 
     def __reduce__(self) -> tuple[Callable[[dict[str, Any], int, str], Record], tuple[dict[str, Any], int, str]]:
         return (_remembered, (self._parts, self.teeth, self.name))
@@ -111,7 +111,7 @@ class Record:
             _display.table(rows),
             _display.curve(self.average, span=span, over=over, label=_display.with_unit("Average", unit)),
             _display.curve(self.difference, span=span, over=over, label=_display.with_unit("Difference", unit)),
-            _display.remarks(self.warnings),
+            _display.remarks([warning.message for warning in self.warnings]),
         )
 
     def __repr__(self) -> str:
@@ -159,7 +159,7 @@ def process_channel(
     """
     settings = separation_settings(teeth, sidebands, shaft_orders)
     parts = _core.process_channel(signal_array(signal), native_phase(phase), teeth_number(teeth), settings)
-    warn(parts["warnings"])
+    warn_of_signal(typed(parts["warnings"]))
     return Record(parts, teeth=teeth, name=name)
 
 
@@ -197,5 +197,5 @@ def process_series(
         raise TypeError("phases: must be a list of one ShaftPhase for each signal, not one alone")
     native = [native_phase(phase) for phase in phases]
     records = _core.process_series([signal_array(signal) for signal in signals], native, teeth_number(teeth), settings)
-    warn(warning for parts in records for warning in parts["warnings"])
+    warn_of_signal(warning for parts in records for warning in typed(parts["warnings"]))
     return [Record(parts, teeth=teeth, name=name) for parts in records]

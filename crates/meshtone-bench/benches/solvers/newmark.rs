@@ -7,7 +7,7 @@
 
 use std::ops::Index;
 
-use meshtone::machine::{Axis, Drive, Machine, SENSOR};
+use meshtone::machine::{Axis, Drive, Machine, PINION_SUPPORT};
 use meshtone::mesh::{Forcing, ForcingBlock, Mesh, PairDeviations};
 use meshtone::{Equations, Stages};
 use pulp::{Arch, NullaryFnOnce};
@@ -103,7 +103,7 @@ impl<'a> Newmark<'a> {
             states,
             mass: std::array::from_fn(|n| machine.mass.get((n, n)).copied().unwrap_or(0.0)),
             brake,
-            sensors: [Axis::X, Axis::Y, Axis::Z].map(|axis| padded(&machine.weights(SENSOR, axis))),
+            sensors: [Axis::X, Axis::Y, Axis::Z].map(|axis| padded(&machine.weights(PINION_SUPPORT, axis))),
             at_rest: at_rest.expect("a sample"),
         }
     }

@@ -198,7 +198,12 @@ impl Verify {
                  is missing or differs. Move elsewhere what no manifest names",
             ));
         }
-        print_unless(self.quiet, &report(&found, &place, self.sizes_only))
+        print_unless(self.quiet, &report(&found, &place, self.sizes_only))?;
+        if found.complete {
+            return Ok(());
+        }
+        let help = "run the command that made the data set again: it goes on with it";
+        Err(Failure::failed(format!("{place}: the data set is not complete")).with_help(help))
     }
 
     /// Of a path that is no data set, which command reads it.
@@ -217,9 +222,6 @@ fn report(found: &Verified, place: &Destination, sizes_only: bool) -> String {
         counted(found.shards.len() as u64, "shard"),
         found.bytes as f64 / 1e6
     );
-    if !found.complete {
-        text += "  not complete: the command that made it goes on with it\n";
-    }
     if found.format == 1 {
         text += "  of an earlier version (format 1): its hashes are of what was on the disk when it was completed\n";
     }

@@ -74,7 +74,7 @@ impl Indicators {
         series.finish()?;
         series.results.settings = settings(&self.phase, &self.processing);
         if let Some(message) = order_of_names(&self.recordings) {
-            series.results.warnings.push(WarningEntry { source: None, message });
+            series.results.warnings.push(WarningEntry { source: None, message, kind: None });
         }
         let read: Vec<&Path> =
             self.recordings.iter().map(PathBuf::as_path).chain(self.phase.files()).collect();

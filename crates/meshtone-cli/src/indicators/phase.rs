@@ -89,6 +89,7 @@ impl PhaseOptions {
                 StatedTurning::Pulses { per_revolution: self.pulses_per_rev }
             }
             ("constant speed", Some(speed_hz)) => StatedTurning::ConstantSpeed { speed_hz },
+            ("mesh tone", Some(nominal_hz)) => StatedTurning::MeshTone { nominal_hz },
             _ => StatedTurning::Other,
         };
         StatedFacts { teeth, mate_teeth: self.mate_teeth, turning }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{
     AngularSettings, ChainSettings, Record, SeparationSettings, SignalError, SignalWarning, angular_resample,
-    check_channel, find_mismatch, process_angular, process_angular_segments,
+    check_channel, check_recording, process_angular, process_angular_segments,
 };
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
@@ -15,7 +15,7 @@ use super::phase::{ShaftAngle, simulated};
 use super::reading::Input;
 use super::refuse::{RefusedInput, refuse};
 use crate::failure::Failure;
-use crate::warnings::about;
+use crate::warnings::about_signal;
 
 /// A wheel whose average is taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,9 +71,9 @@ pub fn process(
     for (shaft, wheel) in WheelName::BOTH.into_iter().zip(&wheels) {
         let of_wheel = format!("{of_channel}, {} of {} teeth", wheel.name, wheel.teeth);
         let what = if wheels.len() > 1 { &of_wheel } else { &of_channel };
-        let (of_wheel, doubt) = wheel_records(input, &turning, shaft, &wheels, phase, processing)
+        let (of_wheel, doubts) = wheel_records(input, &turning, shaft, &wheels, phase, processing)
             .map_err(|error| refuse(&input.source, what, subject, &error))?;
-        doubtful.extend(doubt);
+        doubtful.extend(doubts);
         for warning in of_wheel.records.iter().flat_map(|record| &record.warnings) {
             if !doubtful.contains(warning) {
                 doubtful.push(warning.clone());
@@ -81,7 +81,7 @@ pub fn process(
         }
         processed.push(of_wheel);
     }
-    warnings.extend(doubtful.iter().map(|warning| about(&input.source, warning)));
+    warnings.extend(doubtful.iter().map(|warning| about_signal(&input.source, warning)));
     Ok(Processed { wheels: processed, warnings })
 }
 
@@ -96,10 +96,10 @@ fn wheel_records(
     wheels: &[Wheel],
     options: &PhaseOptions,
     processing: &ProcessingOptions,
-) -> Result<(WheelRecords, Option<SignalWarning>), SignalError> {
+) -> Result<(WheelRecords, Vec<SignalWarning>), SignalError> {
     let wheel = &wheels[shaft as usize];
     let settings = settings(processing, wheel.teeth);
-    let mut doubt = None;
+    let mut doubts = Vec::new();
     let rate_hz = input.sampling_rate_hz;
     let (mean_speed_hz, records, middles_s) = match turning {
         ShaftAngle::Measured(phase) => {
@@ -109,8 +109,8 @@ fn wheel_records(
             };
             let angular = angular_resample(&input.channel.samples, &phase, &settings.angular)?;
             if wheel.is_on_shaft {
-                doubt = find_mismatch(&angular, &options.stated_facts(wheel.teeth))
-                    .map(SignalWarning::DoesNotFit);
+                let speed_hz = phase.mean_speed_hz(rate_hz);
+                doubts = check_recording(&angular, &options.stated_facts(wheel.teeth), speed_hz);
             }
             let records = match processing.revolutions {
                 None => vec![process_angular(&angular, wheel.teeth, &settings)?],
@@ -132,7 +132,7 @@ fn wheel_records(
             (mean_speed_hz, records, middles_s)
         }
     };
-    Ok((WheelRecords { wheel: wheel.clone(), mean_speed_hz, records, middles_s }, doubt))
+    Ok((WheelRecords { wheel: wheel.clone(), mean_speed_hz, records, middles_s }, doubts))
 }
 
 /// Angles of the shafts, the wheels on them, and what is doubtful about the files that say so.

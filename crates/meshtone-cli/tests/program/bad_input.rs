@@ -196,11 +196,17 @@ fn what_is_no_file() {
 #[test]
 fn nothing_left_after_settling() {
     let settling = fast_and("settle_fraction = 0.99999");
-    refused(settling, &["line 11", "solver.settle_fraction = 0.99999", "must be smaller"]);
-    let short = "[operation.speed_profile_hz]\ntime_s = [0.0, 0.5]\nvalue = [40.0, 41.0]";
     refused(
-        fast_and(short),
-        &["line 11", "operation.speed_profile_hz = 0.5", "ends at 0.5 s", "first 1.0000 s"],
+        settling,
+        &["line 11", "solver.settle_fraction = 0.99999", "leaves no sample to keep", "lower it"],
+    );
+    refused(
+        fast_and("duration_s = 1e-9"),
+        &["line 11", "solver.duration_s = 1e-9", "leaves no sample to keep", "raise it"],
+    );
+    refused(
+        fast_and("duration_s = 1.0\npinion_revolutions = 20"),
+        &["line 12", "solver.pinion_revolutions = 20", "given beside solver.duration_s", "remove one"],
     );
 }
 

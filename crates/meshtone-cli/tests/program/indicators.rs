@@ -71,6 +71,47 @@ fn assert_alike(a: &Value, b: &Value, tolerance: f64) {
 }
 
 #[test]
+fn wrong_statements_about_a_recording_are_warned_of_with_code_and_numbers() {
+    let workplace = Workplace::new();
+    // The pair that is stated, and noise: the sum of the digits of a multiplicative generator.
+    let mut state = 1_u64;
+    let mut noise = || {
+        let digits = (0..4).map(|_| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24) - 0.5
+        });
+        digits.sum::<f64>()
+    };
+    let mesh = |turned: f64| -> f64 {
+        (1..=3).map(|harmonic| (TAU * 19.0 * f64::from(harmonic) * turned).cos() / f64::from(harmonic)).sum()
+    };
+    let pair =
+        |turned: f64| mesh(turned) * (1.0 + 0.2 * (TAU * turned).cos() + 0.2 * (TAU * 0.5 * turned).cos());
+    let mut signal: Vec<f64> =
+        (0..20_000).map(|i| pair(20.0 * f64::from(i) / RATE_HZ) + 0.3 * noise()).collect();
+    workplace.write("run.csv", csv(RATE_HZ, &signal, |_| 0.0));
+    let tone = |i: usize| 2.0 * (TAU * 683.0 * i as f64 / RATE_HZ).cos();
+    signal.iter_mut().enumerate().for_each(|(i, value)| *value += tone(i));
+    workplace.write("tone.csv", csv(RATE_HZ, &signal, |_| 0.0));
+    let common = ["-c", "bearing", "--teeth", "19", "--no-figure", "-o", "out"];
+    let warnings = |arguments: &[&str]| {
+        let assert = workplace.succeeds(&[&["indicators"], arguments, &common].concat());
+        (results(&workplace, "out")["warnings"].clone(), stderr(&assert))
+    };
+    let (none, _) = warnings(&["run.csv", "--shaft-hz", "20", "--mate-teeth", "38"]);
+    assert_eq!(none, Value::Array(Vec::new()));
+    let (noise, words) = warnings(&["run.csv", "--shaft-hz", "31", "--mate-teeth", "38"]);
+    assert!(noise.as_array().unwrap().iter().any(|warning| {
+        warning["code"] == "nothing-synchronous" && warning["values"]["of_mean_square"].as_f64() < Some(0.02)
+    }));
+    assert!(words.contains("noise alone leaves") && words.contains("--sampling-rate-hz"), "{words}");
+    let (tones, words) = warnings(&["tone.csv", "--shaft-hz", "20", "--mate-teeth", "38"]);
+    assert_eq!(tones[0]["code"], "foreign-tones");
+    assert!((tones[0]["values"]["frequency_hz_1"].as_f64().unwrap() - 683.0).abs() < 0.1);
+    assert!(words.contains("683.00 Hz (order 34.150"), "{words}");
+}
+
+#[test]
 fn a_simulation_and_the_same_signal_from_other_files() {
     let workplace = Workplace::new();
     let faulty = fast_with("sampling_rate_hz", "sampling_rate_hz = 4e4")

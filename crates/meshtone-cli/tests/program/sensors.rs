@@ -21,12 +21,12 @@ fn sensors_come_first() {
     assert!(place("support vertical, g") < place("horizontal, g"), "{printed}");
     let table = TableReader::new(File::open(workplace.path("out/signals.parquet")).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
-    assert_eq!(names[..4], ["time_s", "casing_g", "support_vertical_g", "horizontal_g"]);
+    assert_eq!(names[..4], ["time_s", "casing_g", "pinion_support_vertical_g", "horizontal_g"]);
     let panel = String::from_utf8(workplace.read("out/panel.svg")).unwrap();
     assert!(panel.contains("Casing (g)") && !panel.contains("Vertical acceleration"));
     let summary: Value = serde_json::from_slice(&workplace.read("out/summary.json")).unwrap();
     assert_eq!(summary["indicators_of"], "casing_g");
-    assert!(summary["channels"]["support_vertical_g"]["peak_g"].as_f64().unwrap() <= 1.0);
+    assert!(summary["channels"]["pinion_support_vertical_g"]["peak_g"].as_f64().unwrap() <= 1.0);
 
     // The panel is drawn again from the files, and the indicators of the first sensor are the summary's.
     workplace.succeeds(&["panel", "out"]);

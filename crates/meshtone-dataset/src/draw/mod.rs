@@ -25,7 +25,7 @@ const SEED_BITS: u32 = 53;
 /// Keys of the noise that is added to the raw channels.
 pub const NOISE_KEYS: [&str; 2] = ["noise.snr_db", "noise.level_g"];
 /// Keys of the path from the simulated sensor's place to where a rig's is.
-pub const PATH_KEYS: [&str; 2] = ["path.gain_db", "path.ripple_db"];
+pub const PATH_KEYS: [&str; 4] = ["path.gain_db", "path.ripple_db", "path.plate_hz", "path.strength"];
 /// Beginning of the names of latent values, which occur only in terms and columns.
 const LATENT: &str = "latent.";
 

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
+use meshtone::signal::FEWEST_REVOLUTIONS;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
 use super::{Class, Content, Distribution, Keep, Level, Plan, Rule, SplitBy, Splits, refused};
@@ -295,8 +296,8 @@ fn refuse_value(
     refused
 }
 
-/// Refuses a record that lasts longer than a speed profile, channels over the angle of an unsteady motion, and averages over less than a
-/// revolution.
+/// Refuses a record that lasts longer than a speed profile, channels over the angle of an unsteady motion, and averages over too few
+/// revolutions.
 fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
     let Keep { over_angle, duration_s, wheel, .. } = &content.keep;
     let (operation, gears) = (&scenario.operation, &scenario.gears);
@@ -305,21 +306,30 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
         let help = "leave it and revolutions out, or the profiles and fluctuations";
         return Err(refused("keep.points_per_revolution", problem, help));
     }
-    let Some(duration_s) = *duration_s else { return Ok(()) };
-    let refuse = |problem: String, help: &str| {
-        Err(TomlError::new("keep.duration_s", duration_s.to_string(), problem).with_help(help))
-    };
     let time = scenario.time_grid();
-    let profile_s = time.kept_samples() as f64 * time.step_s();
-    if operation.speed_profile_hz.is_some() && duration_s > profile_s + time.step_s() {
-        let problem = format!("is longer than what settling leaves of the speed profile, {profile_s:.4} s");
-        return refuse(problem, "shorten it, or leave it out: a record is then as long as that");
+    let simulated_s = time.kept_samples() as f64 * time.step_s();
+    if let Some(duration_s) = *duration_s
+        && operation.speed_profile_hz.is_some()
+        && duration_s > simulated_s + time.step_s()
+    {
+        let problem = format!("is longer than what settling leaves of the speed profile, {simulated_s:.4} s");
+        let error = TomlError::new("keep.duration_s", duration_s.to_string(), problem);
+        return Err(error.with_help("shorten it, or leave it out: a record is then as long as that"));
     }
-    let turn_s = f64::from(gears.teeth(*wheel)) / (operation.pinion_speed_hz * f64::from(gears.pinion_teeth));
-    if content.keep.is_analysed() && operation.is_steady() && duration_s < turn_s {
-        let problem =
-            format!("is less than a revolution of the {}, {turn_s:.4} s, for an average", wheel.name());
-        return refuse(problem, "lengthen it, or set average, difference and indicators to false");
+    let shaft_hz = operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.teeth(*wheel));
+    let (key, value, revolutions) = match (over_angle, duration_s) {
+        (Some(angle), _) => ("keep.revolutions", angle.revolutions.to_string(), angle.revolutions as f64),
+        (None, Some(duration_s)) => ("keep.duration_s", duration_s.to_string(), duration_s * shaft_hz),
+        (None, None) => ("keep.duration_s", format!("{simulated_s:.4}"), simulated_s * shaft_hz),
+    };
+    // A whole number of revolutions may come out a rounding error below it.
+    if content.keep.is_analysed() && operation.is_steady() && revolutions + 1e-6 < FEWEST_REVOLUTIONS as f64 {
+        let problem = format!(
+            "gives {revolutions:.3} revolutions of the {} at {shaft_hz:.3} Hz, but an average needs at least {FEWEST_REVOLUTIONS}",
+            wheel.name()
+        );
+        let help = "raise it, or set average, difference and indicators to false";
+        return Err(TomlError::new(key, value, problem).with_help(help));
     }
     Ok(())
 }

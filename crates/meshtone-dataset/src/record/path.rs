@@ -1,6 +1,6 @@
 //! The path from the simulated sensor's place to where a rig's is.
 
-use meshtone::scenario::Sensor;
+use meshtone::scenario::{Sensor, SensorPath};
 use meshtone::sensor::PathRipple;
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum, shared_length};
 use meshtone_io::run_identity::fnv_1a;
@@ -11,7 +11,8 @@ use crate::draw::{DrawnRecord, PATH_KEYS};
 /// ripple over frequency that is its mounting's own. A sensor that is linear makes its signal in the same spectrum.
 ///
 /// The ripple is normal in decibels at half octaves and goes along straight lines over the logarithm of the frequency between them.
-/// It changes magnitudes alone: no vibration comes sooner or later.
+/// It changes magnitudes alone: no vibration comes sooner or later. A wall and the modes of a housing, drawn for the mounting and the
+/// channel, follow what excites them.
 ///
 /// # Arguments
 /// * `drawn` - the record
@@ -26,12 +27,16 @@ pub(super) fn pass(
     rate_hz: f64,
     signal: &mut [f32],
 ) {
-    let [gain_db, ripple_db] = PATH_KEYS.map(|key| drawn.value(key));
+    let [gain_db, ripple_db, plate_hz, strength] = PATH_KEYS.map(|key| drawn.value(key));
     let factor = gain_db.map_or(1.0, |gain_db| libm::pow(10.0, gain_db / 20.0));
     let ripple = ripple_db
         .filter(|&ripple_db| ripple_db != 0.0)
         .map(|ripple_db| PathRipple::new(drawn.mounting_seed, fnv_1a(channel.as_bytes()), ripple_db));
-    if (ripple.is_none() && sensor.is_none()) || signal.len() < 2 {
+    let mut structure = SensorPath::RIGID;
+    structure.plate_hz = plate_hz.unwrap_or(0.0);
+    structure.strength = strength.unwrap_or(0.0);
+    structure.seed = drawn.mounting_seed ^ fnv_1a(channel.as_bytes());
+    if (ripple.is_none() && sensor.is_none() && structure.is_rigid()) || signal.len() < 2 {
         signal.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * factor) as f32);
         return;
     }
@@ -44,6 +49,10 @@ pub(super) fn pass(
         gains.iter_mut().for_each(|gain| *gain *= factor);
         if let Some(ripple) = &ripple {
             gains.iter_mut().zip(ripple.gains(step_hz, count)).for_each(|(gain, ripple)| *gain *= ripple);
+        }
+        if !structure.is_rigid() {
+            let structure = structure.at((0..count).map(|line| line as f64 * step_hz));
+            gains.iter_mut().zip(structure).for_each(|(gain, structure)| *gain *= structure);
         }
         gains
     });
@@ -124,6 +133,22 @@ mod tests {
             println!("{len}: {}", most / rms(&forwards));
             assert!(most < 0.005 * rms(&forwards), "{len}: {most}");
         }
+    }
+
+    /// A wall is its closed form; the modes of a housing are the mounting's own and the channel's own.
+    #[test]
+    fn a_wall_and_a_housing_change_the_level_of_a_tone() {
+        let gain = |values: &[(&str, f64)], mounting_seed: u64, channel: &str| {
+            let mut signal = tone(4000.0);
+            pass(&drawn(values, mounting_seed), channel, None, 1e4, &mut signal);
+            rms(&signal) / rms(&tone(4000.0))
+        };
+        let wall = gain(&[("path.plate_hz", 4000.0)], 1, "vertical_g");
+        assert!((wall - (2.0f64 / 1.01).sqrt()).abs() < 5e-3, "{wall}");
+        let housing = [("path.strength", 0.3)];
+        assert_eq!(gain(&housing, 1, "vertical_g"), gain(&housing, 1, "vertical_g"));
+        assert_ne!(gain(&housing, 1, "vertical_g"), gain(&housing, 2, "vertical_g"));
+        assert_ne!(gain(&housing, 1, "vertical_g"), gain(&housing, 1, "horizontal_g"));
     }
 
     // Of many mountings: the standard deviation that was asked for at a knot; the same for records of one mounting.

@@ -369,6 +369,8 @@ fn of_key(key: &str) -> Column {
         "standard deviation of the added noise",
         "gain of the path to the sensor",
         "standard deviation over frequency of the gain of the path to the sensor, its mounting's own",
+        "frequency at which the wall under the sensor bends as far as the place moves",
+        "standard deviation of the share of a mode of the housing, its mounting's own",
     ];
     let mut of_plan = NOISE_KEYS.iter().chain(&PATH_KEYS).zip(meanings);
     let description = match of_plan.find(|(other, _)| **other == key) {

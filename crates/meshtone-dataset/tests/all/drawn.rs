@@ -221,7 +221,7 @@ fn severities_of_a_kinds_own_scale() {
 
 #[test]
 fn a_mounting_has_its_own_values_and_every_class() {
-    let more = "[[vary]]\nkey = \"rig.support.stiffness_n_per_m\"\nlog_uniform = [1e8, 3e8]\nper = \"mounting\"\n\
+    let more = "[[vary]]\nkey = \"rig.support.base_hz\"\nlog_uniform = [350, 550]\nper = \"mounting\"\n\
                 [[vary]]\nkey = \"path.ripple_db\"\nfixed = 3\nper = \"mounting\"\n\
                 [[vary]]\nkey = \"rig.support.mass_kg\"\nuniform = [1, 2]\n\
                 [[vary]]\nkey = \"latent.load\"\nuniform = [50, 250]\nper = \"mounting\"\n\
@@ -239,7 +239,7 @@ fn a_mounting_has_its_own_values_and_every_class() {
         mountings.entry(record.mounting).or_default().push(record);
     }
     assert_eq!(mountings.len(), 120);
-    let stiffness = |record: &DrawnRecord| value(record, "rig.support.stiffness_n_per_m").unwrap();
+    let stiffness = |record: &DrawnRecord| value(record, "rig.support.base_hz").unwrap();
     for of_mounting in mountings.values() {
         let first = of_mounting[0];
         assert!((20..=30).contains(&of_mounting.len()), "{}", of_mounting.len());

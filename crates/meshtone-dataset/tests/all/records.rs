@@ -7,8 +7,8 @@ use std::path::Path;
 use crate::support::{FAST, plan, run};
 use meshtone::scenario::{MemoryLimit, WheelName};
 use meshtone::signal::{
-    ChainSettings, Edge, ShaftPhase, angular_resample, kaiser, octave_bands, process_channel, resample_with,
-    resampling_ratio, rms,
+    ChainSettings, Edge, ShaftPhase, angular_resample, kaiser, kurtosis, octave_bands, process_channel,
+    resample_with, resampling_ratio, rms,
 };
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
@@ -153,7 +153,12 @@ fn warnings_are_columns_and_are_counted() {
                 Some(figures) => ("apart_fraction", figures.apart_fraction),
                 None => ("tension_fraction", simulation.channels.tension_fraction()),
             };
-            assert_eq!(made.number(name, row), part);
+            // The record is simulated from where it begins, with a margin for filters; under contact it has not settled.
+            assert!(
+                (made.number(name, row) - part).abs() < 0.01,
+                "{name}: {} {part}",
+                made.number(name, row)
+            );
         }
         println!("{model}: {counts:?}");
         let common = if model == "linear" { "mesh-pulls" } else { "unsettled" };
@@ -247,8 +252,25 @@ fn steep_taps(up: usize, down: usize) -> Vec<f64> {
 /// A record is its scenario's simulation, begun at the mark and brought to the data set's rate.
 #[test]
 fn the_simulation_is_in_the_record() {
+    compare_with_simulations(FAST, "vertical_g", |simulation| &simulation.channels.vertical_g);
+}
+
+/// The resonance of a sensor without noise is applied at the data set's rate, and at that of the simulation elsewhere.
+#[test]
+fn a_resonance_is_the_same_at_either_rate() {
+    let sensor = "[[scenario.sensor]]\nname = \"casing\"\nresonance_hz = 2e3\nresonance_damping_ratio = 0.02\n\n[[class]]";
+    let text = FAST.replacen("[[class]]", sensor, 1);
+    compare_with_simulations(&text, "casing_g", |simulation| &simulation.channels.sensors[0].values_g);
+}
+
+/// Compares the first records of a plan with simulations of their scenarios.
+fn compare_with_simulations(
+    text: &str,
+    channel: &str,
+    simulated: impl Fn(&meshtone::Simulation) -> &Vec<f64>,
+) {
     let plan = plan(
-        &FAST
+        &text
             .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
             // Speeds at which the ratio of the rates is one of small numbers, for the other resampling.
             .replace("uniform = [30.0, 60.0]", "choice = [32.0, 40.0, 52.0]"),
@@ -260,12 +282,12 @@ fn the_simulation_is_in_the_record() {
         let simulation = meshtone::simulate(&sampler.scenario(&record).unwrap()).unwrap();
         let (up, down) = resampling_ratio(simulation.channels.sampling_rate_hz, 8e3).unwrap();
         // It begins when some tooth comes into contact; nothing else differs.
-        let simulated = &simulation.channels.vertical_g;
+        let simulated = simulated(&simulation);
         let from = |start: usize| {
             let turned = [&simulated[start..], &simulated[..start]].concat();
             resample_with(&turned, up, down, &steep_taps(up, down), Edge::Periodic).unwrap()
         };
-        let kept = made.signal("vertical_g", row);
+        let kept = made.signal(channel, row);
         let period = from(0).len();
         assert_eq!(kept.len(), period + 1);
         let per_tooth = simulation.stages.time.samples_per_pinion_revolution / 20;
@@ -568,7 +590,7 @@ fn what_is_enhanced_is_averaged_over_the_wheel_that_was_tuned_to() {
 fn sensors_are_what_is_kept() {
     let sensors = "[[scenario.sensor]]\nname = \"casing\"\nresonance_hz = 2e3\n[[scenario.sensor]]\nrange_g = 1.0\n\n[[class]]";
     let vary =
-        "[[vary]]\nkey = \"sensor[0].resonance_hz\"\nuniform = [1.5e3, 3e3]\n\n[keep]\nduration_s = 0.1";
+        "[[vary]]\nkey = \"sensor[0].resonance_hz\"\nuniform = [1.5e3, 3e3]\n\n[keep]\nduration_s = 0.15";
     let text = FAST
         .replacen("[[class]]", sensors, 1)
         .replacen("[keep]", vary, 1)
@@ -577,18 +599,18 @@ fn sensors_are_what_is_kept() {
     let plan = plan(&text);
     let keep = &plan.content.keep;
     let names: Vec<_> = keep.channels.iter().map(|channel| channel.name()).collect();
-    assert_eq!(names, ["casing_g", "support_vertical_g"]);
+    assert_eq!(names, ["casing_g", "pinion_support_vertical_g"]);
     assert_eq!(keep.analysed.name(), "casing_g");
     let made = made(&plan);
     for row in 0..16 {
-        let [casing, ranged] = ["casing_g", "support_vertical_g"].map(|name| made.signal(name, row));
-        assert_eq!((casing.len(), ranged.len()), (800, 800));
+        let [casing, ranged] = ["casing_g", "pinion_support_vertical_g"].map(|name| made.signal(name, row));
+        assert_eq!((casing.len(), ranged.len()), (1200, 1200));
         // A signal that is cut to the range jumps between its ends, and the filter of the data set's rate rings beyond them.
         let largest = |signal: &[f64]| signal.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         assert!(largest(&ranged) < 3.0 && largest(&casing) > 10.0);
     }
     let named = text.replacen(
-        "duration_s = 0.1",
+        "duration_s = 0.15",
         "channels = [\"vertical_g\", \"casing_g\"]\nanalysed = \"vertical_g\"",
         1,
     );
@@ -669,8 +691,14 @@ fn records_over_the_angle_are_of_one_length() {
         let size = b.iter().map(|line| line.norm_sqr()).sum::<f64>().sqrt();
         let off = a.iter().zip(&b).map(|(x, y)| (x - y).norm_sqr()).sum::<f64>().sqrt();
         assert!(off < 0.02 * size, "{row}: {off} of {size}");
-        // Indicators are of the whole recording, whatever is kept of it.
-        assert_eq!(angular.number("difference_kurtosis", row), timely.number("difference_kurtosis", row));
+        // Indicators are of the revolutions that the record keeps: the first three of the longer one. The noise is drawn for the
+        // level of each.
+        let three = (3.0 * 8e3 / speed).ceil() as usize + 1;
+        let phase = ShaftPhase::constant(speed, 8e3, three).unwrap();
+        let first = process_channel(&raw[..three], &phase, 40, &ChainSettings::default()).unwrap();
+        let kurtosis = kurtosis(&first.parts.difference).unwrap();
+        let given = angular.number("difference_kurtosis", row);
+        assert!((given / kurtosis - 1.0).abs() < 1e-3, "{row}: {given} {kurtosis}");
     }
 }
 

@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use meshtone::Stages;
+use meshtone::wheel::WheelName;
+use meshtone_plot::DamagedTooth;
 use serde_json::{Value, json};
 
 use crate::packet::Packet;
@@ -77,7 +79,8 @@ impl MeshCycle {
 
 /// (pitches) Where the forces are drawn.
 fn shown(stages: &Stages) -> Range<i64> {
-    let first = stages.damaged.iter().map(|tooth| tooth.first_tooth() as i64).min().unwrap_or(0);
+    let of_wheels = WheelName::BOTH.map(|wheel| DamagedTooth::of_stages(stages, wheel));
+    let first = of_wheels.iter().flatten().map(|tooth| i64::from(tooth.tooth) - 1).min().unwrap_or(0);
     first + SHOWN.start..first + SHOWN.end
 }
 

@@ -7,7 +7,7 @@ mod severity;
 mod teeth;
 mod wheel_signals;
 
-use meshtone::scenario::{Fault, Scenario, ScenarioWarning};
+use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning};
 use meshtone::sensor::Channel;
 use meshtone::signal::{ChainSettings, SimulatedShafts};
 use meshtone::wheel::WheelName;
@@ -207,6 +207,10 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
             .map(|contact| ("teeth apart", 100.0 * contact.apart_fraction, "% of the time")),
     );
     figures.extend(lowest.map(|frequency| ("lowest natural frequency", frequency, "Hz")));
+    if stages.scenario.model == Model::Contact {
+        let [alike, against] = stages.scenario.rig.support.frequencies_hz();
+        figures.extend([("bare supports, alike", alike, "Hz"), ("against each other", against, "Hz")]);
+    }
     figures.push(("sampling rate", channels.sampling_rate_hz, "S/s"));
     figures
 }

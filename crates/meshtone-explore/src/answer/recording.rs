@@ -6,8 +6,9 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone::signal::{
-    AngularSettings, ChainSettings, ShaftPhase, SimulatedShafts, Tachometer, angular_resample,
-    process_angular, tachometer_pulses,
+    AngularSettings, AngularSignal, ChainSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts,
+    StatedFacts, StatedTurning, Tachometer, angular_resample, check_recording, process_angular,
+    tachometer_pulses,
 };
 use meshtone::wheel::WheelName;
 use meshtone_io::recording::{Channel, Recording, RecordingOptions, read_recording};
@@ -73,17 +74,21 @@ pub fn recording(
     let leading =
         simulated.as_ref().map(|scenario| SimulatedChannel::leading(&scenario.sensors).name().into_owned());
     let channel = named(&recording, question.channel.as_deref().or(leading.as_deref()))?;
-    let (turning, wheels) = match (&simulated, &question.tachometer) {
-        (Some(simulated), None) => ("scenario", of_simulation(&recording, channel, simulated)),
+    let (turning, wheels, doubts) = match (&simulated, &question.tachometer) {
+        (Some(simulated), None) => ("scenario", of_simulation(&recording, channel, simulated), Vec::new()),
         _ => of_measurement(&recording, channel, question, scenario)?,
     };
+    let of_records = wheels.iter().filter_map(|wheel| wheel.record.as_ref().ok());
+    let of_signal =
+        doubts.iter().chain(of_records.flat_map(|record| &record.warnings)).map(ToString::to_string);
+    let warnings: Vec<String> = recording.warnings.iter().map(ToString::to_string).chain(of_signal).collect();
     let mut packet = Packet::default();
     let unit = channel.unit.as_deref().unwrap_or("");
     let said = json!({
         "name": question.name,
         "channels": recording.channels.iter().map(|channel| &channel.name).collect::<Vec<_>>(),
         "turning": turning,
-        "warnings": recording.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "warnings": warnings,
         "signal": {
             "channel": { "name": channel.name, "unit": unit },
             "sampling_rate_hz": recording.sampling_rate_hz,
@@ -141,25 +146,38 @@ fn of_measurement(
     channel: &Channel,
     question: &RecordingQuestion,
     scenario: &Scenario,
-) -> Result<(&'static str, [WheelSignals; 2]), Refusal> {
+) -> Result<(&'static str, [WheelSignals; 2], Vec<SignalWarning>), Refusal> {
     let (rate_hz, samples) = (recording.sampling_rate_hz, recording.len());
     let [pinion_teeth, gear_teeth] = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
-    let (turning, phase) = match &question.tachometer {
+    let speed_hz = scenario.operation.pinion_speed_hz;
+    let (name, turning, phase) = match &question.tachometer {
         Some(name) => {
             let pulses = &named(recording, Some(name))?.samples;
             let times = tachometer_pulses(pulses, rate_hz, &Tachometer::default())?;
-            ("tachometer", ShaftPhase::from_pulses(&times, 1, None, rate_hz, samples)?)
+            let turning = StatedTurning::Pulses { per_revolution: 1 };
+            ("tachometer", turning, ShaftPhase::from_pulses(&times, 1, None, rate_hz, samples)?)
         }
         None => {
-            ("constant speed", ShaftPhase::constant(scenario.operation.pinion_speed_hz, rate_hz, samples)?)
+            let turning = StatedTurning::ConstantSpeed { speed_hz };
+            ("constant speed", turning, ShaftPhase::constant(speed_hz, rate_hz, samples)?)
         }
     };
+    let stated = StatedFacts { teeth: pinion_teeth, mate_teeth: Some(gear_teeth), turning };
     let settings = ChainSettings::default();
-    let process = |phase: &ShaftPhase, teeth: u32| {
-        let record = angular_resample(&channel.samples, phase, &AngularSettings::default())
-            .and_then(|angular| process_angular(&angular, teeth, &settings));
-        WheelSignals { record, teeth, damaged: Vec::new() }
+    let over = |phase: &ShaftPhase| angular_resample(&channel.samples, phase, &AngularSettings::default());
+    let process = |angular: &Result<AngularSignal, SignalError>, teeth: u32| WheelSignals {
+        record: angular
+            .as_ref()
+            .map_err(Clone::clone)
+            .and_then(|angular| process_angular(angular, teeth, &settings)),
+        teeth,
+        damaged: Vec::new(),
     };
-    let of_gear = phase.of_mate(pinion_teeth, gear_teeth)?;
-    Ok((turning, [process(&phase, pinion_teeth), process(&of_gear, gear_teeth)]))
+    let pinion = over(&phase);
+    let mut doubts = phase.warnings.clone();
+    if let Ok(angular) = &pinion {
+        doubts.extend(check_recording(angular, &stated, phase.mean_speed_hz(rate_hz)));
+    }
+    let gear = over(&phase.of_mate(pinion_teeth, gear_teeth)?);
+    Ok((name, [process(&pinion, pinion_teeth), process(&gear, gear_teeth)], doubts))
 }

@@ -48,8 +48,10 @@ function rangeOf(description, value) {
   const isLog = !whole && size >= LARGE && (least ?? 0) >= 0;
   if (isLog) return { isLog, least: Math.max(least ?? 0, size / 20), most: Math.min(most ?? Infinity, size * 20) };
   const around = whole ? Math.max(4 * size, 12) : size ? 3 * size : { mm: 1, "µm": 50, "": 1, "-": 1, deg: 10 }[description.unit] ?? 10;
+  // Where the key may have either sign, as far to the one side as to the other.
+  if (least === null || (least < 0 && -least > 4 * around)) least = -around;
   if (most === null || most > 4 * around) most = around;
-  if (least === null) least = -most;
+  if (least < 0 && most > 0 && !whole) [least, most] = [Math.max(least, -Math.max(-least, most)), Math.min(most, Math.max(-least, most))];
   // A bound that is no value itself.
   const step = whole ? 1 : 10 ** Math.floor(Math.log10((most - least) / 200));
   if (description.allowed.startsWith(">")) least += step;
@@ -106,7 +108,8 @@ class Slider {
 /** One key. */
 class Control {
   constructor(controls, path, description) {
-    Object.assign(this, { controls, path, description });
+    // What is shown first takes the place of what stands in the field, also where that has the focus.
+    Object.assign(this, { controls, path, description, isAnew: true });
     const key = keyOf(path);
     const id = `key-${key}`;
     const label = words(String(path[path.length - 1]));
@@ -130,7 +133,8 @@ class Control {
       this.slider = new Slider(`${label}${unit ? `, ${unit}` : ""}`, description, change("coarse"), change("full"));
       this.row.append(this.slider.input);
     }
-    this.row.append(this.problem);
+    this.ignored = element("p", { className: "note", hidden: true });
+    this.row.append(this.ignored, this.problem);
   }
 
   #field(id) {
@@ -159,10 +163,14 @@ class Control {
 
   show(value, model) {
     const text = value === undefined || value === null ? "" : Array.isArray(value) ? value.join(", ") : String(value);
-    if (document.activeElement !== this.field && this.field.value !== text) this.field.value = text;
+    const isTyping = document.activeElement === this.field && !this.isAnew;
+    if (!isTyping && this.field.value !== text) this.field.value = text;
+    this.isAnew = false;
     if (this.slider && document.activeElement !== this.slider.input) this.slider.value = value;
     const isIgnored = this.description.ignored_by.includes(model);
     this.row.classList.toggle("ignored", isIgnored);
+    this.ignored.hidden = !isIgnored;
+    this.ignored.textContent = isIgnored ? `has no effect in the model ${model}` : "";
   }
 
   refuse(text) {
@@ -313,7 +321,10 @@ export class Controls {
     }
     this.#answer = null;
     this.#shape = "";
-    this.#controls.forEach(({ slider }) => { if (slider) slider.isAnew = true; });
+    this.#controls.forEach((control) => {
+      control.isAnew = true;
+      if (control.slider) control.slider.isAnew = true;
+    });
   }
 
   /** (s) About where the signal ends. */

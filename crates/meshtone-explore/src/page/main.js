@@ -166,7 +166,7 @@ async function process() {
     views.setRecording(processed);
     showRecording(processed);
     showProblem(null);
-    status(`${processed.name}: ${processed.warnings.length ? processed.warnings.join("; ") : "read"}`);
+    status(`${processed.name}: ${processed.warnings.length ? "read, with warnings" : "read"}`);
   } catch (error) {
     // What was there before stays; this file was none.
     if (!byId("recording").childElementCount) recording = null;
@@ -198,8 +198,11 @@ function showRecording(processed) {
     views.setRecording(null);
   });
   const name = Object.assign(document.createElement("span"), { textContent: `Recording ${processed.name}, by ${processed.turning}` });
+  const warned = document.createElement("ul");
+  warned.className = "warned";
+  warned.append(...processed.warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   box.replaceChildren(name, choice("channel", processed.channels, processed.signal.channel.name, set("channel")),
-    choice("tachometer", [constant, ...processed.channels], recording.settings.tachometer ?? constant, set("tachometer")), remove);
+    choice("tachometer", [constant, ...processed.channels], recording.settings.tachometer ?? constant, set("tachometer")), remove, warned);
   box.hidden = false;
 }
 

@@ -79,6 +79,8 @@ export class Plot {
   #options;
   #lines = [];
   #bands = [];
+  #marks = [];
+  #isLog = false;
   #mark = null;
   #range = [0, 1];
   #zoomed = null;
@@ -123,10 +125,17 @@ export class Plot {
     this.#title.textContent = title.length > LONGEST_TITLE ? `${title.slice(0, LONGEST_TITLE).replace(/[\s,;]*\S*$/, "")} …` : title;
   }
 
-  /** Draws lines; what was zoomed stays so. @param range shown where nothing is zoomed */
-  set(lines, { range = null, bands = [], title = null, y = null, empty = "" } = {}) {
+  /**
+   * Draws lines; what was zoomed stays so.
+   * @param range shown where nothing is zoomed
+   * @param marks places on the axis that a line is drawn at, such as mesh orders
+   * @param isLog whether y goes by powers of ten
+   */
+  set(lines, { range = null, bands = [], marks = [], isLog = false, title = null, y = null, empty = "" } = {}) {
     this.#lines = lines.filter(({ y: values }) => values?.length);
     this.#bands = bands;
+    this.#marks = marks;
+    this.#isLog = isLog;
     if (title) this.#head(title);
     if (y) this.#options.y = y;
     const least = Math.min(...this.#lines.map(({ from }) => from));
@@ -173,7 +182,7 @@ export class Plot {
     this.#describing = setTimeout(() => this.#describe(), 200);
     this.#isWaiting = !this.#isSeen;
     if (this.#isWaiting) return;
-    const builtAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.y;
+    const builtAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.y + this.#isLog;
     if (!this.#plot || builtAs !== this.#builtAs) this.#build();
     this.#builtAs = builtAs;
     const view = this.view;
@@ -185,7 +194,7 @@ export class Plot {
       if (this.#buffers[index]?.length !== count) this.#buffers[index] = new Array(count);
       return this.#buffers[index];
     };
-    const framedAs = [view, this.#bands, columns, builtAs].join();
+    const framedAs = [view, this.#bands, this.#marks, columns, builtAs].join();
     let isOther = framedAs !== this.#framedAs;
     this.#framedAs = framedAs;
     const xs = buffer(0);
@@ -225,7 +234,10 @@ export class Plot {
       height: HEIGHT,
       legend: { show: false },
       cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } },
-      scales: { x: { time: false, auto: false }, y: { range: (_, least, most) => around(least, most) } },
+      scales: {
+        x: { time: false, auto: false },
+        y: this.#isLog ? { distr: 3, range: (_, least, most) => decades(least, most) } : { range: (_, least, most) => around(least, most) },
+      },
       axes: [axis(this.#options.x, 34), axis(this.#options.y, 62)],
       series: [{}, ...series],
       hooks: {
@@ -281,6 +293,15 @@ export class Plot {
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
+    ctx.strokeStyle = colour("held");
+    ctx.setLineDash([3, 4]);
+    ctx.beginPath();
+    for (const place of this.#marks) {
+      const x = Math.round(plot.valToPos(place, "x", true)) + 0.5;
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+    }
+    ctx.stroke();
     ctx.fillStyle = colour("tint");
     for (const [from, to] of this.#bands) {
       const [left, right] = [from, to].map((x) => plot.valToPos(x, "x", true));
@@ -340,4 +361,12 @@ function around(least, most) {
   if (least === null || most === null || !Number.isFinite(least + most)) return [0, 1];
   const room = 0.06 * (most - least) || 0.1 * Math.abs(most) || 1;
   return [least === 0 ? 0 : least - room, most + room];
+}
+
+/** Decades of a logarithmic scale that are shown. */
+const DECADES = 5;
+
+function decades(least, most) {
+  if (!(most > 0)) return [1e-3, 1];
+  return [Math.max(least > 0 ? least : 0, most * 10 ** -DECADES), 1.5 * most];
 }

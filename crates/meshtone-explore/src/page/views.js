@@ -8,6 +8,8 @@ const byId = (id) => document.getElementById(id);
 const SEEN_REVOLUTIONS = 3;
 /** Mesh orders that are seen of a spectrum at first. */
 const SEEN_HARMONICS = 5;
+/** Mesh orders that are marked in a spectrum. */
+const MARKED_HARMONICS = 40;
 const PAIR_LOOKS = ["now", "second", "recorded", "damage"];
 
 /** Changes a text that is another: what stays is not laid out anew. */
@@ -38,7 +40,7 @@ export class Views {
       waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "g" }),
       average: plot("average", { title: "Average", x: "angle (°)", y: "g" }),
       difference: plot("difference", { title: "Difference and its envelope", x: "angle (°)", y: "g" }),
-      spectrum: plot("spectrum", { title: "Spectrum of the average", x: "order of the shaft", y: "g" }),
+      spectrum: plot("spectrum", { title: "Spectrum of the average, mesh orders dashed", x: "order of the shaft", y: "g" }),
       envelopeSpectrum: plot("envelope-spectrum", { title: "Spectrum of the envelope", x: "order of the shaft", y: "g" }),
       severity: plot("severity", { title: "Indicator against severity", x: "severity", y: "", kind: "points" }),
     };
@@ -56,6 +58,7 @@ export class Views {
       this.#teeth.draw();
     });
     byId("wheel").addEventListener("change", () => this.#revolution());
+    byId("logarithmic").addEventListener("change", () => this.#revolution());
     byId("fault").addEventListener("change", () => this.#askSeverity());
     this.#play(this.#teeth.playing);
   }
@@ -182,7 +185,7 @@ export class Views {
   #damagedPairs({ wheels, contact_ratio: ratio }) {
     const gearTeeth = wheels[1].teeth;
     const bands = [];
-    wheels.forEach(({ teeth, damaged }) => damaged.forEach(({ numbers }) => numbers.forEach((number) => {
+    wheels.forEach(({ teeth, damaged }) => damaged.filter(({ numbers }) => damaged.length === 1 || 2 * numbers.length <= teeth).forEach(({ numbers }) => numbers.forEach((number) => {
       for (let pair = number - 1 - teeth; pair <= gearTeeth; pair += teeth) bands.push([pair, pair + ratio]);
     })));
     // All teeth alike: nothing stands out.
@@ -229,8 +232,10 @@ export class Views {
     this.#plots.difference.set([...over("difference"), ...envelopes], { bands, range: degrees, y: unit, empty });
     const orders = (key) => all.map(([label, drawn, look]) => line(label, drawn[key].subarray(1), 1, 1, look));
     const last = (key, most) => [0, Math.min(most, now[key]?.length ?? most)];
-    this.#plots.spectrum.set(orders("spectrum"), { range: last("spectrum", SEEN_HARMONICS * now.teeth), y: unit, empty });
-    this.#plots.envelopeSpectrum.set(orders("envelope_spectrum"), { range: last("envelope_spectrum", 2 * now.teeth), y: unit, empty });
+    const marks = Array.from({ length: Math.min(MARKED_HARMONICS, Math.floor((now.spectrum?.length ?? 0) / now.teeth)) }, (_, k) => (k + 1) * now.teeth);
+    const isLog = byId("logarithmic").checked;
+    this.#plots.spectrum.set(orders("spectrum"), { range: last("spectrum", SEEN_HARMONICS * now.teeth), marks, isLog, y: unit, empty });
+    this.#plots.envelopeSpectrum.set(orders("envelope_spectrum"), { range: last("envelope_spectrum", 2 * now.teeth), marks, isLog, y: unit, empty });
     const tinted = bands.length ? `Tinted: damaged ${name} ${now.damaged.length > 1 ? "teeth" : "tooth"} ${now.damaged.join(", ")} in contact.` : "";
     const problem = this.#recording?.wheels[wheel].problem;
     byId("wheel-note").textContent = [tinted, ...(now.warnings ?? []), problem && `Recording: ${problem}`].filter(Boolean).join(" ");

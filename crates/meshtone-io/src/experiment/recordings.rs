@@ -139,7 +139,8 @@ impl Warnings {
                 Phase::Tachometer { pulses_per_revolution, shaft, .. } if shaft == wheel => {
                     StatedTurning::Pulses { per_revolution: pulses_per_revolution }
                 }
-                Phase::Tachometer { .. } | Phase::MeshTone { .. } => StatedTurning::Other,
+                Phase::MeshTone { .. } => StatedTurning::MeshTone { nominal_hz: turned },
+                Phase::Tachometer { .. } => StatedTurning::Other,
             },
         };
         if let Some(find_mismatch) = find_mismatch(angular, &stated) {

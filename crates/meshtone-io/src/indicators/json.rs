@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use meshtone::signal::Indicators;
+use meshtone::signal::{Indicators, SignalWarning};
 use serde::Serializer;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use super::{FORMAT_VERSION, IndicatorResults};
 
@@ -29,7 +29,14 @@ impl IndicatorResults {
     pub fn write_json(&self, mut to: impl Write) -> io::Result<()> {
         let warnings = self.warnings.iter().map(|warning| {
             let recording = warning.source.as_ref().map(|source| source.display().to_string());
-            json!({ "recording": recording, "message": warning.message })
+            let values = warning.kind.iter().flat_map(SignalWarning::values);
+            let values: Map<String, Value> = values.map(|(name, value)| (name, json!(value))).collect();
+            json!({
+                "recording": recording,
+                "code": warning.kind.as_ref().map(SignalWarning::code),
+                "message": warning.message,
+                "values": values,
+            })
         });
         let all = json!({
             "format_version": FORMAT_VERSION,

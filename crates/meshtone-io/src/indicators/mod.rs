@@ -9,7 +9,7 @@ mod parquet_file;
 
 use std::path::{Path, PathBuf};
 
-use meshtone::signal::Indicators;
+use meshtone::signal::{Indicators, SignalWarning};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
@@ -75,12 +75,14 @@ pub struct RecordEntry {
 }
 
 /// Something doubtful.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct WarningEntry {
     /// The recording that it is about; none where it is about all.
     pub source: Option<PathBuf>,
     /// What it is.
     pub message: String,
+    /// Its kind and its numbers, where it is about the signal.
+    pub kind: Option<SignalWarning>,
 }
 
 /// A path as messages show it.

@@ -7,7 +7,7 @@ use super::label::Label;
 use super::rate::{self, StatedRate};
 use super::selection::{Selection, matching, present};
 use super::time::timing;
-use super::unit::volts_in;
+use super::unit::{conversion, volts_in};
 use super::{Channel, Recording, RecordingOptions};
 
 /// Samples of a block that is checked as a whole.
@@ -113,10 +113,11 @@ impl Channel {
     ///
     /// # Arguments
     /// * `sensitivity_v_per_unit` - (V/unit) finite and not 0: the samples are volts and are divided by it
-    /// * `unit` - of the samples, after the division
+    /// * `unit` - of the samples, after the division; samples in another unit of the same quantity are converted
     ///
     /// # Errors
-    /// The unit of the channel is none of voltage, or the channel becomes infinite, where a sensitivity is given: what is wrong.
+    /// The channel's own unit contradicts `unit`; it is none of voltage, or the channel becomes infinite, where a sensitivity is given: what is
+    /// wrong.
     pub fn calibrate(
         &mut self,
         sensitivity_v_per_unit: Option<f64>,
@@ -125,7 +126,20 @@ impl Channel {
         if let Some(sensitivity) = sensitivity_v_per_unit {
             self.divide(sensitivity)?;
         }
-        self.unit = unit.map(str::to_owned).or(self.unit.take());
+        let Some(stated) = unit else { return Ok(()) };
+        if let Some(own) = &self.unit {
+            let factor = conversion(own, stated).ok_or_else(|| {
+                format!(
+                    "the unit {stated} is stated for channel {}, but the file says {own}, which does not convert to it; leave the unit out, \
+                     state the sensitivity where the samples are volts, or correct the file",
+                    self.name
+                )
+            })?;
+            if factor != 1.0 {
+                self.samples.iter_mut().for_each(|sample| *sample *= factor);
+            }
+        }
+        self.unit = Some(stated.to_owned());
         Ok(())
     }
 

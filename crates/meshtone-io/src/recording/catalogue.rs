@@ -69,7 +69,10 @@ pub(super) fn read_arrays(
     let samples = |column: usize| catalogue.layout(column).map_or(0, |layout| layout.samples);
     memory_need::check(memory::limit(), options, &selection, samples, 0)?;
     let samples = catalogue.read(&selection.wanted, read)?;
-    let mut recording = assemble(labels, &selection, samples, stated, options)?;
+    let single = |entry: &ArrayEntry| Some(format!("{} = {}", entry.name, entry.single?));
+    let singles: Vec<String> = entries.iter().filter_map(single).collect();
+    let recording = assemble(labels, &selection, samples, stated, options);
+    let mut recording = recording.map_err(|problem| problem.with_numbers(&singles))?;
     recording.warnings.extend(zero_twins(labels, &selection));
     Ok(recording)
 }

@@ -57,6 +57,8 @@ pub(super) enum Problem {
     Broken(String),
     /// The format of the file is not known.
     UnknownFormat(String),
+    /// Nothing says the sampling rate.
+    NoRate(String),
     /// The content is refused.
     Refused(String),
     /// An option is impossible.
@@ -88,10 +90,20 @@ impl Problem {
             },
             Self::Broken(problem) => broken(problem),
             Self::UnknownFormat(found) => return ReadRecordingError::UnknownFormat { path, found },
-            Self::Refused(problem) => problem,
+            Self::NoRate(problem) | Self::Refused(problem) => problem,
             Self::Option(problem) => return ReadRecordingError::Option { problem },
         };
         ReadRecordingError::Refused { path, problem }
+    }
+
+    /// The problem; where nothing says the sampling rate, with numbers of the file that may be it.
+    pub(super) fn with_numbers(self, numbers: &[String]) -> Self {
+        match self {
+            Self::NoRate(problem) if !numbers.is_empty() => {
+                Self::NoRate(format!("{problem}; its single numbers are {}", names(numbers)))
+            }
+            other => other,
+        }
     }
 
     pub(super) fn broken(problem: impl Display) -> Self {

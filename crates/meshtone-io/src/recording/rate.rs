@@ -7,6 +7,9 @@ use super::time::Timing;
 /// Two statements of one rate may differ by this part, for instance by the digits that were written.
 const AGREEMENT: f64 = 1e-6;
 
+/// (S/s) Least number under a short name that is a sampling rate.
+const LEAST_OF_SHORT_NAME: f64 = 1000.0;
+
 /// A sampling rate, and where the file states it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StatedRate {
@@ -24,10 +27,18 @@ impl StatedRate {
             None => (word.strip_suffix("hz").unwrap_or(&word), 1.0),
         };
         let rate_hz = match word {
-            "fs" | "samplingrate" | "samplerate" | "samplingfrequency" | "samplefrequency"
-            | "samplingfreq" | "samplefreq" | "abtastrate" | "abtastfrequenz" => value * scale,
+            "fs" | "fsamp" | "fsample" | "fsampling" | "samplingrate" | "samplerate" | "samprate"
+            | "smprate" | "samplingfrequency" | "samplefrequency" | "sampfrequency" | "samplingfreq"
+            | "samplefreq" | "sampfreq" | "sfreq" | "freqsampling" | "acquisitionrate" | "acqrate"
+            | "scanrate" | "daqrate" | "samplespersecond" | "sps" | "abtastrate" | "abtastfrequenz" => {
+                value * scale
+            }
+            // Some mean the rate of the shaft by it.
+            "sr" | "srate" if value >= LEAST_OF_SHORT_NAME => value * scale,
             "dt" | "dts" | "samplinginterval" | "samplingintervals" | "sampleinterval"
-            | "sampleintervals" | "samplingperiod" | "samplingperiods" => 1.0 / value,
+            | "sampleintervals" | "samplingperiod" | "samplingperiods" | "timestep" | "deltat"
+            | "xincrement" | "wfincrement" => 1.0 / value,
+            "increment" if name.ends_with("x_values.increment") => 1.0 / value,
             _ => return None,
         };
         Some(StatedRate { by: name.to_string(), rate_hz })
@@ -85,5 +96,25 @@ fn no_rate(present: &[String]) -> Problem {
             names(present)
         ),
     };
-    Problem::Refused(format!("does not say its sampling rate{rest}"))
+    Problem::NoRate(format!("does not say its sampling rate{rest}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::StatedRate;
+
+    #[test]
+    fn rates_are_known_by_the_names_that_files_give_them() {
+        let rate = |name: &str, value: f64| StatedRate::from_named(name, value).map(|stated| stated.rate_hz);
+        for name in
+            ["Head_1.SampFreq", "Fs", "bearing.sr", "SampleRate_Hz", "Header.Sampling_Frequency", "acq_rate"]
+        {
+            assert_eq!(rate(name, 20_000.0), Some(20_000.0), "{name}");
+        }
+        assert_eq!(rate("Signal_1.x_values.increment", 5e-5), Some(20_000.0));
+        assert_eq!(rate("dt", 5e-5), Some(20_000.0));
+        // The speed of the shaft, and the step of something else.
+        assert_eq!(rate("shaft.sr", 25.0), None);
+        assert_eq!(rate("load.increment", 0.5), None);
+    }
 }

@@ -69,6 +69,34 @@ fn names_units_and_comments_are_optional() {
 }
 
 #[test]
+fn a_stated_unit_converts_or_is_refused() {
+    let with = |header: &str, unit: &str| {
+        let content = format!("{header}\n9.80665\n-19.6133\n");
+        let calibration =
+            Calibration { channel: 1.into(), sensitivity_v_per_unit: None, unit: Some(unit.to_owned()) };
+        let options = RecordingOptions { calibrations: vec![calibration], ..rate(1.0) };
+        (content, options)
+    };
+    for (header, unit, expected) in [
+        ("acc [m/s^2]", "g", [1.0, -2.0]),
+        ("acc [m/s²]", "m/s2", [9.80665, -19.6133]),
+        ("acc", "g", [9.80665, -19.6133]),
+        ("acc [mm/s]", "m/s", [9.80665e-3, -19.6133e-3]),
+    ] {
+        let (content, options) = with(header, unit);
+        let recording = read("run.csv", content.as_bytes(), &options).unwrap();
+        let [channel] = &recording.channels[..] else { panic!("{header}") };
+        let error = channel.samples.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(error < 1e-12 && channel.unit.as_deref() == Some(unit), "{header} {unit}: {channel:?}");
+    }
+    for (header, unit) in [("acc [m/s^2]", "V"), ("acc [mV]", "g"), ("acc [EU]", "g")] {
+        let (content, options) = with(header, unit);
+        let message = refused("run.csv", content.as_bytes(), &options);
+        assert!(message.contains("does not convert"), "{message}");
+    }
+}
+
+#[test]
 fn columns_are_chosen_and_calibrated() {
     let content = b"when,note,a [mV],b,c\n0.0,start,100,5,x\n0.1,,-200,6,y\n0.2,end,50,7,z\n";
     let options = RecordingOptions {

@@ -180,11 +180,11 @@ fn sensors_are_the_first_columns() {
     let scenario = scenario().with_sensors(vec![Sensor::default(), second]);
     let mut channels = channels();
     let signal = |name: &str, value: f64| SensorSignal { name: name.into(), values_g: vec![value; 70_000] };
-    channels.sensors = vec![signal("support_vertical", 1.5), signal("casing", -2.5)];
+    channels.sensors = vec![signal("pinion_support_vertical", 1.5), signal("casing", -2.5)];
     write_signals(File::create(&path).unwrap(), &scenario, &channels).unwrap();
     let table = TableReader::new(File::open(&path).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
-    assert_eq!(names[..4], ["time_s", "support_vertical_g", "casing_g", "horizontal_g"]);
+    assert_eq!(names[..4], ["time_s", "pinion_support_vertical_g", "casing_g", "horizontal_g"]);
     assert_eq!(names.len(), 9);
     let recorded = read_signals(&path).unwrap();
     assert_eq!((recorded.scenario, recorded.channels), (scenario, channels));

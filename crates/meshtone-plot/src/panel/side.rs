@@ -42,7 +42,9 @@ impl<'a> Side<'a> {
         if points < 2 || contact_index + 1 >= points {
             return Err(PlotError::NoProfile { wheel: title, points });
         }
-        let damaged = stages.damaged.iter().filter(|tooth| tooth.wheel == name);
+        let mut damaged = stages.damaged.iter().filter(|tooth| tooth.wheel == name);
+        let standing_out = crate::DamagedTooth::of_stages(stages, name);
+        let first = standing_out.first().map(|tooth| tooth.tooth as usize - 1);
         Ok(Self {
             name: title,
             shaft,
@@ -50,8 +52,8 @@ impl<'a> Side<'a> {
             profile,
             contact_index,
             tip_shapes: tip_shapes(stages, profile),
-            tooth: damaged.min_by_key(|tooth| tooth.first_tooth()),
-            damaged: crate::DamagedTooth::of_stages(stages, name),
+            tooth: first.and_then(|first| damaged.find(|alike| alike.teeth.contains(&first))),
+            damaged: standing_out,
             errors_mm,
             errors_from_tip: name == WheelName::Gear,
         })

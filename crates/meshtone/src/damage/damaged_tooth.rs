@@ -1,5 +1,8 @@
 //! A tooth with all its damage.
 
+use std::collections::BTreeMap;
+
+use super::fault::faults_on_teeth;
 use super::kind::Kind;
 use super::{Crack, DamageDescription, Fault, FlankPits, ToothPart};
 use crate::error::ScenarioError;
@@ -209,37 +212,31 @@ struct Alike {
     teeth: Vec<usize>,
     /// Numbers of the faults.
     faults: Vec<usize>,
-    /// The teeth have draws of their own, and are one.
-    is_drawn: bool,
 }
 
 /// The damaged teeth, those with the same faults together unless each has draws of its own; in the order in which they are
 /// first named.
 fn alike(faults: &[Fault], teeth: &Teeth) -> Vec<Alike> {
+    let on_teeth = faults_on_teeth(faults, |wheel| teeth.wheel(wheel).teeth);
+    // In the order in which the teeth are named.
+    let mut named: Vec<_> = on_teeth.into_iter().collect();
+    named.sort_by_cached_key(|((wheel, tooth), on_tooth)| {
+        let first = on_tooth[0];
+        let of_first = faults[first].tooth.numbers(teeth.wheel(faults[first].wheel).teeth);
+        (first, of_first.iter().position(|number| number == tooth), *wheel)
+    });
     let mut all: Vec<Alike> = Vec::new();
-    let mut seen: [Vec<bool>; 2] =
-        WheelName::BOTH.map(|wheel| vec![false; teeth.wheel(wheel).teeth as usize]);
-    for fault in faults {
-        for tooth in fault.tooth.numbers(teeth.wheel(fault.wheel).teeth) {
-            let index = tooth.saturating_sub(1) as usize;
-            // What the wheel has not is refused where the pairs are counted.
-            let seen = seen[fault.wheel as usize].get_mut(index);
-            if seen.is_some_and(|seen| std::mem::replace(seen, true)) {
-                continue;
-            }
-            let on_tooth =
-                |(_, other): &(usize, &Fault)| other.wheel == fault.wheel && other.tooth.contains(tooth);
-            let on_tooth: Vec<usize> =
-                faults.iter().enumerate().filter(on_tooth).map(|(number, _)| number).collect();
-            let is_drawn = on_tooth.iter().any(|&number| faults[number].damage.is_drawn());
-            let like = |other: &&mut Alike| {
-                !is_drawn && !other.is_drawn && other.wheel == fault.wheel && other.faults == on_tooth
-            };
-            match all.iter_mut().find(like) {
-                Some(group) => group.teeth.push(index),
-                None => {
-                    all.push(Alike { wheel: fault.wheel, teeth: vec![index], faults: on_tooth, is_drawn })
-                }
+    let mut groups: BTreeMap<(usize, Vec<usize>), usize> = BTreeMap::new();
+    for ((wheel, tooth), on_tooth) in named {
+        let index = tooth.saturating_sub(1) as usize;
+        let is_drawn = on_tooth.iter().any(|&number| faults[number].damage.is_drawn());
+        let group = groups.get(&(wheel, on_tooth.clone())).filter(|_| !is_drawn);
+        match group {
+            Some(&group) => all[group].teeth.push(index),
+            None => {
+                groups.insert((wheel, on_tooth.clone()), all.len());
+                let wheel = faults[on_tooth[0]].wheel;
+                all.push(Alike { wheel, teeth: vec![index], faults: on_tooth });
             }
         }
     }
@@ -267,11 +264,14 @@ pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<D
     let sound =
         |group: &Alike| DamagedTooth::sound(group.wheel, group.teeth.clone(), teeth.profile(group.wheel));
     let mut damaged: Vec<DamagedTooth> = groups.iter().map(sound).collect();
+    let mut groups_of: Vec<Vec<usize>> = vec![Vec::new(); shown.len()];
+    for (number, group) in groups.iter().enumerate() {
+        group.faults.iter().for_each(|&fault| groups_of[fault].push(number));
+    }
     for (place, fault) in shown.iter().enumerate() {
-        for (group, tooth) in
-            groups.iter().zip(&mut damaged).filter(|(group, _)| group.faults.contains(&place))
-        {
-            let healthy = HealthyTooth { teeth, name: group.wheel, tooth: tooth.first_tooth(), seed };
+        for &group in &groups_of[place] {
+            let (tooth, wheel) = (&mut damaged[group], groups[group].wheel);
+            let healthy = HealthyTooth { teeth, name: wheel, tooth: tooth.first_tooth(), seed };
             let number = numbers[place];
             let done = fault.damage.damage(tooth, &healthy).and_then(|description| {
                 tooth.descriptions.push(DamageDescription { fault: number, ..description });

@@ -1,5 +1,7 @@
 //! What is broken, and where.
 
+use std::collections::BTreeMap;
+
 use meshtone_toml::{ReadResult, TomlTable};
 
 use super::severity::SoundTooth;
@@ -264,16 +266,39 @@ pub(super) fn keys_of_place(damage: Damage) -> Vec<KeyDescription> {
 /// * `faults` - all of a pair
 /// * `gears` - the wheels
 pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
+    let on_teeth = faults_on_teeth(faults, |wheel| gears.teeth(wheel));
     for (index, fault) in faults.iter().enumerate() {
-        let beside = faults[..index].iter().enumerate().find_map(|(number, other)| {
-            let why = other.damage.part().excludes(fault.damage.part())?;
-            let tooth = (other.wheel == fault.wheel).then(|| other.tooth.shared(&fault.tooth)).flatten()?;
-            Some(second_damage(fault, tooth, number, other, why))
+        let excluded_by = |number: usize| faults[number].damage.part().excludes(fault.damage.part());
+        let beside = fault.tooth.numbers(gears.teeth(fault.wheel)).into_iter().filter_map(|tooth| {
+            let earlier = on_teeth.get(&(fault.wheel as usize, tooth))?.iter().copied();
+            let mut earlier = earlier.take_while(|number| *number < index);
+            earlier.find_map(|number| Some((number, tooth, excluded_by(number)?)))
         });
-        let checked = beside.map_or_else(|| fault.check(gears), Err);
+        let checked = match beside.min_by_key(|(number, ..)| *number) {
+            Some((number, tooth, why)) => Err(second_damage(fault, tooth, number, &faults[number], why)),
+            None => fault.check(gears),
+        };
         checked.map_err(|error| error.in_entry("fault", index, faults.len()))?;
     }
     Ok(())
+}
+
+/// The numbers of the faults on each tooth, rising, by the wheel and the tooth's number.
+///
+/// # Arguments
+/// * `faults` - all of a pair
+/// * `teeth` - number of teeth of a wheel
+pub(super) fn faults_on_teeth(
+    faults: &[Fault],
+    teeth: impl Fn(WheelName) -> u32,
+) -> BTreeMap<(usize, u32), Vec<usize>> {
+    let mut on_teeth: BTreeMap<(usize, u32), Vec<usize>> = BTreeMap::new();
+    for (number, fault) in faults.iter().enumerate() {
+        for tooth in fault.tooth.numbers(teeth(fault.wheel)) {
+            on_teeth.entry((fault.wheel as usize, tooth)).or_default().push(number);
+        }
+    }
+    on_teeth
 }
 
 /// A tooth that has lost already what the fault would take.

@@ -99,19 +99,6 @@ impl FaultyTeeth {
         }
     }
 
-    /// A tooth that is among these and among others of the same wheel.
-    pub(super) fn shared(&self, other: &Self) -> Option<u32> {
-        let named = match (self, other) {
-            (Self::All, named) | (named, _) => named,
-        };
-        match named {
-            Self::All => Some(1),
-            Self::One(_) | Self::These(_) => {
-                named.numbers(0).into_iter().find(|&tooth| self.contains(tooth) && other.contains(tooth))
-            }
-        }
-    }
-
     /// What they are called: `tooth 5`, `teeth 1 and 2`, `all teeth`.
     pub fn in_words(&self) -> String {
         match self {
@@ -202,13 +189,6 @@ impl KeyValue for FaultyTeeth {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_shared_tooth_is_found() {
-        let [one, some, all] = [FaultyTeeth::One(5), vec![2, 5, 7].into(), FaultyTeeth::All];
-        assert_eq!([one.shared(&some), some.shared(&all), all.shared(&some)], [Some(5), Some(2), Some(2)]);
-        assert_eq!([all.shared(&all), one.shared(&FaultyTeeth::One(6))], [Some(1), None]);
-    }
 
     #[test]
     fn what_a_wheel_has_not_is_named() {

@@ -143,6 +143,7 @@ fn critical_point_mm(profile: &ToothProfile) -> (f64, f64) {
 
 /// Where a root crack lies, in the tooth's own plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Crack {
     /// (mm) Where it starts at the fillet, along the tooth's centre line from the wheel's centre.
     pub start_x_mm: f64,

@@ -7,6 +7,7 @@ use crate::wheel::ToothProfile;
 /// One cross-section. y is measured across the tooth from its centre line, z along the face from its middle; what is missing
 /// lies at negative z.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Section {
     /// (mm²) Area.
     pub area_mm2: f64,

@@ -9,6 +9,7 @@ mod modes;
 mod parts;
 mod rig;
 mod shaft_bending;
+mod support;
 mod train;
 
 pub use body::WheelBody;
@@ -20,6 +21,7 @@ pub use modes::{ClosedMesh, DecayingMode, Modes};
 pub use parts::{Axis, Drive, Machine};
 #[cfg(feature = "internals")]
 pub use parts::{LineOfAction, Place, Spring};
-pub use rig::{DampingRatio, Rig, Shaft, Support, WheelInertia};
+pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
+pub use support::{Support, SupportSprings};
 pub(crate) use train::turn_planes;
-pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SENSOR, Supports, Train, WHEELS};
+pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, Supports, Train, WHEELS};

@@ -7,6 +7,7 @@ use meshtone_toml::{ReadResult, TomlValue};
 use crate::keys::{
     Check, KeyKind, KeyValue, Keys, NumberFiles, Range, KeyRow, Written, below, check_keys, field, row,
 };
+use super::Support;
 use crate::wheel::{Gears, WheelName};
 
 /// Bearings, shafts, brake and wheel bodies.
@@ -60,8 +61,8 @@ impl Default for Rig {
 }
 
 /// Beyond these the equations are solved in rounding errors.
-const STIFFNESS: Range = Range::positive().implausible_above(1e15);
-const MASS: Range = Range::positive().implausible_above(1e9);
+pub(super) const STIFFNESS: Range = Range::positive().implausible_above(1e15);
+pub(super) const MASS: Range = Range::positive().implausible_above(1e9);
 
 impl Keys for Rig {
     const SECTION: &str = "rig";
@@ -146,6 +147,7 @@ impl Rig {
     /// Every key alone, and with the wheels that run in the rig.
     pub(crate) fn check(&self, gears: &Gears) -> Check {
         check_keys(self, "rig")?;
+        self.support.check()?;
         below("rig.eccentricity_mm", self.eccentricity_mm, gears.module_mm, "the module")?;
         for (wheel, shaft) in [(WheelName::Pinion, &self.pinion_shaft), (WheelName::Gear, &self.gear_shaft)] {
             let below_pitch_circle = gears.dedendum(wheel) - gears.profile_shift(wheel);
@@ -173,60 +175,8 @@ impl Rig {
     }
 }
 
-/// What the bearings of each of the two shafts sit in: a bracket or the wall of a housing, that moves across the shafts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Support {
-    /// (kg) Mass of each support. Default 1.6.
-    pub mass_kg: f64,
-    /// (N/m) Stiffness between each support and the base, in x and y. Default 1.6e8.
-    pub stiffness_n_per_m: f64,
-    /// (N/m) Stiffness between the two supports, in x and y. Default 5e8.
-    pub coupling_n_per_m: f64,
-    /// (-) Damping ratio of what lies between supports and base. Default 0.025.
-    pub damping_ratio: f64,
-}
-
-impl Default for Support {
-    fn default() -> Self {
-        Self { mass_kg: 1.6, stiffness_n_per_m: 1.6e8, coupling_n_per_m: 5e8, damping_ratio: 0.025 }
-    }
-}
-
 /// Structural damping, as a part of critical damping.
-const STRUCTURAL_DAMPING: Range = Range::below_one().help("a bolted structure has 0.01 to 0.05");
-
-impl Keys for Support {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("mass_kg", "kg", "the mass of each support", field!(mass_kg)).range(MASS),
-            row(
-                "stiffness_n_per_m",
-                "N/m",
-                "the stiffness between each support and the base, in x and in y",
-                field!(stiffness_n_per_m),
-            )
-            .range(STIFFNESS),
-            row(
-                "coupling_n_per_m",
-                "N/m",
-                "the stiffness between the two supports, in x and in y",
-                field!(coupling_n_per_m),
-            )
-            .range(Range::not_negative().implausible_above(1e15)),
-            row(
-                "damping_ratio",
-                "-",
-                "the damping ratio of the supports and of what holds them",
-                field!(damping_ratio),
-            )
-            .range(STRUCTURAL_DAMPING),
-        ]
-    }
-}
+pub(super) const STRUCTURAL_DAMPING: Range = Range::below_one().help("a bolted structure has 0.01 to 0.05");
 
 /// Ratio of each mode's damping to its critical damping.
 #[derive(Debug, Clone, Copy, PartialEq)]

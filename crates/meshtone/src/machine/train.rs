@@ -42,8 +42,8 @@ const Y_PINION_SUPPORT: usize = 16;
 /// Number of coordinates where the supports are held.
 const WITHOUT_SUPPORTS: usize = 13;
 
-/// Place: the sensor that every simulation has, the mean of both supports; both wheels where the supports are held.
-pub const SENSOR: &str = "sensor";
+/// Place: the mean of both supports.
+pub const SUPPORTS: &str = "support";
 /// Place: the support of the pinion's shaft.
 pub const PINION_SUPPORT: &str = "pinion-support";
 /// Place: the support of the gear's shaft.
@@ -208,7 +208,8 @@ fn line_of_action(teeth: &Teeth, coordinates: usize) -> LineOfAction {
     LineOfAction { at_middle, per_m }
 }
 
-/// Where a sensor can sit. Where the supports are held, every sensor shows the sum of both wheels' motions.
+/// Where a sensor can sit; the sensor that every simulation has is on the pinion's support. Where the supports are held, every sensor
+/// shows the sum of both wheels' motions.
 fn places(supports: Supports) -> Vec<Place> {
     let both = |pair: [usize; 2], weight: f64| pair.map(|coordinate| (coordinate, weight)).to_vec();
     let of_wheels = || {
@@ -222,7 +223,7 @@ fn places(supports: Supports) -> Vec<Place> {
     let of_supports = |x: Vec<(usize, f64)>, y: Vec<(usize, f64)>| {
         vec![(Axis::X, x), (Axis::Y, y), (Axis::Z, both([Z_GEAR, Z_PINION], 1.0))]
     };
-    let [sensor, pinion_support, gear_support] = match supports {
+    let [both_supports, pinion_support, gear_support] = match supports {
         Supports::Held => [of_wheels(), of_wheels(), of_wheels()],
         Supports::Moving => [
             of_supports(
@@ -234,7 +235,7 @@ fn places(supports: Supports) -> Vec<Place> {
         ],
     };
     vec![
-        Place { name: SENSOR.into(), motion: sensor },
+        Place { name: SUPPORTS.into(), motion: both_supports },
         Place { name: PINION_SUPPORT.into(), motion: pinion_support },
         Place { name: GEAR_SUPPORT.into(), motion: gear_support },
         Place { name: WHEELS.into(), motion: of_wheels() },
@@ -309,11 +310,12 @@ fn bent_shaft(wheel: WheelName, rig: &Rig, gears: &Gears, coordinates: usize) ->
 
 /// The supports on their base, and what holds them together.
 fn support_springs(rig: &Rig) -> Spring {
+    let [base, between] = rig.support.stiffnesses_n_per_m();
     let mut spring = Spring::new(NAMES.len(), rig.support.damping_ratio);
     for [gear, pinion] in [[X_GEAR_SUPPORT, X_PINION_SUPPORT], [Y_GEAR_SUPPORT, Y_PINION_SUPPORT]] {
-        spring.resist(&[(gear, 1.0)], rig.support.stiffness_n_per_m);
-        spring.resist(&[(pinion, 1.0)], rig.support.stiffness_n_per_m);
-        spring.resist(&[(gear, 1.0), (pinion, -1.0)], rig.support.coupling_n_per_m);
+        spring.resist(&[(gear, 1.0)], base);
+        spring.resist(&[(pinion, 1.0)], base);
+        spring.resist(&[(gear, 1.0), (pinion, -1.0)], between);
     }
     spring
 }
@@ -321,7 +323,7 @@ fn support_springs(rig: &Rig) -> Spring {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::{Modes, Support};
+    use crate::machine::Modes;
     use crate::scenario::{GearPair, Scenario};
     use crate::wheel::teeth;
 
@@ -356,7 +358,7 @@ mod tests {
         let machine = machine(&rig);
         let flexible =
             wheel_flexibility(&rig.gear_shaft, rig.bearing_stiffness_n_per_m, Default::default())[(0, 0)];
-        let Support { stiffness_n_per_m: base, coupling_n_per_m: between, .. } = rig.support;
+        let [base, between] = rig.support.stiffnesses_n_per_m();
         // One support pushed: base and, through the other, coupling in series with its base.
         let support = 1.0 / (base + 1.0 / (1.0 / between + 1.0 / base));
         let mut force = DVector::zeros(NAMES.len());

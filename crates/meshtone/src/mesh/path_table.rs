@@ -28,6 +28,8 @@ impl PairState {
 pub(crate) struct TipShape {
     /// (mm) Height of the chamfer.
     pub(crate) chamfer_mm: f64,
+    /// (base pitches) By how much the path is shorter than that between the chamfers.
+    pub(crate) active_profile_shortening: f64,
     /// Relief of the flank near the tip.
     pub(crate) relief: FlankRelief,
 }
@@ -64,8 +66,13 @@ impl<'a> PairTables<'a> {
         let chamfered = own.tip_radius_mm - self.shape.chamfer_mm;
         let left = damage.map(|damage| damage.gone_from_index).filter(|&index| index < profile.len());
         let broken = left.map_or(f64::INFINITY, |index| profile.involute_radius_mm[index.saturating_sub(1)]);
-        let tip_radius_mm = chamfered.min(broken).max(own.base_radius_mm);
-        Tooth { tip_radius_mm, tip_curvature_mm: own.curvature_mm(tip_radius_mm) }
+        let shortening = match self.contact {
+            Contact::Unilateral => self.shape.active_profile_shortening,
+            Contact::Bilateral => 0.0,
+        };
+        let active = own.curvature_mm(chamfered) - shortening / 2.0 * teeth.path.base_pitch_mm;
+        let tip_curvature_mm = active.min(own.curvature_mm(broken)).max(0.0);
+        Tooth { tip_radius_mm: tip_curvature_mm.hypot(own.base_radius_mm), tip_curvature_mm }
     }
 
     /// (base pitches) Where the path of two sound teeth begins and ends, between their chamfers; since the start of the path of

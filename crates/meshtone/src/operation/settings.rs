@@ -94,7 +94,7 @@ impl Keys for Solver {
             .otherwise("what settling leaves of 2 z_g revolutions, or of the time that a speed profile spans")
             .range(Range::positive())
             .rule("not beside duration_s, not with a speed profile")
-            .example("20.0"),
+            .alternative("20.0"),
             row(
                 "settle_fraction",
                 "-",

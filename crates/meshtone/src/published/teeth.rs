@@ -2,7 +2,7 @@
 
 use crate::interpolation::{NaturalSpline, Pchip};
 use crate::wheel::{
-    ContactLine, Gears, PathOfContact, Teeth, TipRelief, ToothProfile, Wheel, WheelName, contact_line,
+    ContactLine, Gears, PathOfContact, Root, Teeth, TipRelief, ToothProfile, Wheel, WheelName, contact_line,
     tooth_profile,
 };
 
@@ -25,7 +25,7 @@ pub fn relieved_teeth(gears: &Gears, bore_radii_mm: [f64; 2], relief: Option<Tip
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
     let profile =
-        |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, relief, joint(wheel));
+        |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm, relief, Root::Published(joint(wheel)));
     let (own_profile, gear_profile) = (profile(&pinion), profile(&gear));
     let contact = contact_line(&pinion, &own_profile, &gear, &gear_profile);
     let pinion_profile = resampled(&own_profile, &contact);

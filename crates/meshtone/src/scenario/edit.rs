@@ -6,6 +6,7 @@ use super::{Scenario, ScenarioError, Sensor};
 
 /// A number of a scenario.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ScenarioNumber {
     /// Dotted key, as in the scenario file.
     pub key: String,

@@ -1,6 +1,6 @@
 //! Keys that a model ignores.
 
-use super::{Model, Scenario, ScenarioWarning, Sensor, WarningKind};
+use super::{Model, Scenario, ScenarioWarning, Sensor, SensorPath, WarningKind};
 use crate::keys::Keys;
 
 impl Scenario {
@@ -60,9 +60,17 @@ fn reset_ignored(scenario: &mut Scenario) -> Vec<String> {
 /// Resets ignored keys of a sensor, which keeps its name though that may come of its place.
 fn reset_sensor(sensor: &mut Sensor, key: &str, model: Model) -> Vec<String> {
     let name = sensor.name();
+    if model.ignores("sensor.path") && sensor.path.is_rigid() {
+        // It says what the model does.
+        sensor.path = SensorPath::default();
+    }
     let changed = reset(sensor, key, model);
     if sensor.name() != name {
         sensor.name = Some(name);
+    }
+    if model.ignores("sensor.path") {
+        // The wheels have no wall.
+        sensor.path = SensorPath::RIGID;
     }
     changed
 }

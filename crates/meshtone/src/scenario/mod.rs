@@ -21,11 +21,11 @@ pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{
     Bearing, BearingKind, Coupled, DampingRatio, Foot, GearboxShaft, Housing, Rig, Seat, Shaft, Support,
-    WheelInertia,
+    SupportSprings, WheelInertia,
 };
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
-pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPlace};
+pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPath, SensorPlace};
 pub use crate::wheel::{
     ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, MaterialConstants, ProfileErrors,
     Quality, ReliefShape, WheelDeviations, WheelName,

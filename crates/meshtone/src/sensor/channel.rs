@@ -26,6 +26,7 @@ impl From<ChannelKind> for Channel {
 /// A text that names no channel.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there is no channel `{name}`; there are {}", known.join(", "))]
+#[non_exhaustive]
 pub struct UnknownChannel {
     /// The text.
     pub name: String,
@@ -51,7 +52,7 @@ impl Channel {
     /// use meshtone::sensor::Channel;
     ///
     /// let names: Vec<_> = Channel::all(&[Sensor::default()]).iter().map(|channel| channel.name().into_owned()).collect();
-    /// assert_eq!(names[..2], ["support_vertical_g", "horizontal_g"]);
+    /// assert_eq!(names[..2], ["pinion_support_vertical_g", "horizontal_g"]);
     /// ```
     pub fn all(sensors: &[Sensor]) -> Vec<Self> {
         let sensors = sensors.iter().map(|sensor| Self::Sensor(sensor.name()));

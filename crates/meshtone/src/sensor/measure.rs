@@ -39,6 +39,7 @@ pub struct Measurement {
 /// use meshtone::sensor::{Measurement, measure};
 ///
 /// let mut coarse = Sensor::default();
+/// coarse.path = meshtone::scenario::SensorPath::RIGID;
 /// (coarse.range_g, coarse.bits) = (Some(2.0), Some(8));
 /// let measurement = Measurement { sampling_rate_hz: 1e4, is_periodic: true, seed: 1, index: 0 };
 /// assert_eq!(measure(vec![0.02, -3.0], &coarse, &measurement), [0.015625, -2.0]);
@@ -85,7 +86,7 @@ const REMEMBERED: f64 = 1e-6;
 impl Sensor {
     /// Whether the path to the sensor or its mounted resonance changes the motion of its place.
     pub(crate) fn filters(&self) -> bool {
-        self.frequency_response.is_some() || self.resonance_hz.is_some()
+        self.frequency_response.is_some() || self.resonance_hz.is_some() || !self.path.is_rigid()
     }
 
     /// Whether what the sensor shows is a linear function of the motion of its place: it has neither noise nor a range.
@@ -97,7 +98,7 @@ impl Sensor {
         self.noise_density_g_per_rthz == 0.0 && self.range_g.is_none()
     }
 
-    /// Complex gains of the path to the sensor and of its mounted resonance, at equally spaced frequencies from 0 on.
+    /// Complex gains of the path to the sensor, measured and modelled, and of its mounted resonance, at equally spaced frequencies from 0 on.
     ///
     /// # Arguments
     /// * `step_hz` - (Hz) from one frequency to the next
@@ -108,6 +109,7 @@ impl Sensor {
     ///
     /// ```
     /// let mut sensor = meshtone::scenario::Sensor::default();
+    /// sensor.path = meshtone::scenario::SensorPath::RIGID;
     /// sensor.resonance_hz = Some(100.0);
     /// sensor.resonance_damping_ratio = 0.05;
     /// let gains = sensor.gains(50.0, 3);
@@ -122,6 +124,10 @@ impl Sensor {
         if self.frequency_response.is_some() && self.response_input == ResponseInput::Force {
             gains.iter_mut().for_each(|gain| *gain /= GRAVITY_M_PER_S2);
         }
+        if !self.path.is_rigid() {
+            let path = self.path.at(frequencies_hz());
+            gains.iter_mut().zip(path).for_each(|(gain, path)| *gain *= path);
+        }
         if let Some(resonance_hz) = self.resonance_hz {
             let damping_ratio = self.resonance_damping_ratio;
             let lines = gains.iter_mut().zip(frequencies_hz());
@@ -130,7 +136,8 @@ impl Sensor {
         gains
     }
 
-    /// (s) How long what the sensor shows depends on what was before: until 1e-6 is left of an oscillation at its resonance, and as
+    /// (s) How long what the sensor shows depends on what was before: until 1e-6 is left of an oscillation at its resonance or of the
+    /// path's, and as
     /// long as the finest step of its frequency response resolves.
     pub fn memory_s(&self) -> f64 {
         let decay_s = |resonance_hz: f64| {
@@ -143,7 +150,8 @@ impl Sensor {
             let steps = response.frequency_hz.windows(2).map(|pair| pair[1] - pair[0]);
             1.0 / steps.fold(f64::INFINITY, f64::min)
         };
-        self.resonance_hz.map_or(0.0, decay_s).max(self.frequency_response.as_ref().map_or(0.0, resolved_s))
+        let measured_s = self.frequency_response.as_ref().map_or(0.0, resolved_s);
+        self.resonance_hz.map_or(0.0, decay_s).max(measured_s).max(self.path.memory_s(REMEMBERED))
     }
 }
 
@@ -173,6 +181,12 @@ fn add_noise(signal: &mut [f64], sensor: &Sensor, measurement: &Measurement) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::SensorPath;
+
+    /// A sensor on the support's mass itself.
+    fn rigid() -> Sensor {
+        Sensor { path: SensorPath::RIGID, ..Sensor::default() }
+    }
 
     const MEASUREMENT: Measurement =
         Measurement { sampling_rate_hz: 1000.0, is_periodic: true, seed: 3, index: 0 };
@@ -191,15 +205,14 @@ mod tests {
         let column = |n: usize| points.iter().map(|point| point[n]).collect();
         let frequency_response =
             Some(FrequencyResponse { frequency_hz: column(0), magnitude: column(1), phase_deg: column(2) });
-        Sensor { frequency_response, ..Sensor::default() }
+        Sensor { frequency_response, ..rigid() }
     }
 
     /// At its natural frequency a resonance is `1/(2ζ)` times as large, a quarter of a turn late; well below it is the sine.
     #[test]
     fn resonance_is_the_closed_form_on_a_sine() {
         let (samples, damping_ratio) = (1000, 0.05);
-        let sensor =
-            Sensor { resonance_hz: Some(200.0), resonance_damping_ratio: damping_ratio, ..Sensor::default() };
+        let sensor = Sensor { resonance_hz: Some(200.0), resonance_damping_ratio: damping_ratio, ..rigid() };
         for turns in [20, 100, 200, 300] {
             let ratio = turns as f64 / 200.0;
             let gain = 1.0 / ((1.0 - ratio * ratio).powi(2) + (2.0 * damping_ratio * ratio).powi(2)).sqrt();
@@ -215,8 +228,7 @@ mod tests {
     #[test]
     fn resonance_starts_at_rest_where_nothing_is_periodic() {
         let (rate, hz, damping_ratio) = (1e6, 2000.0, 0.05);
-        let sensor =
-            Sensor { resonance_hz: Some(hz), resonance_damping_ratio: damping_ratio, ..Sensor::default() };
+        let sensor = Sensor { resonance_hz: Some(hz), resonance_damping_ratio: damping_ratio, ..rigid() };
         let mut hit = vec![0.0; 20_000];
         hit[100] = rate;
         let measurement = Measurement { sampling_rate_hz: rate, is_periodic: false, seed: 1, index: 0 };
@@ -280,7 +292,7 @@ mod tests {
     #[test]
     fn noise_has_its_density_and_its_own_draws() {
         let samples = 200_001;
-        let sensor = Sensor { noise_density_g_per_rthz: 1e-3, ..Sensor::default() };
+        let sensor = Sensor { noise_density_g_per_rthz: 1e-3, ..rigid() };
         let noise = |sensor: &Sensor, index| {
             measure(vec![0.0; samples], sensor, &Measurement { index, ..MEASUREMENT })
         };
@@ -298,7 +310,7 @@ mod tests {
 
     #[test]
     fn range_and_resolution_are_exact() {
-        let sensor = Sensor { range_g: Some(4.0), ..Sensor::default() };
+        let sensor = Sensor { range_g: Some(4.0), ..rigid() };
         let signal = || vec![4.5, 4.0, 0.1, -3.99, -1e9, 0.015_624, 0.015_626];
         assert_eq!(
             measure(signal(), &sensor, &MEASUREMENT),
@@ -315,6 +327,6 @@ mod tests {
     #[test]
     fn sensor_without_anything_shows_the_motion_bit_by_bit() {
         let signal = sine(3, 100, 0.1);
-        assert_eq!(measure(signal.clone(), &Sensor::default(), &MEASUREMENT), signal);
+        assert_eq!(measure(signal.clone(), &rigid(), &MEASUREMENT), signal);
     }
 }

@@ -9,6 +9,7 @@ mod contact_figures;
 mod frequency_response;
 mod measure;
 mod parameters;
+mod path;
 mod path_ripple;
 
 pub use channel::{Channel, UnknownChannel};
@@ -17,11 +18,12 @@ pub use frequency_response::FrequencyResponse;
 pub use measure::{Measurement, measure};
 pub(crate) use parameters::check_sensors;
 pub use parameters::{ResponseInput, Sensor, SensorDirection, SensorPlace};
+pub use path::SensorPath;
 pub use path_ripple::PathRipple;
 
 use std::f64::consts::TAU;
 
-use crate::machine::{Axis, GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SENSOR, WHEELS};
+use crate::machine::{Axis, GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, WHEELS};
 use crate::operation::TimeGrid;
 use crate::solver::{Block, Output, Recorder};
 
@@ -91,12 +93,12 @@ macro_rules! channels {
 }
 
 channels! {
-    Horizontal horizontal_g "g" "horizontal acceleration of the supports, their mean, over 9.81 m/s²; under linear and published the sum of both wheels'"
-        acceleration_g(SENSOR, Axis::X);
-    Vertical vertical_g "g" "vertical acceleration of the supports, their mean, over 9.81 m/s²; under linear and published the sum of both wheels'"
-        acceleration_g(SENSOR, Axis::Y);
+    Horizontal horizontal_g "g" "horizontal acceleration of the support of the pinion's shaft, over 9.81 m/s²; under linear and published the sum of both wheels'"
+        acceleration_g(PINION_SUPPORT, Axis::X);
+    Vertical vertical_g "g" "vertical acceleration of the support of the pinion's shaft, over 9.81 m/s²; under linear and published the sum of both wheels'"
+        acceleration_g(PINION_SUPPORT, Axis::Y);
     Axial axial_g "g" "sum of both wheels' axial accelerations, over 9.81 m/s²"
-        acceleration_g(SENSOR, Axis::Z);
+        acceleration_g(PINION_SUPPORT, Axis::Z);
     PinionShaftSpeed pinion_shaft_speed_hz "Hz" "revolutions of the pinion per second"
         speed_hz(PINION);
     GearShaftSpeed gear_shaft_speed_hz "Hz" "revolutions of the gear per second"
@@ -166,7 +168,7 @@ impl Sensor {
             SensorDirection::Axial => Axis::Z,
         };
         let place = match self.at {
-            SensorPlace::Support => SENSOR,
+            SensorPlace::Support => SUPPORTS,
             SensorPlace::PinionSupport => PINION_SUPPORT,
             SensorPlace::GearSupport => GEAR_SUPPORT,
             SensorPlace::Wheels => WHEELS,

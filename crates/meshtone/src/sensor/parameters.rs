@@ -4,6 +4,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::ChannelKind;
 use super::frequency_response::FrequencyResponse;
+use super::path::SensorPath;
 use crate::error::ScenarioError;
 use crate::keys::{
     Check, KeyRow, Keys, NumberFiles, Range, by_name, check_keys, field, read_keys, require, row,
@@ -21,7 +22,7 @@ use crate::model::Model;
 ///     .with_sensors(vec![sensor]);
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let channels = meshtone::simulate(&scenario)?.channels;
-/// assert_eq!(channels.sensors[0].channel(), "support_vertical_g");
+/// assert_eq!(channels.sensors[0].channel(), "pinion_support_vertical_g");
 /// assert_eq!(channels.sensors[0].values_g.len(), channels.vertical_g.len());
 /// # Ok::<(), meshtone::Error>(())
 /// ```
@@ -32,7 +33,7 @@ use crate::model::Model;
 pub struct Sensor {
     /// Its name, of which its channel's is made: `NAME_g`. Default: place and direction.
     pub name: Option<String>,
-    /// Place at which it sits. Default the supports' mean.
+    /// Place at which it sits. Default the support of the pinion's shaft.
     pub at: SensorPlace,
     /// In which direction it measures. Default vertical.
     pub direction: SensorDirection,
@@ -48,6 +49,8 @@ pub struct Sensor {
     pub range_g: Option<f64>,
     /// (bits) Resolution over the whole range, from minus to plus. Default: none.
     pub bits: Option<u32>,
+    /// The wall and the housing between its place and it; rigid under `linear` and `published`. Default a wall.
+    pub path: SensorPath,
     /// Measured frequency response of the path to it. Default: none.
     pub frequency_response: Option<FrequencyResponse>,
     /// Input of [`Self::frequency_response`]. Default the acceleration of its place.
@@ -58,9 +61,9 @@ pub struct Sensor {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SensorPlace {
     /// On both supports: their mean.
-    #[default]
     Support,
     /// On the support of the pinion's shaft.
+    #[default]
     PinionSupport,
     /// On the support of the gear's shaft.
     GearSupport,
@@ -117,6 +120,7 @@ impl Default for Sensor {
             noise_seed: None,
             range_g: None,
             bits: None,
+            path: SensorPath::default(),
             frequency_response: None,
             response_input: ResponseInput::default(),
         }
@@ -180,6 +184,12 @@ impl Keys for Sensor {
                 .range(Range::from_to(8.0, 32.0))
                 .rule("with range_g")
                 .example("16"),
+            row(
+                "path",
+                "",
+                "the wall and the modes of a housing between its place and it; rigid under linear and published",
+                field!(path),
+            ),
             row(
                 "frequency_response",
                 "Hz, -, °",
@@ -247,6 +257,7 @@ impl Sensor {
 
     fn check(&self, model: Model) -> Check {
         check_keys(self, "sensor")?;
+        self.path.check()?;
         if let Some(name) = &self.name {
             check_name(name)?;
         }

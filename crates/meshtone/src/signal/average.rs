@@ -2,8 +2,8 @@
 
 use super::{AngularSignal, SignalError};
 
-/// Fewest revolutions that make an average.
-const FEWEST_REVOLUTIONS: usize = 2;
+/// (rev) The fewest revolutions that an average is computed from.
+pub const FEWEST_REVOLUTIONS: usize = 2;
 
 /// Average of a signal over whole revolutions, sample by sample.
 ///

@@ -10,7 +10,7 @@
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
 //! | separation | [`separate`] |
 //! | spectra and envelope | [`order_spectrum`], [`envelope`], [`envelope_spectrum`] |
-//! | whether it fits what the user stated | [`find_mismatch`] |
+//! | whether it fits what the user stated | [`check_recording`], of [`find_mismatch`] and [`lines_off_shafts`]; [`synchronous_part`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
 
@@ -18,10 +18,12 @@ mod angular;
 mod anti_aliasing;
 mod average;
 mod check;
+mod check_recording;
 mod edge;
 mod envelope;
 mod error;
 mod filter_bank;
+mod foreign_tones;
 mod indicators;
 mod interpolate;
 mod kaiser;
@@ -34,15 +36,20 @@ mod separation;
 mod simulated;
 mod spectrum;
 mod statistics;
+mod synchronous_part;
 mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
 pub use anti_aliasing::AntiAliasing;
-pub use average::{SynchronousAverage, revolution_average, segmented_averages, synchronous_average};
+pub use average::{
+    FEWEST_REVOLUTIONS, SynchronousAverage, revolution_average, segmented_averages, synchronous_average,
+};
 pub use check::check_channel;
+pub use check_recording::check_recording;
 pub use edge::Edge;
 pub use envelope::{analytic_signal, envelope, envelope_spectrum};
 pub use error::SignalError;
+pub use foreign_tones::{ForeignTone, ForeignTones, LinesOffShafts, lines_off_shafts};
 pub use indicators::{
     IndicatorValue, Indicators, ShapeIndicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor,
 };
@@ -66,4 +73,5 @@ pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,
     standardised_moment,
 };
+pub use synchronous_part::{SynchronousPart, synchronous_part};
 pub use warning::SignalWarning;

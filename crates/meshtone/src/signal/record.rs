@@ -32,6 +32,18 @@ pub struct Record {
     pub warnings: Vec<SignalWarning>,
 }
 
+impl Record {
+    /// Adds a warning where the average holds hardly more than noise would leave.
+    ///
+    /// # Arguments
+    /// * `values` - the revolutions that were averaged
+    fn with_doubt(mut self, values: &[f64]) -> Self {
+        let part = synchronous_part(values, &self.average.values).filter(SynchronousPart::is_noise);
+        self.warnings.extend(part.map(SignalWarning::NothingSynchronous));
+        self
+    }
+}
+
 /// One recording of a series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recording<'a> {
@@ -87,7 +99,8 @@ pub fn process_angular(
     teeth: u32,
     settings: &ChainSettings,
 ) -> Result<Record, SignalError> {
-    process_average(synchronous_average(angular)?, teeth, settings)
+    let record = process_average(synchronous_average(angular)?, teeth, settings)?;
+    Ok(record.with_doubt(&angular.values))
 }
 
 /// Processes one channel in segments of equally many revolutions: a series of records.
@@ -136,7 +149,9 @@ pub fn process_angular_segments(
     revolutions: usize,
 ) -> Result<Vec<Record>, SignalError> {
     let averages = segmented_averages(angular, revolutions)?;
-    as_series(averages.into_iter().map(|average| process_average(average, teeth, settings)).collect())
+    let segments = angular.values.chunks_exact(angular.points_per_revolution * revolutions);
+    let process = |(average, values)| Ok(process_average(average, teeth, settings)?.with_doubt(values));
+    as_series(averages.into_iter().zip(segments).map(process).collect())
 }
 
 /// Processes a series of recordings of the same wheel.

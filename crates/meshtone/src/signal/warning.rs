@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::Mismatch;
+use super::{ForeignTone, ForeignTones, Mismatch, SynchronousPart};
 
 /// Something about a recording that leaves the result right but that its user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -77,4 +77,75 @@ pub enum SignalWarning {
     /// The recording hardly fits what is stated: [`super::find_mismatch`].
     #[error("{0}")]
     DoesNotFit(Mismatch),
+    /// The average holds hardly more than noise would leave.
+    #[error(
+        "the average of {} revolutions holds {:.2} % of the recording's mean square, and noise alone leaves {:.2} %: nothing in the \
+         recording clearly repeats with this shaft, and none of its indicators means anything; check the sampling rate, the speed or the \
+         pulses, and which shaft they are of",
+        .0.revolutions, 100.0 * .0.of_mean_square, 100.0 / .0.revolutions as f64
+    )]
+    NothingSynchronous(SynchronousPart),
+    /// Tones that belong to neither shaft make much of the recording.
+    #[error("{0}")]
+    ForeignTones(ForeignTones),
+}
+
+impl SignalWarning {
+    /// The name of what it is about, for programs to distinguish.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::MissingPulses { .. } => "missing-pulses",
+            Self::DoubledPulse { .. } => "doubled-pulse",
+            Self::ProfileEndsEarly { .. } => "profile-ends-early",
+            Self::MeshToneFades { .. } => "mesh-tone-fades",
+            Self::StrongerNeighbour { .. } => "stronger-neighbour",
+            Self::MeshOrderNearNyquist { .. } => "mesh-order-near-nyquist",
+            Self::DoesNotFit(mismatch) => mismatch.alternative.code(),
+            Self::NothingSynchronous(_) => "nothing-synchronous",
+            Self::ForeignTones(_) => "foreign-tones",
+        }
+    }
+
+    /// Its numbers by name, of a tone that is one of several with its place behind the name.
+    pub fn values(&self) -> Vec<(String, f64)> {
+        let of = |values: &[(&str, f64)]| {
+            values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect()
+        };
+        match self {
+            Self::MissingPulses { index, after_s, count } => {
+                of(&[("index", *index as f64), ("after_s", *after_s), ("count", *count as f64)])
+            }
+            Self::DoubledPulse { index, time_s } => of(&[("index", *index as f64), ("time_s", *time_s)]),
+            Self::ProfileEndsEarly { profile_end_s, recording_end_s } => {
+                of(&[("profile_end_s", *profile_end_s), ("recording_end_s", *recording_end_s)])
+            }
+            Self::MeshToneFades { sample, ratio } => of(&[("sample", *sample as f64), ("ratio", *ratio)]),
+            Self::StrongerNeighbour { frequency_hz, ratio, speed_hz } => {
+                of(&[("frequency_hz", *frequency_hz), ("ratio", *ratio), ("speed_hz", *speed_hz)])
+            }
+            Self::MeshOrderNearNyquist { mesh_order, nyquist_order, passed } => {
+                of(&[("mesh_order", *mesh_order), ("nyquist_order", *nyquist_order), ("passed", *passed)])
+            }
+            Self::DoesNotFit(mismatch) => {
+                let mut values = of(&[("alternative", mismatch.alternative.value())]);
+                values.extend(mismatch.energy_ratio.map(|ratio| ("energy_ratio".to_owned(), ratio)));
+                values
+            }
+            Self::NothingSynchronous(part) => {
+                of(&[("of_mean_square", part.of_mean_square), ("revolutions", part.revolutions as f64)])
+            }
+            Self::ForeignTones(tones) => {
+                let of_tone = |(index, tone): (usize, &ForeignTone)| {
+                    let named = |name: &str, value: f64| (format!("{name}_{}", index + 1), value);
+                    [
+                        named("frequency_hz", tone.frequency_hz),
+                        named("order", tone.order),
+                        named("part", tone.part),
+                    ]
+                };
+                let all = std::iter::once(("part".to_owned(), tones.part));
+                all.chain(tones.strongest.iter().enumerate().flat_map(of_tone)).collect()
+            }
+        }
+    }
 }

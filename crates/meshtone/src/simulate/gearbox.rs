@@ -419,7 +419,11 @@ impl GearboxStages {
             static_force_n: pair.static_force_n,
             face: (closer_um != 0.0).then_some(face),
         };
-        let shape = TipShape { chamfer_mm: gears.chamfer_mm(), relief: gears.flank_relief };
+        let shape = TipShape {
+            chamfer_mm: gears.chamfer_mm(),
+            relief: gears.flank_relief,
+            active_profile_shortening: gears.active_profile_shortening,
+        };
         let pairs = Pairs::new(&pair.teeth, &pair.damaged, gears.material, &gears.foundation);
         Ok(Mesh::new(&pairs, shape, sequence, points, parameters))
     }

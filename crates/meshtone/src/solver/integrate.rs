@@ -7,7 +7,7 @@ use super::modal::ModalMachine;
 use super::outputs::{EXTERNALS, Output};
 use super::prepare::Prepared;
 use super::repetition::Repeating;
-use super::step::{Coefficients, MOST_MODES, Size, State, StepBlock, law_lanes};
+use super::step::{Coefficients, MOST_MODES, MOST_STEADY_MODES, Size, State, StepBlock, law_lanes};
 use crate::mesh::{Forcing, ForcingBlock, MeshLaw, PairsSample};
 use crate::operation::TimeGrid;
 use crate::simd::{InstructionSet, Lanes};
@@ -175,7 +175,7 @@ fn of_size<const L: usize>(
 ) -> [Result<(), Diverged>; L] {
     match size {
         Size::Flat => run::<L, 8, 1>(problems, instructions, recorders),
-        Size::Tilting => run::<L, 12, 2>(problems, instructions, recorders),
+        Size::Tilting => run::<L, MOST_STEADY_MODES, 2>(problems, instructions, recorders),
         Size::General => run::<L, MOST_MODES, 2>(problems, instructions, recorders),
     }
 }

@@ -137,13 +137,27 @@ impl StepOfMode {
     /// What the steps make of a steady sine: displacement, `Δt q̇` and `Δt² q̈` per `Δt²` times the modal force.
     ///
     /// # Arguments
-    /// * `turn_rad` - (rad) ω Δt of the sine, between 0 and π
-    pub(super) fn answer(&self, turn_rad: f64) -> [Complex64; 3] {
-        // With z = exp(jωΔt), of z − 2 + 1/z and of ½ (z + 1)/(z − 1), which is Δt q̇ per Δt² q̈.
-        let second_difference = 2.0 * turn_rad.cos() - 2.0;
-        let acceleration = second_difference / (1.0 + self.beta * second_difference);
-        let velocity = Complex64::new(0.0, -0.5 / (turn_rad / 2.0).tan()) * acceleration;
+    /// * `sine` - the sine
+    pub(super) fn answer(&self, sine: &SampledSine) -> [Complex64; 3] {
+        let acceleration = sine.second_difference / (1.0 + self.beta * sine.second_difference);
+        let velocity = Complex64::new(0.0, sine.velocity) * acceleration;
         let displacement = self.force_factor / (acceleration + self.stiffness + velocity * self.damping);
         [displacement, displacement * velocity, displacement * acceleration / self.force_factor]
     }
 }
+/// A steady sine at equal times, `z^n` with `z = exp(jωΔt)`.
+pub(super) struct SampledSine {
+    /// `z − 2 + 1/z`.
+    second_difference: f64,
+    /// Imaginary part of `½ (z + 1)/(z − 1)`, which is `Δt q̇` per `Δt² q̈`.
+    velocity: f64,
+}
+
+impl SampledSine {
+    /// # Arguments
+    /// * `turn_rad` - (rad) ω Δt, between 0 and π
+    pub(super) fn new(turn_rad: f64) -> Self {
+        Self { second_difference: 2.0 * turn_rad.cos() - 2.0, velocity: -0.5 / (turn_rad / 2.0).tan() }
+    }
+}
+

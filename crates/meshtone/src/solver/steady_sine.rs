@@ -8,8 +8,8 @@
 use meshtone_fourier::Complex64;
 
 use super::ModalMachine;
-use super::mode_step::StepOfMode;
-use crate::machine::{Axis, SENSOR};
+use super::mode_step::{SampledSine, StepOfMode};
+use crate::machine::{Axis, PINION_SUPPORT};
 use crate::mesh::MeshLaw;
 
 /// A machine with its mean mesh, as a deviation of the flanks drives it.
@@ -31,7 +31,7 @@ impl<'a> MeanMachine<'a> {
     /// * `law` - that of its mesh
     /// * `step_s` - (s) time between two samples
     pub(crate) fn new(model: &'a ModalMachine, law: MeshLaw, step_s: f64) -> Self {
-        let (sensor, _) = model.of_coordinates(&model.machine.weights(SENSOR, Axis::Y));
+        let (sensor, _) = model.of_coordinates(&model.machine.weights(PINION_SUPPORT, Axis::Y));
         let steps = model.steps(&[law], step_s);
         Self { model, law, step_s, steps, sensor }
     }
@@ -49,8 +49,9 @@ impl<'a> MeanMachine<'a> {
             let velocity = displacement * Complex64::I * angular_frequency;
             [displacement, velocity, velocity * Complex64::I * angular_frequency]
         });
+        let sampled = SampledSine::new(angular_frequency * self.step_s);
         let of_steps = self.squared_gains(&|n| {
-            let [displacement, velocity, acceleration] = self.steps[n].answer(angular_frequency * self.step_s);
+            let [displacement, velocity, acceleration] = self.steps[n].answer(&sampled);
             [displacement * (self.step_s * self.step_s), velocity * self.step_s, acceleration]
         });
         [own[0] / of_steps[0], own[1] / of_steps[1]]

@@ -81,6 +81,7 @@ pub(super) fn point(enhancement: &Enhancement) -> Point {
 
 /// An enhancement and its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Fit {
     /// The parameters.
     pub enhancement: Enhancement,

@@ -12,6 +12,8 @@ const TOLERATED_TENSION: f64 = 0.01;
 const SENSIBLE_LOAD_FACTOR: f64 = 30.0;
 /// (-) How many times the static force the mesh force may be without a warning.
 const TOLERATED_RESONANCE: f64 = 1000.0;
+/// (-) How far the mean mesh force of the published model may be from the static one without a warning.
+const TOLERATED_MEAN_FORCE: f64 = 0.1;
 /// (-) How far a shaft's mean speed may be from what the motor drives it at without a warning.
 const TOLERATED_SPEED: f64 = 0.2;
 /// (-) How far the step may falsify the rms of a signal without a warning.
@@ -19,7 +21,8 @@ const TOLERATED_STEP: f64 = 0.02;
 
 impl Simulation {
     /// Warnings that the signals cause: a mesh that pulls (not under `contact`, whose teeth part:
-    /// [`Simulation::contact_figures`] says for how long), a resonance beyond all measure, a shaft that does not turn at the speed
+    /// [`Simulation::contact_figures`] says for how long), a resonance beyond all measure, a mean force
+    /// that the published model's damping changes, a shaft that does not turn at the speed
     /// that it is driven at, a step too long for a resonance. Where the latter is suspected the simulation is repeated with half the
     /// step.
     pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
@@ -39,7 +42,9 @@ impl Stages {
         let is_damaged = !self.damaged.is_empty();
         let pulling = (!self.teeth_part()).then(|| tension(&observer.force, is_damaged)).flatten();
         let step = step_error(self, observer, judgement).and_then(|error| long_step(error, self));
-        let doubtful = [pulling, self.resonance(observer.force.largest_n), self.other_speed(observer), step];
+        let resonance = self.resonance(observer.force.largest_n);
+        let braked = self.braked_rotation(observer.force.mean_n());
+        let doubtful = [pulling, resonance, braked, self.other_speed(observer), step];
         doubtful.into_iter().flatten().collect()
     }
 
@@ -54,6 +59,19 @@ impl Stages {
                 largest_n / static_n
             );
             ScenarioWarning::new(WarningKind::Resonance, "operation.pinion_speed_hz", message)
+        })
+    }
+
+    /// A mean mesh force under the published model that is not the load's, because its damping acts on the rotation of the whole machine too.
+    fn braked_rotation(&self, mean_n: f64) -> Option<ScenarioWarning> {
+        let static_n = self.static_force_n();
+        let is_off = (mean_n - static_n).abs() > TOLERATED_MEAN_FORCE * static_n.abs();
+        (!self.scenario.model.has_meshes() && is_off).then(|| {
+            let message = format!(
+                "the mean mesh force is {mean_n:.0} N, but the load's is {static_n:.0} N: the published model's damping brakes the rotation of the \
+                 whole machine as well as its vibration, and the mesh drives against that; in \"linear\" and \"contact\" it acts on vibration alone"
+            );
+            ScenarioWarning::new(WarningKind::BrakedRotation, "model", message)
         })
     }
 

@@ -55,7 +55,7 @@ pub(super) fn step_error(
     judgement: StepJudgement,
 ) -> Option<StepError> {
     let [acceleration, force] = observer.turns.as_ref()?;
-    let estimate = estimate(stages, acceleration, force);
+    let estimate = estimate(stages, [acceleration, force]);
     if judgement == StepJudgement::Estimated {
         return (estimate >= CERTAIN).then_some(StepError::Suspected(estimate));
     }
@@ -109,52 +109,57 @@ impl Recorder for SquareSums {
 /// Every sine of the signal that repeats with a wheel's turn is as large as the machine's answer at the frequency that the step
 /// makes of its own, [`MeanMachine::squared_growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
 /// that part it says nothing: their motion has no resonance that lasts.
-fn estimate(stages: &Stages, acceleration: &WheelTurnSums, force: &WheelTurnSums) -> f64 {
+fn estimate(stages: &Stages, signals: [&WheelTurnSums; 2]) -> f64 {
     let (Equations::Machine(train, modes), [mesh]) = (&stages.equations, &stages.meshes[..]) else {
         return 0.0;
     };
     let model = stages.modal_machine(train, modes);
     let machine = MeanMachine::new(&model, mesh.law(), stages.time.step_s());
-    let error = |(answer, signal): (usize, &WheelTurnSums)| {
-        let power = signal.rms().powi(2);
-        if power < ROUNDING * ROUNDING {
-            return 0.0;
+    let powers = signals.map(|signal| signal.rms().powi(2));
+    let mut gained = [0.0; 2];
+    for line in lines(stages, signals) {
+        let is_counted =
+            |n: usize| powers[n] > ROUNDING * ROUNDING && line.powers[n] > LEAST_PART * powers[n];
+        let counted = [is_counted(0), is_counted(1)];
+        if counted == [false; 2] {
+            continue;
         }
-        let gain = |line: Line| {
-            let at = |shift: f64| TAU * line.frequency_hz * (1.0 + shift);
-            let gains = SHIFTS.map(|shift| (machine.squared_growth(at(shift))[answer] - 1.0).abs());
-            line.power * gains.into_iter().fold(0.0, f64::max)
-        };
-        let lines = lines(stages, signal).filter(|line| line.power > LEAST_PART * power);
-        let gained: f64 = lines.map(gain).sum();
-        (1.0 + gained / power).sqrt() - 1.0
-    };
-    // In the order of the machine's answers.
-    [acceleration, force].into_iter().enumerate().map(error).fold(0.0, f64::max)
+        let growths = SHIFTS.map(|shift| machine.squared_growth(TAU * line.frequency_hz * (1.0 + shift)));
+        for n in (0..2).filter(|&n| counted[n]) {
+            let most = growths.iter().map(|growth| (growth[n] - 1.0).abs()).fold(0.0, f64::max);
+            gained[n] += line.powers[n] / powers[n] * most;
+        }
+    }
+    gained.into_iter().map(|gained| (1.0 + gained).sqrt() - 1.0).fold(0.0, f64::max)
 }
 
-/// A sine of a signal.
+/// A sine of acceleration and force.
 struct Line {
     frequency_hz: f64,
-    /// Its mean square.
-    power: f64,
+    /// Its mean square in each.
+    powers: [f64; 2],
 }
 
-/// The sines of a signal that repeat with every turn of the gear, and those that do with the pinion's.
-fn lines<'a>(stages: &Stages, signal: &'a WheelTurnSums) -> impl Iterator<Item = Line> + 'a {
+/// The sines of acceleration and force that repeat with every turn of the gear, and those that do with the pinion's.
+fn lines(stages: &Stages, signals: [&WheelTurnSums; 2]) -> impl Iterator<Item = Line> {
     let [pinion, gear] = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
     let speed_hz = stages.scenario.operation.pinion_speed_hz;
     // Orders of the pinion that are orders of the gear too.
     let shared = (pinion / greatest_common_divisor(pinion, gear)) as usize;
     let gear_speed_hz = speed_hz * f64::from(pinion) / f64::from(gear);
-    let of_gear = orders(&signal.of_gear).map(move |(order, power)| (order as f64 * gear_speed_hz, power));
-    let of_pinion = orders(&signal.of_pinion).filter(move |(order, _)| order % shared != 0);
-    let of_pinion = of_pinion.map(move |(order, power)| (order as f64 * speed_hz, power));
-    of_gear.chain(of_pinion).map(|(frequency_hz, power)| Line { frequency_hz, power })
+    let of_wheel = |turns: [&TurnSum; 2], shaft_hz: f64| {
+        let [acceleration, force] = turns.map(orders);
+        acceleration.zip(force).map(move |((order, acceleration), (_, force))| {
+            (order, Line { frequency_hz: order as f64 * shaft_hz, powers: [acceleration, force] })
+        })
+    };
+    let of_gear = of_wheel(signals.map(|signal| &signal.of_gear), gear_speed_hz);
+    let of_pinion = of_wheel(signals.map(|signal| &signal.of_pinion), speed_hz);
+    of_gear.chain(of_pinion.filter(move |(order, _)| order % shared != 0)).map(|(_, line)| line)
 }
 
 /// Mean squares of the sines that repeat with a shaft's turn, by their order from 1; none of a signal shorter than a turn.
-fn orders(turns: &TurnSum) -> impl Iterator<Item = (usize, f64)> {
+fn orders(turns: &TurnSum) -> impl Iterator<Item = (usize, f64)> + use<> {
     let samples_per_turn = turns.sum.len();
     let spectrum = if turns.sum.is_empty() { Vec::new() } else { real_spectrum(&turns.sum) };
     let scale = 2.0 / ((turns.count * samples_per_turn).max(1) as f64).powi(2);

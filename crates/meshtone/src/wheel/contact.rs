@@ -5,6 +5,7 @@ use super::radii::Wheel;
 
 /// The part of both profiles that takes part in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ContactLine {
     /// (-) Mean number of tooth pairs in contact, `ε`.
     pub contact_ratio: f64,

@@ -35,13 +35,16 @@ pub struct Gears {
     pub material: Material,
     /// Relief of the flank near the tip, as a gap. Default none.
     pub flank_relief: FlankRelief,
-    /// (mm) Height of the chamfer or rounding of all tips, which the flank ends below; none for 0.2 modules.
+    /// (mm) Height of the chamfer or rounding of all tips, which the flank ends below; none for 0.23 modules.
     pub tip_chamfer_mm: Option<f64>,
+    /// (base pitches) By how much the path of contact is shorter than the tips between their chamfers make it, half at either end.
+    /// Default 0.1.
+    pub active_profile_shortening: f64,
     /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`, a the centre distance, and what a given centre
     /// distance opens.
     pub backlash_mm: Option<f64>,
     /// (mm) Constant reduction of the working flank. Default 0.
-    pub crowning_mm: f64,
+    pub uniform_flank_reduction_mm: f64,
     /// Number of points along a tooth's profile. Default 10 000.
     pub points_per_tooth: usize,
     /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004.
@@ -76,8 +79,9 @@ impl Gears {
             material: Material::default(),
             flank_relief: FlankRelief::default(),
             tip_chamfer_mm: None,
+            active_profile_shortening: 0.1,
             backlash_mm: None,
-            crowning_mm: 0.0,
+            uniform_flank_reduction_mm: 0.0,
             points_per_tooth: 10_000,
             foundation: FoundationCoefficients::default(),
         }
@@ -159,18 +163,31 @@ impl Keys for Gears {
                 "the height of the chamfer or rounding of all tips",
                 field!(tip_chamfer_mm),
             )
-            .otherwise("0.2 modules")
-            .alternative("0.6")
+            .otherwise("0.23 modules")
+            .alternative("0.69")
             .range(Range::not_negative())
             .rule("less than 1 module"),
+            row(
+                "active_profile_shortening",
+                "-",
+                "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either \
+                 end",
+                field!(active_profile_shortening),
+            )
+            .range(Range::from_to(0.0, 0.5)),
             row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
                 .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
                 .range(Range::not_negative())
                 .rule("less than 1 module; at least what a given centre distance opens")
                 .alternative("0.1275"),
-            row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
-                .range(Range::not_negative())
-                .rule("less than π/4 modules, half the tooth's thickness"),
+            row(
+                "uniform_flank_reduction_mm",
+                "mm",
+                "a constant reduction of the working flank",
+                field!(uniform_flank_reduction_mm),
+            )
+            .range(Range::not_negative())
+            .rule("less than π/4 modules, half the tooth's thickness"),
             row(
                 "points_per_tooth",
                 "",
@@ -192,7 +209,7 @@ impl Keys for Gears {
 impl Gears {
     /// (mm) Height of the tips' chamfer, given or by default.
     pub fn chamfer_mm(&self) -> f64 {
-        self.tip_chamfer_mm.unwrap_or(0.2 * self.module_mm)
+        self.tip_chamfer_mm.unwrap_or(0.23 * self.module_mm)
     }
 
     /// Tooth count of a wheel.

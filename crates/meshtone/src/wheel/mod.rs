@@ -24,7 +24,7 @@ pub use mounting::Mounting;
 pub use name::WheelName;
 pub use path::PathOfContact;
 pub(crate) use profile::first_minimum;
-pub use profile::{TipRelief, ToothProfile, tooth_profile};
+pub use profile::{Root, TipRelief, ToothProfile, tooth_profile};
 pub use quality::{
     Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Tolerances, WheelDeviations,
 };
@@ -99,7 +99,9 @@ pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2]) -> Teeth {
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
     // A relief that thins the tip by half its thickness would leave nothing to touch: it is the published model's alone.
-    let profile = |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, None, None);
+    let profile = |wheel| {
+        tooth_profile(wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm, None, Root::Arc)
+    };
     let (pinion_profile, gear_profile) = (profile(&pinion), profile(&gear));
     let contact = contact_line(&pinion, &pinion_profile, &gear, &gear_profile);
     let path = PathOfContact::new(&pinion, &gear);

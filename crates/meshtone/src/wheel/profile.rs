@@ -1,4 +1,4 @@
-//! The profile of a healthy tooth: fillet, involute, crowning, tip relief.
+//! The profile of a healthy tooth: fillet, involute, uniform reduction, tip relief.
 
 use super::radii::Wheel;
 use crate::interpolation::NaturalSpline;
@@ -11,7 +11,7 @@ pub struct ToothProfile {
     pub x_mm: Vec<f64>,
     /// (mm) Half thickness of the tooth.
     pub y_mm: Vec<f64>,
-    /// (mm) Distance of the points from the wheel's centre before crowning and relief: how far the wheel has rolled when its
+    /// (mm) Distance of the points from the wheel's centre before the uniform reduction and relief: how far the wheel has rolled when its
     /// mate is there.
     pub involute_radius_mm: Vec<f64>,
     /// Index of the point where the tip relief starts, in the wheel's own sampling (the pinion's before it is resampled).
@@ -70,17 +70,17 @@ pub(crate) fn first_minimum(values: impl Iterator<Item = f64>) -> usize {
 /// # Arguments
 /// * `wheel` - the tooth's wheel
 /// * `points` - (≥ 2) number of points, uniform in x
-/// * `crowning_mm` - (mm) constant reduction of y
+/// * `uniform_flank_reduction_mm` - (mm) constant reduction of y
 /// * `relief` - tip relief, or none
-/// * `bridge` - a curve that takes the place of fillet and involute round their joint, if any
+/// * `root` - what the flank has below the involute
 pub fn tooth_profile(
     wheel: &Wheel,
     points: usize,
-    crowning_mm: f64,
+    uniform_flank_reduction_mm: f64,
     relief: Option<TipRelief>,
-    bridge: Option<NaturalSpline>,
+    root: Root,
 ) -> ToothProfile {
-    let flank = Curve::new(wheel, bridge);
+    let flank = Curve::new(wheel, root);
     let start = flank.start_x_mm();
     let step = (flank.tip_x_mm() - start) / (points - 1) as f64;
     let mut x_mm: Vec<f64> = (0..points).map(|i| start + step * i as f64).collect();
@@ -89,13 +89,24 @@ pub fn tooth_profile(
     let mut y_mm: Vec<f64> = x_mm.iter().map(|&x| flank.half_thickness_mm(x, &mut roll)).collect();
     let involute_radius_mm = x_mm.iter().zip(&y_mm).map(|(x, y)| (x * x + y * y).sqrt()).collect();
     for y in &mut y_mm {
-        *y -= crowning_mm;
+        *y -= uniform_flank_reduction_mm;
     }
     let mut profile = ToothProfile { x_mm, y_mm, involute_radius_mm, tip_relief_index: None };
     if let Some(relief) = relief {
         relieve_tip(&mut profile, relief);
     }
     profile
+}
+
+/// What a flank has below the involute.
+#[derive(Debug, Clone)]
+pub enum Root {
+    /// An arc that touches the root circle in the middle of the space and ends at the base circle, or at the root circle where that is
+    /// the larger one: the arc is then the root circle itself.
+    Arc,
+    /// As in the published code: nothing where the root circle lies outside the base circle; elsewhere an arc, and a curve that takes
+    /// the place of arc and involute round their joint, if any.
+    Published(Option<NaturalSpline>),
 }
 
 /// The exact curve that the profile samples.
@@ -113,12 +124,13 @@ struct Curve {
     bridge: Option<NaturalSpline>,
 }
 
-/// A circular arc from the root circle, mid-way between two teeth, to the foot of the involute.
+/// A circular arc from the root circle, mid-way between two teeth, to the start of the involute.
 ///
 /// Along the ray at angle γ from the arc's centre the near intersection is
 /// `r = c − √(c² − Rd (Rd + 2ρ))`, `c = (Rd + ρ) cos γ`: a circle of radius ρ round the point
 /// (Rd + ρ, π/z) in polar coordinates.
 struct Fillet {
+    /// Less than 0 where the centre lies on the wheel's side: −Rd on the root circle itself.
     radius_mm: f64,
     centre_x_mm: f64,
     centre_y_mm: f64,
@@ -130,22 +142,31 @@ struct Fillet {
 const INVOLUTE_SAMPLES: usize = 15_001;
 
 impl Curve {
-    fn new(wheel: &Wheel, bridge: Option<NaturalSpline>) -> Self {
-        let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
-        let foot_angle_rad = wheel.foot_angle_rad();
+    fn new(wheel: &Wheel, root: Root) -> Self {
+        let (base, root_radius) = (wheel.base_radius_mm, wheel.root_radius_mm);
         let tip_angle = (base / wheel.tip_radius_mm).acos();
-        let fillet = Fillet::new(wheel, foot_angle_rad);
-        let angle = |k: usize| tip_angle * k as f64 / (INVOLUTE_SAMPLES - 1) as f64;
-        let first_roll = if fillet.is_some() {
-            0.0
-        } else {
-            // The radius rises with k: the nearest is next to the exact solution.
-            let exact = (base / root).acos() / angle(1);
-            let first = (exact as usize).saturating_sub(1);
-            let distance = |k: usize| ((base / angle(k).cos()).powi(2) - root * root).abs();
-            let near = (first..first + 4).filter(|&k| k < INVOLUTE_SAMPLES);
-            angle(first + first_minimum(near.map(distance))).tan()
+        let fillet = match root {
+            Root::Published(_) if root_radius >= base => None,
+            _ => Fillet::new(wheel),
         };
+        let first_roll = match root {
+            Root::Arc => ((root_radius / base).powi(2) - 1.0).max(0.0).sqrt(),
+            Root::Published(_) if fillet.is_some() => 0.0,
+            Root::Published(_) => {
+                let angle = |k: usize| tip_angle * k as f64 / (INVOLUTE_SAMPLES - 1) as f64;
+                // The radius rises with k: the nearest is next to the exact solution.
+                let exact = (base / root_radius).acos() / angle(1);
+                let first = (exact as usize).saturating_sub(1);
+                let distance = |k: usize| ((base / angle(k).cos()).powi(2) - root_radius * root_radius).abs();
+                let near = (first..first + 4).filter(|&k| k < INVOLUTE_SAMPLES);
+                angle(first + first_minimum(near.map(distance))).tan()
+            }
+        };
+        let bridge = match root {
+            Root::Published(bridge) => bridge,
+            Root::Arc => None,
+        };
+        let foot_angle_rad = wheel.foot_angle_rad();
         Self { base_radius_mm: base, foot_angle_rad, first_roll, last_roll: tip_angle.tan(), fillet, bridge }
     }
 
@@ -253,30 +274,39 @@ impl RollAngle {
     }
 }
 
+/// (-) Least curvature of the arc, over that of the root circle: nearly a straight line.
+const STRAIGHT: f64 = 1e-9;
+
 impl Fillet {
-    /// None where the root circle lies outside the base circle or leaves no room for an arc.
-    fn new(wheel: &Wheel, foot_angle: f64) -> Option<Self> {
-        let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
-        // ψ = π/z − θ0 − inv α: from the middle of the tooth space to the foot of the involute.
-        let psi = wheel.half_pitch_angle_rad() - foot_angle;
-        let room = 2.0 * base * psi.cos() - 2.0 * root;
-        if root >= base || room <= 0.0 || psi <= 0.0 {
+    /// None where the flanks of two teeth meet above the root circle.
+    fn new(wheel: &Wheel) -> Option<Self> {
+        let root = wheel.root_radius_mm;
+        // Where the involute starts, and the angle from the middle of the space to it.
+        let end = wheel.base_radius_mm.max(root);
+        let end_angle = wheel.half_thickness_angle_at_rad(end);
+        let psi = wheel.half_pitch_angle_rad() - end_angle;
+        if psi <= 0.0 {
             return None;
         }
-        let radius_mm = (root * root + base * base - 2.0 * root * base * psi.cos()) / room;
+        let versed = 4.0 * root * end * libm::pow((psi / 2.0).sin(), 2.0);
+        let squared_chord = (end - root) * (end - root) + versed;
+        let room = 2.0 * (end - root) - versed / root;
+        let curvature = room / squared_chord;
+        let radius_mm = 1.0 / if curvature.abs() * root < STRAIGHT { STRAIGHT / root } else { curvature };
         let (sin, cos) = wheel.half_pitch_angle_rad().sin_cos();
         Some(Self {
             radius_mm,
             centre_x_mm: (root + radius_mm) * cos,
             centre_y_mm: (root + radius_mm) * sin,
             start_x_mm: root * cos,
-            end_x_mm: base * foot_angle.cos(),
+            end_x_mm: end * end_angle.cos(),
         })
     }
 
     fn y_mm(&self, x: f64) -> f64 {
         let dx = x - self.centre_x_mm;
-        self.centre_y_mm - (self.radius_mm * self.radius_mm - dx * dx).max(0.0).sqrt()
+        let height = (self.radius_mm * self.radius_mm - dx * dx).max(0.0).sqrt();
+        self.centre_y_mm - height.copysign(self.radius_mm)
     }
 }
 

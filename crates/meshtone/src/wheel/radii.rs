@@ -6,6 +6,7 @@ use crate::wheel::{Gears, Mounting, WheelName};
 
 /// A spur wheel, with what its mate and the distance between their axes make of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Wheel {
     /// Tooth count.
     pub teeth: u32,

@@ -34,7 +34,12 @@ impl Gears {
         pressure_angle(self)?;
         contact_ratio(self)?;
         let thinner_mm = self.half_thicknesses_mm().into_iter().fold(f64::INFINITY, f64::min);
-        below("gears.crowning_mm", self.crowning_mm, thinner_mm, HALF_THICKNESS)?;
+        below(
+            "gears.uniform_flank_reduction_mm",
+            self.uniform_flank_reduction_mm,
+            thinner_mm,
+            HALF_THICKNESS,
+        )?;
         let relief = &self.flank_relief;
         if relief.amount_um > 0.0 {
             below("gears.flank_relief.length_mm", relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
@@ -135,11 +140,11 @@ fn contact_ratio(gears: &Gears) -> Check {
 /// Crowning must leave some of the tip: the compliances take what is beyond the tooth's centre line for a negative thickness.
 fn tip_thickness(gears: &Gears) -> Check {
     let left = gears.half_thickness_below_tip_mm(0.0);
-    let removed = gears.crowning_mm;
+    let removed = gears.uniform_flank_reduction_mm;
     let problem = format!(
         "{removed:?} mm is removed where the tooth is only {left:.4} mm thick from its centre line, at the tip; must leave some of the tip"
     );
-    require("gears.crowning_mm", removed, removed < left, problem)
+    require("gears.uniform_flank_reduction_mm", removed, removed < left, problem)
 }
 
 /// (mm) Half thickness of an unrelieved tooth, `below_tip_mm` from the tip along its centre line; of its foot on the

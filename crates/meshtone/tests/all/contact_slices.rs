@@ -4,7 +4,7 @@
 
 use crate::dense::machine_of;
 use crate::physics::*;
-use meshtone::machine::{Axis, Drive, SENSOR};
+use meshtone::machine::{Axis, Drive, SUPPORTS};
 use meshtone::mesh::Mesh;
 use meshtone::scenario::*;
 use meshtone::{Stages, simulate};
@@ -96,7 +96,7 @@ fn by_slices(stages: &Stages, face: &Face, samples: usize) -> Vec<f64> {
         if omega2[m] == 0.0 { 0.0 } else { (brake[m] - lines[0][m] * force) / omega2[m] }
     });
     let of_static = Vector2::new(lines[0].dot(&steady), lines[1].dot(&steady));
-    let row = modes.shapes.transpose() * machine.turn.transpose() * machine.weights(SENSOR, Axis::Y);
+    let row = modes.shapes.transpose() * machine.turn.transpose() * machine.weights(SUPPORTS, Axis::Y);
     let solve = |all: &[Slice], rates: &[f64], free: Vector2<f64>| -> Vector2<f64> {
         let offset = |i: usize| -all[i].separation + tau * rates[i];
         let load = free + gamma * Vector2::new(force, 0.0);
@@ -182,6 +182,8 @@ fn the_middle_of_what_bears_acts_as_its_slices_do() {
     ];
     for (name, brake_torque_nm, most, damage) in damages {
         let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
+        with_own_structure(&mut scenario);
+        scenario.sensors = vec![mean_of_supports()];
         scenario.model = Model::Contact;
         scenario.solver.settle_fraction = 0.0;
         // The slices are stepped by the average acceleration, which needs short steps.
@@ -189,7 +191,8 @@ fn the_middle_of_what_bears_acts_as_its_slices_do() {
         scenario.faults = vec![Fault::on_first_gear_tooth(damage)];
         let simulation = simulate(&scenario).unwrap();
         let samples = 3 * simulation.stages.time.samples_per_pinion_revolution;
-        let mean: Vec<f64> = simulation.channels.vertical_g[..samples].iter().map(|g| g * 9.81).collect();
+        let mean: Vec<f64> =
+            simulation.channels.sensors[0].values_g[..samples].iter().map(|g| g * 9.81).collect();
         let damping_time_s = mesh(&simulation.stages).damping_time_s;
         let face = Face { slices: SLICES, slope: 0.0, damping_time_s };
         let sliced = by_slices(&simulation.stages, &face, samples);
@@ -222,6 +225,8 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
         (10.0, 100.0, Some(broken)),
     ] {
         let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
+        with_own_structure(&mut scenario);
+        scenario.sensors = vec![mean_of_supports()];
         scenario.model = Model::Contact;
         scenario.solver.settle_fraction = 0.0;
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
@@ -236,9 +241,12 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
         let face = Face { slices: SLICES_OF_AN_END, slope, damping_time_s: mesh.damping_time_s };
         let sliced: Vec<f64> =
             by_slices(&aligned.stages, &face, kept.end)[kept.clone()].iter().map(|a| a / 9.81).collect();
-        let [before, found, sliced] =
-            [&aligned.channels.vertical_g[kept.clone()], &leaning.channels.vertical_g[kept], &sliced]
-                .map(indicators);
+        let [before, found, sliced] = [
+            &aligned.channels.sensors[0].values_g[kept.clone()],
+            &leaning.channels.sensors[0].values_g[kept],
+            &sliced,
+        ]
+        .map(indicators);
         println!(
             "{misalignment_um} um, {brake_torque_nm} N m, {}: K_Hb {:.2}; log10 of rms and kurtosis {:.3} {:.3}, aligned \
              {:.3} {:.3}, by slices {:.3} {:.3}",

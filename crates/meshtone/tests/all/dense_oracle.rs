@@ -9,7 +9,7 @@ use meshtone::stages;
 use nalgebra::DVector;
 
 use crate::dense::*;
-use crate::physics::rms;
+use crate::physics::{rms, with_own_structure};
 
 /// Samples that are compared.
 const SAMPLES: usize = 1_000;
@@ -92,6 +92,7 @@ fn modal_and_dense_solutions_agree() {
                     pinion_speed_hz: random(15.0, 60.0),
                     brake_torque_nm: random(2.0, 80.0),
                 });
+                with_own_structure(&mut scenario);
                 scenario.model = model;
                 scenario.seed = round;
                 scenario.gears.points_per_tooth = 2000;

@@ -17,6 +17,7 @@ fn base() -> Scenario {
     scenario.quality.din_grade = 7;
     scenario.solver.sampling_rate_hz = 1e5;
     scenario.gears.points_per_tooth = 2000;
+    crate::physics::with_own_structure(&mut scenario);
     scenario
 }
 

@@ -195,8 +195,7 @@ const ROSS: [(u32, u32, f64, f64, [f64; 3]); 3] = [
     (25, 30, 20.0, 1.6326, [4.6403e8, 2.6972e8, 3.9262e8]),
 ];
 
-// As it is the library is 4 to 6 % softer with many teeth, where its root circle lies outside the base circle and it has no
-// fillet, and 2 to 4 % stiffer with few. With the other program's root (a rack cutter's trochoid) fed to the library's
+// As it is the library is 2 to 5 % stiffer. With the other program's root (a rack cutter's trochoid) fed to the library's
 // compliances, up to 5 % remain, which are the foundation's (next test).
 #[test]
 fn mesh_with_fillet_and_foundation() {
@@ -205,7 +204,7 @@ fn mesh_with_fillet_and_foundation() {
         let teeth = linear_teeth(&gears, bore);
         assert!((teeth.contact.contact_ratio - ratio).abs() < 5e-5);
         let own = compare(&format!("{z1}/{z2}"), &library_mesh(&gears, &teeth, 206.0), means);
-        let expected = if z1 > 41 { -0.06..-0.04 } else { 0.02..0.04 };
+        let expected = if z1 > 41 { 0.04..0.055 } else { 0.02..0.04 };
         assert!(own.iter().all(|deviation| expected.contains(deviation)), "{own:?}");
         let alike = conjugate_mesh(&gears, 206.0, bore, |wheel| {
             let profile = Flank::new(&wheel).with_trochoid(&wheel);
@@ -217,7 +216,8 @@ fn mesh_with_fillet_and_foundation() {
 }
 
 // Bending, shear and axial compression of the same tooth under the same load: five digits are given, and the
-// trapezoid on 10 000 points is as good, hence 1e-4. The foundation's S_f and u are the other program's own: 15 %.
+// trapezoid on 10 000 points is as good, hence 1e-4. The foundation's S_f and u are the other program's own: 15 %; on the
+// library's own root, which is wider still, 19 %.
 #[test]
 fn one_tooth_part_by_part() {
     let gears = Gears::new(2.0, 62, 62, 20.0);
@@ -253,6 +253,7 @@ fn one_tooth_part_by_part() {
                     // The pitch point is the profile's nearest: half a step of bending's slope.
                     ("trochoid, turned", "bending") => 5e-4,
                     ("trochoid, turned", _) => 1.5e-4,
+                    ("own, turned", "foundation") => 0.19,
                     ("own, turned", _) => 0.15,
                     _ => 0.40,
                 };
@@ -334,16 +335,15 @@ fn iso_theoretical([z1, z2]: [f64; 2], [x1, x2]: [f64; 2]) -> f64 {
 
 // The standard's wheels are solid; Sainsot's body is a ring whose bore is clamped, and its compliance grows with the
 // square of root over bore radius (formula fitted from 1.4 to 7). At 1.4 for the smaller wheel, the nearest to a solid
-// one, c' and c_gamma agree within 6 % for many teeth. For few they lie between the standard's practical stiffness and its
-// theoretical one, 12 to 27 % above the former, whose factor 0.8 comes from measurements; the other program with this
+// one, c' and c_gamma lie between the standard's practical stiffness and its theoretical one, 5 to 27 % above the former, whose factor 0.8 comes from measurements; the other program with this
 // foundation agrees to 4 % there. With small bores the model is far softer than the standard.
 #[test]
 fn iso_single_stiffness() {
     let golden = iso_theoretical([19.0, 17.0], [0.617, 0.802]);
     assert_close("ISO", 1e-13, [(golden, 18.829_182_051_335_184)]);
     for (z1, z2, theoretical, above) in [
-        (62, 62, 18.5535, [-0.006, -0.023]),
-        (55, 75, 18.6929, [-0.045, -0.058]),
+        (62, 62, 18.5535, [0.128, 0.118]),
+        (55, 75, 18.6929, [0.077, 0.072]),
         (25, 30, 16.1167, [0.271, 0.242]),
         (18, 35, 15.8132, [0.140, 0.121]),
     ] {
@@ -381,6 +381,89 @@ fn iso_single_stiffness() {
             before = single;
         }
     }
+}
+
+// Two published gearbox reports state profile shifts, centre distances and the stiffnesses of ISO 6336-1 with the factor 0.862 of
+// their rims. The geometry is given to four and five digits. The stiffness here depends on the bore, which they do not state.
+#[test]
+fn shifted_pairs_of_two_gearbox_reports() {
+    let [second_stage, first_stage] = [[[0.319, 0.277], [0.107, 0.088]], [[0.676, 0.564], [0.507, 0.419]]];
+    for (z, m, width, distance, x, [angle_deg, shortening_mm, ratio], [single, gamma], above) in [
+        (
+            [18, 36],
+            21.0,
+            550.0,
+            584.0,
+            [0.389, 0.5039],
+            [24.169, 1.75, 1.370],
+            [12.240, 15.640],
+            second_stage,
+        ),
+        (
+            [17, 19],
+            45.0,
+            491.0,
+            863.0,
+            [0.802, 0.617],
+            [28.118, 10.861, 1.115],
+            [12.362, 13.426],
+            first_stage,
+        ),
+    ] {
+        let mut gears = Gears::new(m, z[0], z[1], width);
+        [gears.pinion_profile_shift, gears.gear_profile_shift] = x;
+        gears.centre_distance_mm = Some(distance);
+        let smaller_root_mm = m * (f64::from(z[0]) - 2.5 + 2.0 * x[0]);
+        let practical = 0.8 * 0.862 * 0.975 * iso_theoretical(z.map(f64::from), x);
+        assert_close("c'", 1e-3, [(practical, single)]);
+        assert_close("c_gamma", 1e-3, [(single * (0.75 * ratio + 0.25), gamma)]);
+        for (root_over_bore, above) in [1.4, 2.0].into_iter().zip(above) {
+            let teeth = linear_teeth(&gears, smaller_root_mm / root_over_bore);
+            let working_deg = teeth.gear.working_pressure_angle_rad.to_degrees();
+            assert!((working_deg - angle_deg).abs() < 2e-3, "{working_deg}");
+            assert!(
+                (-gears.tip_alteration() * m - shortening_mm).abs() < 0.01,
+                "{}",
+                gears.tip_alteration() * m
+            );
+            assert!((teeth.path.contact_ratio - ratio).abs() < 1e-3, "{}", teeth.path.contact_ratio);
+            let pairs = sound_pairs(&gears, &teeth);
+            let at = |k: i32| teeth.path.contact_ratio * f64::from(k) / 2000.0;
+            let per_width = 206.0 / 210.0 / width * 1e-3;
+            let here =
+                largest((0..=2000).map(|k| pairs.at(&SOUND_PAIR, at(k)).stiffness_n_per_mm)) * per_width;
+            let cycle = library_mesh(&gears, &teeth, 206.0).cycle / width * 1e-6;
+            let found = [deviation(here, single), deviation(cycle, gamma)];
+            let differs = found.iter().zip(above).any(|(found, above)| (found - above).abs() > 2e-3);
+            assert!(!differs, "{z:?}: {found:?} instead of {above:?}");
+            println!(
+                "{z:?} root/bore {root_over_bore}: {working_deg:.3} deg, {:.3} mm, {:.4}; c' {single}, here {here:.3} ({:+.1} %); \
+                 c_gamma {gamma}, here {cycle:.3} ({:+.1} %)",
+                -gears.tip_alteration() * m,
+                teeth.path.contact_ratio,
+                100.0 * deviation(here, single),
+                100.0 * deviation(cycle, gamma)
+            );
+        }
+    }
+}
+
+// The root circle crosses the base circle between 41 and 42 teeth. Neither the profile nor the body knows of it: the stiffness goes on
+// with no larger a change from tooth to tooth than before and behind.
+#[test]
+fn stiffness_is_continuous_in_the_tooth_count() {
+    let stiffness = |z: u32| {
+        let gears = Gears::new(3.0, z, z, 15.0);
+        let teeth = linear_teeth(&gears, 20.0);
+        library_mesh(&gears, &teeth, 210.0).cycle * 1e-6
+    };
+    for z in [17, 38, 41, 42, 60] {
+        println!("{z}/{z}: {:.2} N/um", stiffness(z));
+    }
+    let values: Vec<f64> = (38..=46).map(stiffness).collect();
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] / pair[0] - 1.0).collect();
+    println!("{steps:?}");
+    assert!(steps.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1e-3), "{steps:?}");
 }
 
 // ---------------------------------------------------------------------------------------------------------------

@@ -27,24 +27,53 @@ fn relief_leaves_some_of_the_tip() {
     }
     let mut crowned = Scenario::new(GearPair::example());
     crowned.model = Model::Linear;
-    crowned.gears.crowning_mm = 1.3;
-    assert_eq!(crowned.validate().unwrap_err().key, "gears.crowning_mm");
+    crowned.gears.uniform_flank_reduction_mm = 1.3;
+    assert_eq!(crowned.validate().unwrap_err().key, "gears.uniform_flank_reduction_mm");
 }
 
+/// The settling is a fraction of the simulated time, also where a speed profile or a stated length sets it.
 #[test]
-fn a_speed_profile_outlasts_the_settling() {
-    let mut scenario = Scenario::new(GearPair::example());
-    scenario.model = Model::Linear;
-    let profile = |end: f64| Some(Profile { time_s: vec![0.0, end], value: vec![40.0, 41.0] });
-    // Half of 76 revolutions at 40 Hz are discarded: 0.95 s.
-    scenario.operation.speed_profile_hz = profile(0.9);
-    assert_eq!(scenario.validate().unwrap_err().key, "operation.speed_profile_hz");
-    scenario.operation.speed_profile_hz = profile(1.0);
-    assert!(scenario.validate().is_ok());
-    // The published code ignores speed profiles.
-    scenario.model = Model::Published;
-    scenario.operation.speed_profile_hz = profile(0.9);
-    assert!(scenario.validate().is_ok());
+fn the_kept_signal_has_one_length() {
+    let kept_s = |change: &dyn Fn(&mut Scenario)| {
+        let mut scenario = Scenario::new(GearPair::example());
+        change(&mut scenario);
+        scenario.validate().map_err(|error| error.key)?;
+        let time = scenario.time_grid();
+        let discarded = time.first_kept_sample as f64 / time.samples as f64;
+        assert!((discarded - scenario.solver.settle_fraction).abs() < 1e-4, "{discarded}");
+        Ok::<_, String>(time.kept_samples() as f64 * time.step_s())
+    };
+    let profile = |scenario: &mut Scenario, end: f64| {
+        scenario.operation.speed_profile_hz =
+            Some(Profile { time_s: vec![0.0, end], value: vec![40.0, 41.0] });
+    };
+    let is = |kept_s: Result<f64, String>, expected_s: f64| {
+        let kept_s = kept_s.unwrap();
+        assert!((kept_s - expected_s).abs() < 1e-5, "{kept_s} {expected_s}");
+    };
+    is(kept_s(&|_| ()), 38.0 / 40.0);
+    is(kept_s(&|scenario| scenario.solver.duration_s = Some(0.3)), 0.3);
+    is(kept_s(&|scenario| scenario.solver.pinion_revolutions = Some(7.5)), 7.5 / 40.0);
+    is(kept_s(&|scenario| profile(scenario, 0.9)), 0.45);
+    let both = |scenario: &mut Scenario| {
+        profile(scenario, 0.9);
+        scenario.solver.duration_s = Some(0.6);
+        scenario.solver.settle_fraction = 0.25;
+    };
+    is(kept_s(&both), 0.6);
+
+    let refused = |change: &dyn Fn(&mut Scenario)| kept_s(change).unwrap_err();
+    let with_profile = |scenario: &mut Scenario| {
+        profile(scenario, 0.9);
+        scenario.solver.pinion_revolutions = Some(7.5);
+    };
+    assert_eq!(refused(&with_profile), "solver.pinion_revolutions");
+    let twice = |scenario: &mut Scenario| {
+        (scenario.solver.duration_s, scenario.solver.pinion_revolutions) = (Some(0.3), Some(7.5));
+    };
+    assert_eq!(refused(&twice), "solver.pinion_revolutions");
+    assert_eq!(refused(&|scenario| scenario.solver.duration_s = Some(1e-9)), "solver.duration_s");
+    assert_eq!(refused(&|scenario| scenario.solver.duration_s = Some(0.0)), "solver.duration_s");
 }
 
 #[test]

@@ -19,7 +19,7 @@ gear_teeth = 41
 face_width_mm = 12.5
 pressure_angle_deg = 22.5
 material = "cast-iron"
-crowning_mm = 0.01
+uniform_flank_reduction_mm = 0.01
 points_per_tooth = 2000
 foundation = { L = [1, 2, 3, 4, 5, 6], M = [7, 8, 9, 10, 11, 12], Q = [0.5, 0, 0, 0, 0, 0] }
 [operation]
@@ -69,7 +69,7 @@ fn every_key_is_read() {
     expected.seed = u64::MAX;
     expected.gears.pressure_angle_deg = 22.5;
     expected.gears.material = Material::CastIron;
-    expected.gears.crowning_mm = 0.01;
+    expected.gears.uniform_flank_reduction_mm = 0.01;
     expected.gears.points_per_tooth = 2000;
     expected.gears.foundation = FoundationCoefficients {
         l: [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
@@ -189,9 +189,15 @@ fn unknown_keys() {
         &gears("pressure_angle = 20"),
         "gears.pressure_angle",
         6,
-        &["unknown key", "crowning_mm"],
+        &["unknown key", "uniform_flank_reduction_mm"],
     );
     assert_eq!(error.help.as_deref(), Some("did you mean `pressure_angle_deg`?"));
+    for (key, words) in [
+        ("crowning_mm", "is now called uniform_flank_reduction_mm"),
+        ("helix_angle_deg", "is not modelled: the gears are spur gears"),
+    ] {
+        assert_refused(&gears(&format!("{key} = 0.01")), &format!("gears.{key}"), 6, &[words]);
+    }
     assert_refused(&replaced("[gears]", "[gear]"), "gear", 1, &["unknown key", "did you mean `gears`?"]);
     assert_refused(&appended("[rigs]\na = 1"), "rigs", 9, &["unknown key", "did you mean `rig`?"]);
     let breakage_key = "[fault]\nkind = \"missing-tooth\"\nchip_height_mm = 1";

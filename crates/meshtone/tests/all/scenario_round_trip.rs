@@ -3,8 +3,8 @@
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
     Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Pits, Profile, ProfileErrors,
-    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, ToothBreakage,
-    ToothDestruction, Wear, WheelInertia, WheelName,
+    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, SupportSprings, ThroughFace,
+    ToothBreakage, ToothDestruction, Wear, WheelInertia, WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -18,13 +18,13 @@ fn gears() -> impl Strategy<Value = Gears> {
     let rest = (0usize..6, 0.0..0.05, 500usize..100_000, foundation);
     let contact = (any::<bool>(), 0.01..1.9, 0.0..50.0, option::of(0.0..0.3), option::of(0.0..0.5));
     (wheels, rest, contact).prop_map(
-        |(wheels, (material, crowning_mm, points_per_tooth, foundation), contact)| {
+        |(wheels, (material, uniform_flank_reduction_mm, points_per_tooth, foundation), contact)| {
             let (parabolic, length, amount_um, chamfer, backlash) = contact;
             let (module_mm, pinion_teeth, gear_teeth, face_width_mm, pressure_angle_deg) = wheels;
             let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm);
             gears.pressure_angle_deg = pressure_angle_deg;
             gears.material = Material::ALL[material];
-            gears.crowning_mm = crowning_mm;
+            gears.uniform_flank_reduction_mm = uniform_flank_reduction_mm;
             gears.points_per_tooth = points_per_tooth;
             gears.foundation = foundation;
             gears.flank_relief = FlankRelief {
@@ -237,14 +237,15 @@ fn rig() -> impl Strategy<Value = Rig> {
             },
         )
     };
-    let support = (1e-6..1e3, 1e3..1e12, 0.0..1e12, 0.0..0.9).prop_map(
-        |(mass_kg, stiffness_n_per_m, coupling_n_per_m, damping_ratio)| Support {
-            mass_kg,
-            stiffness_n_per_m,
-            coupling_n_per_m,
-            damping_ratio,
-        },
-    );
+    let stiffnesses = (1e3..1e12, 0.0..1e12).prop_map(|(stiffness_n_per_m, coupling_n_per_m)| {
+        SupportSprings::Stiffnesses { stiffness_n_per_m, coupling_n_per_m }
+    });
+    let frequencies = (1.0..1e4, 1.1..9.0).prop_map(|(base_hz, ratio)| SupportSprings::Frequencies {
+        base_hz,
+        differential_hz: base_hz * ratio,
+    });
+    let support = (1e-6..1e3, prop_oneof![stiffnesses, frequencies], 0.0..0.9)
+        .prop_map(|(mass_kg, springs, damping_ratio)| Support { mass_kg, springs, damping_ratio });
     let numbers = (1e3..1e12, 1e3..1e12, 1e-6..1e3, 0.0..0.9, 0.0..0.9);
     (numbers, damping, shaft(), shaft(), inertia(), inertia(), support).prop_map(
         |(

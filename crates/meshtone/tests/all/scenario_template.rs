@@ -57,6 +57,7 @@ fn keys_that_are_commented_out_show_their_defaults() {
         assert!(scenario.operation.speed_profile_hz.take().is_some());
         assert!(scenario.operation.torque_profile_nm.take().is_some());
         assert_eq!(scenario.solver.initial_displacement.take(), Some([0.0; 13]));
+        assert_eq!(scenario.solver.duration_s.take(), Some(1.0));
         assert_eq!(scenario, Scenario::from_toml(&text).unwrap(), "{kind}");
     }
 }
@@ -68,7 +69,7 @@ fn keys_whose_default_follows_from_others_are_shown_as_well() {
         text.replace("# tip_chamfer_mm =", "tip_chamfer_mm =").replace("# backlash_mm =", "backlash_mm =");
     let default = Scenario::from_toml(&text).unwrap();
     let gears = Scenario::from_toml(&set).unwrap().gears;
-    assert_eq!((gears.tip_chamfer_mm, gears.backlash_mm), (Some(0.6), Some(0.1275)));
+    assert_eq!((gears.tip_chamfer_mm, gears.backlash_mm), (Some(0.69), Some(0.1275)));
     assert!((gears.chamfer_mm() - default.gears.chamfer_mm()).abs() < 1e-12);
     assert!((gears.normal_backlash_mm() - default.gears.normal_backlash_mm()).abs() < 1e-12);
 

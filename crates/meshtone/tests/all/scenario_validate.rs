@@ -24,8 +24,12 @@ fn gears_out_of_range() {
     for (keys, key, words) in [
         ("pressure_angle_deg = 5", "gears.pressure_angle_deg", "from 10° to 35°"),
         ("pressure_angle_deg = 40", "gears.pressure_angle_deg", "from 10° to 35°"),
-        ("crowning_mm = -0.1", "gears.crowning_mm", "must be 0 mm or more"),
-        ("crowning_mm = 3", "gears.crowning_mm", "less than 2.3562 mm, half the tooth's thickness"),
+        ("uniform_flank_reduction_mm = -0.1", "gears.uniform_flank_reduction_mm", "must be 0 mm or more"),
+        (
+            "uniform_flank_reduction_mm = 3",
+            "gears.uniform_flank_reduction_mm",
+            "less than 2.3562 mm, half the tooth's thickness",
+        ),
         ("points_per_tooth = 499", "gears.points_per_tooth", "from 500 to 1000000"),
         ("points_per_tooth = 1000001", "gears.points_per_tooth", "from 500 to 1000000"),
     ] {

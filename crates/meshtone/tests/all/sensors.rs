@@ -26,6 +26,7 @@ fn pair(model: Model, keys: &str) -> Scenario {
 fn at(at: SensorPlace, direction: SensorDirection) -> Sensor {
     let mut sensor = Sensor::default();
     (sensor.at, sensor.direction) = (at, direction);
+    sensor.path = SensorPath::RIGID;
     sensor
 }
 
@@ -37,6 +38,7 @@ fn full(name: &str) -> Sensor {
     sensor.resonance_damping_ratio = 0.1;
     sensor.noise_density_g_per_rthz = 1e-3;
     sensor.noise_seed = Some(7);
+    sensor.path.strength = 0.3;
     sensor.range_g = Some(2.0);
     sensor.bits = Some(12);
     sensor.frequency_response = Some(FrequencyResponse {
@@ -129,7 +131,7 @@ fn two_sensors_cannot_share_a_channel() {
     let text = sensor("at = \"gear-support\"\n[[sensor]]\nname = \"gear_support_vertical\"");
     assert_refused(&text, "sensor[1].name", 12, &["sensor[0]", "name of its own"]);
     let text = sensor("[[sensor]]\nrange_g = 1.0\n[[sensor]]\nname = \"other\"\nbits = 8");
-    assert_refused(&text, "sensor[1].name", 10, &["\"support_vertical\""]);
+    assert_refused(&text, "sensor[1].name", 10, &["\"pinion_support_vertical\""]);
     let text = sensor("name = \"one\"\n[[sensor]]\nbits = 8");
     assert_refused(&text, "sensor[1].bits", 12, &["needs sensor[1].range_g"]);
 }
@@ -153,7 +155,7 @@ fn plain_sensors_read_their_places() {
         let scenario = pair(model, "").with_sensors(sensors.clone());
         let channels = measured(&scenario);
         let [support, pinion, gear, wheels] = [0, 1, 2, 3].map(|n| &channels.sensors[n].values_g);
-        assert_eq!(support, &channels.vertical_g);
+        assert_eq!(pinion, &channels.vertical_g);
         let without = measured(&scenario.clone().with_sensors(Vec::new()));
         let mut others = channels.clone();
         others.sensors.clear();
@@ -162,7 +164,7 @@ fn plain_sensors_read_their_places() {
             assert!([pinion, gear, wheels].into_iter().all(|signal| signal == support));
             let ignored: Vec<String> =
                 scenario.ignored_by_model().into_iter().map(|warning| warning.key).collect();
-            assert_eq!(ignored, ["sensor[1].at", "sensor[2].at", "sensor[3].at"]);
+            assert_eq!(ignored, ["sensor[0].at", "sensor[2].at", "sensor[3].at"]);
         } else {
             let scale = support.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
             let mean = pinion.iter().zip(gear).map(|(a, b)| (a + b) / 2.0);
@@ -286,11 +288,15 @@ fn noise_is_keyed_by_seed_and_place_in_the_list() {
 #[test]
 fn unknown_channel_is_refused_with_those_that_there_are() {
     let sensors = [Sensor::default()];
-    assert_eq!(Channel::of("support_vertical_g", &sensors), Ok(Channel::Sensor("support_vertical".into())));
+    assert_eq!(
+        Channel::of("pinion_support_vertical_g", &sensors),
+        Ok(Channel::Sensor("pinion_support_vertical".into()))
+    );
     assert_eq!(Channel::of("vertical_g", &sensors), Ok(ChannelKind::Vertical.into()));
     let message = Channel::of("gear_g", &sensors).unwrap_err().to_string();
     assert!(
-        message.starts_with("there is no channel `gear_g`; there are support_vertical_g, horizontal_g"),
+        message
+            .starts_with("there is no channel `gear_g`; there are pinion_support_vertical_g, horizontal_g"),
         "{message}"
     );
 }
@@ -305,9 +311,9 @@ fn difference_signals_of_a_sensor() {
         difference_signals(vec![scenario.clone()], &chain)
     };
     let [plain, vertical] =
-        [Channel::Sensor("support_vertical".into()), ChannelKind::Vertical.into()].map(of);
+        [Channel::Sensor("pinion_support_vertical".into()), ChannelKind::Vertical.into()].map(of);
     assert_eq!(plain.unwrap(), vertical.unwrap());
     assert!(of(Channel::Sensor("a".into())).is_ok());
     let message = of(Channel::Sensor("b".into())).unwrap_err().to_string();
-    assert!(message.contains("`b_g`") && message.contains("support_vertical_g"), "{message}");
+    assert!(message.contains("`b_g`") && message.contains("pinion_support_vertical_g"), "{message}");
 }

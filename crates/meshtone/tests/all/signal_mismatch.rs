@@ -16,99 +16,99 @@ use rayon::prelude::*;
 use crate::signal::noise;
 
 /// Draws of one recording.
-struct Draws(ChaCha8Rng);
+pub struct Draws(ChaCha8Rng);
 
 impl Draws {
-    fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    fn part(&mut self) -> f64 {
+    pub fn part(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * 2f64.powi(-53)
     }
 
-    fn between(&mut self, least: f64, largest: f64) -> f64 {
+    pub fn between(&mut self, least: f64, largest: f64) -> f64 {
         least + (largest - least) * self.part()
     }
 
     /// As many in every octave.
-    fn in_octaves(&mut self, least: f64, largest: f64) -> f64 {
+    pub fn in_octaves(&mut self, least: f64, largest: f64) -> f64 {
         least * (largest.max(least) / least).powf(self.part())
     }
 
-    fn count(&mut self, least: u32, largest: u32) -> u32 {
+    pub fn count(&mut self, least: u32, largest: u32) -> u32 {
         least + (self.part() * f64::from(largest + 1 - least)) as u32
     }
 
-    fn one<T: Copy>(&mut self, of: &[T]) -> T {
+    pub fn one<T: Copy>(&mut self, of: &[T]) -> T {
         of[(self.part() * of.len() as f64) as usize]
     }
 
-    fn chance(&mut self, part: f64) -> bool {
+    pub fn chance(&mut self, part: f64) -> bool {
         self.part() < part
     }
 }
 
 /// A pair that was simulated.
-struct Machine {
-    signal: Vec<f64>,
-    rate_hz: f64,
-    samples_per_pinion_revolution: f64,
-    teeth: [u32; 2],
+pub struct Machine {
+    pub signal: Vec<f64>,
+    pub rate_hz: f64,
+    pub samples_per_pinion_revolution: f64,
+    pub teeth: [u32; 2],
 }
 
 /// Any pair, sound or damaged, at any speed and load, in both models.
 fn machine(seed: u64) -> Machine {
-    let mut draws = Draws::new(seed);
+    let draws = &mut Draws::new(seed);
     loop {
         let mut teeth = [draws.count(12, 90), draws.count(12, 90)];
         if draws.chance(0.2) {
             let factor = draws.count(2, 8);
             teeth = teeth.map(|teeth| (teeth / factor).max(3) * factor).map(|teeth| teeth.max(12));
         }
-        let module_mm = draws.one(&[2.0, 3.0, 4.0]);
-        let kind = draws.one(&[
-            "",
-            "",
-            "tooth-breakage",
-            "root-crack",
-            "wear",
-            "missing-tooth",
-            "partial-face",
-            "pits",
-        ]);
-        let severity = match kind {
-            "missing-tooth" => String::new(),
-            _ => format!("severity = {}\n", draws.between(0.1, 0.9)),
-        };
-        let wheel = draws.one(&["pinion", "gear"]);
-        let fault = match kind {
-            "" => String::new(),
-            "wear" => format!("[fault]\nkind = \"wear\"\nwheel = \"{wheel}\"\ntooth = \"all\"\n{severity}"),
-            _ => format!("[fault]\nkind = \"{kind}\"\nwheel = \"{wheel}\"\n{severity}"),
-        };
-        let model = draws.one(&["contact", "contact", "linear"]);
-        let text = format!(
-            "model = \"{model}\"\nseed = {seed}\n[gears]\nmodule_mm = {module_mm}\npinion_teeth = {}\ngear_teeth = {}\n\
-             face_width_mm = {}\n[operation]\npinion_speed_hz = {}\nbrake_torque_nm = {}\n[quality]\ndin_grade = {}\n{fault}",
-            teeth[0],
-            teeth[1],
-            8.0 * module_mm,
-            draws.in_octaves(5.0, 50.0),
-            draws.in_octaves(3.0, 200.0),
-            draws.one(&[0, 5, 6, 7, 7, 8, 9]),
-        );
-        let Ok(scenario) = Scenario::from_toml(&text) else { continue };
-        let Ok(simulation) = simulate(&scenario) else { continue };
-        let channels = simulation.channels;
-        let rate_hz = channels.sampling_rate_hz;
-        return Machine {
-            signal: channels.vertical_g,
-            rate_hz,
-            samples_per_pinion_revolution: (rate_hz / scenario.operation.pinion_speed_hz).round(),
-            teeth,
-        };
+        if let Some(machine) = machine_of(seed, teeth, 3.0, draws) {
+            return machine;
+        }
     }
+}
+
+/// A pair of these teeth, at this brake torque or more; none where what is drawn cannot be simulated.
+pub fn machine_of(seed: u64, teeth: [u32; 2], least_torque_nm: f64, draws: &mut Draws) -> Option<Machine> {
+    let module_mm = draws.one(&[2.0, 3.0, 4.0]);
+    let kind =
+        draws.one(&["", "", "tooth-breakage", "root-crack", "wear", "missing-tooth", "partial-face", "pits"]);
+    let severity = match kind {
+        "missing-tooth" => String::new(),
+        _ => format!("severity = {}\n", draws.between(0.1, 0.9)),
+    };
+    let wheel = draws.one(&["pinion", "gear"]);
+    let fault = match kind {
+        "" => String::new(),
+        "wear" => format!("[fault]\nkind = \"wear\"\nwheel = \"{wheel}\"\ntooth = \"all\"\n{severity}"),
+        _ => format!("[fault]\nkind = \"{kind}\"\nwheel = \"{wheel}\"\n{severity}"),
+    };
+    let model = draws.one(&["contact", "contact", "linear"]);
+    let text = format!(
+        "model = \"{model}\"\nseed = {seed}\n[gears]\nmodule_mm = {module_mm}\npinion_teeth = {}\ngear_teeth = {}\n\
+         face_width_mm = {}\n[operation]\npinion_speed_hz = {}\nbrake_torque_nm = {}\n[quality]\ndin_grade = {}\n{fault}",
+        teeth[0],
+        teeth[1],
+        8.0 * module_mm,
+        draws.in_octaves(5.0, 50.0),
+        draws.in_octaves(least_torque_nm, 200.0),
+        draws.one(&[0, 5, 6, 7, 7, 8, 9]),
+    );
+    let mut scenario = Scenario::from_toml(&text).ok()?;
+    crate::physics::with_own_structure(&mut scenario);
+    let simulation = simulate(&scenario).ok()?;
+    let channels = simulation.channels;
+    let rate_hz = channels.sampling_rate_hz;
+    Some(Machine {
+        signal: channels.vertical_g,
+        rate_hz,
+        samples_per_pinion_revolution: (rate_hz / scenario.operation.pinion_speed_hz).round(),
+        teeth,
+    })
 }
 
 /// What a rig's recorder has kept.
@@ -201,7 +201,7 @@ struct Case {
 }
 
 /// Times at which a shaft that has turned so far gives pulses.
-fn pulses(turned: &[f64], per_revolution: u32, rate_hz: f64) -> Vec<f64> {
+pub fn pulses(turned: &[f64], per_revolution: u32, rate_hz: f64) -> Vec<f64> {
     let pulses = f64::from(per_revolution);
     let mut next = (turned[0] * pulses).ceil();
     let mut times = Vec::new();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use crate::physics::*;
 use meshtone::interpolation::{NaturalSpline, NotAKnotSpline, Pchip, UniformLinear};
-use meshtone::wheel::{Gears, ToothProfile, Wheel, WheelName, contact_ratio, tooth_profile};
+use meshtone::wheel::{Gears, Root, ToothProfile, Wheel, WheelName, contact_ratio, tooth_profile};
 
 fn involute(angle: f64) -> f64 {
     angle.tan() - angle
@@ -26,12 +26,18 @@ fn wheels() -> impl Iterator<Item = Wheel> {
 }
 
 fn profile(wheel: &Wheel) -> ToothProfile {
-    tooth_profile(wheel, 1_000, 0.0, None, None)
+    tooth_profile(wheel, 1_000, 0.0, None, Root::Arc)
 }
 
 /// (rad) Polar angle of the involute's foot.
 fn foot_angle(wheel: &Wheel) -> f64 {
     wheel.half_thickness_angle_rad() + involute(wheel.pressure_angle_rad)
+}
+
+/// (mm, rad) Where the involute starts: the larger of base and root circle, and its polar angle there.
+fn involute_start(wheel: &Wheel) -> (f64, f64) {
+    let start = wheel.base_radius_mm.max(wheel.root_radius_mm);
+    (start, foot_angle(wheel) - involute((wheel.base_radius_mm / start).acos()))
 }
 
 #[test]
@@ -50,9 +56,7 @@ fn radii_are_the_standard_ones() {
         );
         let profile = profile(&wheel);
         assert_close("tip radius", 1e-14, [(profile.radius_mm(999), wheel.tip_radius_mm)]);
-        // Without a fillet the profile starts at the nearest of 15 001 points, up to half their spacing away.
-        let tolerance = if wheel.root_radius_mm < wheel.base_radius_mm { 1e-14 } else { 1e-5 };
-        assert_close("root radius", tolerance, [(profile.radius_mm(0), wheel.root_radius_mm)]);
+        assert_close("root radius", 1e-14, [(profile.radius_mm(0), wheel.root_radius_mm)]);
         let steps = profile.x_mm.windows(2).map(|x| x[1] - x[0]);
         let step = (profile.x_mm[999] - profile.x_mm[0]) / 999.0;
         assert_close("uniform in x", 1e-9, steps.map(|s| (s, step)));
@@ -68,9 +72,8 @@ fn involute_points_satisfy_the_involute_equation() {
         for i in 0..profile.len() {
             let r = profile.radius_mm(i);
             // Where the fillet starts, inv a, of order a³, does not feel the base circle's rounding.
-            if r <= wheel.base_radius_mm * (1.0 + 1e-12)
-                || profile.x_mm[i] < wheel.base_radius_mm * foot_angle(&wheel).cos()
-            {
+            let (start, start_angle) = involute_start(&wheel);
+            if r <= start * (1.0 + 1e-12) || profile.x_mm[i] < start * start_angle.cos() {
                 continue;
             }
             let theta = profile.y_mm[i].atan2(profile.x_mm[i]);
@@ -99,20 +102,25 @@ fn involute_is_a_string_unwound_from_the_base_circle() {
     }
 }
 
-// The fillet is an arc: it touches the root circle in the middle of the tooth space, and ends where the involute does.
+// The fillet is an arc: it touches the root circle in the middle of the tooth space, and ends where the involute does. Where the root
+// circle is larger than the base circle, it is the root circle.
 #[test]
 fn fillet_is_an_arc_from_root_circle_to_involute() {
     let (mut worst, mut ends, mut count) = (0.0f64, 0.0f64, 0);
-    for wheel in wheels().filter(|wheel| wheel.root_radius_mm < wheel.base_radius_mm) {
-        let (root, base, z) = (wheel.root_radius_mm, wheel.base_radius_mm, f64::from(wheel.teeth));
-        let foot = foot_angle(&wheel);
+    for wheel in wheels() {
+        let (root, z) = (wheel.root_radius_mm, f64::from(wheel.teeth));
+        let (base, foot) = involute_start(&wheel);
         let psi = PI / z - foot;
         let rho = (root * root + base * base - 2.0 * root * base * psi.cos())
             / (2.0 * base * psi.cos() - 2.0 * root);
         let centre = ((root + rho) * (PI / z).cos(), (root + rho) * (PI / z).sin());
-        if psi <= 0.0 || rho <= 0.0 {
+        if psi <= 0.0 {
             continue;
         }
+        if root >= wheel.base_radius_mm {
+            assert_close("the root circle itself", 1e-9, [(rho, -root)]);
+        }
+        let rho = rho.abs();
         let profile = profile(&wheel);
         let foot_x = base * foot.cos();
         let arc = profile.x_mm.iter().zip(&profile.y_mm).filter(|(x, _)| **x < foot_x);

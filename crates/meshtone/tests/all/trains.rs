@@ -99,6 +99,7 @@ fn two_scenarios() -> [Scenario; 2] {
         let mut scenario = Scenario::new(pair);
         scenario.seed = seed;
         scenario.quality.din_grade = 7;
+        crate::physics::with_own_structure(&mut scenario);
         scenario.rig.eccentricity_mm = 0.005;
         scenario
     })

@@ -2,7 +2,7 @@
 
 mod files;
 
-use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
+use meshtone_toml::{ErrorKind, ReadResult, TomlDocument, TomlTable};
 
 pub use self::files::ScenarioFiles;
 
@@ -101,7 +101,7 @@ impl Scenario {
 ///
 /// let text = "seed = 1\n[gears]\nmodule_mm = 3.0\n";
 /// assert_eq!(line_of_key(text, "gears.module_mm"), Some(3));
-/// assert_eq!(line_of_key(text, "gears.crowning_mm"), Some(2));
+/// assert_eq!(line_of_key(text, "gears.uniform_flank_reduction_mm"), Some(2));
 /// assert_eq!(line_of_key(text, "solver.settle_fraction"), None);
 /// ```
 pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
@@ -143,7 +143,37 @@ fn section<S: Keys>(
     name: &'static str,
     files: &dyn NumberFiles,
 ) -> ReadResult<()> {
-    root.table_or_empty(name)?.read(|table| read_keys(parameters, table, files))
+    root.table_or_empty(name)?.read(|table| {
+        refuse_not_modelled(name, table)?;
+        read_keys(parameters, table, files)
+    })
+}
+
+/// Keys that users may expect, and what is said of them: names of former versions, and what is not modelled.
+const NOT_MODELLED: [(&str, &str, &str); 9] = [
+    (
+        "gears",
+        "crowning_mm",
+        "is now called uniform_flank_reduction_mm: it takes back the whole flank alike, which is no crowning, and crowning is not modelled",
+    ),
+    ("gears", "lead_crowning_um", CROWNING),
+    ("gears", "profile_crowning_um", CROWNING),
+    ("gears", "helix_angle_deg", "is not modelled: the gears are spur gears, whose helix angle is 0"),
+    ("gears", "internal", "is not modelled: both wheels are external gears"),
+    ("gears", "shaft_angle_deg", "is not modelled: the shafts are parallel"),
+    ("gears", "rim_thickness_mm", "is not modelled: the wheels' bodies are solid"),
+    ("operation", "temperature_c", "is not modelled: the simulation knows neither heat nor oil"),
+    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: the simulation knows neither heat nor oil"),
+];
+const CROWNING: &str =
+    "is not modelled: flanks are straight along the face; flank_relief relieves the profile's ends";
+
+fn refuse_not_modelled(section: &str, table: &TomlTable<'_>) -> ReadResult<()> {
+    let of_section = NOT_MODELLED.iter().filter(|(of, ..)| *of == section);
+    match of_section.map(|(_, key, problem)| (*key, *problem)).find(|(key, _)| table.has(key)) {
+        Some((key, problem)) => Err(table.error(key, problem).of_kind(ErrorKind::UnknownKey)),
+        None => Ok(()),
+    }
 }
 
 /// An error about deviations that came from a file is about the key that names the file.

@@ -74,6 +74,7 @@ impl Scenario {
         let mut warnings = honoured.gears.warnings();
         warnings.extend(speed::warnings(&honoured));
         warnings.extend(honoured.quality.warnings());
+        warnings.extend(honoured.rig.support.former_defaults());
         Ok(warnings)
     }
 }

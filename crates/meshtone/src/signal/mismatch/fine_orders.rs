@@ -7,7 +7,7 @@ use meshtone_fourier::{convenient_count, real_spectrum};
 use crate::signal::AngularSignal;
 
 /// Most values that are transformed: more would take longer than the rest of the chain.
-const MOST_VALUES: usize = 1 << 18;
+const MOST_VALUES: usize = 1 << 19;
 /// Fewest revolutions that are looked at, however many values they have.
 const FEWEST_REVOLUTIONS: usize = 8;
 /// Bins on each side of a line that hold it under Hann's window.
@@ -22,10 +22,12 @@ const BLOCK: usize = 16;
 const PROMINENCES: (f64, f64) = (-1.0, 3.0);
 /// Energy of a line over the median of its surroundings, from which on it is hardly noise.
 const LINE: f64 = 8.0;
-/// Largest logarithm of a comb's line over what lies between, likewise.
-const LARGEST_CONTRAST: f64 = 3.0;
-/// Standard deviation of that logarithm in noise.
-const NOISE_CONTRAST: f64 = 1.3;
+/// Largest logarithm of a comb's line over the noise floor, likewise.
+const LARGEST_CONTRAST: f64 = 2.0;
+/// Mean and standard deviation of that logarithm in noise.
+const NOISE_CONTRAST: (f64, f64) = (-0.048, 0.605);
+/// Blocks on each side of a line's own whose median is the noise floor.
+const FLOOR_BLOCKS: usize = 2;
 /// Fewest bins between a comb's lines, and fewest lines.
 const LEAST_COMB: (f64, usize) = (6.0, 3);
 
@@ -49,6 +51,8 @@ pub(super) struct FineOrders {
     medians: Vec<f64>,
     /// The logarithms of the lines.
     logarithms: Vec<f64>,
+    /// The logarithm of the noise floor in each block.
+    floors: Vec<f64>,
 }
 
 impl FineOrders {
@@ -79,12 +83,19 @@ impl FineOrders {
         if strongest <= 0.0 {
             return None;
         }
-        let of_comb = ((HIGHEST_ORDER + 1.0) * revolutions as f64) as usize;
+        let of_comb = lines.len().min(((HIGHEST_ORDER + 1.0) * revolutions as f64) as usize);
+        let floor = |block: usize| {
+            let from = block.saturating_sub(FLOOR_BLOCKS) * BLOCK;
+            median(&mut lines[from..((block + FLOOR_BLOCKS + 1) * BLOCK).min(lines.len())].to_vec())
+        };
         Some(Self {
+            // What is nothing but rounding has no shape.
+            floors: (0..of_comb.div_ceil(BLOCK))
+                .map(|block| (floor(block) + 1e-24 * strongest).ln())
+                .collect(),
             bins_per_order: revolutions as f64,
             largest: lines.chunks(BLOCK).map(|block| block.iter().copied().fold(0.0, f64::max)).collect(),
             medians: lines.chunks(BLOCK).map(|block| median(&mut block.to_vec())).collect(),
-            // What is nothing but rounding has no shape.
             logarithms: lines.iter().take(of_comb).map(|line| (line + 1e-24 * strongest).ln()).collect(),
             lines,
         })
@@ -146,36 +157,46 @@ impl FineOrders {
             .max(largest(&self.lines[last * BLOCK..=to]))
     }
 
-    /// Height of the multiples of an order above the bins midway between them, in standard deviations of noise. None where
-    /// they cannot be stated apart.
+    /// Height of the multiples of an order above the noise floor about each, in standard deviations of noise. None where they
+    /// cannot be distinguished.
     ///
     /// # Arguments
     /// * `spacing` - the order
-    /// * `known` - another order, whose multiples are left out
-    pub(super) fn comb(&self, spacing: f64, known: Option<f64>) -> Option<f64> {
+    /// * `known` - other orders, whose multiples are left out
+    pub(super) fn comb(&self, spacing: f64, known: &[f64]) -> Option<f64> {
         let (least_spacing, fewest) = LEAST_COMB;
         if spacing * self.bins_per_order < least_spacing {
             return None;
         }
         let clear = |order: f64| {
             let apart = |known: f64| ((order / known).round() * known - order).abs() * self.bins_per_order;
-            known.is_none_or(|known| apart(known) > (2 * LOBE + 1) as f64)
+            known.iter().all(|known| apart(*known) > (2 * LOBE + 1) as f64)
         };
-        let level = |order: f64| self.logarithms.get(self.bin(order)).copied().filter(|_| clear(order));
         let highest = (self.logarithms.len() as f64 / self.bins_per_order - 1.0).min(HIGHEST_ORDER);
         let contrast = |multiple: usize| {
-            let order = multiple as f64 * spacing;
-            let (below, above) = (level(order - 0.5 * spacing), level(order + 0.5 * spacing));
-            let between = match (below, above) {
-                (Some(below), Some(above)) => 0.5 * (below + above),
-                (one, other) => one.or(other)?,
-            };
-            Some((level(order)? - between).clamp(-LARGEST_CONTRAST, LARGEST_CONTRAST))
+            let order = Some(multiple as f64 * spacing).filter(|order| clear(*order))?;
+            Some(self.contrast(order)?.clamp(-LARGEST_CONTRAST, LARGEST_CONTRAST))
         };
         let multiples = (highest / spacing) as usize;
         let contrasts: Vec<f64> = (1..=multiples).filter_map(contrast).collect();
-        let noise = NOISE_CONTRAST * (contrasts.len() as f64).sqrt();
+        let noise = NOISE_CONTRAST.1 * (contrasts.len() as f64).sqrt();
         (contrasts.len() >= fewest).then(|| contrasts.iter().sum::<f64>() / noise)
+    }
+
+    /// Logarithm of the energy of the line at an order over the noise floor about it, less its mean in noise.
+    pub(super) fn contrast(&self, order: f64) -> Option<f64> {
+        let bin = self.bin(order);
+        Some(self.logarithms.get(bin)? - self.floors.get(bin / BLOCK)? - NOISE_CONTRAST.0)
+    }
+
+    /// Energy of the line at an order.
+    pub(super) fn energy(&self, order: f64) -> Option<f64> {
+        self.lines.get(self.bin(order)).copied()
+    }
+
+    /// Returns whether multiples of an order can be distinguished, also from those of the shaft.
+    pub(super) fn resolves(&self, spacing: f64) -> bool {
+        spacing * self.bins_per_order > (2 * (2 * LOBE + 1)) as f64
     }
 }
 
@@ -184,5 +205,26 @@ fn median(values: &mut [f64]) -> f64 {
     match values.len() / 2 {
         middle if middle < values.len() => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
         _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::random::{Draws, Purpose};
+
+    #[test]
+    fn a_comb_in_noise_scores_a_standard_deviation() {
+        let mut draws = Draws::new(1, Purpose::DiagnosisNoise, 0);
+        let values: Vec<f64> = (0..128 * 1024).map(|_| draws.normal()).collect();
+        let angular =
+            AngularSignal { points_per_revolution: 1024, start_rev: 0.0, nyquist_order: 512.0, values };
+        let orders = FineOrders::of(&angular).unwrap();
+        let all: Vec<f64> =
+            (10..40_000).step_by(7).filter_map(|bin| orders.contrast(bin as f64 / 128.0)).collect();
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        let deviation = (all.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / all.len() as f64).sqrt();
+        assert!(mean.abs() < 0.05 && (deviation / NOISE_CONTRAST.1 - 1.0).abs() < 0.05, "{mean} {deviation}");
     }
 }

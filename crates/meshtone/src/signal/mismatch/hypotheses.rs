@@ -2,6 +2,7 @@
 
 use super::fine_orders::FineOrders;
 use super::{Alternative, Evidence, StatedFacts, StatedTurning};
+use crate::operation::greatest_common_divisor;
 
 /// Mesh harmonics that are looked at, of the teeth that are stated: other counts have theirs in the same range, so that a multiple
 /// of the right one has fewer.
@@ -41,7 +42,7 @@ pub(super) struct Hypothesis {
     pub(super) mesh_order: f64,
     /// Order at which the averaged wheel turns.
     pub(super) wheel_spacing: f64,
-    /// The orders at which the shafts turn; lines of the first are left out of the second's.
+    /// The orders at which the shafts turn.
     combs: [Option<f64>; 2],
     /// Highest order at which mesh lines are looked for.
     highest_order: f64,
@@ -153,12 +154,66 @@ impl Hypothesis {
 
     /// The evidence for it in the recording.
     pub(super) fn evidence(&self, orders: &FineOrders) -> Evidence {
+        self.evidence_beside(orders, &[])
+    }
+
+    /// The evidence for it beside orders that are known: those do not count for the mate's shaft, nor do the wheel's own.
+    pub(super) fn evidence_beside(&self, orders: &FineOrders, known: &[f64]) -> Evidence {
         let [first, second] = self.combs;
+        let known: Vec<f64> = first.into_iter().chain(known.iter().copied()).collect();
         Evidence {
             mesh: self.mesh(orders),
-            wheel_orders: first.and_then(|spacing| orders.comb(spacing, None)),
-            mate_orders: second.and_then(|spacing| orders.comb(spacing, first)),
+            wheel_orders: first.and_then(|spacing| orders.comb(spacing, &[])),
+            mate_orders: second.and_then(|spacing| orders.comb(spacing, &known)),
         }
+    }
+
+    /// The orders that a pair excites beside those of the wheel: the mate's, and those of the hunting tooth, 1/q where the tooth
+    /// counts are as p to q in lowest terms, where the recording is long enough to distinguish them.
+    pub(super) fn orders_of_pair(stated: &StatedFacts, orders: &FineOrders) -> Vec<f64> {
+        let Some(mate_teeth) = stated.mate_teeth else { return Vec::new() };
+        let period = mate_teeth / greatest_common_divisor(stated.teeth, mate_teeth).max(1);
+        let hunting = 1.0 / f64::from(period.max(1));
+        let of_mate = f64::from(stated.teeth) / f64::from(mate_teeth);
+        if orders.resolves(hunting) { vec![hunting] } else { vec![of_mate] }
+    }
+
+    /// Returns whether the first line of its mate's shaft is far weaker than the stated mate's.
+    pub(super) fn has_weak_mate(&self, stated: &Self, orders: &FineOrders) -> bool {
+        match (self.combs[1], stated.combs[1]) {
+            (Some(own), Some(stated)) => is_far_weaker(own, stated, orders),
+            _ => false,
+        }
+    }
+
+    /// Returns whether it is of a mate with half as many teeth as another, nearer to the stated one, whose orders are then hunting-tooth orders
+    /// of this pair.
+    pub(super) fn explains_mate_of(&self, other: &Self, stated: &StatedFacts) -> bool {
+        match (self.alternative, other.alternative) {
+            (
+                Alternative::MateTeeth { teeth: own, stated: said },
+                Alternative::MateTeeth { teeth: other, .. },
+            ) => {
+                let period = own / greatest_common_divisor(stated.teeth, own).max(1);
+                // In ratio: of 80 and 160 the former is nearer to 81.
+                let is_nearer = u64::from(own) * u64::from(other) > u64::from(said).pow(2);
+                other == 2 * own && is_nearer && (stated.teeth * period).is_multiple_of(other)
+            }
+            _ => false,
+        }
+    }
+
+    /// Returns whether its shaft turns a whole part as quickly as the stated one, and what it then has beside the stated orders is
+    /// missing or the pair's own: the wheel's orders, and a first mesh line.
+    pub(super) fn is_part_without_lines(&self, stated: &Self, of_pair: &[f64], orders: &FineOrders) -> bool {
+        const LEAST: f64 = 3.0;
+        let parts = 1.0 / self.wheel_spacing;
+        if parts < 1.5 || (parts - parts.round()).abs() > 1e-9 {
+            return false;
+        }
+        let known: Vec<f64> = of_pair.iter().copied().chain([1.0]).collect();
+        orders.comb(self.wheel_spacing, &known).is_none_or(|score| score < LEAST)
+            || is_far_weaker(self.mesh_order, stated.mesh_order, orders)
     }
 
     /// Sum of the prominences of its mesh lines that the other hypothesis does not have; none where the other has all of them.
@@ -174,6 +229,12 @@ impl Hypothesis {
             .collect();
         (!own.is_empty()).then(|| own.iter().sum())
     }
+}
+
+/// Returns whether the line at an order has less than a hundredth of the energy of another.
+fn is_far_weaker(order: f64, other: f64, orders: &FineOrders) -> bool {
+    const FAR_WEAKER: f64 = 1e-2;
+    matches!((orders.energy(order), orders.energy(other)), (Some(own), Some(other)) if own < FAR_WEAKER * other)
 }
 
 /// All hypotheses that are compared with the stated facts.
@@ -196,7 +257,7 @@ pub(super) fn alternatives<'a>(
     let turning: Vec<Hypothesis> = match stated.turning {
         StatedTurning::Pulses { per_revolution } => other_pulses(stated, per_revolution),
         StatedTurning::ConstantSpeed { speed_hz } => other_speeds(stated, speed_hz, orders),
-        StatedTurning::Other => Vec::new(),
+        StatedTurning::MeshTone { .. } | StatedTurning::Other => Vec::new(),
     };
     other_shaft.into_iter().chain(turning).chain(other_teeth).chain(other_mates)
 }
@@ -242,7 +303,7 @@ fn other_speeds(stated: &StatedFacts, speed_hz: f64, orders: &FineOrders) -> Vec
         let all = hypotheses.iter().map(|hypothesis| (of(hypothesis), hypothesis));
         all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, hypothesis)| *hypothesis)
     };
-    let wheel_orders = |hypothesis: &Hypothesis| orders.comb(hypothesis.wheel_spacing, None).unwrap_or(0.0);
+    let wheel_orders = |hypothesis: &Hypothesis| orders.comb(hypothesis.wheel_spacing, &[]).unwrap_or(0.0);
     let coarse: Vec<Hypothesis> =
         (-steps..=steps).filter(|k| *k != 0).map(|k| hypothesis(1.0 + f64::from(k) * step)).collect();
     let by_mesh = best(&coarse, &|hypothesis| hypothesis.mesh(orders));

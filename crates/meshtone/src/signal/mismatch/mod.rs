@@ -1,5 +1,6 @@
 //! A check of a recording against what its user states about it: teeth, shaft, pulses, speed.
 
+mod changing_speed;
 mod fine_orders;
 mod hypotheses;
 mod steadier_speed;
@@ -7,6 +8,7 @@ mod varying_speed;
 mod words;
 
 use super::AngularSignal;
+use changing_speed::changing_speed;
 use fine_orders::FineOrders;
 use hypotheses::Hypothesis;
 use steadier_speed::{SteadierSpeed, steadier_speed};
@@ -23,7 +25,9 @@ const LEAST_MESH_OF_SPEED: f64 = 5.5;
 /// Least gain of the wheel's orders where the mesh lines speak for another number of pulses: noise.
 const LEAST_WHEEL_GAIN: f64 = -1.0;
 /// Least score of a comb of shaft orders that decides, in standard deviations of noise.
-const LEAST_COMB: f64 = 6.0;
+const LEAST_COMB: f64 = 8.0;
+/// Score of shaft orders that are clearly there.
+const CLEAR_COMB: f64 = 12.0;
 /// Largest one of shaft orders that are not there.
 const POOR_COMB: f64 = 3.0;
 /// Least ratio of the mesh harmonics' energy in the average at a better speed.
@@ -38,6 +42,11 @@ pub enum StatedTurning {
     Pulses {
         /// The number.
         per_revolution: u32,
+    },
+    /// The mesh tone, followed in a narrow band.
+    MeshTone {
+        /// (Hz) The nominal speed of the shaft.
+        nominal_hz: f64,
     },
     /// A constant speed.
     ConstantSpeed {
@@ -101,6 +110,31 @@ pub enum Alternative {
         /// (Hz) The stated speed.
         stated_hz: f64,
     },
+}
+
+impl Alternative {
+    /// The name of the quantity, for programs to distinguish.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Teeth { .. } => "teeth",
+            Self::MateTeeth { .. } => "mate_teeth",
+            Self::OtherShaft { .. } => "other_shaft",
+            Self::PulsesPerRevolution { .. } => "pulses_per_revolution",
+            Self::ShaftSpeed { .. } => "speed_hz",
+            Self::VaryingSpeed { .. } => "varying_speed",
+        }
+    }
+
+    /// The better value: teeth, pulses, (Hz) speed; of a speed that varies (-) its standard deviation over its mean.
+    pub fn value(&self) -> f64 {
+        match *self {
+            Self::Teeth { teeth } | Self::MateTeeth { teeth, .. } => f64::from(teeth),
+            Self::OtherShaft { mate_teeth } => f64::from(mate_teeth),
+            Self::PulsesPerRevolution { pulses, .. } => f64::from(pulses),
+            Self::ShaftSpeed { speed_hz, .. } => speed_hz,
+            Self::VaryingSpeed { variation, .. } => variation,
+        }
+    }
 }
 
 /// Evidence for an interpretation of the recording.
@@ -174,6 +208,7 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
     let orders = FineOrders::of(angular)?;
     let as_stated = Hypothesis::as_stated(stated);
     let stated_evidence = as_stated.evidence(&orders);
+    let of_pair = Hypothesis::orders_of_pair(stated, &orders);
     let mismatch = |alternative, evidence, energy_ratio| Mismatch {
         stated: *stated,
         stated_evidence,
@@ -181,19 +216,37 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
         evidence,
         energy_ratio,
     };
+    if let StatedTurning::ConstantSpeed { speed_hz: stated_hz }
+    | StatedTurning::MeshTone { nominal_hz: stated_hz } = stated.turning
+        && let Some(variation) = changing_speed(angular, stated.teeth)
+    {
+        let alternative = Alternative::VaryingSpeed { variation, stated_hz };
+        return Some(mismatch(alternative, stated_evidence, None));
+    }
     // Where the shaft's own orders are not seen, a mesh frequency is as well of another speed as of other teeth.
     let may_be_speed = matches!(stated.turning, StatedTurning::ConstantSpeed { .. })
         && stated_evidence.wheel_orders.is_none_or(|score| score < POOR_COMB);
     let total =
         |hypothesis: &Hypothesis, evidence: &Evidence| evidence.total() + hypothesis.prior(may_be_speed);
-    let likeliest = hypotheses::alternatives(stated, &orders)
+    let better: Vec<(Hypothesis, Evidence)> = hypotheses::alternatives(stated, &orders)
         .filter(|hypothesis| !hypothesis.is_of_mains(stated, &orders))
         .filter_map(|hypothesis| {
-            let better =
-                evidence_if_better(&hypothesis, &as_stated, &stated_evidence, may_be_speed, &orders)?;
+            let better = evidence_if_better(
+                &hypothesis,
+                &as_stated,
+                &stated_evidence,
+                may_be_speed,
+                &of_pair,
+                &orders,
+            )?;
             Some((hypothesis, better))
         })
-        .max_by(|(a, of_a), (b, of_b)| total(a, of_a).total_cmp(&total(b, of_b)));
+        .collect();
+    let likeliest = better.iter().max_by(|(a, of_a), (b, of_b)| total(a, of_a).total_cmp(&total(b, of_b)));
+    // The orders of a mate of twice as many teeth may be the hunting-tooth orders of the right one.
+    let half = likeliest
+        .and_then(|(likeliest, _)| better.iter().find(|(half, _)| half.explains_mate_of(likeliest, stated)));
+    let likeliest = half.or(likeliest).copied();
     if let StatedTurning::ConstantSpeed { speed_hz } = stated.turning {
         let (hypothesis, evidence) = likeliest.unwrap_or((as_stated, stated_evidence));
         let speed_is_alternative = likeliest
@@ -225,14 +278,20 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
 ///
 /// # Arguments
 /// * `may_be_speed` - whether other teeth are stated from another speed by nothing
+/// * `of_pair` - the orders of the stated pair beside the wheel's, which are evidence for no other mate
 fn evidence_if_better(
     hypothesis: &Hypothesis,
     as_stated: &Hypothesis,
     stated: &Evidence,
     may_be_speed: bool,
+    of_pair: &[f64],
     orders: &FineOrders,
 ) -> Option<Evidence> {
-    let own = hypothesis.evidence(orders);
+    let own = if hypothesis.moves_wheel() {
+        hypothesis.evidence(orders)
+    } else {
+        hypothesis.evidence_beside(orders, of_pair)
+    };
     let new_mesh = hypothesis.unshared_mesh(as_stated, orders);
     let lost_mesh = as_stated.unshared_mesh(hypothesis, orders).unwrap_or(0.0);
     let wheel_gain = gain(own.wheel_orders, stated.wheel_orders);
@@ -249,14 +308,19 @@ fn evidence_if_better(
     let has_wheel = own.wheel_orders > Some(LEAST_COMB) && wheel_gain > LEAST_COMB;
     let has_mate = own.mate_orders > Some(LEAST_COMB) && stated.mate_orders.is_some_and(|stated| stated < POOR_COMB)
         // Only beside the orders of the one shaft can those of the other be read.
-        && stated.wheel_orders > Some(POOR_COMB);
+        && stated.wheel_orders > Some(POOR_COMB)
+        && !hypothesis.has_weak_mate(as_stated, orders);
+    // Where one's own orders are clear, those of a mate are seen too.
+    let lacks_mate =
+        own.wheel_orders > Some(CLEAR_COMB) && own.mate_orders.is_some_and(|own| own < POOR_COMB);
     let is_founded = match hypothesis.alternative {
         Alternative::MateTeeth { .. } => has_mate,
-        Alternative::Teeth { .. } | Alternative::OtherShaft { .. } => {
-            has_mesh || has_mate && lost_mesh <= 0.0
-        }
+        Alternative::Teeth { .. } => has_mesh && !lacks_mate || has_mate && lost_mesh <= 0.0,
+        Alternative::OtherShaft { .. } => has_mesh || has_mate && lost_mesh <= 0.0,
         Alternative::PulsesPerRevolution { .. } => {
-            let is_possible = own.wheel_orders.is_some() && lost_mesh <= 0.0;
+            let is_possible = own.wheel_orders.is_some()
+                && lost_mesh <= 0.0
+                && !hypothesis.is_part_without_lines(as_stated, of_pair, orders);
             is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)
         }
         Alternative::ShaftSpeed { .. } | Alternative::VaryingSpeed { .. } => {

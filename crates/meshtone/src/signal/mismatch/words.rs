@@ -6,6 +6,8 @@ use super::{Alternative, Mismatch, StatedTurning};
 
 /// (-) How near to a whole tooth count a speed leads that may as well be one.
 const SAME_COUNT: f64 = 0.01;
+/// (-) Standard deviation of the speed over its mean up to which the mesh tone can be followed.
+const MOST_FOLLOWED: f64 = 0.01;
 
 impl Display for Mismatch {
     /// Says which facts would fit the recording, and what to check.
@@ -27,7 +29,9 @@ impl Display for Mismatch {
             Alternative::OtherShaft { mate_teeth } => {
                 let what = match self.stated.turning {
                     StatedTurning::Pulses { .. } => "the pulses are",
-                    StatedTurning::ConstantSpeed { .. } | StatedTurning::Other => "the speed is",
+                    StatedTurning::ConstantSpeed { .. }
+                    | StatedTurning::MeshTone { .. }
+                    | StatedTurning::Other => "the speed is",
                 };
                 write!(
                     f,
@@ -43,9 +47,18 @@ impl Display for Mismatch {
             }
             Alternative::VaryingSpeed { variation, stated_hz } => write!(
                 f,
-                "the shaft does not turn at a constant {stated_hz} Hz: its speed varies by {:.2} % (rms), and the average loses the mesh; \
-                 follow the mesh tone, or record a tachometer",
-                100.0 * variation
+                "the shaft does not turn at {} {stated_hz} Hz: its speed varies by {:.2} % (rms), and the average loses the mesh; {}",
+                if matches!(self.stated.turning, StatedTurning::MeshTone { .. }) {
+                    "nearly"
+                } else {
+                    "a constant"
+                },
+                100.0 * variation,
+                if variation > MOST_FOLLOWED {
+                    "take the phase from a tachometer or from a measured speed, or cut out a part at a constant speed"
+                } else {
+                    "follow the mesh tone, or record a tachometer"
+                }
             ),
             Alternative::ShaftSpeed { speed_hz, stated_hz } => {
                 let percent = 100.0 * (speed_hz / stated_hz - 1.0);

@@ -22,6 +22,7 @@ pub struct Deviations {
 
 /// Run-out of a wheel: its teeth sit on a circle beside its axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct RunOut {
     /// (µm) The run-out F_r, from the least to the largest deviation along the line of action.
     pub run_out_um: f64,

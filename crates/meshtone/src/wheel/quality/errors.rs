@@ -23,9 +23,9 @@ pub struct Quality {
     /// Class of ISO 1328-1:2013, 1 (best) to 11, instead of a DIN grade; 0 for none. Default 0.
     pub iso_class: u8,
     /// (-) Part of the tolerances of slope and form that a tooth has of its own; the rest all teeth of a wheel have in common.
-    /// Default 0.4.
+    /// Default 0.5.
     pub tooth_share: f64,
-    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.15.
+    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.25.
     pub pitch_share: f64,
     /// (-) Run-out as a part of its tolerance. Default 0.3.
     pub run_out_share: f64,
@@ -46,8 +46,8 @@ impl Default for Quality {
             din_grade: 0,
             seed: None,
             iso_class: 0,
-            tooth_share: 0.4,
-            pitch_share: 0.15,
+            tooth_share: 0.5,
+            pitch_share: 0.25,
             run_out_share: 0.3,
             helix_share: 0.0,
             profile_errors: None,

@@ -4,6 +4,7 @@ use crate::wheel::Wheel;
 
 /// Tolerances of one wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Tolerances {
     /// (µm) Single pitch deviation, f_p.
     pub single_pitch_um: f64,

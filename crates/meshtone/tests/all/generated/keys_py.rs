@@ -5,7 +5,9 @@ use std::fmt::Write;
 use meshtone::scenario::{KeyDescription, KeyKind, sections};
 
 use super::both_wheels::of_both_wheels;
-use super::python::{HEAD, argument_type, attribute_type, class_name, has_default_value, inside, parameter};
+use super::python::{
+    HEAD, argument_type, attribute_type, class_name, has_default_value, inside, parameter, table_class,
+};
 
 /// Keys that are called otherwise in Python: two sections have a `seed`.
 const RENAMED: [(&str, &str, &str); 1] = [("quality", "seed", "wheels_seed")];
@@ -48,20 +50,7 @@ fn tables() -> String {
             if !is_table || known.contains(&name) {
                 continue;
             }
-            let keys = inside(&section.keys, &table.key);
-            write!(text, "\n\nclass {name}(TypedDict, total=False):\n    \"\"\"A table of a scenario.\n\n")
-                .unwrap();
-            text.push_str("    Attributes\n    ----------\n");
-            for key in &keys {
-                // Of two tables of one class each has its own defaults.
-                let mut key = key.clone();
-                key.default.clear();
-                text.push_str(&parameter("    ", &key, &key.key, false));
-            }
-            text.push_str("    \"\"\"\n\n");
-            for key in &keys {
-                writeln!(text, "    {}: {}", key.key, argument_type(key)).unwrap();
-            }
+            text.push_str(&table_class(&name, &inside(&section.keys, &table.key)));
             known.push(name);
         }
     }

@@ -8,13 +8,14 @@ pub const HEAD: &str =
 const WIDTH: usize = 120;
 
 /// Classes of tables that are not called as their key.
-const TABLE_NAMES: [(&str, &str); 6] = [
+const TABLE_NAMES: [(&str, &str); 7] = [
     ("pinion_shaft", "Shaft"),
     ("gear_shaft", "Shaft"),
     ("pinion_inertia", "WheelInertia"),
     ("gear_inertia", "WheelInertia"),
     ("circle", "PitCircle"),
     ("random", "RandomPits"),
+    ("path", "SensorPath"),
 ];
 
 /// The class of a table.
@@ -24,6 +25,24 @@ pub fn class_name(key: &str) -> String {
     }
     let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
     key.split('_').map(capital).collect()
+}
+
+/// The class of a table, behind two empty lines.
+pub fn table_class(name: &str, keys: &[KeyDescription]) -> String {
+    let mut text = format!(
+        "\n\nclass {name}(TypedDict, total=False):\n    \"\"\"A table of a scenario.\n\n    Attributes\n    ----------\n"
+    );
+    for key in keys {
+        // Of two tables of one class each has its own defaults.
+        let mut key = key.clone();
+        key.default.clear();
+        text.push_str(&parameter("    ", &key, &key.key, false));
+    }
+    text.push_str("    \"\"\"\n\n");
+    for key in keys {
+        text.push_str(&format!("    {}: {}\n", key.key, argument_type(key)));
+    }
+    text
 }
 
 /// The keys inside a table, with their own names.

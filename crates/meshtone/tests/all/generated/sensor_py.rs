@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use meshtone::scenario::{KeyDescription, sections};
 
-use super::python::{HEAD, argument_type, lines, parameter};
+use super::python::{HEAD, argument_type, inside, lines, parameter, table_class};
 
 /// What its signal is, what refuses it, and where its parts are from.
 const NOTES: &str = "
@@ -16,15 +16,13 @@ const NOTES: &str = "
 
 /// The file.
 pub fn text() -> String {
-    let keys: Vec<KeyDescription> = sections()
-        .into_iter()
-        .filter(|section| section.name == "sensor")
-        .flat_map(|section| section.keys)
-        .filter(|key| !key.key.contains('.'))
-        .collect();
+    let of_sensor = sections().into_iter().filter(|section| section.name == "sensor");
+    let (inner, keys): (Vec<KeyDescription>, Vec<_>) =
+        of_sensor.flat_map(|section| section.keys).partition(|key| key.key.contains('.'));
+    let path = table_class("SensorPath", &inside(&inner, "path"));
     let mut text = format!(
         "\"\"\"The class of a sensor.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
-         from collections.abc import Mapping\nfrom dataclasses import dataclass\nfrom typing import Any, Literal\n\n\n\
+         from collections.abc import Mapping, Sequence\nfrom dataclasses import dataclass\nfrom typing import Any, Literal, TypedDict\n{path}\n\n\
          @dataclass(frozen=True)\nclass Sensor:\n"
     );
     text.push_str(&lines("    ", "\"\"\"An accelerometer on the rig; ``None`` is the default of a key."));
