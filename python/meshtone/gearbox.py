@@ -283,7 +283,7 @@ def simulate_gearbox(gearbox: Gearbox) -> GearboxSimulation:
     >>> list(simulation.channels)[:3]
     ['input_0_vertical_g', 'output_1_vertical_g', 'force_n.z1-z2']
     """
-    (simulation,) = simulate_gearboxes([gearbox])
+    simulation: GearboxSimulation = simulate_gearboxes([gearbox])[0]
     warn(simulation.warnings, simulation._native.warning_codes)
     return simulation
 

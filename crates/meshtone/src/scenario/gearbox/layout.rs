@@ -271,6 +271,11 @@ impl GearboxLayout {
         let mates = [
             ("tip_chamfer_mm", pinion.tip_chamfer_mm == gear.tip_chamfer_mm),
             ("flank_relief", pinion.flank_relief == gear.flank_relief),
+            ("active_profile_shortening", pinion.active_profile_shortening == gear.active_profile_shortening),
+            (
+                "uniform_flank_reduction_mm",
+                pinion.uniform_flank_reduction_mm == gear.uniform_flank_reduction_mm,
+            ),
             ("material", self.material(gearbox, pinion) == self.material(gearbox, gear)),
         ];
         if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {
@@ -294,6 +299,8 @@ impl GearboxLayout {
         gears.material = self.material(gearbox, pinion);
         gears.flank_relief = pinion.flank_relief;
         gears.tip_chamfer_mm = pinion.tip_chamfer_mm;
+        gears.active_profile_shortening = pinion.active_profile_shortening;
+        gears.uniform_flank_reduction_mm = pinion.uniform_flank_reduction_mm;
         let apart_mm = numbers.map(|wheel| self.z_mm(gearbox, wheel));
         let apart_mm = (apart_mm[0] - apart_mm[1]).abs();
         if apart_mm > gears.face_width_mm / 2.0 {

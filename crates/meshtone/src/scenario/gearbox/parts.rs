@@ -8,7 +8,7 @@ use crate::damage::Fault;
 use crate::keys::{KeyRow, Keys, NumberFiles, Range, field, flatten, read_keys, row};
 use crate::machine::WheelInertia;
 use crate::operation::{Operation, Solver};
-use crate::sensor::Sensor;
+use crate::sensor::{Sensor, SensorPath};
 use crate::wheel::{FlankRelief, Material, WheelDeviations};
 
 /// A wheel on a shaft of a gearbox.
@@ -33,6 +33,11 @@ pub struct GearboxWheel {
     pub dedendum: f64,
     /// (mm) Height of the tips' chamfer; none for 0.2 modules. Mates have the same.
     pub tip_chamfer_mm: Option<f64>,
+    /// (base pitches) By how much the path of contact is shorter than the tips between their chamfers make it, half at either end.
+    /// Default 0.1. Mates have the same.
+    pub active_profile_shortening: f64,
+    /// (mm) Constant reduction of the working flank. Default 0. Mates have the same.
+    pub uniform_flank_reduction_mm: f64,
     /// Relief of the flank near the tip, as a gap. Default none. Mates have the same.
     pub flank_relief: FlankRelief,
     /// Material; none for the gearbox's. Mates have the same.
@@ -81,6 +86,8 @@ impl Keys for GearboxWheel {
             addendum: 1.0,
             dedendum: 1.25,
             tip_chamfer_mm: None,
+            active_profile_shortening: 0.1,
+            uniform_flank_reduction_mm: 0.0,
             flank_relief: FlankRelief::default(),
             material: None,
             inertia: WheelInertia::default(),
@@ -122,6 +129,23 @@ impl Keys for GearboxWheel {
                 .range(Range::not_negative())
                 .rule(MATES)
                 .alternative("0.3"),
+            row(
+                "active_profile_shortening",
+                "-",
+                "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either \
+                 end",
+                field!(active_profile_shortening),
+            )
+            .range(Range::from_to(0.0, 0.5))
+            .rule(MATES),
+            row(
+                "uniform_flank_reduction_mm",
+                "mm",
+                "a constant reduction of the working flank",
+                field!(uniform_flank_reduction_mm),
+            )
+            .range(Range::not_negative())
+            .rule(MATES),
             row("flank_relief", "", "the relief of the flanks near the tips, as a gap in µm", field!(flank_relief))
                 .rule(MATES),
             row("material", "", "its material", field!(material))
@@ -389,7 +413,10 @@ impl Keys for GearboxSensor {
     const SECTION: &str = "sensor";
 
     fn start() -> Self {
-        Self { at: String::new(), sensor: Sensor::default() }
+        // The seats and the housing move by themselves: no wall bends between them and the sensor unless the file says so.
+        let mut sensor = Sensor::default();
+        sensor.path = SensorPath::RIGID;
+        Self { at: String::new(), sensor }
     }
 
     fn rows() -> Vec<KeyRow<Self>> {

@@ -1,0 +1,90 @@
+"""Gearboxes in Python."""
+
+import pickle
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import meshtone as mt
+
+STEEL = {"youngs_modulus_gpa": 206.0, "poisson_ratio": 0.3, "density_kg_per_m3": 7850.0}
+
+
+def gearbox(**changes: Any) -> mt.Gearbox:
+    """One pair on two shafts."""
+    arguments: dict[str, Any] = {
+        "shafts": [
+            {"name": "input", "length_mm": 200, "radius_mm": 10, "couples_to": "motor"},
+            {"name": "output", "length_mm": 200, "radius_mm": 10, "couples_to": "brake"},
+        ],
+        "wheels": [
+            {"name": "z1", "shaft": "input", "at": 0.5, "teeth": 17, "face_width_mm": 15},
+            {"name": "z2", "shaft": "output", "at": 0.5, "teeth": 38, "face_width_mm": 15},
+        ],
+        "meshes": [{"wheels": ["z1", "z2"], "module_mm": 3}],
+        "bearings": [{"shaft": shaft, "at": at} for shaft in ("input", "output") for at in (0.0, 1.0)],
+        "operation": {"input_speed_hz": 40, "brake_torque_nm": 10},
+        "solver": {"duration_s": 0.2},
+    }
+    return mt.Gearbox(**{**arguments, **changes})
+
+
+def test_one_pair_carries_its_torque() -> None:
+    simulation = mt.simulate_gearbox(gearbox(material=STEEL))
+    force_n = 10 / (3e-3 * 38 / 2 * np.cos(np.radians(20)))
+    mesh = simulation.summary()["meshes"][0]
+    assert mesh["static_force_n"] == pytest.approx(force_n, rel=1e-9)
+    assert np.mean(simulation["force_n.z1-z2"]) == pytest.approx(force_n, rel=1e-3)
+    assert np.mean(simulation["speed_hz.output"]) == pytest.approx(40 * 17 / 38, rel=1e-3)
+    assert len(simulation.time_s) == len(simulation["force_n.z1-z2"])
+
+
+def test_frequencies_with_other_stiffnesses() -> None:
+    simulation = mt.simulate_gearbox(gearbox())
+    own = simulation.natural_frequencies_hz()
+    assert own == pytest.approx(simulation.summary()["natural_frequencies_hz"])
+    assert np.all(simulation.natural_frequencies_hz([2 * own[0] * 1e7]) >= 0)
+    with pytest.raises(ValueError, match="must have 1, one a mesh"):
+        simulation.natural_frequencies_hz([1e8, 1e8])
+
+
+def test_is_kept_and_read_back() -> None:
+    box = gearbox(faults=[{"wheel": "z2", "tooth": 3, "kind": "missing-tooth"}], housing={})
+    assert mt.Gearbox.from_toml(box.to_toml()) == box
+    assert pickle.loads(pickle.dumps(box)) == box
+    assert box.sections["fault"][0]["wheel"] == "z2"
+
+
+def test_batch_gives_the_same_as_alone() -> None:
+    boxes = [gearbox(seed=seed, wheels=[{**wheel, "iso_class": 6} for wheel in gearbox().sections["wheel"]]) for seed in (1, 2)]
+    alone = [mt.simulate_gearbox(box) for box in boxes]
+    together = mt.simulate_gearboxes(boxes)
+    for one, other in zip(alone, together):
+        for name, values in one.channels.items():
+            assert np.array_equal(values, other[name])
+    assert not np.array_equal(alone[0]["input_0_vertical_g"], alone[1]["input_0_vertical_g"])
+
+
+def test_mistakes_are_named() -> None:
+    with pytest.raises(ValueError, match=r"wheel\[1\].shaft = \"none\" .*: is no shaft's name; there are \"input\", \"output\""):
+        gearbox(wheels=[gearbox().sections["wheel"][0], {**gearbox().sections["wheel"][1], "shaft": "none"}])
+    with pytest.raises(ValueError, match="bearing"):
+        gearbox(bearings=[{"shaft": "input", "at": 0.0, "stiffnes_n_per_m": 1e8}])
+    with pytest.raises(TypeError, match="must be a sequence of dictionaries"):
+        gearbox(shafts={"name": "input"})
+    with pytest.raises(TypeError, match="simulate_gearbox and simulate_gearboxes take gearboxes"):
+        mt.simulate(gearbox())  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="is of a gearbox"):
+        mt.Scenario.from_toml(mt.gearbox_template())
+    with pytest.raises(ValueError, match="must be one of phm2009-spur, uconn, tecnalia"):
+        mt.gearbox_template("none")  # type: ignore[arg-type]
+
+
+def test_material_of_a_pair_is_a_table_too() -> None:
+    pair = mt.examples.healthy()
+    steel = {"youngs_modulus_gpa": 210.0, "poisson_ratio": 0.3, "density_kg_per_m3": 7840.0}
+    given, named = pair.copy(material=steel), pair.copy(material="steel")
+    assert given.material == steel
+    assert np.array_equal(mt.simulate(given).vertical_g, mt.simulate(named).vertical_g)
