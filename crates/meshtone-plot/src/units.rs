@@ -1,7 +1,8 @@
 //! The units that names of keys and columns end with.
 
 /// Endings of names, and their units; the longer ones first.
-const UNITS: [(&str, &str); 21] = [
+const UNITS: [(&str, &str); 22] = [
+    ("_kg_per_m3", "kg/m³"),
     ("_g_per_rthz", "g/√Hz"),
     ("_nm_per_rad", "N m/rad"),
     ("_n_per_m", "N/m"),

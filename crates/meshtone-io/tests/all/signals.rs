@@ -58,9 +58,11 @@ fn files_of_others_are_refused() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
     refused(&path, Vec::new(), "has no metadata meshtone.scenario");
-    let broken = KeyValue::new(SCENARIO_KEY.to_string(), "seed = -1".to_string());
-    refused(&path, vec![broken], "seed = -1");
     let text = |key: &str, value: &str| KeyValue::new(key.to_string(), value.to_string());
+    let written =
+        [text("meshtone.version", "0.1.0"), text(RUN_KEY, "00000000000000ff"), text(RATE_KEY, "1000.0")];
+    let broken = [written.to_vec(), vec![text(SCENARIO_KEY, "seed = -1")]].concat();
+    refused(&path, broken, "seed = -1");
     let good = || vec![text(SCENARIO_KEY, &scenario().to_toml()), text("meshtone.version", "0.1.0")];
     refused(&path, good(), "has no metadata meshtone.run");
     let wrong_run = [good(), vec![text(RUN_KEY, "7")]].concat();

@@ -31,8 +31,7 @@ const TOLERATED_DEFLECTION: f64 = 0.1;
 /// ```
 /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
 ///
-/// let mut scenario = Scenario::new(GearPair { pinion_teeth: 14, ..GearPair::example() });
-/// scenario.solver.sampling_rate_hz = 2e4;
+/// let scenario = Scenario::new(GearPair { pinion_teeth: 14, ..GearPair::example() });
 /// let (stages, warnings) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default())?;
 /// assert_eq!(warnings[0].key, "gears.pinion_teeth");
 /// // What the signals show comes after.
