@@ -414,9 +414,7 @@ impl Keys for GearboxSensor {
 
     fn start() -> Self {
         // The seats and the housing move by themselves: no wall bends between them and the sensor unless the file says so.
-        let mut sensor = Sensor::default();
-        sensor.path = SensorPath::RIGID;
-        Self { at: String::new(), sensor }
+        Self { at: String::new(), sensor: Sensor { path: SensorPath::RIGID, ..Sensor::default() } }
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
