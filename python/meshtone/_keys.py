@@ -574,9 +574,9 @@ class ScenarioKeys:
             (s) How long the kept signal is; settling comes before it. Allowed: > 0; not beside pinion_revolutions.
             Default: see pinion_revolutions.
         pinion_revolutions : float, optional
-            (rev) The same as a number of revolutions of the pinion; settling comes before them. Allowed: > 0; not
-            beside duration_s, not with a speed profile. Default: what settling leaves of 2 z_g revolutions, or of the
-            time that a speed profile spans.
+            (-) The same as a number of revolutions of the pinion; settling comes before them. Allowed: > 0; not beside
+            duration_s, not with a speed profile. Default: what settling leaves of 2 z_g revolutions, or of the time
+            that a speed profile spans.
         settle_fraction : float, optional
             (-) The part of the simulated time that is discarded from the start, while the vibration settles. Allowed: ≥
             0, < 1. Default: 0.5.

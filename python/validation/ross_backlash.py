@@ -62,6 +62,7 @@ pinion_teeth = 17
 gear_teeth = 38
 face_width_mm = 15.0
 tip_chamfer_mm = 0.0
+active_profile_shortening = 0.0
 backlash_mm = {backlash_mm}
 
 [operation]
@@ -76,6 +77,10 @@ mesh_damping_ratio = 0.15
 pinion_shaft = {{ length_mm = 200.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }}
 gear_shaft = {{ length_mm = 600.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }}
 support = {{ mass_kg = 1.6, stiffness_n_per_m = 1.6e8, coupling_n_per_m = 5e8, damping_ratio = 0.025 }}
+
+[[sensor]]
+at = "support"
+path = {{ plate_hz = 0.0 }}
 
 [solver]
 sampling_rate_hz = {rate}
@@ -378,7 +383,7 @@ def simulated(case: Case, rate: float) -> Motion:
     """Meshtone's motion."""
     simulation = mt.simulate(mt.Scenario.from_toml(case.scenario(rate)))
     count = int(DURATION_S * simulation.sampling_rate_hz) + 2
-    return Motion(simulation.time_s[:count], simulation.mesh_force_n[:count], simulation.vertical_g[:count])
+    return Motion(simulation.time_s[:count], simulation.mesh_force_n[:count], simulation.support_vertical_g[:count])
 
 
 def main() -> None:

@@ -87,7 +87,7 @@ impl Keys for Solver {
                 .example("1.0"),
             row(
                 "pinion_revolutions",
-                "rev",
+                "-",
                 "the same as a number of revolutions of the pinion; settling comes before them",
                 field!(pinion_revolutions),
             )

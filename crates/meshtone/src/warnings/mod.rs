@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{DecayingMode, Shaft, WheelBody};
-use crate::scenario::{MemoryLimit, Scenario};
+use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
 use crate::simulate::{Stages, stages_within};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
@@ -115,13 +115,16 @@ impl Stages {
             return None;
         }
         let (moving, channels) = if self.teeth_part() {
-            ("they and their supports", "the mean of both supports' accelerations")
+            if !self.scenario.sensors.iter().any(|sensor| sensor.at == SensorPlace::Support) {
+                return None;
+            }
+            ("they and their supports", "sensors at the mean of both supports")
         } else {
-            ("they", "the sum of both wheels' accelerations")
+            ("they", "the horizontal and vertical channels, which are the sum of both wheels' accelerations,")
         };
         let message = format!(
-            "both wheels have the same mass, shafts and bearings: {moving} move in opposition, and the horizontal and vertical \
-             channels, which are {channels}, are 0; give one wheel its own mass (rig.gear_inertia.mass_kg) or shaft \
+            "both wheels have the same mass, shafts and bearings: {moving} move in opposition, and {channels} show nothing; give \
+             one wheel its own mass (rig.gear_inertia.mass_kg) or shaft \
              (rig.gear_shaft.bearing_span_mm)"
         );
         Some(ScenarioWarning::new(WarningKind::EqualWheels, "gears.gear_teeth", message))
