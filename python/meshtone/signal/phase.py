@@ -240,7 +240,7 @@ class ShaftPhase:
         """What angle 0 is: ``first sample``, ``pulse``, ``first pulse``, ``angle 0`` as given, or, after a mesh tone, ``chance``."""
         return self._native.zero
 
-    def __reduce__(self) -> tuple[Callable[[Array, int, list[str], str], ShaftPhase], tuple[Array, int, list[str], str]]:
+    def __reduce__(self) -> tuple[Callable[[Array, int, list[SignalWarning], str], ShaftPhase], tuple[Array, int, list[SignalWarning], str]]:
         return (_remembered, (self._native.revolutions, self.first_sample, self._warnings, self.zero))
 
     def mean_speed_hz(self, sampling_rate_hz: float) -> float:
@@ -264,7 +264,7 @@ class ShaftPhase:
         return f"<ShaftPhase: {span:.2f} revolutions in {revolutions.size} samples from sample {self.first_sample}>"
 
 
-def _remembered(revolutions: Array, first_sample: int, warnings: list[str], zero: str = "angle 0") -> ShaftPhase:
+def _remembered(revolutions: Array, first_sample: int, warnings: list[SignalWarning], zero: str = "angle 0") -> ShaftPhase:
     phase = ShaftPhase._wrap(_core.ShaftPhase(revolutions, first_sample, zero))
     phase._warnings = warnings
     return phase

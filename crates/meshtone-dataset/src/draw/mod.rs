@@ -200,6 +200,12 @@ impl Sampler<'_> {
     /// # Errors
     /// Values that the scenario does not allow.
     pub fn scenario(&self, record: &DrawnRecord) -> Result<Scenario, ScenarioError> {
+        // A gain and a ripple in dB may be negative.
+        for key in &PATH_KEYS[2..] {
+            if let Some(value) = record.value(key).filter(|value| *value < 0.0) {
+                return Err(ScenarioError::new(*key, value, "must not be negative"));
+            }
+        }
         let mut scenario = self.classes[record.class].base.with_numbers(&of_scenario(&record.values))?;
         scenario.seed = record.seed;
         scenario.quality.seed = Some(record.wheels_seed);

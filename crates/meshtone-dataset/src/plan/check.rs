@@ -144,7 +144,7 @@ fn is_severity(key: &str) -> bool {
 
 impl Plan {
     /// Those of the first 5000 records whose scenarios show that they cannot be simulated, for example because a draw is outside a
-    /// fault's limits or the hunting period is shorter than `keep.duration_s`. The data set will lack these records.
+    /// fault's limits, a speed profile is shorter than `keep.duration_s`, or that holds too few revolutions. The data set will lack these records.
     pub fn foreseen_failures(&self) -> Vec<FailedRecord> {
         // A plan that was read has been checked, so that its records can be drawn.
         let Ok(sampler) = Sampler::new(&self.content) else { return Vec::new() };

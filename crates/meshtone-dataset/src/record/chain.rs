@@ -1,7 +1,7 @@
 //! The signal chain from simulated channels to a record: sampling rate, path, noise, average, difference signal, indicators.
 //!
 //! Average, difference and indicators are computed from the samples of a raw channel as they are kept, with noise and rounding to
-//! single precision. A user who reads the raw channel finds the same average, unless `keep.duration_s` has shortened the channel.
+//! single precision. A user who reads the raw channel finds the same average.
 
 use std::error::Error;
 

@@ -27,15 +27,12 @@ pub(super) fn pass(
     rate_hz: f64,
     signal: &mut [f32],
 ) {
-    let [gain_db, ripple_db, plate_hz, strength] = PATH_KEYS.map(|key| drawn.value(key));
+    let [gain_db, ripple_db, ..] = PATH_KEYS.map(|key| drawn.value(key));
     let factor = gain_db.map_or(1.0, |gain_db| libm::pow(10.0, gain_db / 20.0));
     let ripple = ripple_db
         .filter(|&ripple_db| ripple_db != 0.0)
         .map(|ripple_db| PathRipple::new(drawn.mounting_seed, fnv_1a(channel.as_bytes()), ripple_db));
-    let mut structure = SensorPath::RIGID;
-    structure.plate_hz = plate_hz.unwrap_or(0.0);
-    structure.strength = strength.unwrap_or(0.0);
-    structure.seed = drawn.mounting_seed ^ fnv_1a(channel.as_bytes());
+    let structure = structure(drawn, channel);
     if (ripple.is_none() && sensor.is_none() && structure.is_rigid()) || signal.len() < 2 {
         signal.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * factor) as f32);
         return;
@@ -56,6 +53,20 @@ pub(super) fn pass(
         }
         gains
     });
+}
+
+/// The wall and the housing that a record's values put under a channel's sensor.
+///
+/// # Arguments
+/// * `drawn` - the record
+/// * `channel` - its name
+pub(super) fn structure(drawn: &DrawnRecord, channel: &str) -> SensorPath {
+    let [.., plate_hz, strength] = PATH_KEYS.map(|key| drawn.value(key));
+    let mut structure = SensorPath::RIGID;
+    structure.plate_hz = plate_hz.unwrap_or(0.0);
+    structure.strength = strength.unwrap_or(0.0);
+    structure.seed = drawn.mounting_seed ^ fnv_1a(channel.as_bytes());
+    structure
 }
 
 /// Multiplies the spectrum of a signal, mirrored at its ends: what the transform takes for periodic has no jump anywhere.

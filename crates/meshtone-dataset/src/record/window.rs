@@ -5,7 +5,7 @@ use meshtone::scenario::{Fault, Scenario};
 use meshtone::sensor::Channel;
 use meshtone::signal::{AntiAliasing, SignalError};
 
-use super::Start;
+use super::{Start, path};
 use crate::draw::DrawnRecord;
 use crate::plan::Keep;
 
@@ -51,7 +51,9 @@ impl Window {
         let is_read =
             |name: String| simulated.iter().any(|channel| *channel == Channel::Sensor(name.clone()));
         let sensors = scenario.sensors.iter().filter(|sensor| is_read(sensor.name()));
-        let memory_s = sensors.map(|sensor| sensor.memory_s()).fold(0.0, f64::max);
+        let of_paths = (simulated.iter().filter(|channel| channel.is_acceleration()))
+            .map(|channel| path::structure(drawn, &channel.name()).memory_s());
+        let memory_s = sensors.map(|sensor| sensor.memory_s()).chain(of_paths).fold(0.0, f64::max);
         let remembered = (memory_s * time.sampling_rate_hz).ceil() as usize;
         // One sample of the record more on either side, as the last one may lie behind the end of its last revolution.
         let step = (time.sampling_rate_hz / keep.sampling_rate_hz).ceil() as usize;
@@ -104,7 +106,12 @@ fn kept_samples(keep: &Keep, scenario: &Scenario, time: &TimeGrid) -> usize {
             let teeth = scenario.gears.teeth(keep.wheel) as usize;
             angle.revolutions * teeth * time.samples_per_pitch(&scenario.gears)
         }
-        (None, Some(duration_s)) => (duration_s * time.sampling_rate_hz).round() as usize,
+        (None, Some(duration_s)) => {
+            let kept = (duration_s * time.sampling_rate_hz).round() as usize;
+            // Of an unsteady motion there is no margin, from which the last sample could be read.
+            let last = (time.sampling_rate_hz / keep.sampling_rate_hz).ceil() as usize;
+            if scenario.operation.is_steady() { kept } else { kept + last }
+        }
         (None, None) => time.kept_samples(),
     }
 }

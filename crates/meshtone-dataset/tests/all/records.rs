@@ -708,6 +708,19 @@ fn records_over_the_angle_are_of_one_length() {
     }
 }
 
+/// A record of an unsteady motion is as long as it is asked to be.
+#[test]
+fn an_unsteady_record_has_its_duration() {
+    let unsteady = FAST
+        .replace("brake_torque_nm = 200.0", "brake_torque_nm = 200.0\nspeed_fluctuation_hz = 0.2")
+        .replace("records = 60", "records = 12");
+    for (duration_s, samples) in [(0.25, 2000), (0.3, 2400), (0.7, 5600)] {
+        let made =
+            made(&plan(&unsteady.replacen("[keep]", &format!("[keep]\nduration_s = {duration_s}"), 1)));
+        assert!((0..12).all(|row| made.signal("vertical_g", row).len() == samples));
+    }
+}
+
 /// Octaves are those of the difference signal; null beyond what the rate shows.
 #[test]
 fn octaves_are_of_the_difference_signal() {

@@ -93,8 +93,8 @@ impl Support {
         ];
         let kept: Vec<&str> = kept.into_iter().filter_map(|(text, is_kept)| is_kept.then_some(text)).collect();
         let message = format!(
-            "is given by stiffnesses, so that what is left out of it has the defaults of former files: {}; give all three, or base_hz \
-             and differential_hz",
+            "is given by stiffnesses and has {}, as former files had where they left it out; if that is not meant, give other values, or \
+             base_hz and differential_hz",
             kept.join(", ")
         );
         (!kept.is_empty()).then(|| ScenarioWarning::new(WarningKind::FormerDefaults, "rig.support", message))

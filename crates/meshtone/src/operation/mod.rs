@@ -97,7 +97,8 @@ impl TimeGrid {
         let kept = match (solver.duration_s, solver.pinion_revolutions, profile_s) {
             (Some(duration_s), ..) => duration_s * sampling_rate_hz,
             (None, Some(revolutions), _) => revolutions * samples_per_pinion_revolution as f64,
-            (None, None, Some(profile_s)) => profile_s * sampling_rate_hz,
+            // What settling leaves of the profile.
+            (None, None, Some(profile_s)) => profile_s * sampling_rate_hz * (1.0 - solver.settle_fraction),
             (None, None, None) => usual,
         };
         let first_kept_sample =

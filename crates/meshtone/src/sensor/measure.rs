@@ -81,7 +81,7 @@ fn passed(raw: Vec<f64>, sensor: &Sensor, measurement: &Measurement) -> Vec<f64>
 }
 
 /// (-) What a sensor may remember of its past: a filter's answer to what was before has fallen to this.
-const REMEMBERED: f64 = 1e-6;
+pub(super) const REMEMBERED: f64 = 1e-6;
 
 impl Sensor {
     /// Whether the path to the sensor or its mounted resonance changes the motion of its place.
@@ -137,8 +137,7 @@ impl Sensor {
     }
 
     /// (s) How long what the sensor shows depends on what was before: until 1e-6 is left of an oscillation at its resonance or of the
-    /// path's, and as
-    /// long as the finest step of its frequency response resolves.
+    /// path's, and as long as the finest step of its frequency response resolves.
     pub fn memory_s(&self) -> f64 {
         let decay_s = |resonance_hz: f64| {
             // An overdamped resonance has a slower part.
@@ -151,7 +150,7 @@ impl Sensor {
             1.0 / steps.fold(f64::INFINITY, f64::min)
         };
         let measured_s = self.frequency_response.as_ref().map_or(0.0, resolved_s);
-        self.resonance_hz.map_or(0.0, decay_s).max(measured_s).max(self.path.memory_s(REMEMBERED))
+        self.resonance_hz.map_or(0.0, decay_s).max(measured_s).max(self.path.memory_s())
     }
 }
 

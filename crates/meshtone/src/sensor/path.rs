@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use meshtone_fourier::Complex64;
 
+use super::measure::REMEMBERED;
 use crate::error::ScenarioError;
 use crate::keys::{Check, KeyRow, Keys, Range, check_keys, field, row};
 use crate::random::{Draws, Purpose};
@@ -151,9 +152,9 @@ impl SensorPath {
         ((self.band_hz[1] - self.band_hz[0]) * 1e-3 * self.modes_per_khz).round()
     }
 
-    /// (s) How long what passes depends on what was before, until `remembered` of it is left.
-    pub(super) fn memory_s(&self, remembered: f64) -> f64 {
-        let decay_s = |rad_per_s: f64| -remembered.ln() / rad_per_s;
+    /// (s) How long what passes depends on what was before: until 1e-6 of it is left.
+    pub fn memory_s(&self) -> f64 {
+        let decay_s = |rad_per_s: f64| -REMEMBERED.ln() / rad_per_s;
         let plate_s = if self.plate_hz == 0.0 { 0.0 } else { decay_s(TAU * PLATE_ENDS * self.plate_hz) };
         let housing_s =
             if self.strength == 0.0 { 0.0 } else { decay_s(TAU * self.band_hz[0] * self.damping_ratio) };

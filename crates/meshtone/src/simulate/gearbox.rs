@@ -486,8 +486,12 @@ impl GearboxStages {
         let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
         // Higher modes decay faster.
         const HIGHEST_HZ: f64 = 2e3;
-        let decay_s =
-            -settle_tolerance.ln() / self.modal_machine().slowest_decay_per_s(&closed, TAU * HIGHEST_HZ);
+        let decay_per_s = self.modal_machine().slowest_decay_per_s(&closed, TAU * HIGHEST_HZ);
+        if !decay_per_s.is_finite() {
+            // Nothing decays, so that all of the settling is simulated.
+            return 0;
+        }
+        let decay_s = -settle_tolerance.ln() / decay_per_s;
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         self.time.first_kept_sample.saturating_sub(settling as usize)
     }
@@ -519,7 +523,14 @@ impl GearboxStages {
     /// The machine in the modes that are stepped.
     pub(crate) fn modal_machine(&self) -> ModalMachine {
         let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
-        let highest_hz = self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz);
+        let operation = &self.gearbox.operation.drive;
+        let is_turned_evenly = operation.speed_profile_hz.is_none() && operation.speed_fluctuation_hz == 0.0;
+        // What a mode that is left out takes of the motor's imposed rotation would be missing in speeds and transmission errors.
+        let highest_hz = if is_turned_evenly {
+            self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz)
+        } else {
+            f64::INFINITY
+        };
         ModalMachine::new(&self.machine.machine, &self.modes, &face_reach_m, start(&self.gearbox))
             .up_to(TAU * highest_hz)
     }

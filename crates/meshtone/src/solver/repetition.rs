@@ -4,6 +4,8 @@ use super::integrate::{Block, Problem, Recorder, StepCounts};
 
 /// (-) Rms of the difference of two hunting-tooth periods, relative to the rms, up to which they are the same.
 const SAME: f64 = 1e-6;
+/// (-) Part of a signal's mean square below which its variance is rounding.
+const ROUNDING: f64 = 1e-18;
 /// Fewest periods of a signal that is watched: two are compared, so that of fewer nothing would be saved.
 const FEWEST_PERIODS: usize = 3;
 
@@ -16,8 +18,8 @@ pub(super) struct Repeating<'r> {
     end: usize,
     /// The last samples of each output, as many as a period has; the first recorded sample has place 0.
     last: Vec<Vec<f64>>,
-    /// Of each output, since the present period began: the sum of squares, and that of the difference from the period before.
-    squares: Vec<[f64; 2]>,
+    /// Of each output, since the present period began: the sum, the sum of squares, and that of the difference from the period before.
+    sums: Vec<[f64; 3]>,
     /// Samples that were recorded.
     recorded: usize,
     is_complete: bool,
@@ -33,7 +35,7 @@ impl<'r> Repeating<'r> {
             period: problem.hunting_period_samples.filter(is_long),
             end,
             last: Vec::new(),
-            squares: Vec::new(),
+            sums: Vec::new(),
             recorded: 0,
             is_complete: false,
         }
@@ -46,13 +48,13 @@ impl<'r> Repeating<'r> {
     fn compare(&mut self, block: &Block, period: usize) -> bool {
         let outputs = block.outputs().len();
         self.last.resize_with(outputs, || Vec::with_capacity(period));
-        self.squares.resize(outputs, [0.0; 2]);
+        self.sums.resize(outputs, [0.0; 3]);
         let (mut agrees, mut done) = (false, 0);
         while done < block.len() {
             let place = self.recorded % period;
             let count = (block.len() - done).min(period - place);
-            for ((output, last), [square, difference]) in
-                block.outputs().iter().zip(&mut self.last).zip(&mut self.squares)
+            for ((output, last), [sum, square, difference]) in
+                block.outputs().iter().zip(&mut self.last).zip(&mut self.sums)
             {
                 let samples = &output[done..done + count];
                 if self.recorded < period {
@@ -61,6 +63,7 @@ impl<'r> Repeating<'r> {
                 }
                 for (before, &sample) in last[place..].iter_mut().zip(samples) {
                     *difference += (sample - *before) * (sample - *before);
+                    *sum += sample;
                     *square += sample * sample;
                     *before = sample;
                 }
@@ -68,8 +71,13 @@ impl<'r> Repeating<'r> {
             self.recorded += count;
             done += count;
             if self.recorded >= 2 * period && self.recorded.is_multiple_of(period) {
-                agrees |= self.squares.iter().all(|[square, difference]| *difference <= SAME * SAME * square);
-                self.squares.fill([0.0; 2]);
+                // Relative to what varies, so that a shaft's mean speed hides nothing; a signal that is constant agrees up to rounding.
+                let is_same = |[sum, square, difference]: &[f64; 3]| {
+                    let varying = (square - sum * sum / period as f64).max(ROUNDING * square);
+                    *difference <= SAME * SAME * varying
+                };
+                agrees |= self.sums.iter().all(is_same);
+                self.sums.fill([0.0; 3]);
             }
         }
         agrees

@@ -336,6 +336,13 @@ impl Gearbox {
             return Err(ScenarioError::new("solver.duration_s", duration_s, problem)
                 .with_help("remove one of the two"));
         }
+        if let (Some(revolutions), Some(_)) =
+            (settings.pinion_revolutions, &self.operation.drive.speed_profile_hz)
+        {
+            let problem = "given with operation.speed_profile_hz, whose speeds vary";
+            return Err(ScenarioError::new("solver.input_revolutions", revolutions, problem)
+                .with_help("give solver.duration_s instead"));
+        }
         let time = self.time_grid();
         // Time, force of each mesh, speed of each shaft and a sensor's signal, with what is made of them.
         let signals =

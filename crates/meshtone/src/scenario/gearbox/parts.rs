@@ -475,14 +475,14 @@ impl Keys for GearboxSolver {
             "how many revolutions of the input are kept; settling comes before them",
             field!(settings.pinion_revolutions),
         )
-        .otherwise("those of 1 s, or the time that a speed profile spans")
+        .otherwise("those of 1 s, or what settling leaves of the time that a speed profile spans")
         .range(Range::positive())
         .rule("not beside duration_s, not with a speed profile")
         .example("30.0");
         let highest = row(
             "highest_mode_hz",
             "Hz",
-            "the natural frequency up to which modes are stepped; those above deform as at rest",
+            "the natural frequency up to which modes are stepped; those above deform as at rest; where the speed varies, all are stepped",
             field!(highest_mode_hz),
         )
         .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")

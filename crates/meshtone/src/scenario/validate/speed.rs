@@ -52,7 +52,7 @@ fn unusual(scenario: &Scenario) -> Option<ScenarioWarning> {
     })
 }
 
-/// A profile that never comes near the nominal speed, which the sampling rate and the settling are chosen for.
+/// A profile that never comes near the nominal speed, which the sampling rate is chosen for.
 fn far_from_nominal(scenario: &Scenario) -> Option<ScenarioWarning> {
     let operation = &scenario.operation;
     let profile = operation.speed_profile_hz.as_ref()?;
@@ -65,7 +65,7 @@ fn far_from_nominal(scenario: &Scenario) -> Option<ScenarioWarning> {
         && profile.value.iter().any(|&value| value >= nominal_hz);
     (!passes && (mean_hz / nominal_hz - 1.0).abs() > TOLERATED_MEAN).then(|| {
         let message = format!(
-            "is {mean_hz:.4} Hz on average, while operation.pinion_speed_hz, which sampling rate and settling are chosen for, is \
+            "is {mean_hz:.4} Hz on average, while operation.pinion_speed_hz, which the sampling rate is chosen for, is \
              {nominal_hz:?} Hz; set that to about the mean"
         );
         ScenarioWarning::new(WarningKind::SpeedProfileOff, "operation.speed_profile_hz", message)
