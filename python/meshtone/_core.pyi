@@ -13,6 +13,8 @@ _Column = int | str
 
 __all__ = [
     "ExploreServer",
+    "Gearbox",
+    "GearboxSimulation",
     "Observation",
     "Scenario",
     "ShaftPhase",
@@ -23,6 +25,7 @@ __all__ = [
     "change_duration",
     "change_fault_to_harmonics_ratio",
     "check_plan",
+    "check_recording",
     "dataset_template",
     "diagnose",
     "energy_ratio",
@@ -32,6 +35,7 @@ __all__ = [
     "find_mismatch",
     "fm0",
     "fm4",
+    "gearbox_template",
     "generate_dataset",
     "m6a",
     "m8a",
@@ -48,6 +52,7 @@ __all__ = [
     "set_memory_limit",
     "sideband_level_factor",
     "simulate",
+    "simulate_gearboxes",
     "simulate_many",
     "statistics",
     "synchronous_average",
