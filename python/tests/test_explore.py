@@ -222,7 +222,7 @@ def test_every_control_can_be_moved(page: Page, explorer: mt.Explorer) -> None:
         page.settled(partial(move, index), f"control {index}")
         if index % (5 * step) == 0:
             # From the start again, so that what is set together can be.
-            page.drop("start.toml", start.encode())
+            page.settled(lambda: page.drop("start.toml", start.encode()), "the start")
             page.wait(lambda: page.run("return !document.querySelector('#controls [aria-invalid]')"), "the start")
     assert len(keys) >= count // step
     assert explorer.scenario.pinion_teeth == 20
