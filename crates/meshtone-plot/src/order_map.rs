@@ -3,7 +3,9 @@
 use meshtone::signal::OrderMap;
 
 use crate::Figure;
-use crate::drawing::{Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, Ticks, axes, bands, colour};
+use crate::drawing::{
+    Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, bands, colour,
+};
 
 /// (px) Size of the figure.
 pub const WIDTH: u32 = 1600;
@@ -22,6 +24,8 @@ const EDGE: f64 = 17.0;
 const COLUMN: f64 = 2.0;
 /// (px) So much rectangles overlap, lest lines show between them.
 const OVERLAP: f64 = 0.3;
+/// (px) Room for the unit above the bar of the bands.
+const UNIT_WIDTH: f64 = 100.0;
 const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.5);
 
 /// Content of the figure.
@@ -63,6 +67,7 @@ pub struct OrderMapFigure<'a> {
 pub fn draw(figure: &OrderMapFigure) -> Figure {
     let OrderMapFigure { title, facts, wheel, teeth, map, .. } = *figure;
     let unit = figure.unit.filter(|unit| !unit.is_empty()).unwrap_or("unit not stated");
+    let unit = TextStyle::TICK.fitted(unit, UNIT_WIDTH);
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     canvas.heading(EDGE, f64::from(WIDTH) - 2.0 * EDGE, (36.0, title), (61.0, &facts.join(BETWEEN_FACTS)));
     let times_s: Vec<f64> = map.times_s.iter().map(|time_s| figure.start_s + time_s).collect();
@@ -86,7 +91,7 @@ pub fn draw(figure: &OrderMapFigure) -> Figure {
     axes.y_axis(&mut canvas, &seconds, "Time (s)", NAME_LEFT);
     axes.frame(&mut canvas);
     let words: Vec<String> = ends.iter().map(|end| crate::drawing::number(*end)).collect();
-    bands::bar(&mut canvas, MAP, unit, &words);
+    bands::bar(&mut canvas, MAP, &unit, &words);
     speed(&mut canvas, wheel, (time, &seconds), &times_s, &map.speeds_hz);
     let description = format!(
         "Amplitudes of a recording over the order of the {wheel}’s shaft and over time, and the shaft’s speed. {}.",
@@ -122,18 +127,26 @@ fn edges(times_s: &[f64]) -> Vec<f64> {
     [vec![before], between, vec![after]].concat()
 }
 
-/// The largest of 1, 2 and 5 times the powers of ten below the largest amplitude, one between two bands each, rising.
+/// The amplitudes between two bands each, rising by equal factors from above the noise floor, or from a thousandth of the largest.
 fn band_ends(map: &OrderMap) -> Vec<f64> {
-    let largest = axes::largest(map.amplitudes.iter().flatten());
+    const ABOVE_FLOOR: f64 = 1.5;
+    let mut all: Vec<f64> =
+        map.amplitudes.iter().flatten().copied().filter(|line| axes::drawable(*line)).collect();
+    let largest = axes::largest(&all);
     if largest <= 0.0 {
         return Vec::new();
     }
-    let decade = largest.log10().floor() as i32;
-    let all =
-        (decade - 4..=decade).flat_map(|power| [1.0, 2.0, 5.0].map(|factor| factor * 10f64.powi(power)));
-    let mut ends: Vec<f64> = all.filter(|end| *end < largest).collect();
-    ends.drain(..ends.len().saturating_sub(bands::COLOURS.len() - 1));
-    ends
+    let middle = all.len() / 2;
+    let median = *all.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let lowest = (ABOVE_FLOOR * median).clamp(1e-3 * largest, 0.5 * largest);
+    let ends = bands::COLOURS.len() - 1;
+    let end = |band: usize| two_digits(lowest * (largest / lowest).powf(band as f64 / ends as f64));
+    (0..ends).map(end).collect()
+}
+
+fn two_digits(value: f64) -> f64 {
+    let unit = 10f64.powf(value.log10().floor() - 1.0);
+    (value / unit).round() * unit
 }
 
 /// Rectangles in which the largest amplitude of a column's orders is above a limit, part by part.

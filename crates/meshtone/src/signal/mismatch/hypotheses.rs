@@ -203,22 +203,17 @@ impl Hypothesis {
         }
     }
 
-    /// Returns whether its shaft turns a whole part as quickly as the stated one, and the wheel's orders that it then has beside the stated
-    /// ones are missing or the pair's own.
-    pub(super) fn is_part_without_orders(&self, of_pair: &[f64], orders: &FineOrders) -> bool {
+    /// Returns whether its shaft turns a whole part as quickly as the stated one, and what it then has beside the stated orders is
+    /// missing or the pair's own: the wheel's orders, and a first mesh line.
+    pub(super) fn is_part_without_lines(&self, stated: &Self, of_pair: &[f64], orders: &FineOrders) -> bool {
         const LEAST: f64 = 3.0;
-        let known: Vec<f64> = of_pair.iter().copied().chain([1.0]).collect();
-        self.is_part() && orders.comb(self.wheel_spacing, &known).is_none_or(|score| score < LEAST)
-    }
-
-    /// Returns whether its shaft turns a whole part as quickly as the stated one, and its first mesh line is far weaker than the stated one's.
-    pub(super) fn is_part_with_weak_mesh(&self, stated: &Self, orders: &FineOrders) -> bool {
-        self.is_part() && is_far_weaker(self.mesh_order, stated.mesh_order, orders)
-    }
-
-    fn is_part(&self) -> bool {
         let parts = 1.0 / self.wheel_spacing;
-        parts > 1.5 && (parts - parts.round()).abs() < 1e-9
+        if parts < 1.5 || (parts - parts.round()).abs() > 1e-9 {
+            return false;
+        }
+        let known: Vec<f64> = of_pair.iter().copied().chain([1.0]).collect();
+        orders.comb(self.wheel_spacing, &known).is_none_or(|score| score < LEAST)
+            || is_far_weaker(self.mesh_order, stated.mesh_order, orders)
     }
 
     /// Sum of the prominences of its mesh lines that the other hypothesis does not have; none where the other has all of them.

@@ -20,7 +20,7 @@ const LEAST_GAIN: f64 = 6.0;
 const LEAST_MESH: f64 = 4.0;
 /// Least of these of the mesh lines that the stated facts do not explain.
 const LEAST_MESH_GAIN: f64 = 3.0;
-/// The same of several lines that stand out as far as counts, so that the shaft's orders need not be seen.
+/// The same of three lines that stand out as far as counts: neither the shaft's orders nor a strong first one are needed then.
 const CLEAR_MESH: f64 = 7.0;
 /// [`LEAST_MESH`] for a speed, of which many are tried: two lines that stand out as far as counts.
 const LEAST_MESH_OF_SPEED: f64 = 5.5;
@@ -322,8 +322,8 @@ fn evidence_if_better(
         Alternative::PulsesPerRevolution { .. } => {
             let is_possible = own.wheel_orders.is_some()
                 && lost_mesh <= 0.0
-                && (new_mesh > Some(CLEAR_MESH) || !hypothesis.is_part_without_orders(of_pair, orders))
-                && !hypothesis.is_part_with_weak_mesh(as_stated, orders);
+                && (new_mesh > Some(CLEAR_MESH)
+                    || !hypothesis.is_part_without_lines(as_stated, of_pair, orders));
             is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)
         }
         Alternative::ShaftSpeed { .. } | Alternative::VaryingSpeed { .. } => {
