@@ -47,8 +47,8 @@ def test_an_order_map_of_a_run_up() -> None:
     assert order_map.amplitude[:, 76] == pytest.approx(2, abs=1e-3) and order_map.amplitude[:, 84] == pytest.approx(0.5, abs=1e-3)
     assert np.delete(order_map.amplitude, [75, 76, 77, 83, 84, 85], axis=1).max() < 1e-3
     middles_rev = 5 * order_map.time_s + 2 * order_map.time_s**2
-    seconds = lambda turned_rev: (np.sqrt(25 + 8 * turned_rev) - 5) / 4
-    assert order_map.speed_hz == pytest.approx(4 / (seconds(middles_rev + 2) - seconds(middles_rev - 2)), rel=1e-4)
+    from_s, until_s = ((np.sqrt(25 + 8 * (middles_rev + by)) - 5) / 4 for by in (-2, 2))
+    assert order_map.speed_hz == pytest.approx(4 / (until_s - from_s), rel=1e-4)
     middle = np.interp(order_map.time_s[7], np.arange(50_000) / RATE_HZ, phase.revolutions)
     turned = middle - 2 + np.arange(2048) / 512
     values = np.interp(turned, phase.revolutions, signal_g) * np.hanning(2049)[:-1]
