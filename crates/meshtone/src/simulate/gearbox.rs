@@ -523,14 +523,7 @@ impl GearboxStages {
     /// The machine in the modes that are stepped.
     pub(crate) fn modal_machine(&self) -> ModalMachine {
         let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
-        let operation = &self.gearbox.operation.drive;
-        let is_turned_evenly = operation.speed_profile_hz.is_none() && operation.speed_fluctuation_hz == 0.0;
-        // What a mode that is left out takes of the motor's imposed rotation would be missing in speeds and transmission errors.
-        let highest_hz = if is_turned_evenly {
-            self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz)
-        } else {
-            f64::INFINITY
-        };
+        let highest_hz = self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz);
         ModalMachine::new(&self.machine.machine, &self.modes, &face_reach_m, start(&self.gearbox))
             .up_to(TAU * highest_hz)
     }

@@ -8,7 +8,7 @@
 //! only as far towards Newton's as makes the residual smaller.
 
 use super::integrate::{Block, Diverged, Problem, Recorder, StepCounts, is_bounded};
-use super::outputs::{EXTERNALS, OutputWeights};
+use super::outputs::{EXTERNALS, OutputWeights, dot};
 use super::prepare::{FirstState, Prepared};
 use crate::mesh::{ForcingBlock, MeshLaw, PairsSample};
 use crate::simd::{InstructionSet, Instructions, Lanes, Task};
@@ -52,8 +52,9 @@ pub(super) fn integrate(
     let mut pairs = vec![vec![PairsSample::<1>::NONE; BLOCK]; prepared.laws.len()];
     line_up(&block, 1, &mut pairs);
     let first_pairs: Vec<PairsSample<1>> = pairs.iter().map(|of_mesh| of_mesh[0]).collect();
-    let first = prepared.first_state(&problem.machine, &first_pairs, 0, external(&block, 0));
-    let mut state = State::new(first);
+    let first_external = external(&block, 0);
+    let first = prepared.first_state(&problem.machine, &first_pairs, 0, first_external);
+    let mut state = State::new(first, first_external);
     let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
     let mut sample = start;
     while sample < end && recorder.goes_on() {
@@ -157,6 +158,7 @@ struct State {
     acceleration: OfModes,
     /// (N) Force in each column, relative to the static one.
     force: Vec<f64>,
+    external: [f64; EXTERNALS],
     /// (m) D of each mesh.
     deflection: OfMeshes,
     /// (m) Deflection in each column with its damping's lead, without the step's own force.
@@ -165,7 +167,7 @@ struct State {
 }
 
 impl State {
-    fn new(first: FirstState) -> Self {
+    fn new(first: FirstState, external: [f64; EXTERNALS]) -> Self {
         let FirstState { displacement, velocity, acceleration, force } = first;
         Self {
             displacement: side_by_side(&displacement),
@@ -173,6 +175,7 @@ impl State {
             acceleration: side_by_side(&acceleration),
             free: vec![0.0; force.len()],
             force,
+            external,
             deflection: [0.0; MOST_MESHES],
             counts: StepCounts::default(),
         }
@@ -186,7 +189,8 @@ impl State {
         sum = products(simd, sum, &output.displacement, &self.displacement);
         sum = products(simd, sum, &output.velocity, &self.velocity);
         sum = products(simd, sum, &output.acceleration, &self.acceleration);
-        weights.constant + weights.per_sample * sample as f64 + forces.sum::<f64>() + total(sum)
+        let of_external = dot(&weights.external, &self.external);
+        weights.constant + weights.per_sample * sample as f64 + forces.sum::<f64>() + of_external + total(sum)
     }
 }
 
@@ -263,12 +267,13 @@ impl State {
             }
             (self.velocity[n], self.displacement[n], self.acceleration[n]) = (velocity, displacement, acceleration);
         }
+        self.external = external.unwrap_or_default();
         let prepared = constants.prepared;
         for ((free, column), of_modes) in self.free.iter_mut().zip(&prepared.columns).zip(&constants.columns) {
             let mut sum = products(simd, Lanes::splat(0.0), &of_modes.of_displacement, &self.displacement);
             sum = products(simd, sum, &of_modes.of_velocity, &self.velocity);
             let driven = external.map_or(0.0, |external| {
-                column.of_external.iter().zip(external).map(|(weight, external)| weight * external).sum()
+                dot(&column.of_external, &external)
             });
             *free = column.static_deflection + driven + total(sum);
         }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::outputs::{EXTERNALS, external_forces};
+use super::outputs::dot;
 use crate::machine::{ClosedMesh, Drive, Machine, Modes};
 
 /// A machine without its meshes, in the modes that take part in the motion.
@@ -30,22 +30,70 @@ pub struct ModalMachine {
     pub static_displacement: Vec<f64>,
     /// Modal velocity at the start, relative to the rigid rotation.
     pub initial_velocity: Vec<f64>,
-    /// What modes that are not stepped add to the deflections of the meshes.
+    /// The modes that are not stepped.
     pub residual: Residual,
     /// The machine's own description, of which outputs need the places.
     pub machine: Machine,
 }
 
-/// The flexibility of modes that are so high that they deform at every instant as at rest. The columns of all lines of action are counted
-/// through, mesh by mesh; without such modes all lists are empty.
+/// The modes that are not stepped: they are so high that they deform at every instant as at rest. Without such modes all lists are empty.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Residual {
-    /// (m/N) `Σ B Bᵀ/ω²`, a row for each column.
-    pub compliance: Vec<Vec<f64>>,
-    /// (m) Deflection in each column under the constant loads.
-    pub static_deflection: Vec<f64>,
-    /// Deflection in each column per unit of each external.
-    pub of_external: Vec<[f64; EXTERNALS]>,
+    /// (1/s²) ω² of each.
+    stiffness: Vec<f64>,
+    /// Their mass-normalised shapes.
+    shapes: Vec<DVector<f64>>,
+    /// Their entries in the columns of all lines of action, mesh by mesh.
+    columns: Vec<Vec<f64>>,
+    /// Their force per rad of motor angle.
+    motor: Vec<f64>,
+    /// Their force per N m of brake torque.
+    brake: Vec<f64>,
+    /// Their displacement under the constant loads.
+    static_displacement: Vec<f64>,
+}
+
+/// What the modes that are not stepped add to a combination of them.
+pub(super) struct AtRest {
+    /// Under the constant loads.
+    pub(super) constant: f64,
+    /// (1/N) Per force in each column of the lines of action.
+    pub(super) of_force: Vec<f64>,
+    /// Per rad of the motor's lead and per N m of the brake's torque deviation.
+    pub(super) of_drives: [f64; 2],
+}
+
+impl Residual {
+    /// Whether all modes are stepped.
+    pub(super) fn is_empty(&self) -> bool {
+        self.stiffness.is_empty()
+    }
+
+    /// What the modes add to a combination of them.
+    ///
+    /// # Arguments
+    /// * `weights` - of the modes
+    fn at_rest(&self, weights: &[f64]) -> AtRest {
+        let yielding = |force: &[f64]| (0..weights.len()).map(|n| weights[n] * force[n] / self.stiffness[n]).sum();
+        AtRest {
+            constant: dot(weights, &self.static_displacement),
+            of_force: self.columns.iter().map(|column| yielding(column)).collect(),
+            of_drives: [yielding(&self.motor), yielding(&self.brake)],
+        }
+    }
+
+    /// What the modes add to the deflection in each column of the lines of action.
+    pub(super) fn of_columns(&self) -> Vec<AtRest> {
+        self.columns.iter().map(|column| self.at_rest(column)).collect()
+    }
+
+    /// What the modes add to a combination of the machine's coordinates.
+    ///
+    /// # Arguments
+    /// * `weights` - of the coordinates
+    pub(super) fn of_coordinates(&self, weights: &DVector<f64>) -> AtRest {
+        self.at_rest(&self.shapes.iter().map(|shape| shape.dot(weights)).collect::<Vec<f64>>())
+    }
 }
 
 /// The line of action of a mesh in the modes.
@@ -149,40 +197,19 @@ impl ModalMachine {
     /// # Arguments
     /// * `angular_frequency` - (rad/s) of the highest mode that is stepped
     pub fn up_to(mut self, angular_frequency: f64) -> Self {
-        let omitted: Vec<usize> =
-            (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() > angular_frequency).collect();
-        if omitted.is_empty() {
-            return self;
-        }
-        let columns: Vec<&Vec<f64>> = self.lines.iter().flat_map(|line| &line.columns).collect();
-        let yielding = |a: &[f64], b: &[f64]| omitted.iter().map(|&n| a[n] * b[n] / self.stiffness[n]).sum::<f64>();
-        let externals = external_forces(&self);
-        let static_deflection =
-            |column: &&Vec<f64>| omitted.iter().map(|&n| column[n] * self.static_displacement[n]).sum();
+        let is_stepped: Vec<bool> = self.stiffness.iter().map(|stiffness| stiffness.sqrt() <= angular_frequency).collect();
+        let split = |values: &mut Vec<f64>| take_out(values, &is_stepped);
         self.residual = Residual {
-            compliance: columns.iter().map(|a| columns.iter().map(|b| yielding(a, b)).collect()).collect(),
-            static_deflection: columns.iter().map(static_deflection).collect(),
-            of_external: columns.iter().map(|a| externals.each_ref().map(|force| yielding(a, force))).collect(),
+            shapes: take_out(&mut self.shapes, &is_stepped),
+            columns: self.lines.iter_mut().flat_map(|line| &mut line.columns).map(split).collect(),
+            motor: split(&mut self.motor),
+            brake: split(&mut self.brake),
+            static_displacement: split(&mut self.static_displacement),
+            stiffness: split(&mut self.stiffness),
         };
-        let is_kept = |n: usize| !omitted.contains(&n);
-        let keep = |values: &mut Vec<f64>| {
-            let kept = values.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, value)| *value);
-            *values = kept.collect();
-        };
-        let shapes = std::mem::take(&mut self.shapes).into_iter().enumerate();
-        self.shapes = shapes.filter(|(n, _)| is_kept(*n)).map(|(_, shape)| shape).collect();
-        for values in [
-            &mut self.stiffness,
-            &mut self.damping,
-            &mut self.motor,
-            &mut self.brake,
-            &mut self.rigid_velocity,
-            &mut self.static_displacement,
-            &mut self.initial_velocity,
-        ] {
-            keep(values);
+        for values in [&mut self.damping, &mut self.rigid_velocity, &mut self.initial_velocity] {
+            split(values);
         }
-        self.lines.iter_mut().flat_map(|line| &mut line.columns).for_each(keep);
         self
     }
 
@@ -263,6 +290,13 @@ impl ModalMachine {
         let of_modes = self.shapes.iter().map(|shape| sum_or_zero(shape, weights)).collect();
         (of_modes, self.rigid_rotation.dot(weights))
     }
+}
+
+/// Takes the entries out of a list that are not to stay.
+fn take_out<T>(values: &mut Vec<T>, stays: &[bool]) -> Vec<T> {
+    let (kept, out): (Vec<_>, Vec<_>) = std::mem::take(values).into_iter().zip(stays).partition(|(_, stays)| **stays);
+    *values = kept.into_iter().map(|(value, _)| value).collect();
+    out.into_iter().map(|(value, _)| value).collect()
 }
 
 /// Forces of all motors per rad of the input's angle, and of all brakes per N m of the nominal torque, in turned coordinates: drives

@@ -180,6 +180,38 @@ fn high_modes_are_flexibility_enough() {
     }
 }
 
+// What is left out of accelerations and speeds is missing there, but teeth are where they are with all modes.
+#[test]
+fn few_modes_leave_transmission_errors_as_they_are() {
+    let mut steady = two_stages();
+    steady.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
+    steady.solver.settings.duration_s = Some(0.2);
+    let mut run_up = steady.clone();
+    run_up.operation.drive.speed_profile_hz =
+        Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
+    (run_up.solver.settings.duration_s, run_up.solver.settings.settle_fraction) = (None, 0.5);
+    for (gearbox, highest_hz, vibration_um) in
+        [(&steady, 5e3, 0.03), (&steady, 500.0, 0.6), (&run_up, 5e3, 0.03)]
+    {
+        let [few, all] = [highest_hz, 1e9].map(|highest_hz| {
+            let mut gearbox = gearbox.clone();
+            gearbox.solver.highest_mode_hz = Some(highest_hz);
+            simulate(&gearbox).channels
+        });
+        for (few, all) in few.signals.iter().zip(&all.signals) {
+            let differences: Vec<f64> =
+                few.values.iter().zip(&all.values).map(|(few, all)| few - all).collect();
+            let (mean, rms) = (mean(&differences), rms(&differences));
+            println!("{} up to {highest_hz} Hz: {mean:.1e} {}, vibrating {rms:.1e}", few.name, few.unit);
+            match few.unit {
+                "µm" => assert!(mean.abs() < 0.01 && rms < vibration_um),
+                "Hz" => assert!(mean.abs() < 1e-5),
+                _ => {}
+            }
+        }
+    }
+}
+
 #[test]
 fn half_the_step_changes_little() {
     let mut gearbox = two_stages();

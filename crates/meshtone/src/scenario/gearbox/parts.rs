@@ -482,7 +482,7 @@ impl Keys for GearboxSolver {
         let highest = row(
             "highest_mode_hz",
             "Hz",
-            "the natural frequency up to which modes are stepped; those above deform as at rest; where the speed varies, all are stepped",
+            "the natural frequency up to which modes are stepped; those above deform as at rest",
             field!(highest_mode_hz),
         )
         .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
