@@ -6,14 +6,14 @@ use std::num::NonZeroUsize;
 use super::{Clock, StageTime, check_mesh};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{Axis, Disc, GearboxMachine, GearboxParts, MeshLine, Modes, WheelBody};
+use crate::machine::{Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, MeshLine, Modes, WheelBody};
 use crate::mesh::{
     Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, Pairs, TipShape, Turning,
 };
 use crate::operation::{CycleGrid, Motion, TimeGrid, TorqueHarmonic};
 use crate::random::{Draws, Purpose};
 use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor};
-use crate::sensor::{GRAVITY_M_PER_S2, Measurement, SensorDirection, measure};
+use crate::sensor::{GRAVITY_M_PER_S2, Measurement, measure};
 use crate::simd::InstructionSet;
 use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorder, StepCounts, integrate};
 use crate::threads;
@@ -63,7 +63,9 @@ pub struct GearboxStages {
     pub timings: Vec<StageTime>,
     machine: GearboxMachine,
     modes: Modes,
-    warnings: Vec<ScenarioWarning>,
+    /// The mode that is the slowest to decay with the meshes closed.
+    pub(crate) slowest_mode: DecayingMode,
+    pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
 }
 
 /// A signal of a gearbox.
@@ -189,7 +191,7 @@ impl GearboxSimulation {
 /// A gearbox that is not valid, or a fault that does not fit the tooth.
 pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError> {
     let mut clock = Clock::default();
-    let warnings = gearbox.validate()?;
+    let warnings_of_scenario = gearbox.validate()?;
     let layout = GearboxLayout::new(gearbox)?;
     let time = gearbox.time_grid();
     clock.lap("scenario");
@@ -231,13 +233,15 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
         timings: Vec::new(),
         machine,
         modes,
-        warnings,
+        slowest_mode: DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY },
+        warnings_of_scenario,
     };
     stages.meshes = (mesh_mass_kg.iter().enumerate())
         .map(|(mesh, &mass_kg)| stages.mesh(mesh, mass_kg))
         .collect::<Result<_, _>>()?;
     stages.meshes.iter().try_for_each(check_mesh)?;
     clock.lap("mesh stiffness");
+    stages.slowest_mode = stages.slowest_mode();
     stages.time.first_simulated_sample = stages.start_of_settling();
     clock.lap("settling");
     stages.timings = clock.laps;
@@ -271,11 +275,15 @@ pub fn simulate_gearbox(gearbox: &Gearbox) -> Result<GearboxSimulation, Error> {
 ///
 /// # Arguments
 /// * `gearboxes` - what is simulated
+/// * `keep` - what is kept of a simulation
 ///
 /// # Returns
-/// For each in its place the simulation, or the error of [`simulate_gearbox`]; results do not depend on the number of threads.
-pub fn simulate_gearboxes(gearboxes: &[Gearbox]) -> Vec<Result<GearboxSimulation, Error>> {
-    threads::map(gearboxes, simulate_gearbox)
+/// For each in its place what is kept, or the error of [`simulate_gearbox`]; results do not depend on the number of threads.
+pub fn simulate_gearboxes<T: Send>(
+    gearboxes: &[Gearbox],
+    keep: impl Fn(GearboxSimulation) -> T + Sync,
+) -> Vec<Result<T, Error>> {
+    threads::map(gearboxes, |gearbox| simulate_gearbox(gearbox).map(&keep))
 }
 
 /// The wheels of a mesh: teeth, deviations of each drawn with a seed of its own, damage.
@@ -293,8 +301,8 @@ fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result
     let Deviations { run_out: [_, gear_run_out], helix_slope_um: [_, gear_um], .. } = of_gear;
     let (numbers, faults): (Vec<usize>, Vec<Fault>) =
         layout.faults_of_mesh(gearbox, mesh).into_iter().unzip();
-    let damaged =
-        damaged_teeth(&faults, &teeth, gearbox.seed).map_err(|error| gearbox.in_fault(error, &numbers))?;
+    let damaged = damaged_teeth(&faults, &teeth, gearbox.seed)
+        .map_err(|error| gearbox.in_fault(error, mesh, &numbers))?;
     let faults = faults.iter().map(|fault| fault.with_sizes(&teeth));
     Ok(MeshedPair {
         profile_errors,
@@ -458,11 +466,6 @@ impl GearboxStages {
         self.meshes.iter().map(|mesh| mesh.mean_stiffness_n_per_m).collect()
     }
 
-    /// What is doubtful about the gearbox.
-    pub fn warnings(&self) -> &[ScenarioWarning] {
-        &self.warnings
-    }
-
     /// Whether motor and brake are steady.
     pub fn is_steady(&self) -> bool {
         let operation = &self.gearbox.operation;
@@ -483,17 +486,21 @@ impl GearboxStages {
         if settle_tolerance == 0.0 || !self.is_steady() || self.time.first_kept_sample == 0 {
             return 0;
         }
-        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
-        // Higher modes decay faster.
-        const HIGHEST_HZ: f64 = 2e3;
-        let decay_per_s = self.modal_machine().slowest_decay_per_s(&closed, TAU * HIGHEST_HZ);
-        if !decay_per_s.is_finite() {
-            // Nothing decays, so that all of the settling is simulated.
-            return 0;
-        }
-        let decay_s = -settle_tolerance.ln() / decay_per_s;
+        // Where nothing decays, all of the settling is simulated: as a float, that takes forever.
+        let decay_s = -settle_tolerance.ln() / self.slowest_mode.decay_per_s.max(0.0);
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         self.time.first_kept_sample.saturating_sub(settling as usize)
+    }
+
+    /// The slowest to decay of the modes that are damped, with the meshes closed.
+    fn slowest_mode(&self) -> DecayingMode {
+        // Higher modes decay faster.
+        const HIGHEST_HZ: f64 = 2e3;
+        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
+        let modes = self.modal_machine().closed_modes(&closed, TAU * HIGHEST_HZ);
+        let damped = modes.into_iter().map(|mode| mode.decay).filter(|mode| mode.decay_per_s > 0.0);
+        let slowest = damped.min_by(|a, b| a.decay_per_s.total_cmp(&b.decay_per_s));
+        slowest.unwrap_or(DecayingMode { frequency_hz: 0.0, decay_per_s: 0.0 })
     }
 
     /// The machine around the meshes, and its modes without them.
@@ -541,15 +548,15 @@ impl GearboxStages {
             .with_ripple(operation.torque_ripple.iter().map(harmonic).collect())
     }
 
+    /// The sensors whose noise does not hide what a finer step changes.
+    pub(crate) fn plain_sensors(&self) -> impl Iterator<Item = &GearboxSensor> {
+        self.sensors.iter().filter(|sensor| sensor.sensor.noise_density_g_per_rthz == 0.0)
+    }
+
     /// What the channels are made of.
     fn outputs(&self) -> Vec<(String, &'static str, Output)> {
         let sensors = self.sensors.iter().map(|sensor| {
-            let axis = match sensor.sensor.direction {
-                SensorDirection::Horizontal => Axis::X,
-                SensorDirection::Vertical => Axis::Y,
-                SensorDirection::Axial => Axis::Z,
-            };
-            let name = sensor.name();
+            let (name, axis) = (sensor.name(), sensor.axis());
             let output =
                 Output::Acceleration { place: name.clone().into(), axis, factor: 1.0 / GRAVITY_M_PER_S2 };
             (format!("{name}_g"), "g", output)

@@ -1,9 +1,11 @@
 //! A machine in its modes, without what stays at rest.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::outputs::dot;
-use crate::machine::{ClosedMesh, Drive, Machine, Modes};
+use crate::machine::{ClosedMesh, DecayingMode, Drive, Machine, Modes};
 
 /// A machine without its meshes, in the modes that take part in the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,6 +71,11 @@ impl Residual {
         self.stiffness.is_empty()
     }
 
+    /// (m/N) What the modes add to the deflection in each column per force in each.
+    pub(super) fn compliance(&self) -> Vec<Vec<f64>> {
+        self.of_columns().into_iter().map(|at_rest| at_rest.of_force).collect()
+    }
+
     /// What the modes add to a combination of them.
     ///
     /// # Arguments
@@ -118,6 +125,15 @@ impl ModalLine {
             line
         })
     }
+}
+
+/// A mode of a machine whose meshes are closed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClosedMode {
+    /// Its frequency and how fast it decays.
+    pub decay: DecayingMode,
+    /// (-) Part of its strain energy that each mesh has.
+    pub mesh_energies: Vec<f64>,
 }
 
 /// How a simulation starts.
@@ -232,25 +248,35 @@ impl ModalMachine {
             .collect();
     }
 
-    /// (1/s) Rate at which the slowest mode decays with the meshes closed, of the modes up to a frequency.
+    /// The modes with the meshes closed, of those up to a frequency without them; damping does not couple them.
     ///
     /// # Arguments
     /// * `meshes` - closed
     /// * `highest_rad_per_s` - (rad/s) natural frequency of the highest mode that counts
-    pub fn slowest_decay_per_s(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> f64 {
+    pub fn closed_modes(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> Vec<ClosedMode> {
         let low: Vec<usize> =
             (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() <= highest_rad_per_s).collect();
-        let mut closed = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.stiffness[n])));
-        let mut damping = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.damping[n])));
-        for (line, mesh) in self.lines.iter().zip(meshes) {
-            let column = DVector::from_iterator(low.len(), low.iter().map(|&n| line.columns[0][n]));
-            let stiffness = &column * column.transpose() * mesh.stiffness_n_per_m;
+        let of_low = |values: &[f64]| DVector::from_iterator(low.len(), low.iter().map(|&n| values[n]));
+        let mut closed = DMatrix::from_diagonal(&of_low(&self.stiffness));
+        let mut damping = DMatrix::from_diagonal(&of_low(&self.damping));
+        let columns: Vec<DVector<f64>> = self.lines.iter().map(|line| of_low(&line.columns[0])).collect();
+        for (column, mesh) in columns.iter().zip(meshes) {
+            let stiffness = column * column.transpose() * mesh.stiffness_n_per_m;
             damping += &stiffness * mesh.damping_time_s;
             closed += stiffness;
         }
-        let shapes = closed.symmetric_eigen().eigenvectors;
-        let decay_per_s = |shape: nalgebra::DVectorView<f64>| (&damping * shape).dot(&shape) / 2.0;
-        shapes.column_iter().map(decay_per_s).filter(|decay| *decay > 0.0).fold(f64::INFINITY, f64::min)
+        let eigen = closed.symmetric_eigen();
+        let mode = |(square, shape): (&f64, nalgebra::DVectorView<f64>)| {
+            let energy = |(column, mesh): (&DVector<f64>, &ClosedMesh)| {
+                mesh.stiffness_n_per_m * column.dot(&shape).powi(2) / square.abs().max(f64::MIN_POSITIVE)
+            };
+            let frequency_hz = square.max(0.0).sqrt() / TAU;
+            ClosedMode {
+                decay: DecayingMode { frequency_hz, decay_per_s: (&damping * shape).dot(&shape) / 2.0 },
+                mesh_energies: columns.iter().zip(meshes).map(energy).collect(),
+            }
+        };
+        eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).map(mode).collect()
     }
 
     /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.

@@ -6,9 +6,9 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::damage::Fault;
 use crate::keys::{KeyRow, Keys, NumberFiles, Range, field, flatten, read_keys, row};
-use crate::machine::WheelInertia;
+use crate::machine::{Axis, WheelInertia};
 use crate::operation::{Operation, Solver};
-use crate::sensor::{Sensor, SensorPath};
+use crate::sensor::{Sensor, SensorDirection, SensorPath};
 use crate::wheel::{FlankRelief, Material, WheelDeviations};
 
 /// A wheel on a shaft of a gearbox.
@@ -325,7 +325,16 @@ impl Keys for GearboxOperation {
         )
         .required()
         .range(Range::positive().implausible_above(1e5));
-        let others = flatten(field!(drive)).filter(|row| row.name != "pinion_speed_hz");
+        let torque = row(
+            "brake_torque_nm",
+            "N m",
+            "the nominal torque of the brake on the shaft that is coupled to it",
+            field!(drive.brake_torque_nm),
+        )
+        .required()
+        .range(Range::not_negative().implausible_above(1e9));
+        let others =
+            flatten(field!(drive)).filter(|row| !["pinion_speed_hz", "brake_torque_nm"].contains(&row.name));
         let own = [
             row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
                 .range(Range::positive().implausible_above(1e9)),
@@ -339,7 +348,7 @@ impl Keys for GearboxOperation {
             .rule("amplitudes add up to less than 1")
             .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
         ];
-        std::iter::once(input).chain(others).chain(own).collect()
+        [input, torque].into_iter().chain(others).chain(own).collect()
     }
 }
 
@@ -407,6 +416,15 @@ impl GearboxSensor {
         let place = place.trim_matches('_').replace("__", "_");
         self.sensor.name.clone().unwrap_or_else(|| format!("{place}_{}", self.sensor.direction.name()))
     }
+
+    /// The axis that it measures along.
+    pub(crate) fn axis(&self) -> Axis {
+        match self.sensor.direction {
+            SensorDirection::Horizontal => Axis::X,
+            SensorDirection::Vertical => Axis::Y,
+            SensorDirection::Axial => Axis::Z,
+        }
+    }
 }
 
 impl Keys for GearboxSensor {
@@ -426,8 +444,15 @@ impl Keys for GearboxSensor {
             field!(at),
         )
         .required();
-        let others = flatten(field!(sensor)).filter(|row| !["at", "response_input"].contains(&row.name));
-        std::iter::once(at).chain(others).collect()
+        let name =
+            row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(sensor.name))
+                .otherwise("place and direction, such as `input_0_vertical`")
+                .rule("a letter, then letters, digits and `_`; no other channel's")
+                .alternative("\"output_bearing\"");
+        let direction = row("direction", "", "the direction it measures in", field!(sensor.direction));
+        const OWN: [&str; 4] = ["at", "name", "direction", "response_input"];
+        let others = flatten(field!(sensor)).filter(|row| !OWN.contains(&row.name));
+        [at, name, direction].into_iter().chain(others).collect()
     }
 }
 
@@ -460,8 +485,13 @@ impl Keys for GearboxSolver {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        const OF_PAIR: [&str; 4] =
-            ["sampling_rate_hz", "pinion_revolutions", "initial_displacement", "initial_velocity"];
+        const OF_PAIR: [&str; 5] = [
+            "sampling_rate_hz",
+            "duration_s",
+            "pinion_revolutions",
+            "initial_displacement",
+            "initial_velocity",
+        ];
         let rate = row(
             "sampling_rate_hz",
             "S/s",
@@ -469,6 +499,16 @@ impl Keys for GearboxSolver {
             field!(settings.sampling_rate_hz),
         )
         .range(Range::positive());
+        let duration = row(
+            "duration_s",
+            "s",
+            "how long the kept signal is; settling comes before it",
+            field!(settings.duration_s),
+        )
+        .otherwise("that of input_revolutions")
+        .range(Range::positive())
+        .rule("not beside input_revolutions")
+        .example("1.0");
         let revolutions = row(
             "input_revolutions",
             "rev",
@@ -489,7 +529,7 @@ impl Keys for GearboxSolver {
         .range(Range::between(Excluded(0.0), Included(1e9)))
         .alternative("20000.0");
         let others = flatten(field!(settings)).filter(|row| !OF_PAIR.contains(&row.name));
-        [rate, revolutions].into_iter().chain(others).chain([highest]).collect()
+        [rate, duration, revolutions].into_iter().chain(others).chain([highest]).collect()
     }
 }
 
