@@ -79,7 +79,7 @@ const MODELS: [Choice<Model>; 3] = [
     ("published", "The published code, its known errors included", Model::Published),
 ];
 
-/// What a scenario file asks for, and where its results go.
+/// A run that can be simulated, of either form of the scenario file.
 enum Run {
     Pair(Box<PairRun>),
     Gearbox(Box<GearboxRun>),

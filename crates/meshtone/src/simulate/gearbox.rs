@@ -2,11 +2,14 @@
 
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 use super::{Clock, StageTime, check_mesh};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, MeshLine, Modes, WheelBody};
+use crate::machine::{
+    Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, KnownModes, MeshLine, Modes, WheelBody,
+};
 use crate::mesh::{
     Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, Pairs, TipShape, Turning,
 };
@@ -62,7 +65,9 @@ pub struct GearboxStages {
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
     machine: GearboxMachine,
-    modes: Modes,
+    modes: Arc<Modes>,
+    /// The machine in the modes that are stepped.
+    modal: ModalMachine,
     /// The mode that is the slowest to decay with the meshes closed.
     pub(crate) slowest_mode: DecayingMode,
     pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
@@ -190,6 +195,11 @@ impl GearboxSimulation {
 /// # Errors
 /// A gearbox that is not valid, or a fault that does not fit the tooth.
 pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError> {
+    stages_with(gearbox, &KnownModes::default())
+}
+
+/// Does what [`gearbox_stages`] does, with modes that are known already.
+fn stages_with(gearbox: &Gearbox, known: &KnownModes) -> Result<GearboxStages, ScenarioError> {
     let mut clock = Clock::default();
     let warnings_of_scenario = gearbox.validate()?;
     let layout = GearboxLayout::new(gearbox)?;
@@ -210,9 +220,9 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
     for (number, mesh) in gearbox.meshes.iter().enumerate() {
         machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
     }
-    let modes = Modes::damped_by_springs(&machine.machine);
-    let balanced = ModalMachine::new(&machine.machine, &modes, &vec![0.0; pairs.len()], start(gearbox));
-    for (pair, line) in pairs.iter_mut().zip(&balanced.lines) {
+    let modes = known.damped_by_springs(&machine.machine);
+    let modal = ModalMachine::new(&machine.machine, &modes, &vec![0.0; pairs.len()], start(gearbox));
+    for (pair, line) in pairs.iter_mut().zip(&modal.lines) {
         pair.static_force_n = line.static_force_n;
     }
     clock.lap("equations of motion");
@@ -233,6 +243,7 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
         timings: Vec::new(),
         machine,
         modes,
+        modal,
         slowest_mode: DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY },
         warnings_of_scenario,
     };
@@ -241,6 +252,7 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
         .collect::<Result<_, _>>()?;
     stages.meshes.iter().try_for_each(check_mesh)?;
     clock.lap("mesh stiffness");
+    stages.step_low_modes();
     stages.slowest_mode = stages.slowest_mode();
     stages.time.first_simulated_sample = stages.start_of_settling();
     clock.lap("settling");
@@ -254,7 +266,7 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
 /// * `gearbox` - what is simulated
 ///
 /// # Errors
-/// As [`gearbox_stages`], and a motion that grows without bound.
+/// Those of [`gearbox_stages`], and a motion that grows without bound.
 ///
 /// ```
 /// use meshtone::scenario::{Gearbox, gearbox_template};
@@ -283,7 +295,8 @@ pub fn simulate_gearboxes<T: Send>(
     gearboxes: &[Gearbox],
     keep: impl Fn(GearboxSimulation) -> T + Sync,
 ) -> Vec<Result<T, Error>> {
-    threads::map(gearboxes, |gearbox| simulate_gearbox(gearbox).map(&keep))
+    let known = KnownModes::default();
+    threads::map(gearboxes, |gearbox| stages_with(gearbox, &known)?.simulate().map(&keep))
 }
 
 /// The wheels of a mesh: teeth, deviations of each drawn with a seed of its own, damage.
@@ -528,11 +541,19 @@ impl GearboxStages {
     }
 
     /// The machine in the modes that are stepped.
-    pub(crate) fn modal_machine(&self) -> ModalMachine {
+    pub(crate) fn modal_machine(&self) -> &ModalMachine {
+        &self.modal
+    }
+
+    /// Leaves the high modes out, and takes the tilts of wheels in whose meshes the load moves along the face.
+    fn step_low_modes(&mut self) {
         let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
+        if face_reach_m.iter().any(|reach_m| *reach_m > 0.0) {
+            let machine = &self.machine.machine;
+            self.modal = ModalMachine::new(machine, &self.modes, &face_reach_m, start(&self.gearbox));
+        }
         let highest_hz = self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz);
-        ModalMachine::new(&self.machine.machine, &self.modes, &face_reach_m, start(&self.gearbox))
-            .up_to(TAU * highest_hz)
+        self.modal = self.modal.clone().up_to(TAU * highest_hz);
     }
 
     /// Motion of motor and brake, sample by sample from the start of the simulation.
@@ -643,7 +664,7 @@ impl GearboxStages {
         };
         Problem {
             time: &self.time,
-            machine: self.modal_machine(),
+            machine: self.modal.clone(),
             laws: self.meshes.iter().map(Mesh::law).collect(),
             forcing: Forcing::new(
                 self.motion(),

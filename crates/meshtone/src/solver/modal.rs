@@ -99,7 +99,9 @@ impl Residual {
     /// # Arguments
     /// * `weights` - of the coordinates
     pub(super) fn of_coordinates(&self, weights: &DVector<f64>) -> AtRest {
-        self.at_rest(&self.shapes.iter().map(|shape| shape.dot(weights)).collect::<Vec<f64>>())
+        let entries = entries(weights);
+        let of_shape = |shape: &DVector<f64>| entries.iter().map(|&(n, weight)| weight * shape[n]).sum();
+        self.at_rest(&self.shapes.iter().map(of_shape).collect::<Vec<f64>>())
     }
 }
 
@@ -184,7 +186,7 @@ impl ModalMachine {
         let active: Vec<usize> = (0..machine.coordinates()).filter(|&n| moved(n)).collect();
         let pick = |vector: &DVector<f64>| active.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
         let mut this = Self {
-            shapes: active.iter().map(|&n| &machine.turn * modes.shapes.column(n)).collect(),
+            shapes: turned_back(&machine.turn, &modes.shapes, &active),
             stiffness: active.iter().map(|&n| modes.angular_frequencies[n].powi(2)).collect(),
             damping: active.iter().map(|&n| modes.damping_per_s(n)).collect(),
             lines: (lines.iter().zip(face_reach_m))
@@ -313,9 +315,22 @@ impl ModalMachine {
     /// # Arguments
     /// * `weights` - of the coordinates
     pub(super) fn of_coordinates(&self, weights: &DVector<f64>) -> (Vec<f64>, f64) {
-        let of_modes = self.shapes.iter().map(|shape| sum_or_zero(shape, weights)).collect();
+        let entries = entries(weights);
+        let of_modes = self.shapes.iter().map(|shape| sum_or_zero(shape, &entries)).collect();
         (of_modes, self.rigid_rotation.dot(weights))
     }
+}
+
+/// Shapes in the coordinates themselves. Most entries of `turn` are 0.
+fn turned_back(turn: &DMatrix<f64>, shapes: &DMatrix<f64>, modes: &[usize]) -> Vec<DVector<f64>> {
+    let rows = |column: usize| (0..turn.nrows()).map(move |row| (row, column));
+    let entries: Vec<_> = (0..turn.ncols()).flat_map(rows).filter(|entry| turn[*entry] != 0.0).collect();
+    let shape = |&mode: &usize| {
+        let mut shape = DVector::zeros(turn.nrows());
+        entries.iter().for_each(|&(row, column)| shape[row] += turn[(row, column)] * shapes[(column, mode)]);
+        shape
+    };
+    modes.iter().map(shape).collect()
 }
 
 /// Takes the entries out of a list that are not to stay.
@@ -357,10 +372,16 @@ fn clean(vector: DVector<f64>) -> DVector<f64> {
     vector.map(|entry| if entry.abs() < ROUNDING * largest { 0.0 } else { entry })
 }
 
-/// `a·b`, or 0 where the terms cancel to rounding: wheels of equal mass move in opposition, and their sum is no signal.
-fn sum_or_zero(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+/// Numbers and values of the entries of a vector that are not 0.
+fn entries(vector: &DVector<f64>) -> Vec<(usize, f64)> {
+    vector.iter().copied().enumerate().filter(|(_, entry)| *entry != 0.0).collect()
+}
+
+/// The sum of some coordinates with their weights, or 0 where the terms cancel to rounding: wheels of equal mass move in opposition, and
+/// their sum is no signal.
+fn sum_or_zero(shape: &DVector<f64>, weights: &[(usize, f64)]) -> f64 {
     const CANCELLED: f64 = 1e-12;
-    let terms = a.component_mul(b);
-    let sum = terms.sum();
-    if sum.abs() < CANCELLED * terms.abs().sum() { 0.0 } else { sum }
+    let terms = weights.iter().map(|&(n, weight)| weight * shape[n]);
+    let (sum, size) = (terms.clone().sum::<f64>(), terms.map(f64::abs).sum::<f64>());
+    if sum.abs() < CANCELLED * size { 0.0 } else { sum }
 }

@@ -170,11 +170,10 @@ pub(super) fn step_error_of_gearbox(
     let is_strong =
         |line: &Line| line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole);
     let lines = (1..channels.len().div_ceil(2)).map(line).filter(is_strong);
-    let model = stages.modal_machine();
     let sensors: Vec<_> =
         stages.plain_sensors().map(|sensor| (sensor.name().into(), sensor.axis())).collect();
     let laws = stages.meshes.iter().map(|mesh| mesh.law()).collect();
-    let machine = MeanMachine::new(&model, laws, stages.time.step_s(), &sensors);
+    let machine = MeanMachine::new(stages.modal_machine(), laws, stages.time.step_s(), &sensors);
     let estimate = growth(&machine, lines, &powers);
     if judgement == StepJudgement::Estimated {
         return (estimate >= CERTAIN).then_some(StepError::Suspected(estimate));

@@ -9,6 +9,7 @@ use crate::keys::{KeyRow, Keys, NumberFiles, Range, field, flatten, read_keys, r
 use crate::machine::{Axis, WheelInertia};
 use crate::operation::{Operation, Solver};
 use crate::sensor::{Sensor, SensorDirection, SensorPath};
+use crate::wheel::rows::*;
 use crate::wheel::{FlankRelief, Material, WheelDeviations};
 
 /// A wheel on a shaft of a gearbox.
@@ -110,42 +111,15 @@ impl Keys for GearboxWheel {
                 .required()
                 .range(ALONG)
                 .rule("within half a face width of its mates"),
-            row("teeth", "", "the tooth count", field!(teeth))
-                .required()
-                .range(Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth"))
-                .rule("contact ratio at least 1"),
-            row("face_width_mm", "mm", "the face width; a mesh has the narrower one", field!(face_width_mm))
-                .required()
-                .range(Range::positive().implausible_above(10_000.0)),
-            row("profile_shift", "-", "the profile shift coefficient x, in modules", field!(profile_shift))
-                .range(Range::from_to(-2.0, 2.0))
-                .rule("no undercut, no pointed tip"),
-            row("addendum", "-", "the addendum coefficient of the basic rack, in modules", field!(addendum))
-                .range(Range::from_to(0.3, 2.0)),
-            row("dedendum", "-", "the dedendum coefficient of the basic rack, in modules", field!(dedendum))
-                .range(Range::from_to(0.5, 2.5)),
-            row("tip_chamfer_mm", "mm", "the height of the chamfer or rounding of the tips", field!(tip_chamfer_mm))
-                .otherwise("0.2 modules")
-                .range(Range::not_negative())
-                .rule(MATES)
-                .alternative("0.3"),
-            row(
-                "active_profile_shortening",
-                "-",
-                "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either \
-                 end",
-                field!(active_profile_shortening),
-            )
-            .range(Range::from_to(0.0, 0.5))
-            .rule(MATES),
-            row(
-                "uniform_flank_reduction_mm",
-                "mm",
-                "a constant reduction of the working flank",
-                field!(uniform_flank_reduction_mm),
-            )
-            .range(Range::not_negative())
-            .rule(MATES),
+            teeth_row("teeth", field!(teeth)),
+            face_width_row("the face width; a mesh has the narrower one", field!(face_width_mm))
+                .rule("on its shaft, clear of other wheels"),
+            profile_shift_row("profile_shift", field!(profile_shift)),
+            addendum_row("addendum", field!(addendum)),
+            dedendum_row("dedendum", field!(dedendum)),
+            chamfer_row(field!(tip_chamfer_mm)).rule(MATES),
+            shortening_row(field!(active_profile_shortening)).rule(MATES),
+            flank_reduction_row(field!(uniform_flank_reduction_mm)).rule(MATES),
             row("flank_relief", "", "the relief of the flanks near the tips, as a gap in µm", field!(flank_relief))
                 .rule(MATES),
             row("material", "", "its material", field!(material))
@@ -252,21 +226,10 @@ impl Keys for GearboxMesh {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("wheels", "", "the names of the driving and of the driven wheel", field!(wheels)).required(),
-            row("module_mm", "mm", "the module of both wheels", field!(module_mm))
-                .required()
-                .range(Range::positive().implausible_above(100.0)),
-            row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
-                .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°")),
-            row("centre_distance_mm", "mm", "the distance between the axes", field!(centre_distance_mm))
-                .otherwise("that without backlash")
-                .range(Range::positive())
-                .rule("at least the default; contact ratio at least 1")
-                .alternative("101.6"),
-            row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
-                .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
-                .range(Range::not_negative())
-                .rule("less than 1 module")
-                .alternative("0.1"),
+            module_row(field!(module_mm)),
+            pressure_angle_row(field!(pressure_angle_deg)),
+            centre_distance_row(field!(centre_distance_mm)),
+            backlash_row(field!(backlash_mm)),
             row(
                 "phase",
                 "base pitches",
