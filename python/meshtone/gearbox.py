@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from os import PathLike
 from typing import Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._scenario_text import ScenarioText
 from ._warnings import warn
 
 __all__ = ["Gearbox", "GearboxSimulation", "gearbox_template", "simulate_gearbox", "simulate_gearboxes"]
@@ -17,7 +17,7 @@ __all__ = ["Gearbox", "GearboxSimulation", "gearbox_template", "simulate_gearbox
 _Table = Mapping[str, Any]
 
 
-class Gearbox:
+class Gearbox(ScenarioText):
     """Everything that the simulation of a gearbox depends on.
 
     Each list has a dictionary for an entry, with the keys of that section of the scenario file, its names, units and defaults: the guide's
@@ -73,6 +73,7 @@ class Gearbox:
 
     __slots__ = ("_native", "_sections")
 
+    _native_class = _core.Gearbox
     _native: _core.Gearbox
     _sections: dict[str, Any]
 
@@ -106,62 +107,6 @@ class Gearbox:
     def _set(self, native: _core.Gearbox) -> None:
         self._native = native
         self._sections = native.sections()
-
-    @classmethod
-    def _wrap(cls, native: _core.Gearbox) -> Gearbox:
-        gearbox = cls.__new__(cls)
-        gearbox._set(native)
-        return gearbox
-
-    @classmethod
-    def from_toml(cls, text: str) -> Gearbox:
-        """From the text of a scenario file.
-
-        Parameters
-        ----------
-        text : str
-            As ``meshtone init gearbox`` prints one.
-
-        Raises
-        ------
-        ValueError
-            Text that is not TOML, an unknown key, a value that is not allowed: with the line.
-
-        Examples
-        --------
-        >>> from meshtone import Gearbox, gearbox_template
-        >>> Gearbox.from_toml(gearbox_template("phm2009-spur"))
-        <Gearbox of 3 shafts and meshes z1-z2, z3-z4>
-        """
-        return cls._wrap(_core.Gearbox.from_toml(text))
-
-    @classmethod
-    def from_file(cls, path: str | PathLike[str]) -> Gearbox:
-        """From a scenario file, and the files that it names.
-
-        Parameters
-        ----------
-        path : str or path
-            The file.
-
-        Raises
-        ------
-        FileNotFoundError
-            There is no such file.
-        ValueError
-            As :meth:`from_toml`.
-        """
-        return cls._wrap(_core.Gearbox.from_file(path))
-
-    def to_toml(self) -> str:
-        """The text of a scenario file, with every key.
-
-        Returns
-        -------
-        str
-            What :meth:`from_toml` reads back exactly.
-        """
-        return self._native.to_toml()
 
     @property
     def sections(self) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Mapping, Sequence
-from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy.typing as npt
 from . import _core, _display
 from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioChanges, ScenarioKeys, Shaft, WheelInertia
 from ._names import hint
+from ._scenario_text import ScenarioText
 from ._sections import OTHER_ARGUMENTS, check_key, with_whole_numbers
 from .faults import Fault, from_section, to_section
 from .sensors import Sensor, sections_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Scenario", "Shaft", "WheelInertia", "template"]
 
 
-class Scenario(ScenarioKeys):
+class Scenario(ScenarioText, ScenarioKeys):
     """Everything that one simulation depends on.
 
     The arguments are the keys of the scenario file, with its names, units and defaults: ``help(Scenario.__init__)`` lists them. A
@@ -47,6 +47,7 @@ brake_torque_nm=10.0, din_grade=7)
 
     __slots__ = ("_flat", "_native")
 
+    _native_class = _core.Scenario
     _flat: dict[str, Any]
     _native: _core.Scenario
 
@@ -76,63 +77,6 @@ brake_torque_nm=10.0, din_grade=7)
         sensors = sections.get("sensor", [])
         flat["sensors"] = tuple(Sensor(**keys) for keys in (sensors if isinstance(sensors, list) else [sensors]))
         object.__setattr__(self, "_flat", flat)
-
-    @classmethod
-    def _wrap(cls, native: _core.Scenario) -> Scenario:
-        scenario = cls.__new__(cls)
-        scenario._set(native)
-        return scenario
-
-    @classmethod
-    def from_toml(cls, text: str) -> Scenario:
-        """From the text of a scenario file.
-
-        Parameters
-        ----------
-        text : str
-            As ``meshtone init`` prints one.
-
-        Raises
-        ------
-        ValueError
-            Text that is not TOML, an unknown key, a value that is not allowed: with the line.
-
-        Examples
-        --------
-        >>> Scenario.from_toml(template("missing-tooth")).fault
-        MissingTooth(wheel='gear', tooth=1, severity=None)
-        """
-        if "\n" not in text and text.endswith(".toml"):
-            raise ValueError(f"'{text}' is the name of a file, not its text: Scenario.from_file reads it")
-        return cls._wrap(_core.Scenario.from_toml(text))
-
-    @classmethod
-    def from_file(cls, path: str | PathLike[str]) -> Scenario:
-        """From a scenario file, and the files that it names.
-
-        Parameters
-        ----------
-        path : str or path
-            The file.
-
-        Raises
-        ------
-        FileNotFoundError
-            There is no such file.
-        ValueError
-            As :meth:`from_toml`.
-        """
-        return cls._wrap(_core.Scenario.from_file(path))
-
-    def to_toml(self) -> str:
-        """The text of a scenario file, with every key.
-
-        Returns
-        -------
-        str
-            What :meth:`from_toml` reads back exactly.
-        """
-        return self._native.to_toml()
 
     def copy(self, **changes: Unpack[ScenarioChanges]) -> Scenario:
         """The same scenario with some keys changed.

@@ -12,7 +12,7 @@ use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::{write_gearbox_signals, write_signals};
 use meshtone_io::summary::{GearboxSummary, Summary};
 use meshtone_io::trace_npz::write_trace;
-use meshtone_plot::panel;
+use meshtone_plot::{Figure, PlotError, panel};
 
 use crate::earlier_results;
 use crate::failure::Failure;
@@ -57,24 +57,19 @@ pub fn write(
         let panel = panel.join().unwrap_or_else(|_| Err(Failure::failed("cannot draw the panel")));
         (panel, signals)
     });
-    let signals = signals?;
-    let trace =
-        trace.map(|(trace, path)| StagedFile::write(path, |file| write_trace(file, summary.run, trace)));
-    let trace = trace.transpose()?;
-    let staged_summary = StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?;
-    // What has been computed is kept even where the picture of it fails.
-    let (mut staged, drawn) = match panel {
-        Ok(panel) => (panel, Ok(())),
-        Err(failure) => (Vec::new(), Err(failure.with_help("the other results are written; see --no-panel"))),
+    let traced = |(trace, path): (&Trace, &Path)| {
+        StagedFile::write(path, |file| write_trace(file, summary.run, trace))
     };
-    staged.push(signals);
-    // The trace may lie elsewhere; it carries the run's identity, as every file does.
-    trace.map(StagedFile::commit).transpose()?;
-    undisturbed(|| replace_earlier(directory, staged, staged_summary))?;
-    drawn
+    let staged = Staged {
+        signals: signals?,
+        trace: trace.map(traced).transpose()?,
+        summary: StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?,
+        panel,
+    };
+    staged.commit(directory)
 }
 
-/// Writes all files of a gearbox's simulation, as [`write()`] does of a pair's.
+/// Writes all files of a gearbox's simulation, each whole or not at all.
 ///
 /// # Arguments
 /// * `directory` - where to
@@ -88,26 +83,47 @@ pub fn write_gearbox(
     trace: Option<&Path>,
     with_panel: bool,
 ) -> Result<(), Failure> {
-    let signals = StagedFile::write(&directory.join(SIGNALS), |file| {
-        write_gearbox_signals(file, &simulation.stages.gearbox, &simulation.channels)
-    })?;
     let traced = |path| {
         StagedFile::write(path, |file| write_trace(file, summary.run, &meshtone::gearbox_trace(simulation)))
     };
-    let trace = trace.map(traced).transpose()?;
-    let staged_summary = StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?;
-    let panel = match with_panel {
-        true => stage_gearbox_panel(directory, summary.run, simulation),
-        false => Ok(Vec::new()),
+    let staged = Staged {
+        signals: StagedFile::write(&directory.join(SIGNALS), |file| {
+            write_gearbox_signals(file, &simulation.stages.gearbox, &simulation.channels)
+        })?,
+        trace: trace.map(traced).transpose()?,
+        summary: StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?,
+        panel: match with_panel {
+            true => stage_gearbox_panel(directory, summary.run, simulation),
+            false => Ok(Vec::new()),
+        },
     };
-    let (mut staged, drawn) = match panel {
-        Ok(panel) => (panel, Ok(())),
-        Err(failure) => (Vec::new(), Err(failure.with_help("the other results are written; see --no-panel"))),
-    };
-    staged.push(signals);
-    trace.map(StagedFile::commit).transpose()?;
-    undisturbed(|| replace_earlier(directory, staged, staged_summary))?;
-    drawn
+    staged.commit(directory)
+}
+
+/// The files of a run, complete beside their targets.
+struct Staged {
+    signals: StagedFile,
+    trace: Option<StagedFile>,
+    summary: StagedFile,
+    panel: Result<Vec<StagedFile>, Failure>,
+}
+
+impl Staged {
+    /// Gives the files their names, in place of those of an earlier run in the directory.
+    fn commit(self, directory: &Path) -> Result<(), Failure> {
+        // What has been computed is kept even where the picture of it fails.
+        let (mut staged, drawn) = match self.panel {
+            Ok(panel) => (panel, Ok(())),
+            Err(failure) => {
+                (Vec::new(), Err(failure.with_help("the other results are written; see --no-panel")))
+            }
+        };
+        staged.push(self.signals);
+        // The trace may lie elsewhere; it carries the run's identity, as every file does.
+        self.trace.map(StagedFile::commit).transpose()?;
+        undisturbed(|| replace_earlier(directory, staged, self.summary))?;
+        drawn
+    }
 }
 
 /// Draws the panel of a gearbox and writes its files, to be committed.
@@ -116,9 +132,7 @@ pub fn stage_gearbox_panel(
     run: RunIdentity,
     simulation: &GearboxSimulation,
 ) -> Result<Vec<StagedFile>, Failure> {
-    let figure = panel::draw_gearbox(simulation).map_err(cannot_draw);
-    let staged = figure.and_then(|figure| stage_figure(directory, PANEL, &figure.of_run(&run.to_string())));
-    staged.map_err(|failure| Failure { help: None, ..failure })
+    stage_drawn(directory, run, panel::draw_gearbox(simulation))
 }
 
 /// Draws the panel and writes its files, to be committed.
@@ -128,7 +142,15 @@ pub fn stage_panel(
     stages: &Stages,
     channels: &Channels,
 ) -> Result<Vec<StagedFile>, Failure> {
-    let figure = panel::draw(stages, channels).map_err(cannot_draw);
+    stage_drawn(directory, run, panel::draw(stages, channels))
+}
+
+fn stage_drawn(
+    directory: &Path,
+    run: RunIdentity,
+    figure: Result<Figure, PlotError>,
+) -> Result<Vec<StagedFile>, Failure> {
+    let figure = figure.map_err(cannot_draw);
     let staged = figure.and_then(|figure| stage_figure(directory, PANEL, &figure.of_run(&run.to_string())));
     // The panel has no option --no-figure.
     staged.map_err(|failure| Failure { help: None, ..failure })

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use meshtone::scenario::{self, GearboxRig, ScenarioForm};
+use meshtone::StepJudgement;
+use meshtone::scenario::{self, GearboxRig, ScenarioForm, ScenarioWarning};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_io::summary::GearboxSummary;
@@ -79,30 +80,24 @@ pub struct GearboxSimulation {
     /// (s) Of the first kept sample.
     #[pyo3(get)]
     start_s: f64,
-    /// Its warnings.
-    #[pyo3(get)]
-    warnings: Vec<String>,
-    /// Subject of each warning.
-    #[pyo3(get)]
-    warning_codes: Vec<&'static str>,
+    all_warnings: Vec<ScenarioWarning>,
 }
 
 impl GearboxSimulation {
-    fn new(py: Python<'_>, mut simulation: meshtone::GearboxSimulation) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        mut simulation: meshtone::GearboxSimulation,
+        all_warnings: Vec<ScenarioWarning>,
+    ) -> PyResult<Self> {
         let signals = simulation.channels.signals.iter();
         let named = signals.map(|signal| (signal.name.clone(), array(py, signal.values.clone())));
         let channels = named.collect::<Vec<_>>().into_py_dict(py)?.unbind();
-        let warnings = simulation.stages.warnings();
-        let (words, codes) =
-            (warnings.iter().map(ToString::to_string), warnings.iter().map(|warning| warning.kind.code()));
-        let (warnings, warning_codes) = (words.collect(), codes.collect());
         simulation.timings.shrink_to_fit();
         Ok(Self {
             sampling_rate_hz: simulation.channels.sampling_rate_hz,
             start_s: simulation.channels.start_s,
             channels,
-            warnings,
-            warning_codes,
+            all_warnings,
             simulation,
         })
     }
@@ -110,10 +105,24 @@ impl GearboxSimulation {
 
 #[pymethods]
 impl GearboxSimulation {
+    /// Its warnings.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.all_warnings.iter().map(ToString::to_string).collect()
+    }
+
+    /// Subject of each warning.
+    #[getter]
+    fn warning_codes(&self) -> Vec<&'static str> {
+        self.all_warnings.iter().map(|warning| warning.kind.code()).collect()
+    }
+
     /// The content of summary.json.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let toml = self.simulation.stages.gearbox.to_toml();
-        let summary = py.detach(|| GearboxSummary::new(&self.simulation, RunIdentity::of_toml(&toml)));
+        let summary = py.detach(|| {
+            GearboxSummary::new(&self.simulation, RunIdentity::of_toml(&toml), &self.all_warnings)
+        });
         let json = serde_json::to_string(&summary).map_err(value_error)?;
         Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
     }
@@ -151,9 +160,17 @@ pub fn simulate_gearboxes<'py>(
     gearboxes: Vec<PyRef<'py, Gearbox>>,
 ) -> PyResult<Vec<Py<PyAny>>> {
     let gearboxes: Vec<scenario::Gearbox> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
-    let results = py.detach(|| meshtone::simulate_gearboxes(&gearboxes));
+    // Of many, none is simulated a second time.
+    let judgement = if gearboxes.len() == 1 { StepJudgement::Repeated } else { StepJudgement::Estimated };
+    let judged = |simulation: meshtone::GearboxSimulation| {
+        let warnings = [simulation.stages.warnings(), simulation.warnings_of_signals(judgement)].concat();
+        (simulation, warnings)
+    };
+    let results = py.detach(|| meshtone::simulate_gearboxes(&gearboxes, judged));
     let made = results.into_iter().map(|result| match result {
-        Ok(simulation) => Ok(Py::new(py, GearboxSimulation::new(py, simulation)?)?.into_any()),
+        Ok((simulation, warnings)) => {
+            Ok(Py::new(py, GearboxSimulation::new(py, simulation, warnings)?)?.into_any())
+        }
         Err(error) => Ok(simulation_error(&error).into_value(py).into_any()),
     });
     made.collect()

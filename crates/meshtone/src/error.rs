@@ -264,6 +264,7 @@ warning_kinds! {
     NoContact "no-contact" "no pair of teeth meets for a part of a revolution, and the linear mesh holds nothing there";
     MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would part";
     Resonance "resonance" "the mesh force is far beyond what a machine survives";
+    MeshResonance "mesh-resonance" "a mesh frequency, or twice or three times it, is within 1 % of a natural frequency";
     BrakedRotation "braked-rotation" "the published model's damping brakes the whole machine, and the mesh carries another mean force than the load's";
     OtherSpeed "other-speed" "a shaft does not turn at the speed that it is driven at";
     StepError "step-error" "the step falsifies the rms by more than 2 %";

@@ -129,14 +129,14 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     stages_within(scenario, MemoryLimit::default())
 }
 
-/// As [`stages`], with another limit of memory.
+/// Does what [`stages`] does, with another limit of memory.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
 /// * `limit` - most memory that the simulation may need
 ///
 /// # Errors
-/// As [`stages`].
+/// Those of [`stages`].
 ///
 /// ```
 /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
@@ -387,7 +387,7 @@ impl Stages {
     /// Stages 7 and 8: the rest of the simulation, for those who have looked at the first six.
     ///
     /// # Errors
-    /// As [`Self::integrate`].
+    /// Those of [`Self::integrate`].
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -406,7 +406,7 @@ impl Stages {
         Ok(self.simulated(channels, clock))
     }
 
-    /// As [`Self::simulate`], for those who may change their mind meanwhile.
+    /// Does what [`Self::simulate`] does, for those who may change their mind meanwhile.
     ///
     /// # Arguments
     /// * `is_wanted` - asked after every block of samples whether the simulation still is
@@ -415,7 +415,7 @@ impl Stages {
     /// None where it is no longer wanted.
     ///
     /// # Errors
-    /// As [`Self::integrate`].
+    /// Those of [`Self::integrate`].
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};

@@ -27,7 +27,7 @@ pub struct Init {
     /// A healthy pair, or what is broken, to begin with on the gear's first tooth; a gearbox; the plan of a data set; or an experiment
     #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT])))]
     kind: String,
-    /// Of a gearbox: what is published of a rig, with what has to be assumed marked so
+    /// Print what is published of a rig with a gearbox; what is assumed is marked
     #[arg(long, value_name = "RIG", value_parser = PossibleValuesParser::new(GearboxRig::ALL.map(GearboxRig::name)))]
     rig: Option<String>,
     /// File to write, instead of standard output

@@ -7,7 +7,7 @@ use clap::Args;
 use meshtone::scenario::{
     Gearbox, Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioForm, ScenarioWarning,
 };
-use meshtone::{GearboxStages, Simulation, StageTime, Stages, Trace};
+use meshtone::{GearboxStages, Simulation, StageTime, Stages, StepJudgement, Trace};
 use meshtone_io::atomic_file::check_target;
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::run_identity::RunIdentity;
@@ -79,7 +79,7 @@ const MODELS: [Choice<Model>; 3] = [
     ("published", "The published code, its known errors included", Model::Published),
 ];
 
-/// What a scenario file asks for, and where its results go.
+/// A run that can be simulated, of either form of the scenario file.
 enum Run {
     Pair(Box<PairRun>),
     Gearbox(Box<GearboxRun>),
@@ -242,15 +242,22 @@ impl Simulate {
         number: usize,
     ) -> Result<(), Failure> {
         let GearboxRun { file, stages, .. } = run;
-        warnings::print(&file, stages.warnings());
+        let of_stages = stages.warnings();
+        warnings::print(&file, &of_stages);
         let message = format!("{} ({} of {})", file.path.display(), number + 1, self.scenarios.len());
-        let summary = with_spinner(message, !self.quiet, || {
+        let (summary, by_signals, written) = with_spinner(message, !self.quiet, || {
             let simulation = stages.simulate().map_err(|error| not_simulated(&file, error))?;
-            let summary = GearboxSummary::new(&simulation, RunIdentity::of_toml(&file.scenario.to_toml()));
+            let by_signals = simulation.warnings_of_signals(StepJudgement::Repeated);
+            let all_warnings = [&of_stages[..], &by_signals].concat();
+            let run = RunIdentity::of_toml(&file.scenario.to_toml());
+            let summary = GearboxSummary::new(&simulation, run, &all_warnings);
             let trace = self.trace.as_deref();
-            results::write_gearbox(&directory.path, &simulation, &summary, trace, !self.no_panel)?;
-            Ok::<_, Failure>(summary)
+            let written =
+                results::write_gearbox(&directory.path, &simulation, &summary, trace, !self.no_panel);
+            Ok::<_, Failure>((summary, by_signals, written))
         })?;
+        warnings::print(&file, &by_signals);
+        written?;
         let (from, to) = (file.path.display(), directory.path.display());
         print_unless(self.quiet, &format!("{from} -> {to}\n{}\n", gearbox_table(&summary)))
     }

@@ -9,7 +9,7 @@ use super::{Start, path};
 use crate::draw::DrawnRecord;
 use crate::plan::Keep;
 
-/// Where a record lies within its simulation.
+/// The window of its simulation that a record takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Window {
     /// Where it begins within the hunting-tooth period.

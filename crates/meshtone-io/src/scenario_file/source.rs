@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{Gearbox, Scenario, ScenarioError, ScenarioForm};
+use meshtone::scenario::{Scenario, ScenarioError, ScenarioForm};
 use meshtone_toml::TomlDocument;
 
 use super::{FileKind, FilesBeside, ReadScenarioError};
@@ -29,17 +29,11 @@ impl ScenarioFile<ScenarioForm> {
     /// * `path` - the scenario file; names of other files in it are relative to its directory
     ///
     /// # Errors
-    /// As [`super::read_scenario`].
+    /// Those of [`super::read_scenario`].
     pub fn read_form(path: &Path) -> Result<Self, ReadScenarioError> {
-        let text = read_text(path)?;
-        match Gearbox::is_written_in(&text) {
-            Ok(true) => Self::read_as(path, text, |text, files| {
-                Gearbox::from_toml_with_files(text, files).map(ScenarioForm::Gearbox)
-            }),
-            _ => Self::read_as(path, text, |text, files| {
-                Scenario::from_toml_within(text, files, memory::limit()).map(ScenarioForm::Pair)
-            }),
-        }
+        Self::read_as(path, read_text(path)?, |text, files| {
+            ScenarioForm::from_toml_within(text, files, memory::limit())
+        })
     }
 }
 
@@ -50,7 +44,7 @@ impl ScenarioFile {
     /// * `path` - the scenario file; names of other files in it are relative to its directory
     ///
     /// # Errors
-    /// As [`super::read_scenario`].
+    /// Those of [`super::read_scenario`].
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
         Self::read_as(path, read_text(path)?, |text, files| {
             Scenario::from_toml_within(text, files, memory::limit())
@@ -73,10 +67,10 @@ impl<S> ScenarioFile<S> {
         }
     }
 
-    /// The same file with something else in place of what it says.
+    /// Replaces what the file says, and keeps its path, its text and the files that it names.
     ///
     /// # Arguments
-    /// * `scenario` - what stands in its place
+    /// * `scenario` - what it says instead
     pub fn with<T>(self, scenario: T) -> ScenarioFile<T> {
         let Self { path, text, named_files, .. } = self;
         ScenarioFile { path, text, scenario, named_files }

@@ -70,7 +70,7 @@ impl SignalsFile<'_> {
 /// None of a file that is not of a gearbox.
 ///
 /// # Errors
-/// As [`read_signals`].
+/// Those of [`read_signals`].
 pub fn read_gearbox_signals(path: &Path) -> Result<Option<RecordedGearbox>, ReadResultsError> {
     let file = open(path)?;
     let Some(toml) = file.table.text_of(GEARBOX_KEY) else { return Ok(None) };

@@ -127,7 +127,8 @@ impl GearboxSummary {
     /// # Arguments
     /// * `simulation` - its stages and signals
     /// * `run` - the run's identity
-    pub fn new(simulation: &GearboxSimulation, run: RunIdentity) -> Self {
+    /// * `warnings` - what deserves attention
+    pub fn new(simulation: &GearboxSimulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
         let (stages, channels) = (&simulation.stages, &simulation.channels);
         let gearbox = &stages.gearbox;
         let signal =
@@ -200,7 +201,7 @@ impl GearboxSummary {
                 .iter()
                 .map(|time| (time.stage.to_owned(), time.elapsed))
                 .collect(),
-            warnings: stages.warnings().to_vec(),
+            warnings: warnings.to_vec(),
         }
     }
 

@@ -17,6 +17,7 @@ pub use gearbox::{
     Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft, Housing, MeshLine, Seat,
 };
 pub(crate) use modes::connected_groups;
+pub(crate) use modes::KnownModes;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
 pub use parts::{Axis, Drive, Machine};
 #[cfg(feature = "internals")]

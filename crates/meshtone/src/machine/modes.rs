@@ -1,10 +1,11 @@
 //! Undamped modes of a machine, and their damping.
 
 use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::parts::Machine;
+use super::parts::{Machine, Spring};
 
 /// Modes of a machine without its meshes, in rising order, in turned coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -136,6 +137,42 @@ impl Modes {
         let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
         decaying
             .fold(none, |slowest, mode| if mode.decay_per_s < slowest.decay_per_s { mode } else { slowest })
+    }
+}
+
+/// Modes that several simulations of the same machine share.
+#[derive(Debug, Default)]
+pub(crate) struct KnownModes(Mutex<Vec<KnownMachine>>);
+
+#[derive(Debug)]
+struct KnownMachine {
+    mass: DMatrix<f64>,
+    springs: Vec<Spring>,
+    modes: Arc<Modes>,
+}
+
+/// Machines whose modes are kept.
+const MOST_KNOWN: usize = 8;
+
+impl KnownModes {
+    /// [`Modes::damped_by_springs`], computed only once of machines with the same masses and springs.
+    ///
+    /// # Arguments
+    /// * `machine` - the machine
+    pub(crate) fn damped_by_springs(&self, machine: &Machine) -> Arc<Modes> {
+        let locked = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_same = |known: &&KnownMachine| known.mass == machine.mass && known.springs == machine.springs;
+        if let Some(known) = locked().iter().find(is_same) {
+            return known.modes.clone();
+        }
+        let modes = Arc::new(Modes::damped_by_springs(machine));
+        let (mass, springs) = (machine.mass.clone(), machine.springs.clone());
+        let mut known = locked();
+        if known.len() >= MOST_KNOWN {
+            known.remove(0);
+        }
+        known.push(KnownMachine { mass, springs, modes: modes.clone() });
+        modes
     }
 }
 

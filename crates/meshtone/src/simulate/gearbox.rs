@@ -2,18 +2,21 @@
 
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 use super::{Clock, StageTime, check_mesh};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{Axis, Disc, GearboxMachine, GearboxParts, MeshLine, Modes, WheelBody};
+use crate::machine::{
+    Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, KnownModes, MeshLine, Modes, WheelBody,
+};
 use crate::mesh::{
     Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, Pairs, TipShape, Turning,
 };
 use crate::operation::{CycleGrid, Motion, TimeGrid, TorqueHarmonic};
 use crate::random::{Draws, Purpose};
 use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor};
-use crate::sensor::{GRAVITY_M_PER_S2, Measurement, SensorDirection, measure};
+use crate::sensor::{GRAVITY_M_PER_S2, Measurement, measure};
 use crate::simd::InstructionSet;
 use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorder, StepCounts, integrate};
 use crate::threads;
@@ -62,8 +65,12 @@ pub struct GearboxStages {
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
     machine: GearboxMachine,
-    modes: Modes,
-    warnings: Vec<ScenarioWarning>,
+    modes: Arc<Modes>,
+    /// The machine in the modes that are stepped.
+    modal: ModalMachine,
+    /// The mode that is the slowest to decay with the meshes closed.
+    pub(crate) slowest_mode: DecayingMode,
+    pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
 }
 
 /// A signal of a gearbox.
@@ -188,8 +195,13 @@ impl GearboxSimulation {
 /// # Errors
 /// A gearbox that is not valid, or a fault that does not fit the tooth.
 pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError> {
+    stages_with(gearbox, &KnownModes::default())
+}
+
+/// Does what [`gearbox_stages`] does, with modes that are known already.
+fn stages_with(gearbox: &Gearbox, known: &KnownModes) -> Result<GearboxStages, ScenarioError> {
     let mut clock = Clock::default();
-    let warnings = gearbox.validate()?;
+    let warnings_of_scenario = gearbox.validate()?;
     let layout = GearboxLayout::new(gearbox)?;
     let time = gearbox.time_grid();
     clock.lap("scenario");
@@ -208,9 +220,9 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
     for (number, mesh) in gearbox.meshes.iter().enumerate() {
         machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
     }
-    let modes = Modes::damped_by_springs(&machine.machine);
-    let balanced = ModalMachine::new(&machine.machine, &modes, &vec![0.0; pairs.len()], start(gearbox));
-    for (pair, line) in pairs.iter_mut().zip(&balanced.lines) {
+    let modes = known.damped_by_springs(&machine.machine);
+    let modal = ModalMachine::new(&machine.machine, &modes, &vec![0.0; pairs.len()], start(gearbox));
+    for (pair, line) in pairs.iter_mut().zip(&modal.lines) {
         pair.static_force_n = line.static_force_n;
     }
     clock.lap("equations of motion");
@@ -231,13 +243,17 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
         timings: Vec::new(),
         machine,
         modes,
-        warnings,
+        modal,
+        slowest_mode: DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY },
+        warnings_of_scenario,
     };
     stages.meshes = (mesh_mass_kg.iter().enumerate())
         .map(|(mesh, &mass_kg)| stages.mesh(mesh, mass_kg))
         .collect::<Result<_, _>>()?;
     stages.meshes.iter().try_for_each(check_mesh)?;
     clock.lap("mesh stiffness");
+    stages.step_low_modes();
+    stages.slowest_mode = stages.slowest_mode();
     stages.time.first_simulated_sample = stages.start_of_settling();
     clock.lap("settling");
     stages.timings = clock.laps;
@@ -250,7 +266,7 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
 /// * `gearbox` - what is simulated
 ///
 /// # Errors
-/// As [`gearbox_stages`], and a motion that grows without bound.
+/// Those of [`gearbox_stages`], and a motion that grows without bound.
 ///
 /// ```
 /// use meshtone::scenario::{Gearbox, gearbox_template};
@@ -271,11 +287,16 @@ pub fn simulate_gearbox(gearbox: &Gearbox) -> Result<GearboxSimulation, Error> {
 ///
 /// # Arguments
 /// * `gearboxes` - what is simulated
+/// * `keep` - what is kept of a simulation
 ///
 /// # Returns
-/// For each in its place the simulation, or the error of [`simulate_gearbox`]; results do not depend on the number of threads.
-pub fn simulate_gearboxes(gearboxes: &[Gearbox]) -> Vec<Result<GearboxSimulation, Error>> {
-    threads::map(gearboxes, simulate_gearbox)
+/// For each in its place what is kept, or the error of [`simulate_gearbox`]; results do not depend on the number of threads.
+pub fn simulate_gearboxes<T: Send>(
+    gearboxes: &[Gearbox],
+    keep: impl Fn(GearboxSimulation) -> T + Sync,
+) -> Vec<Result<T, Error>> {
+    let known = KnownModes::default();
+    threads::map(gearboxes, |gearbox| stages_with(gearbox, &known)?.simulate().map(&keep))
 }
 
 /// The wheels of a mesh: teeth, deviations of each drawn with a seed of its own, damage.
@@ -293,8 +314,8 @@ fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result
     let Deviations { run_out: [_, gear_run_out], helix_slope_um: [_, gear_um], .. } = of_gear;
     let (numbers, faults): (Vec<usize>, Vec<Fault>) =
         layout.faults_of_mesh(gearbox, mesh).into_iter().unzip();
-    let damaged =
-        damaged_teeth(&faults, &teeth, gearbox.seed).map_err(|error| gearbox.in_fault(error, &numbers))?;
+    let damaged = damaged_teeth(&faults, &teeth, gearbox.seed)
+        .map_err(|error| gearbox.in_fault(error, mesh, &numbers))?;
     let faults = faults.iter().map(|fault| fault.with_sizes(&teeth));
     Ok(MeshedPair {
         profile_errors,
@@ -458,11 +479,6 @@ impl GearboxStages {
         self.meshes.iter().map(|mesh| mesh.mean_stiffness_n_per_m).collect()
     }
 
-    /// What is doubtful about the gearbox.
-    pub fn warnings(&self) -> &[ScenarioWarning] {
-        &self.warnings
-    }
-
     /// Whether motor and brake are steady.
     pub fn is_steady(&self) -> bool {
         let operation = &self.gearbox.operation;
@@ -483,17 +499,21 @@ impl GearboxStages {
         if settle_tolerance == 0.0 || !self.is_steady() || self.time.first_kept_sample == 0 {
             return 0;
         }
-        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
-        // Higher modes decay faster.
-        const HIGHEST_HZ: f64 = 2e3;
-        let decay_per_s = self.modal_machine().slowest_decay_per_s(&closed, TAU * HIGHEST_HZ);
-        if !decay_per_s.is_finite() {
-            // Nothing decays, so that all of the settling is simulated.
-            return 0;
-        }
-        let decay_s = -settle_tolerance.ln() / decay_per_s;
+        // Where nothing decays, all of the settling is simulated: as a float, that takes forever.
+        let decay_s = -settle_tolerance.ln() / self.slowest_mode.decay_per_s.max(0.0);
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         self.time.first_kept_sample.saturating_sub(settling as usize)
+    }
+
+    /// The slowest to decay of the modes that are damped, with the meshes closed.
+    fn slowest_mode(&self) -> DecayingMode {
+        // Higher modes decay faster.
+        const HIGHEST_HZ: f64 = 2e3;
+        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
+        let modes = self.modal_machine().closed_modes(&closed, TAU * HIGHEST_HZ);
+        let damped = modes.into_iter().map(|mode| mode.decay).filter(|mode| mode.decay_per_s > 0.0);
+        let slowest = damped.min_by(|a, b| a.decay_per_s.total_cmp(&b.decay_per_s));
+        slowest.unwrap_or(DecayingMode { frequency_hz: 0.0, decay_per_s: 0.0 })
     }
 
     /// The machine around the meshes, and its modes without them.
@@ -521,18 +541,19 @@ impl GearboxStages {
     }
 
     /// The machine in the modes that are stepped.
-    pub(crate) fn modal_machine(&self) -> ModalMachine {
+    pub(crate) fn modal_machine(&self) -> &ModalMachine {
+        &self.modal
+    }
+
+    /// Leaves the high modes out, and takes the tilts of wheels in whose meshes the load moves along the face.
+    fn step_low_modes(&mut self) {
         let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
-        let operation = &self.gearbox.operation.drive;
-        let is_turned_evenly = operation.speed_profile_hz.is_none() && operation.speed_fluctuation_hz == 0.0;
-        // What a mode that is left out takes of the motor's imposed rotation would be missing in speeds and transmission errors.
-        let highest_hz = if is_turned_evenly {
-            self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz)
-        } else {
-            f64::INFINITY
-        };
-        ModalMachine::new(&self.machine.machine, &self.modes, &face_reach_m, start(&self.gearbox))
-            .up_to(TAU * highest_hz)
+        if face_reach_m.iter().any(|reach_m| *reach_m > 0.0) {
+            let machine = &self.machine.machine;
+            self.modal = ModalMachine::new(machine, &self.modes, &face_reach_m, start(&self.gearbox));
+        }
+        let highest_hz = self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz);
+        self.modal = self.modal.clone().up_to(TAU * highest_hz);
     }
 
     /// Motion of motor and brake, sample by sample from the start of the simulation.
@@ -548,15 +569,15 @@ impl GearboxStages {
             .with_ripple(operation.torque_ripple.iter().map(harmonic).collect())
     }
 
+    /// The sensors whose noise does not hide what a finer step changes.
+    pub(crate) fn plain_sensors(&self) -> impl Iterator<Item = &GearboxSensor> {
+        self.sensors.iter().filter(|sensor| sensor.sensor.noise_density_g_per_rthz == 0.0)
+    }
+
     /// What the channels are made of.
     fn outputs(&self) -> Vec<(String, &'static str, Output)> {
         let sensors = self.sensors.iter().map(|sensor| {
-            let axis = match sensor.sensor.direction {
-                SensorDirection::Horizontal => Axis::X,
-                SensorDirection::Vertical => Axis::Y,
-                SensorDirection::Axial => Axis::Z,
-            };
-            let name = sensor.name();
+            let (name, axis) = (sensor.name(), sensor.axis());
             let output =
                 Output::Acceleration { place: name.clone().into(), axis, factor: 1.0 / GRAVITY_M_PER_S2 };
             (format!("{name}_g"), "g", output)
@@ -643,7 +664,7 @@ impl GearboxStages {
         };
         Problem {
             time: &self.time,
-            machine: self.modal_machine(),
+            machine: self.modal.clone(),
             laws: self.meshes.iter().map(Mesh::law).collect(),
             forcing: Forcing::new(
                 self.motion(),

@@ -7,8 +7,10 @@
 //! when the same pairs touch at the new iterate. In theory it can go round in a circle; after [`MOST_PLAIN_ITERATIONS`] each iterate goes
 //! only as far towards Newton's as makes the residual smaller.
 
+use std::ops::Range;
+
 use super::integrate::{Block, Diverged, Problem, Recorder, StepCounts, is_bounded};
-use super::outputs::{EXTERNALS, OutputWeights};
+use super::outputs::{EXTERNALS, OutputWeights, dot};
 use super::prepare::{FirstState, Prepared};
 use crate::mesh::{ForcingBlock, MeshLaw, PairsSample};
 use crate::simd::{InstructionSet, Instructions, Lanes, Task};
@@ -22,38 +24,148 @@ const BLOCK: usize = 256;
 /// Modes that are stepped side by side.
 const SIDE_BY_SIDE: usize = 8;
 
-/// A number for each mode, some side by side; 0 behind the last mode.
-type OfModes = Vec<Lanes<SIDE_BY_SIDE>>;
+/// Numbers of some modes side by side, in a cache line of their own; 0 behind the last mode.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Lot(Lanes<SIDE_BY_SIDE>);
+
+/// The states of the modes of a lot: predicted displacements, predicted velocities times Δt, and accelerations times Δt².
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct LotState([Lanes<SIDE_BY_SIDE>; 3]);
+
+/// What does not change from step to step of the modes of a lot.
+#[repr(align(64))]
+struct LotConstants {
+    restore: Lanes<SIDE_BY_SIDE>,
+    damp: Lanes<SIDE_BY_SIDE>,
+    external_push: [Lanes<SIDE_BY_SIDE>; EXTERNALS],
+}
+
+/// The modes of a lot in a column of a line of action.
+#[repr(align(64))]
+struct LotColumn {
+    push: Lanes<SIDE_BY_SIDE>,
+    of_displacement: Lanes<SIDE_BY_SIDE>,
+    of_velocity: Lanes<SIDE_BY_SIDE>,
+}
+
+/// One of the numbers of a [`LotState`] at the samples of a tile.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct LotTile([Lanes<SIDE_BY_SIDE>; TILE]);
+
 /// A number for each mesh.
 type OfMeshes = [f64; MOST_MESHES];
 /// A number for each pair of meshes.
 type Matrix = [OfMeshes; MOST_MESHES];
 
-/// Numbers of the modes, some side by side.
-fn side_by_side(values: &[f64]) -> OfModes {
-    let at = |chunk: usize, lane: usize| values.get(chunk * SIDE_BY_SIDE + lane).copied().unwrap_or(0.0);
-    (0..values.len().div_ceil(SIDE_BY_SIDE)).map(|chunk| Lanes::from_fn(|lane| at(chunk, lane))).collect()
+/// The order of the modes: those that the same outputs see lie side by side, so that of an output with few modes few have to be added.
+struct Order(Vec<usize>);
+
+impl Order {
+    fn new(prepared: &Prepared) -> Self {
+        let sees = |output: &OutputWeights, n: usize| {
+            let lists = [&output.displacement, &output.velocity, &output.acceleration];
+            lists.into_iter().any(|list| list.get(n).is_some_and(|weight| *weight != 0.0))
+        };
+        let seen_by = |n: &usize| -> Vec<bool> { prepared.outputs.iter().map(|output| sees(output, *n)).collect() };
+        let mut order: Vec<usize> = (0..prepared.restore.len()).collect();
+        order.sort_by_cached_key(seen_by);
+        Self(order)
+    }
+
+    /// Numbers of the modes, lot by lot.
+    fn lots(&self, values: &[f64]) -> Vec<Lot> {
+        let of_lot =
+            |modes: &[usize]| Lot(Lanes::from_fn(|lane| modes.get(lane).map_or(0.0, |&mode| values[mode])));
+        self.0.chunks(SIDE_BY_SIDE).map(of_lot).collect()
+    }
+
+    /// The same from the first lot that is not 0 to the last; an empty list stands for zeros.
+    fn weights(&self, values: &[f64]) -> Weights {
+        if values.is_empty() {
+            return Weights { first: 0, lots: Vec::new() };
+        }
+        let mut lots = self.lots(values);
+        let counts = |lot: &Lot| lot.0.0 != [0.0; SIDE_BY_SIDE];
+        lots.truncate(lots.iter().rposition(counts).map_or(0, |last| last + 1));
+        let first = lots.iter().position(counts).unwrap_or(0);
+        Weights { first, lots: lots.split_off(first) }
+    }
+}
+
+/// Weights of modes in an output, without the zeros before the first lot and after the last.
+struct Weights {
+    /// Number of the first lot.
+    first: usize,
+    lots: Vec<Lot>,
+}
+
+/// The states of one block of samples.
+struct History {
+    /// Each number of a state: which lots are kept, and what they are, tile by tile.
+    states: [(Range<usize>, Vec<LotTile>); 3],
+    /// (N) The forces in all columns, sample by sample.
+    force: Vec<f64>,
+    external: Vec<[f64; EXTERNALS]>,
+}
+
+impl History {
+    /// Keeps what some outputs see.
+    fn new(outputs: &[OutputOfModes]) -> Self {
+        let kept = |number: usize| {
+            let seen = || outputs.iter().map(|output| &output.weights[number]).filter(|seen| !seen.lots.is_empty());
+            let end = seen().map(|seen| seen.first + seen.lots.len()).max().unwrap_or(0);
+            let lots = seen().map(|seen| seen.first).min().unwrap_or(0)..end;
+            let tiles = vec![LotTile([Lanes::splat(0.0); TILE]); lots.len() * BLOCK / TILE];
+            (lots, tiles)
+        };
+        Self { states: [kept(0), kept(1), kept(2)], force: Vec::new(), external: Vec::new() }
+    }
+
+    /// Takes the next state.
+    #[inline(always)]
+    fn push(&mut self, state: &State) {
+        let (tile, k) = (self.external.len() / TILE, self.external.len() % TILE);
+        for (number, (kept, tiles)) in self.states.iter_mut().enumerate() {
+            let tiles = tiles[tile * kept.len()..].iter_mut();
+            for (tile, lot) in tiles.zip(&state.lots[kept.clone()]) {
+                tile.0[k] = lot.0[number];
+            }
+        }
+        self.force.extend_from_slice(&state.force);
+        self.external.push(state.external);
+    }
+
+    fn clear(&mut self) {
+        self.force.clear();
+        self.external.clear();
+    }
 }
 
 /// Integrates a simulation of any number of meshes, up to [`MOST_MESHES`].
 ///
 /// # Errors
-/// As [`super::integrate()`].
+/// Those of [`super::integrate()`].
 pub(super) fn integrate(
     mut problem: Problem,
     instructions: InstructionSet,
     recorder: &mut dyn Recorder,
 ) -> Result<(), Diverged> {
     let prepared = Prepared::new(&problem);
-    let constants = Constants::new(&prepared);
+    let order = Order::new(&prepared);
+    let constants = Constants::new(&prepared, &order);
     let (start, end) = (problem.time.first_simulated_sample, problem.time.samples);
     let mut block = ForcingBlock::default();
     problem.forcing.next_block(1, &mut block);
     let mut pairs = vec![vec![PairsSample::<1>::NONE; BLOCK]; prepared.laws.len()];
     line_up(&block, 1, &mut pairs);
     let first_pairs: Vec<PairsSample<1>> = pairs.iter().map(|of_mesh| of_mesh[0]).collect();
-    let first = prepared.first_state(&problem.machine, &first_pairs, 0, external(&block, 0));
-    let mut state = State::new(first);
+    let first_external = external(&block, 0);
+    let first = prepared.first_state(&problem.machine, &first_pairs, 0, first_external);
+    let mut state = State::new(first, first_external, &order);
+    let mut history = History::new(&constants.outputs);
     let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
     let mut sample = start;
     while sample < end && recorder.goes_on() {
@@ -61,6 +173,7 @@ pub(super) fn integrate(
         problem.forcing.next_block(steps, &mut block);
         line_up(&block, steps, &mut pairs);
         outputs.iter_mut().for_each(Vec::clear);
+        history.clear();
         let first_recorded = problem.first_sample.max(sample);
         instructions.run(Steps {
             constants: &constants,
@@ -70,10 +183,13 @@ pub(super) fn integrate(
             is_steady: problem.is_steady,
             samples: sample..sample + steps,
             first_recorded,
-            outputs: &mut outputs,
+            history: &mut history,
         });
-        let moved = state.displacement.iter().chain(&state.velocity);
-        if !moved.flat_map(|modes| &modes.0).all(|mode| is_bounded(*mode)) {
+        if first_recorded < sample + steps {
+            instructions.run(Outputs { constants: &constants, history: &mut history, first_recorded, outputs: &mut outputs });
+        }
+        let moved = state.lots.iter().flat_map(|lot| &lot.0[..2]).flat_map(|lanes| &lanes.0);
+        if !moved.into_iter().all(|mode| is_bounded(*mode)) {
             return Err(Diverged { sample: sample + steps });
         }
         sample += steps;
@@ -100,48 +216,46 @@ fn external(block: &ForcingBlock, k: usize) -> [f64; EXTERNALS] {
 /// What does not change from step to step.
 struct Constants<'a> {
     prepared: &'a Prepared,
-    restore: OfModes,
-    damp: OfModes,
-    external_push: [OfModes; EXTERNALS],
-    columns: Vec<ColumnOfModes>,
+    lots: Vec<LotConstants>,
+    columns: Vec<Vec<LotColumn>>,
     outputs: Vec<OutputOfModes<'a>>,
     /// The equations of a step where all loads act midway along their faces, without the free deflections.
     midway: Option<Equations>,
 }
 
-/// A column of a line of action.
-struct ColumnOfModes {
-    push: OfModes,
-    of_displacement: OfModes,
-    of_velocity: OfModes,
-}
-
-/// An output; an empty list stands for zeros.
+/// An output: the weights of each number of a [`LotState`], and of what has no modes.
 struct OutputOfModes<'a> {
-    displacement: OfModes,
-    velocity: OfModes,
-    acceleration: OfModes,
-    weights: &'a OutputWeights,
+    weights: [Weights; 3],
+    others: &'a OutputWeights,
 }
 
 impl<'a> Constants<'a> {
-    fn new(prepared: &'a Prepared) -> Self {
-        let column = |column: &super::prepare::Column| ColumnOfModes {
-            push: side_by_side(&column.push),
-            of_displacement: side_by_side(&column.of_displacement),
-            of_velocity: side_by_side(&column.of_velocity),
+    fn new(prepared: &'a Prepared, order: &Order) -> Self {
+        let column = |column: &super::prepare::Column| {
+            let [push, of_displacement, of_velocity] =
+                [&column.push, &column.of_displacement, &column.of_velocity].map(|values| order.lots(values));
+            let lots = push.iter().zip(&of_displacement).zip(&of_velocity);
+            let lot = |((push, of_displacement), of_velocity): ((&Lot, &Lot), &Lot)| LotColumn {
+                push: push.0,
+                of_displacement: of_displacement.0,
+                of_velocity: of_velocity.0,
+            };
+            lots.map(lot).collect()
         };
-        let output = |weights: &'a OutputWeights| OutputOfModes {
-            displacement: side_by_side(&weights.displacement),
-            velocity: side_by_side(&weights.velocity),
-            acceleration: side_by_side(&weights.acceleration),
-            weights,
+        let output = |others: &'a OutputWeights| OutputOfModes {
+            weights: [&others.displacement, &others.velocity, &others.acceleration].map(|list| order.weights(list)),
+            others,
+        };
+        let (restore, damp) = (order.lots(&prepared.restore), order.lots(&prepared.damp));
+        let external_push = prepared.external_push.each_ref().map(|push| order.lots(push));
+        let lot = |n: usize| LotConstants {
+            restore: restore[n].0,
+            damp: damp[n].0,
+            external_push: external_push.each_ref().map(|push| push[n].0),
         };
         let all_midway = prepared.columns_of_mesh.iter().all(|columns| columns.len() == 1);
         Self {
-            restore: side_by_side(&prepared.restore),
-            damp: side_by_side(&prepared.damp),
-            external_push: prepared.external_push.each_ref().map(|push| side_by_side(push)),
+            lots: (0..restore.len()).map(lot).collect(),
             columns: prepared.columns.iter().map(column).collect(),
             outputs: prepared.outputs.iter().map(output).collect(),
             midway: all_midway.then(|| prepared.equations(&[])),
@@ -152,11 +266,10 @@ impl<'a> Constants<'a> {
 
 /// The state of the modes, and where the next step begins its search.
 struct State {
-    displacement: OfModes,
-    velocity: OfModes,
-    acceleration: OfModes,
+    lots: Vec<LotState>,
     /// (N) Force in each column, relative to the static one.
     force: Vec<f64>,
+    external: [f64; EXTERNALS],
     /// (m) D of each mesh.
     deflection: OfMeshes,
     /// (m) Deflection in each column with its damping's lead, without the step's own force.
@@ -165,43 +278,18 @@ struct State {
 }
 
 impl State {
-    fn new(first: FirstState) -> Self {
+    fn new(first: FirstState, external: [f64; EXTERNALS], order: &Order) -> Self {
         let FirstState { displacement, velocity, acceleration, force } = first;
+        let numbers = [displacement, velocity, acceleration].map(|values| order.lots(&values));
         Self {
-            displacement: side_by_side(&displacement),
-            velocity: side_by_side(&velocity),
-            acceleration: side_by_side(&acceleration),
+            lots: (0..numbers[0].len()).map(|n| LotState(numbers.each_ref().map(|lots| lots[n].0))).collect(),
             free: vec![0.0; force.len()],
             force,
+            external,
             deflection: [0.0; MOST_MESHES],
             counts: StepCounts::default(),
         }
     }
-
-    #[inline(always)]
-    fn output<I: Instructions>(&self, simd: I, output: &OutputOfModes, sample: usize) -> f64 {
-        let weights = output.weights;
-        let forces = weights.force.iter().zip(&self.force).map(|(weight, force)| weight * force);
-        let mut sum = Lanes::splat(0.0);
-        sum = products(simd, sum, &output.displacement, &self.displacement);
-        sum = products(simd, sum, &output.velocity, &self.velocity);
-        sum = products(simd, sum, &output.acceleration, &self.acceleration);
-        weights.constant + weights.per_sample * sample as f64 + forces.sum::<f64>() + total(sum)
-    }
-}
-
-/// Adds the products of two lists, as far as both reach.
-#[inline(always)]
-fn products<I: Instructions>(
-    simd: I,
-    mut sum: Lanes<SIDE_BY_SIDE>,
-    a: &[Lanes<SIDE_BY_SIDE>],
-    b: &[Lanes<SIDE_BY_SIDE>],
-) -> Lanes<SIDE_BY_SIDE> {
-    for (a, b) in a.iter().zip(b) {
-        sum = a.mul_add(simd, *b, sum);
-    }
-    sum
 }
 
 /// The sum of numbers side by side.
@@ -219,9 +307,9 @@ struct Steps<'a, 'c> {
     pairs: &'a [Vec<PairsSample<1>>],
     block: &'a ForcingBlock,
     is_steady: bool,
-    samples: std::ops::Range<usize>,
+    samples: Range<usize>,
     first_recorded: usize,
-    outputs: &'a mut [Vec<f64>],
+    history: &'a mut History,
 }
 
 impl Task for Steps<'_, '_> {
@@ -231,12 +319,51 @@ impl Task for Steps<'_, '_> {
     fn run<I: Instructions>(self, simd: I) {
         for (k, sample) in self.samples.clone().enumerate() {
             if sample >= self.first_recorded {
-                for (values, output) in self.outputs.iter_mut().zip(&self.constants.outputs) {
-                    values.push(self.state.output(simd, output, sample));
-                }
+                self.history.push(self.state);
             }
             let external = (!self.is_steady).then(|| external(self.block, k));
             self.state.step(simd, self.constants, self.pairs, k, external);
+        }
+    }
+}
+
+/// What is read off the states of one block.
+struct Outputs<'a, 'c> {
+    constants: &'a Constants<'c>,
+    history: &'a mut History,
+    first_recorded: usize,
+    outputs: &'a mut [Vec<f64>],
+}
+
+/// Samples whose outputs are summed in registers; a part of [`BLOCK`].
+const TILE: usize = 8;
+
+impl Task for Outputs<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Instructions>(self, simd: I) {
+        let History { states, force, external } = self.history;
+        let columns = self.constants.columns.len();
+        for (values, output) in self.outputs.iter_mut().zip(&self.constants.outputs) {
+            for (tile, external) in external.chunks(TILE).enumerate() {
+                let mut sums = [Lanes::splat(0.0); TILE];
+                for (weights, (kept, tiles)) in output.weights.iter().zip(states.iter()) {
+                    let first = tile * kept.len() + weights.first.saturating_sub(kept.start);
+                    for (weight, lot) in weights.lots.iter().zip(&tiles[first..]) {
+                        for k in 0..TILE {
+                            sums[k] = weight.0.mul_add(simd, lot.0[k], sums[k]);
+                        }
+                    }
+                }
+                let weights = output.others;
+                for (k, external) in external.iter().enumerate() {
+                    let sample = tile * TILE + k;
+                    let forces = dot(&weights.force, &force[sample * columns..]);
+                    let steady = weights.constant + weights.per_sample * (self.first_recorded + sample) as f64;
+                    values.push(steady + forces + dot(&weights.external, external) + total(sums[k]));
+                }
+            }
         }
     }
 }
@@ -252,31 +379,30 @@ impl State {
         k: usize,
         external: Option<[f64; EXTERNALS]>,
     ) {
-        let chunks = self.displacement.len();
-        for n in 0..chunks {
-            let velocity = self.velocity[n].add(simd, self.acceleration[n]);
-            let displacement = self.displacement[n].add(simd, velocity);
-            let damped = constants.damp[n].mul(simd, velocity);
-            let mut acceleration = constants.restore[n].mul_add(simd, displacement, damped);
+        for (LotState([displacement, velocity, acceleration]), constants) in self.lots.iter_mut().zip(&constants.lots) {
+            *velocity = velocity.add(simd, *acceleration);
+            *displacement = displacement.add(simd, *velocity);
+            *acceleration = constants.restore.mul_add(simd, *displacement, constants.damp.mul(simd, *velocity));
             for (push, external) in constants.external_push.iter().zip(external.into_iter().flatten()) {
-                acceleration = push[n].mul_add(simd, Lanes::splat(external), acceleration);
+                *acceleration = push.mul_add(simd, Lanes::splat(external), *acceleration);
             }
-            (self.velocity[n], self.displacement[n], self.acceleration[n]) = (velocity, displacement, acceleration);
         }
+        self.external = external.unwrap_or_default();
         let prepared = constants.prepared;
-        for ((free, column), of_modes) in self.free.iter_mut().zip(&prepared.columns).zip(&constants.columns) {
-            let mut sum = products(simd, Lanes::splat(0.0), &of_modes.of_displacement, &self.displacement);
-            sum = products(simd, sum, &of_modes.of_velocity, &self.velocity);
-            let driven = external.map_or(0.0, |external| {
-                column.of_external.iter().zip(external).map(|(weight, external)| weight * external).sum()
-            });
-            *free = column.static_deflection + driven + total(sum);
+        for ((free, column), lots) in self.free.iter_mut().zip(&prepared.columns).zip(&constants.columns) {
+            let [mut of_displacement, mut of_velocity] = [Lanes::splat(0.0); 2];
+            for (LotState([displacement, velocity, _]), lot) in self.lots.iter().zip(lots) {
+                of_displacement = lot.of_displacement.mul_add(simd, *displacement, of_displacement);
+                of_velocity = lot.of_velocity.mul_add(simd, *velocity, of_velocity);
+            }
+            let sum = of_displacement.add(simd, of_velocity);
+            *free = column.static_deflection + dot(&column.of_external, &self.external) + total(sum);
         }
         constants.mesh_forces(pairs, k, self);
         for (column, force) in constants.columns.iter().zip(&self.force) {
             let force = Lanes::splat(*force);
-            for (acceleration, push) in self.acceleration.iter_mut().zip(&column.push) {
-                *acceleration = push.mul_add(simd, force, *acceleration);
+            for (LotState([.., acceleration]), lot) in self.lots.iter_mut().zip(column) {
+                *acceleration = lot.push.mul_add(simd, force, *acceleration);
             }
         }
     }
@@ -288,6 +414,7 @@ impl Constants<'_> {
     /// # Arguments
     /// * `pairs`, `k` - the pairs of each mesh, and which sample of them is the step's end
     /// * `state` - has the free deflections, and each mesh's deflection at the step's start, which is set to that at its end
+    #[inline(always)]
     fn mesh_forces(&self, pairs: &[Vec<PairsSample<1>>], k: usize, state: &mut State) {
         let prepared = self.prepared;
         let mut face_centres = [0.0; MOST_MESHES];
@@ -307,13 +434,12 @@ impl Constants<'_> {
             *free += columns.map(|column| face_centres[mesh] * state.free[column]).sum::<f64>();
         }
         let law = PairsLaw { laws: &prepared.laws, pairs, k };
-        let [iterations, searched] = equations.solve(&law, &free, &mut state.deflection);
+        let Solution { forces, iterations, searched } = equations.solve(&law, &free, &mut state.deflection);
         state.counts.steps += 1;
         state.counts.iterations += iterations;
         state.counts.most_iterations = state.counts.most_iterations.max(iterations);
         state.counts.searched += searched;
-        for (mesh, static_force_n) in prepared.static_force_n.iter().enumerate() {
-            let [force, _] = law.force_and_slope(mesh, state.deflection[mesh]);
+        for (mesh, (static_force_n, force)) in prepared.static_force_n.iter().zip(forces).enumerate() {
             let mut columns = prepared.columns_of_mesh[mesh].clone();
             if let Some(middle) = columns.next() {
                 // The static force acts midway along the face.
@@ -401,45 +527,55 @@ impl Equations {
     /// * `law` - of the meshes
     /// * `free` - (m) D₀
     /// * `deflection` - (m) where to begin; set to the solution
-    ///
-    /// # Returns
-    /// How many iterations it took, and 1 where some were searches along the line.
-    fn solve(&self, law: &impl Law, free: &OfMeshes, deflection: &mut OfMeshes) -> [u64; 2] {
+    #[inline(always)]
+    fn solve(&self, law: &impl Law, free: &OfMeshes, deflection: &mut OfMeshes) -> Solution {
+        let (mut forces, mut slopes) = self.forces_and_slopes(law, deflection);
         for iteration in 0..MOST_ITERATIONS {
-            let (newton, slopes) = self.newton(law, free, deflection);
-            let same = (0..self.count).all(|a| law.force_and_slope(a, newton[a])[1] == slopes[a]);
-            if same || iteration < MOST_PLAIN_ITERATIONS {
-                *deflection = newton;
-            } else {
-                self.go_towards(law, free, deflection, &newton);
+            let mut next = self.newton(free, deflection, &forces, &slopes);
+            let (mut next_forces, mut next_slopes) = self.forces_and_slopes(law, &next);
+            let same = next_slopes == slopes;
+            if !same && iteration >= MOST_PLAIN_ITERATIONS {
+                next = self.towards(law, free, deflection, &next);
+                (next_forces, next_slopes) = self.forces_and_slopes(law, &next);
             }
+            *deflection = next;
+            (forces, slopes) = (next_forces, next_slopes);
             if same {
-                return [iteration as u64 + 1, u64::from(iteration > MOST_PLAIN_ITERATIONS)];
+                let searched = u64::from(iteration > MOST_PLAIN_ITERATIONS);
+                return Solution { forces, iterations: iteration as u64 + 1, searched };
             }
         }
-        [MOST_ITERATIONS as u64, 1]
+        Solution { forces, iterations: MOST_ITERATIONS as u64, searched: 1 }
     }
 
-    /// The solution if the pairs that touch at `deflection` went on touching, `(1 + G K) D = D₀ − G (f − K D)`, and their slopes K.
-    fn newton(&self, law: &impl Law, free: &OfMeshes, deflection: &OfMeshes) -> (OfMeshes, OfMeshes) {
+    /// (N, N/m) Of each mesh at a deflection.
+    #[inline(always)]
+    fn forces_and_slopes(&self, law: &impl Law, deflection: &OfMeshes) -> (OfMeshes, OfMeshes) {
+        let (mut forces, mut slopes) = ([0.0; MOST_MESHES], [0.0; MOST_MESHES]);
+        for a in 0..self.count {
+            [forces[a], slopes[a]] = law.force_and_slope(a, deflection[a]);
+        }
+        (forces, slopes)
+    }
+
+    /// The solution if the pairs that touch at `deflection` went on touching, `(1 + G K) D = D₀ − G (f − K D)`.
+    #[inline(always)]
+    fn newton(&self, free: &OfMeshes, deflection: &OfMeshes, forces: &OfMeshes, slopes: &OfMeshes) -> OfMeshes {
         let (mut matrix, mut right) = ([[0.0; MOST_MESHES]; MOST_MESHES], *free);
-        let mut slopes = [0.0; MOST_MESHES];
         for b in 0..self.count {
-            let [force, slope] = law.force_and_slope(b, deflection[b]);
-            slopes[b] = slope;
             for a in 0..self.count {
                 let share = self.compliance[a][b];
-                matrix[a][b] = share * slope + f64::from(a == b);
-                right[a] -= share * (force - slope * deflection[b]);
+                matrix[a][b] = share * slopes[b] + f64::from(a == b);
+                right[a] -= share * (forces[b] - slopes[b] * deflection[b]);
             }
         }
         solve_linear(self.count, matrix, &mut right);
-        (right, slopes)
+        right
     }
 
     /// Goes from `from` towards `to`, Newton's iterate, as far as makes the residual smaller: up to the next pair that touches or leaves the
     /// residual falls in proportion.
-    fn go_towards(&self, law: &impl Law, free: &OfMeshes, from: &mut OfMeshes, to: &OfMeshes) {
+    fn towards(&self, law: &impl Law, free: &OfMeshes, from: &OfMeshes, to: &OfMeshes) -> OfMeshes {
         let residual = |deflection: &OfMeshes| {
             let of_mesh = |a: usize| {
                 let pressed = (0..self.count).map(|b| self.compliance[a][b] * law.force_and_slope(b, deflection[b])[0]);
@@ -447,16 +583,26 @@ impl Equations {
             };
             (0..self.count).map(of_mesh).sum::<f64>()
         };
-        let (start, before) = (*from, residual(from));
+        let before = residual(from);
         let mut part = 1.0;
         for _ in 0..HALVINGS {
-            *from = std::array::from_fn(|a| start[a] + part * (to[a] - start[a]));
-            if residual(from) < before {
-                return;
+            let between = std::array::from_fn(|a| from[a] + part * (to[a] - from[a]));
+            if residual(&between) < before {
+                return between;
             }
             part /= 2.0;
         }
+        *from
     }
+}
+
+/// What the equations of a step come to.
+struct Solution {
+    /// (N) Of each mesh.
+    forces: OfMeshes,
+    iterations: u64,
+    /// 1 where some iterations were searches along the line.
+    searched: u64,
 }
 
 /// Halvings of the way until only rounding is left of it.
@@ -468,13 +614,16 @@ const HALVINGS: usize = 60;
 /// * `count` - number of equations
 /// * `matrix` - by rows
 /// * `right` - the right-hand side; set to the solution
+#[inline(always)]
 fn solve_linear(count: usize, mut matrix: Matrix, right: &mut OfMeshes) {
     for column in 0..count {
         let pivot = (column..count)
             .max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))
             .unwrap_or(column);
-        matrix.swap(column, pivot);
-        right.swap(column, pivot);
+        if pivot != column {
+            matrix.swap(column, pivot);
+            right.swap(column, pivot);
+        }
         for row in column + 1..count {
             let factor = matrix[row][column] / matrix[column][column];
             for k in column..count {
@@ -564,8 +713,9 @@ mod tests {
         equations.solve(&law, &free, &mut exact);
         let mut searched = [-4.0; MOST_MESHES];
         for _ in 0..20 {
-            let (newton, _) = equations.newton(&law, &free, &searched);
-            equations.go_towards(&law, &free, &mut searched, &newton);
+            let (forces, slopes) = equations.forces_and_slopes(&law, &searched);
+            let newton = equations.newton(&free, &searched, &forces, &slopes);
+            searched = equations.towards(&law, &free, &searched, &newton);
         }
         assert!((searched[0] - exact[0]).abs() < 1e-12 && (searched[1] - exact[1]).abs() < 1e-12, "{searched:?}");
     }

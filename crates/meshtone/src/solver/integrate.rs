@@ -105,9 +105,11 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Whether the steps that are compiled for simulations side by side hold it: one mesh, and no more modes than the largest has.
+    /// Whether the steps that are compiled for simulations side by side hold it: one mesh, and no more modes than the largest has, all of
+    /// which are stepped.
     pub(crate) fn fits_a_lane(&self) -> bool {
-        self.machine.lines.len() == 1 && self.machine.modes() <= MOST_MODES
+        let machine = &self.machine;
+        machine.lines.len() == 1 && machine.modes() <= MOST_MODES && machine.residual.is_empty()
     }
 }
 

@@ -1,9 +1,11 @@
 //! A machine in its modes, without what stays at rest.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DMatrix, DVector};
 
-use super::outputs::{EXTERNALS, external_forces};
-use crate::machine::{ClosedMesh, Drive, Machine, Modes};
+use super::outputs::dot;
+use crate::machine::{ClosedMesh, DecayingMode, Drive, Machine, Modes};
 
 /// A machine without its meshes, in the modes that take part in the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,22 +32,77 @@ pub struct ModalMachine {
     pub static_displacement: Vec<f64>,
     /// Modal velocity at the start, relative to the rigid rotation.
     pub initial_velocity: Vec<f64>,
-    /// What modes that are not stepped add to the deflections of the meshes.
+    /// The modes that are not stepped.
     pub residual: Residual,
     /// The machine's own description, of which outputs need the places.
     pub machine: Machine,
 }
 
-/// The flexibility of modes that are so high that they deform at every instant as at rest. The columns of all lines of action are counted
-/// through, mesh by mesh; without such modes all lists are empty.
+/// The modes that are not stepped: they are so high that they deform at every instant as at rest. Without such modes all lists are empty.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Residual {
-    /// (m/N) `Σ B Bᵀ/ω²`, a row for each column.
-    pub compliance: Vec<Vec<f64>>,
-    /// (m) Deflection in each column under the constant loads.
-    pub static_deflection: Vec<f64>,
-    /// Deflection in each column per unit of each external.
-    pub of_external: Vec<[f64; EXTERNALS]>,
+    /// (1/s²) ω² of each.
+    stiffness: Vec<f64>,
+    /// Their mass-normalised shapes.
+    shapes: Vec<DVector<f64>>,
+    /// Their entries in the columns of all lines of action, mesh by mesh.
+    columns: Vec<Vec<f64>>,
+    /// Their force per rad of motor angle.
+    motor: Vec<f64>,
+    /// Their force per N m of brake torque.
+    brake: Vec<f64>,
+    /// Their displacement under the constant loads.
+    static_displacement: Vec<f64>,
+}
+
+/// What the modes that are not stepped add to a combination of them.
+pub(super) struct AtRest {
+    /// Under the constant loads.
+    pub(super) constant: f64,
+    /// (1/N) Per force in each column of the lines of action.
+    pub(super) of_force: Vec<f64>,
+    /// Per rad of the motor's lead and per N m of the brake's torque deviation.
+    pub(super) of_drives: [f64; 2],
+}
+
+impl Residual {
+    /// Whether all modes are stepped.
+    pub(super) fn is_empty(&self) -> bool {
+        self.stiffness.is_empty()
+    }
+
+    /// (m/N) What the modes add to the deflection in each column per force in each.
+    pub(super) fn compliance(&self) -> Vec<Vec<f64>> {
+        self.of_columns().into_iter().map(|at_rest| at_rest.of_force).collect()
+    }
+
+    /// What the modes add to a combination of them.
+    ///
+    /// # Arguments
+    /// * `weights` - of the modes
+    fn at_rest(&self, weights: &[f64]) -> AtRest {
+        let yielding = |force: &[f64]| (0..weights.len()).map(|n| weights[n] * force[n] / self.stiffness[n]).sum();
+        AtRest {
+            constant: dot(weights, &self.static_displacement),
+            of_force: self.columns.iter().map(|column| yielding(column)).collect(),
+            of_drives: [yielding(&self.motor), yielding(&self.brake)],
+        }
+    }
+
+    /// What the modes add to the deflection in each column of the lines of action.
+    pub(super) fn of_columns(&self) -> Vec<AtRest> {
+        self.columns.iter().map(|column| self.at_rest(column)).collect()
+    }
+
+    /// What the modes add to a combination of the machine's coordinates.
+    ///
+    /// # Arguments
+    /// * `weights` - of the coordinates
+    pub(super) fn of_coordinates(&self, weights: &DVector<f64>) -> AtRest {
+        let entries = entries(weights);
+        let of_shape = |shape: &DVector<f64>| entries.iter().map(|&(n, weight)| weight * shape[n]).sum();
+        self.at_rest(&self.shapes.iter().map(of_shape).collect::<Vec<f64>>())
+    }
 }
 
 /// The line of action of a mesh in the modes.
@@ -70,6 +127,15 @@ impl ModalLine {
             line
         })
     }
+}
+
+/// A mode of a machine whose meshes are closed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClosedMode {
+    /// Its frequency and how fast it decays.
+    pub decay: DecayingMode,
+    /// (-) Part of its strain energy that each mesh has.
+    pub mesh_energies: Vec<f64>,
 }
 
 /// How a simulation starts.
@@ -120,7 +186,7 @@ impl ModalMachine {
         let active: Vec<usize> = (0..machine.coordinates()).filter(|&n| moved(n)).collect();
         let pick = |vector: &DVector<f64>| active.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
         let mut this = Self {
-            shapes: active.iter().map(|&n| &machine.turn * modes.shapes.column(n)).collect(),
+            shapes: turned_back(&machine.turn, &modes.shapes, &active),
             stiffness: active.iter().map(|&n| modes.angular_frequencies[n].powi(2)).collect(),
             damping: active.iter().map(|&n| modes.damping_per_s(n)).collect(),
             lines: (lines.iter().zip(face_reach_m))
@@ -149,40 +215,19 @@ impl ModalMachine {
     /// # Arguments
     /// * `angular_frequency` - (rad/s) of the highest mode that is stepped
     pub fn up_to(mut self, angular_frequency: f64) -> Self {
-        let omitted: Vec<usize> =
-            (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() > angular_frequency).collect();
-        if omitted.is_empty() {
-            return self;
-        }
-        let columns: Vec<&Vec<f64>> = self.lines.iter().flat_map(|line| &line.columns).collect();
-        let yielding = |a: &[f64], b: &[f64]| omitted.iter().map(|&n| a[n] * b[n] / self.stiffness[n]).sum::<f64>();
-        let externals = external_forces(&self);
-        let static_deflection =
-            |column: &&Vec<f64>| omitted.iter().map(|&n| column[n] * self.static_displacement[n]).sum();
+        let is_stepped: Vec<bool> = self.stiffness.iter().map(|stiffness| stiffness.sqrt() <= angular_frequency).collect();
+        let split = |values: &mut Vec<f64>| take_out(values, &is_stepped);
         self.residual = Residual {
-            compliance: columns.iter().map(|a| columns.iter().map(|b| yielding(a, b)).collect()).collect(),
-            static_deflection: columns.iter().map(static_deflection).collect(),
-            of_external: columns.iter().map(|a| externals.each_ref().map(|force| yielding(a, force))).collect(),
+            shapes: take_out(&mut self.shapes, &is_stepped),
+            columns: self.lines.iter_mut().flat_map(|line| &mut line.columns).map(split).collect(),
+            motor: split(&mut self.motor),
+            brake: split(&mut self.brake),
+            static_displacement: split(&mut self.static_displacement),
+            stiffness: split(&mut self.stiffness),
         };
-        let is_kept = |n: usize| !omitted.contains(&n);
-        let keep = |values: &mut Vec<f64>| {
-            let kept = values.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, value)| *value);
-            *values = kept.collect();
-        };
-        let shapes = std::mem::take(&mut self.shapes).into_iter().enumerate();
-        self.shapes = shapes.filter(|(n, _)| is_kept(*n)).map(|(_, shape)| shape).collect();
-        for values in [
-            &mut self.stiffness,
-            &mut self.damping,
-            &mut self.motor,
-            &mut self.brake,
-            &mut self.rigid_velocity,
-            &mut self.static_displacement,
-            &mut self.initial_velocity,
-        ] {
-            keep(values);
+        for values in [&mut self.damping, &mut self.rigid_velocity, &mut self.initial_velocity] {
+            split(values);
         }
-        self.lines.iter_mut().flat_map(|line| &mut line.columns).for_each(keep);
         self
     }
 
@@ -205,25 +250,35 @@ impl ModalMachine {
             .collect();
     }
 
-    /// (1/s) Rate at which the slowest mode decays with the meshes closed, of the modes up to a frequency.
+    /// The modes with the meshes closed, of those up to a frequency without them; damping does not couple them.
     ///
     /// # Arguments
     /// * `meshes` - closed
     /// * `highest_rad_per_s` - (rad/s) natural frequency of the highest mode that counts
-    pub fn slowest_decay_per_s(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> f64 {
+    pub fn closed_modes(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> Vec<ClosedMode> {
         let low: Vec<usize> =
             (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() <= highest_rad_per_s).collect();
-        let mut closed = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.stiffness[n])));
-        let mut damping = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.damping[n])));
-        for (line, mesh) in self.lines.iter().zip(meshes) {
-            let column = DVector::from_iterator(low.len(), low.iter().map(|&n| line.columns[0][n]));
-            let stiffness = &column * column.transpose() * mesh.stiffness_n_per_m;
+        let of_low = |values: &[f64]| DVector::from_iterator(low.len(), low.iter().map(|&n| values[n]));
+        let mut closed = DMatrix::from_diagonal(&of_low(&self.stiffness));
+        let mut damping = DMatrix::from_diagonal(&of_low(&self.damping));
+        let columns: Vec<DVector<f64>> = self.lines.iter().map(|line| of_low(&line.columns[0])).collect();
+        for (column, mesh) in columns.iter().zip(meshes) {
+            let stiffness = column * column.transpose() * mesh.stiffness_n_per_m;
             damping += &stiffness * mesh.damping_time_s;
             closed += stiffness;
         }
-        let shapes = closed.symmetric_eigen().eigenvectors;
-        let decay_per_s = |shape: nalgebra::DVectorView<f64>| (&damping * shape).dot(&shape) / 2.0;
-        shapes.column_iter().map(decay_per_s).filter(|decay| *decay > 0.0).fold(f64::INFINITY, f64::min)
+        let eigen = closed.symmetric_eigen();
+        let mode = |(square, shape): (&f64, nalgebra::DVectorView<f64>)| {
+            let energy = |(column, mesh): (&DVector<f64>, &ClosedMesh)| {
+                mesh.stiffness_n_per_m * column.dot(&shape).powi(2) / square.abs().max(f64::MIN_POSITIVE)
+            };
+            let frequency_hz = square.max(0.0).sqrt() / TAU;
+            ClosedMode {
+                decay: DecayingMode { frequency_hz, decay_per_s: (&damping * shape).dot(&shape) / 2.0 },
+                mesh_energies: columns.iter().zip(meshes).map(energy).collect(),
+            }
+        };
+        eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).map(mode).collect()
     }
 
     /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.
@@ -260,9 +315,29 @@ impl ModalMachine {
     /// # Arguments
     /// * `weights` - of the coordinates
     pub(super) fn of_coordinates(&self, weights: &DVector<f64>) -> (Vec<f64>, f64) {
-        let of_modes = self.shapes.iter().map(|shape| sum_or_zero(shape, weights)).collect();
+        let entries = entries(weights);
+        let of_modes = self.shapes.iter().map(|shape| sum_or_zero(shape, &entries)).collect();
         (of_modes, self.rigid_rotation.dot(weights))
     }
+}
+
+/// Shapes in the coordinates themselves. Most entries of `turn` are 0.
+fn turned_back(turn: &DMatrix<f64>, shapes: &DMatrix<f64>, modes: &[usize]) -> Vec<DVector<f64>> {
+    let rows = |column: usize| (0..turn.nrows()).map(move |row| (row, column));
+    let entries: Vec<_> = (0..turn.ncols()).flat_map(rows).filter(|entry| turn[*entry] != 0.0).collect();
+    let shape = |&mode: &usize| {
+        let mut shape = DVector::zeros(turn.nrows());
+        entries.iter().for_each(|&(row, column)| shape[row] += turn[(row, column)] * shapes[(column, mode)]);
+        shape
+    };
+    modes.iter().map(shape).collect()
+}
+
+/// Takes the entries out of a list that are not to stay.
+fn take_out<T>(values: &mut Vec<T>, stays: &[bool]) -> Vec<T> {
+    let (kept, out): (Vec<_>, Vec<_>) = std::mem::take(values).into_iter().zip(stays).partition(|(_, stays)| **stays);
+    *values = kept.into_iter().map(|(value, _)| value).collect();
+    out.into_iter().map(|(value, _)| value).collect()
 }
 
 /// Forces of all motors per rad of the input's angle, and of all brakes per N m of the nominal torque, in turned coordinates: drives
@@ -297,10 +372,16 @@ fn clean(vector: DVector<f64>) -> DVector<f64> {
     vector.map(|entry| if entry.abs() < ROUNDING * largest { 0.0 } else { entry })
 }
 
-/// `a·b`, or 0 where the terms cancel to rounding: wheels of equal mass move in opposition, and their sum is no signal.
-fn sum_or_zero(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+/// Numbers and values of the entries of a vector that are not 0.
+fn entries(vector: &DVector<f64>) -> Vec<(usize, f64)> {
+    vector.iter().copied().enumerate().filter(|(_, entry)| *entry != 0.0).collect()
+}
+
+/// The sum of some coordinates with their weights, or 0 where the terms cancel to rounding: wheels of equal mass move in opposition, and
+/// their sum is no signal.
+fn sum_or_zero(shape: &DVector<f64>, weights: &[(usize, f64)]) -> f64 {
     const CANCELLED: f64 = 1e-12;
-    let terms = a.component_mul(b);
-    let sum = terms.sum();
-    if sum.abs() < CANCELLED * terms.abs().sum() { 0.0 } else { sum }
+    let terms = weights.iter().map(|&(n, weight)| weight * shape[n]);
+    let (sum, size) = (terms.clone().sum::<f64>(), terms.map(f64::abs).sum::<f64>());
+    if sum.abs() < CANCELLED * size { 0.0 } else { sum }
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use nalgebra::DVector;
 
-use super::modal::ModalMachine;
+use super::modal::{AtRest, ModalMachine};
 use super::mode_step::StepOfMode;
 use crate::machine::Axis;
 
@@ -65,6 +65,8 @@ pub(super) struct OutputWeights {
     pub(super) acceleration: Vec<f64>,
     /// Of the force in each column of each mesh's line of action, mesh by mesh.
     pub(super) force: Vec<f64>,
+    /// Of the externals, by way of the modes that are not stepped.
+    pub(super) external: [f64; EXTERNALS],
     pub(super) constant: f64,
     pub(super) per_sample: f64,
 }
@@ -97,13 +99,16 @@ impl Output {
             }
             Self::MeshForce { mesh } => return mesh_force(model, *mesh),
         };
+        let AtRest { constant, of_force, of_drives: [of_motor, of_brake] } = model.residual.of_coordinates(&weights);
         let (weights, rigid) = model.of_coordinates(&weights);
         let scaled = |of: &dyn Fn(&StepOfMode) -> f64| -> Vec<f64> {
             weights.iter().zip(steps).map(|(weight, step)| weight * of(step)).collect()
         };
         match derivative {
             0 => OutputWeights {
-                constant: dot(&weights, &model.static_displacement),
+                constant: constant + dot(&weights, &model.static_displacement),
+                force: of_force,
+                external: [of_motor, of_brake, 0.0],
                 per_sample: rigid * model.rotation_rad_per_s * step_s,
                 acceleration: scaled(&|step| step.beta),
                 displacement: weights,
@@ -111,6 +116,8 @@ impl Output {
             },
             1 => OutputWeights {
                 constant: rigid * model.rotation_rad_per_s,
+                // How fast the forces of the meshes change is not known.
+                external: [0.0, 0.0, of_motor],
                 velocity: scaled(&|_| 1.0 / step_s),
                 acceleration: scaled(&|_| 0.5 / step_s),
                 ..OutputWeights::default()

@@ -108,15 +108,16 @@ impl Prepared {
         };
         let (mut columns, mut compliance): (Vec<Column>, Vec<Vec<f64>>) =
             lines.iter().zip(&pushes).map(column).unzip();
-        let residual = &model.residual;
-        for (row, residual) in compliance.iter_mut().zip(&residual.compliance) {
-            row.iter_mut().zip(residual).for_each(|(compliance, residual)| *compliance += residual);
-        }
-        for (column, deflection) in columns.iter_mut().zip(&residual.static_deflection) {
-            column.static_deflection += deflection;
-        }
-        for (column, residual) in columns.iter_mut().zip(&residual.of_external) {
-            column.of_external.iter_mut().zip(residual).for_each(|(external, residual)| *external += residual);
+        let residual = model.residual.of_columns();
+        for (((column, compliance), residual), (_, lead)) in
+            columns.iter_mut().zip(&mut compliance).zip(residual).zip(&lines)
+        {
+            compliance.iter_mut().zip(residual.of_force).for_each(|(compliance, residual)| *compliance += residual);
+            column.static_deflection += residual.constant;
+            let [of_motor, of_brake] = residual.of_drives;
+            // Modes at rest follow the motor's speed too, and that is the damping's lead of their deflection.
+            let of_external = [of_motor, of_brake, lead * step_s * of_motor];
+            column.of_external.iter_mut().zip(of_external).for_each(|(external, residual)| *external += residual);
         }
         let mut next = 0;
         let columns_of_mesh = (model.lines.iter())

@@ -5,43 +5,68 @@
 //!
 //! Source: T. J. R. Hughes, *The Finite Element Method* (2000), section 9.1, on the steps' amplification of a sine.
 
+use std::borrow::Cow;
+
 use meshtone_fourier::Complex64;
+use nalgebra::DMatrix;
 
 use super::ModalMachine;
 use super::mode_step::{SampledSine, StepOfMode};
-use crate::machine::{Axis, PINION_SUPPORT};
+use crate::machine::Axis;
 use crate::mesh::MeshLaw;
 
-/// A machine with its mean mesh, as a deviation of the flanks drives it.
+/// A machine with its mean meshes, as deviations of the flanks drive it.
 pub(crate) struct MeanMachine<'a> {
     model: &'a ModalMachine,
-    law: MeshLaw,
+    laws: Vec<MeshLaw>,
     /// (s) Δt.
     step_s: f64,
     steps: Vec<StepOfMode>,
-    /// Modal entries of the vertical sensor.
-    sensor: Vec<f64>,
+    /// Modal entries of each sensor.
+    sensors: Vec<Vec<f64>>,
+    /// (m/N) Deflection of each mesh per force of each, of the modes that are not stepped.
+    residual: DMatrix<f64>,
 }
 
 impl<'a> MeanMachine<'a> {
-    /// The machine of a simulation of one mesh.
+    /// The machine of a simulation.
     ///
     /// # Arguments
     /// * `model` - its modes
-    /// * `law` - that of its mesh
+    /// * `laws` - those of its meshes
     /// * `step_s` - (s) time between two samples
-    pub(crate) fn new(model: &'a ModalMachine, law: MeshLaw, step_s: f64) -> Self {
-        let (sensor, _) = model.of_coordinates(&model.machine.weights(PINION_SUPPORT, Axis::Y));
-        let steps = model.steps(&[law], step_s);
-        Self { model, law, step_s, steps, sensor }
+    /// * `sensors` - place and axis of the accelerations that are asked for
+    pub(crate) fn new(
+        model: &'a ModalMachine,
+        laws: Vec<MeshLaw>,
+        step_s: f64,
+        sensors: &[(Cow<'static, str>, Axis)],
+    ) -> Self {
+        let of_sensor =
+            |(place, axis): &(Cow<'static, str>, Axis)| model.of_coordinates(&model.machine.weights(place, *axis)).0;
+        // The first column of each line of action.
+        let first: Vec<usize> = (model.lines.iter())
+            .scan(0, |next, line| Some(std::mem::replace(next, *next + line.columns.len())))
+            .collect();
+        let compliance = model.residual.compliance();
+        Self {
+            steps: model.steps(&laws, step_s),
+            sensors: sensors.iter().map(of_sensor).collect(),
+            residual: DMatrix::from_fn(laws.len(), laws.len(), |a, b| {
+                compliance.get(first[a]).map_or(0.0, |row| row[first[b]])
+            }),
+            model,
+            laws,
+            step_s,
+        }
     }
 
-    /// The square of how much a steady sine of a simulation would have to grow to be the machine's own: of the sensor's vertical
-    /// acceleration, and of the force along the line of action.
+    /// The square of how much a steady sine of a simulation would have to grow to be the machine's own: of each sensor's acceleration, and
+    /// then of the force along each line of action.
     ///
     /// # Arguments
     /// * `angular_frequency` - (rad/s) of the sine, more than 0
-    pub(crate) fn squared_growth(&self, angular_frequency: f64) -> [f64; 2] {
+    pub(crate) fn squared_growth(&self, angular_frequency: f64) -> Vec<f64> {
         let own = self.squared_gains(&|n| {
             let inertia = angular_frequency * angular_frequency;
             let (stiffness, damping) = (self.model.stiffness[n], self.model.damping[n]);
@@ -54,23 +79,43 @@ impl<'a> MeanMachine<'a> {
             let [displacement, velocity, acceleration] = self.steps[n].answer(&sampled);
             [displacement * (self.step_s * self.step_s), velocity * self.step_s, acceleration]
         });
-        [own[0] / of_steps[0], own[1] / of_steps[1]]
+        own.into_iter().zip(of_steps).map(|(own, of_steps)| own / of_steps).collect()
     }
 
-    /// Squares of both amplitudes, to a deviation of unit amplitude.
+    /// Squares of the amplitudes of all sensors and forces, to deviations of unit amplitude that the meshes have by turns, added up.
     ///
     /// # Arguments
     /// * `answer` - displacement, velocity and acceleration of a mode to a force of unit amplitude
-    fn squared_gains(&self, answer: &dyn Fn(usize) -> [Complex64; 3]) -> [f64; 2] {
-        let line = &self.model.lines[0].columns[0];
-        let (mut of_line, mut of_sensor) = (Complex64::ZERO, Complex64::ZERO);
-        for (n, (line, sensor)) in line.iter().zip(&self.sensor).enumerate() {
+    fn squared_gains(&self, answer: &dyn Fn(usize) -> [Complex64; 3]) -> Vec<f64> {
+        let (meshes, sensors) = (self.laws.len(), self.sensors.len());
+        let line = |mesh: usize, n: usize| self.model.lines[mesh].columns[0][n];
+        let mut of_line = self.residual.map(Complex64::from);
+        let mut of_sensor = DMatrix::from_element(sensors, meshes, Complex64::ZERO);
+        for n in 0..self.model.modes() {
             let [displacement, velocity, acceleration] = answer(n);
-            of_line += (displacement + velocity * self.law.damping_time_s) * (line * line);
-            of_sensor += acceleration * (line * sensor);
+            for b in 0..meshes {
+                for a in 0..meshes {
+                    let led = displacement + velocity * self.laws[a].damping_time_s;
+                    of_line[(a, b)] += led * (line(a, n) * line(b, n));
+                }
+                for (sensor, entries) in self.sensors.iter().enumerate() {
+                    of_sensor[(sensor, b)] += acceleration * (line(b, n) * entries[n]);
+                }
+            }
         }
         // The flanks' own rate of change is given; the damping's share of it is the same in both.
-        let force = self.law.back_stiffness_n_per_m / (1.0 + of_line * self.law.back_stiffness_n_per_m);
-        [(of_sensor * force).norm_sqr(), force.norm_sqr()]
+        let stiffness = |mesh: usize| self.laws[mesh].back_stiffness_n_per_m;
+        let closed = DMatrix::from_fn(meshes, meshes, |a, b| {
+            of_line[(a, b)] * stiffness(a) + if a == b { Complex64::ONE } else { Complex64::ZERO }
+        });
+        let deviations = DMatrix::from_fn(meshes, meshes, |a, b| {
+            if a == b { Complex64::from(stiffness(a)) } else { Complex64::ZERO }
+        });
+        // Singular for no ω: every mode is damped, or a sine beside its frequency.
+        let forces = closed.lu().solve(&deviations).unwrap_or(deviations);
+        let sum = |row: nalgebra::DVector<Complex64>| row.iter().map(Complex64::norm_sqr).sum::<f64>();
+        let accelerations = of_sensor * &forces;
+        let rows = (0..sensors).map(|n| accelerations.row(n).transpose());
+        rows.chain((0..meshes).map(|n| forces.row(n).transpose())).map(sum).collect()
     }
 }

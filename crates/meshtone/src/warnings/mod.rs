@@ -1,5 +1,6 @@
 //! Warnings about a simulation: before the time loop, and by its signals.
 
+mod gearbox;
 mod observer;
 mod of_signals;
 mod step_error;
@@ -11,8 +12,10 @@ use std::f64::consts::TAU;
 
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{DecayingMode, Shaft, WheelBody};
+use crate::operation::{Operation, Solver, TimeGrid};
 use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
 use crate::simulate::{Stages, stages_within};
+use crate::wheel::Gears;
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
@@ -58,21 +61,10 @@ impl Stages {
 
     /// Teeth that the load would bend off.
     fn overload(&self) -> Option<ScenarioWarning> {
-        let (key, torque_nm) = largest_torque(&self.scenario);
+        let (key, torque_nm) = largest_torque(&self.scenario.operation);
         let force_n = self.force_of_torque_n(torque_nm);
         let weakest_n_per_m = self.mean_stiffness_n_per_m().into_iter().fold(f64::INFINITY, f64::min);
-        let deflection_mm = force_n / weakest_n_per_m * 1e3;
-        let (module_mm, width_mm) = (self.scenario.gears.module_mm, self.scenario.gears.face_width_mm);
-        let most_mm = TOLERATED_DEFLECTION * module_mm;
-        (deflection_mm > most_mm).then(|| {
-            let most_nm = torque_nm * most_mm / deflection_mm;
-            let message = format!(
-                "{torque_nm:?} N m presses the teeth {deflection_mm:.3} mm together, {:.2} modules, with {force_n:.0} N on {width_mm} mm \
-                 of face: they would break; at most {most_nm:.0} N m stays below a tenth of the module",
-                deflection_mm / module_mm
-            );
-            ScenarioWarning::new(WarningKind::Overload, key, message)
-        })
+        overload(key, torque_nm, force_n, weakest_n_per_m, &self.scenario.gears)
     }
 
     /// Places at which no pair of teeth meets: nothing holds the wheels there, where real teeth would touch with their tips'
@@ -131,53 +123,83 @@ impl Stages {
     }
 
     fn unsettled(&self) -> Option<ScenarioWarning> {
-        let remainder = self.transient_remainder();
-        (remainder > TOLERATED_TRANSIENT).then(|| {
-            let mode = self.slowest_mode();
-            let decay = mode.decay_per_s;
-            let settling_s = self.time.kept_from_s();
-            let advice = if decay > 0.0 {
-                format!("it takes {:.3} s to fall to 1 %", -TOLERATED_TRANSIENT.ln() / decay)
-            } else {
-                "it never decays: a mode has no damping".to_string()
-            };
-            let percent = 100.0 * remainder;
-            let advice = match self.fraction_that_settles(decay) {
-                Some(fraction) => format!("{advice}; raise solver.settle_fraction to {fraction:.2}"),
-                None => advice,
-            };
-            let advice = if decay > 0.0 && self.teeth_part() {
-                format!("{advice}; {}", words_of(&mode))
-            } else {
-                advice
-            };
-            let message = format!(
-                "up to {percent:.0} % of the start-up transient is left when the kept signal starts, after {settling_s:.3} s; \
-                 {advice}"
-            );
-            ScenarioWarning::new(WarningKind::Unsettled, "solver.settle_fraction", message)
-        })
+        let named = if self.teeth_part() { words_of } else { |_: &DecayingMode| String::new() };
+        unsettled(&self.slowest_mode(), &self.time, &self.scenario.solver, named)
     }
 }
 
-impl Stages {
-    /// (-) The settling fraction, in hundredths, at which the transient of the slowest mode has decayed; none where no fraction is enough.
-    fn fraction_that_settles(&self, decay_per_s: f64) -> Option<f64> {
-        const MOST: f64 = 0.99;
-        let (solver, time) = (&self.scenario.solver, &self.time);
-        let needed_s = -TOLERATED_TRANSIENT.ln() / decay_per_s;
-        let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
-        let kept_s = time.kept_samples() as f64 * time.step_s();
-        // Without a stated length, settling takes its part of the whole.
-        let whole_s = if is_length_given { needed_s + kept_s } else { time.samples as f64 * time.step_s() };
-        let fraction = (100.0 * needed_s / whole_s).ceil() / 100.0;
-        (0.0..=MOST).contains(&fraction).then_some(fraction)
-    }
+/// A start-up transient that the discarded time does not outlast.
+///
+/// # Arguments
+/// * `slowest` - the mode that is the slowest to decay
+/// * `time`, `solver` - the time that is discarded, and what it follows from
+/// * `named` - what is said of the mode
+fn unsettled(
+    slowest: &DecayingMode,
+    time: &TimeGrid,
+    solver: &Solver,
+    named: fn(&DecayingMode) -> String,
+) -> Option<ScenarioWarning> {
+    let (decay, settling_s) = (slowest.decay_per_s, time.kept_from_s());
+    let remainder = (-decay * settling_s).exp();
+    (remainder > TOLERATED_TRANSIENT).then(|| {
+        let advice = if decay > 0.0 {
+            let needed_s = -TOLERATED_TRANSIENT.ln() / decay;
+            let raised = fraction_that_settles(needed_s, time, solver)
+                .map(|fraction| format!("; raise solver.settle_fraction to {fraction:.2}"));
+            format!("it takes {needed_s:.3} s to fall to 1 %{}{}", raised.unwrap_or_default(), named(slowest))
+        } else {
+            "it never decays: a mode has no damping".to_string()
+        };
+        let percent = 100.0 * remainder;
+        let message = format!(
+            "up to {percent:.0} % of the start-up transient is left when the kept signal starts, after {settling_s:.3} s; \
+             {advice}"
+        );
+        ScenarioWarning::new(WarningKind::Unsettled, "solver.settle_fraction", message)
+    })
+}
+
+/// (-) The settling fraction, in hundredths, at which a time is discarded; none where no fraction is enough.
+fn fraction_that_settles(needed_s: f64, time: &TimeGrid, solver: &Solver) -> Option<f64> {
+    const MOST: f64 = 0.99;
+    let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
+    let kept_s = time.kept_samples() as f64 * time.step_s();
+    // Without a stated length, settling takes its part of the whole.
+    let whole_s = if is_length_given { needed_s + kept_s } else { time.samples as f64 * time.step_s() };
+    let fraction = (100.0 * needed_s / whole_s).ceil() / 100.0;
+    (0.0..=MOST).contains(&fraction).then_some(fraction)
+}
+
+/// Teeth that a load would bend off.
+///
+/// # Arguments
+/// * `key`, `torque_nm` - the torque of the brake, and where it stands
+/// * `force_n`, `stiffness_n_per_m` - what it makes the mesh carry, and the mesh's mean stiffness
+/// * `gears` - its wheels
+fn overload(
+    key: String,
+    torque_nm: f64,
+    force_n: f64,
+    stiffness_n_per_m: f64,
+    gears: &Gears,
+) -> Option<ScenarioWarning> {
+    let deflection_mm = force_n / stiffness_n_per_m * 1e3;
+    let (module_mm, width_mm) = (gears.module_mm, gears.face_width_mm);
+    let most_mm = TOLERATED_DEFLECTION * module_mm;
+    (deflection_mm > most_mm).then(|| {
+        let most_nm = torque_nm * most_mm / deflection_mm;
+        let message = format!(
+            "{torque_nm:?} N m presses the teeth {deflection_mm:.3} mm together, {:.2} modules, with {force_n:.0} N on {width_mm} mm \
+             of face: they would break; at most {most_nm:.0} N m stays below a tenth of the module",
+            deflection_mm / module_mm
+        );
+        ScenarioWarning::new(WarningKind::Overload, key, message)
+    })
 }
 
 /// The key of the largest torque, and the torque in N m.
-fn largest_torque(scenario: &Scenario) -> (String, f64) {
-    let operation = &scenario.operation;
+fn largest_torque(operation: &Operation) -> (String, f64) {
     let values = operation.torque_profile_nm.iter().flat_map(|profile| &profile.value).enumerate();
     let values =
         values.map(|(index, &torque)| (format!("operation.torque_profile_nm.value[{index}]"), torque));
@@ -190,7 +212,7 @@ fn largest_torque(scenario: &Scenario) -> (String, f64) {
 fn words_of(mode: &DecayingMode) -> String {
     let ratio = mode.decay_per_s / (TAU * mode.frequency_hz);
     format!(
-        "slowest is the mode at {:.0} Hz, at {:.2} % of critical damping, which the damping_ratio of shafts and supports raises",
+        "; slowest is the mode at {:.0} Hz, at {:.2} % of critical damping, which the damping_ratio of shafts and supports raises",
         mode.frequency_hz,
         100.0 * ratio
     )

@@ -41,25 +41,14 @@ impl Stages {
     pub fn warnings_of_signals(&self, observer: &Observer, judgement: StepJudgement) -> Vec<ScenarioWarning> {
         let is_damaged = !self.damaged.is_empty();
         let pulling = (!self.teeth_part()).then(|| tension(&observer.force, is_damaged)).flatten();
-        let step = step_error(self, observer, judgement).and_then(|error| long_step(error, self));
-        let resonance = self.resonance(observer.force.largest_n);
+        let rate_hz = self.time.sampling_rate_hz;
+        let step = step_error(self, observer, judgement).and_then(|error| long_step(error, rate_hz));
+        let (_, torque_nm) = largest_torque(&self.scenario.operation);
+        let static_n = self.force_of_torque_n(torque_nm);
+        let resonance = resonance("operation.pinion_speed_hz", observer.force.largest_n, static_n);
         let braked = self.braked_rotation(observer.force.mean_n());
         let doubtful = [pulling, resonance, braked, self.other_speed(observer), step];
         doubtful.into_iter().flatten().collect()
-    }
-
-    /// A mesh force so far beyond the static one that the machine could not be.
-    fn resonance(&self, largest_n: f64) -> Option<ScenarioWarning> {
-        let (_, torque_nm) = largest_torque(&self.scenario);
-        let static_n = self.force_of_torque_n(torque_nm);
-        (static_n > 0.0 && largest_n > TOLERATED_RESONANCE * static_n).then(|| {
-            let message = format!(
-                "the mesh force reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
-                 survives, or a load too light to be meant; raise the damping, change the speed, or load the pair",
-                largest_n / static_n
-            );
-            ScenarioWarning::new(WarningKind::Resonance, "operation.pinion_speed_hz", message)
-        })
     }
 
     /// A mean mesh force under the published model that is not the load's, because its damping acts on the rotation of the whole machine too.
@@ -88,21 +77,50 @@ impl Stages {
         };
         let ratio = f64::from(self.teeth.pinion.teeth) / f64::from(self.teeth.gear.teeth);
         let turning = [("pinion", driven_hz, pinion_hz), ("gear", driven_hz * ratio, gear_hz)];
-        let off = |(_, driven_hz, hz): &(&str, f64, f64)| (hz / driven_hz - 1.0).abs() > TOLERATED_SPEED;
-        turning.into_iter().find(off).map(|(wheel, driven_hz, hz)| {
-            let message = format!(
-                "the {wheel} turns at {hz:.4} Hz on average, while the motor drives it at {driven_hz:.4} Hz: the motion has not \
-                 settled, or too many teeth are gone; lengthen solver.settle_fraction, raise the damping, leave out \
-                 solver.initial_velocity, or lessen the damage"
-            );
-            ScenarioWarning::new(WarningKind::OtherSpeed, "solver.settle_fraction", message)
-        })
+        let mean =
+            |(wheel, driven_hz, hz): (&str, f64, f64)| other_speed(&format!("the {wheel}"), driven_hz, hz);
+        turning.into_iter().find_map(mean)
     }
 }
 
+/// A shaft whose mean speed is not what it is driven at.
+///
+/// # Arguments
+/// * `what` - turns
+/// * `driven_hz`, `hz` - (rev/s) the speed that it is driven at, and its own on average
+pub(super) fn other_speed(what: &str, driven_hz: f64, hz: f64) -> Option<ScenarioWarning> {
+    ((hz / driven_hz - 1.0).abs() > TOLERATED_SPEED).then(|| {
+        let message = format!(
+            "{what} turns at {hz:.4} Hz on average, while the motor drives it at {driven_hz:.4} Hz: the motion has not \
+             settled, or too many teeth are gone; lengthen solver.settle_fraction, raise the damping, leave out \
+             solver.initial_velocity, or lessen the damage"
+        );
+        ScenarioWarning::new(WarningKind::OtherSpeed, "solver.settle_fraction", message)
+    })
+}
+
+/// A mesh force so far beyond the static one that the machine could not be.
+///
+/// # Arguments
+/// * `key` - of the speed
+/// * `largest_n`, `static_n` - (N) the largest force, and that which holds the largest torque
+pub(super) fn resonance(key: &str, largest_n: f64, static_n: f64) -> Option<ScenarioWarning> {
+    (static_n > 0.0 && largest_n > TOLERATED_RESONANCE * static_n).then(|| {
+        let message = format!(
+            "the mesh force reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
+             survives, or a load too light to be meant; raise the damping, change the speed, or load the pair",
+            largest_n / static_n
+        );
+        ScenarioWarning::new(WarningKind::Resonance, key, message)
+    })
+}
+
 /// A step that falsifies a resonance.
-fn long_step(error: StepError, stages: &Stages) -> Option<ScenarioWarning> {
-    let rate_hz = stages.time.sampling_rate_hz;
+///
+/// # Arguments
+/// * `error` - its estimate
+/// * `rate_hz` - (S/s) the simulation's sampling rate
+pub(super) fn long_step(error: StepError, rate_hz: f64) -> Option<ScenarioWarning> {
     let (error, shown) = match error {
         StepError::Suspected(error) => (error, format!("and the rms may be wrong by {:.1} %", 100.0 * error)),
         StepError::Shown { gain, finer_rate_hz } => {

@@ -3,9 +3,10 @@
 use std::f64::consts::TAU;
 
 use crate::error::Error;
+use crate::machine::{Axis, PINION_SUPPORT};
 use crate::operation::greatest_common_divisor;
 use crate::sensor::ChannelKind;
-use crate::simulate::{Equations, Stages, stages_within};
+use crate::simulate::{Equations, GearboxSimulation, Stages, simulate_gearbox, stages_within};
 use crate::solver::{Block, MeanMachine, Recorder};
 use meshtone_fourier::real_spectrum;
 
@@ -114,18 +115,27 @@ fn estimate(stages: &Stages, signals: [&WheelTurnSums; 2]) -> f64 {
         return 0.0;
     };
     let model = stages.modal_machine(train, modes);
-    let machine = MeanMachine::new(&model, mesh.law(), stages.time.step_s());
-    let powers = signals.map(|signal| signal.rms().powi(2));
-    let mut gained = [0.0; 2];
-    for line in lines(stages, signals) {
-        let is_counted =
-            |n: usize| powers[n] > ROUNDING * ROUNDING && line.powers[n] > LEAST_PART * powers[n];
-        let counted = [is_counted(0), is_counted(1)];
-        if counted == [false; 2] {
+    let sensor = [(PINION_SUPPORT.into(), Axis::Y)];
+    let machine = MeanMachine::new(&model, vec![mesh.law()], stages.time.step_s(), &sensor);
+    growth(&machine, lines(stages, signals), &signals.map(|signal| signal.rms().powi(2)))
+}
+
+/// (-) How much the rms of one of some signals may have to grow to be the machine's own.
+///
+/// # Arguments
+/// * `machine` - with the signals' sensors
+/// * `lines` - the sines of all signals
+/// * `powers` - mean square of each signal
+fn growth(machine: &MeanMachine, lines: impl Iterator<Item = Line>, powers: &[f64]) -> f64 {
+    let mut gained = vec![0.0; powers.len()];
+    for line in lines {
+        let counts = |&n: &usize| powers[n] > ROUNDING * ROUNDING && line.powers[n] > LEAST_PART * powers[n];
+        let counted: Vec<usize> = (0..powers.len()).filter(counts).collect();
+        if counted.is_empty() {
             continue;
         }
         let growths = SHIFTS.map(|shift| machine.squared_growth(TAU * line.frequency_hz * (1.0 + shift)));
-        for n in (0..2).filter(|&n| counted[n]) {
+        for n in counted {
             let most = growths.iter().map(|growth| (growth[n] - 1.0).abs()).fold(0.0, f64::max);
             gained[n] += line.powers[n] / powers[n] * most;
         }
@@ -133,11 +143,76 @@ fn estimate(stages: &Stages, signals: [&WheelTurnSums; 2]) -> f64 {
     gained.into_iter().map(|gained| (1.0 + gained).sqrt() - 1.0).fold(0.0, f64::max)
 }
 
-/// A sine of acceleration and force.
+/// A sine of some signals.
 struct Line {
     frequency_hz: f64,
     /// Its mean square in each.
-    powers: [f64; 2],
+    powers: Vec<f64>,
+}
+
+/// A gearbox's [`step_error`]: by its plain sensors and the forces of its meshes.
+pub(super) fn step_error_of_gearbox(
+    simulation: &GearboxSimulation,
+    judgement: StepJudgement,
+) -> Option<StepError> {
+    let GearboxSimulation { stages, channels, .. } = simulation;
+    if !stages.is_steady() {
+        return None;
+    }
+    let signals = judged(simulation);
+    let powers: Vec<f64> = signals.iter().map(|values| rms(values).powi(2)).collect();
+    let spectra: Vec<Vec<f64>> = signals.iter().map(|values| power_spectrum(values)).collect();
+    let resolution_hz = channels.sampling_rate_hz / channels.len() as f64;
+    let line = |index: usize| Line {
+        frequency_hz: index as f64 * resolution_hz,
+        powers: spectra.iter().map(|spectrum| spectrum[index]).collect(),
+    };
+    let is_strong =
+        |line: &Line| line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole);
+    let lines = (1..channels.len().div_ceil(2)).map(line).filter(is_strong);
+    let sensors: Vec<_> =
+        stages.plain_sensors().map(|sensor| (sensor.name().into(), sensor.axis())).collect();
+    let laws = stages.meshes.iter().map(|mesh| mesh.law()).collect();
+    let machine = MeanMachine::new(stages.modal_machine(), laws, stages.time.step_s(), &sensors);
+    let estimate = growth(&machine, lines, &powers);
+    if judgement == StepJudgement::Estimated {
+        return (estimate >= CERTAIN).then_some(StepError::Suspected(estimate));
+    }
+    if estimate <= SUSPICIOUS {
+        return None;
+    }
+    let mut gearbox = stages.gearbox.clone();
+    gearbox.solver.settings.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
+    let Ok(finer) = simulate_gearbox(&gearbox) else {
+        return Some(StepError::Suspected(estimate));
+    };
+    let gains = signals
+        .iter()
+        .zip(judged(&finer))
+        .map(|(coarse, finer)| rms(finer) / rms(coarse).max(ROUNDING) - 1.0);
+    let gain = gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most });
+    Some(StepError::Shown { gain, finer_rate_hz: finer.channels.sampling_rate_hz })
+}
+
+/// (-) Part of a gearbox's signal's power from which a line of its spectrum counts: there are many lines.
+const STRONG_PART: f64 = 1e-4;
+
+/// The signals of plain sensors and the forces of the meshes.
+fn judged(simulation: &GearboxSimulation) -> Vec<&[f64]> {
+    let GearboxSimulation { stages, channels, .. } = simulation;
+    let sensors = stages.plain_sensors().map(|sensor| format!("{}_g", sensor.name()));
+    let forces = stages.gearbox.meshes.iter().map(|mesh| format!("force_n.{}", mesh.name()));
+    sensors.chain(forces).filter_map(|name| channels.signal(&name)).collect()
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// Mean square of each line of a signal's spectrum, from 0 on.
+fn power_spectrum(values: &[f64]) -> Vec<f64> {
+    let scale = 2.0 / (values.len() as f64).powi(2);
+    real_spectrum(values).into_iter().map(|line| scale * line.norm_sqr()).collect()
 }
 
 /// The sines of acceleration and force that repeat with every turn of the gear, and those that do with the pinion's.
@@ -150,7 +225,7 @@ fn lines(stages: &Stages, signals: [&WheelTurnSums; 2]) -> impl Iterator<Item = 
     let of_wheel = |turns: [&TurnSum; 2], shaft_hz: f64| {
         let [acceleration, force] = turns.map(orders);
         acceleration.zip(force).map(move |((order, acceleration), (_, force))| {
-            (order, Line { frequency_hz: order as f64 * shaft_hz, powers: [acceleration, force] })
+            (order, Line { frequency_hz: order as f64 * shaft_hz, powers: vec![acceleration, force] })
         })
     };
     let of_gear = of_wheel(signals.map(|signal| &signal.of_gear), gear_speed_hz);

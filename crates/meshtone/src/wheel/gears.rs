@@ -1,5 +1,6 @@
 //! The two wheels of the pair.
 
+use super::rows::*;
 use super::{FlankRelief, Material, WheelName};
 use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
 
@@ -96,60 +97,19 @@ impl Keys for Gears {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        const TEETH: Range = Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth");
-        const SHIFT: Range =
-            Range::from_to(-2.0, 2.0).help("usual shifts are −0.5 to 1; in mm they are x times the module");
-        const ADDENDUM: Range = Range::from_to(0.3, 2.0).help("the standard basic rack has 1");
-        const DEDENDUM: Range = Range::from_to(0.5, 2.5).help("the standard basic rack has 1.25");
-        let teeth = |name, field| {
-            row(name, "", "the tooth count", field)
-                .required()
-                .range(TEETH)
-                .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning")
-        };
-        let shift = |name, field| {
-            row(name, "-", "the profile shift coefficient x, in modules", field)
-                .range(SHIFT)
-                .rule("no undercut, no pointed tip")
-        };
-        let addendum = |name, field| {
-            row(name, "-", "the addendum coefficient of the basic rack, in modules", field)
-                .range(ADDENDUM)
-                .rule("tips not pointed, clear of the mate's fillets")
-        };
-        let dedendum = |name, field| {
-            row(name, "-", "the dedendum coefficient of the basic rack, in modules", field)
-                .range(DEDENDUM)
-                .rule("roots clear of the mate's tips")
-        };
         vec![
-            row("module_mm", "mm", "the module of both wheels", field!(module_mm))
-                .required()
-                .range(Range::positive().implausible_above(100.0)),
-            teeth("pinion_teeth", field!(pinion_teeth)),
-            teeth("gear_teeth", field!(gear_teeth)),
-            row("face_width_mm", "mm", "the face width of both wheels", field!(face_width_mm))
-                .required()
-                .range(Range::positive().implausible_above(10_000.0)),
-            row(
-                "pressure_angle_deg",
-                "°",
-                "the pressure angle at the pitch circle",
-                field!(pressure_angle_deg),
-            )
-            .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
-            .rule("no teeth pointed below full height"),
-            shift("pinion_profile_shift", field!(pinion_profile_shift)),
-            shift("gear_profile_shift", field!(gear_profile_shift)),
-            addendum("pinion_addendum", field!(pinion_addendum)),
-            addendum("gear_addendum", field!(gear_addendum)),
-            dedendum("pinion_dedendum", field!(pinion_dedendum)),
-            dedendum("gear_dedendum", field!(gear_dedendum)),
-            row("centre_distance_mm", "mm", "the distance between the axes", field!(centre_distance_mm))
-                .otherwise("that without backlash")
-                .range(Range::positive())
-                .rule("at least the default; contact ratio at least 1")
-                .alternative("83.0"),
+            module_row(field!(module_mm)),
+            teeth_row("pinion_teeth", field!(pinion_teeth)),
+            teeth_row("gear_teeth", field!(gear_teeth)),
+            face_width_row("the face width of both wheels", field!(face_width_mm)),
+            pressure_angle_row(field!(pressure_angle_deg)),
+            profile_shift_row("pinion_profile_shift", field!(pinion_profile_shift)),
+            profile_shift_row("gear_profile_shift", field!(gear_profile_shift)),
+            addendum_row("pinion_addendum", field!(pinion_addendum)),
+            addendum_row("gear_addendum", field!(gear_addendum)),
+            dedendum_row("pinion_dedendum", field!(pinion_dedendum)),
+            dedendum_row("gear_dedendum", field!(gear_dedendum)),
+            centre_distance_row(field!(centre_distance_mm)),
             row("material", "", "the material of wheels and shafts", field!(material)),
             row(
                 "flank_relief",
@@ -157,37 +117,10 @@ impl Keys for Gears {
                 "the relief of the flanks near the tips, as a gap in µm",
                 field!(flank_relief),
             ),
-            row(
-                "tip_chamfer_mm",
-                "mm",
-                "the height of the chamfer or rounding of all tips",
-                field!(tip_chamfer_mm),
-            )
-            .otherwise("0.23 modules")
-            .alternative("0.69")
-            .range(Range::not_negative())
-            .rule("less than 1 module"),
-            row(
-                "active_profile_shortening",
-                "-",
-                "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either \
-                 end",
-                field!(active_profile_shortening),
-            )
-            .range(Range::from_to(0.0, 0.5)),
-            row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
-                .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
-                .range(Range::not_negative())
-                .rule("less than 1 module; at least what a given centre distance opens")
-                .alternative("0.1275"),
-            row(
-                "uniform_flank_reduction_mm",
-                "mm",
-                "a constant reduction of the working flank",
-                field!(uniform_flank_reduction_mm),
-            )
-            .range(Range::not_negative())
-            .rule("less than π/4 modules, half the tooth's thickness"),
+            chamfer_row(field!(tip_chamfer_mm)),
+            shortening_row(field!(active_profile_shortening)),
+            backlash_row(field!(backlash_mm)),
+            flank_reduction_row(field!(uniform_flank_reduction_mm)),
             row(
                 "points_per_tooth",
                 "",

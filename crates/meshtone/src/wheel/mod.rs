@@ -12,6 +12,7 @@ mod path;
 mod profile;
 pub mod quality;
 mod radii;
+pub(crate) mod rows;
 mod rules;
 mod undercut;
 

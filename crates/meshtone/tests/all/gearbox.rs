@@ -180,6 +180,38 @@ fn high_modes_are_flexibility_enough() {
     }
 }
 
+// What is left out of accelerations and speeds is missing there, but teeth are where they are with all modes.
+#[test]
+fn few_modes_leave_transmission_errors_as_they_are() {
+    let mut steady = two_stages();
+    steady.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
+    steady.solver.settings.duration_s = Some(0.2);
+    let mut run_up = steady.clone();
+    run_up.operation.drive.speed_profile_hz =
+        Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
+    (run_up.solver.settings.duration_s, run_up.solver.settings.settle_fraction) = (None, 0.5);
+    for (gearbox, highest_hz, vibration_um) in
+        [(&steady, 5e3, 0.03), (&steady, 500.0, 0.6), (&run_up, 5e3, 0.03)]
+    {
+        let [few, all] = [highest_hz, 1e9].map(|highest_hz| {
+            let mut gearbox = gearbox.clone();
+            gearbox.solver.highest_mode_hz = Some(highest_hz);
+            simulate(&gearbox).channels
+        });
+        for (few, all) in few.signals.iter().zip(&all.signals) {
+            let differences: Vec<f64> =
+                few.values.iter().zip(&all.values).map(|(few, all)| few - all).collect();
+            let (mean, rms) = (mean(&differences), rms(&differences));
+            println!("{} up to {highest_hz} Hz: {mean:.1e} {}, vibrating {rms:.1e}", few.name, few.unit);
+            match few.unit {
+                "µm" => assert!(mean.abs() < 0.01 && rms < vibration_um),
+                "Hz" => assert!(mean.abs() < 1e-5),
+                _ => {}
+            }
+        }
+    }
+}
+
 #[test]
 fn half_the_step_changes_little() {
     let mut gearbox = two_stages();
@@ -376,6 +408,19 @@ fn mistakes_are_named_with_their_key_and_line() {
         ("seed = 1", "model = \"published\"", "model", "must be \"contact\""),
         ("at = \"input:0\"", "at = \"input:0.5\"", "sensor[0].at", "names no bearing's place"),
         ("teeth = 96", "teeth = 96\nprofile_shift = 3.0", "wheel[1].profile_shift", "must be from"),
+        ("input_speed_hz = 30.0", "input_speed_hz = 1800.0", "operation.input_speed_hz", "287 m/s"),
+        (
+            "[operation]",
+            "[[fault]]\nwheel = \"z3\"\ntooth = 49\nkind = \"missing-tooth\"\n[operation]",
+            "fault.tooth",
+            "z3's teeth",
+        ),
+        (
+            "face_width_mm = 19.05",
+            "face_width_mm = 19.05\nprofile_shift = -0.9",
+            "wheel[0].profile_shift",
+            "",
+        ),
     ] {
         let error = change(from, to);
         assert_eq!(error.key, key, "{error}");
@@ -383,6 +428,12 @@ fn mistakes_are_named_with_their_key_and_line() {
         let missing = from.starts_with("couples_to");
         assert!(error.line.is_some() || missing, "{error}");
     }
+    let overlapping = Gearbox::from_toml(&text.replace("at = 0.75", "at = 0.3")).unwrap_err();
+    let outside = Gearbox::from_toml(&text.replace("at = 0.25", "at = 0.03")).unwrap_err();
+    assert_eq!((outside.key.as_str(), outside.line), ("wheel[0].at", Some(33)));
+    assert!(outside.problem.contains("would reach from z = -2.325 to 16.725 mm"), "{outside}");
+    assert_eq!(overlapping.key, "wheel[2].at");
+    assert!(overlapping.problem.contains("\"z3\" reaches from z = 62.475 to 81.525 mm"), "{overlapping}");
     let placed =
         text.replacen("couples_to = \"motor\"", "couples_to = \"motor\"\nposition_mm = [0.0, 0.0]", 1);
     let placed = placed.replacen("name = \"middle\"", "name = \"middle\"\nposition_mm = [90.0, 0.0]", 1);
@@ -396,6 +447,105 @@ fn mistakes_are_named_with_their_key_and_line() {
     );
     let pair = Scenario::from_toml(&text).unwrap_err();
     assert!(pair.problem.contains("is of a gearbox"), "{pair}");
+}
+
+// The last wheel stands beside the first, whose tips it would run into: their axes are twice the pitch radii of 40 teeth apart.
+#[test]
+fn wheels_of_other_shafts_do_not_run_into_one_another() {
+    let shaft = |name: &str, direction_deg: f64, coupled: Coupled| {
+        let mut shaft = GearboxShaft::new(name, 100.0, 5.0);
+        let (sin, cos) = f64::to_radians(direction_deg).sin_cos();
+        let distance_mm = if name == "middle" { 0.0 } else { 60.0 };
+        shaft.position_mm = Some([distance_mm * cos, distance_mm * sin]);
+        shaft.couples_to = coupled;
+        shaft
+    };
+    let with_last_at = |direction_deg: f64| {
+        let shafts = vec![
+            shaft("input", 0.0, Coupled::Motor),
+            shaft("middle", 0.0, Coupled::Nothing),
+            shaft("output", direction_deg, Coupled::Brake),
+        ];
+        let names = ["input", "middle", "output"];
+        let wheels =
+            (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, [40, 20, 40][n], 20.0));
+        let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
+        let meshes = vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)];
+        Gearbox::new(shafts, wheels.collect(), meshes, bearings.collect(), GearboxOperation::new(30.0, 10.0))
+    };
+    assert!(with_last_at(180.0).validate().is_ok());
+    let error = with_last_at(80.0).validate().unwrap_err();
+    assert_eq!(error.key, "wheel[2].at");
+    assert!(
+        error
+            .problem
+            .contains("their axes are 77.135 mm apart, less than the tip radii, 42.000 and 42.000 mm"),
+        "{error}"
+    );
+}
+
+fn codes(warnings: &[ScenarioWarning]) -> Vec<&'static str> {
+    warnings.iter().map(|warning| warning.kind.code()).collect()
+}
+
+#[test]
+fn warnings_are_those_of_a_pair_mesh_by_mesh() {
+    let mut settled = gearbox(None);
+    settled.solver.settings.discard_and_keep(5.0, 0.1);
+    let warnings = |change: &dyn Fn(&mut Gearbox)| {
+        let mut gearbox = settled.clone();
+        change(&mut gearbox);
+        gearbox_stages(&gearbox).unwrap().warnings()
+    };
+    assert_eq!(codes(&warnings(&|_| ())), [""; 0]);
+    let unsettled = warnings(&|gearbox| gearbox.solver.settings.discard_and_keep(1.0, 0.1));
+    assert_eq!(codes(&unsettled), ["unsettled"]);
+    let overload = warnings(&|gearbox| gearbox.operation.drive.brake_torque_nm = 4000.0);
+    assert_eq!(codes(&overload), ["overload"]);
+    assert!(overload[0].message.contains("at most 3020 N m"), "{}", overload[0]);
+    let undercut = warnings(&|gearbox| {
+        (gearbox.wheels[2].teeth, gearbox.wheels[3].teeth) = (16, 96);
+        gearbox.meshes[1].module_mm = 2.0;
+    });
+    assert!(undercut.iter().any(|warning| warning.key == "wheel[2].teeth"), "{undercut:?}");
+    let slow = warnings(&|gearbox| {
+        gearbox.operation.drive.speed_profile_hz =
+            Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 20.0] });
+        (gearbox.solver.settings.duration_s, gearbox.solver.settings.settle_fraction) = (None, 0.9);
+    });
+    assert_eq!(codes(&slow), ["speed-profile-off"]);
+    assert!(slow[0].message.contains("operation.input_speed_hz"), "{}", slow[0]);
+}
+
+// Of the modes from 0.5 to 1.6 kHz the one in which the first wheel moves against its mate has 0.5 % of its energy in the mesh.
+#[test]
+fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
+    let mut gearbox = gearbox(None);
+    gearbox.solver.settings.discard_and_keep(5.0, 0.1);
+    let mut reported = |speed_hz: f64| {
+        gearbox.operation.drive.pinion_speed_hz = speed_hz;
+        gearbox_stages(&gearbox).unwrap().warnings().pop()
+    };
+    assert_eq!(reported(30.0), None);
+    let warning = reported(1479.2 / 32.0 * 1.009).unwrap();
+    assert_eq!(warning.kind, WarningKind::MeshResonance);
+    assert!(warning.message.contains("1479.2 Hz by 1492.5 Hz, 1 times that of mesh z1-z2"), "{warning}");
+    assert_eq!(reported(1479.2 / 32.0 * 1.02), None);
+}
+
+// At 20 kS/s modes of several kilohertz are met that the step shifts.
+#[test]
+fn a_step_that_is_too_long_is_reported() {
+    let mut gearbox = gearbox(Some(GearboxRig::Uconn));
+    gearbox.solver.settings.duration_s = Some(0.5);
+    let simulation = simulate(&gearbox);
+    let warnings = simulation.warnings_of_signals(meshtone::StepJudgement::Repeated);
+    assert_eq!(codes(&warnings), ["step-error"], "{warnings:?}");
+    assert!(warnings[0].message.contains("at 40020 S/s the rms is"), "{}", warnings[0]);
+    gearbox.solver.settings.sampling_rate_hz = 4e5;
+    gearbox.solver.settings.duration_s = Some(0.2);
+    let warnings = simulate(&gearbox).warnings_of_signals(meshtone::StepJudgement::Repeated);
+    assert_eq!(codes(&warnings), [""; 0], "{warnings:?}");
 }
 
 // A second mesh between two shafts that are geared already locks them unless its ratio is the same.

@@ -349,6 +349,40 @@ fn torsional_frequencies_of_two_stages_and_of_an_idler() {
 }
 
 // M. I. Friswell et al., Dynamics of Rotating Machines (2010): two trains that branch, the meshes of which are rigid in the book.
+// What turns behind the second mesh counts by the square of its ratio, as if it were on the second shaft.
+#[test]
+fn a_rigid_second_mesh_leaves_one_pair_with_the_transformed_inertia() {
+    let [z1, z2, z3, z4] = TWO_STAGES;
+    let first = [(1, base_radius_m(z1)), (2, base_radius_m(z2))];
+    let two_stages = torsional_train(
+        &[MOTOR_KGM2, disc_kgm2(z1), disc_kgm2(z2), disc_kgm2(z3), disc_kgm2(z4), BRAKE_KGM2],
+        &[(&[0, 1], 5e3), (&[2, 3], 2e4), (&[4, 5], 1e4)],
+        &[first, [(3, base_radius_m(z3)), (4, base_radius_m(z4))]],
+    );
+    let squared = (f64::from(z3) / f64::from(z4)).powi(2);
+    let one_pair = torsional_train(
+        &[
+            MOTOR_KGM2,
+            disc_kgm2(z1),
+            disc_kgm2(z2),
+            disc_kgm2(z3) + squared * disc_kgm2(z4),
+            squared * BRAKE_KGM2,
+        ],
+        &[(&[0, 1], 5e3), (&[2, 3], 2e4), (&[3, 4], squared * 1e4)],
+        &[first],
+    );
+    let (expected_hz, _) = one_pair.closed_modes(&[3e8]);
+    let largest = |second_n_per_m: f64| {
+        let (found_hz, _) = two_stages.closed_modes(&[3e8, second_n_per_m]);
+        let differences =
+            expected_hz.iter().zip(&found_hz).skip(1).map(|(expected, found)| (found / expected - 1.0).abs());
+        differences.fold(0.0, f64::max)
+    };
+    let differences = [1e10, 1e12, 1e14].map(largest);
+    println!("{differences:?}");
+    assert!(differences[1] < differences[0] / 50.0 && differences[2] < 1e-6);
+}
+
 #[test]
 fn torsional_frequencies_of_branched_trains() {
     let motor_and_two_rotors = torsional_train(

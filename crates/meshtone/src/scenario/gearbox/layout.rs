@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::{Gearbox, GearboxFault, GearboxMesh, GearboxWheel};
 use crate::damage::Fault;
-use crate::error::ScenarioError;
+use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::Coupled;
 use crate::wheel::{Gears, Mounting, Quality, WheelName};
 
@@ -114,7 +114,13 @@ impl GearboxLayout {
         };
         for (index, mesh) in gearbox.meshes.iter().enumerate() {
             let gears = this.gears_of(gearbox, index, mesh)?;
-            gears.check().map_err(|error| in_mesh(error, index, meshes, &this.wheels_of_mesh[index]))?;
+            gears.check().map_err(|mut error| {
+                let names = [0, 1].map(|side| mesh.wheels[side].as_str());
+                error.problem = with_names(&error.problem, names);
+                error.help = error.help.map(|help| with_names(&help, names));
+                let key = key_in_mesh(&error.key, index, meshes, &this.wheels_of_mesh[index]);
+                error.with_key(key)
+            })?;
             this.gears.push(gears);
         }
         this.ratios = this.turn(gearbox)?;
@@ -322,87 +328,21 @@ impl GearboxLayout {
         gearbox.wheels[wheel].at * gearbox.shafts[self.shaft_of_wheel[wheel]].length_mm
     }
 
-    /// Bores within roots, supports of every shaft, wheels beside other shafts.
-    fn check_room(&self, gearbox: &Gearbox) -> Result<(), ScenarioError> {
-        let entries = gearbox.shafts.len();
-        for (number, shaft) in gearbox.shafts.iter().enumerate() {
-            let supports: Vec<f64> = (gearbox.bearings.iter().zip(&self.shaft_of_bearing))
-                .filter(|(_, of)| **of == number)
-                .map(|(bearing, _)| bearing.at)
-                .collect();
-            let spread = supports.iter().any(|at| (at - supports[0]).abs() > 1e-6);
-            if !spread {
-                let problem = format!(
-                    "has {} bearings at different places; must have at least two",
-                    if supports.is_empty() { 0 } else { 1 }
-                );
-                return Err(ScenarioError::new(
-                    entry_key("shaft", number, entries, "name"),
-                    format!("{:?}", shaft.name),
-                    problem,
-                )
-                .with_help("add a [[bearing]] with this shaft and another at"));
-            }
-        }
-        for (index, wheel) in gearbox.wheels.iter().enumerate() {
-            let shaft = &gearbox.shafts[self.shaft_of_wheel[index]];
-            let bore_mm = shaft.radius_at_mm(wheel.at);
-            let Some((mesh, side)) = self.mesh_of(index) else {
-                let problem = "is in no mesh; every wheel must be";
-                return Err(ScenarioError::new(
-                    entry_key("wheel", index, gearbox.wheels.len(), "name"),
-                    format!("{:?}", wheel.name),
-                    problem,
-                )
-                .with_help("add a [[mesh]] that names it, or remove the wheel"));
+    /// What is doubtful about the teeth of each mesh.
+    pub(super) fn warnings_of_teeth(&self, gearbox: &Gearbox) -> Vec<ScenarioWarning> {
+        let of_mesh = |(index, gears): (usize, &Gears)| {
+            let names = self.wheels_of_mesh[index].map(|wheel| gearbox.wheels[wheel].name.as_str());
+            let named = move |warning: ScenarioWarning| {
+                let key = key_in_mesh(&warning.key, index, self.gears.len(), &self.wheels_of_mesh[index]);
+                ScenarioWarning::new(warning.kind, key, with_names(&warning.message, names))
             };
-            let gears = &self.gears[mesh];
-            let root_mm =
-                gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift - wheel.dedendum);
-            if bore_mm >= root_mm {
-                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
-                let problem = format!(
-                    "has a radius of {bore_mm:?} mm there; must be less than {root_mm:.4} mm, the root radius of {:?}",
-                    wheel.name
-                );
-                return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
-                    .with_help("make the shaft thinner, or the wheel larger"));
-            }
-            self.check_clear_of_shafts(gearbox, index, mesh, side)?;
-        }
-        Ok(())
-    }
-
-    /// A wheel must not reach into a shaft that it does not sit on.
-    fn check_clear_of_shafts(
-        &self,
-        gearbox: &Gearbox,
-        index: usize,
-        mesh: usize,
-        side: WheelName,
-    ) -> Result<(), ScenarioError> {
-        let (wheel, own) = (&gearbox.wheels[index], self.shaft_of_wheel[index]);
-        let gears = &self.gears[mesh];
-        let tip_mm =
-            gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift + gears.addendum(side));
-        let z_mm = self.z_mm(gearbox, index);
-        for (number, other) in gearbox.shafts.iter().enumerate().filter(|(number, _)| *number != own) {
-            let passes = z_mm <= other.length_mm;
-            let [a, b] = [self.positions_m[own], self.positions_m[number]];
-            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
-            let radius_mm = other.radius_at_mm((z_mm / other.length_mm).min(1.0));
-            if passes && apart_mm < tip_mm + radius_mm {
-                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
-                let problem = format!(
-                    "{:?} reaches {tip_mm:.3} mm from its axis, into shaft {:?}, whose axis is {apart_mm:.3} mm away and whose radius is \
-                     {radius_mm:?} mm",
-                    wheel.name, other.name
-                );
-                return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
-                    .with_help("give the shafts a position_mm by which the train bends out of the way, or shorten the shaft"));
-            }
-        }
-        Ok(())
+            gears.warnings().into_iter().map(named).collect::<Vec<_>>()
+        };
+        let mut warnings: Vec<ScenarioWarning> = self.gears.iter().enumerate().flat_map(of_mesh).collect();
+        // A wheel in two meshes has the same teeth in both.
+        warnings.sort_by(|a, b| a.key.cmp(&b.key));
+        warnings.dedup_by(|a, b| a.key == b.key && a.kind == b.kind);
+        warnings
     }
 
     /// The first mesh that a wheel is in, and on which side.
@@ -529,13 +469,13 @@ pub(super) fn entry_key(list: &str, index: usize, entries: usize, key: &str) -> 
     if entries > 1 { format!("{list}[{index}].{key}") } else { format!("{list}.{key}") }
 }
 
-/// An error of a pair as one of a mesh or of one of its wheels.
-fn in_mesh(error: ScenarioError, mesh: usize, meshes: usize, wheels: &[usize; 2]) -> ScenarioError {
-    let key = error.key.strip_prefix("gears.").unwrap_or(&error.key).to_owned();
+/// The key of a pair as one of a mesh or of one of its wheels.
+fn key_in_mesh(key: &str, mesh: usize, meshes: usize, wheels: &[usize; 2]) -> String {
+    let key = key.strip_prefix("gears.").unwrap_or(key);
     const OF_MESH: [&str; 4] = ["module_mm", "pressure_angle_deg", "centre_distance_mm", "backlash_mm"];
     let of_wheel = |wheel: usize, key: &str| format!("wheel[{}].{key}", wheels[wheel]);
-    let named = if OF_MESH.contains(&key.as_str()) {
-        entry_key("mesh", mesh, meshes, &key)
+    if OF_MESH.contains(&key) {
+        entry_key("mesh", mesh, meshes, key)
     } else if let Some(own) = key.strip_prefix("pinion_") {
         of_wheel(0, own)
     } else if let Some(own) = key.strip_prefix("gear_") {
@@ -543,9 +483,29 @@ fn in_mesh(error: ScenarioError, mesh: usize, meshes: usize, wheels: &[usize; 2]
     } else if key == "gears" {
         entry_key("mesh", mesh, meshes, "wheels")
     } else {
-        of_wheel(0, &key)
-    };
-    error.with_key(named)
+        of_wheel(0, key)
+    }
+}
+
+/// A text about a pair as one about two wheels of a gearbox: its words with their names, its keys without their section.
+///
+/// # Arguments
+/// * `text` - about pinion and gear
+/// * `names` - of the wheel that drives, and of the one that is driven
+pub(super) fn with_names(text: &str, names: [&str; 2]) -> String {
+    let mut named = text.replace("gears.pinion_", "").replace("gears.gear_", "").replace("gears.", "");
+    for (word, name) in ["the pinion", "the gear"].into_iter().zip(names) {
+        let mut parts = named.split(word);
+        let mut whole = parts.next().unwrap_or_default().to_owned();
+        for rest in parts {
+            // Not the gears.
+            let is_whole = !rest.starts_with(|letter: char| letter.is_ascii_alphabetic());
+            whole += if is_whole { name } else { word };
+            whole += rest;
+        }
+        named = whole;
+    }
+    named
 }
 
 fn unique(list: &str, names: &[&str]) -> Result<(), ScenarioError> {

@@ -4,6 +4,7 @@ mod example;
 mod layout;
 mod parts;
 mod places;
+mod room;
 
 pub use example::{GearboxRig, gearbox_template};
 pub use layout::{GearboxLayout, Ratio};
@@ -14,7 +15,8 @@ pub use parts::{
 use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 
 use super::from_toml::{Numbers, ScenarioFiles};
-use super::{Scenario, ScenarioError, ScenarioWarning, SectionDescription, WarningKind};
+use super::validate::{DrivenSpeed, pitch_line_mm};
+use super::{MemoryLimit, Scenario, ScenarioError, ScenarioWarning, SectionDescription, WarningKind};
 use crate::damage::{Fault, check_faults};
 use crate::keys::{
     KeyRow, Keys, NoFiles, NumberFiles, check_keys, describe, field, read_keys, row, write_keys,
@@ -22,7 +24,7 @@ use crate::keys::{
 use crate::machine::{Bearing, GearboxShaft, Housing};
 use crate::operation::TimeGrid;
 use crate::wheel::{Material, WheelName};
-use layout::entry_key;
+use layout::{entry_key, with_names};
 use parts::list;
 
 /// Everything that a simulation of a gearbox depends on.
@@ -98,7 +100,7 @@ const OF_GEARBOX: [&str; 5] = ["shaft", "wheel", "mesh", "bearing", "housing"];
 /// Names of the sections that only a pair has.
 const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
-/// What a scenario file asks for.
+/// A scenario file, as what it is read.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[expect(clippy::large_enum_variant, reason = "there is one of a file")]
@@ -166,7 +168,7 @@ impl Gearbox {
     /// # Errors
     /// The first thing that is wrong, with its line.
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
-        Self::read(text, &NoFiles)
+        Self::read(text, &NoFiles, MemoryLimit::default())
     }
 
     /// Reads and validates a gearbox that may name other files.
@@ -174,18 +176,23 @@ impl Gearbox {
     /// # Arguments
     /// * `text` - the scenario file's text
     /// * `files` - loads the files that the text names
+    /// * `limit` - most memory that the simulation may need
     ///
     /// # Errors
-    /// As [`Self::from_toml`], and what `files` reports.
-    pub fn from_toml_with_files(text: &str, files: &dyn ScenarioFiles) -> Result<Self, ScenarioError> {
-        Self::read(text, &Numbers(files))
+    /// Those of [`Self::from_toml`], and what `files` reports.
+    pub fn from_toml_within(
+        text: &str,
+        files: &dyn ScenarioFiles,
+        limit: MemoryLimit,
+    ) -> Result<Self, ScenarioError> {
+        Self::read(text, &Numbers(files), limit)
     }
 
-    fn read(text: &str, files: &dyn NumberFiles) -> Result<Self, ScenarioError> {
+    fn read(text: &str, files: &dyn NumberFiles, limit: MemoryLimit) -> Result<Self, ScenarioError> {
         Self::is_written_in(text)?;
         let document = TomlDocument::parse(text)?;
         let gearbox = document.root().read(|root| Self::from_table(root, files))?;
-        match gearbox.validate() {
+        match gearbox.validate_within(limit) {
             Ok(_) => Ok(gearbox),
             Err(error) => Err(document.locate(error).into()),
         }
@@ -246,6 +253,17 @@ impl Gearbox {
     /// # Errors
     /// The first value that is impossible, or certainly a mistake.
     pub fn validate(&self) -> Result<Vec<ScenarioWarning>, ScenarioError> {
+        self.validate_within(MemoryLimit::default())
+    }
+
+    /// Does what [`Self::validate`] does, with another limit of memory.
+    ///
+    /// # Arguments
+    /// * `limit` - most memory that the simulation may need
+    ///
+    /// # Errors
+    /// Those of [`Self::validate`].
+    pub fn validate_within(&self, limit: MemoryLimit) -> Result<Vec<ScenarioWarning>, ScenarioError> {
         check_keys(self, "")?;
         check_list("shaft", &self.shafts)?;
         check_list("wheel", &self.wheels)?;
@@ -260,7 +278,9 @@ impl Gearbox {
         self.check_counts()?;
         self.check_shafts()?;
         self.check_operation()?;
+        self.check_length(limit)?;
         let layout = GearboxLayout::new(self)?;
+        self.driven_speed(&layout).check()?;
         self.check_faults(&layout)?;
         self.check_quality(&layout)?;
         self.places(&layout)?;
@@ -330,6 +350,11 @@ impl Gearbox {
             let problem = "amplitudes add up to 1 or more: the brake would drive; must be less";
             return Err(ScenarioError::new("operation.torque_ripple", amplitudes, problem));
         }
+        Ok(())
+    }
+
+    /// The kept signal has one length and at least two samples, and there is memory for it.
+    fn check_length(&self, limit: MemoryLimit) -> Result<(), ScenarioError> {
         let settings = &self.solver.settings;
         if let (Some(duration_s), Some(_)) = (settings.duration_s, settings.pinion_revolutions) {
             let problem = "given beside solver.input_revolutions; the length has only one source";
@@ -348,11 +373,11 @@ impl Gearbox {
         let signals =
             4 * self.meshes.len() + 2 * self.shafts.len() + 2 * self.sensors.len().max(self.bearings.len());
         let bytes = (time.samples as u64).saturating_mul(8 * signals as u64);
-        if let Some(objection) = super::MemoryLimit::default().objection(bytes) {
+        if let Some(objection) = limit.objection(bytes) {
             let key =
                 if settings.duration_s.is_some() { "solver.duration_s" } else { "solver.sampling_rate_hz" };
             return Err(ScenarioError::new(key, "", objection)
-                .with_help("simulate a shorter time, or at a lower rate"));
+                .with_help("simulate a shorter time, or at a lower rate; or raise the memory limit"));
         }
         if time.kept_samples() < 2 {
             let problem = "keeps less than two samples";
@@ -379,7 +404,8 @@ impl Gearbox {
         for mesh in 0..self.meshes.len() {
             let (numbers, faults): (Vec<usize>, Vec<Fault>) =
                 layout.faults_of_mesh(self, mesh).into_iter().unzip();
-            check_faults(&faults, &layout.gears[mesh]).map_err(|error| self.in_fault(error, &numbers))?;
+            check_faults(&faults, &layout.gears[mesh])
+                .map_err(|error| self.in_fault(error, mesh, &numbers))?;
         }
         Ok(())
     }
@@ -388,8 +414,12 @@ impl Gearbox {
     ///
     /// # Arguments
     /// * `error` - with the number of the pair's fault, where there are several
+    /// * `mesh` - number of the mesh whose wheels are the pair
     /// * `numbers` - of the pair's faults in the gearbox
-    pub(crate) fn in_fault(&self, mut error: ScenarioError, numbers: &[usize]) -> ScenarioError {
+    pub(crate) fn in_fault(&self, mut error: ScenarioError, mesh: usize, numbers: &[usize]) -> ScenarioError {
+        let names = [0, 1].map(|side| self.meshes[mesh].wheels[side].as_str());
+        error.problem = with_names(&error.problem, names);
+        error.help = error.help.map(|help| with_names(&help, names));
         if let Some(rest) = error.key.strip_prefix("fault") {
             let (number, rest) = match rest.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
                 Some((number, rest)) => (number.parse().unwrap_or(0), rest),
@@ -441,7 +471,27 @@ impl Gearbox {
             );
             ScenarioWarning::new(WarningKind::LongCycle, "solver.duration_s", message)
         });
-        fast.into_iter().chain(long).chain(self.operation.drive.ended_profiles(time.kept_from_s())).collect()
+        let of_teeth = layout.warnings_of_teeth(self);
+        let ended = self.operation.drive.ended_profiles(time.kept_from_s());
+        of_teeth
+            .into_iter()
+            .chain(self.driven_speed(layout).warnings())
+            .chain(fast)
+            .chain(long)
+            .chain(ended)
+            .collect()
+    }
+
+    fn driven_speed(&self, layout: &GearboxLayout) -> DrivenSpeed<'_> {
+        let pitch_lines_mm = layout.gears.iter().zip(&layout.wheels_of_mesh).map(|(gears, [driving, _])| {
+            let ratio = layout.ratios[layout.shaft_of_wheel[*driving]].value().abs();
+            pitch_line_mm(gears.module_mm, gears.pinion_teeth) * ratio
+        });
+        DrivenSpeed {
+            operation: &self.operation.drive,
+            key: "operation.input_speed_hz",
+            pitch_line_mm: pitch_lines_mm.fold(0.0, f64::max),
+        }
     }
 
     /// Division of time: a whole number of samples per revolution of the input.
@@ -485,14 +535,19 @@ impl ScenarioForm {
     /// # Arguments
     /// * `text` - the scenario file's text
     /// * `files` - loads the files that the text names
+    /// * `limit` - most memory that the simulation may need
     ///
     /// # Errors
-    /// As [`Scenario::from_toml_with_files`] and [`Gearbox::from_toml_with_files`]; sections of both forms.
-    pub fn from_toml_with_files(text: &str, files: &dyn ScenarioFiles) -> Result<Self, ScenarioError> {
+    /// Those of [`Scenario::from_toml_within`] and [`Gearbox::from_toml_within`]; sections of both forms.
+    pub fn from_toml_within(
+        text: &str,
+        files: &dyn ScenarioFiles,
+        limit: MemoryLimit,
+    ) -> Result<Self, ScenarioError> {
         if Gearbox::is_written_in(text)? {
-            Gearbox::from_toml_with_files(text, files).map(Self::Gearbox)
+            Gearbox::from_toml_within(text, files, limit).map(Self::Gearbox)
         } else {
-            Scenario::from_toml_with_files(text, files).map(Self::Pair)
+            Scenario::from_toml_within(text, files, limit).map(Self::Pair)
         }
     }
 }

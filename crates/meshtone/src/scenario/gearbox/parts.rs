@@ -6,9 +6,10 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::damage::Fault;
 use crate::keys::{KeyRow, Keys, NumberFiles, Range, field, flatten, read_keys, row};
-use crate::machine::WheelInertia;
+use crate::machine::{Axis, WheelInertia};
 use crate::operation::{Operation, Solver};
-use crate::sensor::{Sensor, SensorPath};
+use crate::sensor::{Sensor, SensorDirection, SensorPath};
+use crate::wheel::rows::*;
 use crate::wheel::{FlankRelief, Material, WheelDeviations};
 
 /// A wheel on a shaft of a gearbox.
@@ -110,42 +111,15 @@ impl Keys for GearboxWheel {
                 .required()
                 .range(ALONG)
                 .rule("within half a face width of its mates"),
-            row("teeth", "", "the tooth count", field!(teeth))
-                .required()
-                .range(Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth"))
-                .rule("contact ratio at least 1"),
-            row("face_width_mm", "mm", "the face width; a mesh has the narrower one", field!(face_width_mm))
-                .required()
-                .range(Range::positive().implausible_above(10_000.0)),
-            row("profile_shift", "-", "the profile shift coefficient x, in modules", field!(profile_shift))
-                .range(Range::from_to(-2.0, 2.0))
-                .rule("no undercut, no pointed tip"),
-            row("addendum", "-", "the addendum coefficient of the basic rack, in modules", field!(addendum))
-                .range(Range::from_to(0.3, 2.0)),
-            row("dedendum", "-", "the dedendum coefficient of the basic rack, in modules", field!(dedendum))
-                .range(Range::from_to(0.5, 2.5)),
-            row("tip_chamfer_mm", "mm", "the height of the chamfer or rounding of the tips", field!(tip_chamfer_mm))
-                .otherwise("0.2 modules")
-                .range(Range::not_negative())
-                .rule(MATES)
-                .alternative("0.3"),
-            row(
-                "active_profile_shortening",
-                "-",
-                "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either \
-                 end",
-                field!(active_profile_shortening),
-            )
-            .range(Range::from_to(0.0, 0.5))
-            .rule(MATES),
-            row(
-                "uniform_flank_reduction_mm",
-                "mm",
-                "a constant reduction of the working flank",
-                field!(uniform_flank_reduction_mm),
-            )
-            .range(Range::not_negative())
-            .rule(MATES),
+            teeth_row("teeth", field!(teeth)),
+            face_width_row("the face width; a mesh has the narrower one", field!(face_width_mm))
+                .rule("on its shaft, clear of other wheels"),
+            profile_shift_row("profile_shift", field!(profile_shift)),
+            addendum_row("addendum", field!(addendum)),
+            dedendum_row("dedendum", field!(dedendum)),
+            chamfer_row(field!(tip_chamfer_mm)).rule(MATES),
+            shortening_row(field!(active_profile_shortening)).rule(MATES),
+            flank_reduction_row(field!(uniform_flank_reduction_mm)).rule(MATES),
             row("flank_relief", "", "the relief of the flanks near the tips, as a gap in µm", field!(flank_relief))
                 .rule(MATES),
             row("material", "", "its material", field!(material))
@@ -252,21 +226,10 @@ impl Keys for GearboxMesh {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("wheels", "", "the names of the driving and of the driven wheel", field!(wheels)).required(),
-            row("module_mm", "mm", "the module of both wheels", field!(module_mm))
-                .required()
-                .range(Range::positive().implausible_above(100.0)),
-            row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
-                .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°")),
-            row("centre_distance_mm", "mm", "the distance between the axes", field!(centre_distance_mm))
-                .otherwise("that without backlash")
-                .range(Range::positive())
-                .rule("at least the default; contact ratio at least 1")
-                .alternative("101.6"),
-            row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
-                .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
-                .range(Range::not_negative())
-                .rule("less than 1 module")
-                .alternative("0.1"),
+            module_row(field!(module_mm)),
+            pressure_angle_row(field!(pressure_angle_deg)),
+            centre_distance_row(field!(centre_distance_mm)),
+            backlash_row(field!(backlash_mm)),
             row(
                 "phase",
                 "base pitches",
@@ -325,7 +288,16 @@ impl Keys for GearboxOperation {
         )
         .required()
         .range(Range::positive().implausible_above(1e5));
-        let others = flatten(field!(drive)).filter(|row| row.name != "pinion_speed_hz");
+        let torque = row(
+            "brake_torque_nm",
+            "N m",
+            "the nominal torque of the brake on the shaft that is coupled to it",
+            field!(drive.brake_torque_nm),
+        )
+        .required()
+        .range(Range::not_negative().implausible_above(1e9));
+        let others =
+            flatten(field!(drive)).filter(|row| !["pinion_speed_hz", "brake_torque_nm"].contains(&row.name));
         let own = [
             row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
                 .range(Range::positive().implausible_above(1e9)),
@@ -339,7 +311,7 @@ impl Keys for GearboxOperation {
             .rule("amplitudes add up to less than 1")
             .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
         ];
-        std::iter::once(input).chain(others).chain(own).collect()
+        [input, torque].into_iter().chain(others).chain(own).collect()
     }
 }
 
@@ -407,6 +379,15 @@ impl GearboxSensor {
         let place = place.trim_matches('_').replace("__", "_");
         self.sensor.name.clone().unwrap_or_else(|| format!("{place}_{}", self.sensor.direction.name()))
     }
+
+    /// The axis that it measures along.
+    pub(crate) fn axis(&self) -> Axis {
+        match self.sensor.direction {
+            SensorDirection::Horizontal => Axis::X,
+            SensorDirection::Vertical => Axis::Y,
+            SensorDirection::Axial => Axis::Z,
+        }
+    }
 }
 
 impl Keys for GearboxSensor {
@@ -426,8 +407,15 @@ impl Keys for GearboxSensor {
             field!(at),
         )
         .required();
-        let others = flatten(field!(sensor)).filter(|row| !["at", "response_input"].contains(&row.name));
-        std::iter::once(at).chain(others).collect()
+        let name =
+            row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(sensor.name))
+                .otherwise("place and direction, such as `input_0_vertical`")
+                .rule("a letter, then letters, digits and `_`; no other channel's")
+                .alternative("\"output_bearing\"");
+        let direction = row("direction", "", "the direction it measures in", field!(sensor.direction));
+        const OWN: [&str; 4] = ["at", "name", "direction", "response_input"];
+        let others = flatten(field!(sensor)).filter(|row| !OWN.contains(&row.name));
+        [at, name, direction].into_iter().chain(others).collect()
     }
 }
 
@@ -460,8 +448,13 @@ impl Keys for GearboxSolver {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        const OF_PAIR: [&str; 4] =
-            ["sampling_rate_hz", "pinion_revolutions", "initial_displacement", "initial_velocity"];
+        const OF_PAIR: [&str; 5] = [
+            "sampling_rate_hz",
+            "duration_s",
+            "pinion_revolutions",
+            "initial_displacement",
+            "initial_velocity",
+        ];
         let rate = row(
             "sampling_rate_hz",
             "S/s",
@@ -469,6 +462,16 @@ impl Keys for GearboxSolver {
             field!(settings.sampling_rate_hz),
         )
         .range(Range::positive());
+        let duration = row(
+            "duration_s",
+            "s",
+            "how long the kept signal is; settling comes before it",
+            field!(settings.duration_s),
+        )
+        .otherwise("that of input_revolutions")
+        .range(Range::positive())
+        .rule("not beside input_revolutions")
+        .example("1.0");
         let revolutions = row(
             "input_revolutions",
             "rev",
@@ -482,14 +485,14 @@ impl Keys for GearboxSolver {
         let highest = row(
             "highest_mode_hz",
             "Hz",
-            "the natural frequency up to which modes are stepped; those above deform as at rest; where the speed varies, all are stepped",
+            "the natural frequency up to which modes are stepped; those above deform as at rest",
             field!(highest_mode_hz),
         )
         .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
         .range(Range::between(Excluded(0.0), Included(1e9)))
         .alternative("20000.0");
         let others = flatten(field!(settings)).filter(|row| !OF_PAIR.contains(&row.name));
-        [rate, revolutions].into_iter().chain(others).chain([highest]).collect()
+        [rate, duration, revolutions].into_iter().chain(others).chain([highest]).collect()
     }
 }
 

@@ -9,6 +9,7 @@ mod speed;
 
 pub use memory_limit::{MEMORY_LIMIT_BYTES, MemoryLimit};
 pub(crate) use model::unknown_kind;
+pub(super) use speed::{DrivenSpeed, pitch_line_mm};
 
 use super::{Scenario, ScenarioError, ScenarioWarning};
 use crate::damage::check_faults;
@@ -70,9 +71,14 @@ impl Scenario {
         }
         duration::check(&honoured)?;
         size::check(&honoured, limit)?;
-        speed::check(&honoured)?;
+        let speed = DrivenSpeed {
+            operation: &honoured.operation,
+            key: "operation.pinion_speed_hz",
+            pitch_line_mm: pitch_line_mm(honoured.gears.module_mm, honoured.gears.pinion_teeth),
+        };
+        speed.check()?;
         let mut warnings = honoured.gears.warnings();
-        warnings.extend(speed::warnings(&honoured));
+        warnings.extend(speed.warnings());
         warnings.extend(honoured.operation.ended_profiles(honoured.time_grid().kept_from_s()));
         warnings.extend(honoured.quality.warnings());
         warnings.extend(honoured.rig.support.former_defaults());

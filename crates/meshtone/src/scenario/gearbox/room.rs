@@ -1,0 +1,165 @@
+//! Whether the parts of a gearbox have room: each on its shaft, each shaft in its bearings, none in the way of another.
+
+use super::layout::entry_key;
+use super::{Gearbox, GearboxLayout};
+use crate::error::ScenarioError;
+use crate::wheel::WheelName;
+
+/// (mm) How far faces may overlap by rounding.
+const ROUNDING_MM: f64 = 1e-6;
+
+impl GearboxLayout {
+    /// Bores within roots, supports of every shaft, wheels beside other shafts.
+    pub(super) fn check_room(&self, gearbox: &Gearbox) -> Result<(), ScenarioError> {
+        let entries = gearbox.shafts.len();
+        for (number, shaft) in gearbox.shafts.iter().enumerate() {
+            let supports: Vec<f64> = (gearbox.bearings.iter().zip(&self.shaft_of_bearing))
+                .filter(|(_, of)| **of == number)
+                .map(|(bearing, _)| bearing.at)
+                .collect();
+            let spread = supports.iter().any(|at| (at - supports[0]).abs() > 1e-6);
+            if !spread {
+                let problem = format!(
+                    "has {} bearings at different places; must have at least two",
+                    if supports.is_empty() { 0 } else { 1 }
+                );
+                return Err(ScenarioError::new(
+                    entry_key("shaft", number, entries, "name"),
+                    format!("{:?}", shaft.name),
+                    problem,
+                )
+                .with_help("add a [[bearing]] with this shaft and another at"));
+            }
+        }
+        for (index, wheel) in gearbox.wheels.iter().enumerate() {
+            let shaft = &gearbox.shafts[self.shaft_of_wheel[index]];
+            let bore_mm = shaft.radius_at_mm(wheel.at);
+            let Some((mesh, _)) = self.mesh_of(index) else {
+                let problem = "is in no mesh; every wheel must be";
+                return Err(ScenarioError::new(
+                    entry_key("wheel", index, gearbox.wheels.len(), "name"),
+                    format!("{:?}", wheel.name),
+                    problem,
+                )
+                .with_help("add a [[mesh]] that names it, or remove the wheel"));
+            };
+            let gears = &self.gears[mesh];
+            let root_mm =
+                gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift - wheel.dedendum);
+            if bore_mm >= root_mm {
+                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+                let problem = format!(
+                    "has a radius of {bore_mm:?} mm there; must be less than {root_mm:.4} mm, the root radius of {:?}",
+                    wheel.name
+                );
+                return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
+                    .with_help("make the shaft thinner, or the wheel larger"));
+            }
+            self.check_on_shaft(gearbox, index)?;
+            self.check_clear_of_shafts(gearbox, index)?;
+            self.check_clear_of_wheels(gearbox, index)?;
+        }
+        Ok(())
+    }
+
+    /// A wheel sits on its shaft with its whole face.
+    fn check_on_shaft(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
+        let (wheel, shaft) = (&gearbox.wheels[index], &gearbox.shafts[self.shaft_of_wheel[index]]);
+        let half_mm = wheel.face_width_mm / 2.0;
+        let [start_mm, end_mm] = self.face_mm(gearbox, index);
+        if start_mm >= -ROUNDING_MM && end_mm <= shaft.length_mm + ROUNDING_MM {
+            return Ok(());
+        }
+        let key = entry_key("wheel", index, gearbox.wheels.len(), "at");
+        let problem = format!(
+            "the face of {:?} would reach from z = {start_mm:.3} to {end_mm:.3} mm; must stay on its shaft, from 0 to {:?} mm",
+            wheel.name, shaft.length_mm
+        );
+        let help = if wheel.face_width_mm <= shaft.length_mm {
+            let least = half_mm / shaft.length_mm;
+            format!("at from {least:.4} to {:.4} keeps it there", 1.0 - least)
+        } else {
+            "make the shaft longer, or the face narrower".to_owned()
+        };
+        Err(ScenarioError::new(key, wheel.at, problem).with_help(help))
+    }
+
+    /// (mm) From where to where along z the face of a wheel reaches.
+    fn face_mm(&self, gearbox: &Gearbox, wheel: usize) -> [f64; 2] {
+        let (middle_mm, half_mm) = (self.z_mm(gearbox, wheel), gearbox.wheels[wheel].face_width_mm / 2.0);
+        [middle_mm - half_mm, middle_mm + half_mm]
+    }
+
+    /// (mm) Tip radius of a wheel, which is in a mesh.
+    fn tip_mm(&self, gearbox: &Gearbox, wheel: usize) -> f64 {
+        let tip_mm = |(mesh, side): (usize, WheelName)| {
+            let gears = &self.gears[mesh];
+            let of = &gearbox.wheels[wheel];
+            gears.module_mm * (f64::from(of.teeth) / 2.0 + of.profile_shift + gears.addendum(side))
+        };
+        self.mesh_of(wheel).map_or(0.0, tip_mm)
+    }
+
+    /// A wheel must not reach into an earlier one, on its shaft or on another, unless they mesh.
+    fn check_clear_of_wheels(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
+        let [start_mm, end_mm] = self.face_mm(gearbox, index);
+        for other in 0..index {
+            let [other_start_mm, other_end_mm] = self.face_mm(gearbox, other);
+            let is_beside = end_mm <= other_start_mm + ROUNDING_MM || other_end_mm <= start_mm + ROUNDING_MM;
+            let mesh =
+                self.wheels_of_mesh.iter().any(|wheels| wheels.contains(&index) && wheels.contains(&other));
+            if is_beside || mesh {
+                continue;
+            }
+            let [a, b] = [index, other].map(|wheel| self.positions_m[self.shaft_of_wheel[wheel]]);
+            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
+            let tips_mm = [index, other].map(|wheel| self.tip_mm(gearbox, wheel));
+            if apart_mm >= tips_mm[0] + tips_mm[1] {
+                continue;
+            }
+            let [wheel, known] = [index, other].map(|number| &gearbox.wheels[number]);
+            let faces = format!(
+                "the face of {:?} reaches from z = {start_mm:.3} to {end_mm:.3} mm, that of {:?} from {other_start_mm:.3} to \
+                 {other_end_mm:.3} mm",
+                wheel.name, known.name
+            );
+            let problem = if self.shaft_of_wheel[index] == self.shaft_of_wheel[other] {
+                format!("overlaps a wheel on the same shaft: {faces}")
+            } else {
+                format!(
+                    "runs into a wheel that it does not mesh with: {faces}, and their axes are {apart_mm:.3} mm apart, less than the \
+                     tip radii, {:.3} and {:.3} mm",
+                    tips_mm[0], tips_mm[1]
+                )
+            };
+            let key = entry_key("wheel", index, gearbox.wheels.len(), "at");
+            return Err(ScenarioError::new(key, wheel.at, problem)
+                .with_help("move one of the two along its shaft, make faces narrower, or give shafts another position_mm"));
+        }
+        Ok(())
+    }
+
+    /// A wheel must not reach into a shaft that it does not sit on.
+    fn check_clear_of_shafts(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
+        let (wheel, own) = (&gearbox.wheels[index], self.shaft_of_wheel[index]);
+        let tip_mm = self.tip_mm(gearbox, index);
+        let z_mm = self.z_mm(gearbox, index);
+        for (number, other) in gearbox.shafts.iter().enumerate().filter(|(number, _)| *number != own) {
+            let passes = z_mm <= other.length_mm;
+            let [a, b] = [self.positions_m[own], self.positions_m[number]];
+            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
+            let radius_mm = other.radius_at_mm((z_mm / other.length_mm).min(1.0));
+            if passes && apart_mm < tip_mm + radius_mm {
+                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+                let problem = format!(
+                    "{:?} reaches {tip_mm:.3} mm from its axis, into shaft {:?}, whose axis is {apart_mm:.3} mm away and whose radius is \
+                     {radius_mm:?} mm",
+                    wheel.name, other.name
+                );
+                return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
+                    .with_help("give the shafts a position_mm by which the train bends out of the way, or shorten the shaft"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,92 @@
+//! Keys that the wheels of a pair have, and those of a gearbox.
+
+use crate::keys::{Field, KeyRow, Range, row};
+
+/// The row of the module.
+pub(crate) fn module_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    row("module_mm", "mm", "the module of both wheels", field)
+        .required()
+        .range(Range::positive().implausible_above(100.0))
+}
+
+/// The row of a tooth count.
+pub(crate) fn teeth_row<S: 'static>(name: &'static str, field: Field<S, u32>) -> KeyRow<S> {
+    row(name, "", "the tooth count", field)
+        .required()
+        .range(Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth"))
+        .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning")
+}
+
+/// The row of a face width.
+pub(crate) fn face_width_row<S: 'static>(meaning: &'static str, field: Field<S, f64>) -> KeyRow<S> {
+    row("face_width_mm", "mm", meaning, field).required().range(Range::positive().implausible_above(10_000.0))
+}
+
+/// The row of the pressure angle.
+pub(crate) fn pressure_angle_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field)
+        .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
+        .rule("no teeth pointed below full height")
+}
+
+/// The row of a profile shift.
+pub(crate) fn profile_shift_row<S: 'static>(name: &'static str, field: Field<S, f64>) -> KeyRow<S> {
+    let range = Range::from_to(-2.0, 2.0);
+    row(name, "-", "the profile shift coefficient x, in modules", field)
+        .range(range.help("usual shifts are −0.5 to 1; in mm they are x times the module"))
+        .rule("no undercut, no pointed tip")
+}
+
+/// The row of an addendum.
+pub(crate) fn addendum_row<S: 'static>(name: &'static str, field: Field<S, f64>) -> KeyRow<S> {
+    row(name, "-", "the addendum coefficient of the basic rack, in modules", field)
+        .range(Range::from_to(0.3, 2.0).help("the standard basic rack has 1"))
+        .rule("tips not pointed, clear of the mate's fillets")
+}
+
+/// The row of a dedendum.
+pub(crate) fn dedendum_row<S: 'static>(name: &'static str, field: Field<S, f64>) -> KeyRow<S> {
+    row(name, "-", "the dedendum coefficient of the basic rack, in modules", field)
+        .range(Range::from_to(0.5, 2.5).help("the standard basic rack has 1.25"))
+        .rule("roots clear of the mate's tips")
+}
+
+/// The row of the centre distance.
+pub(crate) fn centre_distance_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S> {
+    row("centre_distance_mm", "mm", "the distance between the axes", field)
+        .otherwise("that without backlash")
+        .range(Range::positive())
+        .rule("at least the default; contact ratio at least 1")
+        .alternative("83.0")
+}
+
+/// The row of the tips' chamfer.
+pub(crate) fn chamfer_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S> {
+    row("tip_chamfer_mm", "mm", "the height of the chamfer or rounding of all tips", field)
+        .otherwise("0.23 modules")
+        .alternative("0.69")
+        .range(Range::not_negative())
+        .rule("less than 1 module")
+}
+
+/// The row of the active profile's shortening.
+pub(crate) fn shortening_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    let meaning = "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either end";
+    row("active_profile_shortening", "-", meaning, field).range(Range::from_to(0.0, 0.5))
+}
+
+/// The row of the backlash.
+pub(crate) fn backlash_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S> {
+    row("backlash_mm", "mm", "the backlash along the line of action", field)
+        .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
+        .range(Range::not_negative())
+        .rule("less than 1 module; at least what a given centre distance opens")
+        .alternative("0.1275")
+}
+
+/// The row of the flanks' constant reduction.
+pub(crate) fn flank_reduction_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    row("uniform_flank_reduction_mm", "mm", "a constant reduction of the working flank", field)
+        .range(Range::not_negative())
+        .rule("less than π/4 modules, half the tooth's thickness")
+}
