@@ -113,8 +113,8 @@ def estimate_path(
     >>> from meshtone import Sensor, estimate_path, examples, simulate
     >>> rig = examples.healthy().copy(sampling_rate_hz=2e4, sensors=[Sensor()])
     >>> path = estimate_path(simulate(rig.copy(seed=7)), rig, draws=8)
-    >>> path.frequency_hz[0], path.frequency_hz[-1]
-    (0.0, 10200.0)
+    >>> float(path.frequency_hz[-1])
+    10200.0
     >>> tuned = rig.copy(sensors=[Sensor(frequency_response=path.frequency_response)])
     """
     several: Sequence[Any] = recordings if isinstance(recordings, list) else [recordings]
