@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use crate::packages::tests_of;
+use crate::packages::{ALIKE, tests_of};
 use crate::step::{StepRunner, in_parallel};
 use crate::surroundings::unusual;
 use crate::{
@@ -27,20 +27,19 @@ pub fn quick(row: &StepRunner) -> Result<(), u8> {
     formatting(row)?;
     row.check("rooms check", rooms::problems)?;
     lints(row)?;
-    row.cargo(&[&["test", "--release", "--test", "all"], &CORE[..]].concat(), &[])?;
+    row.cargo(&[&CORE_TESTS[..], &ALIKE].concat(), &[])?;
     tests_of(row, "meshtone", 0, &["--lib"], &[])
 }
 
-/// The core, with the program, none of whose targets is built, so that the packages of others are those that it has built.
-const CORE: [&str; 4] = ["--package", "meshtone", "--package", "meshtone-cli"];
+/// Arguments of cargo for the tests of the core that run whole simulations.
+const CORE_TESTS: [&str; 6] = ["test", "--release", "--test", "all", "--package", "meshtone"];
 
 /// The packages that have tests. The one that has none, but benchmarks, asks for features of `serde` that no other does: with it, the
 /// project's own packages would be compiled for the tests and once more for the program and the wheel.
 const TESTED: [&str; 3] = ["--workspace", "--exclude", "meshtone-bench"];
 
-/// Packages that are tested alone: the core, as the program alone asks for what it asks of others' packages, and the reading of
-/// recordings, see [`unit_tests`].
-const BY_THEMSELVES: [&str; 4] = ["--exclude", "meshtone", "--exclude", READER];
+/// The package of recordings is tested alone, see [`unit_tests`].
+const BY_ITSELF: [&str; 2] = ["--exclude", READER];
 
 /// Everything.
 ///
@@ -68,8 +67,7 @@ fn rust_row(row: &StepRunner, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     surroundings.push(("MESHTONE_PYTHON", prepared.python.into()));
     // Not the examples: the lints have looked at them, and nothing runs them.
     let programs = ["test", "--release", "--bins", "--test", "*"];
-    row.cargo(&[&programs, &TESTED[..], &BY_THEMSELVES].concat(), &surroundings)?;
-    row.cargo(&[&["test", "--release", "--test", "all"], &CORE[..]].concat(), &surroundings)?;
+    row.cargo(&[&programs, &TESTED[..], &BY_ITSELF].concat(), &surroundings)?;
     unit_tests(row, &surroundings)?;
     features::object_stores(row, &surroundings)?;
     row.cargo(&[&["test", "--release", "--doc"], &TESTED[..]].concat(), &surroundings)?;
@@ -121,8 +119,7 @@ const WITHOUT_UNIT_TESTS: [&str; 4] =
 /// # Errors
 /// The exit code of what failed.
 pub fn generate(row: &StepRunner) -> Result<(), u8> {
-    let arguments = [&["test", "--release", "--test", "all"], &CORE[..], &["generated::"]].concat();
-    row.cargo(&arguments, &[("MESHTONE_GENERATE", "1".into())])
+    row.cargo(&[&CORE_TESTS[..], &ALIKE, &["generated::"]].concat(), &[("MESHTONE_GENERATE", "1".into())])
 }
 
 fn formatting(row: &StepRunner) -> Result<(), u8> {

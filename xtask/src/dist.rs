@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::environment;
-use crate::packages::{self, opt_level};
+use crate::packages::{self, ALIKE, opt_level};
 use crate::step::StepRunner;
 
 /// Program that tries an installed package.
@@ -54,7 +54,7 @@ fn folder(row: &StepRunner) -> PathBuf {
 /// # Errors
 /// The exit code of what failed.
 pub fn program(row: &StepRunner) -> Result<PathBuf, u8> {
-    row.cargo(&["build", "--release", "--locked", "--package", "meshtone-cli"], &[])?;
+    row.cargo(&[&["build", "--release", "--locked", "--bins"], &ALIKE[..]].concat(), &[])?;
     row.step("Program, stripped", || {
         let name = format!("meshtone{}", std::env::consts::EXE_SUFFIX);
         let built = row.root().join("target").join("release").join(&name);

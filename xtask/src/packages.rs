@@ -39,10 +39,13 @@ pub fn opt_level(package: &str, level: u8) -> String {
     format!("profile.release.package.{package}.opt-level={level}")
 }
 
+/// Names the packages whose features all builds have, see `crates/workspace-features`.
+pub const ALIKE: [&str; 4] = ["--package", "meshtone-cli", "--package", "workspace-features"];
+
 /// Tests of a package that is compiled once more for them, as well as it is said.
 ///
-/// What it depends on stays as it was compiled for the program, hence one package a run. The program, none of whose targets is
-/// built, is named so that others' packages have the features that it asks for.
+/// What it depends on stays as it was compiled for the program, hence one package a run. The program and the package of common
+/// features, none of whose targets is built, are named so that all packages have the features that they have elsewhere.
 ///
 /// # Arguments
 /// * `level` - how well it is optimised
@@ -59,6 +62,6 @@ pub fn tests_of(
     surroundings: &[(&str, OsString)],
 ) -> Result<(), u8> {
     let level = opt_level(package, level);
-    let tests = ["test", "--release", "--package", package, "--package", "meshtone-cli", "--config", &level];
-    row.cargo(&[&tests[..], targets].concat(), surroundings)
+    let tests = ["test", "--release", "--package", package, "--config", &level];
+    row.cargo(&[&tests[..], &ALIKE, targets].concat(), surroundings)
 }
