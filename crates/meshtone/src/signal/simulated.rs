@@ -159,6 +159,17 @@ impl SimulatedShafts {
         }
     }
 
+    /// The phase of a shaft whose speed varies; none at constant speed.
+    ///
+    /// # Arguments
+    /// * `shaft` - that of which wheel
+    ///
+    /// # Errors
+    /// Fewer than two samples.
+    pub fn varying_phase(&self, shaft: WheelName) -> Result<Option<ShaftPhase>, SignalError> {
+        (!self.is_steady()).then(|| self.phase(shaft)).transpose()
+    }
+
     /// Average over the whole revolutions of [`Self::angular`]; of fewer than two it is no more than what there is.
     ///
     /// # Arguments

@@ -43,4 +43,4 @@ pub use run::{ExperimentControl, ExperimentResult, TunedKeys, run_experiment};
 pub use search::{EnhancementBounds, Fit, fit};
 pub use sensor_path::{HealthyRecording, PathError, PathEstimate, PathSettings, estimate_path};
 pub use simulated::SimulatedCases;
-pub use tune::{Tuning, TuningWarning, tune};
+pub use tune::{LeftOutCase, Tuning, TuningWarning, tune};

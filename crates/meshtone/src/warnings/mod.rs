@@ -95,7 +95,7 @@ impl Stages {
 
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.
     pub fn transient_remainder(&self) -> f64 {
-        let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
+        let settling_s = self.time.kept_from_s();
         (-self.slowest_mode().decay_per_s * settling_s).exp()
     }
 
@@ -135,13 +135,17 @@ impl Stages {
         (remainder > TOLERATED_TRANSIENT).then(|| {
             let mode = self.slowest_mode();
             let decay = mode.decay_per_s;
-            let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
+            let settling_s = self.time.kept_from_s();
             let advice = if decay > 0.0 {
                 format!("it takes {:.3} s to fall to 1 %", -TOLERATED_TRANSIENT.ln() / decay)
             } else {
                 "it never decays: a mode has no damping".to_string()
             };
             let percent = 100.0 * remainder;
+            let advice = match self.fraction_that_settles(decay) {
+                Some(fraction) => format!("{advice}; raise solver.settle_fraction to {fraction:.2}"),
+                None => advice,
+            };
             let advice = if decay > 0.0 && self.teeth_part() {
                 format!("{advice}; {}", words_of(&mode))
             } else {
@@ -153,6 +157,21 @@ impl Stages {
             );
             ScenarioWarning::new(WarningKind::Unsettled, "solver.settle_fraction", message)
         })
+    }
+}
+
+impl Stages {
+    /// (-) The settling fraction, in hundredths, at which the transient of the slowest mode has decayed; none where no fraction is enough.
+    fn fraction_that_settles(&self, decay_per_s: f64) -> Option<f64> {
+        const MOST: f64 = 0.99;
+        let (solver, time) = (&self.scenario.solver, &self.time);
+        let needed_s = -TOLERATED_TRANSIENT.ln() / decay_per_s;
+        let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
+        let kept_s = time.kept_samples() as f64 * time.step_s();
+        // Without a stated length, settling takes its part of the whole.
+        let whole_s = if is_length_given { needed_s + kept_s } else { time.samples as f64 * time.step_s() };
+        let fraction = (100.0 * needed_s / whole_s).ceil() / 100.0;
+        (0.0..=MOST).contains(&fraction).then_some(fraction)
     }
 }
 

@@ -432,8 +432,8 @@ impl Gearbox {
             ScenarioWarning::new(WarningKind::FastTeeth, "operation.input_speed_hz", message)
         });
         let cycle = layout.cycle_revolutions();
+        let time = self.time_grid();
         let long = (cycle > LONG_CYCLE).then(|| {
-            let time = self.time_grid();
             let kept = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
             let message = format!(
                 "the machine repeats after {cycle} revolutions of the input only; the kept signal covers {:.1} % of them",
@@ -441,7 +441,7 @@ impl Gearbox {
             );
             ScenarioWarning::new(WarningKind::LongCycle, "solver.duration_s", message)
         });
-        fast.into_iter().chain(long).collect()
+        fast.into_iter().chain(long).chain(self.operation.drive.ended_profiles(time.kept_from_s())).collect()
     }
 
     /// Division of time: a whole number of samples per revolution of the input.
