@@ -10,7 +10,7 @@ True
 
 The parts: :class:`Scenario` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
 takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
-:mod:`meshtone.datasets` makes and loads labelled data sets; :func:`diagnose` says what may be wrong with a gear; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
+:mod:`meshtone.datasets` makes and loads labelled data sets; :func:`diagnose` says what may be wrong with a gear; :func:`estimate_path` finds what lies between gears and sensor; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
 
 from . import _damage, datasets, examples, hybrid, signal
@@ -18,6 +18,7 @@ from ._core import __version__
 from ._damage import *
 from ._diagnose import Diagnosis, diagnose
 from ._explore import Explorer, explore
+from ._path import PathEstimate, estimate_path
 from ._warnings import MeshtoneWarning
 from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
 from .gearbox import Gearbox, GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes
@@ -38,6 +39,7 @@ __all__ = [
     "Gearbox",
     "GearboxSimulation",
     "MeshtoneWarning",
+    "PathEstimate",
     "Record",
     "Recording",
     "Scenario",
@@ -50,6 +52,7 @@ __all__ = [
     "datasets",
     "diagnose",
     "enhance",
+    "estimate_path",
     "examples",
     "explore",
     "gearbox_template",

@@ -32,6 +32,7 @@ __all__ = [
     "enhance",
     "envelope",
     "envelope_spectrum",
+    "estimate_path",
     "find_mismatch",
     "fm0",
     "fm4",
@@ -177,6 +178,8 @@ def simulate_many(
 class ShaftPhase:
     def __new__(cls, revolutions: _Array, first_sample: int = 0, zero: str = "angle 0") -> ShaftPhase: ...
     @staticmethod
+    def of_simulated(scenario: Scenario, start_s: float, samples: int) -> ShaftPhase: ...
+    @staticmethod
     def constant(speed_hz: float, sampling_rate_hz: float, samples: int) -> ShaftPhase: ...
     @staticmethod
     def from_pulses(
@@ -304,6 +307,13 @@ def diagnose(
     records: int,
     progress: Callable[[int, int], None] | None,
 ) -> tuple[str, _Array, list[_Array]]: ...
+def estimate_path(
+    scenario: Scenario,
+    recordings: Sequence[tuple[_Array, float, ShaftPhase]],
+    draws: int,
+    seed: int,
+    progress: Callable[[int, int], None] | None,
+) -> tuple[list[_Array], list[float], str]: ...
 def dataset_template() -> str: ...
 def check_plan(plan: _Path) -> None: ...
 def generate_dataset(

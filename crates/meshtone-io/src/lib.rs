@@ -10,6 +10,7 @@ mod input_file;
 pub mod memory;
 pub mod npz;
 pub mod own_file;
+pub mod path_csv;
 mod read_results;
 pub mod recording;
 pub mod run_identity;

@@ -20,6 +20,7 @@ mod phase;
 mod process;
 mod recording;
 mod scenario;
+mod sensor_path;
 mod signal;
 mod simulation;
 mod value;
@@ -41,6 +42,7 @@ mod _core {
         process::{check_recording, find_mismatch, process_channel, process_series},
         recording::read_recording,
         scenario::{Scenario, template},
+        sensor_path::estimate_path,
         signal::{
             angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4, order_map,
             order_spectrum, resample, separate, sideband_level_factor, statistics, synchronous_average,

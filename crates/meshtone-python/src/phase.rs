@@ -1,11 +1,13 @@
 //! The angle of a shaft.
 
-use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, Tachometer};
+use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, SimulatedShafts, Tachometer};
+use meshtone::wheel::WheelName;
 use pyo3::prelude::*;
 
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
 use crate::process::{TypedWarning, typed};
+use crate::scenario::Scenario;
 
 /// Angle of a shaft at each sample.
 #[pyclass(frozen, module = "meshtone._core")]
@@ -22,6 +24,13 @@ impl ShaftPhase {
         let (_, zero) = known.ok_or_else(|| value_error(format!("zero '{zero}': is no angle's origin")))?;
         let phase = signal::ShaftPhase::new(first_sample, revolutions).map_err(value_error)?;
         Ok(Self(phase.with_zero(zero)))
+    }
+
+    /// Of the pinion of what was simulated.
+    #[staticmethod]
+    fn of_simulated(scenario: &Scenario, start_s: f64, samples: usize) -> PyResult<Self> {
+        let shafts = SimulatedShafts::new(&scenario.0, start_s, samples);
+        shafts.phase(WheelName::Pinion).map(Self).map_err(value_error)
     }
 
     /// Of a constant speed.

@@ -74,6 +74,8 @@ pub enum Purpose {
     HousingModes = 30,
     /// Seed of the deviations of a gearbox's wheel; index: wheel.
     GearboxWheel = 31,
+    /// Seed of the wheels with which a recording of the healthy machine is compared; index: draw.
+    PathWheels = 32,
 }
 
 /// A sequence of random numbers.

@@ -9,6 +9,7 @@ mod explore;
 mod indicators;
 mod init;
 mod panel;
+mod path;
 mod simulate;
 mod tune;
 mod wheels;
@@ -21,9 +22,10 @@ use crate::failure::Failure;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Simulate(simulate::Simulate),
-    // These two have many more options than the others.
+    // These have many more options than the others.
     Indicators(Box<indicators::Indicators>),
     Diagnose(Box<diagnose::Diagnose>),
+    Path(Box<path::Path>),
     #[cfg(feature = "explore")]
     Explore(explore::Explore),
     Init(init::Init),
@@ -42,6 +44,7 @@ impl Command {
             Self::Simulate(arguments) => arguments.run(),
             Self::Indicators(arguments) => arguments.run(),
             Self::Diagnose(arguments) => arguments.run(),
+            Self::Path(arguments) => arguments.run(),
             #[cfg(feature = "explore")]
             Self::Explore(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),

@@ -5,9 +5,10 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, ChainSettings, ShaftPhase, SignalError, angular_resample,
-    find_mismatch,
+    AngleZero, AngularSettings, AngularSignal, ChainSettings, ShaftPhase, SignalError, SimulatedShafts,
+    angular_resample, find_mismatch,
 };
+use meshtone::tuning::HealthyRecording;
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{Observation, SignalKind, other_teeth};
 use meshtone_io::indicators::WarningEntry;
@@ -92,15 +93,44 @@ impl<'a> Observer<'a> {
     }
 
     fn recording(&self, path: &Path) -> Result<Observed, Failure> {
-        let mut input = Input::read(path, self.reading, self.stated.channel())?;
-        to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
+        let input = self.input(path)?;
         match &input.scenario_toml {
             Some(toml) if !self.stated.states_shaft_angle() => self.simulated(&input, toml),
             _ => self.measured(&input),
         }
     }
 
-    fn simulated(&self, input: &Input, scenario_toml: &str) -> Result<Observed, Failure> {
+    /// Reads a recording whole, with the angle of the pinion's shaft.
+    pub fn healthy(&self, path: &Path) -> Result<(HealthyRecording, Vec<WarningEntry>), Failure> {
+        let input = self.input(path)?;
+        let (pinion, warnings) = match &input.scenario_toml {
+            Some(toml) if !self.stated.states_shaft_angle() => {
+                let phase = self.shafts(&input, toml)?.phase(WheelName::Pinion);
+                (phase, input.warnings.clone())
+            }
+            _ => {
+                let (shaft, of_phase) = self.phase.measured(&input)?;
+                let doubtful = shaft.warnings.iter().map(|warning| about(&input.source, warning));
+                let warnings = input.warnings.iter().cloned().chain(of_phase).chain(doubtful).collect();
+                let [pinion, gear] = teeth_of(self.scenario);
+                let is_pinion = self.phase.teeth.is_none_or(|teeth| teeth == pinion);
+                (if is_pinion { Ok(shaft) } else { shaft.of_mate(gear, pinion) }, warnings)
+            }
+        };
+        let what = format!("channel {}", input.channel.name);
+        let pinion = pinion.map_err(|error| refuse(&input.source, &what, RefusedInput::Phase, &error))?;
+        let Input { channel, sampling_rate_hz, .. } = input;
+        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, pinion }, warnings))
+    }
+
+    fn input(&self, path: &Path) -> Result<Input, Failure> {
+        let mut input = Input::read(path, self.reading, self.stated.channel())?;
+        to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
+        Ok(input)
+    }
+
+    /// The shafts of what was simulated of these wheels.
+    fn shafts(&self, input: &Input, scenario_toml: &str) -> Result<SimulatedShafts, Failure> {
         let (_, shafts) = simulated(input, scenario_toml)?;
         let teeth = WheelName::BOTH.map(|shaft| shafts.teeth(shaft));
         let [pinion, gear] = teeth_of(self.scenario);
@@ -112,6 +142,11 @@ impl<'a> Observer<'a> {
             );
             return Failure::refuse(problem, "name the scenario of its own rig with --scenario");
         }
+        Ok(shafts)
+    }
+
+    fn simulated(&self, input: &Input, scenario_toml: &str) -> Result<Observed, Failure> {
+        let shafts = self.shafts(input, scenario_toml)?;
         let over = |shaft| shafts.angular(&input.channel.samples, shaft, &ChainSettings::default());
         let zero = [AngleZero::Simulated; 2];
         let pinion_hz = shafts.mean_speed_hz(WheelName::Pinion);

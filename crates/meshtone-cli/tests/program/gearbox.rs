@@ -74,6 +74,7 @@ fn what_knows_one_pair_says_so() {
         &["simulate", "gearbox.toml", "--model", "linear"],
         &["wheels", "gearbox.toml", "-o", "wheels.npz"],
         &["diagnose", "recording.csv", "--scenario", "gearbox.toml"],
+        &["path", "recording.csv", "--scenario", "gearbox.toml", "-o", "path.csv"],
     ] {
         workplace.fails(2, arguments, &["of a gearbox"]);
     }

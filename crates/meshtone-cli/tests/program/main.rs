@@ -12,6 +12,7 @@ mod indicators;
 mod indicators_refused;
 mod init;
 mod killed;
+mod path;
 mod sensors;
 mod simulate;
 mod support;

@@ -6,7 +6,7 @@ mod compile;
 mod values;
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::scenario::{Scenario, ScenarioError, SensorPath};
 use meshtone_toml::{ReadResult, TomlError};
 
 use crate::expression::{Condition, Expression};
@@ -25,7 +25,9 @@ const SEED_BITS: u32 = 53;
 /// Keys of the noise that is added to the raw channels.
 pub const NOISE_KEYS: [&str; 2] = ["noise.snr_db", "noise.level_g"];
 /// Keys of the path from the simulated sensor's place to where a rig's is.
-pub const PATH_KEYS: [&str; 4] = ["path.gain_db", "path.ripple_db", "path.plate_hz", "path.strength"];
+pub const PATH_KEYS: [&str; 4] = ["path.gain_db", "path.ripple_db", PLATE_HZ, STRENGTH];
+const PLATE_HZ: &str = "path.plate_hz";
+const STRENGTH: &str = "path.strength";
 /// Beginning of the names of latent values, which occur only in terms and columns.
 const LATENT: &str = "latent.";
 
@@ -209,6 +211,17 @@ impl Sampler<'_> {
         let mut scenario = self.classes[record.class].base.with_numbers(&of_scenario(&record.values))?;
         scenario.seed = record.seed;
         scenario.quality.seed = Some(record.wheels_seed);
+        // What the plan puts between place and sensor stands instead of the sensor's own.
+        for sensor in &mut scenario.sensors {
+            if record.value(PLATE_HZ).is_some() {
+                sensor.path.plate_hz = 0.0;
+            }
+            if record.value(STRENGTH).is_some() {
+                let plate_hz = sensor.path.plate_hz;
+                sensor.path = SensorPath::RIGID;
+                sensor.path.plate_hz = plate_hz;
+            }
+        }
         Ok(scenario)
     }
 

@@ -318,3 +318,19 @@ fn a_unit_runs_to_failure_in_one_mounting() {
     }
     assert!((1..20).contains(&censored), "{censored}");
 }
+
+/// A wall and a housing that the plan draws stand instead of the sensor's own, not beside them.
+#[test]
+fn a_drawn_wall_replaces_the_sensors_own() {
+    let sensor = "[[scenario.sensor]]\npath = { plate_hz = 5000.0, strength = 0.2, seed = 3 }\n\n[[class]]";
+    let own = |more: &str| {
+        let text = FAST.replacen("[[class]]", sensor, 1).replace("[keep]", &format!("{more}\n[keep]"));
+        let plan = plan(&text);
+        let sampler = Sampler::new(&plan.content).unwrap();
+        let path = sampler.scenario(&sampler.record(0).unwrap()).unwrap().sensors[0].path;
+        (path.plate_hz, path.strength)
+    };
+    assert_eq!(own(""), (5000.0, 0.2));
+    assert_eq!(own("[[vary]]\nkey = \"path.plate_hz\"\nuniform = [2000.0, 8000.0]"), (0.0, 0.2));
+    assert_eq!(own("[[vary]]\nkey = \"path.strength\"\nuniform = [0.1, 0.4]"), (5000.0, 0.0));
+}

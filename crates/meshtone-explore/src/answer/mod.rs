@@ -243,6 +243,7 @@ impl State {
                 "start_s": channels.start_s,
                 "values": packet.array(signal.iter().copied()),
             },
+            "modes": modes_json(stages, &self.channel),
             "wheels": self.wheels.each_ref().map(|wheel| wheel.json(self.channel.unit(), &mut packet)),
             "timings_ms": timings.iter().map(timing).collect::<Vec<_>>(),
         });
@@ -251,6 +252,25 @@ impl State {
         }
         packet.bytes(&said)
     }
+}
+
+/// (Hz) Where the machine rings before the channel: what rings, and its natural frequencies.
+fn modes_json(stages: &Stages, channel: &Channel) -> Value {
+    let modes = stages.support_modes();
+    let of_supports = |is_alike: bool| {
+        let of_kind = modes.iter().filter(move |mode| mode.is_alike == is_alike);
+        of_kind.map(|mode| mode.frequency_hz).collect::<Vec<f64>>()
+    };
+    let sensors = &stages.scenario.sensors;
+    let sensor = sensors.iter().find(|sensor| *channel == Channel::Sensor(sensor.name()));
+    let housing = sensor.map_or_else(Vec::new, |sensor| sensor.path.housing_frequencies_hz());
+    let mount: Vec<f64> = sensor.and_then(|sensor| sensor.resonance_hz).into_iter().collect();
+    json!([
+        ["supports alike", of_supports(true)],
+        ["supports against each other", of_supports(false)],
+        ["housing", housing],
+        ["sensor on its mount", mount],
+    ])
 }
 
 /// The sections of faults by their sizes, those too that were given by their severity; always a list.

@@ -80,6 +80,7 @@ export class Plot {
   #lines = [];
   #bands = [];
   #marks = [];
+  #triangles = [];
   #isLog = false;
   #mark = null;
   #range = [0, 1];
@@ -129,12 +130,14 @@ export class Plot {
    * Draws lines; what was zoomed stays so.
    * @param range shown where nothing is zoomed
    * @param marks places on the axis that a line is drawn at, such as mesh orders
+   * @param triangles places that small triangles at the top point to, such as natural frequencies
    * @param isLog whether y goes by powers of ten
    */
-  set(lines, { range = null, bands = [], marks = [], isLog = false, title = null, y = null, empty = "" } = {}) {
+  set(lines, { range = null, bands = [], marks = [], triangles = [], isLog = false, title = null, y = null, empty = "" } = {}) {
     this.#lines = lines.filter(({ y: values }) => values?.length);
     this.#bands = bands;
     this.#marks = marks;
+    this.#triangles = triangles;
     this.#isLog = isLog;
     if (title) this.#head(title);
     if (y) this.#options.y = y;
@@ -194,7 +197,7 @@ export class Plot {
       if (this.#buffers[index]?.length !== count) this.#buffers[index] = new Array(count);
       return this.#buffers[index];
     };
-    const framedAs = [view, this.#bands, this.#marks, columns, builtAs].join();
+    const framedAs = [view, this.#bands, this.#marks, this.#triangles, columns, builtAs].join();
     let isOther = framedAs !== this.#framedAs;
     this.#framedAs = framedAs;
     const xs = buffer(0);
@@ -302,6 +305,16 @@ export class Plot {
       ctx.lineTo(x, bbox.top + bbox.height);
     }
     ctx.stroke();
+    const size = 5 * devicePixelRatio;
+    ctx.fillStyle = colour("second");
+    ctx.beginPath();
+    for (const place of this.#triangles) {
+      const x = plot.valToPos(place, "x", true);
+      ctx.moveTo(x - size, bbox.top);
+      ctx.lineTo(x + size, bbox.top);
+      ctx.lineTo(x, bbox.top + 1.6 * size);
+    }
+    ctx.fill();
     ctx.fillStyle = colour("tint");
     for (const [from, to] of this.#bands) {
       const [left, right] = [from, to].map((x) => plot.valToPos(x, "x", true));

@@ -40,7 +40,7 @@ export class Views {
       waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "g" }),
       average: plot("average", { title: "Average", x: "angle (°)", y: "g" }),
       difference: plot("difference", { title: "Difference and its envelope", x: "angle (°)", y: "g" }),
-      spectrum: plot("spectrum", { title: "Spectrum of the average, mesh orders dashed", x: "order of the shaft", y: "g" }),
+      spectrum: plot("spectrum", { title: "Spectrum of the average: mesh orders dashed, ▾ modes", x: "order of the shaft", y: "g" }),
       envelopeSpectrum: plot("envelope-spectrum", { title: "Spectrum of the envelope", x: "order of the shaft", y: "g" }),
       severity: plot("severity", { title: "Indicator against severity", x: "severity", y: "", kind: "points" }),
     };
@@ -234,11 +234,24 @@ export class Views {
     const last = (key, most) => [0, Math.min(most, now[key]?.length ?? most)];
     const marks = Array.from({ length: Math.min(MARKED_HARMONICS, Math.floor((now.spectrum?.length ?? 0) / now.teeth)) }, (_, k) => (k + 1) * now.teeth);
     const isLog = byId("logarithmic").checked;
-    this.#plots.spectrum.set(orders("spectrum"), { range: last("spectrum", SEEN_HARMONICS * now.teeth), marks, isLog, y: unit, empty });
+    const modes = this.#modes(wheel);
+    const triangles = modes.flatMap(([, places]) => places);
+    this.#plots.spectrum.set(orders("spectrum"), { range: last("spectrum", SEEN_HARMONICS * now.teeth), marks, triangles, isLog, y: unit, empty });
     this.#plots.envelopeSpectrum.set(orders("envelope_spectrum"), { range: last("envelope_spectrum", 2 * now.teeth), marks, isLog, y: unit, empty });
     const tinted = bands.length ? `Tinted: damaged ${name} ${now.damaged.length > 1 ? "teeth" : "tooth"} ${now.damaged.join(", ")} in contact.` : "";
     const problem = this.#recording?.wheels[wheel].problem;
-    byId("wheel-note").textContent = [tinted, ...(now.warnings ?? []), problem && `Recording: ${problem}`].filter(Boolean).join(" ");
+    const named = modes.map(([what, , hertz]) => `${what} ${hertz.map((hz) => shown(hz, 3)).join(", ")}`);
+    const ringing = named.length ? `Triangles in the spectrum, in Hz: ${named.join("; ")}.` : "";
+    byId("wheel-note").textContent = [tinted, ringing, ...(now.warnings ?? []), problem && `Recording: ${problem}`].filter(Boolean).join(" ");
+  }
+
+  /** What rings: its name, its places in orders of a wheel's shaft, in Hz. None where the speed varies. */
+  #modes(wheel) {
+    const { operation, gears } = this.#now.scenario;
+    if (operation.speed_profile_hz) return [];
+    const shaft = operation.pinion_speed_hz * (wheel ? gears.pinion_teeth / gears.gear_teeth : 1);
+    const all = (this.#now.modes ?? []).filter(([, hertz]) => hertz.length);
+    return all.map(([what, hertz]) => [what, hertz.map((hz) => hz / shaft), hertz]);
   }
 
   /** The faults whose severity can be looked at. */

@@ -28,7 +28,8 @@ pub(super) const FREQUENCY_RESPONSE: NumberCsv<3> = NumberCsv {
 pub(super) struct NumberCsv<const COLUMNS: usize> {
     /// Their names.
     pub(super) names: [&'static str; COLUMNS],
-    /// Whether the first line must name the columns. Otherwise it may, and the columns behind the first may have any names.
+    /// Whether the first line must name the columns; further ones may then follow, which are not read. Otherwise it may name them, and the
+    /// columns behind the first may have any names.
     pub(super) needs_names: bool,
     /// What the user can do.
     pub(super) help: &'static str,
@@ -45,6 +46,7 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
             .comment(Some(b'#'))
             .from_reader(file);
         let mut columns = [const { Vec::new() }; COLUMNS];
+        let mut width = COLUMNS;
         for (index, record) in reader.records().enumerate() {
             let record = record.map_err(|error| {
                 let words = error.to_string();
@@ -55,9 +57,10 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
             })?;
             if index == 0 && (self.needs_names || is_header(&record)) {
                 self.check_names(path, &record)?;
+                width = if self.needs_names { record.len().max(COLUMNS) } else { COLUMNS };
                 continue;
             }
-            self.append(&record, &mut columns).map_err(|what| self.problem(path, &what))?;
+            append(&record, width, &mut columns).map_err(|what| self.problem(path, &what))?;
         }
         Ok(columns)
     }
@@ -79,20 +82,23 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
         }
         Ok(())
     }
+}
 
-    fn append(&self, record: &StringRecord, columns: &mut [Vec<f64>; COLUMNS]) -> Result<(), String> {
-        let line = record.position().map_or(0, csv::Position::line);
-        if record.len() != COLUMNS {
-            return Err(format!("has {} columns in line {line}; must have {COLUMNS}", record.len()));
-        }
-        for (column, field) in columns.iter_mut().zip(record) {
-            let number = field.parse().ok().filter(|number: &f64| number.is_finite());
-            column.push(
-                number.ok_or_else(|| format!("says `{field}` in line {line}; must be a finite number"))?,
-            );
-        }
-        Ok(())
+/// Appends the fields of a line to the columns.
+fn append<const COLUMNS: usize>(
+    record: &StringRecord,
+    width: usize,
+    columns: &mut [Vec<f64>; COLUMNS],
+) -> Result<(), String> {
+    let line = record.position().map_or(0, csv::Position::line);
+    if record.len() != width {
+        return Err(format!("has {} columns in line {line}; must have {width}", record.len()));
     }
+    for (column, field) in columns.iter_mut().zip(record) {
+        let number = field.parse().ok().filter(|number: &f64| number.is_finite());
+        column.push(number.ok_or_else(|| format!("says `{field}` in line {line}; must be a finite number"))?);
+    }
+    Ok(())
 }
 
 fn is_header(record: &StringRecord) -> bool {

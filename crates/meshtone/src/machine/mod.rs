@@ -25,4 +25,4 @@ pub use parts::{LineOfAction, Place, Spring};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use support::{Support, SupportSprings};
 pub(crate) use train::turn_planes;
-pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, Supports, Train, WHEELS};
+pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, SupportMode, Supports, Train, WHEELS};

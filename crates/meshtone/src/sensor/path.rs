@@ -134,6 +134,22 @@ impl SensorPath {
         frequencies_hz.into_iter().map(gain).collect()
     }
 
+    /// (Hz) Frequencies of the housing's modes, rising; none without.
+    ///
+    /// ```
+    /// use meshtone::scenario::SensorPath;
+    ///
+    /// let mut path = SensorPath::default();
+    /// assert!(path.housing_frequencies_hz().is_empty());
+    /// path.strength = 0.2;
+    /// assert_eq!(path.housing_frequencies_hz().len(), 15);
+    /// ```
+    pub fn housing_frequencies_hz(&self) -> Vec<f64> {
+        let mut frequencies: Vec<f64> = self.housing_modes().iter().map(|mode| mode.hz).collect();
+        frequencies.sort_by(f64::total_cmp);
+        frequencies
+    }
+
     /// The modes that the seed draws: uniform over the band, with normal shares.
     fn housing_modes(&self) -> Vec<HousingMode> {
         if self.strength == 0.0 {
@@ -161,6 +177,23 @@ impl SensorPath {
         plate_s.max(housing_s)
     }
 
+    /// Refuses housing modes without effect: keys of modes where there are none, and a band that holds none.
+    fn check_effect(&self, band: String) -> Check {
+        let without_modes = Self { plate_hz: self.plate_hz, ..Self::RIGID };
+        if self.strength == 0.0 && *self != without_modes {
+            let problem =
+                "leaves modes_per_khz, band_hz, damping_ratio and seed without effect: there are no modes";
+            return Err(ScenarioError::new("sensor.path.strength", "0.0", problem)
+                .with_help("write strength too (0.1 to 0.4), or remove the others"));
+        }
+        if self.strength != 0.0 && self.mode_count() == 0.0 {
+            let problem = "holds no mode, so that sensor.path.strength is without effect";
+            return Err(ScenarioError::new("sensor.path.band_hz", band, problem)
+                .with_help("take a wider band, or more modes_per_khz"));
+        }
+        Ok(())
+    }
+
     pub(super) fn check(&self) -> Check {
         check_keys(self, "sensor.path")?;
         let [low, high] = self.band_hz;
@@ -168,6 +201,7 @@ impl SensorPath {
         if low >= high {
             return Err(ScenarioError::new("sensor.path.band_hz", value(), "must rise"));
         }
+        self.check_effect(value())?;
         if self.mode_count() > MOST_MODES {
             let problem = format!("holds {} modes; must hold at most {MOST_MODES}", self.mode_count());
             return Err(ScenarioError::new("sensor.path.band_hz", value(), problem)

@@ -2,8 +2,8 @@
 
 use super::check::{check_channel, check_length};
 use super::{
-    AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError, SynchronousAverage,
-    angular_resample, process_angular_segments, process_average, revolution_average,
+    AngleZero, AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError,
+    SynchronousAverage, angular_resample, process_angular_segments, process_average, revolution_average,
 };
 use crate::scenario::Scenario;
 use crate::sensor::Channels;
@@ -133,9 +133,29 @@ impl SimulatedShafts {
                 let points = self.samples_per_revolution(shaft).unwrap_or(1);
                 Ok(from_first_tooth(signal, *start, points))
             }
-            SimulatedAngle::Varying(angles) => {
-                angular_resample(signal, &self.phase_of(angles, shaft)?, &settings.angular)
+            SimulatedAngle::Varying(_) => angular_resample(signal, &self.phase(shaft)?, &settings.angular),
+        }
+    }
+
+    /// The angle of a shaft at each kept sample.
+    ///
+    /// # Arguments
+    /// * `shaft` - that of which wheel
+    ///
+    /// # Errors
+    /// Fewer than two samples.
+    pub fn phase(&self, shaft: WheelName) -> Result<ShaftPhase, SignalError> {
+        let pinion_rev = match &self.turning {
+            SimulatedAngle::Steady { start, samples_per_pinion_revolution } => {
+                let angle = |sample: usize| (start + sample) as f64 / *samples_per_pinion_revolution as f64;
+                (0..self.samples).map(angle).collect()
             }
+            SimulatedAngle::Varying(angles) => angles.clone(),
+        };
+        let pinion = ShaftPhase::new(0, pinion_rev)?.with_zero(AngleZero::Simulated);
+        match shaft {
+            WheelName::Pinion => Ok(pinion),
+            WheelName::Gear => pinion.of_mate(self.teeth[0], self.teeth[1]),
         }
     }
 
@@ -147,18 +167,7 @@ impl SimulatedShafts {
     /// # Errors
     /// Fewer than two samples.
     pub fn varying_phase(&self, shaft: WheelName) -> Result<Option<ShaftPhase>, SignalError> {
-        match &self.turning {
-            SimulatedAngle::Steady { .. } => Ok(None),
-            SimulatedAngle::Varying(angles) => self.phase_of(angles, shaft).map(Some),
-        }
-    }
-
-    fn phase_of(&self, pinion_rev: &[f64], shaft: WheelName) -> Result<ShaftPhase, SignalError> {
-        let pinion = ShaftPhase::new(0, pinion_rev.to_vec())?;
-        match shaft {
-            WheelName::Pinion => Ok(pinion),
-            WheelName::Gear => pinion.of_mate(self.teeth[0], self.teeth[1]),
-        }
+        (!self.is_steady()).then(|| self.phase(shaft)).transpose()
     }
 
     /// Average over the whole revolutions of [`Self::angular`]; of fewer than two it is no more than what there is.

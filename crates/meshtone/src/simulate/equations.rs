@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::Stages;
 use crate::error::Error;
-use crate::machine::{ClosedMesh, DecayingMode, Modes, Train, WheelBody};
+use crate::machine::{ClosedMesh, DecayingMode, Modes, SupportMode, Train, WheelBody};
 use crate::mesh::{Forcing, Mesh, MeshCurve, PairDeviations};
 use crate::published::{self, Published};
 use crate::simd::InstructionSet;
@@ -73,6 +73,20 @@ impl Stages {
             }
             Equations::Published(published) => published.mode_shapes(),
         }
+    }
+
+    /// The modes in which the supports move much, in rising order, of the mean meshes, closed; none where the supports are held.
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario};
+    ///
+    /// let modes = meshtone::stages(&Scenario::new(GearPair::example()))?.support_modes();
+    /// let highest = modes[modes.len() - 1];
+    /// assert!(!highest.is_alike && (highest.frequency_hz - 3000.0).abs() < 150.0);
+    /// # Ok::<(), meshtone::Error>(())
+    /// ```
+    pub fn support_modes(&self) -> Vec<SupportMode> {
+        self.train().map_or_else(Vec::new, |(train, _)| train.support_modes(&self.mean_stiffness_n_per_m()))
     }
 
     /// (N/m) Mean stiffness of each mesh.

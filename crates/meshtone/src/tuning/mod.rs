@@ -11,6 +11,8 @@
 //! | a whole experiment, simulations included | [`run_experiment`] |
 //!
 //! Source: section 5 of arXiv:2410.05073.
+//!
+//! Beside it, [`estimate_path`] finds the path to a sensor from recordings of the healthy machine.
 
 mod candidates;
 mod difference;
@@ -25,6 +27,7 @@ mod moments;
 mod rice;
 mod run;
 mod search;
+mod sensor_path;
 mod simulated;
 mod simulations;
 mod tune;
@@ -38,5 +41,6 @@ pub use modify::{Enhanced, Enhancement, add_noise, change_duration, change_fault
 pub use moments::{JointMoments, Moments, WindowMoments};
 pub use run::{ExperimentControl, ExperimentResult, TunedKeys, run_experiment};
 pub use search::{EnhancementBounds, Fit, fit};
+pub use sensor_path::{HealthyRecording, PathError, PathEstimate, PathSettings, estimate_path};
 pub use simulated::SimulatedCases;
 pub use tune::{LeftOutCase, Tuning, TuningWarning, tune};

@@ -38,6 +38,7 @@ mod scenario_from_toml;
 mod scenario_round_trip;
 mod scenario_template;
 mod scenario_validate;
+mod sensor_path;
 mod sensors;
 mod settling;
 mod several_teeth;

@@ -3,7 +3,7 @@
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
     DampingRatio, DestructionLine, Fault, GearPair, MEMORY_LIMIT_BYTES, MemoryLimit, Model, Profile,
-    ProfileErrors, Scenario, ToothDestruction,
+    ProfileErrors, Scenario, ToothDestruction, WarningKind,
 };
 use meshtone::wheel::ErrorTable;
 
@@ -338,4 +338,45 @@ fn drawn_teeth_of_both_wheels_need_memory() {
         error.key == "fault" && help.contains("fewer teeth") && help.contains("3844 in all"),
         "{error}, {help}"
     );
+}
+
+/// Supports are given by frequencies or by stiffnesses; a file of former stiffnesses is told what it has of former defaults.
+#[test]
+fn supports_by_frequencies_or_by_stiffnesses() {
+    let both = "[rig]\nsupport = { base_hz = 450.0, stiffness_n_per_m = 1e8 }";
+    let error =
+        assert_refused(&appended(both), "rig.support.stiffness_n_per_m", 10, &["given beside base_hz"]);
+    assert_eq!(error.help.as_deref(), Some("remove base_hz, or remove stiffness_n_per_m"));
+    let both = "[rig]\nsupport = { coupling_n_per_m = 1e8, differential_hz = 2900.0 }";
+    assert_refused(&appended(both), "rig.support.coupling_n_per_m", 10, &["given beside differential_hz"]);
+    for differential_hz in ["450.0", "300.0"] {
+        let text = format!("[rig]\nsupport = {{ differential_hz = {differential_hz} }}");
+        let words = ["must be more than base_hz, 450.0 Hz"];
+        assert_refused(&appended(&text), "rig.support.differential_hz", 10, &words);
+    }
+    let notes = |keys: &str| {
+        let text = appended(&format!("[rig]\nsupport = {{ {keys} }}"));
+        let warnings = Scenario::from_toml(&text).unwrap().validate().unwrap();
+        let former = warnings.into_iter().filter(|warning| warning.kind == WarningKind::FormerDefaults);
+        former.map(|warning| warning.to_string()).collect::<Vec<_>>()
+    };
+    let [note] = &notes("stiffness_n_per_m = 2e8")[..] else { panic!("not one note") };
+    assert!(note.contains("mass_kg = 1.6, coupling_n_per_m = 5e8,"), "{note}");
+    assert!(notes("mass_kg = 2.0, stiffness_n_per_m = 2e8, coupling_n_per_m = 4e8").is_empty());
+    assert!(notes("base_hz = 500.0").is_empty());
+}
+
+/// Keys of housing modes that no mode would show are refused.
+#[test]
+fn housing_modes_without_effect() {
+    for (path, key, words) in [
+        ("modes_per_khz = 2.0", "sensor.path.strength", "without effect"),
+        ("seed = 3", "sensor.path.strength", "without effect"),
+        ("strength = 0.2, band_hz = [3500.0, 3600.0]", "sensor.path.band_hz", "holds no mode"),
+    ] {
+        let text = appended(&format!("[[sensor]]\npath = {{ {path} }}"));
+        assert_refused(&text, key, 10, &[words]);
+    }
+    let text = appended("[[sensor]]\npath = { plate_hz = 0.0, strength = 0.2, seed = 3 }");
+    assert!(Scenario::from_toml(&text).is_ok());
 }

@@ -1,0 +1,117 @@
+//! `meshtone path`
+
+use std::path::{self, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+use meshtone::tuning::{ExperimentControl, PathEstimate, PathSettings, estimate_path};
+use meshtone_diagnose::SignalKind;
+use meshtone_io::own_file::undisturbed;
+use meshtone_io::path_csv::path_csv;
+use meshtone_io::scenario_file::ScenarioFile;
+
+use crate::check::check;
+use crate::diagnose::observe::Observer;
+use crate::failure::Failure;
+use crate::indicators::options::{PhaseOptions, ReadingOptions};
+use crate::progress::with_bar;
+use crate::replacement::stage_text;
+use crate::same_file::is_same_file;
+use crate::terminal::print_unless;
+use crate::warnings;
+
+/// Most draws: more tell nothing.
+const MOST_DRAWS: u64 = 512;
+
+/// Estimate the path to a sensor from recordings of the healthy machine
+///
+/// Simulates the machine at the recordings' speeds with many draws of its wheels and compares: what the recordings show more at a
+/// frequency, in mesh harmonics, sidebands and the broad-band remainder alike, is the path. Recordings at several speeds or of a run-up
+/// say more than one speed. Writes frequency_hz, magnitude, phase_deg (of minimum phase), and in dB the magnitude and the interval that
+/// holds it with 90 %. The sensor of the scenario takes it by frequency_response = { file = "path.csv" }.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Path {
+    /// Recordings by one sensor: any file of `meshtone indicators`, or directories that `meshtone simulate` wrote
+    #[arg(value_name = "HEALTHY", required = true)]
+    recordings: Vec<PathBuf>,
+    /// The healthy machine, with the recordings' load; its first sensor is the one that recorded, its faults are left out
+    #[arg(long, value_name = "SCENARIO.toml")]
+    scenario: PathBuf,
+    /// File to write; it is replaced if it exists
+    #[arg(short, long, value_name = "FILE.csv")]
+    output: PathBuf,
+    /// Draws of the wheels
+    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u64).range(8..=MOST_DRAWS))]
+    draws: u64,
+    /// Seed of the draws
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print no progress and no summary; warnings and errors are still printed
+    #[arg(short, long)]
+    quiet: bool,
+    #[command(flatten)]
+    reading: ReadingOptions,
+    #[command(flatten)]
+    phase: PhaseOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  meshtone path run_up.csv -c bearing --tach tacho --scenario rig.toml -o path.csv
+  meshtone path slow.csv fast.csv -c bearing --tach tacho --scenario rig.toml -o path.csv
+  meshtone path steady.wav --unit g --scenario rig.toml -o path.csv     the speed is the scenario's, made exact by the mesh tone";
+
+impl Path {
+    pub fn run(&self) -> Result<(), Failure> {
+        let file = ScenarioFile::read(&self.scenario)?;
+        let scenario = file.scenario.clone().with_faults(Vec::new());
+        let (doubts, _) = check(&scenario).map_err(|error| file.refuse(error))?;
+        warnings::print(&file, &doubts);
+        let recordings = self.recordings.iter().map(PathBuf::as_path);
+        let mut read = file.sources().chain(recordings).chain(self.phase.files());
+        if let Some(source) = read.find(|source| is_same_file(&self.output, source)) {
+            let problem = format!("-o {}: is read, as {}", self.output.display(), source.display());
+            return Failure::refuse(problem, "name another file with -o");
+        }
+        let observer = Observer::new(&scenario, SignalKind::Recording, &self.reading, &self.phase)?;
+        let mut healthy = Vec::with_capacity(self.recordings.len());
+        for path in &self.recordings {
+            let (recording, doubts) = observer.healthy(path)?;
+            doubts.iter().for_each(|entry| crate::terminal::warn(warnings::in_words(entry)));
+            healthy.push(recording);
+        }
+        let settings = PathSettings { draws: self.draws as usize, seed: self.seed };
+        let estimate = with_bar("simulations", !self.quiet, |show| {
+            let progress = |finished: usize, all: usize| show(finished as u64, all as u64);
+            let cancelled = AtomicBool::new(false);
+            estimate_path(
+                &scenario,
+                &healthy,
+                &settings,
+                &ExperimentControl { progress: &progress, cancelled: &cancelled },
+            )
+        });
+        let estimate = estimate.map_err(|error| Failure::bad_input(error.to_string()))?;
+        let staged = stage_text(&self.output, &path_csv(&estimate))?;
+        undisturbed(|| staged.commit())?;
+        print_unless(self.quiet, &summary(&estimate, &self.output))
+    }
+}
+
+/// The path at octaves.
+fn summary(estimate: &PathEstimate, output: &path::Path) -> String {
+    let [from_hz, to_hz] = estimate.compared_hz;
+    let mut text = format!("  {:>10}  {:>8}  {:>18}\n", "Hz", "dB", "90 %");
+    let octaves = std::iter::successors(Some(125.0), |hz| Some(2.0 * hz)).take_while(|hz| *hz <= to_hz);
+    for hz in octaves.filter(|hz| *hz >= from_hz) {
+        let at = estimate.frequency_hz.partition_point(|point| *point < hz);
+        let [db, low, high] =
+            [&estimate.magnitude_db, &estimate.low_db, &estimate.high_db].map(|values| values[at]);
+        text += &format!("  {hz:>10.0}  {db:>8.1}  {:>18}\n", format!("{low:.1} to {high:.1}"));
+    }
+    format!(
+        "{text}\n  compared from {from_hz:.0} to {to_hz:.0} Hz; take it by frequency_response = {{ file = \"{0}\" }}\n\n{0}\n",
+        output.display()
+    )
+}

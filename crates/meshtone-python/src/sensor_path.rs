@@ -1,0 +1,51 @@
+//! The path to a sensor.
+
+use meshtone::tuning::{self, ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings};
+use meshtone_io::path_csv::path_csv;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::array::{Array, Signal, array, samples};
+use crate::error::{scenario_error, value_error};
+use crate::interrupt::interruptible;
+use crate::phase::ShaftPhase;
+use crate::scenario::Scenario;
+
+/// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
+type Estimated<'py> = ([Array<'py>; 5], [f64; 2], String);
+
+/// Estimates the path from recordings: values in g, rate, and phase of the pinion.
+#[pyfunction]
+pub fn estimate_path<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    recordings: Vec<(Signal<'py>, f64, PyRef<'py, ShaftPhase>)>,
+    draws: usize,
+    seed: u64,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Estimated<'py>> {
+    let healthy = |(values, sampling_rate_hz, phase): &(Signal<'py>, f64, PyRef<'py, ShaftPhase>)| {
+        let values_g = samples(values)?.to_vec();
+        Ok(HealthyRecording { values_g, sampling_rate_hz: *sampling_rate_hz, pinion: phase.0.clone() })
+    };
+    let healthy = recordings.iter().map(healthy).collect::<PyResult<Vec<_>>>()?;
+    let (rig, settings) = (scenario.0.clone(), PathSettings { draws, seed });
+    let estimate = interruptible(py, progress, 0, |cancelled, report| {
+        let progress = |finished: usize, all: usize| report(finished as u64, all as u64);
+        tuning::estimate_path(
+            &rig,
+            &healthy,
+            &settings,
+            &ExperimentControl { progress: &progress, cancelled },
+        )
+    })?;
+    let estimate = estimate.map_err(|error| match &error {
+        PathError::Scenario(error) => scenario_error(error),
+        PathError::Cancelled => PyRuntimeError::new_err(error.to_string()),
+        _ => value_error(error),
+    })?;
+    let text = path_csv(&estimate);
+    let PathEstimate { frequency_hz, magnitude_db, low_db, high_db, phase_deg, compared_hz, .. } = estimate;
+    let columns = [frequency_hz, magnitude_db, low_db, high_db, phase_deg].map(|column| array(py, column));
+    Ok((columns, compared_hz, text))
+}

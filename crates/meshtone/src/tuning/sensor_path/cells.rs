@@ -1,0 +1,222 @@
+//! Power of a signal by frequency and by what it belongs to in the mesh: cells.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use meshtone_fourier::real_spectrum;
+
+use super::recording::Piece;
+
+/// Steps of the frequencies in an octave, where the window resolves them.
+const STEPS_PER_OCTAVE: f64 = 48.0;
+/// (lines) How near a mesh harmonic a line belongs to it: the main lobe of Hann's window.
+const NEAR_LINES: f64 = 2.0;
+/// (orders of the pinion) Beside a mesh harmonic, what belongs to its sidebands.
+const SIDEBAND_ORDERS: f64 = 3.5;
+/// Mesh harmonics that are told apart.
+const MOST_HARMONICS: usize = 60;
+/// Frequencies on either side of one over which noise is taken to be the same.
+const AROUND: usize = 8;
+/// (-) Part of the lowest mesh frequency from which on lines are compared.
+const FROM_MESH: f64 = 0.5;
+
+/// What a line belongs to.
+///
+/// The wheels decide how strong each is, so that a recording may differ in each from the mean of the simulations, alike at all frequencies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum LineKind {
+    /// The mesh harmonic of this number.
+    Harmonic(usize),
+    /// The sidebands around the mesh harmonic of this number.
+    Sidebands(usize),
+    /// The broad-band remainder around the mesh harmonic of this number.
+    Remainder(usize),
+}
+
+/// Sorts of kinds.
+pub(super) const SORTS: usize = 3;
+
+impl LineKind {
+    /// Its sort: mesh harmonics, sidebands, remainder.
+    pub(super) fn sort(self) -> usize {
+        match self {
+            Self::Harmonic(_) => 0,
+            Self::Sidebands(_) => 1,
+            Self::Remainder(_) => 2,
+        }
+    }
+}
+
+/// Lines of one kind around one frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Cell {
+    /// Place of the frequency among those of the path.
+    pub frequency: usize,
+    /// What the lines belong to.
+    pub kind: LineKind,
+}
+
+/// The cells of some pieces of recordings, and which lines of which spectra fall into each.
+pub(super) struct Cells {
+    /// (Hz) Rising frequencies at which the path is estimated.
+    pub frequency_hz: Vec<f64>,
+    /// The cells that have lines.
+    pub cells: Vec<Cell>,
+    /// Of each piece, the lines of each cell.
+    pub lines: Vec<Vec<f64>>,
+    /// (s) Length of a window.
+    window_s: f64,
+    /// Of each piece, of each window, the cell of each line from the first that is compared on.
+    cell_of: Vec<Vec<Vec<usize>>>,
+    first_line: usize,
+    /// The place of each line's frequency, from the first line that is compared on.
+    frequency_of: Vec<usize>,
+}
+
+impl Cells {
+    /// Sorts the lines of all windows.
+    ///
+    /// # Arguments
+    /// * `pieces` - of recordings
+    /// * `window_s` - (s) length of a window
+    /// * `most_hz` - (Hz) highest frequency that is compared
+    /// * `pinion_teeth` - tooth count
+    pub(super) fn new(pieces: &[Piece], window_s: f64, most_hz: f64, pinion_teeth: u32) -> Self {
+        let teeth = f64::from(pinion_teeth);
+        let speeds = pieces.iter().flat_map(|piece| piece.speed_hz.value.iter().copied());
+        let slowest_mesh_hz = teeth * speeds.fold(f64::INFINITY, f64::min);
+        let first_line = (FROM_MESH * slowest_mesh_hz * window_s).ceil().max(2.0) as usize;
+        let last_line = (most_hz * window_s) as usize;
+        let frequency_hz = frequencies(first_line as f64 / window_s, most_hz, 1.0 / window_s);
+        let nearest = |hz: f64| {
+            let above = frequency_hz.partition_point(|&point| point < hz).min(frequency_hz.len() - 1);
+            let below = above.saturating_sub(1);
+            if frequency_hz[above] - hz < hz - frequency_hz[below] { above } else { below }
+        };
+        let frequency_of: Vec<usize> =
+            (first_line..=last_line).map(|line| nearest(line as f64 / window_s)).collect();
+        let mut known: BTreeMap<Cell, usize> = BTreeMap::new();
+        let mut cells = Vec::new();
+        let mut of_window = |piece: &Piece, window: usize| -> Vec<usize> {
+            let speed_hz = |part: f64| piece.speed_at((window as f64 * 0.5 + part) * window_s);
+            let [start, middle, end] = [0.0, 0.5, 1.0].map(speed_hz);
+            let cell_of = |(line, &frequency): (usize, &usize)| {
+                let hz = (first_line + line) as f64 / window_s;
+                let kind = line_kind(hz, [middle, (end - start).abs()], teeth, window_s);
+                *known.entry(Cell { frequency, kind }).or_insert_with(|| {
+                    cells.push(Cell { frequency, kind });
+                    cells.len() - 1
+                })
+            };
+            frequency_of.iter().enumerate().map(cell_of).collect()
+        };
+        let cell_of: Vec<Vec<Vec<usize>>> = pieces
+            .iter()
+            .map(|piece| (0..windows(piece, window_s)).map(|window| of_window(piece, window)).collect())
+            .collect();
+        let count = |of_piece: &Vec<Vec<usize>>| {
+            let mut lines = vec![0.0; cells.len()];
+            of_piece.iter().flatten().for_each(|&cell| lines[cell] += 1.0);
+            lines
+        };
+        let lines = cell_of.iter().map(count).collect();
+        Self { frequency_hz, lines, cells, window_s, cell_of, first_line, frequency_of }
+    }
+
+    /// (g²/Hz) Power density of the lines of each window of a piece, from the first line that is compared on.
+    ///
+    /// # Arguments
+    /// * `piece` - number of the piece
+    /// * `values` - (g) its samples, recorded or simulated
+    /// * `sampling_rate_hz` - (S/s)
+    pub(super) fn spectra(&self, piece: usize, values: &[f64], sampling_rate_hz: f64) -> Vec<Vec<f64>> {
+        let length = (self.window_s * sampling_rate_hz).round() as usize;
+        let hann: Vec<f64> =
+            (0..length).map(|at| 0.5 - 0.5 * (TAU * at as f64 / length as f64).cos()).collect();
+        let scale = 1.0 / (sampling_rate_hz * hann.iter().map(|weight| weight * weight).sum::<f64>());
+        let spectrum = |window: usize| {
+            let start = (window as f64 * 0.5 * self.window_s * sampling_rate_hz).round() as usize;
+            let start = start.min(values.len().saturating_sub(length));
+            let windowed: Vec<f64> =
+                values[start..].iter().zip(&hann).map(|(value, weight)| value * weight).collect();
+            let lines = real_spectrum(&windowed).into_iter().skip(self.first_line);
+            lines.take(self.frequency_of.len()).map(|line| scale * line.norm_sqr()).collect()
+        };
+        (0..self.cell_of[piece].len()).map(spectrum).collect()
+    }
+
+    /// (g²/Hz) Sum of the power density of the lines of each cell.
+    ///
+    /// # Arguments
+    /// * `piece` - number of the piece
+    /// * `spectra` - of its windows
+    pub(super) fn powers(&self, piece: usize, spectra: &[Vec<f64>]) -> Vec<f64> {
+        let mut powers = vec![0.0; self.cells.len()];
+        for (cell_of, spectrum) in self.cell_of[piece].iter().zip(spectra) {
+            cell_of.iter().zip(spectrum).for_each(|(&cell, power)| powers[cell] += power);
+        }
+        powers
+    }
+
+    /// (g²/Hz) Mean power density around each frequency in some windows.
+    ///
+    /// # Arguments
+    /// * `spectra` - of the windows
+    pub(super) fn around_frequencies(&self, spectra: &[Vec<f64>]) -> Vec<f64> {
+        let mut sums = vec![[0.0; 2]; self.frequency_hz.len() + 1];
+        for (&frequency, power) in spectra.iter().flat_map(|spectrum| self.frequency_of.iter().zip(spectrum))
+        {
+            let [sum, count] = &mut sums[frequency + 1];
+            *sum += power;
+            *count += 1.0;
+        }
+        for at in 1..sums.len() {
+            let before = sums[at - 1];
+            sums[at].iter_mut().zip(before).for_each(|(sum, before)| *sum += before);
+        }
+        let last = self.frequency_hz.len();
+        let mean = |at: usize| {
+            let (from, to) = (sums[at.saturating_sub(AROUND)], sums[(at + AROUND + 1).min(last)]);
+            (to[0] - from[0]) / (to[1] - from[1])
+        };
+        (0..last).map(mean).collect()
+    }
+}
+
+/// Windows in a piece, each half on the one before.
+fn windows(piece: &Piece, window_s: f64) -> usize {
+    (2.0 * (piece.length_s / window_s) - 1.0 + 1e-9) as usize
+}
+
+/// (Hz) Frequencies from the first to the last, as close as the octave is divided, but not closer than the window resolves.
+fn frequencies(from_hz: f64, to_hz: f64, resolved_hz: f64) -> Vec<f64> {
+    let ratio = libm::exp2(1.0 / STEPS_PER_OCTAVE);
+    let next = |hz: &f64| Some((hz * ratio).max(hz + resolved_hz)).filter(|hz| *hz <= to_hz);
+    std::iter::successors(Some(from_hz), next).collect()
+}
+
+/// What a line belongs to.
+///
+/// # Arguments
+/// * `hz` - (Hz) its frequency
+/// * `speed_hz` - (Hz) of the pinion: the mean in the window, and by how much it changes there
+/// * `teeth` - of the pinion
+/// * `window_s` - (s) length of the window
+fn line_kind(hz: f64, [speed_hz, change_hz]: [f64; 2], teeth: f64, window_s: f64) -> LineKind {
+    let mesh_hz = teeth * speed_hz;
+    let harmonic = (hz / mesh_hz).round();
+    let number = harmonic as usize;
+    let near_hz = NEAR_LINES / window_s + 0.5 * harmonic * teeth * change_hz;
+    let beside_hz = near_hz + SIDEBAND_ORDERS * speed_hz;
+    let from_hz = (hz - harmonic * mesh_hz).abs();
+    // Where the speed changes so much that neighbours run into each other nothing is told apart.
+    if number == 0 || number > MOST_HARMONICS || near_hz > 0.25 * mesh_hz {
+        LineKind::Remainder(number.min(MOST_HARMONICS))
+    } else if from_hz <= near_hz {
+        LineKind::Harmonic(number)
+    } else if from_hz <= beside_hz {
+        LineKind::Sidebands(number)
+    } else {
+        LineKind::Remainder(number.min(MOST_HARMONICS))
+    }
+}

@@ -1,0 +1,349 @@
+//! The path to a sensor, from recordings of the healthy machine.
+//!
+//! Pieces of the recordings are simulated at their speeds with many draws of the wheels. What the recordings show more than the
+//! simulations at a frequency, in mesh harmonics, sidebands and remainder alike, is the path.
+
+mod cells;
+mod error;
+mod minimum_phase;
+mod recording;
+mod smoothing;
+
+pub use error::PathError;
+pub use recording::HealthyRecording;
+
+use cells::Cells;
+use minimum_phase::minimum_phase_deg;
+use recording::{Piece, pieces};
+use smoothing::{CellLevel, smooth};
+
+use super::ExperimentControl;
+use crate::batch::{Control, Keep, simulate_many};
+use crate::error::{Error, ScenarioError};
+use crate::random::{Draws, Purpose};
+use crate::scenario::{Scenario, Sensor};
+use crate::sensor::{Channel, FrequencyResponse, ResponseInput};
+use crate::signal::{AngularSettings, angular_resample, lines_off_shafts};
+use crate::simulate::Stages;
+use crate::solver::{Block, Output, Recorder};
+
+/// (s) What is simulated before a piece of a recording, for the vibration to settle.
+const SETTLING_S: f64 = 0.3;
+/// (-) Part of the sampling rates up to which the signals are right: of the recording behind its filter, of the simulation by its step.
+const PASSED: [f64; 2] = [0.4, 0.25];
+/// (-) Least power of a cell over that of noise, of many lines; and by how much that of one line must exceed it, which one in 10⁵ does.
+const ABOVE_NOISE: f64 = 6.0;
+const ABOVE_NOISE_OF_ONE: f64 = 12.0;
+/// Windows over whose quietest succession noise is averaged.
+const QUIET_WINDOWS: usize = 4;
+/// (-) Median over mean of the squared magnitude of normal noise.
+const MEDIAN_OF_SQUARES: f64 = std::f64::consts::LN_2;
+/// Gear revolutions below which noise is not told from what repeats.
+const FEWEST_REVOLUTIONS: usize = 6;
+/// Standard deviations on either side that hold 90 %.
+const NINETY_PERCENT: f64 = 1.645;
+/// (-) How far a recording may be from the simulations, over what draws of the wheels explain.
+const MOST_MISFIT: f64 = 3.0;
+
+/// Settings of [`estimate_path`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PathSettings {
+    /// Draws of the wheels with which every piece of a recording is simulated; 8 or more.
+    pub draws: usize,
+    /// Seed of the draws.
+    pub seed: u64,
+}
+
+impl Default for PathSettings {
+    /// 24 draws.
+    fn default() -> Self {
+        Self { draws: 24, seed: 1 }
+    }
+}
+
+/// The path from the simulated motion of a sensor's place to what the sensor shows.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct PathEstimate {
+    /// (Hz) Rising frequencies, from 0 to half the lowest sampling rate.
+    pub frequency_hz: Vec<f64>,
+    /// (dB) Magnitude.
+    pub magnitude_db: Vec<f64>,
+    /// (dB) The lower end of the interval that holds it with 90 %.
+    pub low_db: Vec<f64>,
+    /// (dB) The upper end.
+    pub high_db: Vec<f64>,
+    /// (°) Phase: the least that a system of this magnitude can have.
+    pub phase_deg: Vec<f64>,
+    /// (Hz) The frequencies at which recordings and simulations were compared.
+    pub compared_hz: [f64; 2],
+    /// (-) Distance of the recordings from the simulations, over what wheels explain: mean squares of the kinds of lines and of the cells.
+    pub misfit: [f64; 2],
+}
+
+impl PathEstimate {
+    /// The path for a sensor.
+    pub fn frequency_response(&self) -> FrequencyResponse {
+        FrequencyResponse {
+            frequency_hz: self.frequency_hz.clone(),
+            magnitude: self.magnitude_db.iter().map(|db| libm::pow(10.0, db / 20.0)).collect(),
+            phase_deg: self.phase_deg.clone(),
+        }
+    }
+}
+
+/// Estimates the path to the first sensor of a scenario from recordings of the healthy machine.
+///
+/// Several speeds or a run-up say more than one speed: the same mesh harmonic is then seen at many frequencies, and what the
+/// wheels make of it can be told from the path. The path is that from what the scenario's first sensor would show, its wall and mounted
+/// resonance included, to the recordings; a measured frequency response, noise and range of the sensor are left out. Faults and
+/// profiles of the scenario are left out as well: its load is that of the recordings.
+///
+/// # Arguments
+/// * `scenario` - of the healthy machine
+/// * `recordings` - one or more, of one sensor
+/// * `settings` - how many draws
+/// * `control` - progress over the simulations; cancellation
+///
+/// # Errors
+/// A recording that is too short, or unlike this pair; recordings that no path explains; a scenario that cannot be simulated.
+pub fn estimate_path(
+    scenario: &Scenario,
+    recordings: &[HealthyRecording],
+    settings: &PathSettings,
+    control: &ExperimentControl,
+) -> Result<PathEstimate, PathError> {
+    let teeth = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+    if recordings.is_empty() {
+        return Err(PathError::NoRecording);
+    }
+    if settings.draws < 8 {
+        return Err(PathError::TooFewDraws { draws: settings.draws });
+    }
+    if scenario.quality.din_grade == 0 {
+        return Err(PathError::IdealWheels);
+    }
+    for (index, recording) in recordings.iter().enumerate() {
+        recording.check(index + 1, teeth)?;
+    }
+    let (window_s, pieces) = pieces(recordings, teeth[0])?;
+    let rate_hz = recordings.iter().map(|recording| recording.sampling_rate_hz).fold(f64::INFINITY, f64::min);
+    let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * scenario.solver.sampling_rate_hz);
+    let cells = Cells::new(&pieces, window_s, most_hz, teeth[0]);
+    let measured = measured_powers(recordings, &pieces, &cells, teeth)?;
+    let simulated = simulated_powers(scenario, &pieces, &cells, settings, control)?;
+    let levels = levels(&cells, &measured, &simulated);
+    if levels.is_empty() {
+        return Err(PathError::OnlyNoise);
+    }
+    let path = smooth(&cells.frequency_hz, &levels).ok_or(PathError::NotSolved)?;
+    let misfit = [path.kind_misfit, path.cell_misfit];
+    if misfit.into_iter().any(|misfit| misfit > MOST_MISFIT) {
+        return Err(PathError::UnlikeSimulations { misfit: misfit[0].max(misfit[1]), most: MOST_MISFIT });
+    }
+    // From 0 to half the rate, the same beyond what was compared: nothing passes outside a frequency response.
+    let inside = &cells.frequency_hz;
+    let ends = |values: &[f64]| {
+        let (first, last) = (values[0], values[values.len() - 1]);
+        [&[first], values, &[last]].concat()
+    };
+    let frequency_hz = [&[0.0], &inside[..], &[rate_hz / 2.0]].concat();
+    let magnitude_db = ends(&path.magnitude_db);
+    let deviation_db = ends(&path.deviation_db);
+    let end_db = |sign: f64| {
+        let ends = magnitude_db.iter().zip(&deviation_db);
+        ends.map(|(db, deviation_db)| db + sign * NINETY_PERCENT * deviation_db).collect()
+    };
+    Ok(PathEstimate {
+        low_db: end_db(-1.0),
+        high_db: end_db(1.0),
+        phase_deg: minimum_phase_deg(&frequency_hz, &magnitude_db),
+        compared_hz: [inside[0], inside[inside.len() - 1]],
+        frequency_hz,
+        magnitude_db,
+        misfit,
+    })
+}
+
+/// (g²/Hz) Power of the recordings in each cell; 0 in a cell of hardly more than noise.
+///
+/// Noise is at most what is beside the orders of both shafts, and at most what there is in the quietest windows: the former says it
+/// at one speed, the latter over a run-up. As the most that it may be it is not subtracted.
+fn measured_powers(
+    recordings: &[HealthyRecording],
+    pieces: &[Piece],
+    cells: &Cells,
+    teeth: [u32; 2],
+) -> Result<Vec<f64>, PathError> {
+    // Of each cell its power, that of noise, and its lines.
+    let mut powers = vec![[0.0; 3]; cells.cells.len()];
+    for (number, recording) in recordings.iter().enumerate() {
+        let mut noise = noise_density(recording, &cells.frequency_hz, teeth)?;
+        let of_recording = || pieces.iter().enumerate().filter(|(_, piece)| piece.recording == number);
+        let mut of_pieces = Vec::new();
+        for (index, piece) in of_recording() {
+            let spectra = cells.spectra(index, recording.values_of(piece), recording.sampling_rate_hz);
+            for several in spectra.chunks_exact(QUIET_WINDOWS) {
+                let around = cells.around_frequencies(several);
+                noise.iter_mut().zip(around).for_each(|(least, power)| *least = least.min(power));
+            }
+            of_pieces.push((index, cells.powers(index, &spectra)));
+        }
+        for (index, of_piece) in of_pieces {
+            let with_lines = of_piece.into_iter().zip(&cells.lines[index]).zip(&cells.cells);
+            for ([power, of_noise, count], ((own, lines), cell)) in powers.iter_mut().zip(with_lines) {
+                *power += own;
+                *of_noise += lines * noise[cell.frequency];
+                *count += lines;
+            }
+        }
+    }
+    let above = |[power, noise, lines]: [f64; 3]| {
+        // Of few lines, noise alone may be many times its mean.
+        let least = ABOVE_NOISE.max(1.0 + ABOVE_NOISE_OF_ONE / lines.sqrt());
+        if power > least * noise { power } else { 0.0 }
+    };
+    Ok(powers.into_iter().map(above).collect())
+}
+
+/// (g²/Hz) Density of a recording's noise: the median of the lines beside the orders of both shafts; infinite of a recording too
+/// short to tell.
+fn noise_density(
+    recording: &HealthyRecording,
+    frequency_hz: &[f64],
+    [pinion, gear]: [u32; 2],
+) -> Result<Vec<f64>, PathError> {
+    let of_gear = recording.pinion.of_mate(pinion, gear)?;
+    let angular = angular_resample(&recording.values_g, &of_gear, &AngularSettings::default())?;
+    let revolutions = angular.revolutions();
+    if revolutions < FEWEST_REVOLUTIONS {
+        return Ok(vec![f64::INFINITY; frequency_hz.len()]);
+    }
+    let gear_hz = of_gear.mean_speed_hz(recording.sampling_rate_hz);
+    let lines = lines_off_shafts(&angular, gear, pinion);
+    let points = (revolutions * angular.points_per_revolution) as f64;
+    // The mean square of Hann's window is 3/8.
+    let scale = 1.0 / (0.375 * points * angular.points_per_revolution as f64 * gear_hz);
+    let line_at = |hz: f64| ((hz / gear_hz * revolutions as f64) as usize).min(lines.spectrum.len());
+    let density = |pair: &[f64]| {
+        let (from, to) = (line_at(pair[0]), line_at(pair[1]));
+        let off = (from..to).filter(|&line| lines.is_off[line]);
+        let mut squares: Vec<f64> = off.map(|line| lines.spectrum[line].norm_sqr()).collect();
+        squares.sort_by(f64::total_cmp);
+        squares.get(squares.len() / 2).map_or(0.0, |median| scale * median / MEDIAN_OF_SQUARES)
+    };
+    // Around each frequency as far as the next but one.
+    let edge = |at: usize| frequency_hz[at.min(frequency_hz.len() - 1)];
+    Ok((0..frequency_hz.len()).map(|at| density(&[edge(at.saturating_sub(2)), edge(at + 2)])).collect())
+}
+
+/// (g²/Hz) Power in each cell of simulations with each draw of the wheels.
+fn simulated_powers(
+    scenario: &Scenario,
+    pieces: &[Piece],
+    cells: &Cells,
+    settings: &PathSettings,
+    control: &ExperimentControl,
+) -> Result<Vec<Vec<f64>>, PathError> {
+    let draws = settings.draws;
+    let seeds: Vec<u64> = (0..draws as u64)
+        .map(|draw| Draws::new(settings.seed, Purpose::PathWheels, draw).bits() >> 1)
+        .collect();
+    let scenarios = pieces.iter().flat_map(|piece| {
+        let of_piece = at_speed_of(scenario, piece);
+        seeds.iter().map(move |&seed| of_piece.clone().with_seed(seed)).collect::<Vec<Scenario>>()
+    });
+    let mut powers = vec![vec![0.0; cells.cells.len()]; draws];
+    let mut failed: Option<Error> = None;
+    let keep = KeepPowers { cells, draws };
+    let all = pieces.len() * draws;
+    let progress = |finished: usize| (control.progress)(finished, all);
+    let control = Control { progress: &progress, cancelled: control.cancelled, ..Control::default() };
+    let taken = simulate_many(scenarios.collect::<Vec<_>>(), &keep, &control, |index, kept| match kept {
+        Ok(kept) => powers[index % draws].iter_mut().zip(kept).for_each(|(sum, power)| *sum += power),
+        Err(error) => failed = failed.take().or(Some(error)),
+    });
+    match failed {
+        Some(error) => Err(error.into()),
+        None if taken < all => Err(PathError::Cancelled),
+        None => Ok(powers),
+    }
+}
+
+/// The healthy machine at the speed of a piece of a recording.
+fn at_speed_of(scenario: &Scenario, piece: &Piece) -> Scenario {
+    let mut healthy = scenario.clone().with_faults(Vec::new());
+    let sensor = scenario.sensors.first().cloned().unwrap_or_default();
+    healthy.sensors = vec![Sensor {
+        frequency_response: None,
+        response_input: ResponseInput::default(),
+        noise_density_g_per_rthz: 0.0,
+        range_g: None,
+        bits: None,
+        ..sensor
+    }];
+    // Other wheels than those of the scenario's own.
+    healthy.quality.seed = None;
+    healthy.operation.pinion_speed_hz = piece.mean_speed_hz();
+    healthy.operation.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
+    healthy.operation.torque_profile_nm = None;
+    healthy.solver.discard_and_keep(SETTLING_S, piece.length_s);
+    healthy
+}
+
+/// (dB) Levels of the cells in which there is something to compare.
+fn levels(cells: &Cells, measured: &[f64], simulated: &[Vec<f64>]) -> Vec<CellLevel> {
+    let level = |(index, &cell)| {
+        let of_draw = simulated.iter().map(|powers: &Vec<f64>| powers[index]);
+        if measured[index] <= 0.0 || of_draw.clone().any(|power| power <= 0.0) {
+            return None;
+        }
+        let db = |power: f64| 10.0 * libm::log10(power);
+        let mean_db = of_draw.clone().map(db).sum::<f64>() / simulated.len() as f64;
+        Some(CellLevel {
+            cell,
+            ratio_db: db(measured[index]) - mean_db,
+            scatter_db: of_draw.map(|power| db(power) - mean_db).collect(),
+        })
+    };
+    cells.cells.iter().enumerate().filter_map(level).collect()
+}
+
+/// Keeps the power in each cell of each of many simulations, whose numbers are those of pieces times draws.
+struct KeepPowers<'a> {
+    cells: &'a Cells,
+    draws: usize,
+}
+
+/// The motion of the sensor's place.
+#[derive(Default)]
+struct Motion(Vec<f64>);
+
+impl Recorder for Motion {
+    fn record(&mut self, block: &Block) {
+        self.0.extend_from_slice(block.output(0));
+    }
+}
+
+impl Keep for KeepPowers<'_> {
+    type Recorder = Motion;
+    type Kept = Vec<f64>;
+
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        Ok(vec![Channel::leading(&scenario.sensors).output(&scenario.sensors)?])
+    }
+
+    fn kept_bytes(&self, _: &Scenario) -> usize {
+        self.cells.cells.len() * size_of::<f64>()
+    }
+
+    fn recorder(&self, _: &Stages) -> Motion {
+        Motion::default()
+    }
+
+    fn keep(&self, index: usize, stages: Stages, motion: Motion) -> Vec<f64> {
+        let shown = stages.shown(&Channel::leading(&stages.scenario.sensors), motion.0);
+        let piece = index / self.draws;
+        self.cells.powers(piece, &self.cells.spectra(piece, &shown, stages.time.sampling_rate_hz))
+    }
+}

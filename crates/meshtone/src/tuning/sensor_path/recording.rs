@@ -1,0 +1,189 @@
+//! Recordings of the healthy machine, and the pieces of them that are simulated.
+
+use super::PathError;
+use crate::operation::Profile;
+use crate::signal::{
+    AngularSettings, ShaftPhase, StatedFacts, StatedTurning, angular_resample, check_channel,
+    check_recording, find_mismatch,
+};
+
+/// Mesh periods in a window, so that mesh harmonics and the sidebands around them are apart.
+const PERIODS_IN_WINDOW: f64 = 20.0;
+/// (s) Least and largest window: a resonance must be resolved, and a speed nearly constant.
+const WINDOW_S: [f64; 2] = [0.05, 0.5];
+/// Windows in a piece.
+const WINDOWS_IN_PIECE: f64 = 8.0;
+/// (s) Least length of a piece.
+const SHORTEST_PIECE_S: f64 = 1.0;
+/// Most pieces of all recordings that are simulated: more would take longer and tell hardly more.
+const MOST_PIECES: usize = 32;
+/// (-) Part of a piece's first speed from which it is taken to come at least, and to which inverse at most.
+const LEAST_BEFORE: f64 = 0.5;
+/// (-) Change of a speed over a recording up to which its tones are looked for over the whole recording.
+const NEARLY_CONSTANT: f64 = 0.02;
+
+/// A recording of the healthy machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HealthyRecording {
+    /// (g) The sensor's signal.
+    pub values_g: Vec<f64>,
+    /// (S/s) Its sampling rate.
+    pub sampling_rate_hz: f64,
+    /// Angle of the pinion's shaft over its samples.
+    pub pinion: ShaftPhase,
+}
+
+impl HealthyRecording {
+    /// (Hz) Mean speed of the pinion between two samples of the phase.
+    fn speed_hz(&self, from: usize, to: usize) -> f64 {
+        let angle = &self.pinion.revolutions;
+        (angle[to] - angle[from]) * self.sampling_rate_hz / (to - from) as f64
+    }
+
+    /// Samples that have both a value and an angle.
+    fn samples(&self) -> usize {
+        self.pinion.revolutions.len().min(self.values_g.len().saturating_sub(self.pinion.first_sample))
+    }
+
+    /// The samples of a piece.
+    pub(super) fn values_of(&self, piece: &Piece) -> &[f64] {
+        let first = self.pinion.first_sample + piece.first;
+        &self.values_g[first..first + piece.samples]
+    }
+
+    /// Checks that the recording is of this pair and of nothing else.
+    ///
+    /// # Arguments
+    /// * `number` - of the recording, from 1, for the error
+    /// * `teeth` - of the pinion and of the gear
+    pub(super) fn check(&self, number: usize, [pinion, gear]: [u32; 2]) -> Result<(), PathError> {
+        check_channel(&self.values_g)?;
+        let angular = angular_resample(&self.values_g, &self.pinion, &AngularSettings::default())?;
+        let stated = StatedFacts { teeth: pinion, mate_teeth: Some(gear), turning: StatedTurning::Other };
+        // Where the speed changes much, tones that ring at a resonance repeat with neither shaft.
+        let against = if self.speed_varies() {
+            find_mismatch(&angular, &stated).map(|mismatch| mismatch.to_string())
+        } else {
+            let speed_hz = self.pinion.mean_speed_hz(self.sampling_rate_hz);
+            check_recording(&angular, &stated, speed_hz).first().map(ToString::to_string)
+        };
+        against.map_or(Ok(()), |reason| Err(PathError::DoesNotFit { recording: number, reason }))
+    }
+
+    fn speed_varies(&self) -> bool {
+        let last = self.samples() - 1;
+        let parts = 10.min(last);
+        let speed_hz = |part: usize| self.speed_hz(part * last / parts, (part + 1) * last / parts);
+        let speeds = (0..parts).map(speed_hz);
+        let (least, most) = speeds.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), speed| {
+            (least.min(speed), most.max(speed))
+        });
+        most / least - 1.0 > NEARLY_CONSTANT
+    }
+}
+
+/// A piece of a recording, as long as is simulated at once.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Piece {
+    /// Number of the recording, from 0.
+    pub recording: usize,
+    /// First sample, counted from the first that has an angle.
+    pub first: usize,
+    /// Samples.
+    pub samples: usize,
+    /// (s) Length.
+    pub length_s: f64,
+    /// (s, Hz) Speed of the pinion since the piece's start.
+    pub speed_hz: Profile,
+}
+
+impl Piece {
+    /// (Hz) Speed of the pinion at a time.
+    ///
+    /// # Arguments
+    /// * `time_s` - (s) since the piece's start
+    pub(super) fn speed_at(&self, time_s: f64) -> f64 {
+        let Profile { time_s: times, value } = &self.speed_hz;
+        let above = times.partition_point(|&time| time < time_s).clamp(1, times.len() - 1);
+        let part = (time_s - times[above - 1]) / (times[above] - times[above - 1]);
+        value[above - 1] + part.clamp(0.0, 1.0) * (value[above] - value[above - 1])
+    }
+
+    /// (s, Hz) Speed of the pinion in a simulation that settles before the piece, where the speed goes on as it begins.
+    ///
+    /// # Arguments
+    /// * `settling_s` - (s) from the simulation's start to the piece's
+    pub(super) fn settled_speed_hz(&self, settling_s: f64) -> Profile {
+        let Profile { time_s, value } = &self.speed_hz;
+        let slope = (value[1] - value[0]) / (time_s[1] - time_s[0]);
+        let least = LEAST_BEFORE * value[0];
+        let before_hz = (value[0] - slope * (settling_s + time_s[0])).clamp(least, value[0] / LEAST_BEFORE);
+        let times = std::iter::once(0.0).chain(time_s.iter().map(|time_s| settling_s + time_s));
+        Profile {
+            time_s: times.collect(),
+            value: std::iter::once(before_hz).chain(value.iter().copied()).collect(),
+        }
+    }
+
+    /// (Hz) Mean speed of the pinion.
+    pub(super) fn mean_speed_hz(&self) -> f64 {
+        self.speed_hz.value.iter().sum::<f64>() / self.speed_hz.value.len() as f64
+    }
+}
+
+/// Cuts recordings into pieces, and chooses the window for the spectra of all of them.
+///
+/// # Arguments
+/// * `recordings` - all of them
+/// * `pinion_teeth` - tooth count
+///
+/// # Returns
+/// (s) The window's length, and the pieces.
+pub(super) fn pieces(
+    recordings: &[HealthyRecording],
+    pinion_teeth: u32,
+) -> Result<(f64, Vec<Piece>), PathError> {
+    let slowest_hz = |recording: &HealthyRecording| {
+        let last = recording.samples().saturating_sub(1);
+        let step = ((WINDOW_S[0] * recording.sampling_rate_hz) as usize).clamp(1, last.max(1));
+        let speeds = (0..last / step).map(|part| recording.speed_hz(part * step, (part + 1) * step));
+        speeds.fold(f64::INFINITY, f64::min)
+    };
+    let slowest_hz = recordings.iter().map(slowest_hz).fold(f64::INFINITY, f64::min);
+    let window_s =
+        (PERIODS_IN_WINDOW / (slowest_hz * f64::from(pinion_teeth))).clamp(WINDOW_S[0], WINDOW_S[1]);
+    let most_of_each = (MOST_PIECES / recordings.len()).max(1);
+    let mut pieces = Vec::new();
+    for (number, recording) in recordings.iter().enumerate() {
+        let (rate_hz, samples) = (recording.sampling_rate_hz, recording.samples());
+        let recording_s = samples as f64 / rate_hz;
+        let needed_s = 2.0 * window_s;
+        if recording_s < needed_s {
+            return Err(PathError::TooShort { recording: number + 1, recording_s, needed_s });
+        }
+        let length_s = (WINDOWS_IN_PIECE * window_s).max(SHORTEST_PIECE_S).min(recording_s);
+        let length = ((length_s * rate_hz) as usize).min(samples);
+        let count = (samples / length).min(most_of_each);
+        let first = |at: usize| at * (samples - length) / count.saturating_sub(1).max(1);
+        pieces.extend((0..count).map(|at| piece(recording, number, first(at), length, window_s)));
+    }
+    Ok((window_s, pieces))
+}
+
+fn piece(recording: &HealthyRecording, number: usize, first: usize, samples: usize, window_s: f64) -> Piece {
+    let rate_hz = recording.sampling_rate_hz;
+    let parts = ((2.0 * samples as f64 / rate_hz / window_s).round() as usize).clamp(2, samples - 1);
+    let edge = |part: usize| part * (samples - 1) / parts;
+    let middle_s = |part: usize| (edge(part) + edge(part + 1)) as f64 / 2.0 / rate_hz;
+    let speed_hz = |part: usize| recording.speed_hz(first + edge(part), first + edge(part + 1));
+    Piece {
+        recording: number,
+        first,
+        samples,
+        length_s: samples as f64 / rate_hz,
+        speed_hz: Profile {
+            time_s: (0..parts).map(middle_s).collect(),
+            value: (0..parts).map(speed_hz).collect(),
+        },
+    }
+}

@@ -1,0 +1,153 @@
+"""The path to a sensor, from recordings of the healthy machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core, _progress
+from ._files import written_whole
+from .recording import Recording
+from .scenario import Scenario, native_scenario
+from .signal._arguments import finite_signal, positive, read_only, whole
+from .signal.phase import ShaftPhase, native_phase
+from .simulation import Simulation, chosen_channel
+
+__all__ = ["PathEstimate", "estimate_path"]
+
+Array = npt.NDArray[np.float64]
+Recorded = Union[Simulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase]]
+FEWEST_DRAWS = 8
+
+
+@dataclass(frozen=True)
+class PathEstimate:
+    """The path from the simulated motion of a sensor's place to what the sensor shows.
+
+    Attributes
+    ----------
+    frequency_hz : array, shape (points,)
+        (Hz) Rising frequencies, from 0 to half the lowest sampling rate.
+    magnitude_db : array, shape (points,)
+        (dB) Magnitude.
+    low_db, high_db : array, shape (points,)
+        (dB) The interval that holds it with 90 %.
+    phase_deg : array, shape (points,)
+        (°) Phase: the least that a system of this magnitude can have.
+    compared_hz : tuple of float
+        (Hz) The lowest and the highest frequency at which recordings and simulations were compared.
+    """
+
+    frequency_hz: Array = field(repr=False)
+    magnitude_db: Array = field(repr=False)
+    low_db: Array = field(repr=False)
+    high_db: Array = field(repr=False)
+    phase_deg: Array = field(repr=False)
+    compared_hz: tuple[float, float]
+    _csv: str = field(repr=False)
+
+    @property
+    def frequency_response(self) -> dict[str, Array]:
+        """The path as ``Sensor(frequency_response=…)`` takes it."""
+        magnitude = 10 ** (self.magnitude_db / 20)
+        return {"frequency_hz": self.frequency_hz, "magnitude": magnitude, "phase_deg": self.phase_deg}
+
+    def write_csv(self, path: str | PathLike[str]) -> None:
+        """Write the file that ``frequency_response = { file = … }`` of a scenario takes.
+
+        Parameters
+        ----------
+        path : str or path
+            Its place; a file that is there already is replaced.
+        """
+        with written_whole(path) as stream:
+            stream.write(self._csv.encode())
+
+
+def estimate_path(
+    recordings: Recorded | Sequence[Recorded],
+    scenario: Scenario,
+    *,
+    draws: int = 24,
+    seed: int = 1,
+    progress: bool | Callable[[int, int], None] = False,
+) -> PathEstimate:
+    """Estimate the path to a scenario's first sensor from recordings of the healthy machine.
+
+    The machine is simulated at the recordings' speeds with many draws of its wheels. What the recordings show more at a frequency, in
+    mesh harmonics, sidebands and the broad-band remainder alike, is the path. A run-up or several speeds say more than one speed.
+
+    Parameters
+    ----------
+    recordings : one or several, by one sensor
+        A :class:`Simulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal with its rate and the
+        pinion's phase, ``(signal_g, sampling_rate_hz, phase)``.
+    scenario : Scenario
+        The healthy machine, with the recordings' load. The wall and the mounted resonance of its first sensor stay beside the path; a
+        ``frequency_response`` that it has is left out.
+    draws : int
+        (8 or more) Draws of the wheels.
+    seed : int
+        Seed of the draws.
+    progress : bool or callable, optional
+        True for a line on the terminal or a bar in a notebook; or called with the numbers of finished simulations and of all.
+
+    Returns
+    -------
+    PathEstimate
+
+    Raises
+    ------
+    ValueError
+        A recording that is too short or does not fit the scenario; recordings that no path explains.
+    KeyboardInterrupt
+        Ctrl-C stops it.
+
+    Examples
+    --------
+    >>> from meshtone import Sensor, estimate_path, examples, simulate
+    >>> rig = examples.healthy().copy(sampling_rate_hz=2e4, sensors=[Sensor()])
+    >>> path = estimate_path(simulate(rig.copy(seed=7)), rig, draws=8)
+    >>> float(path.frequency_hz[-1])
+    10200.0
+    >>> tuned = rig.copy(sensors=[Sensor(frequency_response=path.frequency_response)])
+    """
+    several: Sequence[Any] = recordings if isinstance(recordings, list) else [recordings]
+    report = _progress.shown("simulations") if progress is True else (progress or None)
+    (frequency_hz, magnitude_db, low_db, high_db, phase_deg), compared_hz, csv = _core.estimate_path(
+        native_scenario(scenario),
+        [_healthy(one) for one in several],
+        whole("draws", draws, FEWEST_DRAWS),
+        whole("seed", seed),
+        report,
+    )
+    return PathEstimate(
+        frequency_hz=read_only(frequency_hz),
+        magnitude_db=read_only(magnitude_db),
+        low_db=read_only(low_db),
+        high_db=read_only(high_db),
+        phase_deg=read_only(phase_deg),
+        compared_hz=(compared_hz[0], compared_hz[1]),
+        _csv=csv,
+    )
+
+
+def _healthy(one: Any) -> tuple[Array, float, _core.ShaftPhase]:
+    if isinstance(one, Recording) and one.scenario is not None:
+        values, rig = one[chosen_channel(one.scenario, None)], one.scenario
+    elif isinstance(one, Simulation):
+        values, rig = getattr(one, chosen_channel(one.scenario, None)), one.scenario
+    elif isinstance(one, tuple) and len(one) == 3:
+        signal, rate_hz, phase = one
+        return finite_signal(signal), positive("sampling_rate_hz", rate_hz), native_phase(phase)
+    else:
+        raise TypeError(
+            "recordings: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
+        )
+    phase = _core.ShaftPhase.of_simulated(native_scenario(rig), one.start_s, values.size)
+    return values, one.sampling_rate_hz, phase
