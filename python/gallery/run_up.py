@@ -2,7 +2,8 @@
 
 A pair of ideal teeth speeds up from 20 to 60 rev/s. Every harmonic of the mesh sweeps over a factor of three in frequency, and the
 spectrum shows no more than the natural frequencies that are passed. Over the angle of the pinion, which the speed signal gives, the
-harmonics are lines again: at multiples of its 17 teeth.
+harmonics are lines again: at multiples of its 17 teeth. The order map has these lines at every speed, and the natural frequencies that
+pass over them.
 """
 
 import sys
@@ -14,7 +15,7 @@ import numpy as np
 import meshtone as mt
 from meshtone.plotting import BLUE, ORANGE
 
-scenario = mt.examples.healthy().copy(din_grade=0, speed_profile_hz={"time_s": [0, 1, 4], "value": [20, 20, 60]})
+scenario = mt.examples.healthy().copy(din_grade=0, speed_profile_hz={"time_s": [0, 1, 4], "value": [20, 20, 60]}, settle_fraction=0.25)
 run_up = mt.simulate(scenario)
 rate_hz, teeth = run_up.sampling_rate_hz, scenario.pinion_teeth
 
@@ -25,12 +26,11 @@ angular = mt.signal.angular_resample(run_up.vertical_g, phase)
 order_amplitude_g = 2 * np.abs(np.fft.rfft(angular.values)) / angular.values.size
 orders = np.fft.rfftfreq(angular.values.size, 1 / angular.points_per_revolution)
 
-figure, (speed_ax, frequency_ax, order_ax) = plt.subplots(
-    3, 1, figsize=(9, 8), height_ratios=[1, 1.6, 1.6], layout="constrained"
+order_map = mt.signal.order_map(run_up.vertical_g, phase, rate_hz, revolutions=8)
+
+figure, (frequency_ax, order_ax, map_ax) = plt.subplots(
+    3, 1, figsize=(9, 10), height_ratios=[1, 1, 1.8], layout="constrained"
 )
-step = 100
-speed_ax.plot(run_up.time_s[::step], run_up.pinion_shaft_speed_hz[::step], color=BLUE)
-speed_ax.set(title="Run-up", xlabel="Time (s)", ylabel="Pinion speed (rev/s)", ylim=(0, None))
 shown = frequency_hz < 8 * teeth * 60
 frequency_ax.plot(frequency_hz[shown], amplitude_g[shown], color=BLUE, linewidth=0.5)
 frequency_ax.set(title="Over frequency: smeared", xlabel="Frequency (Hz)", ylabel="Vertical amplitude (g)")
@@ -38,7 +38,9 @@ shown = orders < 8.5 * teeth
 order_ax.plot(orders[shown], order_amplitude_g[shown], color=ORANGE, linewidth=0.7)
 order_ax.set(title="Over order: sharp", xlabel="Order of the pinion (cycles per revolution)", ylabel="Vertical amplitude (g)")
 order_ax.set_xticks(teeth * np.arange(9))
-for ax in (speed_ax, frequency_ax, order_ax):
+order_map.plot(teeth, over="speed", ax=map_ax)
+map_ax.set(title="Over order and speed", xlabel="Order of the pinion", ylabel="Pinion speed (rev/s)")
+for ax in (frequency_ax, order_ax):
     ax.margins(x=0)
     ax.grid(alpha=0.3)
 figure.savefig(Path(*sys.argv[1:2], "python_run_up.png"), dpi=100)

@@ -41,6 +41,7 @@ __all__ = [
     "m8a",
     "merge_datasets",
     "na4",
+    "order_map",
     "order_spectrum",
     "process_channel",
     "process_series",
@@ -249,6 +250,9 @@ def resample(signal: _Array, from_hz: float, to_hz: float, edge: str) -> _Array:
 def angular_resample(
     signal: _Array, phase: ShaftPhase, points_per_revolution: int | None, interpolation: str
 ) -> tuple[_Array, int, float, float]: ...
+def order_map(
+    signal: _Array, phase: ShaftPhase, sampling_rate_hz: float, revolutions: int | None, highest_order: float | None
+) -> tuple[int, _Array, _Array, npt.NDArray[np.float64]]: ...
 def synchronous_average(values: _Array, points_per_revolution: int) -> _Array: ...
 def separate(
     average: _Array, teeth: int, sidebands: int | None, shaft_orders: Sequence[int] | None

@@ -20,7 +20,7 @@ class SignalWarning:
     Attributes
     ----------
     code : str
-        What it is about: ``nothing-synchronous``, ``foreign-tones``, ``missing-pulses``, ``doubled-pulse``, ``profile-ends-early``,
+        What it is about: ``nothing-synchronous``, ``mate-not-synchronous``, ``foreign-tones``, ``missing-pulses``, ``doubled-pulse``, ``profile-ends-early``,
         ``mesh-tone-fades``, ``stronger-neighbour``, ``mesh-order-near-nyquist``, or a quantity that is stated wrongly, as
         :class:`~meshtone.signal.Mismatch` names it.
     message : str

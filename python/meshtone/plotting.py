@@ -25,12 +25,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    from .signal import Record
+    from .signal import OrderMap, Record
     from .simulation import Simulation
 
 __all__ = [
     "plot_indicators",
     "plot_mesh_stiffness",
+    "plot_order_map",
     "plot_record",
     "plot_signal",
     "plot_simulation",
@@ -406,6 +407,62 @@ def _plot_over_teeth(ax: Axes, values: npt.NDArray[np.float64], teeth: int, colo
     ax.plot(np.arange(values.size) / values.size * teeth, values, color=colour, linewidth=0.8, label=label)
     ax.set(xlabel="Angle (tooth pitches)", xlim=(0, teeth))
     ax.grid(alpha=0.3)
+
+
+def plot_order_map(order_map: OrderMap, teeth: int | None = None, *, over: str = "time", ax: Axes | None = None) -> Axes:
+    """Amplitudes over order and time or speed, on a logarithmic scale of three decades.
+
+    Parameters
+    ----------
+    order_map : OrderMap
+        What is shown.
+    teeth : int, optional
+        Of the wheel on the shaft: mesh orders are numbered, and shown up to the sixth.
+    over : {'time', 'speed'}
+        The vertical axis. Over the speed, which must rise or fall throughout.
+    ax : matplotlib.axes.Axes, optional
+        Where it is drawn; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        Another axis; a speed that both rises and falls.
+
+    Examples
+    --------
+    >>> import matplotlib, numpy as np, meshtone
+    >>> matplotlib.use("agg")
+    >>> phase = meshtone.ShaftPhase.from_speed_profile([0, 4], [5, 15], 4000.0, 16_001)
+    >>> order_map = meshtone.signal.order_map(np.cos(2 * np.pi * 19 * phase.revolutions), phase, 4000.0)
+    >>> plot_order_map(order_map, 19, over="speed").get_ylabel()
+    'Speed of the shaft (rev/s)'
+    """
+    places = {"time": order_map.time_s, "speed": order_map.speed_hz}
+    if over not in places:
+        raise ValueError(f"over = {over!r}: must be 'time' or 'speed'")
+    steps = np.diff(places[over])
+    if not (np.all(steps > 0) or np.all(steps < 0)):
+        raise ValueError("over = 'speed': the speed rises and falls; show it over time")
+    from matplotlib.colors import LogNorm
+
+    ax = _axes(ax, (9.0, 4.5))
+    orders, amplitude = order_map.orders, order_map.amplitude
+    if teeth is not None:
+        teeth = whole("teeth", teeth, 1)
+        shown = orders <= 6.5 * teeth
+        orders, amplitude = orders[shown], amplitude[:, shown]
+        ax.set_xticks(teeth * np.arange(int(orders[-1] / teeth) + 1))
+    top = max(float(amplitude.max()), 1e-12)
+    norm = LogNorm(top * 1e-3, top)
+    mesh = ax.pcolormesh(orders, places[over], np.maximum(amplitude, top * 1e-3), norm=norm, cmap="Blues", rasterized=True)
+    ax.figure.colorbar(mesh, ax=ax, label="Amplitude")
+    ylabel = "Time (s)" if over == "time" else "Speed of the shaft (rev/s)"
+    ax.set(xlabel="Order of the shaft", ylabel=ylabel)
+    return ax
 
 
 def plot_simulation(simulation: Simulation) -> Figure:

@@ -322,6 +322,8 @@ def test_a_recording_is_dropped(page: Page) -> None:
     page.drop("rig.csv", csv.encode())
     page.wait(lambda: page.run("return document.getElementById('recording').textContent.includes('rig.csv')"), "the recording")
     page.wait(lambda: "recording" in page.described("average"), "its average")
+    table = "const s = document.querySelector('.scroll'); return s.textContent.includes('recording') && s.scrollWidth <= s.clientWidth"
+    page.wait(lambda: page.run(table), "a table of which nothing is cut off")
     page.drop("rig.wav", b"no sound")
     page.wait(lambda: "rig.wav" in changes_words(page.browser), "the refusal")
 

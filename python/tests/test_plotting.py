@@ -84,6 +84,22 @@ def test_a_run_up_is_not_drawn_as_a_constant_speed() -> None:
         run_up.plot_signal(revolutions=0)
 
 
+def test_an_order_map_over_time_and_speed() -> None:
+    rate_hz = 4000.0
+    phase = meshtone.ShaftPhase.from_speed_profile([0, 4], [5, 15], rate_hz, 16_000)
+    order_map = meshtone.signal.order_map(np.cos(2 * np.pi * 19 * phase.revolutions), phase, rate_hz)
+    assert order_map.plot().get_ylabel() == "Time (s)"
+    over_speed = order_map.plot(19, over="speed")
+    assert over_speed.get_xticks().tolist() == [0, 19, 38, 57, 76, 95, 114] and over_speed.get_xlim()[1] < 7 * 19
+    with pytest.raises(ValueError, match="over = 'angle'"):
+        order_map.plot(over="angle")
+    wobbling = meshtone.ShaftPhase.from_speed_profile([0, 2, 4], [5, 15, 5], rate_hz, 16_000)
+    rises_and_falls = meshtone.signal.order_map(np.cos(2 * np.pi * 19 * wobbling.revolutions), wobbling, rate_hz)
+    with pytest.raises(ValueError, match="show it over time"):
+        rises_and_falls.plot(over="speed")
+    plt.close("all")
+
+
 def test_what_is_lost_is_stated_in_the_tooth() -> None:
     crack = meshtone.simulate(meshtone.examples.root_crack()).plot_tooth()
     (line,) = crack.get_lines()

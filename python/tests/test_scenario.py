@@ -198,6 +198,13 @@ def test_warnings() -> None:
     # Before simulating, all that the program reports then: also what the stages show.
     unsettled = examples.healthy().copy(settle_fraction=0.001)
     assert ["solver.settle_fraction" in warning for warning in unsettled.warnings] == [True]
+    (words,) = unsettled.warnings
+    fraction = float(words.partition("raise solver.settle_fraction to ")[2].partition(";")[0])
+    assert examples.healthy().copy(settle_fraction=fraction).warnings == []
+    assert examples.healthy().copy(settle_fraction=fraction - 0.01).warnings != []
+    profile = {"time_s": [0, 0.1], "value": [30, 50]}
+    ended = examples.healthy().copy(speed_profile_hz=profile, duration_s=1.0)
+    assert ["ends at 0.1 s, and the kept signal starts at 1.000 s" in warning for warning in ended.warnings] == [True]
 
 
 def test_faults_say_which_argument_is_meant() -> None:

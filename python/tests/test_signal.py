@@ -37,6 +37,29 @@ def test_phases_agree() -> None:
     assert "80.00 revolutions" in repr(ShaftPhase(np.arange(40_001) / 500))
 
 
+def test_an_order_map_of_a_run_up() -> None:
+    """Against a Fourier sum of one of its parts."""
+    phase = ShaftPhase.from_speed_profile([0, 5], [5, 25], RATE_HZ, 50_000)
+    signal_g = 2 * np.cos(2 * np.pi * TEETH * phase.revolutions) + 0.5 * np.cos(2 * np.pi * (TEETH + 2) * phase.revolutions)
+    order_map = signal.order_map(signal_g, phase, RATE_HZ, revolutions=4, highest_order=40)
+    assert order_map.amplitude.shape == (order_map.time_s.size, order_map.orders.size) == (order_map.speed_hz.size, 161)
+    assert order_map.orders[76] == TEETH and order_map.revolutions == 4
+    assert order_map.amplitude[:, 76] == pytest.approx(2, abs=1e-3) and order_map.amplitude[:, 84] == pytest.approx(0.5, abs=1e-3)
+    assert np.delete(order_map.amplitude, [75, 76, 77, 83, 84, 85], axis=1).max() < 1e-3
+    middles_rev = 5 * order_map.time_s + 2 * order_map.time_s**2
+    from_s, until_s = ((np.sqrt(25 + 8 * (middles_rev + by)) - 5) / 4 for by in (-2, 2))
+    assert order_map.speed_hz == pytest.approx(4 / (until_s - from_s), rel=1e-4)
+    middle = np.interp(order_map.time_s[7], np.arange(50_000) / RATE_HZ, phase.revolutions)
+    turned = middle - 2 + np.arange(2048) / 512
+    values = np.interp(turned, phase.revolutions, signal_g) * np.hanning(2049)[:-1]
+    line = 4 * np.abs(np.sum(values * np.exp(-2j * np.pi * 19.25 * turned))) / 2048
+    assert order_map.amplitude[7, 77] == pytest.approx(line, rel=0.01)
+    with pytest.raises(ValueError, match="revolutions"):
+        signal.order_map(signal_g, phase, RATE_HZ, revolutions=1000)
+    with pytest.raises(ValueError, match="highest_order = 0"):
+        signal.order_map(signal_g, phase, RATE_HZ, highest_order=0)
+
+
 def test_tachometer() -> None:
     time_s = np.arange(20_000) / RATE_HZ
     waveform = np.where((time_s * SHAFT_HZ) % 1 < 0.2, 5.0, 0.0)

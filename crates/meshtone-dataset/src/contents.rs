@@ -165,6 +165,11 @@ impl Summary {
     }
 }
 
+/// Adds numbers of records by the codes of their warnings.
+pub(crate) fn add_warnings(sum: &mut WarningCounts, warnings: WarningCounts) {
+    warnings.into_iter().for_each(|(code, count)| *sum.entry(code).or_default() += count);
+}
+
 /// Everything that is known about the shards of a data set.
 #[derive(Debug, Default)]
 pub(crate) struct Contents {
@@ -238,7 +243,7 @@ impl Contents {
         }
         if self.uncounted.remove(&shard) {
             add_counts(&mut self.counts, counts);
-            warnings.into_iter().for_each(|(code, count)| *self.warnings.entry(code).or_default() += count);
+            add_warnings(&mut self.warnings, warnings);
             self.add_failures(failures);
         }
     }

@@ -1,6 +1,6 @@
 //! Generating a data set, from its start or from the point where it was stopped.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom};
@@ -12,7 +12,7 @@ use meshtone::batch::{Control, simulate_many};
 use meshtone::scenario::{Scenario, ScenarioError};
 use rayon::prelude::*;
 
-use crate::contents::{Contents, SummaryColumns, WRONG_BYTES};
+use crate::contents::{Contents, SummaryColumns, WRONG_BYTES, WarningCounts, add_warnings};
 use crate::digest::Hashing;
 use crate::draw::Sampler;
 use crate::error::DatasetError;
@@ -68,6 +68,8 @@ pub struct Generated {
     pub written_records: u64,
     /// Records of the written shards that failed.
     pub failures: Vec<FailedRecord>,
+    /// Number of records of the written shards by the code of a warning about their simulation.
+    pub warnings: BTreeMap<String, u64>,
     /// Records that failed earlier, in the shards that were there already.
     pub earlier_failures: Vec<FailedRecord>,
     /// Files that were there but had been changed since they were written, and have been made again.
@@ -286,7 +288,7 @@ impl Run<'_> {
             self.simulate(missing, sender, &stop);
             writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
         });
-        generated.failures = written?;
+        (generated.failures, generated.warnings) = written?;
         generated.written_shards = missing.len() as u64;
         generated.written_records = records;
         Ok(())
@@ -348,14 +350,14 @@ impl Run<'_> {
         scenarios
     }
 
-    /// Writes shards as their records arrive. Returns the records that failed.
+    /// Writes shards as their records arrive. Returns the records that failed, and how many have which warning.
     fn write(
         &self,
         missing: &[u64],
         records: u64,
         items: Receiver<Item>,
         stop: &AtomicBool,
-    ) -> Result<Vec<FailedRecord>, DatasetError> {
+    ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
         let columns = shard::columns(self.plan);
         let summary_columns = SummaryColumns::new(&columns, self.shards);
         let mut listing = Listing::new(self.to, self.plan.hash(), self.part);
@@ -372,15 +374,17 @@ impl Run<'_> {
             }
             Some(item)
         };
-        let mut failures = Vec::new();
+        let (mut failures, mut warnings) = (Vec::new(), WarningCounts::new());
         for &shard in missing {
             let written = self.write_shard(shard, &columns, &summary_columns, &mut listing, &mut next);
-            failures.extend(written.inspect_err(|_| stop.store(true, Ordering::Relaxed))?);
+            let (failed, doubtful) = written.inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+            failures.extend(failed);
+            add_warnings(&mut warnings, doubtful);
         }
-        Ok(failures)
+        Ok((failures, warnings))
     }
 
-    /// Writes and lists a shard. Returns its records that failed.
+    /// Writes and lists a shard. Returns its records that failed, and how many have which warning.
     fn write_shard(
         &self,
         shard: u64,
@@ -388,7 +392,7 @@ impl Run<'_> {
         summary_columns: &SummaryColumns<'_>,
         listing: &mut Listing<'_>,
         next: impl FnMut() -> Option<Item>,
-    ) -> Result<Vec<FailedRecord>, DatasetError> {
+    ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
         let metadata =
             ShardMetadata { plan: self.plan.hash(), records: self.shards.range(shard), failures: Vec::new() };
         let content = &self.plan.content;
@@ -400,9 +404,9 @@ impl Run<'_> {
             let (contents, summary) = summary_columns.summarize(shard, read, digest);
             // Reading has moved the position at which the file would be written on.
             file.seek(SeekFrom::End(0))?;
-            let failures = contents.failures.clone();
+            let doubts = (contents.failures.clone(), contents.warnings.clone());
             // The shard is listed before its file gets its name, so that no file is there that is not listed.
-            Ok(listing.add(shard, contents, summary).map(|()| failures))
+            Ok(listing.add(shard, contents, summary).map(|()| doubts))
         });
         written.map_err(|error| match error {
             DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {

@@ -4,8 +4,9 @@
 //! `drawing`. A figure is drawn once, as a `scene`, which `svg` writes out and `raster`
 //! fills in with the font that this crate brings along, so that both look alike on every machine.
 //!
-//! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
+//! * [`panel`]: teeth, damage, profile errors, averages, mesh stiffness and spectrum of one simulation
 //! * [`record`]: a recording, its average, order spectrum and difference signal
+//! * [`order_map`]: the orders of a shaft over the time of a run-up
 //! * [`trend`]: indicators over a series of recordings
 //! * [`diagnosis`]: what may be wrong with a gear: probabilities, severity, and what explains a recording
 //! * [`dataset::dataset_figure`]: a data set, examples, distributions and indicators by class
@@ -19,6 +20,7 @@ mod drawing;
 mod error;
 mod figure;
 mod font;
+pub mod order_map;
 mod palette_png;
 pub mod panel;
 mod raster;

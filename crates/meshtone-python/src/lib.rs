@@ -42,7 +42,7 @@ mod _core {
         recording::read_recording,
         scenario::{Scenario, template},
         signal::{
-            angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4,
+            angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4, order_map,
             order_spectrum, resample, separate, sideband_level_factor, statistics, synchronous_average,
         },
         simulation::{Simulation, process_simulated, simulate, trace},

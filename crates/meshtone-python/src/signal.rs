@@ -1,10 +1,13 @@
 //! The steps of the chain, one by one.
 
-use meshtone::signal::{self as steps, AngularSettings, AngularSignal, Edge, Interpolation};
+use meshtone::signal::{
+    self as steps, AngularSettings, AngularSignal, Edge, Interpolation, OrderMapSettings,
+};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::array::{Array, Signal, array, samples};
+use crate::array::{Array, Signal, array, matrix, samples};
 use crate::error::value_error;
 use crate::phase::ShaftPhase;
 use crate::process::separation;
@@ -51,6 +54,28 @@ pub fn angular_resample<'py>(
     let signal = samples(&signal)?;
     let angular = py.detach(|| steps::angular_resample(signal, &phase.0, &settings)).map_err(value_error)?;
     Ok((array(py, angular.values), angular.points_per_revolution, angular.start_rev, angular.nyquist_order))
+}
+
+/// Order spectra of parts of a recording: length of the parts in revolutions, times and speeds of the parts, amplitudes.
+#[pyfunction]
+pub fn order_map<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    phase: &ShaftPhase,
+    sampling_rate_hz: f64,
+    revolutions: Option<usize>,
+    highest_order: Option<f64>,
+) -> PyResult<(usize, Array<'py>, Array<'py>, Bound<'py, PyArray2<f64>>)> {
+    let settings = OrderMapSettings { revolutions, highest_order };
+    let signal = samples(&signal)?;
+    let map = py.detach(|| {
+        let angular = steps::angular_resample(signal, &phase.0, &AngularSettings::default())?;
+        steps::order_map(&angular, &phase.0, sampling_rate_hz, &settings)
+    });
+    let map = map.map_err(value_error)?;
+    let shape = [map.amplitudes.len(), map.amplitudes.first().map_or(0, Vec::len)];
+    let amplitudes = matrix(py, map.amplitudes.concat(), shape)?;
+    Ok((map.revolutions, array(py, map.times_s), array(py, map.speeds_hz), amplitudes))
 }
 
 /// Average over the revolutions of a signal at equal angles.

@@ -257,6 +257,7 @@ warning_kinds! {
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
+    ProfileEnded "profile-ended" "a speed or torque profile ends before the kept signal starts";
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
     Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";
     Overload "overload" "the load would break the teeth";

@@ -25,6 +25,7 @@ from .angular import AngularSignal, angular_resample, resample, synchronous_aver
 from .at_once import difference, tsa
 from .indicators import Indicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
 from .mismatch import Mismatch, check_recording, find_mismatch
+from .orders import OrderMap, order_map
 from .phase import ShaftPhase, repair_pulses, tachometer_pulses
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
@@ -34,6 +35,7 @@ __all__ = [
     "AngularSignal",
     "Indicators",
     "Mismatch",
+    "OrderMap",
     "Parts",
     "Record",
     "ShaftPhase",
@@ -50,6 +52,7 @@ __all__ = [
     "m6a",
     "m8a",
     "na4",
+    "order_map",
     "order_spectrum",
     "process_channel",
     "process_series",

@@ -23,7 +23,8 @@ const PRINTED: usize = 5;
 ///
 /// Averages a channel over the revolutions of a shaft, takes the average apart, and writes indicators.json,
 /// indicators.parquet and a figure of the recording, or of the last one (indicators.svg, .png). Several recordings, or
-/// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png).
+/// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png). A run-up
+/// has the amplitudes over order and time too (order_map.svg, .png).
 /// Nothing is written unless all recordings are good.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -97,11 +98,15 @@ impl Indicators {
     }
 
     fn write(&self, directory: &Path, series: &Series) -> Result<(), Failure> {
-        let latest = series.latest.as_ref().filter(|_| !self.no_figure);
-        let record = latest.map(|latest| figures::of_record(series, latest, &self.phase, &self.processing));
-        let trend = latest.filter(|_| series.is_series());
-        let trend = trend.map(|_| figures::of_trend(series, &self.phase, &self.processing));
-        files::write(directory, &series.results, record.as_ref(), trend.as_ref())
+        let figures = match series.latest.as_ref().filter(|_| !self.no_figure) {
+            None => files::Figures::default(),
+            Some(latest) => files::Figures {
+                record: Some(figures::of_record(series, latest, &self.phase, &self.processing)),
+                trend: series.is_series().then(|| figures::of_trend(series, &self.phase, &self.processing)),
+                order_map: figures::of_order_map(series, latest, &self.phase),
+            },
+        };
+        files::write(directory, &series.results, &figures)
     }
 }
 

@@ -115,9 +115,28 @@ fn table(experiment: &Experiment, result: &ExperimentResult, directory: &Path) -
     for (number, case) in experiment.cases.iter().enumerate() {
         let error = |simulated| experiment.measured.case_error(number, simulated);
         let [original, enhanced] = [&tuning.original, &tuning.enhanced].map(|of| error(&of[number]));
-        text += &errors(&case.label, [original, enhanced, tuning.leave_one_out_error[number]]);
+        text += &errors(&case.label, [original, enhanced, tuning.left_out[number].error]);
     }
-    text + &format!("\n{}\n", directory.display())
+    text + &left_out(experiment, tuning) + &format!("\n{}\n", directory.display())
+}
+
+/// Each case as the others predict it: by indicator the measured median and the interval that is expected.
+fn left_out(experiment: &Experiment, tuning: &Tuning) -> String {
+    let measured = &experiment.measured;
+    let names = measured.indicators().iter().map(|indicator| {
+        let name = indicator.name();
+        let name = if indicator.is_logarithmic() { format!("log10 {name}") } else { name.to_owned() };
+        format!("{name:>27}")
+    });
+    let mut text = format!("\n  {:<40}{}\n", "left out: measured, 95 % interval", names.collect::<String>());
+    for (number, (case, left_out)) in experiment.cases.iter().zip(&tuning.left_out).enumerate() {
+        let expected = left_out.intervals.iter().enumerate().map(|(j, [least, largest])| {
+            let interval = format!("{least:.2} to {largest:.2}");
+            format!("{:>11.2}{interval:>16}", measured.median(number, j))
+        });
+        text += &format!("  {:<40}{}\n", case.label, expected.collect::<String>());
+    }
+    text
 }
 
 fn heads(name: &str) -> String {

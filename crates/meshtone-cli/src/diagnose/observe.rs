@@ -117,8 +117,9 @@ impl<'a> Observer<'a> {
         let pinion_hz = shafts.mean_speed_hz(WheelName::Pinion);
         let observe = || self.of_angles([over(WheelName::Pinion)?, over(WheelName::Gear)?], zero, pinion_hz);
         let what = format!("channel {}", input.channel.name);
-        let observation =
-            observe().map_err(|error| refuse(&input.source, &what, RefusedInput::Simulated, &error))?;
+        let observation = observe().map_err(|error| {
+            refuse(&input.source, &what, RefusedInput::Simulated { in_segments: false }, &error)
+        })?;
         Ok((observation, input.warnings.clone()))
     }
 

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use meshtone_io::indicators::RecordEntry;
 use meshtone_plot::Figure;
+use meshtone_plot::order_map::{self, OrderMapFigure};
 use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
 use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 
@@ -68,6 +69,22 @@ pub fn of_record(
     };
     let title = title(std::slice::from_ref(&latest.input.source), series);
     record::draw(&RecordFigure { title: &title, facts: &facts, signal, wheels: &wheels })
+}
+
+/// The figure of the orders over time, where the last recording is a run-up.
+pub fn of_order_map(series: &Series, latest: &LatestRecords, phase: &PhaseOptions) -> Option<Figure> {
+    let (map, (wheel, ..)) = (latest.order_map.as_ref()?, latest.wheels.first()?);
+    let facts = [format!("phase from the {}", phase.source()), MESHTONE.to_owned()];
+    let title = title(std::slice::from_ref(&latest.input.source), series);
+    Some(order_map::draw(&OrderMapFigure {
+        title: &title,
+        facts: &facts,
+        unit: latest.input.channel.unit.as_deref(),
+        wheel: wheel.name,
+        teeth: wheel.teeth,
+        start_s: latest.input.start_s,
+        map,
+    }))
 }
 
 /// The figure of the indicators over the series.

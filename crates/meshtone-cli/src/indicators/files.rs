@@ -15,30 +15,41 @@ const JSON: &str = "indicators.json";
 const TABLE: &str = "indicators.parquet";
 const RECORD: [&str; 2] = ["indicators.svg", "indicators.png"];
 const TREND: [&str; 2] = ["trend.svg", "trend.png"];
+const ORDER_MAP: [&str; 2] = ["order_map.svg", "order_map.png"];
 /// All files that may stand in the directory.
-pub const FILES: [&str; 6] = [JSON, TABLE, RECORD[0], RECORD[1], TREND[0], TREND[1]];
+pub const FILES: [&str; 8] =
+    [JSON, TABLE, RECORD[0], RECORD[1], TREND[0], TREND[1], ORDER_MAP[0], ORDER_MAP[1]];
+
+/// The figures, as far as there are any.
+#[derive(Default)]
+pub struct Figures {
+    /// Of the last record.
+    pub record: Option<Figure>,
+    /// Of the indicators over the series.
+    pub trend: Option<Figure>,
+    /// Of the orders over time of a run-up.
+    pub order_map: Option<Figure>,
+}
 
 /// Writes all files, each whole or not at all.
 ///
 /// All are complete beside their targets before the first takes its name.
-pub fn write(
-    directory: &Path,
-    results: &IndicatorResults,
-    record: Option<&Figure>,
-    trend: Option<&Figure>,
-) -> Result<(), Failure> {
-    let stage = |figure: Option<&Figure>, names| match figure {
+pub fn write(directory: &Path, results: &IndicatorResults, figures: &Figures) -> Result<(), Failure> {
+    let stage = |figure: &Option<Figure>, names| match figure {
         Some(figure) => stage_figure(directory, names, figure),
         None => Ok(Vec::new()),
     };
-    let (record, trend) = thread::scope(|scope| {
-        let record = scope.spawn(|| stage(record, RECORD));
-        let trend = stage(trend, TREND);
+    let (record, others) = thread::scope(|scope| {
+        let record = scope.spawn(|| stage(&figures.record, RECORD));
+        let others = stage(&figures.trend, TREND).and_then(|mut staged| {
+            staged.extend(stage(&figures.order_map, ORDER_MAP)?);
+            Ok(staged)
+        });
         let record = record.join().unwrap_or_else(|_| Err(Failure::failed("cannot draw the figure")));
-        (record, trend)
+        (record, others)
     });
     let mut staged = record?;
-    staged.extend(trend?);
+    staged.extend(others?);
     staged.push(StagedFile::write(&directory.join(TABLE), |file| results.write_parquet(file))?);
     let json = StagedFile::write(&directory.join(JSON), |file| results.write_json(file))?;
     Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)

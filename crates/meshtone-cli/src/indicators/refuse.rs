@@ -75,7 +75,10 @@ pub enum RefusedInput {
         by: &'static str,
     },
     /// The channel of a simulation.
-    Simulated,
+    Simulated {
+        /// Whether it is to be cut into segments.
+        in_segments: bool,
+    },
     /// The tachometer's waveform.
     Tachometer,
     /// The times of its pulses.
@@ -108,13 +111,16 @@ fn help(subject: RefusedInput, error: &SignalError) -> Option<String> {
         (Constant { .. }, Tachometer) => {
             "was the tachometer connected? Name its channel with --tach; without one, take --from-mesh-tone or --shaft-hz"
         }
-        (Constant { .. }, Simulated) => {
+        (Constant { .. }, Simulated { .. }) => {
             "this signal of the simulation does not change; leave out --channel for the first listed sensor or the \
              vertical acceleration, or name another"
         }
         (Constant { .. }, _) => "choose another channel with --channel; was the sensor connected?",
-        (TooFewRevolutions { .. }, Simulated) => {
+        (TooFewRevolutions { .. }, Simulated { in_segments: true }) => {
             "state fewer --revolutions: a simulation keeps as many revolutions of a wheel as its mate has teeth, or less"
+        }
+        (TooFewRevolutions { .. }, Simulated { in_segments: false }) => {
+            "simulate for longer: raise solver.pinion_revolutions or solver.duration_s in the scenario"
         }
         (TooFewRevolutions { .. }, _) => {
             "record for longer, or check --shaft-hz, --pulses-per-rev, --revolutions and the sampling rate"

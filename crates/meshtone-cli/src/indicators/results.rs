@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use meshtone::signal::{Record, na4};
+use meshtone::signal::{OrderMap, Record, na4};
 use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry};
 use serde_json::{Map, Value, json};
 
@@ -18,6 +18,8 @@ pub struct LatestRecords {
     pub input: Input,
     /// Each wheel with the mean speed of its shaft and its record.
     pub wheels: Vec<(Wheel, f64, Record)>,
+    /// The orders of the first wheel's shaft over time, where it is a run-up.
+    pub order_map: Option<OrderMap>,
 }
 
 /// All records so far. Of each but the last only its indicators and its residual are kept.
@@ -71,7 +73,7 @@ impl Series {
             }
             last.extend(latest.map(|record| (of_wheel.wheel, of_wheel.mean_speed_hz, record)));
         }
-        self.latest = Some(LatestRecords { input, wheels: last });
+        self.latest = Some(LatestRecords { input, wheels: last, order_map: processed.order_map });
         Ok(())
     }
 

@@ -368,6 +368,33 @@ fn a_data_set_is_verified() {
     assert!(message.contains("data/notes.txt: no manifest or list of a part names it"), "{message}");
 }
 
+/// A part of it is as it was written, and is not what the plan asks for. Scripts see that by the exit code.
+#[test]
+fn an_incomplete_data_set_is_not_verified() {
+    let workplace = workplace();
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "--part", "1/2"]);
+    let output = workplace.command(&["dataset", "verify", "set"]).assert().code(1);
+    assert!(stdout(&output).contains("48 records in 6 shards"), "{}", stdout(&output));
+    assert!(crate::support::stderr(&output).contains("error: set: the data set is not complete"));
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "--part", "2/2"]);
+    workplace.succeeds(&["dataset", "verify", "set"]);
+}
+
+/// What the column of warnings says is said at once too, since it may spoil all records.
+#[test]
+fn doubtful_records_are_counted() {
+    let workplace = workplace();
+    let solver = "[scenario.solver]\nsettle_fraction = 0.01\n[[class]]";
+    workplace.write("plan.toml", PLAN.replacen("[[class]]", solver, 1));
+    let said = crate::support::stderr(&workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "-q"]));
+    assert!(
+        said.contains("warning: 96 records have the warning unsettled: the start-up transient"),
+        "{said}"
+    );
+    // Those that are there already are not told of again.
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "-q"]).stderr("");
+}
+
 #[test]
 fn a_data_set_without_a_record_is_a_failure() {
     let workplace = workplace();

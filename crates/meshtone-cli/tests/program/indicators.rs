@@ -100,11 +100,21 @@ fn wrong_statements_about_a_recording_are_warned_of_with_code_and_numbers() {
     };
     let (none, _) = warnings(&["run.csv", "--shaft-hz", "20", "--mate-teeth", "38"]);
     assert_eq!(none, Value::Array(Vec::new()));
-    let (noise, words) = warnings(&["run.csv", "--shaft-hz", "31", "--mate-teeth", "38"]);
-    assert!(noise.as_array().unwrap().iter().any(|warning| {
+    let (nothing, words) = warnings(&["run.csv", "--shaft-hz", "31", "--mate-teeth", "38"]);
+    assert!(nothing.as_array().unwrap().iter().any(|warning| {
         warning["code"] == "nothing-synchronous" && warning["values"]["of_mean_square"].as_f64() < Some(0.02)
     }));
     assert!(words.contains("noise alone leaves") && words.contains("--sampling-rate-hz"), "{words}");
+    // The shaft is right, and the mate's count alone is not; tones of the wheel alone show nothing of the mate.
+    let turn = |i: usize, order: f64| (TAU * order * 20.0 * i as f64 / RATE_HZ).cos();
+    let wheel: Vec<f64> =
+        (0..20_000).map(|i| (1..=6).map(|k| turn(i, f64::from(k))).sum::<f64>() + noise()).collect();
+    workplace.write("wheel.csv", csv(RATE_HZ, &wheel, |_| 0.0));
+    let (mate, words) = warnings(&["wheel.csv", "--shaft-hz", "20", "--mate-teeth", "37"]);
+    let codes: Vec<&str> =
+        mate.as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap()).collect();
+    assert_eq!(codes, ["mate-not-synchronous"], "{words}");
+    assert!(words.contains("tooth count of the mate, 37") && words.contains("--mate-teeth"), "{words}");
     let (tones, words) = warnings(&["tone.csv", "--shaft-hz", "20", "--mate-teeth", "38"]);
     assert_eq!(tones[0]["code"], "foreign-tones");
     assert!((tones[0]["values"]["frequency_hz_1"].as_f64().unwrap() - 683.0).abs() < 0.1);
@@ -243,6 +253,13 @@ fn pulses_and_speeds_from_other_files() {
     let times: String = (0..160).map(|pulse| format!("{:.6}\n", f64::from(pulse) / 40.0)).collect();
     workplace.write("pulses.txt", format!("pulse [s]\n{times}"));
     workplace.write("speed.csv", "time [s],speed [rpm]\n0,1200\n9,1200\n");
+    // A run-up, and no other, has an order map.
+    workplace.write("run_up.csv", "time [s],speed [rpm]\n0,600\n9,1800\n");
+    let run_up = ["indicators", "run.csv", "-c", "bearing", "--teeth", "19", "--speed-profile"];
+    workplace.succeeds(&[&run_up[..], &["run_up.csv", "-o", "run_up"]].concat());
+    assert!(workplace.names("run_up").iter().any(|name| name == "order_map.svg"));
+    workplace.succeeds(&[&run_up[..], &["speed.csv", "-o", "run_up"]].concat());
+    assert!(!workplace.names("run_up").iter().any(|name| name.starts_with("order_map")));
     for arguments in [
         &["--pulse-times", "pulses.txt", "--pulses-per-rev", "2", "-o", "pulses"][..],
         &["--speed-profile", "speed.csv", "-o", "profile"],

@@ -2,7 +2,7 @@
 //! written.
 
 use crate::indicators::{RATE_HZ, csv, tacho, vibration};
-use crate::support::{Workplace, fast_with};
+use crate::support::{Workplace, fast_and, fast_with};
 
 /// A directory with `run.csv`, which is good.
 fn workplace() -> Workplace {
@@ -191,6 +191,14 @@ fn series_of_different_things() {
     workplace.succeeds(&["simulate", "fast.toml", "other.toml", "-o", "out_s", "--no-panel", "-q"]);
     refused(&workplace, &["out_s/fast", "-c", "axial_g"], &["all", "samples are 0", "leave out --channel"]);
     refused(&workplace, &["out_s/fast", "--revolutions", "60"], &["at least 60", "fewer --revolutions"]);
+    // The advice is about the simulation where no segments are asked for.
+    workplace.write("short.toml", fast_and("pinion_revolutions = 2.0"));
+    workplace.succeeds(&["simulate", "short.toml", "-o", "short", "--no-panel", "-q"]);
+    refused(
+        &workplace,
+        &["short"],
+        &["covers 1 whole revolution of the shaft", "raise solver.pinion_revolutions"],
+    );
     refused(
         &workplace,
         &["out_s/fast", "--teeth", "20"],

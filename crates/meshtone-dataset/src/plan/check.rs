@@ -108,8 +108,15 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         if let Some(Err(error)) = class.simulated.take() {
             let error = TomlError::from(error);
             let label = &content.classes[c].label;
-            let problem = format!("no record of the class \"{label}\" can be simulated; the first: {error}");
-            return Err(with_help_of(TomlError::new(format!("class[{c}]"), "", problem), error));
+            // A key of the plan is where it is mended; one of a record's scenario may be drawn, or written in another file.
+            let is_of_plan = ["keep.", "scenario."].iter().any(|section| error.key.starts_with(section));
+            let (key, value, first) = if is_of_plan {
+                (error.key.clone(), error.value.clone(), error.problem.clone())
+            } else {
+                (format!("class[{c}]"), String::new(), error.to_string())
+            };
+            let problem = format!("no record of the class \"{label}\" can be simulated; the first: {first}");
+            return Err(with_help_of(TomlError::new(key, value, problem), error));
         }
     }
     every_choice(content, &sampler, &tried)
@@ -320,7 +327,14 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
     let (key, value, revolutions) = match (over_angle, duration_s) {
         (Some(angle), _) => ("keep.revolutions", angle.revolutions.to_string(), angle.revolutions as f64),
         (None, Some(duration_s)) => ("keep.duration_s", duration_s.to_string(), duration_s * shaft_hz),
-        (None, None) => ("keep.duration_s", format!("{simulated_s:.4}"), simulated_s * shaft_hz),
+        (None, None) => {
+            let solver = &scenario.solver;
+            let given =
+                [("pinion_revolutions", solver.pinion_revolutions), ("duration_s", solver.duration_s)];
+            let given = given.into_iter().find_map(|(name, value)| Some((name, value?)));
+            let (name, value) = given.unwrap_or(("settle_fraction", solver.settle_fraction));
+            (&*format!("scenario.solver.{name}"), value.to_string(), simulated_s * shaft_hz)
+        }
     };
     // A whole number of revolutions may come out a rounding error below it.
     if content.keep.is_analysed() && operation.is_steady() && revolutions + 1e-6 < FEWEST_REVOLUTIONS as f64 {
@@ -328,7 +342,8 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
             "gives {revolutions:.3} revolutions of the {} at {shaft_hz:.3} Hz, but an average needs at least {FEWEST_REVOLUTIONS}",
             wheel.name()
         );
-        let help = "raise it, or set average, difference and indicators to false";
+        let change = if key.ends_with("settle_fraction") { "lower" } else { "raise" };
+        let help = format!("{change} it, or set average, difference and indicators to false");
         return Err(TomlError::new(key, value, problem).with_help(help));
     }
     Ok(())

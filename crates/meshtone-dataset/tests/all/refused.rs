@@ -226,6 +226,12 @@ fn more_than_is_simulated() {
     let keep = |duration_s: f64| format!("[keep]\nduration_s = {duration_s}");
     let words = ["keep.duration_s = 0.05", "revolutions of the gear", "needs at least 2", "raise it"];
     refused_with("[keep]", &keep(0.05), &words);
+    // The key that says how much is simulated, where that says too little, and its line.
+    for (key, value) in [("pinion_revolutions", "3.0"), ("duration_s", "0.05")] {
+        let line = format!("line 19: scenario.solver.{key} = {value}");
+        let words = [&line, "no record of the class \"healthy\"", "needs at least 2", "raise it"];
+        refused_with("sampling_rate_hz = 1e4", &format!("sampling_rate_hz = 1e4\n{key} = {value}"), &words);
+    }
     // Any steady motion goes on for as long as a record asks.
     for duration_s in [0.5, 5.0] {
         assert_eq!(plan(&FAST.replacen("[keep]", &keep(duration_s), 1)).foreseen_failures(), []);

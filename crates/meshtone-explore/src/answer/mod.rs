@@ -66,7 +66,7 @@ fn shortened(scenario: &Scenario) -> Scenario {
         && scenario.operation.speed_profile_hz.is_none()
         && kept_s < time.kept_samples() as f64 * time.step_s()
     {
-        short.solver.discard_and_keep(time.first_kept_sample as f64 * time.step_s(), kept_s);
+        short.solver.discard_and_keep(time.kept_from_s(), kept_s);
         short.solver.settle_tolerance = scenario.solver.settle_tolerance.max(SHORT_TOLERANCE);
     }
     short

@@ -52,6 +52,16 @@ fn tuning(experiment: &Experiment, tuning: &Tuning) -> Value {
     let parameters = tuning.enhancement;
     let intervals = tuning.intervals;
     let measured = &experiment.measured;
+    let left_out = |number: usize, j: usize| {
+        let case = &tuning.left_out[number];
+        let [least, largest] = case.intervals[j];
+        let is_held = |record: &&f64| (least..=largest).contains(*record);
+        json!({
+            "predicted": case.predicted[j],
+            "interval": case.intervals[j],
+            "records_in_interval": measured.records(number, j).iter().filter(is_held).count(),
+        })
+    };
     let indicator = |number: usize, j: usize, indicator: &TuningIndicator| {
         let (original, enhanced) = (tuning.original[number][j], tuning.enhanced[number][j]);
         let value = json!({
@@ -60,6 +70,7 @@ fn tuning(experiment: &Experiment, tuning: &Tuning) -> Value {
             "records": measured.records(number, j).len(),
             "original": original,
             "enhanced": enhanced,
+            "left_out": left_out(number, j),
             "error": {
                 "original": measured.error(number, j, original),
                 "enhanced": measured.error(number, j, enhanced),
@@ -77,7 +88,7 @@ fn tuning(experiment: &Experiment, tuning: &Tuning) -> Value {
             "error": {
                 "original": measured.case_error(number, &tuning.original[number]),
                 "enhanced": measured.case_error(number, &tuning.enhanced[number]),
-                "leave_one_out": tuning.leave_one_out_error[number],
+                "leave_one_out": tuning.left_out[number].error,
             },
         })
     };

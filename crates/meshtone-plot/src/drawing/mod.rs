@@ -1,6 +1,7 @@
 //! What all figures are drawn with: axes with their ticks, legends and curves, text that knows its own width, and the styles.
 
 pub(crate) mod axes;
+pub(crate) mod bands;
 mod canvas;
 pub(crate) mod curve;
 pub(crate) mod legend;

@@ -56,7 +56,7 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
 const LONGEST_NAME: usize = 28;
 
 /// What a channel shows, as a title has it: a sensor's is its name, where there is room for it.
-fn quantity(channel: &Channel) -> String {
+pub(super) fn quantity(channel: &Channel) -> String {
     match channel {
         Channel::Sensor(name) if name.len() > LONGEST_NAME => "First sensor".to_owned(),
         Channel::Sensor(name) => capitalised(&name.replace('_', " ")),

@@ -2,16 +2,20 @@
 
 use std::f64::consts::TAU;
 
-use meshtone::signal::order_spectrum;
+use meshtone::scenario::Coupled;
+use meshtone::signal::{AngularSettings, AngularSignal, ShaftPhase, angular_resample};
 use meshtone::{GearboxSimulation, GearboxStages};
 
-use super::{COLUMN_GAP, FULL_WIDTH, HEIGHT, LEFT, NAME_LEFT, WIDTH};
+use super::spectrum::InputSpectrum;
+use super::{COLUMN_GAP, FULL_WIDTH, LEFT, NAME_LEFT, WIDTH};
 use crate::drawing::{
-    Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Sample, Stroke, TextStyle, Ticks, axes, colour,
-    number, over,
+    Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, colour, number,
+    over,
 };
 use crate::{Figure, PlotError};
 
+/// (px) Height of the panel.
+const HEIGHT: u32 = 1000;
 const TRAIN_TOP: f64 = 118.0;
 const TRAIN_HEIGHT: f64 = 300.0;
 const WHEELS_TOP: f64 = 500.0;
@@ -22,8 +26,6 @@ const SPECTRUM_HEIGHT: f64 = 200.0;
 const OUTLINE: Stroke = Stroke::solid(colour::INK, 1.2);
 const SHAFT: Stroke = Stroke::solid(colour::MUTED, 1.0);
 const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.1);
-const MESH_LINE: Stroke = Stroke::dashed(colour::VERMILLION, 1.0, &[4.0, 3.0]);
-const SHAFT_LINE: Stroke = Stroke::dashed(colour::GREEN, 1.0, &[2.0, 3.0]);
 const DAMAGED: Fill = Fill::tint(colour::VERMILLION, 0.3);
 const WHEEL: Fill = Fill::solid(colour::STEEL);
 
@@ -327,53 +329,35 @@ fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, whee
     axes.frame(canvas);
 }
 
-/// Amplitudes over orders of the input, of the first sensor, with the orders of all meshes and shafts.
+/// The spectrum of the first sensor, with the orders of all meshes and shafts. Where the speed changes it is of the signal over the angle of the
+/// input, which the shaft's own speed gives.
 fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
     let (stages, channels) = (&simulation.stages, &simulation.channels);
     let Some(signal) = channels.signals.first() else { return };
-    let per_revolution = stages.time.samples_per_pinion_revolution;
-    let revolutions = signal.values.len() / per_revolution;
-    let orders_of_meshes: Vec<(String, f64)> = (stages.gearbox.meshes.iter().zip(&stages.meshes))
-        .map(|(mesh, tables)| (mesh.name(), tables.turning.pitches_per_revolution))
-        .collect();
-    let highest = 4.5 * orders_of_meshes.iter().map(|(_, order)| *order).fold(0.0, f64::max);
-    let highest = highest.min(per_revolution as f64 / 2.0);
-    let amplitudes = order_spectrum(&signal.values[..revolutions * per_revolution]).unwrap_or_default();
-    let step = 1.0 / revolutions.max(1) as f64;
-    let shown: Vec<f64> = amplitudes.iter().take((highest / step) as usize + 1).copied().collect();
-    let most = axes::largest(&shown).max(1e-9);
-    let y = [0.0, 1.1 * most];
-    let sensor = signal.name.trim_end_matches("_g").replace('_', " ");
-    let title = format!("Order spectrum of {sensor}, {revolutions} revolutions of the input");
-    let axes = Axes::titled(canvas, area, [0.0, highest], y, &title);
-    axes.x_axis(canvas, &Ticks::nice(0.0, highest, 16), "Order of the input");
-    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Amplitude (g)", NAME_LEFT);
-    for ratio in &stages.layout.ratios {
-        let x = axes.px(ratio.value().abs());
-        canvas.line((x, area.top), (x, area.bottom()), SHAFT_LINE);
-    }
-    for (name, order) in &orders_of_meshes {
-        for harmonic in (1..).take_while(|harmonic| f64::from(*harmonic) * order <= highest) {
-            let x = axes.px(f64::from(harmonic) * order);
-            canvas.line((x, area.top), (x, area.bottom()), MESH_LINE);
-            if harmonic == 1 {
-                canvas.text(
-                    (x + 4.0, area.top + 14.0),
-                    name,
-                    TextStyle::NOTE.coloured(colour::VERMILLION).with_halo(),
-                );
-            }
-        }
-    }
-    if revolutions == 0 {
-        axes.note(canvas, "the kept signal is shorter than a revolution of the input");
-    } else {
-        let points = shown.iter().enumerate().map(|(line, amplitude)| (line as f64 * step, *amplitude));
-        axes.line(canvas, points, CURVE);
-    }
-    axes.legend(
-        canvas,
-        &[(Sample::Line(MESH_LINE), "mesh and its harmonics"), (Sample::Line(SHAFT_LINE), "shafts")],
-    );
-    axes.frame(canvas);
+    let angular = if stages.is_steady() { None } else { over_input_angle(simulation, &signal.values) };
+    let points_per_revolution = match &angular {
+        Some(angular) => angular.points_per_revolution,
+        None => stages.time.samples_per_pinion_revolution,
+    };
+    let meshes = stages.gearbox.meshes.iter().zip(&stages.meshes);
+    let spectrum = InputSpectrum {
+        quantity: (&signal.name.trim_end_matches("_g").replace('_', " "), signal.unit),
+        shaft: "input",
+        values: angular.as_ref().map_or(&signal.values, |angular| &angular.values),
+        points_per_revolution,
+        nyquist_order: angular
+            .as_ref()
+            .map_or(points_per_revolution as f64 / 2.0, |angular| angular.nyquist_order),
+        shafts: stages.layout.ratios.iter().map(|ratio| ratio.value()).collect(),
+        meshes: meshes.map(|(mesh, tables)| (mesh.name(), tables.turning.pitches_per_revolution)).collect(),
+    };
+    spectrum.draw(canvas, area);
+}
+
+fn over_input_angle(simulation: &GearboxSimulation, signal: &[f64]) -> Option<AngularSignal> {
+    let channels = &simulation.channels;
+    let input = simulation.stages.gearbox.shafts.iter().find(|shaft| shaft.couples_to == Coupled::Motor)?;
+    let speed_hz = channels.signal(&format!("speed_hz.{}", input.name))?;
+    let phase = ShaftPhase::from_speed_samples(speed_hz, channels.sampling_rate_hz).ok()?;
+    angular_resample(signal, &phase, &AngularSettings::default()).ok()
 }

@@ -1,7 +1,7 @@
 //! The results panel: one simulation on one page.
 //!
 //! In two columns, for pinion and gear, the tooth in its own plane, the tooth's face, the profile errors and the average
-//! over the shaft's revolutions; below, the mesh stiffness over a gear revolution. The tooth, its face and its profile
+//! over the shaft's revolutions; below, the mesh stiffness over a gear revolution and the order spectrum. The tooth, its face and its profile
 //! errors share their vertical axis: the distance from the wheel's centre along the tooth's centre line.
 
 mod average;
@@ -11,6 +11,7 @@ mod face;
 mod gearbox;
 mod heading;
 mod side;
+mod spectrum;
 mod stiffness;
 mod tooth;
 
@@ -27,7 +28,7 @@ use side::Side;
 /// (px) Size of the panel.
 pub const WIDTH: u32 = 1600;
 /// (px) Size of the panel.
-pub const HEIGHT: u32 = 1000;
+pub const HEIGHT: u32 = 1240;
 
 const LEFT: f64 = 74.0;
 const COLUMN_WIDTH: f64 = 710.0;
@@ -43,6 +44,8 @@ const AVERAGES_TOP: f64 = 534.0;
 const AVERAGES_HEIGHT: f64 = 168.0;
 const STIFFNESS_TOP: f64 = 778.0;
 const STIFFNESS_HEIGHT: f64 = 172.0;
+const SPECTRUM_TOP: f64 = 1024.0;
+const SPECTRUM_HEIGHT: f64 = 168.0;
 
 const TOOTH_WIDTH: f64 = 360.0;
 /// (px) Room for the names of the circles, right of the tooth.
@@ -81,6 +84,12 @@ pub fn draw(stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
     }
     average::draw(&mut canvas, [0, 1].map(averages_area), stages, channels);
     stiffness::draw(&mut canvas, Area::new(LEFT, STIFFNESS_TOP, FULL_WIDTH, STIFFNESS_HEIGHT), stages);
+    spectrum::of_pair(
+        &mut canvas,
+        Area::new(LEFT, SPECTRUM_TOP, FULL_WIDTH, SPECTRUM_HEIGHT),
+        stages,
+        channels,
+    );
     Ok(canvas.finish(&title, &heading::description(stages)))
 }
 

@@ -138,16 +138,31 @@ impl Mesh {
         self.mesh_n_per_mm.iter().chain(&self.healthy_n_per_mm).copied()
     }
 
-    /// Draws the mesh, and over the damaged `turns` the healthy one; elsewhere the two are the same.
+    /// Draws the mesh, and over the damaged `turns` the healthy one; also elsewhere, unless the two are the same there.
     fn draw(&self, canvas: &mut Canvas, axes: &Axes, turns: &[[f64; 2]]) {
         if self.mesh_n_per_mm.is_empty() || self.healthy_n_per_mm.is_empty() {
             axes.note(canvas, "no mesh stiffness");
             return;
         }
-        for &turn in turns {
-            axes.line(canvas, self.curve(&self.healthy_n_per_mm, 0, turn), HEALTHY);
+        let whole = [axes.x];
+        let healthy = if self.differs_outside(turns, axes.x) { &whole } else { turns };
+        for &part in healthy {
+            axes.line(canvas, self.curve(&self.healthy_n_per_mm, 0, part), HEALTHY);
         }
         axes.line(canvas, self.curve(&self.mesh_n_per_mm, self.first_pitch, axes.x), MESH);
+    }
+
+    /// Returns whether it differs from the healthy one outside the turns of the damaged teeth that stand out, as where all others are worn.
+    fn differs_outside(&self, turns: &[[f64; 2]], window: [f64; 2]) -> bool {
+        // At the ends of a turn one point of each may hold a part of a pair.
+        const PART: f64 = 0.1;
+        let healthy = self.curve(&self.healthy_n_per_mm, 0, window);
+        let of_both = self.curve(&self.mesh_n_per_mm, self.first_pitch, window).zip(healthy);
+        let outside: Vec<bool> = of_both
+            .filter(|((pitch, _), _)| !turns.iter().any(|[from, to]| (*from..=*to).contains(pitch)))
+            .map(|((_, this), (_, healthy))| (this - healthy).abs() > 1e-3 * healthy)
+            .collect();
+        outside.iter().filter(|differs| **differs).count() as f64 > PART * outside.len() as f64
     }
 
     /// (pitches, N/mm) Values of a window.

@@ -160,7 +160,7 @@ fn error(canvas: &mut Canvas, area: Area, data: &Data) {
     };
     let series = [
         Series { values: errors(&tuning.original), at: 0.0, symbol: ORIGINAL },
-        Series { values: tuning.leave_one_out_error.clone(), at: 0.0, symbol: LEFT_OUT },
+        Series { values: tuning.left_out.iter().map(|case| case.error).collect(), at: 0.0, symbol: LEFT_OUT },
         Series { values: errors(&tuning.enhanced), at: 0.0, symbol: ENHANCED },
     ];
     let [_, high] = axes::range(series.iter().flat_map(|series| series.values.iter().copied()), MARGIN);

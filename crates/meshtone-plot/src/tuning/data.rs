@@ -30,9 +30,9 @@ impl<'a> Data<'a> {
     pub(super) fn new(experiment: &'a Experiment, result: &'a ExperimentResult) -> Result<Self, PlotError> {
         let measured = experiment.measured.cases();
         let tunings = [&result.enhancement_alone, result.tuning()];
-        let counts = tunings.iter().flat_map(|tuning| {
-            [tuning.original.len(), tuning.enhanced.len(), tuning.leave_one_out_error.len()]
-        });
+        let counts = tunings
+            .iter()
+            .flat_map(|tuning| [tuning.original.len(), tuning.enhanced.len(), tuning.left_out.len()]);
         let signals = [&result.original, result.simulated()].map(|cases| cases.differences().len());
         let mut counts = counts.chain(signals).chain([experiment.cases.len()]);
         if let Some(simulated) = counts.find(|&count| count != measured) {

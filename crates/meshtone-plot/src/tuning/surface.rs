@@ -5,17 +5,10 @@ use meshtone::tuning::{Enhancement, HybridError};
 use super::data::Data;
 use super::heading::short;
 use super::symbols::ENHANCED;
-use crate::drawing::{
-    Anchor, Area, Axes, Canvas, Colour, Fill, Pixel, Sample, Stroke, TextStyle, Ticks, axes, colour, legend,
-};
+use crate::drawing::{Area, Axes, Canvas, Fill, Pixel, Sample, Stroke, Ticks, axes, bands, colour, legend};
 
 /// Ends of the bands, over the best error. Narrow at first: the valley is flat.
 const BANDS: [f64; 9] = [1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 3.0, 5.0];
-/// From the best to the worst: one hue, darker and darker, so that it reads in grey as well.
-const COLOURS: [u32; 10] = [
-    0xff_ff_ff, 0xea_f2_f8, 0xd3_e4_f0, 0xb9_d3_e7, 0x9c_c0_db, 0x7d_aa_cd, 0x5f_92_bb, 0x44_79_a6,
-    0x2d_5f_8c, 0x19_45_6e,
-];
 /// Errors below this count as this much for the bands.
 const LEAST_BASE: f64 = 0.005;
 /// The range around the best point, at least this factor on either side.
@@ -28,8 +21,6 @@ const NODES: usize = 72;
 const CELL: f64 = 1.0;
 /// (px) So much squares overlap, lest lines show between them.
 const OVERLAP: f64 = 0.3;
-const BAR_GAP: f64 = 16.0;
-const BAR_WIDTH: f64 = 16.0;
 const HALO: Stroke = Stroke::solid(colour::WHITE, 3.6);
 const INTERVAL: Stroke = Stroke::dashed(colour::INK, 1.4, &[6.0, 3.0]);
 const UNIT_RATIO: Stroke = Stroke::dashed(colour::INK, 1.2, &[1.5, 3.0]);
@@ -46,13 +37,14 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     axes.y_axis(canvas, &Ticks::of_logarithms(y[0], y[1]), "Noise level ν (–)", super::NAME_LEFT);
     let grid = Grid::new(data, &axes)?;
     let base = data.tuning.enhanced_error.max(LEAST_BASE);
-    canvas.rectangle((area.left, area.top), (area.right(), area.bottom()), Fill::solid(Colour(COLOURS[0])));
+    canvas.rectangle((area.left, area.top), (area.right(), area.bottom()), Fill::solid(bands::COLOURS[0]));
     for (band, factor) in BANDS.iter().enumerate() {
-        canvas.rectangles(&grid.above(area, factor * base), Fill::solid(Colour(COLOURS[band + 1])));
+        canvas.rectangles(&grid.above(area, factor * base), Fill::solid(bands::COLOURS[band + 1]));
     }
     marks(canvas, &axes, data);
     axes.frame(canvas);
-    bar(canvas, area, base);
+    let ends: Vec<String> = BANDS.iter().map(|factor| short(factor * base)).collect();
+    bands::bar(canvas, area, "Error (σ)", &ends);
     let entries = [
         (Sample::Marker(None, ENHANCED.marker), "chosen"),
         (Sample::Line(INTERVAL), "95 % intervals"),
@@ -156,21 +148,4 @@ fn marks(canvas: &mut Canvas, axes: &Axes, data: &Data) {
     let Enhancement { fault_to_harmonics_ratio, noise_level, .. } = data.tuning.enhancement;
     let best = axes.at(clamped(fault_to_harmonics_ratio, axes.x), clamped(noise_level, axes.y));
     ENHANCED.marker.draw(canvas, best);
-}
-
-/// The bands' colours and the errors between them.
-fn bar(canvas: &mut Canvas, area: Area, base: f64) {
-    let left = area.right() + BAR_GAP;
-    let height = area.height / COLOURS.len() as f64;
-    for (band, &colour) in COLOURS.iter().enumerate() {
-        let bottom = area.bottom() - band as f64 * height;
-        canvas.rectangle((left, bottom), (left + BAR_WIDTH, bottom - height), Fill::solid(Colour(colour)));
-        if let Some(factor) = BANDS.get(band) {
-            let style = TextStyle::TICK.anchored(Anchor::Start);
-            canvas.text((left + BAR_WIDTH + 6.0, bottom - height + 4.5), &short(factor * base), style);
-        }
-    }
-    Axes::new(Area::new(left, area.top, BAR_WIDTH, area.height), [0.0, 1.0], [0.0, 1.0]).frame(canvas);
-    let style = TextStyle::TICK.anchored(Anchor::Start);
-    canvas.text((left, area.top - axes::TITLE_ABOVE), "Error (σ)", style);
 }

@@ -2,6 +2,7 @@
 
 mod dataset;
 mod indicators;
+mod order_map;
 mod panel;
 mod support;
 mod tuning;

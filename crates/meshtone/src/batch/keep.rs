@@ -138,7 +138,7 @@ impl SignalRecorder {
         let time = &stages.time;
         Signals {
             sampling_rate_hz: time.sampling_rate_hz,
-            start_s: time.first_kept_sample as f64 * time.step_s(),
+            start_s: time.kept_from_s(),
             channels: self.channels_by(|channel, motion| stages.shown(channel, motion)),
         }
     }

@@ -112,6 +112,11 @@ impl TimeGrid {
         }
     }
 
+    /// (s) Time of the first kept sample since the start of the simulation.
+    pub fn kept_from_s(&self) -> f64 {
+        self.first_kept_sample as f64 * self.step_s()
+    }
+
     /// Number of samples that are kept.
     pub fn kept_samples(&self) -> usize {
         self.samples - self.first_kept_sample

@@ -2,6 +2,7 @@
 
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
+use crate::error::{ScenarioWarning, WarningKind};
 use crate::keys::{
     Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, field, load, row,
 };
@@ -51,6 +52,28 @@ impl Operation {
             && self.torque_profile_nm.is_none()
             && self.speed_fluctuation_hz == 0.0
             && self.torque_fluctuation_nm == 0.0
+    }
+
+    /// Warnings of profiles that end before the kept signal starts: nothing of them is kept but their last value.
+    ///
+    /// # Arguments
+    /// * `kept_from_s` - (s) where the kept signal starts
+    pub(crate) fn ended_profiles(&self, kept_from_s: f64) -> Vec<ScenarioWarning> {
+        let profiles = [
+            ("operation.speed_profile_hz", &self.speed_profile_hz),
+            ("operation.torque_profile_nm", &self.torque_profile_nm),
+        ];
+        let ended = |(key, profile): (&str, &Option<Profile>)| {
+            let ends_s = *profile.as_ref()?.time_s.last()?;
+            (ends_s <= kept_from_s && kept_from_s > 0.0).then(|| {
+                let message = format!(
+                    "ends at {ends_s} s, and the kept signal starts at {kept_from_s:.3} s: only its last value is seen; lower \
+                     solver.settle_fraction, or shorten what is kept"
+                );
+                ScenarioWarning::new(WarningKind::ProfileEnded, key, message)
+            })
+        };
+        profiles.into_iter().filter_map(ended).collect()
     }
 }
 

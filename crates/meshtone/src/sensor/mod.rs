@@ -183,11 +183,8 @@ impl Channels {
     /// # Arguments
     /// * `time` - division of time
     pub fn new(time: &TimeGrid) -> Self {
-        let mut channels = Self {
-            sampling_rate_hz: time.sampling_rate_hz,
-            start_s: time.first_kept_sample as f64 * time.step_s(),
-            ..Self::default()
-        };
+        let mut channels =
+            Self { sampling_rate_hz: time.sampling_rate_hz, start_s: time.kept_from_s(), ..Self::default() };
         for kind in ChannelKind::ALL {
             channels.get_mut(kind).reserve_exact(time.kept_samples());
         }

@@ -57,7 +57,7 @@ pub enum SignalError {
     },
     /// The recording holds too few whole revolutions.
     #[error(
-        "the recording covers {revolutions:.3} revolutions of the shaft, but at least {needed} are needed"
+        "the recording covers {} of the shaft, but at least {needed} are needed", covered(*revolutions)
     )]
     TooFewRevolutions {
         /// (rev) What is covered.
@@ -170,5 +170,14 @@ pub enum SignalError {
 impl SignalError {
     pub(crate) fn parameter(name: &'static str, value: f64, allowed: &'static str) -> Self {
         Self::Parameter { name, value, allowed }
+    }
+}
+
+/// A number of revolutions in words, whole ones as they were counted.
+fn covered(revolutions: f64) -> String {
+    match revolutions {
+        1.0 => "1 whole revolution".to_owned(),
+        whole if whole.fract() == 0.0 => format!("{whole} whole revolutions"),
+        part => format!("{part:.3} revolutions"),
     }
 }

@@ -9,7 +9,7 @@
 //! | over the angle | [`angular_resample`], [`interpolate_pchip`], [`interpolate_band_limited`] |
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
 //! | separation | [`separate`] |
-//! | spectra and envelope | [`order_spectrum`], [`envelope`], [`envelope_spectrum`] |
+//! | spectra and envelope | [`order_spectrum`], over time [`order_map`], [`envelope`], [`envelope_spectrum`] |
 //! | whether it fits what the user stated | [`check_recording`], of [`find_mismatch`] and [`lines_off_shafts`]; [`synchronous_part`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
@@ -29,6 +29,7 @@ mod interpolate;
 mod kaiser;
 mod mismatch;
 mod octaves;
+mod order_map;
 mod phase;
 mod record;
 mod resample;
@@ -57,6 +58,7 @@ pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
 pub use mismatch::{Alternative, Evidence, Mismatch, StatedFacts, StatedTurning, find_mismatch};
 pub use octaves::{OCTAVES, OctaveBand, octave_bands};
+pub use order_map::{OrderMap, OrderMapSettings, order_map};
 pub use phase::{
     AngleZero, MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses,
 };

@@ -134,13 +134,30 @@ impl SimulatedShafts {
                 Ok(from_first_tooth(signal, *start, points))
             }
             SimulatedAngle::Varying(angles) => {
-                let pinion = ShaftPhase::new(0, angles.clone())?;
-                let phase = match shaft {
-                    WheelName::Pinion => pinion,
-                    WheelName::Gear => pinion.of_mate(self.teeth[0], self.teeth[1])?,
-                };
-                angular_resample(signal, &phase, &settings.angular)
+                angular_resample(signal, &self.phase_of(angles, shaft)?, &settings.angular)
             }
+        }
+    }
+
+    /// The phase of a shaft whose speed varies; none at constant speed.
+    ///
+    /// # Arguments
+    /// * `shaft` - that of which wheel
+    ///
+    /// # Errors
+    /// Fewer than two samples.
+    pub fn varying_phase(&self, shaft: WheelName) -> Result<Option<ShaftPhase>, SignalError> {
+        match &self.turning {
+            SimulatedAngle::Steady { .. } => Ok(None),
+            SimulatedAngle::Varying(angles) => self.phase_of(angles, shaft).map(Some),
+        }
+    }
+
+    fn phase_of(&self, pinion_rev: &[f64], shaft: WheelName) -> Result<ShaftPhase, SignalError> {
+        let pinion = ShaftPhase::new(0, pinion_rev.to_vec())?;
+        match shaft {
+            WheelName::Pinion => Ok(pinion),
+            WheelName::Gear => pinion.of_mate(self.teeth[0], self.teeth[1]),
         }
     }
 

@@ -85,6 +85,21 @@ pub enum SignalWarning {
         .0.revolutions, 100.0 * .0.of_mean_square, 100.0 / .0.revolutions as f64
     )]
     NothingSynchronous(SynchronousPart),
+    /// The average over the revolutions of the mate holds hardly more than noise would leave, while that of the wheel is clear.
+    #[error(
+        "the average of {} revolutions of the mate holds {:.2} % of the recording's mean square, and noise alone leaves {:.2} %, while the \
+         wheel of {teeth} teeth is clearly seen: its speed is right, and the tooth count of the mate, {mate_teeth}, is probably wrong; check \
+         it, and use none of the mate's indicators",
+        .part.revolutions, 100.0 * .part.of_mean_square, 100.0 / .part.revolutions as f64
+    )]
+    MateNotSynchronous {
+        /// What the mate's average holds.
+        part: SynchronousPart,
+        /// Teeth of the wheel on the stated shaft.
+        teeth: u32,
+        /// Stated teeth of the mate.
+        mate_teeth: u32,
+    },
     /// Tones that belong to neither shaft make much of the recording.
     #[error("{0}")]
     ForeignTones(ForeignTones),
@@ -102,6 +117,7 @@ impl SignalWarning {
             Self::MeshOrderNearNyquist { .. } => "mesh-order-near-nyquist",
             Self::DoesNotFit(mismatch) => mismatch.alternative.code(),
             Self::NothingSynchronous(_) => "nothing-synchronous",
+            Self::MateNotSynchronous { .. } => "mate-not-synchronous",
             Self::ForeignTones(_) => "foreign-tones",
         }
     }
@@ -131,7 +147,7 @@ impl SignalWarning {
                 values.extend(mismatch.energy_ratio.map(|ratio| ("energy_ratio".to_owned(), ratio)));
                 values
             }
-            Self::NothingSynchronous(part) => {
+            Self::NothingSynchronous(part) | Self::MateNotSynchronous { part, .. } => {
                 of(&[("of_mean_square", part.of_mean_square), ("revolutions", part.revolutions as f64)])
             }
             Self::ForeignTones(tones) => {

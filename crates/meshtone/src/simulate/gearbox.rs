@@ -607,7 +607,7 @@ impl GearboxStages {
         };
         GearboxChannels {
             sampling_rate_hz: self.time.sampling_rate_hz,
-            start_s: self.time.first_kept_sample as f64 * self.time.step_s(),
+            start_s: self.time.kept_from_s(),
             signals: self.outputs().into_iter().map(signal).collect(),
             step_counts: [0; 4],
         }

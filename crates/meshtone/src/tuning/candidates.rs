@@ -22,40 +22,56 @@ pub(super) fn rounds(candidates: usize) -> Vec<usize> {
     std::iter::once(spread).chain((0..ROUNDS).map(each)).filter(|&count| count > 0).collect()
 }
 
-/// Values for one candidate, each in \[0, 1) of its range.
+/// Where a combination is drawn: anywhere in the ranges, or near another combination.
+#[derive(Clone, Copy)]
+pub(super) enum Region<'a> {
+    Anywhere,
+    Near {
+        /// Where the other one lies, each in \[0, 1) of its range.
+        parent: &'a [f64],
+        /// By how much of its range a value changes at most.
+        width: f64,
+    },
+}
+
+impl<'a> Region<'a> {
+    /// The region of a combination of the first round: of every two, one is near the scenario's own values.
+    pub(super) fn of_first_round(number: usize, own: &'a [f64]) -> Self {
+        if number.is_multiple_of(2) { Self::Anywhere } else { Self::Near { parent: own, width: FIRST_WIDTH } }
+    }
+
+    /// The region of a combination of a later round: near one of the best so far.
+    ///
+    /// # Arguments
+    /// * `best` - where they lie, the best first
+    pub(super) fn of_round(round: usize, number: usize, best: &'a [Vec<f64>]) -> Self {
+        match best.get(number % PARENTS.min(best.len()).max(1)) {
+            Some(parent) => Self::Near { parent, width: FIRST_WIDTH * SHRINK.powi(round as i32 - 1) },
+            None => Self::Anywhere,
+        }
+    }
+}
+
+/// Draws a combination: the place of each key's value, in \[0, 1) of its range.
 ///
 /// # Arguments
-/// * `keys` - how many
+/// * `keys` - whose values are drawn
 /// * `seed`, `index` - of the draw
-/// * `round` - 0 spreads over the whole range
-/// * `best` - candidates so far, the best first; not empty where `round` is not 0
-pub(super) fn place(
-    ranges: &[TunedKey],
-    seed: u64,
-    index: usize,
-    round: usize,
-    best: &[Vec<f64>],
-) -> Vec<f64> {
+/// * `region` - where
+pub(super) fn place(keys: &[TunedKey], seed: u64, index: usize, region: Region) -> Vec<f64> {
     let mut draws = Draws::new(seed, Purpose::Candidate, index as u64);
-    let parent = best.get(index % PARENTS.min(best.len()).max(1));
-    let width = FIRST_WIDTH * SHRINK.powi(round as i32 - 1);
     let mut unit = || draws.uniform(0.5, 0.5);
-    ranges
-        .iter()
+    keys.iter()
         .enumerate()
         .map(|(n, key)| {
             let (change, fresh) = (unit(), unit());
-            match (round, parent) {
-                (0, _) | (_, None) => fresh,
+            match region {
+                Region::Anywhere => fresh,
                 // A discrete value is kept, or drawn anew now and then.
-                (_, Some(parent)) if matches!(key.range, KeyRange::OneOf(_)) => {
-                    if change < width {
-                        fresh
-                    } else {
-                        parent[n]
-                    }
+                Region::Near { parent, width } if matches!(key.range, KeyRange::OneOf(_)) => {
+                    if change < width { fresh } else { parent[n] }
                 }
-                (_, Some(parent)) => reflected(parent[n] + width * (2.0 * change - 1.0)),
+                Region::Near { parent, width } => reflected(parent[n] + width * (2.0 * change - 1.0)),
             }
         })
         .collect()
@@ -77,4 +93,21 @@ pub(super) fn value(key: &TunedKey, place: f64) -> f64 {
         KeyRange::Between { least, largest, .. } => least + place * (largest - least),
         KeyRange::OneOf(values) => values[((place * values.len() as f64) as usize).min(values.len() - 1)],
     }
+}
+
+/// The place of a value in \[0, 1) of a range; the nearest one where the range does not hold the value.
+pub(super) fn place_of(key: &TunedKey, value: f64) -> f64 {
+    let place = match &key.range {
+        KeyRange::Between { least, largest, logarithmic: true } => {
+            (value / least).ln() / (largest / least).ln()
+        }
+        KeyRange::Between { least, largest, .. } => (value - least) / (largest - least),
+        KeyRange::OneOf(values) => {
+            let nearest = |(a, b): (&f64, &f64)| (a - value).abs().total_cmp(&(b - value).abs());
+            let index = (0..values.len()).min_by(|&a, &b| nearest((&values[a], &values[b])));
+            (index.unwrap_or(0) as f64 + 0.5) / values.len() as f64
+        }
+    };
+    // A range of one value has no places, and a logarithm may have none either.
+    if place.is_finite() { place.clamp(0.0, 1.0 - f64::EPSILON) } else { 0.5 }
 }

@@ -2,44 +2,67 @@
 
 use std::sync::Arc;
 
-use super::candidates::{place, rounds, value};
+use super::candidates::{Region, place, place_of, rounds, value};
 use super::search::Grid;
 use super::simulations::{Differences, Simulations};
-use super::tune::{TuningInputs, tune_among};
-use super::{Experiment, Fit, HybridError, SimulatedCases, TunedKeys};
+use super::tune::{LeftOutCase, TuningInputs, tune_among};
+use super::{Experiment, Fit, HybridError, SimulatedCases, TunedKey, TunedKeys};
 use crate::scenario::Scenario;
 use crate::threads;
 
-/// The best candidates whose parameters the intervals hold, where their error allows it; no others are kept.
+/// The best combinations of a ranking, which predict what it leaves out, or whose parameters the intervals hold where their error allows
+/// it; no others are kept.
 const KEPT: usize = 12;
 /// Simulations that are made, and whose signals are held, at the same time.
 const SIMULATED_TOGETHER: usize = 448;
 
-/// A combination of values that was simulated.
+/// A combination of values that was simulated, and its fit to the cases that count.
+#[derive(Clone)]
 struct Candidate {
     places: Vec<f64>,
     fit: Fit,
     differences: Arc<Differences>,
 }
 
-/// The best fit to all cases but one, and the signals that it is of.
-type LeftOutFit = (Fit, Arc<Differences>);
+/// The combinations that fit best all cases, or all but one.
+///
+/// Whatever is drawn near them knows the cases that count, and therefore enters no other ranking.
+struct Ranking {
+    left_out: Option<usize>,
+    /// The best first.
+    best: Vec<Candidate>,
+}
 
-/// The fits to a combination's simulations.
-struct Fits {
-    differences: Arc<Differences>,
-    all: Fit,
-    /// Each case left out in turn; empty beyond the first round.
-    left_out: Vec<Fit>,
+impl Ranking {
+    fn enter(&mut self, candidate: Candidate) {
+        // Of equals the one that was drawn first.
+        let rank = self.best.partition_point(|other| other.fit.error <= candidate.fit.error);
+        self.best.insert(rank, candidate);
+        self.best.truncate(KEPT);
+    }
+
+    fn simulated(&self) -> Result<Vec<SimulatedCases>, HybridError> {
+        self.best.iter().map(|candidate| SimulatedCases::new(candidate.differences.to_vec())).collect()
+    }
+
+    fn with_fits<'a>(&self, simulated: &'a [SimulatedCases]) -> Vec<(&'a SimulatedCases, Fit)> {
+        simulated.iter().zip(self.best.iter().map(|candidate| candidate.fit)).collect()
+    }
+}
+
+/// A combination that is to be simulated.
+struct Wish {
+    places: Vec<f64>,
+    /// Number of the ranking that it enters; all where it was drawn without a look at the measurements.
+    ranking: Option<usize>,
 }
 
 pub(super) struct KeySearch<'a> {
     experiment: &'a Experiment,
     simulations: &'a Simulations<'a>,
     common: TuningInputs<'a>,
-    /// The best so far first.
-    best: Vec<Candidate>,
-    folds: Vec<LeftOutFit>,
+    /// That of all cases first, then with each case left out.
+    rankings: Vec<Ranking>,
     candidates: usize,
     failed: usize,
     first_failure: Option<String>,
@@ -47,60 +70,50 @@ pub(super) struct KeySearch<'a> {
 
 impl<'a> KeySearch<'a> {
     /// # Arguments
-    /// * `original` - the scenario as it is: what a case that is left out is predicted by, unless a combination fits the others
-    ///   better
+    /// * `original` - the scenario as it is, the first that is ranked
     pub(super) fn new(
         experiment: &'a Experiment,
         simulations: &'a Simulations<'a>,
         common: TuningInputs<'a>,
         original: &SimulatedCases,
     ) -> Result<Self, HybridError> {
-        let differences = Arc::new(original.differences().to_vec());
-        let fold = |fit| (fit, differences.clone());
-        let grid = Grid::new(original, common.target)?;
-        let folds = left_out(&grid, experiment.cases.len())?.into_iter().map(fold).collect();
-        Ok(Self {
-            experiment,
-            simulations,
-            common,
-            best: Vec::new(),
-            folds,
-            candidates: 0,
-            failed: 0,
-            first_failure: None,
-        })
+        let left_out = std::iter::once(None).chain((0..experiment.cases.len()).map(Some));
+        let rankings = left_out.map(|left_out| Ranking { left_out, best: Vec::new() }).collect();
+        let mut search =
+            Self { experiment, simulations, common, rankings, candidates: 0, failed: 0, first_failure: None };
+        let wish = Wish { places: own_places(experiment), ranking: None };
+        let fits = search.fits(&wish, original.differences().to_vec())?;
+        search.keep(wish, fits);
+        Ok(search)
     }
 
+    /// Simulates the rounds, the first one anywhere and near the scenario's own values, the others near the best so far: half of each for
+    /// the ranking of all cases, the other half shared by those that leave one out.
     pub(super) fn run(mut self) -> Result<TunedKeys, HybridError> {
         let together = (SIMULATED_TOGETHER / self.experiment.cases.len()).max(1);
-        let mut index = 0;
+        let mut first = 0;
         for (round, count) in rounds(self.experiment.candidates).into_iter().enumerate() {
-            // The best of the earlier rounds, not of this one.
-            let parents: Vec<Vec<f64>> = self.best.iter().map(|candidate| candidate.places.clone()).collect();
-            let end = index + count;
-            while index < end {
-                let next = (index + together).min(end);
-                self.try_combinations(index..next, round, &parents)?;
-                index = next;
+            let wishes = self.wishes(round, first..first + count);
+            first += count;
+            let mut wishes = wishes.into_iter().peekable();
+            while wishes.peek().is_some() {
+                self.try_combinations(wishes.by_ref().take(together).collect())?;
             }
         }
-        let leave_one_out_error = self.leave_one_out_error()?;
-        let simulated: Vec<SimulatedCases> = self
-            .best
-            .iter()
-            .map(|candidate| SimulatedCases::new(candidate.differences.to_vec()))
-            .collect::<Result<_, _>>()?;
-        let fits = self.best.iter().map(|candidate| candidate.fit);
-        let good: Vec<(&SimulatedCases, Fit)> = simulated.iter().zip(fits).collect();
-        let Some(best) = self.best.first() else {
-            let first_failure = self.first_failure.unwrap_or_default();
-            return Err(HybridError::NoCandidate { first_failure });
-        };
-        let mut tuning = tune_among(&good, &self.common)?;
-        tuning.leave_one_out_error = leave_one_out_error;
+        if self.candidates == 0 {
+            return Err(HybridError::NoCandidate { first_failure: self.first_failure.unwrap_or_default() });
+        }
+        let predicted = threads::try_map(&self.rankings[1..], |ranking| {
+            let simulated = ranking.simulated()?;
+            self.common.prediction(&ranking.with_fits(&simulated), ranking.left_out.unwrap_or_default())
+        })?;
+        let of_all = &self.rankings[0];
+        let mut simulated = of_all.simulated()?;
+        let mut tuning = tune_among(&of_all.with_fits(&simulated), &self.common)?;
+        tuning.left_out = LeftOutCase::all(self.common.target.measured, predicted);
         Ok(TunedKeys {
-            values: self.values(&best.places),
-            simulated: simulated[0].clone(),
+            values: self.values(&of_all.best[0].places),
+            simulated: simulated.swap_remove(0),
             tuning,
             candidates: self.candidates,
             failed: self.failed,
@@ -108,26 +121,42 @@ impl<'a> KeySearch<'a> {
         })
     }
 
+    /// The combinations of a round.
+    ///
+    /// # Arguments
+    /// * `numbers` - of the combinations, over all rounds
+    fn wishes(&self, round: usize, numbers: std::ops::Range<usize>) -> Vec<Wish> {
+        let Experiment { keys, seed, .. } = self.experiment;
+        let own = own_places(self.experiment);
+        // The best of the earlier rounds, not of this one.
+        let places = |ranking: &Ranking| ranking.best.iter().map(|best| best.places.clone()).collect();
+        let best: Vec<Vec<Vec<f64>>> = self.rankings.iter().map(places).collect();
+        let wish = |number: usize| {
+            let (ranking, region) = match (round, number / 2) {
+                (0, _) => (None, Region::of_first_round(number, &own)),
+                (_, half) => {
+                    let ranking = if number.is_multiple_of(2) { 0 } else { 1 + half % (best.len() - 1) };
+                    (Some(ranking), Region::of_round(round, half / best.len(), &best[ranking]))
+                }
+            };
+            Wish { places: place(keys, *seed, number, region), ranking }
+        };
+        numbers.map(wish).collect()
+    }
+
     fn values(&self, places: &[f64]) -> Vec<f64> {
         self.experiment.keys.iter().zip(places).map(|(key, &at)| value(key, at)).collect()
     }
 
-    /// Simulates some combinations and keeps the best.
-    fn try_combinations(
-        &mut self,
-        numbers: std::ops::Range<usize>,
-        round: usize,
-        parents: &[Vec<f64>],
-    ) -> Result<(), HybridError> {
-        let Experiment { cases, keys, seed, .. } = self.experiment;
-        let (mut places, mut scenarios) = (Vec::new(), Vec::new());
-        for number in numbers {
-            let at = place(keys, *seed, number, round, parents);
-            let values = self.values(&at);
-            let all = cases.iter().map(|case| self.experiment.scenario_with(case, &values));
+    /// Simulates some combinations and ranks them.
+    fn try_combinations(&mut self, wishes: Vec<Wish>) -> Result<(), HybridError> {
+        let (mut possible, mut scenarios) = (Vec::new(), Vec::new());
+        for wish in wishes {
+            let values = self.values(&wish.places);
+            let all = self.experiment.cases.iter().map(|case| self.experiment.scenario_with(case, &values));
             match all.collect::<Result<Vec<Scenario>, _>>() {
                 Ok(all) => {
-                    places.push(at);
+                    possible.push(wish);
                     scenarios.push(all);
                 }
                 Err(error) => {
@@ -137,11 +166,16 @@ impl<'a> KeySearch<'a> {
             }
         }
         let simulated = self.simulations.run(scenarios)?;
-        let common = self.common;
-        let fits = threads::map(simulated, |simulated| fits(&common, simulated?, round == 0));
-        for (places, fits) in places.into_iter().zip(fits) {
+        let fitted = threads::map(possible.into_iter().zip(simulated), |(wish, simulated)| {
+            let fits = simulated.and_then(|simulated| self.fits(&wish, simulated));
+            (wish, fits)
+        });
+        for (wish, fits) in fitted {
             match fits {
-                Ok(fits) => self.keep(places, fits),
+                Ok(fits) => {
+                    self.candidates += 1;
+                    self.keep(wish, fits);
+                }
                 Err(HybridError::Cancelled) => return Err(HybridError::Cancelled),
                 Err(error) => self.fail(&error),
             }
@@ -154,40 +188,38 @@ impl<'a> KeySearch<'a> {
         self.first_failure.get_or_insert_with(|| error.to_string());
     }
 
-    fn keep(&mut self, places: Vec<f64>, fits: Fits) {
-        let Fits { differences, all: fit, left_out } = fits;
-        self.candidates += 1;
-        for (fold, fit) in self.folds.iter_mut().zip(left_out) {
-            if fit.error < fold.0.error {
-                *fold = (fit, differences.clone());
-            }
-        }
-        // Of equals the one that was drawn first.
-        let rank = self.best.partition_point(|other| other.fit.error <= fit.error);
-        if rank < KEPT {
-            self.best.insert(rank, Candidate { places, fit, differences });
-            self.best.truncate(KEPT);
-        }
-    }
-
-    /// Error of each case, predicted by what fits the others best.
-    fn leave_one_out_error(&self) -> Result<Vec<f64>, HybridError> {
-        threads::try_map(self.folds.iter().enumerate(), |(case, (fit, differences))| {
-            self.common.left_out_error(&SimulatedCases::new(differences.to_vec())?, *fit, case)
+    /// Fits a combination's simulations to the cases of every ranking that it enters.
+    fn fits(&self, wish: &Wish, differences: Differences) -> Result<Fits, HybridError> {
+        let simulated = SimulatedCases::new(differences)?;
+        let grid = Grid::new(&simulated, self.common.target)?;
+        let entered = wish.ranking.map_or(0..self.rankings.len(), |ranking| ranking..ranking + 1);
+        let fits = entered.map(|ranking| Ok((ranking, grid.fit(self.rankings[ranking].left_out)?)));
+        Ok(Fits {
+            of_rankings: fits.collect::<Result<_, HybridError>>()?,
+            differences: simulated.into_differences(),
         })
     }
+
+    fn keep(&mut self, wish: Wish, fits: Fits) {
+        let differences = Arc::new(fits.differences);
+        for (ranking, fit) in fits.of_rankings {
+            let (places, differences) = (wish.places.clone(), differences.clone());
+            self.rankings[ranking].enter(Candidate { places, fit, differences });
+        }
+    }
 }
 
-/// Fits with each case left out in turn.
-fn left_out(grid: &Grid, cases: usize) -> Result<Vec<Fit>, HybridError> {
-    (0..cases).map(|case| grid.fit(Some(case))).collect()
+/// The fits to a combination's simulations, each with the number of its ranking.
+struct Fits {
+    of_rankings: Vec<(usize, Fit)>,
+    differences: Differences,
 }
 
-fn fits(common: &TuningInputs, differences: Differences, leave_out: bool) -> Result<Fits, HybridError> {
-    let simulated = SimulatedCases::new(differences)?;
-    let grid = Grid::new(&simulated, common.target)?;
-    let all = grid.fit(None)?;
-    let cases = if leave_out { common.target.measured.cases() } else { 0 };
-    let left_out = left_out(&grid, cases)?;
-    Ok(Fits { all, left_out, differences: Arc::new(simulated.into_differences()) })
+/// Where the scenario's own values lie, each in \[0, 1) of its range; a fault's are those of the first case that has it.
+fn own_places(experiment: &Experiment) -> Vec<f64> {
+    let place = |key: &TunedKey| {
+        let own = experiment.cases.iter().find_map(|case| experiment.scenario(case).number(&key.key));
+        own.map_or(0.5, |value| place_of(key, value))
+    };
+    experiment.keys.iter().map(place).collect()
 }

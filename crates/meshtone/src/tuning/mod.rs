@@ -39,4 +39,4 @@ pub use moments::{JointMoments, Moments, WindowMoments};
 pub use run::{ExperimentControl, ExperimentResult, TunedKeys, run_experiment};
 pub use search::{EnhancementBounds, Fit, fit};
 pub use simulated::SimulatedCases;
-pub use tune::{Tuning, TuningWarning, tune};
+pub use tune::{LeftOutCase, Tuning, TuningWarning, tune};

@@ -31,8 +31,8 @@ pub struct TunedKeys {
     pub simulated: SimulatedCases,
     /// The three parameters.
     ///
-    /// For its leave-one-out errors the keys' values are chosen anew for each case, out of the scenario as it is and the
-    /// combinations of the first round, which know nothing of the measurements.
+    /// For each case that is left out, the keys' values are searched anew, near those that fit the other cases; the prediction is the mean over
+    /// the best of them.
     pub tuning: Tuning,
     /// Combinations that were simulated.
     pub candidates: usize,

@@ -43,8 +43,8 @@ pub struct Tuning {
     pub enhanced_error: f64,
     /// The measurements' own scatter: mean error of their medians, the floor.
     pub scatter: f64,
-    /// Error of each case, predicted by what is tuned to the others.
-    pub leave_one_out_error: Vec<f64>,
+    /// Each case as what is tuned to the others predicts it.
+    pub left_out: Vec<LeftOutCase>,
     /// Indicators of the original simulation, before anything was tuned, by case and indicator.
     pub original: Vec<Vec<f64>>,
     /// Indicators after the enhancement, by case and indicator.
@@ -56,7 +56,53 @@ pub struct Tuning {
 impl Tuning {
     /// Mean error over the cases that were left out of the fit in turn.
     pub fn mean_leave_one_out_error(&self) -> f64 {
-        self.leave_one_out_error.iter().sum::<f64>() / self.leave_one_out_error.len() as f64
+        self.left_out.iter().map(|case| case.error).sum::<f64>() / self.left_out.len() as f64
+    }
+}
+
+/// A case that is left out of the fit, and what the fit to the others predicts of it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LeftOutCase {
+    /// Error of the prediction (Eq. 7).
+    pub error: f64,
+    /// By indicator: the prediction, the mean over the combinations that fit the other cases best.
+    pub predicted: Vec<f64>,
+    /// By indicator: the interval in which a record of the case is expected with a confidence of 95 %.
+    ///
+    /// It reaches as far from the prediction as 95 % of the other cases' records lie from theirs, each predicted with its case left out:
+    /// the jackknife interval of Barber, Candès, Ramdas and Tibshirani, Predictive inference with the jackknife+ (2021).
+    pub intervals: Vec<[f64; 2]>,
+}
+
+impl LeftOutCase {
+    /// # Arguments
+    /// * `predicted` - by case and indicator, each case by what is tuned to the others
+    pub(super) fn all(measured: &Measurements, predicted: Vec<Vec<f64>>) -> Vec<Self> {
+        let distances = |case: usize, j: usize| {
+            let centre = predicted[case][j];
+            measured.records(case, j).iter().map(move |record| (record - centre).abs())
+        };
+        let reach = |left_out: usize, j: usize| {
+            let others = (0..measured.cases()).filter(|&case| case != left_out);
+            let mut all: Vec<f64> = others.flat_map(|case| distances(case, j)).collect();
+            all.sort_unstable_by(f64::total_cmp);
+            all[((CONFIDENCE * all.len() as f64) as usize).min(all.len() - 1)]
+        };
+        let intervals = |case: usize| {
+            let of_indicator =
+                |(j, centre): (usize, &f64)| [centre - reach(case, j), centre + reach(case, j)];
+            predicted[case].iter().enumerate().map(of_indicator).collect()
+        };
+        let intervals: Vec<Vec<[f64; 2]>> = (0..measured.cases()).map(intervals).collect();
+        let cases = predicted.into_iter().zip(intervals).enumerate();
+        cases
+            .map(|(case, (predicted, intervals))| Self {
+                error: measured.case_error(case, &predicted),
+                predicted,
+                intervals,
+            })
+            .collect()
     }
 }
 
@@ -183,9 +229,10 @@ pub fn tune(
     let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
     let common = TuningInputs { target, seed, original: &original };
     let mut tuning = tune_among(&[(simulated, best)], &common)?;
-    tuning.leave_one_out_error = threads::try_map(0..measured.cases(), |case| {
-        common.left_out_error(simulated, grid.fit(Some(case))?, case)
+    let predicted = threads::try_map(0..measured.cases(), |case| {
+        common.prediction(&[(simulated, grid.fit(Some(case))?)], case)
     })?;
+    tuning.left_out = LeftOutCase::all(measured, predicted);
     Ok(tuning)
 }
 
@@ -200,27 +247,30 @@ pub(super) struct TuningInputs<'a> {
 }
 
 impl TuningInputs<'_> {
-    /// Error of a case, predicted by what is tuned to the others.
+    /// Indicators of a case, predicted by what is tuned to the others: the mean over several simulations that fit those.
     ///
     /// # Arguments
-    /// * `best` - the fit to the others
-    pub(super) fn left_out_error(
+    /// * `good` - simulations with their fits to the others
+    pub(super) fn prediction(
         &self,
-        simulated: &SimulatedCases,
-        best: Fit,
+        good: &[(&SimulatedCases, Fit)],
         case: usize,
-    ) -> Result<f64, HybridError> {
+    ) -> Result<Vec<f64>, HybridError> {
         let measured = self.target.measured;
         let weights = equal_weights(measured.cases(), Some(case));
-        let objective = Objective { simulated, target: self.target, weights: &weights };
-        let chosen = nearest_to_unit_ratio(&objective, best)?;
-        let predicted = simulated.predict(measured.indicators(), &chosen.enhancement)?;
-        Ok(measured.case_error(case, &predicted[case]))
+        let mut mean = vec![0.0; measured.indicators().len()];
+        for &(simulated, best) in good {
+            let objective = Objective { simulated, target: self.target, weights: &weights };
+            let chosen = nearest_to_unit_ratio(&objective, best)?;
+            let predicted = simulated.predict(measured.indicators(), &chosen.enhancement)?;
+            mean.iter_mut().zip(&predicted[case]).for_each(|(sum, value)| *sum += value / good.len() as f64);
+        }
+        Ok(mean)
     }
 }
 
 /// Tunes where several simulations are as good as another: the first is the best, the others count for the intervals.
-/// Leave-one-out errors are not computed.
+/// What is left out is not predicted.
 pub(super) fn tune_among(
     candidates: &[(&SimulatedCases, Fit)],
     common: &TuningInputs,
@@ -239,7 +289,7 @@ pub(super) fn tune_among(
         original_error,
         enhanced_error: chosen.error,
         scatter: measured.scatter(),
-        leave_one_out_error: Vec::new(),
+        left_out: Vec::new(),
         original: original.to_vec(),
         enhanced: simulated.predict(measured.indicators(), &chosen.enhancement)?,
         warnings: warnings(measured, bounds, &chosen, &intervals, original_error),

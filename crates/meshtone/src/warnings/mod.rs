@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{DecayingMode, Shaft, WheelBody};
-use crate::operation::Operation;
+use crate::operation::{Operation, Solver, TimeGrid};
 use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
 use crate::simulate::{Stages, stages_within};
 use crate::wheel::Gears;
@@ -87,7 +87,7 @@ impl Stages {
 
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.
     pub fn transient_remainder(&self) -> f64 {
-        let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
+        let settling_s = self.time.kept_from_s();
         (-self.slowest_mode().decay_per_s * settling_s).exp()
     }
 
@@ -124,8 +124,7 @@ impl Stages {
 
     fn unsettled(&self) -> Option<ScenarioWarning> {
         let named = if self.teeth_part() { words_of } else { |_: &DecayingMode| String::new() };
-        let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
-        unsettled(&self.slowest_mode(), settling_s, named)
+        unsettled(&self.slowest_mode(), &self.time, &self.scenario.solver, named)
     }
 }
 
@@ -133,18 +132,22 @@ impl Stages {
 ///
 /// # Arguments
 /// * `slowest` - the mode that is the slowest to decay
-/// * `settling_s` - (s) the time that is discarded
+/// * `time`, `solver` - the time that is discarded, and the settings that say so
 /// * `named` - what is said of the mode
 fn unsettled(
     slowest: &DecayingMode,
-    settling_s: f64,
+    time: &TimeGrid,
+    solver: &Solver,
     named: fn(&DecayingMode) -> String,
 ) -> Option<ScenarioWarning> {
     let decay = slowest.decay_per_s;
+    let settling_s = time.kept_from_s();
     let remainder = (-decay * settling_s).exp();
     (remainder > TOLERATED_TRANSIENT).then(|| {
         let advice = if decay > 0.0 {
-            format!("it takes {:.3} s to fall to 1 %{}", -TOLERATED_TRANSIENT.ln() / decay, named(slowest))
+            let raise = fraction_that_settles(time, solver, decay)
+                .map_or(String::new(), |fraction| format!("; raise solver.settle_fraction to {fraction:.2}"));
+            format!("it takes {:.3} s to fall to 1 %{raise}{}", -TOLERATED_TRANSIENT.ln() / decay, named(slowest))
         } else {
             "it never decays: a mode has no damping".to_string()
         };
@@ -182,6 +185,18 @@ fn overload(
         );
         ScenarioWarning::new(WarningKind::Overload, key, message)
     })
+}
+
+/// (-) The settling fraction, in hundredths, at which the transient of the slowest mode has decayed; none where no fraction is enough.
+fn fraction_that_settles(time: &TimeGrid, solver: &Solver, decay_per_s: f64) -> Option<f64> {
+    const MOST: f64 = 0.99;
+    let needed_s = -TOLERATED_TRANSIENT.ln() / decay_per_s;
+    let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
+    let kept_s = time.kept_samples() as f64 * time.step_s();
+    // Without a stated length, settling takes its part of the whole.
+    let whole_s = if is_length_given { needed_s + kept_s } else { time.samples as f64 * time.step_s() };
+    let fraction = (100.0 * needed_s / whole_s).ceil() / 100.0;
+    (0.0..=MOST).contains(&fraction).then_some(fraction)
 }
 
 /// The key of the largest torque, and the torque in N m.

@@ -97,7 +97,7 @@ fn combinations_that_are_no_scenario_are_counted() {
     let mut last = (0, 0);
     let seen = std::sync::Mutex::new(&mut last);
     let progress = |finished, all| **seen.lock().unwrap() = (finished, all);
-    let experiment = experiment(&keys);
+    let experiment = Experiment { candidates: 20, ..experiment(&keys) };
     let result =
         run_experiment(&experiment, &ExperimentControl { progress: &progress, cancelled: &false.into() });
     let result = result.unwrap();
@@ -108,8 +108,8 @@ fn combinations_that_are_no_scenario_are_counted() {
         .filter(|warning| matches!(warning, TuningWarning::Failed { .. }))
         .collect();
     let [TuningWarning::Failed { failed, first }] = failures[..] else { panic!("{failures:?}") };
-    assert!((1..8).contains(failed) && first.contains("fault.end"), "{failed} {first}");
-    assert_eq!(last, (27, 27));
+    assert!((1..20).contains(failed) && first.contains("fault.end"), "{failed} {first}");
+    assert_eq!(last, (63, 63));
 }
 
 #[test]
@@ -184,11 +184,12 @@ fn a_case_that_is_left_out_has_not_been_seen() {
         let result = run(&experiment).unwrap();
         let mean = records.iter().sum::<f64>() / 3.0;
         let scale = (records.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
-        result.with_keys.unwrap().tuning.leave_one_out_error[2] * scale
+        result.with_keys.unwrap().tuning.left_out[2].error * scale
     };
-    // The predictions lie below both, at about 3.2. Where the refinement ends depends on the scale of the errors, so not to the last bit.
+    // The predictions lie below both, at about 2.7. Where the refinements end depends on the scale of the errors, so not to the last bit; a
+    // search that had seen the case would follow it by more than a tenth.
     let (near, far) = (distance(4.0), distance(5.0));
-    assert!((far - near - 1.0).abs() < 1e-4, "{near} {far}");
+    assert!((far - near - 1.0).abs() < 1e-3, "{near} {far}");
 }
 
 #[test]

@@ -5,9 +5,9 @@ use crate::paper_rigs;
 use meshtone::scenario::*;
 use meshtone::tuning::{DifferenceChain, SimulatedCases, TuningIndicator, difference_signals};
 
-/// Draws of the wheels' profile errors that are averaged. One draw scatters by up to 0.08, so that the mean is off by 0.03; the paper
+/// Draws of the wheels' profile errors that are averaged. One draw scatters by up to 0.08, so that the mean is off by 0.02; the paper
 /// shows a single one.
-const DRAWS: u64 = 8;
+const DRAWS: u64 = 24;
 
 /// The cases whose fault dominates, with their severity.
 fn dominating(name: &str) -> Vec<(usize, Fault)> {

@@ -52,7 +52,7 @@ fn a_channel_that_was_not_connected() {
 fn too_few_revolutions() {
     // 500 samples a revolution; the phase begins at a whole one.
     let message = refused(&recording(999), &steady(999), TEETH);
-    assert_eq!(message, "the recording covers 1.000 revolutions of the shaft, but at least 2 are needed");
+    assert_eq!(message, "the recording covers 1 whole revolution of the shaft, but at least 2 are needed");
     let message = refused(&recording(400), &steady(400), TEETH);
     assert_eq!(message, "the recording covers 0.798 revolutions of the shaft, but at least 1 are needed");
     assert!(process_channel(&recording(1_001), &steady(1_001), TEETH, &ChainSettings::default()).is_ok());
@@ -70,7 +70,7 @@ fn too_few_revolutions() {
     assert_eq!(segments(1), "revolutions of a segment is 1, but must be at least 2");
     assert_eq!(
         segments(11),
-        "the recording covers 9.000 revolutions of the shaft, but at least 11 are needed"
+        "the recording covers 9 whole revolutions of the shaft, but at least 11 are needed"
     );
     assert!(process_series(&[], TEETH, &ChainSettings::default()).is_err());
 }

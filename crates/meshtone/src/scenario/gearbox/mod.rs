@@ -462,8 +462,8 @@ impl Gearbox {
             ScenarioWarning::new(WarningKind::FastTeeth, "operation.input_speed_hz", message)
         });
         let cycle = layout.cycle_revolutions();
+        let time = self.time_grid();
         let long = (cycle > LONG_CYCLE).then(|| {
-            let time = self.time_grid();
             let kept = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
             let message = format!(
                 "the machine repeats after {cycle} revolutions of the input only; the kept signal covers {:.1} % of them",
@@ -472,7 +472,9 @@ impl Gearbox {
             ScenarioWarning::new(WarningKind::LongCycle, "solver.duration_s", message)
         });
         let of_teeth = layout.warnings_of_teeth(self);
-        of_teeth.into_iter().chain(self.driven_speed(layout).warnings()).chain(fast).chain(long).collect()
+        let ended = self.operation.drive.ended_profiles(time.kept_from_s());
+        let of_speed = self.driven_speed(layout).warnings();
+        of_teeth.into_iter().chain(of_speed).chain(fast).chain(long).chain(ended).collect()
     }
 
     fn driven_speed(&self, layout: &GearboxLayout) -> DrivenSpeed<'_> {

@@ -79,6 +79,7 @@ impl Scenario {
         speed.check()?;
         let mut warnings = honoured.gears.warnings();
         warnings.extend(speed.warnings());
+        warnings.extend(honoured.operation.ended_profiles(honoured.time_grid().kept_from_s()));
         warnings.extend(honoured.quality.warnings());
         warnings.extend(honoured.rig.support.former_defaults());
         Ok(warnings)

@@ -98,6 +98,26 @@ impl ShaftPhase {
         self.span_rev() * sampling_rate_hz / self.revolutions.len().saturating_sub(1).max(1) as f64
     }
 
+    /// (Hz) The lowest and the highest mean speed of equal parts of the angle.
+    ///
+    /// # Arguments
+    /// * `sampling_rate_hz` - (S/s) of the recording
+    /// * `parts` - how many
+    ///
+    /// ```
+    /// let phase = meshtone::signal::ShaftPhase::from_speed_profile(&[0.0, 1.0], &[10.0, 20.0], 1e4, 10_001)?;
+    /// let [lowest, highest] = phase.speed_range_hz(1e4, 10);
+    /// assert!((10.0..11.5).contains(&lowest) && (19.0..20.0).contains(&highest));
+    /// # Ok::<(), meshtone::signal::SignalError>(())
+    /// ```
+    pub fn speed_range_hz(&self, sampling_rate_hz: f64, parts: usize) -> [f64; 2] {
+        let each = self.span_rev() / parts.max(1) as f64;
+        let first = self.revolutions.first().copied().unwrap_or(0.0);
+        let at = |part: usize| self.sample_at(first + each * part as f64);
+        let speeds = (0..parts.max(1)).map(|part| each * sampling_rate_hz / (at(part + 1) - at(part)));
+        speeds.fold([f64::INFINITY, 0.0], |[low, high], speed| [low.min(speed), high.max(speed)])
+    }
+
     /// Place of an angle between the samples of the recording; at the first or last one where the shaft did not turn so far.
     ///
     /// # Arguments

@@ -1,0 +1,97 @@
+//! The amplitude spectrum over orders of the input shaft, of a pair and of a gearbox.
+
+use meshtone::Stages;
+use meshtone::sensor::Channels;
+use meshtone::signal::{ChainSettings, SimulatedShafts, order_spectrum};
+use meshtone::wheel::WheelName;
+
+use super::NAME_LEFT;
+use crate::drawing::{Area, Axes, Canvas, Sample, Stroke, TextStyle, Ticks, axes, colour, number};
+
+const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.1);
+const MESH_LINE: Stroke = Stroke::dashed(colour::VERMILLION, 1.0, &[4.0, 3.0]);
+const SHAFT_LINE: Stroke = Stroke::dashed(colour::GREEN, 1.0, &[2.0, 3.0]);
+/// Orders of the quickest mesh that are shown.
+const MESH_ORDERS: f64 = 4.5;
+
+/// The first sensor's signal over whole revolutions of the input shaft, and the orders of shafts and meshes.
+pub(super) struct InputSpectrum<'a> {
+    /// The quantity and its unit, as titles have them.
+    pub(super) quantity: (&'a str, &'a str),
+    /// Name of the input shaft, such as `input`.
+    pub(super) shaft: &'a str,
+    /// The signal at equal angles.
+    pub(super) values: &'a [f64],
+    /// Its values in a revolution.
+    pub(super) points_per_revolution: usize,
+    /// (orders) Highest order that the signal holds.
+    pub(super) nyquist_order: f64,
+    /// (orders) Speeds of all shafts over the input's.
+    pub(super) shafts: Vec<f64>,
+    /// Names of the meshes, where there are several, and their orders.
+    pub(super) meshes: Vec<(String, f64)>,
+}
+
+/// Draws the spectrum of a pair; also at changing speed, where it is of the signal over the pinion's angle.
+pub(super) fn of_pair(canvas: &mut Canvas, area: Area, stages: &Stages, channels: &Channels) {
+    let (channel, signal) = channels.leading();
+    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let angular = shafts.angular(signal, WheelName::Pinion, &ChainSettings::default()).ok();
+    let [pinion, gear] = WheelName::BOTH.map(|wheel| f64::from(stages.teeth.wheel(wheel).teeth));
+    let spectrum = InputSpectrum {
+        quantity: (&super::average::quantity(&channel).to_lowercase(), "g"),
+        shaft: "pinion",
+        values: angular.as_ref().map_or(&[], |angular| &angular.values),
+        points_per_revolution: angular.as_ref().map_or(1, |angular| angular.points_per_revolution),
+        nyquist_order: angular.as_ref().map_or(MESH_ORDERS * pinion, |angular| angular.nyquist_order),
+        shafts: vec![1.0, pinion / gear],
+        meshes: vec![(String::new(), pinion)],
+    };
+    spectrum.draw(canvas, area);
+}
+
+impl InputSpectrum<'_> {
+    /// Amplitudes on a linear scale, with a line at each order of shafts and meshes.
+    pub(super) fn draw(&self, canvas: &mut Canvas, area: Area) {
+        let revolutions = self.values.len() / self.points_per_revolution.max(1);
+        let highest = MESH_ORDERS * self.meshes.iter().map(|(_, order)| *order).fold(0.0, f64::max);
+        let highest = highest.min(self.nyquist_order);
+        let whole = &self.values[..revolutions * self.points_per_revolution];
+        let amplitudes = order_spectrum(whole).unwrap_or_default();
+        let step = 1.0 / revolutions.max(1) as f64;
+        // Without order 0, the mean.
+        let points = amplitudes.iter().enumerate().take((highest / step) as usize + 1).skip(1);
+        let shown: Vec<(f64, f64)> =
+            points.map(|(line, amplitude)| (line as f64 * step, *amplitude)).collect();
+        let y = [0.0, 1.1 * axes::largest(shown.iter().map(|(_, amplitude)| amplitude)).max(1e-9)];
+        let Self { quantity: (quantity, unit), shaft, .. } = self;
+        let title = format!("Order spectrum of {quantity}, {revolutions} revolutions of the {shaft}");
+        let axes = Axes::titled(canvas, area, [0.0, highest], y, &title);
+        axes.x_axis(canvas, &Ticks::nice(0.0, highest, 16), &format!("Order of the {shaft}"));
+        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("Amplitude ({unit})"), NAME_LEFT);
+        for order in &self.shafts {
+            upright(canvas, &axes, order.abs(), SHAFT_LINE);
+        }
+        for (name, order) in &self.meshes {
+            for harmonic in (1..).take_while(|harmonic| f64::from(*harmonic) * order <= highest) {
+                upright(canvas, &axes, f64::from(harmonic) * order, MESH_LINE);
+            }
+            let style = TextStyle::NOTE.coloured(colour::VERMILLION).with_halo();
+            let text = format!("{name} {}", number(*order));
+            canvas.text((axes.px(*order) + 4.0, area.top + 14.0), text.trim(), style);
+        }
+        if revolutions == 0 {
+            axes.note(canvas, &format!("the kept signal is shorter than a revolution of the {shaft}"));
+        } else {
+            axes.line(canvas, shown.into_iter(), CURVE);
+        }
+        let entries =
+            [(Sample::Line(MESH_LINE), "mesh and its harmonics"), (Sample::Line(SHAFT_LINE), "shafts")];
+        axes.legend(canvas, &entries);
+        axes.frame(canvas);
+    }
+}
+
+fn upright(canvas: &mut Canvas, axes: &Axes, x: f64, stroke: Stroke) {
+    canvas.line((axes.px(x), axes.area.top), (axes.px(x), axes.area.bottom()), stroke);
+}
