@@ -132,7 +132,7 @@ impl Stages {
 ///
 /// # Arguments
 /// * `slowest` - the mode that is the slowest to decay
-/// * `time`, `solver` - the time that is discarded, and what it follows from
+/// * `time`, `solver` - the time that is discarded, and the settings that say so
 /// * `named` - what is said of the mode
 fn unsettled(
     slowest: &DecayingMode,
@@ -140,14 +140,14 @@ fn unsettled(
     solver: &Solver,
     named: fn(&DecayingMode) -> String,
 ) -> Option<ScenarioWarning> {
-    let (decay, settling_s) = (slowest.decay_per_s, time.kept_from_s());
+    let decay = slowest.decay_per_s;
+    let settling_s = time.kept_from_s();
     let remainder = (-decay * settling_s).exp();
     (remainder > TOLERATED_TRANSIENT).then(|| {
         let advice = if decay > 0.0 {
-            let needed_s = -TOLERATED_TRANSIENT.ln() / decay;
-            let raised = fraction_that_settles(needed_s, time, solver)
-                .map(|fraction| format!("; raise solver.settle_fraction to {fraction:.2}"));
-            format!("it takes {needed_s:.3} s to fall to 1 %{}{}", raised.unwrap_or_default(), named(slowest))
+            let raise = fraction_that_settles(time, solver, decay)
+                .map_or(String::new(), |fraction| format!("; raise solver.settle_fraction to {fraction:.2}"));
+            format!("it takes {:.3} s to fall to 1 %{raise}{}", -TOLERATED_TRANSIENT.ln() / decay, named(slowest))
         } else {
             "it never decays: a mode has no damping".to_string()
         };
@@ -158,17 +158,6 @@ fn unsettled(
         );
         ScenarioWarning::new(WarningKind::Unsettled, "solver.settle_fraction", message)
     })
-}
-
-/// (-) The settling fraction, in hundredths, at which a time is discarded; none where no fraction is enough.
-fn fraction_that_settles(needed_s: f64, time: &TimeGrid, solver: &Solver) -> Option<f64> {
-    const MOST: f64 = 0.99;
-    let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
-    let kept_s = time.kept_samples() as f64 * time.step_s();
-    // Without a stated length, settling takes its part of the whole.
-    let whole_s = if is_length_given { needed_s + kept_s } else { time.samples as f64 * time.step_s() };
-    let fraction = (100.0 * needed_s / whole_s).ceil() / 100.0;
-    (0.0..=MOST).contains(&fraction).then_some(fraction)
 }
 
 /// Teeth that a load would bend off.
@@ -196,6 +185,18 @@ fn overload(
         );
         ScenarioWarning::new(WarningKind::Overload, key, message)
     })
+}
+
+/// (-) The settling fraction, in hundredths, at which the transient of the slowest mode has decayed; none where no fraction is enough.
+fn fraction_that_settles(time: &TimeGrid, solver: &Solver, decay_per_s: f64) -> Option<f64> {
+    const MOST: f64 = 0.99;
+    let needed_s = -TOLERATED_TRANSIENT.ln() / decay_per_s;
+    let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
+    let kept_s = time.kept_samples() as f64 * time.step_s();
+    // Without a stated length, settling takes its part of the whole.
+    let whole_s = if is_length_given { needed_s + kept_s } else { time.samples as f64 * time.step_s() };
+    let fraction = (100.0 * needed_s / whole_s).ceil() / 100.0;
+    (0.0..=MOST).contains(&fraction).then_some(fraction)
 }
 
 /// The key of the largest torque, and the torque in N m.

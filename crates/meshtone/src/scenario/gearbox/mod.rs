@@ -473,13 +473,8 @@ impl Gearbox {
         });
         let of_teeth = layout.warnings_of_teeth(self);
         let ended = self.operation.drive.ended_profiles(time.kept_from_s());
-        of_teeth
-            .into_iter()
-            .chain(self.driven_speed(layout).warnings())
-            .chain(fast)
-            .chain(long)
-            .chain(ended)
-            .collect()
+        let of_speed = self.driven_speed(layout).warnings();
+        of_teeth.into_iter().chain(of_speed).chain(fast).chain(long).chain(ended).collect()
     }
 
     fn driven_speed(&self, layout: &GearboxLayout) -> DrivenSpeed<'_> {
