@@ -19,6 +19,7 @@ __all__ = [
     "Scenario",
     "ShaftPhase",
     "Simulation",
+    "ORDER_MAP_MESH_ORDERS",
     "__version__",
     "add_noise",
     "angular_resample",
@@ -65,6 +66,7 @@ __all__ = [
     "verify_dataset",
 ]
 
+ORDER_MAP_MESH_ORDERS: float
 __version__: str
 
 @final

@@ -20,14 +20,14 @@ class SignalWarning:
     Attributes
     ----------
     code : str
-        What it is about: ``nothing-synchronous``, ``mate-not-synchronous``, ``foreign-tones``, ``missing-pulses``, ``doubled-pulse``, ``profile-ends-early``,
+        What it is about: ``nothing-synchronous``, ``foreign-tones``, ``missing-pulses``, ``doubled-pulse``, ``profile-ends-early``,
         ``mesh-tone-fades``, ``stronger-neighbour``, ``mesh-order-near-nyquist``, or a quantity that is stated wrongly, as
         :class:`~meshtone.signal.Mismatch` names it.
     message : str
         In words.
     values : dict of str to float
-        Its numbers by name, with their units: of ``nothing-synchronous`` ``of_mean_square`` (-) and ``revolutions``; of ``foreign-tones``
-        ``part`` (-) and of each of the strongest ``frequency_hz_1``, ``order_1`` (shaft orders), ``part_1``; of a wrong quantity
+        Its numbers by name, with their units: of ``nothing-synchronous`` ``of_mean_square`` (-), ``revolutions`` and the
+        wheel's ``teeth``; of ``foreign-tones`` ``part`` (-) and of each of the strongest ``frequency_hz_1``, ``order_1`` (shaft orders), ``part_1``; of a wrong quantity
         ``alternative``.
     """
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from ._display import LABELS, channel_label
 from ._extras import extra
 from .faults import in_words
@@ -410,7 +411,7 @@ def _plot_over_teeth(ax: Axes, values: npt.NDArray[np.float64], teeth: int, colo
 
 
 def plot_order_map(order_map: OrderMap, teeth: int | None = None, *, over: str = "time", ax: Axes | None = None) -> Axes:
-    """Amplitudes over order and time or speed, on a logarithmic scale of three decades.
+    """Amplitudes over order and time or speed, on a logarithmic scale from above the noise floor.
 
     Parameters
     ----------
@@ -430,7 +431,7 @@ def plot_order_map(order_map: OrderMap, teeth: int | None = None, *, over: str =
     Raises
     ------
     ValueError
-        Another axis; a speed that both rises and falls.
+        Another axis; a map of one part; a speed that does not rise or fall throughout.
 
     Examples
     --------
@@ -444,21 +445,26 @@ def plot_order_map(order_map: OrderMap, teeth: int | None = None, *, over: str =
     places = {"time": order_map.time_s, "speed": order_map.speed_hz}
     if over not in places:
         raise ValueError(f"over = {over!r}: must be 'time' or 'speed'")
+    if order_map.time_s.size < 2:
+        raise ValueError("the map has one part, which shows no change; make the parts shorter, by revolutions")
     steps = np.diff(places[over])
-    if not (np.all(steps > 0) or np.all(steps < 0)):
-        raise ValueError("over = 'speed': the speed rises and falls; show it over time")
+    # A constant speed differs by rounding from part to part.
+    least = 1e-6 * np.abs(places[over]).max()
+    if not (np.all(steps > least) or np.all(steps < -least)):
+        raise ValueError("over = 'speed': the speed must rise or fall throughout; show it over time")
     from matplotlib.colors import LogNorm
 
     ax = _axes(ax, (9.0, 4.5))
     orders, amplitude = order_map.orders, order_map.amplitude
     if teeth is not None:
         teeth = whole("teeth", teeth, 1)
-        shown = orders <= 6.5 * teeth
+        shown = orders <= _core.ORDER_MAP_MESH_ORDERS * teeth
         orders, amplitude = orders[shown], amplitude[:, shown]
         ax.set_xticks(teeth * np.arange(int(orders[-1] / teeth) + 1))
     top = max(float(amplitude.max()), 1e-12)
-    norm = LogNorm(top * 1e-3, top)
-    mesh = ax.pcolormesh(orders, places[over], np.maximum(amplitude, top * 1e-3), norm=norm, cmap="Blues", rasterized=True)
+    bottom = min(max(1.5 * float(np.median(amplitude)), 1e-3 * top), 0.5 * top)
+    norm = LogNorm(bottom, top)
+    mesh = ax.pcolormesh(orders, places[over], np.maximum(amplitude, bottom), norm=norm, cmap="Blues", rasterized=True)
     ax.figure.colorbar(mesh, ax=ax, label="Amplitude")
     ylabel = "Time (s)" if over == "time" else "Speed of the shaft (rev/s)"
     ax.set(xlabel="Order of the shaft", ylabel=ylabel)

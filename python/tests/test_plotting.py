@@ -95,8 +95,15 @@ def test_an_order_map_over_time_and_speed() -> None:
         order_map.plot(over="angle")
     wobbling = meshtone.ShaftPhase.from_speed_profile([0, 2, 4], [5, 15, 5], rate_hz, 16_000)
     rises_and_falls = meshtone.signal.order_map(np.cos(2 * np.pi * 19 * wobbling.revolutions), wobbling, rate_hz)
-    with pytest.raises(ValueError, match="show it over time"):
+    with pytest.raises(ValueError, match="must rise or fall throughout"):
         rises_and_falls.plot(over="speed")
+    steady = meshtone.ShaftPhase.constant(10, rate_hz, 16_000)
+    at_constant_speed = meshtone.signal.order_map(np.cos(2 * np.pi * 19 * steady.revolutions), steady, rate_hz)
+    with pytest.raises(ValueError, match="must rise or fall throughout"):
+        at_constant_speed.plot(over="speed")
+    one_part = meshtone.signal.order_map(np.cos(2 * np.pi * 19 * steady.revolutions), steady, rate_hz, revolutions=40)
+    with pytest.raises(ValueError, match="has one part"):
+        one_part.plot()
     plt.close("all")
 
 

@@ -28,8 +28,7 @@ pub fn about(source: &Path, message: impl Display) -> WarningEntry {
 pub fn about_signal(source: &Path, warning: &SignalWarning) -> WarningEntry {
     let options = match warning.code() {
         "varying_speed" => " (--tach, --pulse-times, --speed-channel, --speed-profile or --from-mesh-tone)",
-        "nothing-synchronous" => " (--sampling-rate-hz, --shaft-hz, --pulses-per-rev, --teeth)",
-        "mate-not-synchronous" => " (--mate-teeth)",
+        "nothing-synchronous" => " (--sampling-rate-hz, --shaft-hz, --pulses-per-rev, --teeth, --mate-teeth)",
         _ => "",
     };
     WarningEntry { kind: Some(warning.clone()), ..about(source, format_args!("{warning}{options}")) }

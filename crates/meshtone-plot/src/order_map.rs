@@ -12,9 +12,6 @@ pub const WIDTH: u32 = 1600;
 /// (px) Size of the figure.
 pub const HEIGHT: u32 = 900;
 
-/// Mesh orders that are shown.
-pub const MESH_ORDERS: f64 = 6.5;
-
 const MAP: Area = Area::new(84.0, 118.0, 1140.0, 710.0);
 const SPEED: Area = Area::new(1356.0, 118.0, 212.0, 710.0);
 const NAME_LEFT: f64 = 56.0;
@@ -53,13 +50,12 @@ pub struct OrderMapFigure<'a> {
 /// * `figure` - what it shows
 ///
 /// ```
-/// use meshtone::signal::{AngularSettings, OrderMapSettings, ShaftPhase, angular_resample, order_map};
+/// use meshtone::signal::{OrderMapSettings, ShaftPhase, order_map};
 /// use meshtone_plot::order_map::{self, OrderMapFigure};
 ///
 /// let phase = ShaftPhase::from_speed_profile(&[0.0, 4.0], &[5.0, 15.0], 4000.0, 16_001)?;
 /// let signal: Vec<f64> = phase.revolutions.iter().map(|r| (std::f64::consts::TAU * 19.0 * r).cos()).collect();
-/// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
-/// let map = order_map(&angular, &phase, 4000.0, &OrderMapSettings::default())?;
+/// let map = order_map(&signal, &phase, 4000.0, &OrderMapSettings::default())?;
 /// let figure = OrderMapFigure { title: "run.csv: bearing", facts: &[], unit: Some("g"), wheel: "wheel", teeth: 19, start_s: 0.0, map: &map };
 /// assert!(order_map::draw(&figure).svg().contains("Order of the wheel"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -54,6 +54,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("ORDER_MAP_MESH_ORDERS", meshtone::signal::OrderMapSettings::MESH_ORDERS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -2,7 +2,7 @@
 
 use meshtone::signal::{
     self, AngleZero, AngularSettings, ChainSettings, SeparationSettings, SignalError, SignalWarning,
-    StatedFacts, StatedTurning,
+    StatedFacts, StatedTurning, SynchronousPart,
 };
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -164,7 +164,8 @@ pub fn check_recording(
         let part = signal::synchronous_average(&angular)
             .ok()
             .and_then(|average| signal::synchronous_part(&angular.values, &average.values));
-        found.extend(part.filter(|part| part.is_noise()).map(SignalWarning::NothingSynchronous));
+        let part = part.filter(SynchronousPart::is_noise);
+        found.extend(part.map(|part| SignalWarning::NothingSynchronous { part, teeth }));
         Ok(found)
     });
     Ok(typed(&found.map_err(value_error)?))

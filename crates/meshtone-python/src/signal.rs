@@ -68,10 +68,7 @@ pub fn order_map<'py>(
 ) -> PyResult<(usize, Array<'py>, Array<'py>, Bound<'py, PyArray2<f64>>)> {
     let settings = OrderMapSettings { revolutions, highest_order };
     let signal = samples(&signal)?;
-    let map = py.detach(|| {
-        let angular = steps::angular_resample(signal, &phase.0, &AngularSettings::default())?;
-        steps::order_map(&angular, &phase.0, sampling_rate_hz, &settings)
-    });
+    let map = py.detach(|| steps::order_map(signal, &phase.0, sampling_rate_hz, &settings));
     let map = map.map_err(value_error)?;
     let shape = [map.amplitudes.len(), map.amplitudes.first().map_or(0, Vec::len)];
     let amplitudes = matrix(py, map.amplitudes.concat(), shape)?;

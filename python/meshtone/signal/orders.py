@@ -89,10 +89,10 @@ def order_map(
     >>> import numpy as np
     >>> from meshtone import ShaftPhase
     >>> phase = ShaftPhase.from_speed_profile([0, 4], [5, 15], 4000.0, 16_001)
-    >>> order_map = order_map(3 * np.cos(2 * np.pi * 5 * phase.revolutions), phase, 4000.0)
-    >>> order_map.amplitude.shape == (order_map.time_s.size, order_map.orders.size)
+    >>> of_run_up = order_map(3 * np.cos(2 * np.pi * 5 * phase.revolutions), phase, 4000.0)
+    >>> of_run_up.amplitude.shape == (of_run_up.time_s.size, of_run_up.orders.size)
     True
-    >>> float(order_map.orders[order_map.amplitude[0].argmax()]), float(order_map.amplitude.max().round(2))
+    >>> float(of_run_up.orders[of_run_up.amplitude[0].argmax()]), float(of_run_up.amplitude.max().round(2))
     (5.0, 3.0)
     """
     length, time_s, speed_hz, amplitude = _core.order_map(

@@ -1,14 +1,18 @@
 //! The figure of the last record, and that of the trend.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use meshtone::scenario::WheelName;
+use meshtone::signal::{OrderMapSettings, order_map};
 use meshtone_io::indicators::RecordEntry;
 use meshtone_plot::Figure;
-use meshtone_plot::order_map::{self, OrderMapFigure};
+use meshtone_plot::order_map::{self as order_map_figure, OrderMapFigure};
 use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
 use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 
 use super::options::{PhaseOptions, ProcessingOptions};
+use super::phase::ShaftAngle;
 use super::results::{LatestRecords, Series};
 
 const MESHTONE: &str = concat!("Meshtone ", env!("CARGO_PKG_VERSION"));
@@ -71,19 +75,33 @@ pub fn of_record(
     record::draw(&RecordFigure { title: &title, facts: &facts, signal, wheels: &wheels })
 }
 
-/// The figure of the orders over time, where the last recording is a run-up.
+/// The figure of the orders of the first wheel's shaft over time, where the last recording is a run-up: where the speed changes so much that
+/// resonances pass over orders. Of another the average says all. A recording that has too few revolutions for a map has no figure.
 pub fn of_order_map(series: &Series, latest: &LatestRecords, phase: &PhaseOptions) -> Option<Figure> {
-    let (map, (wheel, ..)) = (latest.order_map.as_ref()?, latest.wheels.first()?);
+    const PARTS: usize = 16;
+    const LEAST_RATIO: f64 = 1.1;
+    let (input, (wheel, ..)) = (&latest.input, latest.wheels.first()?);
+    let turning = match &latest.turning {
+        ShaftAngle::Measured(turning) => Cow::Borrowed(turning),
+        ShaftAngle::Simulated(shafts) => Cow::Owned(shafts.varying_phase(WheelName::Pinion).ok()??),
+    };
+    let [lowest_hz, highest_hz] = turning.speed_range_hz(input.sampling_rate_hz, PARTS);
+    if highest_hz < LEAST_RATIO * lowest_hz {
+        return None;
+    }
+    let highest_order = Some(OrderMapSettings::MESH_ORDERS * f64::from(wheel.teeth));
+    let settings = OrderMapSettings { highest_order, ..OrderMapSettings::default() };
+    let map = order_map(&input.channel.samples, &turning, input.sampling_rate_hz, &settings).ok()?;
     let facts = [format!("phase from the {}", phase.source()), MESHTONE.to_owned()];
-    let title = title(std::slice::from_ref(&latest.input.source), series);
-    Some(order_map::draw(&OrderMapFigure {
+    let title = title(std::slice::from_ref(&input.source), series);
+    Some(order_map_figure::draw(&OrderMapFigure {
         title: &title,
         facts: &facts,
-        unit: latest.input.channel.unit.as_deref(),
+        unit: input.channel.unit.as_deref(),
         wheel: wheel.name,
         teeth: wheel.teeth,
-        start_s: latest.input.start_s,
-        map,
+        start_s: input.start_s,
+        map: &map,
     }))
 }
 

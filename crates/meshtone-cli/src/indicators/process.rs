@@ -4,12 +4,11 @@ use std::borrow::Cow;
 
 use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{
-    AngularSettings, AngularSignal, ChainSettings, OrderMap, OrderMapSettings, Record, SeparationSettings,
-    ShaftPhase, SignalError, SignalWarning, angular_resample, check_channel, check_recording, order_map,
-    process_angular, process_angular_segments,
+    AngularSettings, ChainSettings, Record, SeparationSettings, SignalError, SignalWarning, angular_resample,
+    check_channel, check_recording, process_angular, process_angular_segments,
 };
 use meshtone_io::indicators::WarningEntry;
-use meshtone_plot::{DamagedTooth, order_map::MESH_ORDERS};
+use meshtone_plot::DamagedTooth;
 
 use super::options::{PhaseOptions, ProcessingOptions};
 use super::phase::{ShaftAngle, simulated};
@@ -41,16 +40,14 @@ pub struct WheelRecords {
     pub records: Vec<Record>,
     /// (s) Middle of each, since the first sample.
     pub middles_s: Vec<f64>,
-    /// [`Processed::order_map`], of the first wheel.
-    order_map: Option<OrderMap>,
 }
 
 /// Results of one recording.
 pub struct Processed {
     /// Of one wheel, or of both of a pair.
     pub wheels: Vec<WheelRecords>,
-    /// The orders of the first wheel's shaft over time, where its speed changes by so much that it is a run-up.
-    pub order_map: Option<OrderMap>,
+    /// The angles of the shafts.
+    pub turning: ShaftAngle,
     /// Warnings.
     pub warnings: Vec<WarningEntry>,
 }
@@ -81,33 +78,15 @@ pub fn process(
         let (of_wheel, doubts) = wheel_records(input, &turning, shaft, &wheels, phase, processing)
             .map_err(|error| refuse(&input.source, what, subject, &error))?;
         doubtful.extend(doubts);
-        let first = processed.first().unwrap_or(&of_wheel);
         for warning in of_wheel.records.iter().flat_map(|record| &record.warnings) {
-            let Some(warning) = of_mate(warning, &of_wheel, first) else { continue };
-            if !doubtful.contains(&warning) {
-                doubtful.push(warning);
+            if !doubtful.contains(warning) {
+                doubtful.push(warning.clone());
             }
         }
         processed.push(of_wheel);
     }
     warnings.extend(doubtful.iter().map(|warning| about_signal(&input.source, warning)));
-    let order_map = processed.first_mut().and_then(|first| first.order_map.take());
-    Ok(Processed { wheels: processed, order_map, warnings })
-}
-
-/// A warning about a record of a wheel, where it does not follow from one about the wheel on the shaft that is stated.
-///
-/// That the mate's average is noise follows where the wheel's is noise too. Where that is clear, the mate's tooth count is in doubt.
-fn of_mate(warning: &SignalWarning, wheel: &WheelRecords, first: &WheelRecords) -> Option<SignalWarning> {
-    let is_noise = |warning: &SignalWarning| matches!(warning, SignalWarning::NothingSynchronous(_));
-    match warning {
-        SignalWarning::NothingSynchronous(part) if !wheel.wheel.is_on_shaft => {
-            let follows = first.records.iter().flat_map(|record| &record.warnings).any(is_noise);
-            let (teeth, mate_teeth) = (first.wheel.teeth, wheel.wheel.teeth);
-            (!follows).then_some(SignalWarning::MateNotSynchronous { part: *part, teeth, mate_teeth })
-        }
-        _ => Some(warning.clone()),
-    }
+    Ok(Processed { wheels: processed, turning, warnings })
 }
 
 /// The records of the wheel on a shaft, the first of `wheels` on the pinion's, and what does not fit.
@@ -125,7 +104,6 @@ fn wheel_records(
     let wheel = &wheels[shaft as usize];
     let settings = settings(processing, wheel.teeth);
     let mut doubts = Vec::new();
-    let mut order_map = None;
     let rate_hz = input.sampling_rate_hz;
     let (mean_speed_hz, records, middles_s) = match turning {
         ShaftAngle::Measured(phase) => {
@@ -137,7 +115,6 @@ fn wheel_records(
             if wheel.is_on_shaft {
                 let speed_hz = phase.mean_speed_hz(rate_hz);
                 doubts = check_recording(&angular, &options.stated_facts(wheel.teeth), speed_hz);
-                order_map = of_run_up(&angular, &phase, rate_hz, wheel.teeth)?;
             }
             let records = match processing.revolutions {
                 None => vec![process_angular(&angular, wheel.teeth, &settings)?],
@@ -153,35 +130,13 @@ fn wheel_records(
                 None => vec![shafts.process(signal, shaft, &settings)?],
                 Some(count) => shafts.process_segments(signal, shaft, &settings, count as usize)?,
             };
-            if let Some(phase) = shafts.varying_phase(shaft)?.filter(|_| wheel.is_on_shaft) {
-                let angular = shafts.angular(signal, shaft, &settings)?;
-                order_map = of_run_up(&angular, &phase, rate_hz, wheel.teeth)?;
-            }
             let mean_speed_hz = shafts.mean_speed_hz(shaft);
             // Of both wheels alike, also where the speed varies.
             let middles_s = middles(&records, 0.0).map(|angle_rev| angle_rev / mean_speed_hz).collect();
             (mean_speed_hz, records, middles_s)
         }
     };
-    Ok((WheelRecords { wheel: wheel.clone(), mean_speed_hz, records, middles_s, order_map }, doubts))
-}
-
-/// The order map of a recording whose speed changes so much that resonances pass over orders; none of another, where the average says all.
-fn of_run_up(
-    angular: &AngularSignal,
-    phase: &ShaftPhase,
-    rate_hz: f64,
-    teeth: u32,
-) -> Result<Option<OrderMap>, SignalError> {
-    const PARTS: usize = 16;
-    const LEAST_RATIO: f64 = 1.1;
-    let [lowest_hz, highest_hz] = phase.speed_range_hz(rate_hz, PARTS);
-    if highest_hz < LEAST_RATIO * lowest_hz {
-        return Ok(None);
-    }
-    let highest_order = Some(MESH_ORDERS * f64::from(teeth));
-    let settings = OrderMapSettings { highest_order, ..OrderMapSettings::default() };
-    order_map(angular, phase, rate_hz, &settings).map(Some)
+    Ok((WheelRecords { wheel: wheel.clone(), mean_speed_hz, records, middles_s }, doubts))
 }
 
 /// Angles of the shafts, the wheels on them, and what is doubtful about the files that say so.

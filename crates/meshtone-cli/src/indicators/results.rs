@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use meshtone::signal::{OrderMap, Record, na4};
+use meshtone::signal::{Record, na4};
 use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry};
 use serde_json::{Map, Value, json};
 
 use super::options::{EDGES, INTERPOLATIONS, PhaseOptions, ProcessingOptions};
+use super::phase::ShaftAngle;
 use super::process::{Processed, Wheel};
 use super::reading::Input;
 use crate::choice::name_of;
@@ -18,8 +19,8 @@ pub struct LatestRecords {
     pub input: Input,
     /// Each wheel with the mean speed of its shaft and its record.
     pub wheels: Vec<(Wheel, f64, Record)>,
-    /// The orders of the first wheel's shaft over time, where it is a run-up.
-    pub order_map: Option<OrderMap>,
+    /// The angles of the shafts in the recording.
+    pub turning: ShaftAngle,
 }
 
 /// All records so far. Of each but the last only its indicators and its residual are kept.
@@ -73,7 +74,7 @@ impl Series {
             }
             last.extend(latest.map(|record| (of_wheel.wheel, of_wheel.mean_speed_hz, record)));
         }
-        self.latest = Some(LatestRecords { input, wheels: last, order_map: processed.order_map });
+        self.latest = Some(LatestRecords { input, wheels: last, turning: processed.turning });
         Ok(())
     }
 

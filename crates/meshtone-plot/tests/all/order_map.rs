@@ -4,9 +4,7 @@
 use std::f64::consts::TAU;
 
 use crate::support::check;
-use meshtone::signal::{
-    AngularSettings, OrderMap, OrderMapSettings, ShaftPhase, angular_resample, order_map,
-};
+use meshtone::signal::{OrderMap, OrderMapSettings, ShaftPhase, order_map};
 use meshtone_plot::Figure;
 use meshtone_plot::order_map::{OrderMapFigure, draw};
 
@@ -34,9 +32,11 @@ fn a_run_up_has_mesh_orders_and_its_speed() {
     let noise = |i: usize| 2e-5 * (i * i % 10_007) as f64;
     let mesh = |(i, turned): (usize, &f64)| (TAU * 19.0 * turned).cos() + noise(i);
     let signal: Vec<f64> = phase.revolutions.iter().enumerate().map(mesh).collect();
-    let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
-    let settings = OrderMapSettings { highest_order: Some(6.5 * 19.0), ..OrderMapSettings::default() };
-    let map = order_map(&angular, &phase, 1e4, &settings).unwrap();
+    let settings = OrderMapSettings {
+        highest_order: Some(OrderMapSettings::MESH_ORDERS * 19.0),
+        ..OrderMapSettings::default()
+    };
+    let map = order_map(&signal, &phase, 1e4, &settings).unwrap();
     let figure = drawn(&map, Some("g"), 19);
     for word in
         ["Order of the wheel’s shaft (mesh orders 19, 38, …)", "Speed of the wheel (Hz)", "114", "15", "g"]

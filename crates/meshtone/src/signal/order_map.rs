@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use meshtone_fourier::real_spectrum;
 
-use super::{AngularSignal, ShaftPhase, SignalError};
+use super::{AngularSettings, AngularSignal, ShaftPhase, SignalError, angular_resample};
 
 /// Revolutions of a part, where they are not stated: a part of the recording, between these.
 const PARTS: usize = 12;
@@ -39,37 +39,52 @@ pub struct OrderMapSettings {
     pub highest_order: Option<f64>,
 }
 
+impl OrderMapSettings {
+    /// Mesh orders up to which a map is of use: the line of the sixth with its sidebands.
+    pub const MESH_ORDERS: f64 = 6.5;
+}
+
 /// Cuts a recording into overlapping parts of whole revolutions and computes the order spectrum of each.
 ///
 /// Orders of the shaft are upright lines whatever its speed does, and resonances are bands that move. Each part is multiplied by Hann's window,
 /// and amplitudes are single-sided: a cosine of amplitude A shows as A at its order, and at least as 0.85 A between two.
 ///
 /// # Arguments
-/// * `angular` - the recording over the angle of the shaft
-/// * `phase` - the phase of that shaft, for times and speeds
+/// * `signal` - the recording
+/// * `phase` - the phase of the shaft at its samples
 /// * `sampling_rate_hz` - (S/s) of the recording
 /// * `settings` - length of the parts, highest order
 ///
 /// # Errors
-/// Parts of no revolution, or of more than the recording has; a highest order that is not positive; more than 2²⁷ amplitudes.
+/// Those of [`angular_resample`]; parts of no revolution, or of more than the recording has; a highest order that is not positive; more than
+/// 2²⁷ amplitudes.
 ///
 /// Source: K. R. Fyfe, E. D. S. Munck, "Analysis of computed order tracking", Mech. Syst. Signal Process. 11 (1997)
 /// 187–205.
 ///
 /// ```
-/// use meshtone::signal::{AngularSettings, OrderMapSettings, ShaftPhase, angular_resample, order_map};
+/// use meshtone::signal::{OrderMapSettings, ShaftPhase, order_map};
 ///
 /// // Five periods a revolution, while the shaft speeds up from 5 to 15 Hz.
 /// let phase = ShaftPhase::from_speed_profile(&[0.0, 4.0], &[5.0, 15.0], 4000.0, 16_001)?;
 /// let signal: Vec<f64> = phase.revolutions.iter().map(|r| 3.0 * (std::f64::consts::TAU * 5.0 * r).cos()).collect();
-/// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
-/// let map = order_map(&angular, &phase, 4000.0, &OrderMapSettings::default())?;
+/// let map = order_map(&signal, &phase, 4000.0, &OrderMapSettings::default())?;
 /// assert_eq!(map.revolutions, 3);
 /// assert!(map.amplitudes.iter().all(|part| (part[15] - 3.0).abs() < 1e-3));
 /// assert!(map.speeds_hz[0] < 6.5 && *map.speeds_hz.last().unwrap() > 14.0);
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn order_map(
+    signal: &[f64],
+    phase: &ShaftPhase,
+    sampling_rate_hz: f64,
+    settings: &OrderMapSettings,
+) -> Result<OrderMap, SignalError> {
+    let angular = angular_resample(signal, phase, &AngularSettings::default())?;
+    map_of_angular(&angular, phase, sampling_rate_hz, settings)
+}
+
+fn map_of_angular(
     angular: &AngularSignal,
     phase: &ShaftPhase,
     sampling_rate_hz: f64,
@@ -150,7 +165,7 @@ mod tests {
     fn a_line_has_its_amplitude_in_every_part() -> Result<(), SignalError> {
         let (signal, phase) = angular(24);
         let settings = OrderMapSettings { revolutions: Some(4), highest_order: Some(10.0) };
-        let map = order_map(&signal, &phase, 100.0, &settings)?;
+        let map = map_of_angular(&signal, &phase, 100.0, &settings)?;
         assert_eq!((map.amplitudes.len(), map.amplitudes[0].len()), (21, 41));
         for part in &map.amplitudes {
             assert!((part[28] - 1.0).abs() < 1e-12 && part[26] < 1e-12, "{part:?}");
@@ -166,7 +181,7 @@ mod tests {
         let (signal, phase) = angular(3);
         let with = |revolutions, highest_order| {
             let settings = OrderMapSettings { revolutions, highest_order };
-            order_map(&signal, &phase, 100.0, &settings)
+            map_of_angular(&signal, &phase, 100.0, &settings)
                 .map(|map| map.amplitudes.len())
                 .map_err(|error| error.to_string())
         };

@@ -37,9 +37,10 @@ impl Record {
     ///
     /// # Arguments
     /// * `values` - the revolutions that were averaged
-    fn with_doubt(mut self, values: &[f64]) -> Self {
+    /// * `teeth` - of the wheel
+    fn with_doubt(mut self, values: &[f64], teeth: u32) -> Self {
         let part = synchronous_part(values, &self.average.values).filter(SynchronousPart::is_noise);
-        self.warnings.extend(part.map(SignalWarning::NothingSynchronous));
+        self.warnings.extend(part.map(|part| SignalWarning::NothingSynchronous { part, teeth }));
         self
     }
 }
@@ -100,7 +101,7 @@ pub fn process_angular(
     settings: &ChainSettings,
 ) -> Result<Record, SignalError> {
     let record = process_average(synchronous_average(angular)?, teeth, settings)?;
-    Ok(record.with_doubt(&angular.values))
+    Ok(record.with_doubt(&angular.values, teeth))
 }
 
 /// Processes one channel in segments of equally many revolutions: a series of records.
@@ -150,7 +151,8 @@ pub fn process_angular_segments(
 ) -> Result<Vec<Record>, SignalError> {
     let averages = segmented_averages(angular, revolutions)?;
     let segments = angular.values.chunks_exact(angular.points_per_revolution * revolutions);
-    let process = |(average, values)| Ok(process_average(average, teeth, settings)?.with_doubt(values));
+    let process =
+        |(average, values)| Ok(process_average(average, teeth, settings)?.with_doubt(values, teeth));
     as_series(averages.into_iter().zip(segments).map(process).collect())
 }
 

@@ -79,26 +79,16 @@ pub enum SignalWarning {
     DoesNotFit(Mismatch),
     /// The average holds hardly more than noise would leave.
     #[error(
-        "the average of {} revolutions holds {:.2} % of the recording's mean square, and noise alone leaves {:.2} %: nothing in the \
-         recording clearly repeats with this shaft, and none of its indicators means anything; check the sampling rate, the speed or the \
-         pulses, and which shaft they are of",
-        .0.revolutions, 100.0 * .0.of_mean_square, 100.0 / .0.revolutions as f64
+        "the average of {0} revolutions of the wheel of {teeth} teeth holds {1:.2} % of the recording's mean square, and noise alone leaves \
+         {2:.2} %: nothing in the recording clearly repeats with its shaft in {0} revolutions, and none of its indicators means anything; the \
+         recording is too short or too noisy for this wheel, or the sampling rate, the speed, the pulses or a tooth count is wrong",
+        part.revolutions, 100.0 * part.of_mean_square, 100.0 / part.revolutions as f64
     )]
-    NothingSynchronous(SynchronousPart),
-    /// The average over the revolutions of the mate holds hardly more than noise would leave, while that of the wheel is clear.
-    #[error(
-        "the average of {} revolutions of the mate holds {:.2} % of the recording's mean square, and noise alone leaves {:.2} %, while the \
-         wheel of {teeth} teeth is clearly seen: its speed is right, and the tooth count of the mate, {mate_teeth}, is probably wrong; check \
-         it, and use none of the mate's indicators",
-        .part.revolutions, 100.0 * .part.of_mean_square, 100.0 / .part.revolutions as f64
-    )]
-    MateNotSynchronous {
-        /// What the mate's average holds.
+    NothingSynchronous {
+        /// What the average holds.
         part: SynchronousPart,
-        /// Teeth of the wheel on the stated shaft.
+        /// Teeth of the wheel.
         teeth: u32,
-        /// Stated teeth of the mate.
-        mate_teeth: u32,
     },
     /// Tones that belong to neither shaft make much of the recording.
     #[error("{0}")]
@@ -116,8 +106,7 @@ impl SignalWarning {
             Self::StrongerNeighbour { .. } => "stronger-neighbour",
             Self::MeshOrderNearNyquist { .. } => "mesh-order-near-nyquist",
             Self::DoesNotFit(mismatch) => mismatch.alternative.code(),
-            Self::NothingSynchronous(_) => "nothing-synchronous",
-            Self::MateNotSynchronous { .. } => "mate-not-synchronous",
+            Self::NothingSynchronous { .. } => "nothing-synchronous",
             Self::ForeignTones(_) => "foreign-tones",
         }
     }
@@ -147,9 +136,11 @@ impl SignalWarning {
                 values.extend(mismatch.energy_ratio.map(|ratio| ("energy_ratio".to_owned(), ratio)));
                 values
             }
-            Self::NothingSynchronous(part) | Self::MateNotSynchronous { part, .. } => {
-                of(&[("of_mean_square", part.of_mean_square), ("revolutions", part.revolutions as f64)])
-            }
+            Self::NothingSynchronous { part, teeth } => of(&[
+                ("of_mean_square", part.of_mean_square),
+                ("revolutions", part.revolutions as f64),
+                ("teeth", f64::from(*teeth)),
+            ]),
             Self::ForeignTones(tones) => {
                 let of_tone = |(index, tone): (usize, &ForeignTone)| {
                     let named = |name: &str, value: f64| (format!("{name}_{}", index + 1), value);

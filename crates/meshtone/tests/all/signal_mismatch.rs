@@ -482,6 +482,25 @@ fn each_mistake_is_named_with_the_better_value() {
     }
 }
 
+// With twice as many pulses the mesh is at half the stated order and its multiples: 16, 48, 80 are orders of the hunting tooth of 32 and 80
+// teeth, 11.5, 34.5, 57.5 none of 23 and 39.
+#[test]
+fn the_orders_of_the_pair_do_not_speak_for_other_pulses() {
+    let found = |teeth: u32, mate_teeth: u32| {
+        let turned = (0..81_920).map(|i| 20.0 * f64::from(i) / RATE_HZ);
+        let tone = |order: f64, turned: f64| (TAU * (order * turned).fract()).cos();
+        let tones = |at: f64| -> f64 { (1..=10).map(|k| tone(f64::from(k * teeth) / 2.0, at)).sum() };
+        let signal: Vec<f64> = turned.zip(noise(3, 81_920)).map(|(at, noise)| tones(at) + noise).collect();
+        let phase = ShaftPhase::constant(20.0, RATE_HZ, signal.len()).unwrap();
+        let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
+        let turning = StatedTurning::Pulses { per_revolution: 1 };
+        let stated = StatedFacts { teeth, mate_teeth: Some(mate_teeth), turning };
+        find_mismatch(&angular, &stated).map(|mismatch| mismatch.alternative)
+    };
+    assert_eq!(found(32, 80), None);
+    assert_eq!(found(23, 39), Some(Alternative::PulsesPerRevolution { pulses: 2, stated: 1 }));
+}
+
 #[test]
 fn a_speed_that_is_off_is_found_to_parts_per_million() {
     let turned: Vec<f64> = (0..204_800).map(|i| 20.0 * i as f64 / RATE_HZ).collect();

@@ -1,7 +1,7 @@
 //! Other interpretations of a recording.
 
 use super::fine_orders::FineOrders;
-use super::{Alternative, Evidence, StatedFacts, StatedTurning};
+use super::{Alternative, CLEAR_MESH, Evidence, StatedFacts, StatedTurning};
 use crate::operation::greatest_common_divisor;
 
 /// Mesh harmonics that are looked at, of the teeth that are stated: other counts have theirs in the same range, so that a multiple
@@ -204,7 +204,7 @@ impl Hypothesis {
     }
 
     /// Returns whether its shaft turns a whole part as quickly as the stated one, and what it then has beside the stated orders is
-    /// missing or the pair's own: the wheel's orders, and a first mesh line.
+    /// missing or the pair's own: the wheel's orders, and a first mesh line, or several that are clear.
     pub(super) fn is_part_without_lines(&self, stated: &Self, of_pair: &[f64], orders: &FineOrders) -> bool {
         const LEAST: f64 = 3.0;
         let parts = 1.0 / self.wheel_spacing;
@@ -212,15 +212,22 @@ impl Hypothesis {
             return false;
         }
         let known: Vec<f64> = of_pair.iter().copied().chain([1.0]).collect();
+        if self.unshared_mesh(stated, &known, orders).is_some_and(|new| new > CLEAR_MESH) {
+            return false;
+        }
         orders.comb(self.wheel_spacing, &known).is_none_or(|score| score < LEAST)
             || is_far_weaker(self.mesh_order, stated.mesh_order, orders)
     }
 
-    /// Sum of the prominences of its mesh lines that the other hypothesis does not have; none where the other has all of them.
-    pub(super) fn unshared_mesh(&self, other: &Self, orders: &FineOrders) -> Option<f64> {
+    /// Sum of the prominences of its mesh lines that are neither the other hypothesis's nor multiples of known orders; none where there is no
+    /// such line.
+    pub(super) fn unshared_mesh(&self, other: &Self, known: &[f64], orders: &FineOrders) -> Option<f64> {
         let is_own = |order: f64| {
-            let harmonic = (order / other.mesh_order).round().max(1.0);
-            (harmonic * other.mesh_order - order).abs() * orders.bins_per_order >= SAME_LINE
+            let is_apart = |spacing: f64| {
+                let multiple = (order / spacing).round().max(1.0);
+                (multiple * spacing - order).abs() * orders.bins_per_order >= SAME_LINE
+            };
+            is_apart(other.mesh_order) && known.iter().all(|spacing| is_apart(*spacing))
         };
         let own: Vec<f64> = self
             .mesh_lines(orders)

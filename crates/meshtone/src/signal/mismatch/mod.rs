@@ -20,7 +20,8 @@ const LEAST_GAIN: f64 = 6.0;
 const LEAST_MESH: f64 = 4.0;
 /// Least of these of the mesh lines that the stated facts do not explain.
 const LEAST_MESH_GAIN: f64 = 3.0;
-/// The same of three lines that stand out as far as counts: neither the shaft's orders nor a strong first one are needed then.
+/// The same of three lines that stand out as far as counts and are no multiples of the stated pair's own orders: neither the shaft's orders nor
+/// a strong first one are needed then.
 const CLEAR_MESH: f64 = 7.0;
 /// [`LEAST_MESH`] for a speed, of which many are tried: two lines that stand out as far as counts.
 const LEAST_MESH_OF_SPEED: f64 = 5.5;
@@ -294,8 +295,8 @@ fn evidence_if_better(
     } else {
         hypothesis.evidence_beside(orders, of_pair)
     };
-    let new_mesh = hypothesis.unshared_mesh(as_stated, orders);
-    let lost_mesh = as_stated.unshared_mesh(hypothesis, orders).unwrap_or(0.0);
+    let new_mesh = hypothesis.unshared_mesh(as_stated, &[], orders);
+    let lost_mesh = as_stated.unshared_mesh(hypothesis, &[], orders).unwrap_or(0.0);
     let wheel_gain = gain(own.wheel_orders, stated.wheel_orders);
     let mate_gain = gain(own.mate_orders, stated.mate_orders);
     let mesh_gain = new_mesh.unwrap_or(0.0) - lost_mesh;
@@ -322,8 +323,7 @@ fn evidence_if_better(
         Alternative::PulsesPerRevolution { .. } => {
             let is_possible = own.wheel_orders.is_some()
                 && lost_mesh <= 0.0
-                && (new_mesh > Some(CLEAR_MESH)
-                    || !hypothesis.is_part_without_lines(as_stated, of_pair, orders));
+                && !hypothesis.is_part_without_lines(as_stated, of_pair, orders);
             is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)
         }
         Alternative::ShaftSpeed { .. } | Alternative::VaryingSpeed { .. } => {
