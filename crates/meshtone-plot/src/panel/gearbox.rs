@@ -6,7 +6,7 @@ use meshtone::scenario::Coupled;
 use meshtone::signal::{AngularSettings, AngularSignal, ShaftPhase, angular_resample};
 use meshtone::{GearboxSimulation, GearboxStages};
 
-use super::spectrum::InputSpectrum;
+use super::spectrum::{self, InputSpectrum};
 use super::{COLUMN_GAP, FULL_WIDTH, LEFT, NAME_LEFT, WIDTH};
 use crate::drawing::{
     Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, colour, number,
@@ -334,30 +334,32 @@ fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, whee
 fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
     let (stages, channels) = (&simulation.stages, &simulation.channels);
     let Some(signal) = channels.signals.first() else { return };
-    let angular = if stages.is_steady() { None } else { over_input_angle(simulation, &signal.values) };
-    let points_per_revolution = match &angular {
-        Some(angular) => angular.points_per_revolution,
-        None => stages.time.samples_per_pinion_revolution,
+    let angular = if stages.is_steady() {
+        let points_per_revolution = stages.time.samples_per_pinion_revolution;
+        let nyquist_order = points_per_revolution as f64 / 2.0;
+        let values = signal.values.clone();
+        Ok(AngularSignal { points_per_revolution, start_rev: 0.0, nyquist_order, values })
+    } else {
+        over_input_angle(simulation, &signal.values)
     };
     let meshes = stages.gearbox.meshes.iter().zip(&stages.meshes);
     let spectrum = InputSpectrum {
         quantity: (&signal.name.trim_end_matches("_g").replace('_', " "), signal.unit),
         shaft: "input",
-        values: angular.as_ref().map_or(&signal.values, |angular| &angular.values),
-        points_per_revolution,
-        nyquist_order: angular
-            .as_ref()
-            .map_or(points_per_revolution as f64 / 2.0, |angular| angular.nyquist_order),
+        angular,
         shafts: stages.layout.ratios.iter().map(|ratio| ratio.value()).collect(),
         meshes: meshes.map(|(mesh, tables)| (mesh.name(), tables.turning.pitches_per_revolution)).collect(),
     };
     spectrum.draw(canvas, area);
 }
 
-fn over_input_angle(simulation: &GearboxSimulation, signal: &[f64]) -> Option<AngularSignal> {
+/// The signal over the angle of the input, or the note that says why there is none.
+fn over_input_angle(simulation: &GearboxSimulation, signal: &[f64]) -> Result<AngularSignal, &'static str> {
     let channels = &simulation.channels;
-    let input = simulation.stages.gearbox.shafts.iter().find(|shaft| shaft.couples_to == Coupled::Motor)?;
-    let speed_hz = channels.signal(&format!("speed_hz.{}", input.name))?;
-    let phase = ShaftPhase::from_speed_samples(speed_hz, channels.sampling_rate_hz).ok()?;
-    angular_resample(signal, &phase, &AngularSettings::default()).ok()
+    let input = simulation.stages.gearbox.shafts.iter().find(|shaft| shaft.couples_to == Coupled::Motor);
+    let speed_hz = input.and_then(|input| channels.signal(&format!("speed_hz.{}", input.name)));
+    let speed_hz = speed_hz.ok_or(spectrum::ANGLE_UNKNOWN)?;
+    ShaftPhase::from_speed_samples(speed_hz, channels.sampling_rate_hz)
+        .and_then(|phase| angular_resample(signal, &phase, &AngularSettings::default()))
+        .map_err(|error| spectrum::note(&error))
 }

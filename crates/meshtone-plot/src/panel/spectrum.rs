@@ -2,7 +2,7 @@
 
 use meshtone::Stages;
 use meshtone::sensor::Channels;
-use meshtone::signal::{ChainSettings, SimulatedShafts, order_spectrum};
+use meshtone::signal::{AngularSignal, ChainSettings, SignalError, SimulatedShafts, order_spectrum};
 use meshtone::wheel::WheelName;
 
 use super::NAME_LEFT;
@@ -20,12 +20,8 @@ pub(super) struct InputSpectrum<'a> {
     pub(super) quantity: (&'a str, &'a str),
     /// Name of the input shaft, such as `input`.
     pub(super) shaft: &'a str,
-    /// The signal at equal angles.
-    pub(super) values: &'a [f64],
-    /// Its values in a revolution.
-    pub(super) points_per_revolution: usize,
-    /// (orders) Highest order that the signal holds.
-    pub(super) nyquist_order: f64,
+    /// The signal at equal angles, or the note that stands in place of its spectrum.
+    pub(super) angular: Result<AngularSignal, &'static str>,
     /// (orders) Speeds of all shafts over the input's.
     pub(super) shafts: Vec<f64>,
     /// Names of the meshes, where there are several, and their orders.
@@ -36,28 +32,43 @@ pub(super) struct InputSpectrum<'a> {
 pub(super) fn of_pair(canvas: &mut Canvas, area: Area, stages: &Stages, channels: &Channels) {
     let (channel, signal) = channels.leading();
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
-    let angular = shafts.angular(signal, WheelName::Pinion, &ChainSettings::default()).ok();
+    let angular = shafts.angular(signal, WheelName::Pinion, &ChainSettings::default());
     let [pinion, gear] = WheelName::BOTH.map(|wheel| f64::from(stages.teeth.wheel(wheel).teeth));
     let spectrum = InputSpectrum {
         quantity: (&super::average::quantity(&channel).to_lowercase(), "g"),
         shaft: "pinion",
-        values: angular.as_ref().map_or(&[], |angular| &angular.values),
-        points_per_revolution: angular.as_ref().map_or(1, |angular| angular.points_per_revolution),
-        nyquist_order: angular.as_ref().map_or(MESH_ORDERS * pinion, |angular| angular.nyquist_order),
+        angular: angular.map_err(|error| note(&error)),
         shafts: vec![1.0, pinion / gear],
         meshes: vec![(String::new(), pinion)],
     };
     spectrum.draw(canvas, area);
 }
 
+/// Note where the turning of the shaft cannot be stated.
+pub(super) const ANGLE_UNKNOWN: &str = "the shaft’s angle is not known";
+const TOO_SHORT: &str = "the kept signal is shorter than a revolution";
+
+/// The note where a signal cannot be stated at equal angles.
+pub(super) fn note(error: &SignalError) -> &'static str {
+    match error {
+        SignalError::TooFew { .. }
+        | SignalError::TooFewRevolutions { .. }
+        | SignalError::LengthMismatch { .. } => TOO_SHORT,
+        SignalError::Constant { .. } => "the signal is constant",
+        _ => ANGLE_UNKNOWN,
+    }
+}
+
 impl InputSpectrum<'_> {
     /// Amplitudes on a linear scale, with a line at each order of shafts and meshes.
     pub(super) fn draw(&self, canvas: &mut Canvas, area: Area) {
-        let revolutions = self.values.len() / self.points_per_revolution.max(1);
+        let angular = self.angular.as_ref().ok();
+        let revolutions = angular.map_or(0, AngularSignal::revolutions);
         let highest = MESH_ORDERS * self.meshes.iter().map(|(_, order)| *order).fold(0.0, f64::max);
-        let highest = highest.min(self.nyquist_order);
-        let whole = &self.values[..revolutions * self.points_per_revolution];
-        let amplitudes = order_spectrum(whole).unwrap_or_default();
+        let highest = angular.map_or(highest, |angular| highest.min(angular.nyquist_order));
+        let whole =
+            angular.and_then(|angular| angular.values.get(..revolutions * angular.points_per_revolution));
+        let amplitudes = whole.and_then(|whole| order_spectrum(whole).ok()).unwrap_or_default();
         let step = 1.0 / revolutions.max(1) as f64;
         // Without order 0, the mean.
         let points = amplitudes.iter().enumerate().take((highest / step) as usize + 1).skip(1);
@@ -65,7 +76,10 @@ impl InputSpectrum<'_> {
             points.map(|(line, amplitude)| (line as f64 * step, *amplitude)).collect();
         let y = [0.0, 1.1 * axes::largest(shown.iter().map(|(_, amplitude)| amplitude)).max(1e-9)];
         let Self { quantity: (quantity, unit), shaft, .. } = self;
-        let title = format!("Order spectrum of {quantity}, {revolutions} revolutions of the {shaft}");
+        let title = match revolutions {
+            0 => format!("Order spectrum of {quantity}"),
+            _ => format!("Order spectrum of {quantity}, {revolutions} revolutions of the {shaft}"),
+        };
         let axes = Axes::titled(canvas, area, [0.0, highest], y, &title);
         axes.x_axis(canvas, &Ticks::nice(0.0, highest, 16), &format!("Order of the {shaft}"));
         axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("Amplitude ({unit})"), NAME_LEFT);
@@ -80,10 +94,10 @@ impl InputSpectrum<'_> {
             let text = format!("{name} {}", number(*order));
             canvas.text((axes.px(*order) + 4.0, area.top + 14.0), text.trim(), style);
         }
-        if revolutions == 0 {
-            axes.note(canvas, &format!("the kept signal is shorter than a revolution of the {shaft}"));
-        } else {
-            axes.line(canvas, shown.into_iter(), CURVE);
+        match &self.angular {
+            Err(note) => axes.note(canvas, note),
+            Ok(_) if revolutions == 0 => axes.note(canvas, TOO_SHORT),
+            Ok(_) => axes.line(canvas, shown.into_iter(), CURVE),
         }
         let entries =
             [(Sample::Line(MESH_LINE), "mesh and its harmonics"), (Sample::Line(SHAFT_LINE), "shafts")];
