@@ -20,9 +20,6 @@ use crate::same_file::is_same_file;
 use crate::terminal::print_unless;
 use crate::warnings;
 
-/// Most draws: more tell nothing.
-const MOST_DRAWS: u64 = 512;
-
 /// Estimate the path to a sensor from recordings of the healthy machine
 ///
 /// Simulates the machine at the recordings' speeds with many draws of its wheels and compares: what the recordings show more at a
@@ -42,7 +39,7 @@ pub struct Path {
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
     /// Draws of the wheels
-    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u64).range(8..=MOST_DRAWS))]
+    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u64).range(*PathSettings::DRAWS.start() as u64..=*PathSettings::DRAWS.end() as u64))]
     draws: u64,
     /// Seed of the draws
     #[arg(long, default_value_t = 1)]

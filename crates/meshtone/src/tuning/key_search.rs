@@ -135,8 +135,10 @@ impl<'a> KeySearch<'a> {
             let (ranking, region) = match (round, number / 2) {
                 (0, _) => (None, Region::of_first_round(number, &own)),
                 (_, half) => {
-                    let ranking = if number.is_multiple_of(2) { 0 } else { 1 + half % (best.len() - 1) };
-                    (Some(ranking), Region::of_round(round, half / best.len(), &best[ranking]))
+                    let cases = best.len() - 1;
+                    let (ranking, own) =
+                        if number.is_multiple_of(2) { (0, half) } else { (1 + half % cases, half / cases) };
+                    (Some(ranking), Region::of_round(round, own, &best[ranking]))
                 }
             };
             Wish { places: place(keys, *seed, number, region), ranking }

@@ -70,11 +70,8 @@ pub(super) fn step_error(
     else {
         return Some(StepError::Suspected(estimate));
     };
-    let gain = |coarse: &WheelTurnSums, finer: f64| {
-        let coarse = coarse.rms();
-        if coarse < ROUNDING { 0.0 } else { finer / coarse - 1.0 }
-    };
-    let (acceleration, force) = (gain(acceleration, finer_acceleration), gain(force, finer_force));
+    let (acceleration, force) =
+        (gain(acceleration.rms(), finer_acceleration), gain(force.rms(), finer_force));
     let gain = if acceleration.abs() > force.abs() { acceleration } else { force };
     Some(StepError::Shown { gain, finer_rate_hz })
 }
@@ -182,14 +179,13 @@ pub(super) fn step_error_of_gearbox(
         return None;
     }
     let mut gearbox = stages.gearbox.clone();
+    // The same machine, whose highest mode follows the rate where it is not stated.
+    gearbox.solver.highest_mode_hz = Some(gearbox.solver.highest_mode_hz(channels.sampling_rate_hz));
     gearbox.solver.settings.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
     let Ok(finer) = simulate_gearbox(&gearbox) else {
         return Some(StepError::Suspected(estimate));
     };
-    let gains = signals
-        .iter()
-        .zip(judged(&finer))
-        .map(|(coarse, finer)| rms(finer) / rms(coarse).max(ROUNDING) - 1.0);
+    let gains = signals.iter().zip(judged(&finer)).map(|(coarse, finer)| gain(rms(coarse), rms(finer)));
     let gain = gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most });
     Some(StepError::Shown { gain, finer_rate_hz: finer.channels.sampling_rate_hz })
 }
@@ -203,6 +199,11 @@ fn judged(simulation: &GearboxSimulation) -> Vec<&[f64]> {
     let sensors = stages.plain_sensors().map(|sensor| format!("{}_g", sensor.name()));
     let forces = stages.gearbox.meshes.iter().map(|mesh| format!("force_n.{}", mesh.name()));
     sensors.chain(forces).filter_map(|name| channels.signal(&name)).collect()
+}
+
+/// By what part the rms of a signal is larger at the finer step; 0 where the signal is rounding alone.
+fn gain(coarse: f64, finer: f64) -> f64 {
+    if coarse < ROUNDING { 0.0 } else { finer / coarse - 1.0 }
 }
 
 fn rms(values: &[f64]) -> f64 {

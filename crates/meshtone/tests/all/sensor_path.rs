@@ -181,6 +181,19 @@ fn recordings_that_do_not_fit_are_refused() {
         estimate(short).unwrap_err(),
         PathError::TooShort { recording: 1, .. } | PathError::Signal(_)
     ));
+    // One value in two mesh periods shows nothing of them.
+    let mut slow = recording(&rig(), 105, [40.0, 40.0], 3.0);
+    slow.values_g = slow.values_g.into_iter().step_by(100).collect();
+    slow.sampling_rate_hz /= 100.0;
+    slow.pinion = ShaftPhase::constant(40.0, slow.sampling_rate_hz, slow.values_g.len()).unwrap();
+    let refused = estimate(slow).unwrap_err();
+    assert!(
+        matches!(
+            refused,
+            PathError::LowRate { recording: 1, .. } | PathError::DoesNotFit { recording: 1, .. }
+        ),
+        "{refused}"
+    );
     let noise = HealthyRecording {
         values_g: {
             let mut draws = Draws::new(1, Purpose::SensorNoise, 0);

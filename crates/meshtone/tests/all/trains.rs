@@ -348,7 +348,6 @@ fn torsional_frequencies_of_two_stages_and_of_an_idler() {
     assert_frequencies(&idler, &[3e8; 2], &[0.0, 125.21, 1037.32, 6856.59, 13207.45], 0.01);
 }
 
-// M. I. Friswell et al., Dynamics of Rotating Machines (2010): two trains that branch, the meshes of which are rigid in the book.
 // What turns behind the second mesh counts by the square of its ratio, as if it were on the second shaft.
 #[test]
 fn a_rigid_second_mesh_leaves_one_pair_with_the_transformed_inertia() {
@@ -383,6 +382,7 @@ fn a_rigid_second_mesh_leaves_one_pair_with_the_transformed_inertia() {
     assert!(differences[1] < differences[0] / 50.0 && differences[2] < 1e-6);
 }
 
+// M. I. Friswell et al., Dynamics of Rotating Machines (2010): two trains that branch, the meshes of which are rigid in the book.
 #[test]
 fn torsional_frequencies_of_branched_trains() {
     let motor_and_two_rotors = torsional_train(

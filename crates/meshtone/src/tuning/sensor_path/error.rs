@@ -1,5 +1,7 @@
 //! Errors of the estimate of a path.
 
+use std::ops::RangeInclusive;
+
 use thiserror::Error;
 
 use crate::error::{Error, ScenarioError};
@@ -12,15 +14,26 @@ pub enum PathError {
     /// Nothing to compare.
     #[error("no recording is given; give at least one of the healthy machine")]
     NoRecording,
-    /// The scatter of so few draws is not known.
-    #[error("{draws} draws of the wheels; must be at least 8, whose scatter says how sure the path is")]
-    TooFewDraws {
+    /// The scatter of few draws is not known, and many tell no more.
+    #[error(
+        "{draws} draws of the wheels; must be {} to {}, whose scatter says how sure the path is",
+        allowed.start(), allowed.end()
+    )]
+    Draws {
         /// The number.
         draws: usize,
+        /// The numbers that are allowed.
+        allowed: RangeInclusive<usize>,
     },
+    /// The path is a ratio of accelerations.
+    #[error(
+        "sensor.response_input is \"force\", but the path that is estimated is a ratio of accelerations; remove response_input"
+    )]
+    ResponseToForce,
     /// Ideal wheels have no sidebands, and no draw differs from another.
     #[error(
-        "quality.din_grade is 0, that of ideal wheels; must be the wheels' own grade, by which they are drawn"
+        "quality.din_grade and quality.iso_class are 0, those of ideal wheels; one of them must be the wheels' own grade, by which they \
+         are drawn"
     )]
     IdealWheels,
     /// A recording is too short.
@@ -34,6 +47,18 @@ pub enum PathError {
         recording_s: f64,
         /// (s) The least length.
         needed_s: f64,
+    },
+    /// A recording's rate shows no mesh harmonic.
+    #[error(
+        "recording {recording} has {rate_hz} samples a second; must have at least {needed_hz:.0} at this speed"
+    )]
+    LowRate {
+        /// Its number, from 1.
+        recording: usize,
+        /// (S/s) Its rate.
+        rate_hz: f64,
+        /// (S/s) The least rate.
+        needed_hz: f64,
     },
     /// A recording contradicts what is stated about it.
     #[error("recording {recording} does not fit the scenario: {reason}")]

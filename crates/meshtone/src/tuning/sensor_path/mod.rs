@@ -12,6 +12,8 @@ mod smoothing;
 pub use error::PathError;
 pub use recording::HealthyRecording;
 
+use std::ops::RangeInclusive;
+
 use cells::Cells;
 use minimum_phase::minimum_phase_deg;
 use recording::{Piece, pieces};
@@ -48,10 +50,15 @@ const MOST_MISFIT: f64 = 3.0;
 /// Settings of [`estimate_path`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PathSettings {
-    /// Draws of the wheels with which every piece of a recording is simulated; 8 or more.
+    /// Draws of the wheels with which every piece of a recording is simulated; one of [`Self::DRAWS`].
     pub draws: usize,
     /// Seed of the draws.
     pub seed: u64,
+}
+
+impl PathSettings {
+    /// The numbers of draws that are allowed: fewer have no scatter that is known, more tell nothing.
+    pub const DRAWS: RangeInclusive<usize> = 8..=512;
 }
 
 impl Default for PathSettings {
@@ -117,11 +124,15 @@ pub fn estimate_path(
     if recordings.is_empty() {
         return Err(PathError::NoRecording);
     }
-    if settings.draws < 8 {
-        return Err(PathError::TooFewDraws { draws: settings.draws });
+    if !PathSettings::DRAWS.contains(&settings.draws) {
+        return Err(PathError::Draws { draws: settings.draws, allowed: PathSettings::DRAWS });
     }
-    if scenario.quality.din_grade == 0 {
+    let quality = &scenario.quality;
+    if quality.din_grade == 0 && quality.iso_class == 0 {
         return Err(PathError::IdealWheels);
+    }
+    if scenario.sensors.first().is_some_and(|sensor| sensor.response_input == ResponseInput::Force) {
+        return Err(PathError::ResponseToForce);
     }
     for (index, recording) in recordings.iter().enumerate() {
         recording.check(index + 1, teeth)?;

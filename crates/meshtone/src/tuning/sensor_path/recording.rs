@@ -11,6 +11,9 @@ use crate::signal::{
 const PERIODS_IN_WINDOW: f64 = 20.0;
 /// (s) Least and largest window: a resonance must be resolved, and a speed nearly constant.
 const WINDOW_S: [f64; 2] = [0.05, 0.5];
+/// Least samples in a window, and in a mesh period, so that the first mesh harmonic is passed.
+const LEAST_IN_WINDOW: f64 = 16.0;
+const SAMPLES_IN_PERIOD: f64 = 2.5;
 /// Windows in a piece.
 const WINDOWS_IN_PIECE: f64 = 8.0;
 /// (s) Least length of a piece.
@@ -156,6 +159,12 @@ pub(super) fn pieces(
     let mut pieces = Vec::new();
     for (number, recording) in recordings.iter().enumerate() {
         let (rate_hz, samples) = (recording.sampling_rate_hz, recording.samples());
+        let needed_hz =
+            (LEAST_IN_WINDOW / window_s).max(SAMPLES_IN_PERIOD * slowest_hz * f64::from(pinion_teeth));
+        // Neither is an infinite speed, that of a recording without two samples, a rate.
+        if needed_hz.is_finite() && rate_hz < needed_hz {
+            return Err(PathError::LowRate { recording: number + 1, rate_hz, needed_hz });
+        }
         let recording_s = samples as f64 / rate_hz;
         let needed_s = 2.0 * window_s;
         if recording_s < needed_s {
