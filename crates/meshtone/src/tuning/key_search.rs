@@ -17,7 +17,6 @@ const KEPT: usize = 12;
 const SIMULATED_TOGETHER: usize = 448;
 
 /// A combination of values that was simulated, and its fit to the cases that count.
-#[derive(Clone)]
 struct Candidate {
     places: Vec<f64>,
     fit: Fit,
@@ -103,9 +102,9 @@ impl<'a> KeySearch<'a> {
         if self.candidates == 0 {
             return Err(HybridError::NoCandidate { first_failure: self.first_failure.unwrap_or_default() });
         }
-        let predicted = threads::try_map(&self.rankings[1..], |ranking| {
+        let predicted = threads::try_map(self.rankings[1..].iter().enumerate(), |(case, ranking)| {
             let simulated = ranking.simulated()?;
-            self.common.prediction(&ranking.with_fits(&simulated), ranking.left_out.unwrap_or_default())
+            self.common.prediction(&ranking.with_fits(&simulated), case)
         })?;
         let of_all = &self.rankings[0];
         let mut simulated = of_all.simulated()?;
@@ -131,15 +130,17 @@ impl<'a> KeySearch<'a> {
         // The best of the earlier rounds, not of this one.
         let places = |ranking: &Ranking| ranking.best.iter().map(|best| best.places.clone()).collect();
         let best: Vec<Vec<Vec<f64>>> = self.rankings.iter().map(places).collect();
+        let (first, cases) = (numbers.start, best.len() - 1);
         let wish = |number: usize| {
-            let (ranking, region) = match (round, number / 2) {
-                (0, _) => (None, Region::of_first_round(number, &own)),
-                (_, half) => {
-                    let cases = best.len() - 1;
-                    let (ranking, own) =
-                        if number.is_multiple_of(2) { (0, half) } else { (1 + half % cases, half / cases) };
-                    (Some(ranking), Region::of_round(round, own, &best[ranking]))
-                }
+            // A round begins with the best of each ranking, however few its combinations are.
+            let half = (number - first) / 2;
+            let (ranking, region) = if round == 0 {
+                (None, Region::of_first_round(number, &own))
+            } else if number.is_multiple_of(2) {
+                (Some(0), Region::of_round(round, half, &best[0]))
+            } else {
+                let ranking = 1 + number / 2 % cases;
+                (Some(ranking), Region::of_round(round, half / cases, &best[ranking]))
             };
             Wish { places: place(keys, *seed, number, region), ranking }
         };
