@@ -102,6 +102,18 @@ pub fn inverse_complex(mut spectrum: Vec<Complex64>) -> Vec<Complex64> {
     spectrum
 }
 
+/// Hann's window, which keeps a strong line of a spectrum from covering weak ones far from it: `sin²(πn/N)` for n = 0 … N − 1.
+///
+/// # Arguments
+/// * `len` - N, the number of values
+///
+/// ```
+/// assert_eq!(meshtone_fourier::hann_window(2), [0.0, 1.0]);
+/// ```
+pub fn hann_window(len: usize) -> Vec<f64> {
+    (0..len).map(|at| 0.5 - 0.5 * (std::f64::consts::TAU * at as f64 / len as f64).cos()).collect()
+}
+
 /// The least length of at least `len` that is even and has no prime factors but 2, 3 and 5: its transform is fast.
 pub fn convenient_length(len: usize) -> usize {
     let mut best = len.max(2).next_power_of_two();

@@ -26,7 +26,7 @@ impl ShaftPhase {
         Ok(Self(phase.with_zero(zero)))
     }
 
-    /// Of the pinion of what was simulated.
+    /// Returns the phase of the pinion in a simulation.
     #[staticmethod]
     fn of_simulated(scenario: &Scenario, start_s: f64, samples: usize) -> PyResult<Self> {
         let shafts = SimulatedShafts::new(&scenario.0, start_s, samples);

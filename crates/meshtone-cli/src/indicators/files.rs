@@ -23,11 +23,11 @@ pub const FILES: [&str; 8] =
 /// The figures, as far as there are any.
 #[derive(Default)]
 pub struct Figures {
-    /// Of the last record.
+    /// The figure of the last record.
     pub record: Option<Figure>,
-    /// Of the indicators over the series.
+    /// The figure of the indicators over the series.
     pub trend: Option<Figure>,
-    /// Of the orders over time of a run-up.
+    /// The figure of the orders over the time of a run-up.
     pub order_map: Option<Figure>,
 }
 

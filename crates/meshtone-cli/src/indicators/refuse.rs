@@ -76,7 +76,7 @@ pub enum RefusedInput {
     },
     /// The channel of a simulation.
     Simulated {
-        /// Whether it is to be cut into segments.
+        /// Whether the recording is cut into segments.
         in_segments: bool,
     },
     /// The tachometer's waveform.

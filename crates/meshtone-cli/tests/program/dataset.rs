@@ -380,7 +380,7 @@ fn an_incomplete_data_set_is_not_verified() {
     workplace.succeeds(&["dataset", "verify", "set"]);
 }
 
-/// What the column of warnings says is said at once too, since it may spoil all records.
+/// The program prints how many records have each warning of the column, since a warning may spoil all records.
 #[test]
 fn doubtful_records_are_counted() {
     let workplace = workplace();

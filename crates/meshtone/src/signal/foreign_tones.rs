@@ -1,8 +1,6 @@
 //! Tones that belong to neither shaft of a pair.
 
-use std::f64::consts::TAU;
-
-use meshtone_fourier::{Complex64, real_spectrum};
+use meshtone_fourier::{Complex64, hann_window, real_spectrum};
 
 use super::AngularSignal;
 use crate::operation::greatest_common_divisor;
@@ -70,9 +68,8 @@ pub fn lines_off_shafts(angular: &AngularSignal, teeth: u32, mate_teeth: u32) ->
     let revolutions = angular.revolutions();
     let whole = revolutions * angular.points_per_revolution;
     let mean = angular.values.iter().take(whole).sum::<f64>() / whole.max(1) as f64;
-    let window = |at: usize| 0.5 - 0.5 * (TAU * at as f64 / whole as f64).cos();
-    let windowed = angular.values.iter().take(whole).enumerate();
-    let windowed: Vec<f64> = windowed.map(|(at, value)| window(at) * (value - mean)).collect();
+    let windowed = angular.values.iter().zip(hann_window(whole));
+    let windowed: Vec<f64> = windowed.map(|(value, window)| window * (value - mean)).collect();
     let spectrum = real_spectrum(&windowed);
     let mut spacings = vec![1.0, f64::from(teeth) / f64::from(mate_teeth)];
     let hunting = f64::from(greatest_common_divisor(teeth, mate_teeth)) / f64::from(mate_teeth);

@@ -1,8 +1,6 @@
 //! The order spectrum as it changes over a recording.
 
-use std::f64::consts::TAU;
-
-use meshtone_fourier::real_spectrum;
+use meshtone_fourier::{hann_window, real_spectrum};
 
 use super::{AngularSettings, AngularSignal, ShaftPhase, SignalError, angular_resample};
 
@@ -115,8 +113,7 @@ fn map_of_angular(
     }
     let length = revolutions * points;
     let beyond = (all - revolutions) * points;
-    let window: Vec<f64> =
-        (0..length).map(|at| 0.5 - 0.5 * (TAU * at as f64 / length as f64).cos()).collect();
+    let window = hann_window(length);
     let mut map =
         OrderMap { revolutions, times_s: Vec::new(), speeds_hz: Vec::new(), amplitudes: Vec::new() };
     for part in 0..parts {
@@ -149,6 +146,8 @@ impl OrderMap {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     fn angular(revolutions: usize) -> (AngularSignal, ShaftPhase) {

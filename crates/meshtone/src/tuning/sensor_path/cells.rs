@@ -1,9 +1,8 @@
 //! Power of a signal by frequency and by what it belongs to in the mesh: cells.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
-use meshtone_fourier::real_spectrum;
+use meshtone_fourier::{hann_window, real_spectrum};
 
 use super::recording::Piece;
 
@@ -131,8 +130,7 @@ impl Cells {
     /// * `sampling_rate_hz` - (S/s)
     pub(super) fn spectra(&self, piece: usize, values: &[f64], sampling_rate_hz: f64) -> Vec<Vec<f64>> {
         let length = (self.window_s * sampling_rate_hz).round() as usize;
-        let hann: Vec<f64> =
-            (0..length).map(|at| 0.5 - 0.5 * (TAU * at as f64 / length as f64).cos()).collect();
+        let hann = hann_window(length);
         let scale = 1.0 / (sampling_rate_hz * hann.iter().map(|weight| weight * weight).sum::<f64>());
         let spectrum = |window: usize| {
             let start = (window as f64 * 0.5 * self.window_s * sampling_rate_hz).round() as usize;
