@@ -110,9 +110,8 @@ fn warnings(set: &Finished) -> String {
     if warnings.is_empty() {
         return String::new();
     }
-    let row = |(code, count): (&String, &u64)| {
-        let meaning = WarningKind::of_code(code).map_or("", WarningKind::meaning);
-        format!("| `{code}` | {count} | {meaning} |\n")
+    let row = |(kind, count): (&WarningKind, &u64)| {
+        format!("| `{}` | {count} | {} |\n", kind.code(), kind.meaning())
     };
     format!(
         "## Warnings\n\nWhat is doubtful about the simulations, by its code in the column `{WARNINGS}`, of {}.\n\n\

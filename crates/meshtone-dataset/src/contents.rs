@@ -3,6 +3,7 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
+use meshtone::scenario::WarningKind;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -22,8 +23,8 @@ pub(crate) const SHARDS_AT_A_TIME: usize = 1024;
 /// Number of records by split, and in each split by label.
 pub(crate) type Counts = BTreeMap<String, BTreeMap<String, u64>>;
 
-/// Number of records by the code of a warning.
-pub(crate) type WarningCounts = BTreeMap<String, u64>;
+/// Number of records by the kind of a warning.
+pub(crate) type WarningCounts = BTreeMap<WarningKind, u64>;
 
 /// The digest and the number of records that the file of a shard must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,8 +125,8 @@ impl<'c> SummaryColumns<'c> {
         }
         let mut warnings = WarningCounts::new();
         let codes = read.texts(WARNINGS).iter().flat_map(|codes| codes.split(BETWEEN_CODES));
-        for code in codes.filter(|code| !code.is_empty()) {
-            *warnings.entry(code.to_owned()).or_default() += 1;
+        for kind in codes.filter_map(WarningKind::of_code) {
+            *warnings.entry(kind).or_default() += 1;
         }
         let file = ShardFile { digest, rows: read.rows };
         let counts = count(&read);
@@ -165,9 +166,9 @@ impl Summary {
     }
 }
 
-/// Adds numbers of records by the codes of their warnings.
+/// Adds numbers of records by the kinds of their warnings.
 pub(crate) fn add_warnings(sum: &mut WarningCounts, warnings: WarningCounts) {
-    warnings.into_iter().for_each(|(code, count)| *sum.entry(code).or_default() += count);
+    warnings.into_iter().for_each(|(kind, count)| *sum.entry(kind).or_default() += count);
 }
 
 /// Everything that is known about the shards of a data set.

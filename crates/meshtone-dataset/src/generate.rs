@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
 use meshtone::batch::{Control, simulate_many};
-use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
 use rayon::prelude::*;
 
 use crate::contents::{Contents, SummaryColumns, WRONG_BYTES, WarningCounts, add_warnings};
@@ -68,8 +68,8 @@ pub struct Generated {
     pub written_records: u64,
     /// Records of the written shards that failed.
     pub failures: Vec<FailedRecord>,
-    /// Number of records of the written shards by the code of a warning about their simulation.
-    pub warnings: BTreeMap<String, u64>,
+    /// Number of records of the written shards by the kind of a warning about their simulation.
+    pub warnings: BTreeMap<WarningKind, u64>,
     /// Records that failed earlier, in the shards that were there already.
     pub earlier_failures: Vec<FailedRecord>,
     /// Files that were there but had been changed since they were written, and have been made again.

@@ -191,6 +191,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use meshtone::scenario::WarningKind;
+
     use crate::contents::{Counts, ShardFile, WarningCounts};
     use crate::digest::Digest;
     use crate::shard::FailedRecord;
@@ -219,7 +221,7 @@ mod tests {
         let file = ShardFile { digest: Digest::of(b"abc"), rows: 7 };
         let counts = Counts::from([("train".to_owned(), [("a \"label\"".to_owned(), 7)].into())]);
         let failures = vec![FailedRecord { record: 18, reason: "why".to_owned() }];
-        let warnings = WarningCounts::from([("step-error".to_owned(), 3)]);
+        let warnings = WarningCounts::from([(WarningKind::StepError, 3)]);
         list.shards.insert(2, ShardContents { file, counts, warnings, failures });
         list.summary.ranges.insert("speed_hz".to_owned(), [0.1 + 0.2, 1e300]);
         list.summary.first.insert("label".to_owned(), (2, 3));

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use meshtone_toml::{ErrorKind, TomlError};
+use serde::{Deserialize, Serialize};
 
 /// A scenario that cannot be simulated: which key, what it says, what is allowed.
 ///
@@ -218,10 +219,10 @@ fn in_short(ratios: &[f64]) -> String {
 macro_rules! warning_kinds {
     ($($kind:ident $code:literal $meaning:literal;)+) => {
         /// Subject of a [`ScenarioWarning`], by which programs distinguish warnings.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         #[non_exhaustive]
         pub enum WarningKind {
-            $(#[doc = concat!($meaning, ".")] $kind,)+
+            $(#[doc = concat!($meaning, ".")] #[serde(rename = $code)] $kind,)+
         }
 
         impl WarningKind {

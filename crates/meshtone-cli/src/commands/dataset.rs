@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
-use meshtone::scenario::WarningKind;
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
 use meshtone_dataset::merge::merge;
@@ -279,12 +278,13 @@ fn warn_after_generating(generated: &Generated) {
     let failures = &generated.failures;
     let failed = failures.iter().map(|failed| format!("record {} failed: {}", failed.record, failed.reason));
     warn_of_first(failed, "more record", "failed; manifest.json lists them");
-    for (code, count) in &generated.warnings {
-        let meaning = WarningKind::of_code(code).map_or("", WarningKind::meaning);
+    for (kind, count) in &generated.warnings {
         let have = if *count == 1 { "has" } else { "have" };
         warn(format_args!(
-            "{} {have} the warning {code}: {meaning}; the column `warnings` says which",
-            counted(*count, "record")
+            "{} {have} the warning {}: {}; the column `warnings` says which",
+            counted(*count, "record"),
+            kind.code(),
+            kind.meaning()
         ));
     }
 }

@@ -109,7 +109,7 @@ pub struct ProcessingOptions {
     /// Cut each recording into segments of M revolutions (of each wheel), at least 2, and make a series of them
     #[arg(long, value_name = "M", value_parser = several)]
     pub revolutions: Option<u32>,
-    /// Interpolation of the signal between its samples
+    /// Interpolation of the signal between its samples for the averages; the order map is always band-limited
     #[arg(long, default_value = "band-limited", value_parser = one_of(&INTERPOLATIONS))]
     pub interpolation: Interpolation,
 }

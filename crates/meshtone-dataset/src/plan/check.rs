@@ -76,7 +76,7 @@ struct Tried {
     /// How many of them were made.
     made: usize,
     /// Whether one of them can be simulated, or why the first one cannot; none where none was made.
-    simulated: Option<Result<(), ScenarioError>>,
+    simulated: Option<ReadResult<()>>,
 }
 
 /// Checks that the first records can be drawn, that one of each class can be simulated, and that every value of a choice is allowed.
@@ -91,10 +91,18 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         let class = &mut tried[record.class];
         if class.made < MADE && !matches!(class.simulated, Some(Ok(()))) {
             class.made += 1;
-            let result = sampler.scenario(&record).and_then(|scenario| {
+            // A key of the plan is where it is mended; one of a record's scenario may be drawn, or written in another file.
+            let of_class = |error: ScenarioError| {
+                let problem = error.to_string();
+                with_help_of(TomlError::new(format!("class[{}]", record.class), "", problem), error.into())
+            };
+            let made = sampler.scenario(&record).and_then(|scenario| {
                 refuse_ignored(&scenario, &record.values)?;
+                Ok(scenario)
+            });
+            let result = made.map_err(of_class).and_then(|scenario| {
                 refuse_length(content, &scenario)?;
-                meshtone::stages(&scenario).map(drop)
+                meshtone::stages(&scenario).map(drop).map_err(of_class)
             });
             if result.is_ok() || class.simulated.is_none() {
                 class.simulated = Some(result);
@@ -105,18 +113,12 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         }
     }
     for (c, class) in tried.iter_mut().enumerate() {
-        if let Some(Err(error)) = class.simulated.take() {
-            let error = TomlError::from(error);
+        if let Some(Err(mut error)) = class.simulated.take() {
             let label = &content.classes[c].label;
-            // A key of the plan is where it is mended; one of a record's scenario may be drawn, or written in another file.
-            let is_of_plan = ["keep.", "scenario."].iter().any(|section| error.key.starts_with(section));
-            let (key, value, first) = if is_of_plan {
-                (error.key.clone(), error.value.clone(), error.problem.clone())
-            } else {
-                (format!("class[{c}]"), String::new(), error.to_string())
-            };
-            let problem = format!("no record of the class \"{label}\" can be simulated; the first: {first}");
-            return Err(with_help_of(TomlError::new(key, value, problem), error));
+            let first = &error.problem;
+            error.problem =
+                format!("no record of the class \"{label}\" can be simulated; the first: {first}");
+            return Err(error);
         }
     }
     every_choice(content, &sampler, &tried)
@@ -324,17 +326,19 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
         return Err(error.with_help("shorten it, or leave it out: a record is then as long as that"));
     }
     let shaft_hz = operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.teeth(*wheel));
-    let (key, value, revolutions) = match (over_angle, duration_s) {
-        (Some(angle), _) => ("keep.revolutions", angle.revolutions.to_string(), angle.revolutions as f64),
-        (None, Some(duration_s)) => ("keep.duration_s", duration_s.to_string(), duration_s * shaft_hz),
-        (None, None) => {
-            let solver = &scenario.solver;
-            let given =
-                [("pinion_revolutions", solver.pinion_revolutions), ("duration_s", solver.duration_s)];
-            let given = given.into_iter().find_map(|(name, value)| Some((name, value?)));
-            let (name, value) = given.unwrap_or(("settle_fraction", solver.settle_fraction));
-            (&*format!("scenario.solver.{name}"), value.to_string(), simulated_s * shaft_hz)
+    let length = scenario.solver.length_key();
+    let (key, value, change, revolutions) = match (over_angle, duration_s) {
+        (Some(angle), _) => {
+            let revolutions = angle.revolutions as f64;
+            ("keep.revolutions", revolutions, "raise", revolutions)
         }
+        (None, Some(duration_s)) => ("keep.duration_s", *duration_s, "raise", duration_s * shaft_hz),
+        (None, None) => (
+            &*format!("scenario.solver.{}", length.name),
+            length.value,
+            length.change,
+            simulated_s * shaft_hz,
+        ),
     };
     // A whole number of revolutions may come out a rounding error below it.
     if content.keep.is_analysed() && operation.is_steady() && revolutions + 1e-6 < FEWEST_REVOLUTIONS as f64 {
@@ -342,9 +346,8 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
             "gives {revolutions:.3} revolutions of the {} at {shaft_hz:.3} Hz, but an average needs at least {FEWEST_REVOLUTIONS}",
             wheel.name()
         );
-        let change = if key.ends_with("settle_fraction") { "lower" } else { "raise" };
         let help = format!("{change} it, or set average, difference and indicators to false");
-        return Err(TomlError::new(key, value, problem).with_help(help));
+        return Err(TomlError::new(key, value.to_string(), problem).with_help(help));
     }
     Ok(())
 }

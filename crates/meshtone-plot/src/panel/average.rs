@@ -21,7 +21,7 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
         return;
     }
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
-    let quantity = quantity(&channels.leading().0);
+    let quantity = capitalised(&quantity(&channels.leading().0));
     // Where there is no whole revolution there is no average.
     let average = |shaft| shafts.average(channels.leading().1, shaft, &ChainSettings::default()).ok();
     let averages = WheelName::BOTH
@@ -55,12 +55,12 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
 /// Most letters of a name for which a vertical axis has room.
 const LONGEST_NAME: usize = 28;
 
-/// What a channel shows, as a title has it: a sensor's is its name, where there is room for it.
+/// What a channel shows, as a sentence has it: a sensor's is its name as the user wrote it, where there is room for it.
 pub(super) fn quantity(channel: &Channel) -> String {
     match channel {
-        Channel::Sensor(name) if name.len() > LONGEST_NAME => "First sensor".to_owned(),
-        Channel::Sensor(name) => capitalised(&name.replace('_', " ")),
-        _ => "Vertical acceleration".to_owned(),
+        Channel::Sensor(name) if name.len() > LONGEST_NAME => "first sensor".to_owned(),
+        Channel::Sensor(name) => name.replace('_', " "),
+        _ => "vertical acceleration".to_owned(),
     }
 }
 
@@ -80,7 +80,7 @@ fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
     };
     let time = axes::time_range(time);
     let (channel, signal) = channels.leading();
-    let quantity = quantity(&channel);
+    let quantity = capitalised(&quantity(&channel));
     let acceleration = [(signal, CURVE)];
     let speeds = [
         (channels.pinion_shaft_speed_hz.as_slice(), CURVE),

@@ -35,7 +35,7 @@ pub(super) fn of_pair(canvas: &mut Canvas, area: Area, stages: &Stages, channels
     let angular = shafts.angular(signal, WheelName::Pinion, &ChainSettings::default());
     let [pinion, gear] = WheelName::BOTH.map(|wheel| f64::from(stages.teeth.wheel(wheel).teeth));
     let spectrum = InputSpectrum {
-        quantity: (&super::average::quantity(&channel).to_lowercase(), "g"),
+        quantity: (&super::average::quantity(&channel), "g"),
         shaft: "pinion",
         angular: angular.map_err(|error| note(&error)),
         shafts: vec![1.0, pinion / gear],

@@ -371,12 +371,7 @@ fn tinted(figure: &Figure) -> Vec<[f64; 2]> {
     let tints = document.descendants().filter(|node| {
         node.attribute("fill") == Some("#d55e00") && node.attribute("fill-opacity") == Some("0.22")
     });
-    let span = |node: roxmltree::Node| {
-        let path = node.attribute("d").unwrap().replace('Z', "");
-        let x = path.split(['M', 'L']).filter_map(|point| point.split(' ').next()?.parse::<f64>().ok());
-        x.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-    };
-    tints.map(span).collect()
+    tints.map(extent_px).collect()
 }
 
 #[test]
@@ -500,4 +495,64 @@ fn cracks_of_either_wheel_and_beside_other_damage() {
         Fault::on_first_gear_tooth(RootCrack { depth_mm: 4.0, angle_deg: 45.0, length_mm: None }),
     ];
     assert_shows(&drawn(&scenario), &["crack 4 mm deep,", "hatched: lost over part of the face width"]);
+}
+
+#[test]
+fn the_order_spectrum_has_its_mesh_orders_and_the_sensor_as_the_user_wrote_it() {
+    let mut scenario = of_example(None);
+    let words = [
+        "Order spectrum of vertical acceleration, 38 revolutions of the pinion",
+        "Order of the pinion",
+        "Amplitude (g)",
+        "mesh and its harmonics",
+        "shafts",
+    ];
+    let figure = drawn(&scenario);
+    assert_shows(&figure, &words);
+    // The lines stand at one, two, three and four times the mesh order, whose name is beside the first.
+    let mut lines = dashed(&figure, "4 3");
+    lines.retain(|[left, right]| left == right);
+    let lines: Vec<f64> = lines.into_iter().map(|[left, _]| left).collect();
+    let [first, second, third, fourth] = lines[..] else { panic!("{lines:?}") };
+    assert!([third - second, fourth - third].iter().all(|step| (step - (second - first)).abs() < 0.1));
+    let names = figure.labels().iter().filter(|label| label.text == "17");
+    assert!(names.into_iter().any(|label| (f64::from(label.left) - first - 4.0).abs() < 1.0), "{first}");
+    let mut sensor = Sensor::default();
+    sensor.name = Some("Case_DE".to_owned());
+    scenario.sensors = vec![sensor];
+    assert_shows(&drawn(&scenario), &["Order spectrum of Case DE, ", "Case DE (g)"]);
+}
+
+/// (px) From where to where the lines with some dashes reach across, in the figure's order.
+fn dashed(figure: &Figure, dashes: &str) -> Vec<[f64; 2]> {
+    let document = roxmltree::Document::parse(figure.svg()).unwrap();
+    let lines = document.descendants().filter(|node| node.attribute("stroke-dasharray") == Some(dashes));
+    lines.map(extent_px).collect()
+}
+
+/// (px) From where to where a path reaches across.
+fn extent_px(node: roxmltree::Node) -> [f64; 2] {
+    let path = node.attribute("d").unwrap().replace('Z', "");
+    let x = path.split(['M', 'L']).filter_map(|point| point.split(' ').next()?.parse::<f64>().ok());
+    x.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// (px) Sum of the widths of the healthy pair's curves.
+fn healthy_width(figure: &Figure) -> f64 {
+    dashed(figure, "5 3").iter().map(|[left, right]| right - left).sum()
+}
+
+#[test]
+fn the_healthy_stiffness_is_drawn_wherever_this_one_differs() {
+    let with = |faults: &[Fault]| {
+        let mut scenario = of_example(None);
+        scenario.faults = faults.to_vec();
+        drawn(&scenario)
+    };
+    let pit = Fault::new(WheelName::Gear, 6, partial_face());
+    let of_pit = with(std::slice::from_ref(&pit));
+    let of_both = with(&[Fault::on_first_gear_tooth(Wear { depth_um: 30.0 }), pit]);
+    // The worn teeth are the gear's ordinary ones: only the pitted tooth is tinted, and yet every pitch differs from the healthy pair's.
+    assert_eq!(tinted(&of_both), tinted(&of_pit));
+    assert!(healthy_width(&of_both) > 5.0 * healthy_width(&of_pit), "{}", healthy_width(&of_both));
 }

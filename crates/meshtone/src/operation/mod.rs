@@ -7,7 +7,7 @@ mod settings;
 
 pub use motion::{Motion, MotionSample, TorqueHarmonic};
 pub use parameters::{Operation, Profile};
-pub use settings::Solver;
+pub use settings::{LengthKey, Solver};
 
 use crate::wheel::Gears;
 

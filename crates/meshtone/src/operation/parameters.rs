@@ -59,21 +59,27 @@ impl Operation {
     /// # Arguments
     /// * `kept_from_s` - (s) where the kept signal starts
     pub(crate) fn ended_profiles(&self, kept_from_s: f64) -> Vec<ScenarioWarning> {
+        let warning = |(key, ends_s): (&'static str, f64)| {
+            let message = format!(
+                "ends at {ends_s} s, and the kept signal starts at {kept_from_s:.3} s: only its last value is seen; add \
+                 {kept_from_s:.3} s to its times, so that it starts where the kept signal does"
+            );
+            ScenarioWarning::new(WarningKind::ProfileEnded, key, message)
+        };
+        self.profiles_ended_at(kept_from_s).map(warning).collect()
+    }
+
+    /// The keys of the profiles that end before a time, and (s) where they end.
+    ///
+    /// # Arguments
+    /// * `time_s` - since the simulation's start
+    pub(crate) fn profiles_ended_at(&self, time_s: f64) -> impl Iterator<Item = (&'static str, f64)> {
         let profiles = [
             ("operation.speed_profile_hz", &self.speed_profile_hz),
             ("operation.torque_profile_nm", &self.torque_profile_nm),
         ];
-        let ended = |(key, profile): (&str, &Option<Profile>)| {
-            let ends_s = *profile.as_ref()?.time_s.last()?;
-            (ends_s <= kept_from_s && kept_from_s > 0.0).then(|| {
-                let message = format!(
-                    "ends at {ends_s} s, and the kept signal starts at {kept_from_s:.3} s: only its last value is seen; lower \
-                     solver.settle_fraction, or shorten what is kept"
-                );
-                ScenarioWarning::new(WarningKind::ProfileEnded, key, message)
-            })
-        };
-        profiles.into_iter().filter_map(ended).collect()
+        let end = |(key, profile): (_, &Option<Profile>)| Some((key, *profile.as_ref()?.time_s.last()?));
+        profiles.into_iter().filter_map(end).filter(move |(_, ends_s)| *ends_s <= time_s && time_s > 0.0)
     }
 }
 

@@ -61,6 +61,25 @@ impl Solver {
         self.pinion_revolutions = None;
         self.settle_fraction = discarded_s / (discarded_s + kept_s);
     }
+
+    /// The key that decides how long the kept signal is: the length that is given, or how much of the whole is discarded.
+    pub fn length_key(&self) -> LengthKey {
+        let given = [("duration_s", self.duration_s), ("pinion_revolutions", self.pinion_revolutions)];
+        let given = given.into_iter().find_map(|(name, value)| Some((name, value?, "raise")));
+        let (name, value, change) = given.unwrap_or(("settle_fraction", self.settle_fraction, "lower"));
+        LengthKey { name, value, change }
+    }
+}
+
+/// The key that decides how long the kept signal is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LengthKey {
+    /// The key in the section `[solver]`.
+    pub name: &'static str,
+    /// The key's value.
+    pub value: f64,
+    /// What is done to the value for a longer signal: `raise` or `lower`.
+    pub change: &'static str,
 }
 
 impl Keys for Solver {

@@ -190,4 +190,20 @@ mod tests {
         assert!(with(Some(0), None).is_err());
         assert!(with(None, Some(f64::NAN)).is_err());
     }
+
+    /// Memory that is only reserved: a map that is too large is refused before a sample is read.
+    #[test]
+    fn a_map_of_too_many_amplitudes_is_refused() {
+        let (_, phase) = angular(3);
+        let (points, turns) = (64, 1_100_000);
+        let signal = AngularSignal {
+            points_per_revolution: points,
+            start_rev: 0.0,
+            nyquist_order: 32.0,
+            values: vec![0.0; points * turns],
+        };
+        let settings = OrderMapSettings { revolutions: Some(turns / 49), highest_order: None };
+        let error = map_of_angular(&signal, &phase, 100.0, &settings).map(drop).map_err(|e| e.to_string());
+        assert!(error.is_err_and(|error| error.contains("revolutions") && error.contains("2²⁷")));
+    }
 }

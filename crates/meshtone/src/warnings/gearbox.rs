@@ -20,7 +20,8 @@ impl GearboxStages {
     /// Warnings about stages that can be simulated: those of [`Gearbox::validate`](crate::scenario::Gearbox::validate), a settling too
     /// short for the slowest mode, a load that would break teeth, a mesh frequency that meets a natural frequency.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
-        let unsettled = unsettled(&self.slowest_mode, &self.time, &self.gearbox.solver.settings, words_of);
+        let (operation, solver) = (&self.gearbox.operation.drive, &self.gearbox.solver.settings);
+        let unsettled = unsettled(&self.slowest_mode, &self.time, operation, solver, words_of);
         let of_scenario = self.warnings_of_scenario.iter().cloned();
         of_scenario.chain(unsettled).chain(self.overloads()).chain(self.resonances()).collect()
     }

@@ -124,7 +124,8 @@ impl Stages {
 
     fn unsettled(&self) -> Option<ScenarioWarning> {
         let named = if self.teeth_part() { words_of } else { |_: &DecayingMode| String::new() };
-        unsettled(&self.slowest_mode(), &self.time, &self.scenario.solver, named)
+        let Scenario { operation, solver, .. } = &self.scenario;
+        unsettled(&self.slowest_mode(), &self.time, operation, solver, named)
     }
 }
 
@@ -132,11 +133,12 @@ impl Stages {
 ///
 /// # Arguments
 /// * `slowest` - the mode that is the slowest to decay
-/// * `time`, `solver` - the time that is discarded, and the settings that say so
+/// * `time`, `operation`, `solver` - the time that is discarded, profiles that it may pass, and the settings that say so
 /// * `named` - what is said of the mode
 fn unsettled(
     slowest: &DecayingMode,
     time: &TimeGrid,
+    operation: &Operation,
     solver: &Solver,
     named: fn(&DecayingMode) -> String,
 ) -> Option<ScenarioWarning> {
@@ -145,9 +147,9 @@ fn unsettled(
     let remainder = (-decay * settling_s).exp();
     (remainder > TOLERATED_TRANSIENT).then(|| {
         let advice = if decay > 0.0 {
-            let raise = fraction_that_settles(time, solver, decay)
-                .map_or(String::new(), |fraction| format!("; raise solver.settle_fraction to {fraction:.2}"));
-            format!("it takes {:.3} s to fall to 1 %{raise}{}", -TOLERATED_TRANSIENT.ln() / decay, named(slowest))
+            let needed_s = -TOLERATED_TRANSIENT.ln() / decay;
+            let raise = raised_fraction(time, operation, solver, needed_s);
+            format!("it takes {needed_s:.3} s to fall to 1 %{raise}{}", named(slowest))
         } else {
             "it never decays: a mode has no damping".to_string()
         };
@@ -187,16 +189,31 @@ fn overload(
     })
 }
 
-/// (-) The settling fraction, in hundredths, at which the transient of the slowest mode has decayed; none where no fraction is enough.
-fn fraction_that_settles(time: &TimeGrid, solver: &Solver, decay_per_s: f64) -> Option<f64> {
+/// The advice to raise the settling fraction, in hundredths, as the end of a sentence; empty where no fraction is enough.
+///
+/// A profile that would then end before the kept signal is moved along with it: lowering the fraction again would not settle.
+fn raised_fraction(time: &TimeGrid, operation: &Operation, solver: &Solver, needed_s: f64) -> String {
     const MOST: f64 = 0.99;
-    let needed_s = -TOLERATED_TRANSIENT.ln() / decay_per_s;
+    let [kept_s, whole_s] = [time.kept_samples(), time.samples].map(|samples| samples as f64 * time.step_s());
+    let part_of = |whole_s: f64| (100.0 * needed_s / whole_s).ceil() / 100.0;
     let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
-    let kept_s = time.kept_samples() as f64 * time.step_s();
-    // Without a stated length, settling takes its part of the whole.
-    let whole_s = if is_length_given { needed_s + kept_s } else { time.samples as f64 * time.step_s() };
-    let fraction = (100.0 * needed_s / whole_s).ceil() / 100.0;
-    (0.0..=MOST).contains(&fraction).then_some(fraction)
+    // Settling takes its part of the whole, if that is long enough, or comes before a stated length.
+    let (length, fraction, from_s) = if is_length_given || part_of(whole_s) > MOST {
+        let length =
+            if is_length_given { String::new() } else { format!("; give solver.duration_s = {kept_s:.3}") };
+        let fraction = part_of(needed_s + kept_s);
+        (length, fraction, kept_s * fraction / (1.0 - fraction))
+    } else {
+        (String::new(), part_of(whole_s), part_of(whole_s) * whole_s)
+    };
+    if fraction > MOST {
+        return String::new();
+    }
+    let later = |(key, _): (&str, f64)| {
+        format!(", and add {from_s:.3} s to the times of {key}, which would end before")
+    };
+    let later: String = operation.profiles_ended_at(from_s).map(later).collect();
+    format!("{length}; raise solver.settle_fraction to {fraction:.2}{later}")
 }
 
 /// The key of the largest torque, and the torque in N m.

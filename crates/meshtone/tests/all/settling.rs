@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use meshtone::scenario::*;
-use meshtone::simulate;
+use meshtone::{gearbox_stages, simulate, stages_and_warnings};
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|x| x * x).sum::<f64>().sqrt()
@@ -82,4 +82,74 @@ fn what_does_not_repeat_settles_for_long() {
     assert_eq!(start(&|scenario| scenario.operation.speed_fluctuation_hz = 1.0), 0);
     assert_eq!(start(&|scenario| scenario.solver.initial_velocity = Some([0.0; 13])), 0);
     assert_eq!(start(&|scenario| scenario.rig.damping_ratio = DampingRatio::Uniform(0.0)), 0);
+}
+
+/// The number that follows some words of a warning.
+fn advised(warnings: &[ScenarioWarning], words: &str) -> Option<f64> {
+    let (_, rest) = warnings.iter().find_map(|warning| warning.message.split_once(words))?;
+    let number = rest.split(|sign: char| !sign.is_ascii_digit() && sign != '.').next()?;
+    number.trim_end_matches('.').parse().ok()
+}
+
+/// Follows the advice of all warnings about settling and profiles at once.
+fn follow(warnings: &[ScenarioWarning], operation: &mut Operation, solver: &mut Solver) {
+    solver.duration_s = advised(warnings, "give solver.duration_s = ").or(solver.duration_s);
+    solver.settle_fraction =
+        advised(warnings, "raise solver.settle_fraction to ").unwrap_or(solver.settle_fraction);
+    // What settling needs stands first, and is at least what the profile itself asks for.
+    if let Some(later_s) = advised(warnings, ", and add ").or(advised(warnings, "; add ")) {
+        for profile in [&mut operation.speed_profile_hz, &mut operation.torque_profile_nm] {
+            profile.iter_mut().flat_map(|profile| &mut profile.time_s).for_each(|time_s| *time_s += later_s);
+        }
+    }
+}
+
+fn is_of_start(warning: &ScenarioWarning) -> bool {
+    matches!(warning.kind, WarningKind::Unsettled | WarningKind::ProfileEnded)
+}
+
+#[test]
+fn advice_on_settling_and_profiles_can_be_followed_together() {
+    let run_up = |end_s: f64| Profile { time_s: vec![0.0, end_s], value: vec![30.0, 50.0] };
+    // Length given or not; a profile that ends before a start that settles, or lasts.
+    for (end_s, duration_s, settle_fraction) in [
+        (0.1, Some(1.0), 0.5),
+        (0.1, Some(0.1), 0.1),
+        (0.1, Some(0.2), 0.01),
+        (0.05, None, 0.3),
+        (3.0, None, 0.01),
+    ] {
+        let mut scenario = Scenario::new(GearPair::example());
+        scenario.operation.speed_profile_hz = Some(run_up(end_s));
+        (scenario.solver.duration_s, scenario.solver.settle_fraction) = (duration_s, settle_fraction);
+        let warnings = |scenario: &Scenario| {
+            let (_, warnings) = stages_and_warnings(scenario, MemoryLimit::default()).unwrap();
+            warnings.into_iter().filter(is_of_start).collect::<Vec<_>>()
+        };
+        let before = warnings(&scenario);
+        assert!(!before.is_empty(), "{end_s} {duration_s:?}");
+        follow(&before, &mut scenario.operation, &mut scenario.solver);
+        let after = warnings(&scenario);
+        assert!(after.is_empty(), "{before:?}\n{after:?}");
+        let profile = scenario.operation.speed_profile_hz.as_ref().unwrap();
+        assert!(*profile.time_s.last().unwrap() > scenario.time_grid().kept_from_s());
+    }
+}
+
+#[test]
+fn a_gearbox_whose_profile_ends_says_how_it_can_last() {
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    gearbox.operation.drive.speed_profile_hz =
+        Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
+    (gearbox.solver.settings.duration_s, gearbox.solver.settings.settle_fraction) = (Some(0.5), 0.5);
+    let warnings = |gearbox: &Gearbox| {
+        let warnings = gearbox_stages(gearbox).unwrap().warnings();
+        warnings.into_iter().filter(is_of_start).collect::<Vec<_>>()
+    };
+    let before = warnings(&gearbox);
+    assert!(before.iter().any(|warning| warning.kind == WarningKind::ProfileEnded), "{before:?}");
+    assert!(before.iter().any(|warning| warning.kind == WarningKind::Unsettled), "{before:?}");
+    follow(&before, &mut gearbox.operation.drive, &mut gearbox.solver.settings);
+    let after = warnings(&gearbox);
+    assert!(after.is_empty(), "{before:?}\n{after:?}");
 }

@@ -2,6 +2,7 @@
 
 use super::super::{Scenario, ScenarioError, Solver};
 use crate::keys::Check;
+use crate::operation::LengthKey;
 
 /// The kept signal has one length, and it has samples.
 pub(super) fn check(scenario: &Scenario) -> Check {
@@ -26,10 +27,7 @@ pub(super) fn check(scenario: &Scenario) -> Check {
     if scenario.time_grid().kept_samples() > 0 {
         return Ok(());
     }
-    let length = ["duration_s", "pinion_revolutions"].into_iter().zip([duration_s, pinion_revolutions]);
-    let (key, value, help) = match length.into_iter().find_map(|(key, value)| Some((key, (*value)?))) {
-        Some((key, value)) => (key, value, "raise it, or solver.sampling_rate_hz"),
-        None => ("settle_fraction", scenario.solver.settle_fraction, "lower it"),
-    };
-    Err(ScenarioError::new(format!("solver.{key}"), value, "leaves no sample to keep").with_help(help))
+    let LengthKey { name, value, change } = scenario.solver.length_key();
+    Err(ScenarioError::new(format!("solver.{name}"), value, "leaves no sample to keep")
+        .with_help(format!("{change} it, or raise solver.sampling_rate_hz")))
 }
