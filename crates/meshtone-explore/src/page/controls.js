@@ -144,7 +144,7 @@ class Control {
       field.addEventListener("change", () => this.controls.set(this.path, field.value, "full"));
       return field;
     }
-    const field = element("input", { id, type: "text", placeholder: /^[-\d.e]*$/.test(otherwise) ? "" : otherwise });
+    const field = element("input", { id, type: "text", placeholder: /^[-\d.e]*$/.test(otherwise) ? "" : otherwise.replaceAll("`", "") });
     if (["number", "whole"].includes(kind)) field.inputMode = "decimal";
     field.addEventListener("change", () => this.controls.set(this.path, this.#typed(field.value.trim()), "full"));
     return field;

@@ -124,7 +124,8 @@ fn a_run_up_has_its_energy_at_mesh_orders_at_every_speed() {
     let phase = shafts.varying_phase(WheelName::Pinion).unwrap().unwrap();
     let settings = OrderMapSettings { revolutions: Some(4), highest_order: Some(90.0) };
     let map = order_map(&channels.vertical_g, &phase, channels.sampling_rate_hz, &settings).unwrap();
-    assert!(map.speeds_hz[0] < 10.0 && *map.speeds_hz.last().unwrap() > 37.0);
+    // From 8 Hz on, four revolutions at 17.8 Hz/s have a mean of 11.2 Hz.
+    assert!(map.speeds_hz[0] < 12.0 && *map.speeds_hz.last().unwrap() > 37.0);
     for (speed_hz, part) in map.speeds_hz.iter().zip(&map.amplitudes) {
         // Wheels of grade 7 have sidebands: of the 20 orders from mesh to mesh, energy lies within 2 of a mesh order.
         let energy = |keep: &dyn Fn(f64) -> bool| -> f64 {
