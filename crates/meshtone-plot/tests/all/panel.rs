@@ -551,7 +551,7 @@ fn the_healthy_stiffness_is_drawn_wherever_this_one_differs() {
     };
     let pit = Fault::new(WheelName::Gear, 6, partial_face());
     let of_pit = with(std::slice::from_ref(&pit));
-    let of_both = with(&[Fault::at_usual_place(Wear { depth_um: 30.0 }.into()), pit]);
+    let of_both = with(&[Fault::at_usual_place(Wear { depth_um: 30.0 }), pit]);
     // The worn teeth are the gear's ordinary ones: only the pitted tooth is tinted, and yet every pitch differs from the healthy pair's.
     assert_eq!(tinted(&of_both), tinted(&of_pit));
     assert!(healthy_width(&of_both) > 5.0 * healthy_width(&of_pit), "{}", healthy_width(&of_both));
