@@ -516,7 +516,7 @@ fn the_order_spectrum_has_its_mesh_orders_and_the_sensor_as_the_user_wrote_it() 
     let [first, second, third, fourth] = lines[..] else { panic!("{lines:?}") };
     assert!([third - second, fourth - third].iter().all(|step| (step - (second - first)).abs() < 0.1));
     let names = figure.labels().iter().filter(|label| label.text == "17");
-    assert!(names.into_iter().any(|label| (f64::from(label.left) - first - 4.0).abs() < 1.0), "{first}");
+    assert!(names.into_iter().any(|label| (label.left - first - 4.0).abs() < 1.0), "{first}");
     let mut sensor = Sensor::default();
     sensor.name = Some("Case_DE".to_owned());
     scenario.sensors = vec![sensor];
