@@ -160,7 +160,7 @@ pub fn check_recording(
     let found: Result<_, SignalError> = py.detach(|| {
         let angular = signal::angular_resample(signal, &phase.0, &AngularSettings::default())?;
         let mut found = phase.0.warnings.clone();
-        found.extend(signal::check_recording(&angular, &stated, phase.0.mean_speed_hz(sampling_rate_hz)));
+        found.extend(signal::check_recording(&angular, &stated, &phase.0, sampling_rate_hz));
         let part = signal::synchronous_average(&angular)
             .ok()
             .and_then(|average| signal::synchronous_part(&angular.values, &average.values));

@@ -113,8 +113,7 @@ fn wheel_records(
             };
             let angular = angular_resample(&input.channel.samples, &phase, &settings.angular)?;
             if wheel.is_on_shaft {
-                let speed_hz = phase.mean_speed_hz(rate_hz);
-                doubts = check_recording(&angular, &options.stated_facts(wheel.teeth), speed_hz);
+                doubts = check_recording(&angular, &options.stated_facts(wheel.teeth), &phase, rate_hz);
             }
             let records = match processing.revolutions {
                 None => vec![process_angular(&angular, wheel.teeth, &settings)?],

@@ -176,7 +176,7 @@ fn of_measurement(
     let pinion = over(&phase);
     let mut doubts = phase.warnings.clone();
     if let Ok(angular) = &pinion {
-        doubts.extend(check_recording(angular, &stated, phase.mean_speed_hz(rate_hz)));
+        doubts.extend(check_recording(angular, &stated, &phase, rate_hz));
     }
     let gear = over(&phase.of_mate(pinion_teeth, gear_teeth)?);
     Ok((name, [process(&pinion, pinion_teeth), process(&gear, gear_teeth)], doubts))

@@ -143,7 +143,8 @@ pub enum SignalError {
     /// No tone stands out at the mesh frequency.
     #[error(
         "no mesh tone at {frequency_hz:.2} Hz ± {half_band_hz:.2} Hz: the mean power there is {ratio:.2} times the \
-         noise around it, at least {needed} is needed; check the tooth count and the speed"
+         noise around it, at least {needed} is needed; check the tooth count and the speed, and take the phase from a tachometer where the \
+         speed changes over the recording"
     )]
     NoMeshTone {
         /// (Hz) Where it is expected.

@@ -240,7 +240,7 @@ fn warnings(of: &Recording, phase: &ShaftPhase, stated: &StatedFacts) -> Option<
         return None;
     }
     let mut found = phase.warnings.clone();
-    found.extend(check_recording(&angular, stated, phase.mean_speed_hz(of.rate_hz)));
+    found.extend(check_recording(&angular, stated, phase, of.rate_hz));
     let record = process_angular(&angular, stated.teeth, &ChainSettings::default()).ok()?;
     found.extend(record.warnings.into_iter().filter(|warning| warning.code() != "mesh-order-near-nyquist"));
     Some(found)
@@ -347,13 +347,14 @@ fn hunting_tooth_orders_are_no_other_mate() {
         (23, 38),
     ] {
         let angular = pair_with_hunting_tooth(teeth, mate_teeth, 128);
+        let phase = ShaftPhase::constant(30.0, 3e4, 10_000).unwrap();
         let pulses = StatedTurning::Pulses { per_revolution: 1 };
         for turning in [pulses, StatedTurning::ConstantSpeed { speed_hz: 30.0 }] {
             let stated = StatedFacts { teeth, mate_teeth: Some(mate_teeth), turning };
-            assert_eq!(check_recording(&angular, &stated, 30.0), [], "{teeth}/{mate_teeth}");
+            assert_eq!(check_recording(&angular, &stated, &phase, 3e4), [], "{teeth}/{mate_teeth}");
         }
         let wrong = StatedFacts { teeth, mate_teeth: Some(mate_teeth + 1), turning: pulses };
-        let said = check_recording(&angular, &wrong, 30.0);
+        let said = check_recording(&angular, &wrong, &phase, 3e4);
         found += usize::from(
             said.iter().any(|said| (said.code(), said.values()[0].1) == ("mate_teeth", mate_teeth.into())),
         );

@@ -2,10 +2,11 @@
 
 #![allow(clippy::unwrap_used)]
 
-use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
+use meshtone::scenario::{Fault, GearPair, MissingTooth, Profile, Scenario};
 use meshtone::sensor::Channels;
 use meshtone::signal::{
-    ChainSettings, ShaftPhase, SignalError, SimulatedShafts, process_channel, process_segments,
+    AngularSettings, ChainSettings, OrderMapSettings, ShaftPhase, SignalError, SimulatedShafts, StatedFacts,
+    StatedTurning, angular_resample, check_recording, order_map, process_channel, process_segments,
     revolution_average,
 };
 use meshtone::wheel::WheelName;
@@ -110,4 +111,49 @@ fn what_is_refused() {
     let mut fluctuating = faulty();
     fluctuating.operation.speed_fluctuation_hz = 0.1;
     assert!(!SimulatedShafts::new(&fluctuating, 1e300, 10).is_steady());
+}
+
+/// A right recording of a run-up, 8 to 40 Hz, whose resonances ring between the orders of both shafts.
+#[test]
+fn a_run_up_with_its_own_facts_is_not_doubted() {
+    let mut scenario = faulty();
+    scenario.faults.clear();
+    let (time_s, value) = (vec![0.0, 0.2, 4.0], vec![8.0, 8.0, 40.0]);
+    scenario.operation.speed_profile_hz = Some(Profile { time_s, value });
+    let channels = channels(&scenario);
+    let shafts = SimulatedShafts::of_channels(&scenario, &channels);
+    let phase = shafts.varying_phase(WheelName::Pinion).unwrap().unwrap();
+    let angular = angular_resample(&channels.vertical_g, &phase, &AngularSettings::default()).unwrap();
+    let turning = StatedTurning::Pulses { per_revolution: 1 };
+    let stated = StatedFacts { teeth: 20, mate_teeth: Some(40), turning };
+    assert_eq!(check_recording(&angular, &stated, &phase, channels.sampling_rate_hz), []);
+}
+
+#[test]
+fn a_run_up_has_its_energy_at_mesh_orders_at_every_speed() {
+    let mut scenario = faulty();
+    scenario.faults.clear();
+    scenario.quality.din_grade = 0;
+    let (time_s, value) = (vec![0.0, 0.2, 2.0], vec![8.0, 8.0, 40.0]);
+    scenario.operation.speed_profile_hz = Some(Profile { time_s, value });
+    scenario.solver.settle_fraction = 0.1;
+    let channels = channels(&scenario);
+    let shafts = SimulatedShafts::of_channels(&scenario, &channels);
+    let phase = shafts.varying_phase(WheelName::Pinion).unwrap().unwrap();
+    let settings = OrderMapSettings { revolutions: Some(4), highest_order: Some(90.0) };
+    let map = order_map(&channels.vertical_g, &phase, channels.sampling_rate_hz, &settings).unwrap();
+    // From 8 Hz on, four revolutions at 17.8 Hz/s have a mean of 11.2 Hz.
+    assert!(map.speeds_hz[0] < 12.0 && *map.speeds_hz.last().unwrap() > 37.0);
+    for (speed_hz, part) in map.speeds_hz.iter().zip(&map.amplitudes) {
+        // Ideal teeth are alike: of the 20 orders from mesh to mesh, energy lies within 2 of a mesh order.
+        let energy = |keep: &dyn Fn(f64) -> bool| -> f64 {
+            let lines = part.iter().enumerate().filter(|(line, _)| keep(map.order(*line)));
+            lines.map(|(_, amplitude)| amplitude * amplitude).sum()
+        };
+        let from_mesh = |order: f64| (order / 20.0 - (order / 20.0).round()).abs() * 20.0;
+        let share = energy(&|order| order > 10.0 && from_mesh(order) <= 2.0) / energy(&|order| order > 10.0);
+        println!("{speed_hz:.1} Hz: {share:.3}");
+        let strongest = part.iter().enumerate().skip(40).max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
+        assert!(share > 0.8 && from_mesh(map.order(strongest)) < 0.5, "{speed_hz} Hz: {share}");
+    }
 }

@@ -40,10 +40,7 @@ impl Display for Mismatch {
                 )
             }
             Alternative::PulsesPerRevolution { pulses, stated } => {
-                write!(
-                    f,
-                    "there are rather {pulses} pulses in a revolution than {stated}: check their number"
-                )
+                write!(f, "the pulses in a revolution are rather {pulses} than {stated}: check their number")
             }
             Alternative::VaryingSpeed { variation, stated_hz } => write!(
                 f,

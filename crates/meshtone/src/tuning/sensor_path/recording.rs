@@ -3,8 +3,7 @@
 use super::{PathError, RecordingProblem};
 use crate::operation::Profile;
 use crate::signal::{
-    AngularSettings, ShaftPhase, SignalWarning, StatedFacts, StatedTurning, angular_resample, check_channel,
-    check_recording, find_mismatch,
+    AngularSettings, ShaftPhase, StatedFacts, StatedTurning, angular_resample, check_channel, check_recording,
 };
 
 /// Mesh periods in a window, so that mesh harmonics and the sidebands around them are apart.
@@ -22,8 +21,6 @@ const SHORTEST_PIECE_S: f64 = 1.0;
 const MOST_PIECES: usize = 32;
 /// (-) Part of a piece's first speed from which it is taken to come at least, and to which inverse at most.
 const LEAST_BEFORE: f64 = 0.5;
-/// (-) Change of a speed over a recording up to which its tones are looked for over the whole recording.
-const NEARLY_CONSTANT: f64 = 0.02;
 
 /// A recording of the healthy machine.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,25 +59,8 @@ impl HealthyRecording {
         check_channel(&self.values_g)?;
         let angular = angular_resample(&self.values_g, &self.pinion, &AngularSettings::default())?;
         let stated = StatedFacts { teeth: pinion, mate_teeth: Some(gear), turning: StatedTurning::Other };
-        // Where the speed changes much, tones that ring at a resonance repeat with neither shaft.
-        let against = if self.speed_varies() {
-            find_mismatch(&angular, &stated).map(SignalWarning::DoesNotFit)
-        } else {
-            let speed_hz = self.pinion.mean_speed_hz(self.sampling_rate_hz);
-            check_recording(&angular, &stated, speed_hz).into_iter().next()
-        };
-        against.map_or(Ok(()), |warning| Err(RecordingProblem::DoesNotFit(warning)))
-    }
-
-    fn speed_varies(&self) -> bool {
-        let last = self.samples() - 1;
-        let parts = 10.min(last);
-        let speed_hz = |part: usize| self.speed_hz(part * last / parts, (part + 1) * last / parts);
-        let speeds = (0..parts).map(speed_hz);
-        let (least, most) = speeds.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), speed| {
-            (least.min(speed), most.max(speed))
-        });
-        most / least - 1.0 > NEARLY_CONSTANT
+        let against = check_recording(&angular, &stated, &self.pinion, self.sampling_rate_hz);
+        against.into_iter().next().map_or(Ok(()), |warning| Err(RecordingProblem::DoesNotFit(warning)))
     }
 }
 
