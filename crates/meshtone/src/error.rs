@@ -4,6 +4,8 @@ use std::fmt;
 
 use meshtone_toml::{ErrorKind, TomlError};
 
+use crate::wheel::NamedGears;
+
 /// A scenario that cannot be simulated: which key, what it says, what is allowed.
 ///
 /// ```
@@ -88,12 +90,13 @@ impl ScenarioError {
     }
 
     /// More pairs in contact at once than the model of contact looks at.
-    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64) -> Self {
+    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64, gears: &NamedGears) -> Self {
         let problem = format!(
             "has a contact ratio of {contact_ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
         );
-        Self::new("gears", "", problem)
-            .with_help("raise gears.pressure_angle_deg, or set model = \"linear\", which has no such limit")
+        let angle = gears.key("pressure_angle_deg");
+        Self::new(gears.whole(), "", problem)
+            .with_help(format!("raise {angle}; of one pair, model = \"linear\" has no such limit"))
     }
 
     /// Flanks that close along the face, and no load that could decide how much of it bears.
@@ -199,9 +202,7 @@ impl Error {
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Scenario(error) => error.help.as_deref(),
-            Self::Diverged { .. } => {
-                Some("raise the damping ratios of [rig], use more teeth, or change operation.pinion_speed_hz")
-            }
+            Self::Diverged { .. } => Some("raise damping ratios, use more teeth, or change the speed"),
         }
     }
 }
@@ -255,6 +256,7 @@ warning_kinds! {
     IgnoredKey "ignored-key" "a key has no effect";
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
+    Gyroscopic "gyroscopic" "a shaft is so fast that gyroscopic moments, which are left out, shift natural frequencies";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
     ProfileEnded "profile-ended" "a speed or torque profile ends before the kept signal starts";

@@ -16,7 +16,7 @@ use web_time::Instant;
 pub use equations::Equations;
 pub use gearbox::{
     GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
-    simulate_gearbox, simulate_gearboxes,
+    gearbox_stages_within, simulate_gearbox, simulate_gearboxes,
 };
 use options::MachineOptions;
 
@@ -33,7 +33,10 @@ use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
 use crate::solver::{Block, Diverged, Output, Recorder};
 use crate::wheel::quality::{deviations, profile_errors};
-use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth};
+use crate::wheel::{
+    Deviations, NamedGears, PairNames, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName,
+    teeth,
+};
 
 /// Results of every stage before the time loop.
 #[derive(Clone, PartialEq)]
@@ -202,7 +205,8 @@ fn machine_stages(
     };
     clock.lap("equations of motion");
     stages.meshes = stages.meshes_at(stages.points_per_pitch())?;
-    stages.meshes.iter().try_for_each(check_mesh)?;
+    let gears = NamedGears::new(&stages.scenario.gears, PairNames::OnePair);
+    stages.meshes.iter().try_for_each(|mesh| check_mesh(mesh, &gears))?;
     clock.lap("mesh stiffness");
     stages.timings = clock.laps;
     Ok(stages)
@@ -247,12 +251,12 @@ fn healthy_teeth(scenario: &Scenario) -> Teeth {
 }
 
 /// Refuses a mesh that carries nothing, and one of more pairs at once than a step looks at.
-fn check_mesh(mesh: &Mesh) -> Result<(), ScenarioError> {
+fn check_mesh(mesh: &Mesh, gears: &NamedGears) -> Result<(), ScenarioError> {
     if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
         return Err(ScenarioError::not_stiff());
     }
     if mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
-        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO));
+        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, gears));
     }
     let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
     if mesh.classes.iter().any(meets) { Ok(()) } else { Err(ScenarioError::nothing_left()) }
@@ -341,8 +345,7 @@ impl Stages {
         if !self.scenario.model.has_meshes() {
             return [0.0, TipRelief::PUBLISHED.length_mm];
         }
-        let relief = &gears.flank_relief;
-        [gears.chamfer_mm(), if relief.amount_um > 0.0 { relief.length_mm } else { 0.0 }]
+        gears.tip_lengths_mm()
     }
 
     /// (N) Force along the line of action that balances the brake's nominal torque.

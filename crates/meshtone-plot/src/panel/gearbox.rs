@@ -6,22 +6,29 @@ use meshtone::scenario::Coupled;
 use meshtone::signal::{AngularSettings, AngularSignal, ShaftPhase, angular_resample};
 use meshtone::{GearboxSimulation, GearboxStages};
 
+use super::side::Side;
 use super::spectrum::{self, InputSpectrum};
-use super::{COLUMN_GAP, FULL_WIDTH, LEFT, NAME_LEFT, WIDTH};
+use super::{
+    BELOW_HEADING, CIRCLE_NAMES, COLUMN_GAP, COLUMN_WIDTH, FULL_WIDTH, LEFT, NAME_LEFT, TEETH_HEIGHT, WIDTH,
+    column_left, heading, teeth, tooth,
+};
+use crate::damaged_tooth::{self, DamagedTooth};
 use crate::drawing::{
     Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, colour, number,
     over,
 };
 use crate::{Figure, PlotError};
 
-/// (px) Height of the panel.
-const HEIGHT: u32 = 1000;
 const TRAIN_TOP: f64 = 118.0;
 const TRAIN_HEIGHT: f64 = 300.0;
-const WHEELS_TOP: f64 = 500.0;
-const WHEELS_HEIGHT: f64 = 150.0;
-const SPECTRUM_TOP: f64 = 740.0;
+/// (px) From the bottom of a row to the top of the next.
+const ROW_GAP: f64 = 86.0;
+/// (px) The same where the next has a heading.
+const HEADING_GAP: f64 = 120.0;
+const CURVES_HEIGHT: f64 = 150.0;
 const SPECTRUM_HEIGHT: f64 = 200.0;
+/// (px) Below the last row.
+const FOOT: f64 = 62.0;
 
 const OUTLINE: Stroke = Stroke::solid(colour::INK, 1.2);
 const SHAFT: Stroke = Stroke::solid(colour::MUTED, 1.0);
@@ -38,7 +45,10 @@ const WHEEL: Fill = Fill::solid(colour::STEEL);
 /// Signals without a spectrum.
 pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError> {
     let stages = &simulation.stages;
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let wheels = Wheels::of(stages)?;
+    let wheels_top = TRAIN_TOP + TRAIN_HEIGHT;
+    let spectrum_top = wheels_top + wheels.height() + ROW_GAP;
+    let mut canvas = Canvas::new(WIDTH, (spectrum_top + SPECTRUM_HEIGHT + FOOT) as u32);
     let title = title(stages);
     let facts = facts(stages);
     let edge = LEFT - NAME_LEFT - 11.0;
@@ -47,11 +57,11 @@ pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError>
     let train = Train::new(stages);
     train.draw_front(&mut canvas, Area::new(LEFT, TRAIN_TOP, half, TRAIN_HEIGHT));
     train.draw_above(&mut canvas, Area::new(LEFT + half + COLUMN_GAP, TRAIN_TOP, half, TRAIN_HEIGHT));
-    wheels(&mut canvas, Area::new(LEFT, WHEELS_TOP, FULL_WIDTH, WHEELS_HEIGHT), simulation);
-    spectrum(&mut canvas, Area::new(LEFT, SPECTRUM_TOP, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
+    wheels.draw(&mut canvas, wheels_top, simulation);
+    spectrum(&mut canvas, Area::new(LEFT, spectrum_top, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
     let description = format!(
-        "Results panel of a simulated gearbox: the train from the front and from above, the mesh stiffness and the average of its wheels, and the \
-         spectrum of a sensor in orders of the input. {}.",
+        "Results panel of a simulated gearbox: the train from the front and from above, teeth, mesh stiffness and \
+         averages of its wheels, and the spectrum of a sensor in orders of the input. {}.",
         facts.join(", ")
     );
     Ok(canvas.finish(&title, &description))
@@ -244,51 +254,86 @@ fn circle(axes: &Axes, x: f64, y: f64, radius: f64) -> Vec<Pixel> {
 
 /// Most wheels that have room.
 const MOST_WHEELS: usize = 4;
-/// Most wheels beside whose averages the stiffness has room.
-const MOST_WITH_STIFFNESS: usize = 2;
+/// Most wheels of which face, profile errors and stiffness have room too.
+const MOST_WHOLE: usize = 2;
 
-/// A column for each damaged wheel, or for the first wheels where none is damaged: the stiffness of its mesh and the average of the first
-/// sensor's signal, both over a revolution of it.
-fn wheels(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
-    let stages = &simulation.stages;
-    let gearbox = &stages.gearbox;
-    let is_damaged =
-        |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
-    let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
-    let shown = match damaged.len() {
-        0 => stages.layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).take(MOST_WITH_STIFFNESS).collect(),
-        _ => damaged,
-    };
-    let each = if shown.len() <= MOST_WITH_STIFFNESS { 2 } else { 1 };
-    let columns = each * shown.len().clamp(1, MOST_WHEELS);
-    let mut areas = area.grid([columns, 1], [COLUMN_GAP, 0.0], area.height);
-    for wheel in shown.iter().take(MOST_WHEELS) {
-        let parts: Vec<Area> = areas.by_ref().take(each).collect();
-        if let [stiffness_area, average_area] = parts[..] {
-            stiffness(canvas, stiffness_area, stages, *wheel);
-            average(canvas, average_area, simulation, *wheel);
-        } else if let [average_area] = parts[..] {
-            average(canvas, average_area, simulation, *wheel);
+/// The wheels that have a column each: those that are damaged, or the first ones where none is.
+struct Wheels<'a> {
+    /// Their numbers.
+    numbers: Vec<usize>,
+    /// The damaged wheels' teeth.
+    damaged: Vec<Side<'a>>,
+}
+
+impl<'a> Wheels<'a> {
+    fn of(stages: &'a GearboxStages) -> Result<Self, PlotError> {
+        let gearbox = &stages.gearbox;
+        let is_damaged =
+            |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
+        let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
+        let sides = damaged.iter().take(MOST_WHEELS);
+        let sides = sides.filter_map(|number| Side::of_gearbox(stages, *number)).collect::<Result<_, _>>()?;
+        let first = || stages.layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).take(MOST_WHOLE).collect();
+        Ok(Self { numbers: if damaged.is_empty() { first() } else { damaged }, damaged: sides })
+    }
+
+    /// (px) Height of all that is drawn of them, with the gap above it.
+    fn height(&self) -> f64 {
+        match self.damaged.len() {
+            0 => ROW_GAP + CURVES_HEIGHT,
+            1 => HEADING_GAP + TEETH_HEIGHT,
+            _ => HEADING_GAP + TEETH_HEIGHT + ROW_GAP + CURVES_HEIGHT,
         }
     }
-    if shown.len() > MOST_WHEELS {
-        let text = format!("{} more damaged wheels are in the summary", shown.len() - MOST_WHEELS);
-        canvas.text((area.right(), area.top - 24.0), &text, TextStyle::NOTE.anchored(Anchor::End));
+
+    /// Draws a column for each: its first damaged tooth as a pair's, the stiffness of its mesh and the average of the first sensor's signal,
+    /// both over a revolution of it. One column leaves room for the curves beside the tooth; of more than two only tooth and average are
+    /// drawn.
+    fn draw(&self, canvas: &mut Canvas, above: f64, simulation: &GearboxSimulation) {
+        let teeth_top = above + HEADING_GAP;
+        let below_teeth = if self.damaged.is_empty() { above } else { teeth_top + TEETH_HEIGHT };
+        let curves = Area::new(LEFT, below_teeth + ROW_GAP, FULL_WIDTH, CURVES_HEIGHT);
+        let whole = self.numbers.len() <= MOST_WHOLE;
+        let columns = self.numbers.len().clamp(1, MOST_WHEELS);
+        let areas: Vec<Area> = match (&self.damaged[..], whole) {
+            ([_], _) => {
+                let beside = Area::new(column_left(1), teeth_top, COLUMN_WIDTH, TEETH_HEIGHT);
+                beside.grid([1, 2], [0.0, ROW_GAP], (TEETH_HEIGHT - ROW_GAP) / 2.0).collect()
+            }
+            (_, true) => curves.grid([2 * columns, 1], [COLUMN_GAP, 0.0], CURVES_HEIGHT).collect(),
+            (_, false) => curves.grid([columns, 1], [COLUMN_GAP, 0.0], CURVES_HEIGHT).collect(),
+        };
+        for (column, side) in self.damaged.iter().enumerate() {
+            if whole {
+                teeth(canvas, (column_left(column), teeth_top), side);
+            } else {
+                let Area { left, width, .. } = areas[column];
+                heading::column(canvas, (left, teeth_top - BELOW_HEADING), width, side);
+                let area = Area::new(left, teeth_top, width - CIRCLE_NAMES, TEETH_HEIGHT);
+                let (across, along) = side.view(area);
+                tooth::draw(canvas, area, across, along, side);
+            }
+        }
+        let each = if whole { 2 } else { 1 };
+        for (wheel, areas) in self.numbers.iter().zip(areas.chunks(each)) {
+            if let [area, _] = areas {
+                stiffness(canvas, *area, &simulation.stages, *wheel);
+            }
+            average(canvas, areas[each - 1], simulation, *wheel);
+        }
+        if let Some(more @ 1..) = self.numbers.len().checked_sub(MOST_WHEELS) {
+            let text = format!("{more} more damaged wheels are in the summary");
+            canvas.text((curves.right(), curves.top - 24.0), &text, TextStyle::NOTE.anchored(Anchor::End));
+        }
     }
 }
 
 /// Tints the turns of a wheel's damaged teeth, from where each enters contact.
 fn tint(canvas: &mut Canvas, axes: &Axes, stages: &GearboxStages, wheel: usize, pitch: f64) {
-    let gearbox = &stages.gearbox;
-    let wheel_of_file = &gearbox.wheels[wheel];
-    let Some((mesh, _)) = stages.layout.mesh_of(wheel) else { return };
-    for fault in gearbox.faults.iter().filter(|fault| fault.wheel == wheel_of_file.name) {
-        for tooth in fault.fault.tooth.numbers(wheel_of_file.teeth) {
-            let from = f64::from(tooth.saturating_sub(1));
-            let until = from + stages.meshes[mesh].contact_ratio;
-            axes.band(canvas, from * pitch, until * pitch, crate::damaged_tooth::TINT);
-        }
-    }
+    let Some((mesh, side)) = stages.layout.mesh_of(wheel) else { return };
+    let pair = &stages.pairs[mesh];
+    let damaged = DamagedTooth::of_teeth(&pair.teeth, &pair.damaged, side);
+    damaged_tooth::tint(canvas, axes, &damaged, stages.gearbox.wheels[wheel].teeth, pitch);
 }
 
 fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usize) {

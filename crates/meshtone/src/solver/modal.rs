@@ -233,11 +233,9 @@ impl ModalMachine {
 
     /// Finds the static forces of the meshes that hold the shafts that turn freely, and the displacement under these and the torque.
     fn balance(&mut self, torque_nm: f64) {
-        let free = self.free_modes();
-        let torques = DVector::from_iterator(free.len(), free.iter().map(|&n| torque_nm * self.brake[n]));
-        let forces = solve(&self.line_entries(&free).transpose(), &torques);
-        for (line, force) in self.lines.iter_mut().zip(forces.iter()) {
-            line.static_force_n = *force;
+        let forces_n = self.balancing_forces_n(torque_nm);
+        for (line, force_n) in self.lines.iter_mut().zip(forces_n) {
+            line.static_force_n = force_n;
         }
         self.static_displacement = (0..self.modes())
             .map(|n| {
@@ -248,6 +246,16 @@ impl ModalMachine {
                 if self.stiffness[n] == 0.0 { 0.0 } else { load / self.stiffness[n] }
             })
             .collect();
+    }
+
+    /// (N) The static forces of the meshes that hold the shafts that turn freely.
+    ///
+    /// # Arguments
+    /// * `torque_nm` - (N m) of the brake
+    pub(crate) fn balancing_forces_n(&self, torque_nm: f64) -> Vec<f64> {
+        let free = self.free_modes();
+        let torques = DVector::from_iterator(free.len(), free.iter().map(|&n| torque_nm * self.brake[n]));
+        solve(&self.line_entries(&free).transpose(), &torques).iter().copied().collect()
     }
 
     /// The modes with the meshes closed, of those up to a frequency without them; damping does not couple them.
@@ -279,6 +287,20 @@ impl ModalMachine {
             }
         };
         eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).map(mode).collect()
+    }
+
+    /// The slowest to decay of the modes that the meshes move, with the meshes closed.
+    ///
+    /// # Arguments
+    /// They are those of [`Self::closed_modes`].
+    pub(crate) fn slowest_closed(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> DecayingMode {
+        let is_moved = |mode: &ClosedMode| mode.mesh_energies.iter().any(|energy| *energy > ROUNDING * ROUNDING);
+        let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
+        let moved = self.closed_modes(meshes, highest_rad_per_s).into_iter().filter(is_moved);
+        let slower = |slowest: DecayingMode, mode: DecayingMode| {
+            if mode.decay_per_s < slowest.decay_per_s { mode } else { slowest }
+        };
+        moved.map(|mode| mode.decay).fold(none, slower)
     }
 
     /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.
