@@ -102,9 +102,8 @@ impl ScenarioError {
     /// Flanks that close along the face, and no load that could decide how much of it bears.
     pub(crate) fn no_load_along_the_face() -> Self {
         let problem = "must be more than 0 where the flanks do not close alike along the face: the load decides how much of it bears";
-        Self::new("operation.brake_torque_nm", 0.0, problem).with_help(
-            "raise the torque, or set rig.misalignment_um, quality.helix_share and given helix slopes to 0",
-        )
+        Self::new("operation.brake_torque_nm", 0.0, problem)
+            .with_help("raise the torque, or set misalignment_um, helix_share and given helix slopes to 0")
     }
 
     /// Damage that leaves no tooth that could carry a load.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use meshtone::scenario::Coupled;
+use meshtone::scenario::{Coupled, GearboxWheel};
 use meshtone::signal::{AngularSettings, AngularSignal, ShaftPhase, angular_resample};
 use meshtone::{GearboxSimulation, GearboxStages};
 
@@ -54,9 +54,11 @@ pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError>
     let edge = LEFT - NAME_LEFT - 11.0;
     canvas.heading(edge, f64::from(WIDTH) - 2.0 * edge, (36.0, &title), (61.0, &facts.join(BETWEEN_FACTS)));
     let half = (FULL_WIDTH - COLUMN_GAP) / 2.0;
-    let train = Train::new(stages);
-    train.draw_front(&mut canvas, Area::new(LEFT, TRAIN_TOP, half, TRAIN_HEIGHT));
-    train.draw_above(&mut canvas, Area::new(LEFT + half + COLUMN_GAP, TRAIN_TOP, half, TRAIN_HEIGHT));
+    let train = drawn_wheels(stages);
+    let [front, above] =
+        [LEFT, LEFT + half + COLUMN_GAP].map(|left| Area::new(left, TRAIN_TOP, half, TRAIN_HEIGHT));
+    draw_front(&mut canvas, front, stages, &train);
+    draw_above(&mut canvas, above, stages, &train);
     wheels.draw(&mut canvas, wheels_top, simulation);
     spectrum(&mut canvas, Area::new(LEFT, spectrum_top, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
     let description = format!(
@@ -99,11 +101,6 @@ fn facts(stages: &GearboxStages) -> Vec<String> {
         .collect()
 }
 
-/// The train as it is drawn.
-struct Train<'a> {
-    stages: &'a GearboxStages,
-}
-
 /// A wheel on the drawing.
 struct DrawnWheel<'a> {
     name: &'a str,
@@ -116,123 +113,93 @@ struct DrawnWheel<'a> {
     is_damaged: bool,
 }
 
-impl<'a> Train<'a> {
-    fn new(stages: &'a GearboxStages) -> Self {
-        Self { stages }
-    }
+/// All wheels of the train.
+fn drawn_wheels<'a>(stages: &'a GearboxStages) -> Vec<DrawnWheel<'a>> {
+    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+    let drawn = |(number, wheel): (usize, &'a GearboxWheel)| {
+        let GearboxWheel { name, at, teeth, face_width_mm, .. } = wheel;
+        let (mesh, _) = layout.mesh_of(number)?;
+        let shaft = layout.shaft_of_wheel[number];
+        let [x, y] = layout.positions_m[shaft].map(|m| m * 1e3);
+        let z = at * gearbox.shafts[shaft].length_mm;
+        let radius = layout.gears[mesh].module_mm * f64::from(*teeth) / 2.0;
+        let is_damaged = gearbox.faults.iter().any(|fault| fault.wheel == *name);
+        Some(DrawnWheel { name, x, y, z, radius, width: *face_width_mm, is_damaged })
+    };
+    gearbox.wheels.iter().enumerate().filter_map(drawn).collect()
+}
 
-    fn wheels(&self) -> Vec<DrawnWheel<'a>> {
-        let (gearbox, layout) = (&self.stages.gearbox, &self.stages.layout);
-        let wheel = |(number, wheel): (usize, &'a meshtone::scenario::GearboxWheel)| {
-            let (mesh, _) = layout.mesh_of(number)?;
-            let shaft = layout.shaft_of_wheel[number];
-            let [x, y] = layout.positions_m[shaft];
-            Some(DrawnWheel {
-                name: &wheel.name,
-                x: x * 1e3,
-                y: y * 1e3,
-                z: wheel.at * gearbox.shafts[shaft].length_mm,
-                radius: layout.gears[mesh].module_mm * f64::from(wheel.teeth) / 2.0,
-                width: wheel.face_width_mm,
-                is_damaged: gearbox.faults.iter().any(|fault| fault.wheel == wheel.name),
-            })
+/// From where to where all wheels reach.
+fn extent(wheels: &[DrawnWheel], of: fn(&DrawnWheel) -> f64) -> [f64; 2] {
+    let low = wheels.iter().map(|wheel| of(wheel) - wheel.radius).fold(f64::INFINITY, f64::min);
+    let high = wheels.iter().map(|wheel| of(wheel) + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
+    [low, high]
+}
+
+/// A rectangle by its middle and half its sides.
+fn rectangle(axes: &Axes, (z, x): (f64, f64), (half_z, half_x): (f64, f64)) -> [Pixel; 4] {
+    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| axes.at(z + a * half_z, x + b * half_x))
+}
+
+/// Pitch circles and shafts across the axes.
+fn draw_front(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &[DrawnWheel]) {
+    let (x, y) = equal_scales(area, extent(wheels, |wheel| wheel.x), extent(wheels, |wheel| wheel.y));
+    let axes = Axes::titled(canvas, area, x, y, "Train from the front, pitch circles");
+    axes.x_axis(canvas, &Ticks::nice(x[0], x[1], 10), "x (mm)");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 6), "y (mm)", NAME_LEFT);
+    // The farther ones first.
+    let mut order: Vec<&DrawnWheel> = wheels.iter().collect();
+    order.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    for wheel in order {
+        let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
+        canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
+    }
+    for (shaft, [x_m, y_m]) in stages.gearbox.shafts.iter().zip(&stages.layout.positions_m) {
+        let radius = shaft.radius_at_mm(0.5);
+        canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
+    }
+    for wheel in wheels {
+        let at = axes.at(wheel.x, wheel.y + 0.72 * wheel.radius);
+        canvas.text(at, wheel.name, TextStyle::NOTE.anchored(Anchor::Middle).with_halo());
+    }
+    axes.frame(canvas);
+}
+
+/// Shafts, wheels and bearings along the axes.
+fn draw_above(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &[DrawnWheel]) {
+    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+    let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
+    let [low, high] = extent(wheels, |wheel| wheel.x);
+    let margin = 0.05 * (high - low);
+    let (z, x) = ([-0.12 * longest, 1.12 * longest], [low - margin, high + margin]);
+    let axes = Axes::titled(canvas, area, z, x, "From above");
+    axes.x_axis(canvas, &Ticks::nice(z[0], z[1], 10), "z (mm)");
+    axes.y_axis(canvas, &Ticks::nice(x[0], x[1], 6), "x (mm)", NAME_LEFT);
+    for (shaft, [x_m, _]) in gearbox.shafts.iter().zip(&layout.positions_m) {
+        let (x, radius, half) = (x_m * 1e3, shaft.radius_at_mm(0.5), shaft.length_mm / 2.0);
+        canvas.outlined(&rectangle(&axes, (half, x), (half, radius)), SHAFT, Fill::solid(colour::WHITE));
+        let coupled = match shaft.couples_to.name() {
+            "nothing" => String::new(),
+            to => format!(", {to}"),
         };
-        gearbox.wheels.iter().enumerate().filter_map(wheel).collect()
+        let style = TextStyle::NOTE.coloured(colour::MUTED).with_halo();
+        let at = axes.at(-0.11 * longest, x + 1.6 * radius);
+        canvas.text(at, &format!("{}{coupled}", shaft.name), style);
     }
-
-    /// Pitch circles and shafts across the axes.
-    fn draw_front(&self, canvas: &mut Canvas, area: Area) {
-        let wheels = self.wheels();
-        let extent = |of: &dyn Fn(&DrawnWheel) -> f64| {
-            let low = wheels.iter().map(|wheel| of(wheel) - wheel.radius).fold(f64::INFINITY, f64::min);
-            let high = wheels.iter().map(|wheel| of(wheel) + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
-            [low, high]
-        };
-        let (x, y) = equal_scales(area, extent(&|wheel| wheel.x), extent(&|wheel| wheel.y));
-        let axes = Axes::titled(canvas, area, x, y, "Train from the front, pitch circles");
-        axes.x_axis(canvas, &Ticks::nice(x[0], x[1], 10), "x (mm)");
-        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 6), "y (mm)", NAME_LEFT);
-        // The farther ones first.
-        let mut order: Vec<&DrawnWheel> = wheels.iter().collect();
-        order.sort_by(|a, b| b.radius.total_cmp(&a.radius));
-        for wheel in order {
-            let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
-            canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
-        }
-        for (shaft, [x_m, y_m]) in self.stages.gearbox.shafts.iter().zip(&self.stages.layout.positions_m) {
-            let radius = shaft.radius_at_mm(0.5);
-            canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
-        }
-        for wheel in &wheels {
-            let at = axes.at(wheel.x, wheel.y + 0.72 * wheel.radius);
-            canvas.text(at, wheel.name, TextStyle::NOTE.anchored(Anchor::Middle).with_halo());
-        }
-        axes.frame(canvas);
+    for wheel in wheels {
+        let fill = if wheel.is_damaged { DAMAGED } else { WHEEL };
+        let outline = rectangle(&axes, (wheel.z, wheel.x), (wheel.width / 2.0, wheel.radius));
+        canvas.outlined(&outline, OUTLINE, fill);
+        let style = TextStyle::NOTE.anchored(Anchor::Middle).with_halo();
+        canvas.text(axes.at(wheel.z, wheel.x), wheel.name, style);
     }
-
-    /// Shafts, wheels and bearings along the axes.
-    fn draw_above(&self, canvas: &mut Canvas, area: Area) {
-        let (gearbox, layout) = (&self.stages.gearbox, &self.stages.layout);
-        let wheels = self.wheels();
-        let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
-        let low = wheels.iter().map(|wheel| wheel.x - wheel.radius).fold(f64::INFINITY, f64::min);
-        let high = wheels.iter().map(|wheel| wheel.x + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
-        let margin = 0.05 * (high - low);
-        let axes = Axes::titled(
-            canvas,
-            area,
-            [-0.12 * longest, 1.12 * longest],
-            [low - margin, high + margin],
-            "From above",
-        );
-        axes.x_axis(canvas, &Ticks::nice(axes.x[0], axes.x[1], 10), "z (mm)");
-        axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "x (mm)", NAME_LEFT);
-        for (shaft, [x_m, _]) in gearbox.shafts.iter().zip(&layout.positions_m) {
-            let (x, radius) = (x_m * 1e3, shaft.radius_at_mm(0.5));
-            let corners = [
-                (0.0, x - radius),
-                (shaft.length_mm, x - radius),
-                (shaft.length_mm, x + radius),
-                (0.0, x + radius),
-            ];
-            canvas.outlined(&corners.map(|(z, x)| axes.at(z, x)), SHAFT, Fill::solid(colour::WHITE));
-            let coupled = match shaft.couples_to.name() {
-                "nothing" => String::new(),
-                to => format!(", {to}"),
-            };
-            let style = TextStyle::NOTE.coloured(colour::MUTED).with_halo();
-            canvas.text(
-                axes.at(-0.11 * longest, x + 1.6 * radius),
-                &format!("{}{coupled}", shaft.name),
-                style,
-            );
-        }
-        for wheel in &wheels {
-            let (from, to) = (wheel.z - wheel.width / 2.0, wheel.z + wheel.width / 2.0);
-            let (low, high) = (wheel.x - wheel.radius, wheel.x + wheel.radius);
-            let fill = if wheel.is_damaged { DAMAGED } else { WHEEL };
-            canvas.outlined(
-                &[(from, low), (to, low), (to, high), (from, high)].map(|(z, x)| axes.at(z, x)),
-                OUTLINE,
-                fill,
-            );
-            canvas.text(
-                axes.at(wheel.z, wheel.x),
-                wheel.name,
-                TextStyle::NOTE.anchored(Anchor::Middle).with_halo(),
-            );
-        }
-        for (bearing, shaft) in gearbox.bearings.iter().zip(&layout.shaft_of_bearing) {
-            let (shaft, [x_m, _]) = (&gearbox.shafts[*shaft], layout.positions_m[*shaft]);
-            let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
-            canvas.outlined(
-                &[(x - 5.0, y - 9.0), (x + 5.0, y - 9.0), (x + 5.0, y + 9.0), (x - 5.0, y + 9.0)],
-                OUTLINE,
-                Fill::hatch(colour::INK),
-            );
-        }
-        axes.frame(canvas);
+    for (bearing, shaft) in gearbox.bearings.iter().zip(&layout.shaft_of_bearing) {
+        let (shaft, [x_m, _]) = (&gearbox.shafts[*shaft], layout.positions_m[*shaft]);
+        let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
+        let corners = [(x - 5.0, y - 9.0), (x + 5.0, y - 9.0), (x + 5.0, y + 9.0), (x - 5.0, y + 9.0)];
+        canvas.outlined(&corners, OUTLINE, Fill::hatch(colour::INK));
     }
+    axes.frame(canvas);
 }
 
 /// Ranges that show both extents at the same scale.

@@ -5,15 +5,13 @@ use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use super::{Clock, StageTime, check_mesh};
+use super::{Clock, MeshOf, StageTime, check_mesh};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::{
     Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, KnownModes, MeshLine, Modes, WheelBody,
 };
-use crate::mesh::{
-    Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, Pairs, TipShape, Turning,
-};
+use crate::mesh::{Contact, Forcing, Mesh, PairDeviations, Turning};
 use crate::operation::{CycleGrid, Motion, TimeGrid, TorqueHarmonic};
 use crate::random::{Draws, Purpose};
 use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor, MemoryLimit};
@@ -245,9 +243,29 @@ fn stages_with(
         .collect::<Result<_, _>>()?;
     clock.lap("profile errors and faults");
     let meshes: Vec<Mesh> = (pairs.iter().zip(mesh_mass_kg).enumerate())
-        .map(|(number, (pair, mass_kg))| {
-            let tilt_rad_per_nm = || modes.tilt_rad_per_nm(&machine.machine, number);
-            let mesh = mesh_of(gearbox, &layout, &time, number, pair, mass_kg, tilt_rad_per_nm)?;
+        .map(|(number, (pair, mesh_mass_kg))| {
+            let gears = &layout.gears[number];
+            let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[number][0]];
+            let turning = Turning {
+                pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
+                first_pitch: layout.phases[number],
+            };
+            let mesh = MeshOf {
+                gears,
+                teeth: &pair.teeth,
+                damaged: &pair.damaged,
+                machine: &machine.machine,
+                modes: &modes,
+                number,
+                closer_um: pair.helix_slope_um.iter().sum(),
+                static_force_n: pair.static_force_n,
+                contact: Contact::Unilateral,
+                turning,
+                damping_ratio: gearbox.meshes[number].damping_ratio,
+                mesh_mass_kg,
+            };
+            let points = points_per_pitch(&time, gearbox.operation.is_steady(), &turning, gears);
+            let mesh = mesh.with_tables(NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN))?;
             check_mesh(&mesh, &layout.named_gears(gearbox, number)).map(|()| mesh)
         })
         .collect::<Result<_, ScenarioError>>()?;
@@ -454,61 +472,6 @@ fn speed_name(shaft: &str) -> String {
 /// Name of the transmission error of a mesh.
 fn transmission_error_name(mesh: &str) -> String {
     format!("transmission_error_um.{mesh}")
-}
-
-/// A mesh with its tables.
-///
-/// # Arguments
-/// * `gearbox`, `layout`, `time` - what is simulated
-/// * `number` - of the mesh
-/// * `pair` - its wheels
-/// * `mesh_mass_kg` - (kg) the mass that their rotation has along the line of action
-/// * `tilt_rad_per_nm` - (rad/(N m)) how far a moment about the middle of the face tilts them against one another
-fn mesh_of(
-    gearbox: &Gearbox,
-    layout: &GearboxLayout,
-    time: &TimeGrid,
-    number: usize,
-    pair: &MeshedPair,
-    mesh_mass_kg: f64,
-    tilt_rad_per_nm: impl Fn() -> f64,
-) -> Result<Mesh, ScenarioError> {
-    let (gears, of_file) = (&layout.gears[number], &gearbox.meshes[number]);
-    let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[number][0]];
-    let turning = Turning {
-        pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
-        first_pitch: layout.phases[number],
-    };
-    let is_steady = gearbox.operation.is_steady();
-    let points = NonZeroUsize::new(points_per_pitch(time, is_steady, &turning, gears));
-    let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &pair.damaged)?;
-    let closer_um = pair.helix_slope_um.iter().sum::<f64>();
-    if closer_um != 0.0 && pair.static_force_n <= 0.0 {
-        let help = "raise the torque, or set helix_slope_um of the wheels to 0";
-        return Err(ScenarioError::no_load_along_the_face().with_help(help));
-    }
-    let width_m = gears.face_width_mm * 1e-3;
-    let face = || FaceSlope {
-        slope: closer_um * 1e-6 / width_m,
-        width_m,
-        tilt_rad_per_m: tilt_rad_per_nm() * pair.static_force_n,
-    };
-    let parameters = MeshParameters {
-        contact: Contact::Unilateral,
-        turning,
-        damping_ratio: of_file.damping_ratio,
-        mesh_mass_kg,
-        backlash_m: gears.normal_backlash_mm() * 1e-3,
-        static_force_n: pair.static_force_n,
-        face: (closer_um != 0.0).then(face),
-    };
-    let shape = TipShape {
-        chamfer_mm: gears.chamfer_mm(),
-        relief: gears.flank_relief,
-        active_profile_shortening: gears.active_profile_shortening,
-    };
-    let pairs = Pairs::new(&pair.teeth, &pair.damaged, gears.material, &gears.foundation);
-    Ok(Mesh::new(&pairs, shape, sequence, points.unwrap_or(NonZeroUsize::MIN), parameters))
 }
 
 /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::outputs::dot;
-use crate::machine::{ClosedMesh, DecayingMode, Drive, Machine, Modes};
+use crate::machine::{Axis, ClosedMesh, DecayingMode, Drive, Machine, Modes, Place, weights};
 
 /// A machine without its meshes, in the modes that take part in the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,8 +34,8 @@ pub struct ModalMachine {
     pub initial_velocity: Vec<f64>,
     /// The modes that are not stepped.
     pub residual: Residual,
-    /// The machine's own description, of which outputs need the places.
-    pub machine: Machine,
+    /// The machine's places, which outputs read.
+    pub places: Vec<Place>,
 }
 
 /// The modes that are not stepped: they are so high that they deform at every instant as at rest. Without such modes all lists are empty.
@@ -204,7 +204,7 @@ impl ModalMachine {
             static_displacement: Vec::new(),
             initial_velocity: pick(&velocity),
             residual: Residual::default(),
-            machine: machine.clone(),
+            places: machine.places.clone(),
         };
         this.balance(start.brake_torque_nm);
         this
@@ -330,6 +330,11 @@ impl ModalMachine {
     /// Number of active modes.
     pub fn modes(&self) -> usize {
         self.stiffness.len()
+    }
+
+    /// Weights of the machine's coordinates in the motion of a place, as [`Machine::weights`].
+    pub(super) fn weights(&self, place: &str, axis: Axis) -> DVector<f64> {
+        weights(&self.places, self.rigid_rotation.len(), place, axis)
     }
 
     /// Weights of the modes in a combination of the machine's coordinates, and that combination per unit of the rigid rotation.

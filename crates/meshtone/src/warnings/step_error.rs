@@ -1,5 +1,6 @@
 //! The error of a steady vibration that the solver's step causes.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use crate::error::Error;
@@ -20,8 +21,11 @@ const LEAST_PART: f64 = 1e-6;
 /// (g, N) Rms below which a signal is rounding, as where equal wheels move in opposition.
 const ROUNDING: f64 = 1e-9;
 
-/// (-) How far a mode's frequency may be from that of the mean mesh, whose stiffness varies: shifts at which a line is looked at.
-const SHIFTS: [f64; 5] = [-0.01, -0.005, 0.0, 0.005, 0.01];
+/// (-) From one frequency at which the machine's answer is computed to the next: lines have in common what lies near them.
+const APART: f64 = 0.005;
+/// How many such frequencies on either side of a line are looked at: a mode's may be so far from that of the mean mesh, whose stiffness
+/// varies.
+const NEAR: i64 = 2;
 
 /// (-) Estimate above which a simulation is repeated.
 const SUSPICIOUS: f64 = 0.02;
@@ -141,15 +145,22 @@ fn estimate(stages: &Stages, signals: [&WheelTurnSums; 2]) -> f64 {
 /// * `powers` - mean square of each signal
 fn growth(machine: &MeanMachine, lines: impl Iterator<Item = Line>, powers: &[f64]) -> f64 {
     let mut gained = vec![0.0; powers.len()];
+    let mut known: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for line in lines {
         let counts = |&n: &usize| powers[n] > ROUNDING * ROUNDING && line.powers[n] > LEAST_PART * powers[n];
         let counted: Vec<usize> = (0..powers.len()).filter(counts).collect();
         if counted.is_empty() {
             continue;
         }
-        let growths = SHIFTS.map(|shift| machine.squared_growth(TAU * line.frequency_hz * (1.0 + shift)));
+        let nearest = (line.frequency_hz.ln() / APART.ln_1p()).round() as i64;
+        let near = nearest - NEAR..=nearest + NEAR;
+        for place in near.clone() {
+            let frequency_hz = || (place as f64 * APART.ln_1p()).exp();
+            known.entry(place).or_insert_with(|| machine.squared_growth(TAU * frequency_hz()));
+        }
         for n in counted {
-            let most = growths.iter().map(|growth| (growth[n] - 1.0).abs()).fold(0.0, f64::max);
+            let growths = known.range(near.clone()).map(|(_, growth)| (growth[n] - 1.0).abs());
+            let most = growths.fold(0.0, f64::max);
             gained[n] += line.powers[n] / powers[n] * most;
         }
     }

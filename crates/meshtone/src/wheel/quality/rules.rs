@@ -96,30 +96,28 @@ impl WheelDeviations {
 /// * `grade`, `class` - of DIN 3962 and of ISO 1328; 0 for none
 /// * `has_errors` - whether profile errors are given
 pub(crate) fn one_source(section: &str, grade: u8, class: u8, has_errors: bool) -> Check {
-    let refuse = |key: &str, value: u8, problem: &str, help: &str| {
-        Err(ScenarioError::new(format!("{section}.{key}"), value, problem).with_help(help))
-    };
-    match (grade, class) {
-        (1.., 1..) => refuse(
+    let (key, value, problem, help) = match (grade, class) {
+        (1.., 1..) => (
             "iso_class",
             class,
             "given beside din_grade; deviations are drawn for one of the two",
             "remove iso_class, or remove din_grade",
         ),
-        (1.., 0) if has_errors => refuse(
+        (1.., 0) if has_errors => (
             "din_grade",
             grade,
             "given beside profile errors, which replace the errors drawn for a grade",
             "remove din_grade or set it to 0, or remove the profile errors",
         ),
-        (0, 1..) if has_errors => refuse(
+        (0, 1..) if has_errors => (
             "iso_class",
             class,
             "given beside profile errors, which replace the deviations drawn for a class",
             "remove iso_class, or the profile errors",
         ),
-        _ => Ok(()),
-    }
+        _ => return Ok(()),
+    };
+    Err(ScenarioError::new(format!("{section}.{key}"), value, problem).with_help(help))
 }
 
 /// Profile errors of as many points and teeth as there are, each so small that it can be one.
