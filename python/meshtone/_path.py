@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any, Union
@@ -70,7 +70,7 @@ class PathEstimate:
 
 
 def estimate_path(
-    recordings: Recorded | Sequence[Recorded],
+    recordings: Recorded | list[Recorded],
     scenario: Scenario,
     *,
     draws: int = 24,
@@ -84,7 +84,7 @@ def estimate_path(
 
     Parameters
     ----------
-    recordings : one or several, by one sensor
+    recordings : one, or a list of several, by one sensor
         A :class:`Simulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal with its rate and the
         pinion's phase, ``(signal_g, sampling_rate_hz, phase)``.
     scenario : Scenario
@@ -117,7 +117,7 @@ def estimate_path(
     10200.0
     >>> tuned = rig.copy(sensors=[Sensor(frequency_response=path.frequency_response)])
     """
-    several: Sequence[Any] = recordings if isinstance(recordings, list) else [recordings]
+    several: list[Any] = recordings if isinstance(recordings, list) else [recordings]
     report = _progress.shown("simulations") if progress is True else (progress or None)
     (frequency_hz, magnitude_db, low_db, high_db, phase_deg), compared_hz, csv = _core.estimate_path(
         native_scenario(scenario),

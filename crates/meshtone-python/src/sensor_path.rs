@@ -1,5 +1,6 @@
 //! The path to a sensor.
 
+use meshtone::Error;
 use meshtone::tuning::{self, ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings};
 use meshtone_io::path_csv::path_csv;
 use pyo3::exceptions::PyRuntimeError;
@@ -40,7 +41,7 @@ pub fn estimate_path<'py>(
         )
     })?;
     let estimate = estimate.map_err(|error| match &error {
-        PathError::Scenario(error) => scenario_error(error),
+        PathError::Simulation(Error::Scenario(error)) => scenario_error(error),
         PathError::Cancelled => PyRuntimeError::new_err(error.to_string()),
         _ => value_error(error),
     })?;

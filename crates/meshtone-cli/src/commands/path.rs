@@ -4,7 +4,8 @@ use std::path::{self, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use meshtone::tuning::{ExperimentControl, PathEstimate, PathSettings, estimate_path};
+use meshtone::Error;
+use meshtone::tuning::{ExperimentControl, PathError, PathEstimate, PathSettings, estimate_path};
 use meshtone_diagnose::SignalKind;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::path_csv::path_csv;
@@ -89,10 +90,21 @@ impl Path {
                 &ExperimentControl { progress: &progress, cancelled: &cancelled },
             )
         });
-        let estimate = estimate.map_err(|error| Failure::bad_input(error.to_string()))?;
+        let estimate = estimate.map_err(|error| self.refuse(&file, error))?;
         let staged = stage_text(&self.output, &path_csv(&estimate))?;
         undisturbed(|| staged.commit())?;
         print_unless(self.quiet, &summary(&estimate, &self.output))
+    }
+
+    /// Names the file that an error is about.
+    fn refuse(&self, file: &ScenarioFile, error: PathError) -> Failure {
+        match error {
+            PathError::Simulation(Error::Scenario(error)) => file.refuse(error).into(),
+            PathError::Recording { index, problem } => {
+                Failure::bad_input(format!("{}: {problem}", self.recordings[index].display()))
+            }
+            error => Failure::bad_input(error.to_string()),
+        }
     }
 }
 
@@ -108,7 +120,9 @@ fn summary(estimate: &PathEstimate, output: &path::Path) -> String {
         text += &format!("  {hz:>10.0}  {db:>8.1}  {:>18}\n", format!("{low:.1} to {high:.1}"));
     }
     format!(
-        "{text}\n  compared from {from_hz:.0} to {to_hz:.0} Hz; take it by frequency_response = {{ file = \"{0}\" }}\n\n{0}\n",
+        "{text}\n  compared from {from_hz:.0} to {to_hz:.0} Hz; the recordings differ {:.1} times as much from the simulations as draws of the \
+         wheels do\n  take it by frequency_response = {{ file = \"{1}\" }}\n\n{1}\n",
+        estimate.misfit.into_iter().fold(0.0, f64::max).sqrt(),
         output.display()
     )
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, ChainSettings, ShaftPhase, SignalError, SimulatedShafts,
-    angular_resample, find_mismatch,
+    AngleZero, AngularSettings, AngularSignal, ChainSettings, Mismatch, ShaftPhase, SignalError,
+    SimulatedShafts, angular_resample, find_mismatch,
 };
 use meshtone::tuning::HealthyRecording;
 use meshtone::wheel::WheelName;
@@ -103,6 +103,7 @@ impl<'a> Observer<'a> {
     /// Reads a recording whole, with the angle of the pinion's shaft.
     pub fn healthy(&self, path: &Path) -> Result<(HealthyRecording, Vec<WarningEntry>), Failure> {
         let input = self.input(path)?;
+        let what = format!("channel {}", input.channel.name);
         let (pinion, warnings) = match &input.scenario_toml {
             Some(toml) if !self.stated.states_shaft_angle() => {
                 let phase = self.shafts(&input, toml)?.phase(WheelName::Pinion);
@@ -110,6 +111,13 @@ impl<'a> Observer<'a> {
             }
             _ => {
                 let (shaft, of_phase) = self.phase.measured(&input)?;
+                let other = self.other_tone(&input, &shaft);
+                if let Some(mismatch) =
+                    other.map_err(|error| refuse(path, &what, RefusedInput::Phase, &error))?
+                {
+                    let problem = format!("{}: does not fit the scenario: {mismatch}", path.display());
+                    return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
+                }
                 let doubtful = shaft.warnings.iter().map(|warning| about(&input.source, warning));
                 let warnings = input.warnings.iter().cloned().chain(of_phase).chain(doubtful).collect();
                 let [pinion, gear] = teeth_of(self.scenario);
@@ -117,7 +125,6 @@ impl<'a> Observer<'a> {
                 (if is_pinion { Ok(shaft) } else { shaft.of_mate(gear, pinion) }, warnings)
             }
         };
-        let what = format!("channel {}", input.channel.name);
         let pinion = pinion.map_err(|error| refuse(&input.source, &what, RefusedInput::Phase, &error))?;
         let Input { channel, sampling_rate_hz, .. } = input;
         Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, pinion }, warnings))
@@ -180,11 +187,7 @@ impl<'a> Observer<'a> {
         let of_mate = shaft.of_mate(own_teeth, mate_teeth)?;
         let mate = over(&of_mate)?;
         let against = match find_mismatch(&own, &self.phase.stated_facts(own_teeth)) {
-            // Another tone than the mesh's may have been followed.
-            None if self.phase.from_mesh_tone && !shaft.warnings.is_empty() => {
-                let hz = self.phase.shaft_hz.unwrap_or(speed_hz);
-                other_teeth(&input.channel.samples, input.sampling_rate_hz, [own_teeth, mate_teeth], hz)?
-            }
+            None => self.other_tone(input, shaft)?,
             against => against,
         };
         let (wheels, zero, pinion_hz) = if own_teeth == pinion_teeth {
@@ -198,6 +201,17 @@ impl<'a> Observer<'a> {
             Some(against) => observation.with_mismatch(against),
             None => observation,
         })
+    }
+
+    /// Tooth counts that fit better, where another tone than the mesh's may have been followed.
+    fn other_tone(&self, input: &Input, shaft: &ShaftPhase) -> Result<Option<Mismatch>, SignalError> {
+        let [teeth, mate_teeth] = [self.phase.teeth, self.phase.mate_teeth];
+        let (Some(teeth), Some(mate_teeth)) = (teeth, mate_teeth) else { return Ok(None) };
+        if !self.phase.from_mesh_tone || shaft.warnings.is_empty() {
+            return Ok(None);
+        }
+        let speed_hz = self.phase.shaft_hz.unwrap_or_else(|| shaft.mean_speed_hz(input.sampling_rate_hz));
+        other_teeth(&input.channel.samples, input.sampling_rate_hz, [teeth, mate_teeth], speed_hz)
     }
 
     fn of_angles(

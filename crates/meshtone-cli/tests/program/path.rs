@@ -52,5 +52,9 @@ fn what_does_not_fit_is_refused() {
         &["is read", "another file"],
     );
     workplace.write("ideal.toml", rig.replace("din_grade = 6", "din_grade = 0"));
-    workplace.fails(2, &["path", "healthy", "--scenario", "ideal.toml", "-o", "path.csv"], &["din_grade"]);
+    workplace.fails(
+        2,
+        &["path", "healthy", "--scenario", "ideal.toml", "-o", "path.csv"],
+        &["ideal.toml: line", "quality.din_grade = 0"],
+    );
 }

@@ -138,7 +138,7 @@ impl Reading<'_> {
 /// An error about a tuned key, which is reported at its own line.
 fn key_error(number: usize, error: &HybridError) -> TomlError {
     let located = TomlError::new(format!("tune.key[{number}].key"), "", error.to_string());
-    let help = if let HybridError::Scenario(error) = error { error.help.clone() } else { None };
+    let help = if let HybridError::Simulation(error) = error { error.help() } else { None };
     help.into_iter().fold(located, TomlError::with_help)
 }
 

@@ -32,3 +32,20 @@ impl<'a> UniformLinear<'a> {
         self.values[i] + t * (self.values[i + 1] - self.values[i])
     }
 }
+
+/// The value at a place on straight lines between points that need not be uniform, and that of the nearest point outside.
+///
+/// # Arguments
+/// * `places` - rising
+/// * `values` - at these; at least one
+/// * `place` - where the value is wanted
+pub(crate) fn straight_between(places: &[f64], values: &[f64], place: f64) -> f64 {
+    let above = places.partition_point(|&point| point <= place);
+    match (above.checked_sub(1), values.get(above)) {
+        (Some(below), Some(to)) => {
+            let part = (place - places[below]) / (places[above] - places[below]);
+            values[below] + part * (to - values[below])
+        }
+        (_, nearest) => *nearest.unwrap_or(&values[values.len() - 1]),
+    }
+}

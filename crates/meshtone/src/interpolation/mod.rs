@@ -8,6 +8,7 @@ mod pchip_through;
 
 pub use cubic_spline::NotAKnotSpline;
 pub use linear::UniformLinear;
+pub(crate) use linear::straight_between;
 pub use natural_spline::NaturalSpline;
 pub use pchip::Pchip;
 pub use pchip_through::PchipThrough;

@@ -90,7 +90,7 @@ impl<'a> Motion<'a> {
 
     /// The profile at the present sample, or the constant where there is none.
     fn at_sample(&self, profile: Option<&Profile>, constant: f64) -> f64 {
-        profile.map_or(constant, |profile| profile_at(profile, self.sample as f64 * self.step_s))
+        profile.map_or(constant, |profile| profile.at(self.sample as f64 * self.step_s))
     }
 
     /// Returns whether the motor's speed is constant.
@@ -127,19 +127,4 @@ impl Iterator for Motion<'_> {
 /// The next draw, evenly from within ± `half_width`; 0 where nothing fluctuates.
 fn fluctuation(draws: &mut Option<Draws>, half_width: f64) -> f64 {
     draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, half_width))
-}
-
-/// The profile at `time_s`: straight lines between its points, constant outside.
-fn profile_at(profile: &Profile, time_s: f64) -> f64 {
-    let (time, value) = (&profile.time_s, &profile.value);
-    let after = time.partition_point(|&t| t <= time_s);
-    if after == 0 {
-        value[0]
-    } else if after == time.len() {
-        value[after - 1]
-    } else {
-        let before = after - 1;
-        let t = (time_s - time[before]) / (time[after] - time[before]);
-        value[before] + t * (value[after] - value[before])
-    }
 }

@@ -3,6 +3,7 @@
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use crate::error::{ScenarioWarning, WarningKind};
+use crate::interpolation::straight_between;
 use crate::keys::{
     Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, field, load, row,
 };
@@ -138,6 +139,13 @@ pub struct Profile {
     pub time_s: Vec<f64>,
     /// (Hz or N m) The quantity at those times.
     pub value: Vec<f64>,
+}
+
+impl Profile {
+    /// (Hz or N m) The quantity at a time: straight lines between its points, constant outside.
+    pub(crate) fn at(&self, time_s: f64) -> f64 {
+        straight_between(&self.time_s, &self.value, time_s)
+    }
 }
 
 impl KeyValue for Option<Profile> {

@@ -140,22 +140,10 @@ pub enum HybridError {
     Cancelled,
     /// A scenario cannot be simulated.
     #[error(transparent)]
-    Scenario(Box<ScenarioError>),
-    /// A simulation fails.
-    #[error(transparent)]
-    Simulation(Error),
+    Simulation(#[from] Error),
     /// The signal chain refuses.
     #[error(transparent)]
     Signal(#[from] SignalError),
-}
-
-impl From<Error> for HybridError {
-    fn from(error: Error) -> Self {
-        match error {
-            Error::Scenario(error) => Self::Scenario(Box::new(error)),
-            error => Self::Simulation(error),
-        }
-    }
 }
 
 impl HybridError {
@@ -167,6 +155,6 @@ impl HybridError {
 
 impl From<ScenarioError> for HybridError {
     fn from(error: ScenarioError) -> Self {
-        Self::Scenario(Box::new(error))
+        Self::Simulation(error.into())
     }
 }

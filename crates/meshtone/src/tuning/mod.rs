@@ -41,6 +41,8 @@ pub use modify::{Enhanced, Enhancement, add_noise, change_duration, change_fault
 pub use moments::{JointMoments, Moments, WindowMoments};
 pub use run::{ExperimentControl, ExperimentResult, TunedKeys, run_experiment};
 pub use search::{EnhancementBounds, Fit, fit};
-pub use sensor_path::{HealthyRecording, PathError, PathEstimate, PathSettings, estimate_path};
+pub use sensor_path::{
+    HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem, estimate_path,
+};
 pub use simulated::SimulatedCases;
 pub use tune::{LeftOutCase, Tuning, TuningWarning, tune};

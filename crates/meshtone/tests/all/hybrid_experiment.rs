@@ -3,6 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use meshtone::Error;
 use meshtone::scenario::{DestructionLine, Fault, GearPair, MissingTooth, Model, Scenario, ToothDestruction};
 use meshtone::signal::SeparationSettings;
 use meshtone::tuning::*;
@@ -85,7 +86,7 @@ fn keys_may_be_valid_only_together() {
     let keys: [(&str, &[f64]); 2] = [("fault.start", &[0.95]), ("fault.end", &[0.7, 0.9])];
     let error = run(&experiment(&keys)).unwrap_err();
     assert!(
-        matches!(&error, HybridError::Scenario(error) if error.key == "fault.end" && error.line.is_none()),
+        matches!(&error, HybridError::Simulation(Error::Scenario(error)) if error.key == "fault.end" && error.line.is_none()),
         "{error}"
     );
 }

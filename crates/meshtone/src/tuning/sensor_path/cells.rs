@@ -6,8 +6,11 @@ use meshtone_fourier::{hann_window, real_spectrum};
 
 use super::recording::Piece;
 
-/// Steps of the frequencies in an octave, where the window resolves them.
+/// Steps of the frequencies in an octave, where the window resolves them, and where nothing is compared.
 const STEPS_PER_OCTAVE: f64 = 48.0;
+const STEPS_OUTSIDE: f64 = 6.0;
+/// Frequencies below those that are compared.
+const POINTS_BELOW: usize = 12;
 /// (lines) How near a mesh harmonic a line belongs to it: the main lobe of Hann's window.
 const NEAR_LINES: f64 = 2.0;
 /// (orders of the pinion) Beside a mesh harmonic, what belongs to its sidebands.
@@ -57,8 +60,10 @@ pub(super) struct Cell {
 
 /// The cells of some pieces of recordings, and which lines of which spectra fall into each.
 pub(super) struct Cells {
-    /// (Hz) Rising frequencies at which the path is estimated.
+    /// (Hz) Rising frequencies at which the path is estimated: those that are compared, and some outside.
     pub frequency_hz: Vec<f64>,
+    /// (Hz) The lowest and the highest frequency that are compared.
+    pub compared_hz: [f64; 2],
     /// The cells that have lines.
     pub cells: Vec<Cell>,
     /// Of each piece, the lines of each cell.
@@ -79,14 +84,21 @@ impl Cells {
     /// * `pieces` - of recordings
     /// * `window_s` - (s) length of a window
     /// * `most_hz` - (Hz) highest frequency that is compared
+    /// * `end_hz` - (Hz) last frequency of the path
     /// * `pinion_teeth` - tooth count
-    pub(super) fn new(pieces: &[Piece], window_s: f64, most_hz: f64, pinion_teeth: u32) -> Self {
+    pub(super) fn new(
+        pieces: &[Piece],
+        window_s: f64,
+        [most_hz, end_hz]: [f64; 2],
+        pinion_teeth: u32,
+    ) -> Self {
         let teeth = f64::from(pinion_teeth);
         let speeds = pieces.iter().flat_map(|piece| piece.speed_hz.value.iter().copied());
         let slowest_mesh_hz = teeth * speeds.fold(f64::INFINITY, f64::min);
         let first_line = (FROM_MESH * slowest_mesh_hz * window_s).ceil().max(2.0) as usize;
         let last_line = (most_hz * window_s) as usize;
-        let frequency_hz = frequencies(first_line as f64 / window_s, most_hz, 1.0 / window_s);
+        let [first_hz, last_hz] = [first_line, last_line].map(|line| line as f64 / window_s);
+        let (frequency_hz, compared_hz) = frequencies([first_hz, last_hz], end_hz, 1.0 / window_s);
         let nearest = |hz: f64| {
             let above = frequency_hz.partition_point(|&point| point < hz).min(frequency_hz.len() - 1);
             let below = above.saturating_sub(1);
@@ -97,7 +109,7 @@ impl Cells {
         let mut known: BTreeMap<Cell, usize> = BTreeMap::new();
         let mut cells = Vec::new();
         let mut of_window = |piece: &Piece, window: usize| -> Vec<usize> {
-            let speed_hz = |part: f64| piece.speed_at((window as f64 * 0.5 + part) * window_s);
+            let speed_hz = |part: f64| piece.speed_hz.at((window as f64 * 0.5 + part) * window_s);
             let [start, middle, end] = [0.0, 0.5, 1.0].map(speed_hz);
             let cell_of = |(line, &frequency): (usize, &usize)| {
                 let hz = (first_line + line) as f64 / window_s;
@@ -119,7 +131,7 @@ impl Cells {
             lines
         };
         let lines = cell_of.iter().map(count).collect();
-        Self { frequency_hz, lines, cells, window_s, cell_of, first_line, frequency_of }
+        Self { frequency_hz, compared_hz, lines, cells, window_s, cell_of, first_line, frequency_of }
     }
 
     /// (g²/Hz) Power density of the lines of each window of a piece, from the first line that is compared on.
@@ -186,11 +198,18 @@ fn windows(piece: &Piece, window_s: f64) -> usize {
     (2.0 * (piece.length_s / window_s) - 1.0 + 1e-9) as usize
 }
 
-/// (Hz) Frequencies from the first to the last, as close as the octave is divided, but not closer than the window resolves.
-fn frequencies(from_hz: f64, to_hz: f64, resolved_hz: f64) -> Vec<f64> {
+/// (Hz) Frequencies from below those that are compared to the end, as close as the octave is divided, but not closer than the window
+/// resolves; and the first and the last that are compared.
+fn frequencies([from_hz, to_hz]: [f64; 2], end_hz: f64, resolved_hz: f64) -> (Vec<f64>, [f64; 2]) {
     let ratio = libm::exp2(1.0 / STEPS_PER_OCTAVE);
     let next = |hz: &f64| Some((hz * ratio).max(hz + resolved_hz)).filter(|hz| *hz <= to_hz);
-    std::iter::successors(Some(from_hz), next).collect()
+    let compared: Vec<f64> = std::iter::successors(Some(from_hz), next).collect();
+    let last_hz = compared.last().copied().unwrap_or(from_hz);
+    let ratio = libm::exp2(1.0 / STEPS_OUTSIDE);
+    let below = (1..=POINTS_BELOW).rev().map(|step| from_hz / ratio.powi(step as i32));
+    let above = std::iter::successors(Some(last_hz * ratio), |hz| Some(hz * ratio));
+    let above = above.take_while(|hz| hz * ratio < end_hz).chain([end_hz]);
+    (below.chain(compared).chain(above).collect(), [from_hz, last_hz])
 }
 
 /// What a line belongs to.

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use thiserror::Error;
 
 use crate::error::{Error, ScenarioError};
-use crate::signal::SignalError;
+use crate::signal::{SignalError, SignalWarning};
 
 /// Why a path cannot be estimated.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -25,48 +25,13 @@ pub enum PathError {
         /// The numbers that are allowed.
         allowed: RangeInclusive<usize>,
     },
-    /// The path is a ratio of accelerations.
-    #[error(
-        "sensor.response_input is \"force\", but the path that is estimated is a ratio of accelerations; remove response_input"
-    )]
-    ResponseToForce,
-    /// Ideal wheels have no sidebands, and no draw differs from another.
-    #[error(
-        "quality.din_grade and quality.iso_class are 0, those of ideal wheels; one of them must be the wheels' own grade, by which they \
-         are drawn"
-    )]
-    IdealWheels,
-    /// A recording is too short.
-    #[error(
-        "recording {recording} has {recording_s:.3} s with a known angle of the shaft; must have at least {needed_s:.3} s at this speed"
-    )]
-    TooShort {
-        /// Its number, from 1.
-        recording: usize,
-        /// (s) Its length.
-        recording_s: f64,
-        /// (s) The least length.
-        needed_s: f64,
-    },
-    /// A recording's rate shows no mesh harmonic.
-    #[error(
-        "recording {recording} has {rate_hz} samples a second; must have at least {needed_hz:.0} at this speed"
-    )]
-    LowRate {
-        /// Its number, from 1.
-        recording: usize,
-        /// (S/s) Its rate.
-        rate_hz: f64,
-        /// (S/s) The least rate.
-        needed_hz: f64,
-    },
-    /// A recording contradicts what is stated about it.
-    #[error("recording {recording} does not fit the scenario: {reason}")]
-    DoesNotFit {
-        /// Its number, from 1.
-        recording: usize,
-        /// Why.
-        reason: String,
+    /// One of the recordings does not serve.
+    #[error("recording {} {problem}", index + 1)]
+    Recording {
+        /// Its place in the list, from 0.
+        index: usize,
+        /// What is wrong with it.
+        problem: RecordingProblem,
     },
     /// Nothing stands out of the noise.
     #[error("the recordings show nothing of the mesh above their noise")]
@@ -90,22 +55,43 @@ pub enum PathError {
     /// The caller stopped it.
     #[error("stopped before the end")]
     Cancelled,
-    /// A scenario cannot be simulated.
+    /// The scenario cannot be simulated, or does not serve for an estimate.
     #[error(transparent)]
-    Scenario(Box<ScenarioError>),
-    /// A simulation fails.
-    #[error(transparent)]
-    Simulation(Error),
-    /// The signal chain refuses.
-    #[error(transparent)]
-    Signal(#[from] SignalError),
+    Simulation(#[from] Error),
 }
 
-impl From<Error> for PathError {
-    fn from(error: Error) -> Self {
-        match error {
-            Error::Scenario(error) => Self::Scenario(Box::new(error)),
-            error => Self::Simulation(error),
-        }
+impl From<ScenarioError> for PathError {
+    fn from(error: ScenarioError) -> Self {
+        Self::Simulation(error.into())
     }
+}
+
+/// Why a recording does not serve to estimate a path; each text goes on where the recording was named.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RecordingProblem {
+    /// It is too short.
+    #[error(
+        "has {recording_s:.3} s with a known angle of the shaft; must have at least {needed_s:.3} s at this speed"
+    )]
+    TooShort {
+        /// (s) Its length.
+        recording_s: f64,
+        /// (s) The least length.
+        needed_s: f64,
+    },
+    /// Its rate shows no mesh harmonic.
+    #[error("has {rate_hz} samples a second; must have at least {needed_hz:.0} at this speed")]
+    LowRate {
+        /// (S/s) Its rate.
+        rate_hz: f64,
+        /// (S/s) The least rate.
+        needed_hz: f64,
+    },
+    /// It contradicts what is stated about it, or shows strong tones of something else.
+    #[error("does not fit the scenario: {0}")]
+    DoesNotFit(SignalWarning),
+    /// The signal chain refuses it.
+    #[error("cannot be used: {0}")]
+    Signal(#[from] SignalError),
 }

@@ -2,6 +2,8 @@
 
 use meshtone_fourier::{Complex64, convenient_length, from_real_spectrum, real_spectrum};
 
+use crate::interpolation::straight_between;
+
 /// (-) How far the magnitude is continued beyond its last frequency, where it stays: the phase below then knows of no end.
 const CONTINUED: f64 = 4.0;
 /// Most lines of the spectrum by which the phase is found.
@@ -22,7 +24,7 @@ pub(super) fn minimum_phase_deg(frequency_hz: &[f64], magnitude_db: &[f64]) -> V
     let length = convenient_length(2 * lines);
     let step_hz = CONTINUED * last_hz / (length / 2) as f64;
     let logarithm = |line: usize| {
-        let db = at(frequency_hz, magnitude_db, line as f64 * step_hz);
+        let db = straight_between(frequency_hz, magnitude_db, line as f64 * step_hz);
         Complex64::new(db * std::f64::consts::LN_10 / 20.0, 0.0)
     };
     let mut cepstrum = from_real_spectrum((0..=length / 2).map(logarithm).collect(), length);
@@ -32,21 +34,7 @@ pub(super) fn minimum_phase_deg(frequency_hz: &[f64], magnitude_db: &[f64]) -> V
     let phase_deg: Vec<f64> =
         real_spectrum(&cepstrum).into_iter().map(|value| value.im.to_degrees()).collect();
     let line_hz: Vec<f64> = (0..phase_deg.len()).map(|line| line as f64 * step_hz).collect();
-    frequency_hz.iter().map(|&hz| at(&line_hz, &phase_deg, hz)).collect()
-}
-
-/// A value between two points on a straight line, and that of the nearest outside.
-fn at(places: &[f64], values: &[f64], place: f64) -> f64 {
-    let above = places.partition_point(|&point| point < place);
-    match (above.checked_sub(1), values.get(above)) {
-        (None, Some(first)) => *first,
-        (Some(below), None) => values[below],
-        (Some(below), Some(to)) => {
-            let part = (place - places[below]) / (places[above] - places[below]);
-            values[below] + part * (to - values[below])
-        }
-        (None, None) => 0.0,
-    }
+    frequency_hz.iter().map(|&hz| straight_between(&line_hz, &phase_deg, hz)).collect()
 }
 
 #[cfg(test)]

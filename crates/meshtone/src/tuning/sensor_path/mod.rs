@@ -9,7 +9,7 @@ mod minimum_phase;
 mod recording;
 mod smoothing;
 
-pub use error::PathError;
+pub use error::{PathError, RecordingProblem};
 pub use recording::HealthyRecording;
 
 use std::ops::RangeInclusive;
@@ -23,9 +23,9 @@ use super::ExperimentControl;
 use crate::batch::{Control, Keep, simulate_many};
 use crate::error::{Error, ScenarioError};
 use crate::random::{Draws, Purpose};
-use crate::scenario::{Scenario, Sensor};
+use crate::scenario::{Quality, Scenario, Sensor};
 use crate::sensor::{Channel, FrequencyResponse, ResponseInput};
-use crate::signal::{AngularSettings, angular_resample, lines_off_shafts};
+use crate::signal::{AngularSettings, SignalError, angular_resample, lines_off_shafts};
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
 
@@ -127,20 +127,20 @@ pub fn estimate_path(
     if !PathSettings::DRAWS.contains(&settings.draws) {
         return Err(PathError::Draws { draws: settings.draws, allowed: PathSettings::DRAWS });
     }
-    let quality = &scenario.quality;
-    if quality.din_grade == 0 && quality.iso_class == 0 {
-        return Err(PathError::IdealWheels);
-    }
+    check_is_drawn(&scenario.quality)?;
     if scenario.sensors.first().is_some_and(|sensor| sensor.response_input == ResponseInput::Force) {
-        return Err(PathError::ResponseToForce);
-    }
-    for (index, recording) in recordings.iter().enumerate() {
-        recording.check(index + 1, teeth)?;
+        let problem = "the path that is estimated is a ratio of accelerations";
+        return Err(ScenarioError::new("sensor.response_input", "force", problem)
+            .with_help("remove response_input")
+            .into());
     }
     let (window_s, pieces) = pieces(recordings, teeth[0])?;
+    for (index, recording) in recordings.iter().enumerate() {
+        recording.check(teeth).map_err(|problem| PathError::Recording { index, problem })?;
+    }
     let rate_hz = recordings.iter().map(|recording| recording.sampling_rate_hz).fold(f64::INFINITY, f64::min);
     let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * scenario.solver.sampling_rate_hz);
-    let cells = Cells::new(&pieces, window_s, most_hz, teeth[0]);
+    let cells = Cells::new(&pieces, window_s, [most_hz, rate_hz / 2.0], teeth[0]);
     let measured = measured_powers(recordings, &pieces, &cells, teeth)?;
     let simulated = simulated_powers(scenario, &pieces, &cells, settings, control)?;
     let levels = levels(&cells, &measured, &simulated);
@@ -152,15 +152,11 @@ pub fn estimate_path(
     if misfit.into_iter().any(|misfit| misfit > MOST_MISFIT) {
         return Err(PathError::UnlikeSimulations { misfit: misfit[0].max(misfit[1]), most: MOST_MISFIT });
     }
-    // From 0 to half the rate, the same beyond what was compared: nothing passes outside a frequency response.
-    let inside = &cells.frequency_hz;
-    let ends = |values: &[f64]| {
-        let (first, last) = (values[0], values[values.len() - 1]);
-        [&[first], values, &[last]].concat()
-    };
-    let frequency_hz = [&[0.0], &inside[..], &[rate_hz / 2.0]].concat();
-    let magnitude_db = ends(&path.magnitude_db);
-    let deviation_db = ends(&path.deviation_db);
+    // Nothing passes outside a frequency response, so that this one begins at 0.
+    let from_0 = |first: f64, values: &[f64]| [&[first], values].concat();
+    let frequency_hz = from_0(0.0, &cells.frequency_hz);
+    let magnitude_db = from_0(path.magnitude_db[0], &path.magnitude_db);
+    let deviation_db = from_0(path.deviation_db[0], &path.deviation_db);
     let end_db = |sign: f64| {
         let ends = magnitude_db.iter().zip(&deviation_db);
         ends.map(|(db, deviation_db)| db + sign * NINETY_PERCENT * deviation_db).collect()
@@ -169,11 +165,26 @@ pub fn estimate_path(
         low_db: end_db(-1.0),
         high_db: end_db(1.0),
         phase_deg: minimum_phase_deg(&frequency_hz, &magnitude_db),
-        compared_hz: [inside[0], inside[inside.len() - 1]],
+        compared_hz: cells.compared_hz,
         frequency_hz,
         magnitude_db,
         misfit,
     })
+}
+
+/// Refuses wheels of which every draw is the same.
+fn check_is_drawn(quality: &Quality) -> Result<(), ScenarioError> {
+    let help = "state the grade of the wheels with quality.din_grade or quality.iso_class";
+    if quality.profile_errors.is_some() {
+        let problem = "the errors of the teeth are given, so that no draw of the wheels differs from another";
+        Err(ScenarioError::new("quality.errors_file", "", problem)
+            .with_help(format!("leave it out, and {help}, by which the wheels are drawn")))
+    } else if quality.din_grade == 0 && quality.iso_class == 0 {
+        let problem = "ideal wheels have no sidebands, and no draw of them differs from another";
+        Err(ScenarioError::new("quality.din_grade", 0, problem).with_help(help))
+    } else {
+        Ok(())
+    }
 }
 
 /// (g²/Hz) Power of the recordings in each cell; 0 in a cell of hardly more than noise.
@@ -189,7 +200,8 @@ fn measured_powers(
     // Of each cell its power, that of noise, and its lines.
     let mut powers = vec![[0.0; 3]; cells.cells.len()];
     for (number, recording) in recordings.iter().enumerate() {
-        let mut noise = noise_density(recording, &cells.frequency_hz, teeth)?;
+        let mut noise = noise_density(recording, cells, teeth)
+            .map_err(|error| PathError::Recording { index: number, problem: error.into() })?;
         let of_recording = || pieces.iter().enumerate().filter(|(_, piece)| piece.recording == number);
         let mut of_pieces = Vec::new();
         for (index, piece) in of_recording() {
@@ -221,14 +233,14 @@ fn measured_powers(
 /// short to tell.
 fn noise_density(
     recording: &HealthyRecording,
-    frequency_hz: &[f64],
+    cells: &Cells,
     [pinion, gear]: [u32; 2],
-) -> Result<Vec<f64>, PathError> {
+) -> Result<Vec<f64>, SignalError> {
     let of_gear = recording.pinion.of_mate(pinion, gear)?;
     let angular = angular_resample(&recording.values_g, &of_gear, &AngularSettings::default())?;
     let revolutions = angular.revolutions();
     if revolutions < FEWEST_REVOLUTIONS {
-        return Ok(vec![f64::INFINITY; frequency_hz.len()]);
+        return Ok(vec![f64::INFINITY; cells.frequency_hz.len()]);
     }
     let gear_hz = of_gear.mean_speed_hz(recording.sampling_rate_hz);
     let lines = lines_off_shafts(&angular, gear, pinion);
@@ -244,8 +256,10 @@ fn noise_density(
         squares.get(squares.len() / 2).map_or(0.0, |median| scale * median / MEDIAN_OF_SQUARES)
     };
     // Around each frequency as far as the next but one.
-    let edge = |at: usize| frequency_hz[at.min(frequency_hz.len() - 1)];
-    Ok((0..frequency_hz.len()).map(|at| density(&[edge(at.saturating_sub(2)), edge(at + 2)])).collect())
+    let last = cells.frequency_hz.len() - 1;
+    let [least_hz, most_hz] = cells.compared_hz;
+    let edge = |at: usize| cells.frequency_hz[at.min(last)].clamp(least_hz, most_hz);
+    Ok((0..=last).map(|at| density(&[edge(at.saturating_sub(2)), edge(at + 2)])).collect())
 }
 
 /// (g²/Hz) Power in each cell of simulations with each draw of the wheels.

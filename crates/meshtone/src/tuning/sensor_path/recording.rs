@@ -1,9 +1,9 @@
 //! Recordings of the healthy machine, and the pieces of them that are simulated.
 
-use super::PathError;
+use super::{PathError, RecordingProblem};
 use crate::operation::Profile;
 use crate::signal::{
-    AngularSettings, ShaftPhase, StatedFacts, StatedTurning, angular_resample, check_channel,
+    AngularSettings, ShaftPhase, SignalWarning, StatedFacts, StatedTurning, angular_resample, check_channel,
     check_recording, find_mismatch,
 };
 
@@ -57,20 +57,19 @@ impl HealthyRecording {
     /// Checks that the recording is of this pair and of nothing else.
     ///
     /// # Arguments
-    /// * `number` - of the recording, from 1, for the error
     /// * `teeth` - of the pinion and of the gear
-    pub(super) fn check(&self, number: usize, [pinion, gear]: [u32; 2]) -> Result<(), PathError> {
+    pub(super) fn check(&self, [pinion, gear]: [u32; 2]) -> Result<(), RecordingProblem> {
         check_channel(&self.values_g)?;
         let angular = angular_resample(&self.values_g, &self.pinion, &AngularSettings::default())?;
         let stated = StatedFacts { teeth: pinion, mate_teeth: Some(gear), turning: StatedTurning::Other };
         // Where the speed changes much, tones that ring at a resonance repeat with neither shaft.
         let against = if self.speed_varies() {
-            find_mismatch(&angular, &stated).map(|mismatch| mismatch.to_string())
+            find_mismatch(&angular, &stated).map(SignalWarning::DoesNotFit)
         } else {
             let speed_hz = self.pinion.mean_speed_hz(self.sampling_rate_hz);
-            check_recording(&angular, &stated, speed_hz).first().map(ToString::to_string)
+            check_recording(&angular, &stated, speed_hz).into_iter().next()
         };
-        against.map_or(Ok(()), |reason| Err(PathError::DoesNotFit { recording: number, reason }))
+        against.map_or(Ok(()), |warning| Err(RecordingProblem::DoesNotFit(warning)))
     }
 
     fn speed_varies(&self) -> bool {
@@ -101,17 +100,6 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// (Hz) Speed of the pinion at a time.
-    ///
-    /// # Arguments
-    /// * `time_s` - (s) since the piece's start
-    pub(super) fn speed_at(&self, time_s: f64) -> f64 {
-        let Profile { time_s: times, value } = &self.speed_hz;
-        let above = times.partition_point(|&time| time < time_s).clamp(1, times.len() - 1);
-        let part = (time_s - times[above - 1]) / (times[above] - times[above - 1]);
-        value[above - 1] + part.clamp(0.0, 1.0) * (value[above] - value[above - 1])
-    }
-
     /// (s, Hz) Speed of the pinion in a simulation that settles before the piece, where the speed goes on as it begins.
     ///
     /// # Arguments
@@ -159,21 +147,27 @@ pub(super) fn pieces(
     let mut pieces = Vec::new();
     for (number, recording) in recordings.iter().enumerate() {
         let (rate_hz, samples) = (recording.sampling_rate_hz, recording.samples());
+        let refuse = |problem| Err(PathError::Recording { index: number, problem });
         let needed_hz =
             (LEAST_IN_WINDOW / window_s).max(SAMPLES_IN_PERIOD * slowest_hz * f64::from(pinion_teeth));
         // Neither is an infinite speed, that of a recording without two samples, a rate.
         if needed_hz.is_finite() && rate_hz < needed_hz {
-            return Err(PathError::LowRate { recording: number + 1, rate_hz, needed_hz });
+            return refuse(RecordingProblem::LowRate { rate_hz, needed_hz });
         }
         let recording_s = samples as f64 / rate_hz;
         let needed_s = 2.0 * window_s;
         if recording_s < needed_s {
-            return Err(PathError::TooShort { recording: number + 1, recording_s, needed_s });
+            return refuse(RecordingProblem::TooShort { recording_s, needed_s });
         }
         let length_s = (WINDOWS_IN_PIECE * window_s).max(SHORTEST_PIECE_S).min(recording_s);
         let length = ((length_s * rate_hz) as usize).min(samples);
         let count = (samples / length).min(most_of_each);
-        let first = |at: usize| at * (samples - length) / count.saturating_sub(1).max(1);
+        // Run-ups that are alike are cut at different speeds.
+        let shift = (number as f64 + 0.5) / recordings.len() as f64 - 0.5;
+        let first = |at: usize| {
+            let part = (at as f64 + shift) / count.saturating_sub(1).max(1) as f64;
+            (part.clamp(0.0, 1.0) * (samples - length) as f64) as usize
+        };
         pieces.extend((0..count).map(|at| piece(recording, number, first(at), length, window_s)));
     }
     Ok((window_s, pieces))
