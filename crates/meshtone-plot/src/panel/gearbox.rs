@@ -261,14 +261,14 @@ impl<'a> Wheels<'a> {
         let below_teeth = if self.damaged.is_empty() { above } else { teeth_top + TEETH_HEIGHT };
         let curves = Area::new(LEFT, below_teeth + ROW_GAP, FULL_WIDTH, CURVES_HEIGHT);
         let whole = self.numbers.len() <= MOST_WHOLE;
+        let each = if whole { 2 } else { 1 };
         let columns = self.numbers.len().clamp(1, MOST_WHEELS);
-        let areas: Vec<Area> = match (&self.damaged[..], whole) {
-            ([_], _) => {
+        let areas: Vec<Area> = match &self.damaged[..] {
+            [_] => {
                 let beside = Area::new(column_left(1), teeth_top, COLUMN_WIDTH, TEETH_HEIGHT);
                 beside.grid([1, 2], [0.0, ROW_GAP], (TEETH_HEIGHT - ROW_GAP) / 2.0).collect()
             }
-            (_, true) => curves.grid([2 * columns, 1], [COLUMN_GAP, 0.0], CURVES_HEIGHT).collect(),
-            (_, false) => curves.grid([columns, 1], [COLUMN_GAP, 0.0], CURVES_HEIGHT).collect(),
+            _ => curves.grid([each * columns, 1], [COLUMN_GAP, 0.0], CURVES_HEIGHT).collect(),
         };
         for (column, side) in self.damaged.iter().enumerate() {
             if whole {
@@ -281,7 +281,6 @@ impl<'a> Wheels<'a> {
                 tooth::draw(canvas, area, across, along, side);
             }
         }
-        let each = if whole { 2 } else { 1 };
         for (wheel, areas) in self.numbers.iter().zip(areas.chunks(each)) {
             if let [area, _] = areas {
                 stiffness(canvas, *area, &simulation.stages, *wheel);

@@ -32,30 +32,59 @@ pub(super) struct Side<'a> {
 
 impl<'a> Side<'a> {
     pub(super) fn new(stages: &'a Stages, name: WheelName) -> Result<Self, PlotError> {
-        let pair = PairOfWheels {
-            teeth: &stages.teeth,
-            damaged: &stages.damaged,
-            errors: stages.profile_errors.as_ref(),
-            tip_lengths_mm: stages.tip_lengths_mm(),
-        };
         let [title, shaft, of_tooth] = match name {
             WheelName::Pinion => ["Pinion", "input shaft", "pinion "],
             WheelName::Gear => ["Gear", "output shaft", "gear "],
         };
-        Ok(Self { of_tooth, ..pair.side(name, title.to_owned(), shaft.to_owned())? })
+        let heading = [title.to_owned(), shaft.to_owned()];
+        let (errors, tips) = (stages.profile_errors.as_ref(), stages.tip_lengths_mm());
+        let side = Self::of_pair(name, heading, &stages.teeth, &stages.damaged, errors, tips)?;
+        Ok(Self { of_tooth, ..side })
     }
 
     /// A wheel of a gearbox, in its first mesh; none of a wheel in no mesh.
     pub(super) fn of_gearbox(stages: &'a GearboxStages, wheel: usize) -> Option<Result<Self, PlotError>> {
         let (mesh, name) = stages.layout.mesh_of(wheel)?;
         let (of_mesh, of_file) = (&stages.pairs[mesh], &stages.gearbox.wheels[wheel]);
-        let pair = PairOfWheels {
-            teeth: &of_mesh.teeth,
-            damaged: &of_mesh.damaged,
-            errors: of_mesh.profile_errors.as_ref(),
-            tip_lengths_mm: stages.layout.gears[mesh].tip_lengths_mm(),
-        };
-        Some(pair.side(name, of_file.name.clone(), format!("shaft {}", of_file.shaft)))
+        let heading = [of_file.name.clone(), format!("shaft {}", of_file.shaft)];
+        let (errors, tips) = (of_mesh.profile_errors.as_ref(), stages.layout.gears[mesh].tip_lengths_mm());
+        Some(Self::of_pair(name, heading, &of_mesh.teeth, &of_mesh.damaged, errors, tips))
+    }
+
+    /// One of two wheels in mesh.
+    fn of_pair(
+        name: WheelName,
+        [title, shaft]: [String; 2],
+        teeth: &'a Teeth,
+        damaged: &'a [DamagedTooth],
+        errors: Option<&'a ProfileErrors>,
+        tip_lengths_mm: [f64; 2],
+    ) -> Result<Self, PlotError> {
+        let profile = teeth.profile(name);
+        let contact_index = teeth.initial_contact_index(name);
+        let points = profile.len().min(profile.y_mm.len());
+        if points < 2 || contact_index + 1 >= points {
+            return Err(PlotError::NoProfile { wheel: title, points });
+        }
+        let standing_out = crate::DamagedTooth::of_teeth(teeth, damaged, name);
+        let first = standing_out.first().map(|tooth| tooth.tooth as usize - 1);
+        let mut of_wheel = damaged.iter().filter(|tooth| tooth.wheel == name);
+        Ok(Self {
+            name: title,
+            shaft,
+            of_tooth: "",
+            wheel: teeth.wheel(name),
+            profile,
+            contact_index,
+            tip_shapes: tip_shapes(tip_lengths_mm, profile),
+            tooth: first.and_then(|first| of_wheel.find(|alike| alike.teeth.contains(&first))),
+            damaged: standing_out,
+            errors_mm: errors.map(|errors| match name {
+                WheelName::Pinion => &errors.pinion_profile_errors_mm,
+                WheelName::Gear => &errors.gear_profile_errors_mm,
+            }),
+            errors_from_tip: name == WheelName::Gear,
+        })
     }
 
     /// Index of the tooth, from 0.
@@ -114,47 +143,6 @@ impl<'a> Side<'a> {
         let (a, b) = (self.profile.radius_mm(low), self.profile.radius_mm(high));
         let t = if b > a { ((radius_mm - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
         self.profile.x_mm[low] + t * (self.profile.x_mm[high] - self.profile.x_mm[low])
-    }
-}
-
-/// Two wheels in mesh, as the panel sees them.
-struct PairOfWheels<'a> {
-    teeth: &'a Teeth,
-    damaged: &'a [DamagedTooth],
-    errors: Option<&'a ProfileErrors>,
-    /// (mm) Of chamfer and tip relief.
-    tip_lengths_mm: [f64; 2],
-}
-
-impl<'a> PairOfWheels<'a> {
-    /// One of the wheels.
-    fn side(self, name: WheelName, title: String, shaft: String) -> Result<Side<'a>, PlotError> {
-        let Self { teeth, damaged, errors, tip_lengths_mm } = self;
-        let profile = teeth.profile(name);
-        let contact_index = teeth.initial_contact_index(name);
-        let points = profile.len().min(profile.y_mm.len());
-        if points < 2 || contact_index + 1 >= points {
-            return Err(PlotError::NoProfile { wheel: title, points });
-        }
-        let standing_out = crate::DamagedTooth::of_teeth(teeth, damaged, name);
-        let first = standing_out.first().map(|tooth| tooth.tooth as usize - 1);
-        let mut of_wheel = damaged.iter().filter(|tooth| tooth.wheel == name);
-        Ok(Side {
-            name: title,
-            shaft,
-            of_tooth: "",
-            wheel: teeth.wheel(name),
-            profile,
-            contact_index,
-            tip_shapes: tip_shapes(tip_lengths_mm, profile),
-            tooth: first.and_then(|first| of_wheel.find(|alike| alike.teeth.contains(&first))),
-            damaged: standing_out,
-            errors_mm: errors.map(|errors| match name {
-                WheelName::Pinion => &errors.pinion_profile_errors_mm,
-                WheelName::Gear => &errors.gear_profile_errors_mm,
-            }),
-            errors_from_tip: name == WheelName::Gear,
-        })
     }
 }
 

@@ -21,7 +21,9 @@ use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorde
 use crate::threads;
 use crate::trace_fields::Trace;
 use crate::wheel::quality::deviations;
-use crate::wheel::{Deviations, Gears, ProfileErrors, RunOut, Teeth, WheelName, teeth};
+use crate::wheel::{
+    Deviations, ERROR_POINTS, ErrorTable, Gears, ProfileErrors, RunOut, Teeth, WheelName, teeth,
+};
 
 /// Two wheels of a gearbox in mesh: what the stages before the mesh make of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -388,14 +390,13 @@ fn joined(
     if pinion.is_none() && gear.is_none() {
         return None;
     }
-    let ideal = |wheel: WheelName| {
-        crate::wheel::ErrorTable::filled(crate::wheel::ERROR_POINTS, teeth.wheel(wheel).teeth as usize, 0.0)
+    let table = |errors: Option<ProfileErrors>, wheel: WheelName| match errors {
+        Some(errors) => wheel.choose(errors.pinion_profile_errors_mm, errors.gear_profile_errors_mm),
+        None => ErrorTable::filled(ERROR_POINTS, teeth.wheel(wheel).teeth as usize, 0.0),
     };
     Some(ProfileErrors {
-        pinion_profile_errors_mm: pinion
-            .map_or_else(|| ideal(WheelName::Pinion), |errors| errors.pinion_profile_errors_mm),
-        gear_profile_errors_mm: gear
-            .map_or_else(|| ideal(WheelName::Gear), |errors| errors.gear_profile_errors_mm),
+        pinion_profile_errors_mm: table(pinion, WheelName::Pinion),
+        gear_profile_errors_mm: table(gear, WheelName::Gear),
     })
 }
 

@@ -297,10 +297,8 @@ impl ModalMachine {
         let is_moved = |mode: &ClosedMode| mode.mesh_energies.iter().any(|energy| *energy > ROUNDING * ROUNDING);
         let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
         let moved = self.closed_modes(meshes, highest_rad_per_s).into_iter().filter(is_moved);
-        let slower = |slowest: DecayingMode, mode: DecayingMode| {
-            if mode.decay_per_s < slowest.decay_per_s { mode } else { slowest }
-        };
-        moved.map(|mode| mode.decay).fold(none, slower)
+        let decays = moved.map(|mode| mode.decay);
+        decays.min_by(|a, b| a.decay_per_s.total_cmp(&b.decay_per_s)).unwrap_or(none)
     }
 
     /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.
