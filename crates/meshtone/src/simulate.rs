@@ -34,8 +34,7 @@ use crate::simd::InstructionSet;
 use crate::solver::{Block, Diverged, Output, Recorder};
 use crate::wheel::quality::{deviations, profile_errors};
 use crate::wheel::{
-    Deviations, Gears, NamedGears, PairNames, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations,
-    WheelName, teeth,
+    Deviations, Gears, NamedGears, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth,
 };
 
 /// Results of every stage before the time loop.
@@ -205,7 +204,7 @@ fn machine_stages(
     };
     clock.lap("equations of motion");
     stages.meshes = stages.meshes_at(stages.points_per_pitch())?;
-    let gears = NamedGears::new(&stages.scenario.gears, PairNames::OnePair);
+    let gears = NamedGears::of_pair(&stages.scenario.gears);
     stages.meshes.iter().try_for_each(|mesh| check_mesh(mesh, &gears))?;
     clock.lap("mesh stiffness");
     stages.timings = clock.laps;

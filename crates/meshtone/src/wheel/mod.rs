@@ -24,7 +24,7 @@ pub use gears::{FoundationCoefficients, Gears, ReliefShape};
 pub use material::{Material, MaterialConstants};
 pub use mounting::Mounting;
 pub use name::WheelName;
-pub(crate) use named_gears::{NamedGears, PairNames};
+pub(crate) use named_gears::NamedGears;
 pub use path::PathOfContact;
 pub(crate) use profile::first_minimum;
 pub use profile::{Root, TipRelief, ToothProfile, tooth_profile};

@@ -7,37 +7,31 @@ use super::{Gears, WheelName};
 /// A pair of wheels with what messages call it.
 pub(crate) struct NamedGears<'a> {
     gears: &'a Gears,
-    names: PairNames<'a>,
-}
-
-/// Names of a pair of wheels, and the places of their keys.
-pub(crate) enum PairNames<'a> {
-    /// The pinion and the gear of `[gears]`.
-    OnePair,
-    /// The wheels of a gearbox's mesh.
-    OfMesh {
-        /// Key of the mesh's section, such as `mesh[1]`.
-        section: String,
-        /// Number and name of the driving and of the driven wheel.
-        wheels: [(usize, &'a str); 2],
-    },
+    /// Of a gearbox's mesh: the key of its section, number and name of the driving and of the driven wheel.
+    mesh: Option<(String, [(usize, &'a str); 2])>,
 }
 
 impl<'a> NamedGears<'a> {
-    /// Names a pair of wheels.
+    /// The pinion and the gear of `[gears]`.
+    pub(crate) fn of_pair(gears: &'a Gears) -> Self {
+        Self { gears, mesh: None }
+    }
+
+    /// The wheels of a gearbox's mesh.
     ///
     /// # Arguments
     /// * `gears` - the wheels
-    /// * `names` - of the wheels, and the places of their keys
-    pub(crate) fn new(gears: &'a Gears, names: PairNames<'a>) -> Self {
-        Self { gears, names }
+    /// * `section` - key of the mesh's section, such as `mesh[1]`
+    /// * `wheels` - number and name of the driving and of the driven wheel
+    pub(crate) fn of_mesh(gears: &'a Gears, section: String, wheels: [(usize, &'a str); 2]) -> Self {
+        Self { gears, mesh: Some((section, wheels)) }
     }
 
     /// The name of a wheel: `the pinion`, `z1`.
     pub(crate) fn name(&self, wheel: WheelName) -> String {
-        match &self.names {
-            PairNames::OnePair => format!("the {}", wheel.name()),
-            PairNames::OfMesh { wheels, .. } => wheels[wheel as usize].1.to_owned(),
+        match &self.mesh {
+            None => format!("the {}", wheel.name()),
+            Some((_, wheels)) => wheels[wheel as usize].1.to_owned(),
         }
     }
 
@@ -47,27 +41,27 @@ impl<'a> NamedGears<'a> {
     /// * `wheel` - which
     /// * `key` - without the name of the wheel
     pub(crate) fn key_of(&self, wheel: WheelName, key: &str) -> String {
-        match &self.names {
-            PairNames::OnePair => format!("gears.{}_{key}", wheel.name()),
-            PairNames::OfMesh { wheels, .. } => format!("wheel[{}].{key}", wheels[wheel as usize].0),
+        match &self.mesh {
+            None => format!("gears.{}_{key}", wheel.name()),
+            Some((_, wheels)) => format!("wheel[{}].{key}", wheels[wheel as usize].0),
         }
     }
 
     /// A key that both wheels have in common: `gears.module_mm`, `mesh[0].module_mm`, `wheel[0].tip_chamfer_mm`.
     pub(crate) fn key(&self, key: &str) -> String {
         const OF_MESH: [&str; 4] = ["module_mm", "pressure_angle_deg", "centre_distance_mm", "backlash_mm"];
-        match &self.names {
-            PairNames::OnePair => format!("gears.{key}"),
-            PairNames::OfMesh { section, .. } if OF_MESH.contains(&key) => format!("{section}.{key}"),
-            PairNames::OfMesh { .. } => self.key_of(WheelName::Pinion, key),
+        match &self.mesh {
+            None => format!("gears.{key}"),
+            Some((section, _)) if OF_MESH.contains(&key) => format!("{section}.{key}"),
+            Some(_) => self.key_of(WheelName::Pinion, key),
         }
     }
 
     /// The key of the pair as a whole: `gears`, `mesh[0].wheels`.
     pub(crate) fn whole(&self) -> String {
-        match &self.names {
-            PairNames::OnePair => "gears".to_owned(),
-            PairNames::OfMesh { section, .. } => format!("{section}.wheels"),
+        match &self.mesh {
+            None => "gears".to_owned(),
+            Some((section, _)) => format!("{section}.wheels"),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::contact::contact_ratio_of;
 use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
-use super::{Gears, NamedGears, PairNames, Wheel, WheelName};
+use super::{Gears, NamedGears, Wheel, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::keys::{Check, below, check_keys, refuse, require};
 
@@ -30,7 +30,7 @@ impl Gears {
     /// Every key alone, and the two wheels together.
     pub(crate) fn check(&self) -> Check {
         check_keys(self, "gears")?;
-        NamedGears::new(self, PairNames::OnePair).check()
+        NamedGears::of_pair(self).check()
     }
 
     /// (mm) Half a tooth's thickness at the pitch circle, of the wheel whose teeth are thicker there.
@@ -208,7 +208,7 @@ mod tests {
     fn contact_ratio_below_one_names_what_to_change() {
         let mut gears = Gears::new(3.0, 1, 1, 15.0);
         gears.pressure_angle_deg = 40.0;
-        let error = contact_ratio(&NamedGears::new(&gears, PairNames::OnePair)).unwrap_err();
+        let error = contact_ratio(&NamedGears::of_pair(&gears)).unwrap_err();
         assert_eq!(error.key, "gears");
         assert!(error.problem.contains("contact ratio is 0.938"), "{}", error.problem);
         let help = error.help.unwrap();

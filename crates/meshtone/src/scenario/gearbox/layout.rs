@@ -7,7 +7,7 @@ use crate::damage::Fault;
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::Coupled;
 use crate::wheel::{
-    ERROR_POINTS, ErrorTable, Gears, Mounting, NamedGears, PairNames, ProfileErrors, Quality, WheelName,
+    ERROR_POINTS, ErrorTable, Gears, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
 };
 
 /// A ratio of two whole numbers, reduced; its sign is the numerator's.
@@ -116,7 +116,7 @@ impl GearboxLayout {
         };
         for (index, mesh) in gearbox.meshes.iter().enumerate() {
             let gears = this.gears_of(gearbox, index, mesh)?;
-            NamedGears::new(&gears, this.names_of_mesh(gearbox, index)).check()?;
+            this.named(&gears, gearbox, index).check()?;
             this.gears.push(gears);
         }
         this.ratios = this.turn(gearbox)?;
@@ -336,14 +336,12 @@ impl GearboxLayout {
 
     /// A mesh's pair of wheels with their names.
     pub(crate) fn named_gears<'a>(&'a self, gearbox: &'a Gearbox, mesh: usize) -> NamedGears<'a> {
-        NamedGears::new(&self.gears[mesh], self.names_of_mesh(gearbox, mesh))
+        self.named(&self.gears[mesh], gearbox, mesh)
     }
 
-    fn names_of_mesh<'a>(&self, gearbox: &'a Gearbox, mesh: usize) -> PairNames<'a> {
-        PairNames::OfMesh {
-            section: section("mesh", mesh, gearbox.meshes.len()),
-            wheels: self.wheels_of_mesh[mesh].map(|wheel| (wheel, gearbox.wheels[wheel].name.as_str())),
-        }
+    fn named<'a>(&self, gears: &'a Gears, gearbox: &'a Gearbox, mesh: usize) -> NamedGears<'a> {
+        let wheels = self.wheels_of_mesh[mesh].map(|wheel| (wheel, gearbox.wheels[wheel].name.as_str()));
+        NamedGears::of_mesh(gears, section("mesh", mesh, gearbox.meshes.len()), wheels)
     }
 
     /// The first mesh that a wheel is in, and on which side.
