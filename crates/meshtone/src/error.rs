@@ -4,8 +4,6 @@ use std::fmt;
 
 use meshtone_toml::{ErrorKind, TomlError};
 
-use crate::wheel::NamedGears;
-
 /// A scenario that cannot be simulated: which key, what it says, what is allowed.
 ///
 /// ```
@@ -90,12 +88,15 @@ impl ScenarioError {
     }
 
     /// More pairs in contact at once than the model of contact looks at.
-    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64, gears: &NamedGears) -> Self {
+    ///
+    /// # Arguments
+    /// * `contact_ratio`, `most` - (-) the contact ratio, and the largest
+    /// * `whole`, `angle` - keys of the pair and of its pressure angle
+    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64, [whole, angle]: [String; 2]) -> Self {
         let problem = format!(
             "has a contact ratio of {contact_ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
         );
-        let angle = gears.key("pressure_angle_deg");
-        Self::new(gears.whole(), "", problem)
+        Self::new(whole, "", problem)
             .with_help(format!("raise {angle}; of one pair, model = \"linear\" has no such limit"))
     }
 

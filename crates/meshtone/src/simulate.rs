@@ -255,7 +255,8 @@ fn check_mesh(mesh: &Mesh, gears: &NamedGears) -> Result<(), ScenarioError> {
         return Err(ScenarioError::not_stiff());
     }
     if mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
-        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, gears));
+        let keys = [gears.whole(), gears.key("pressure_angle_deg")];
+        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
     }
     let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
     if mesh.classes.iter().any(meets) { Ok(()) } else { Err(ScenarioError::nothing_left()) }

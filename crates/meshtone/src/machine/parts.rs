@@ -174,6 +174,7 @@ impl Machine {
     /// # Arguments
     /// * `place` - its name
     /// * `axis` - the axis
+    #[cfg(feature = "internals")]
     pub fn weights(&self, place: &str, axis: Axis) -> DVector<f64> {
         weights(&self.places, self.coordinates(), place, axis)
     }
