@@ -9,6 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._gearbox_keys import (
+    GearboxBearing,
+    GearboxHousing,
+    GearboxMesh,
+    GearboxOperation,
+    GearboxSensor,
+    GearboxShaft,
+    GearboxSolver,
+    GearboxWheel,
+)
 from ._scenario_text import ScenarioText
 from ._warnings import warn
 
@@ -80,28 +90,27 @@ class Gearbox(ScenarioText):
     def __init__(
         self,
         *,
-        shafts: Sequence[_Table],
-        wheels: Sequence[_Table],
-        meshes: Sequence[_Table],
-        bearings: Sequence[_Table],
-        operation: _Table,
-        housing: _Table | None = None,
+        shafts: Sequence[GearboxShaft],
+        wheels: Sequence[GearboxWheel],
+        meshes: Sequence[GearboxMesh],
+        bearings: Sequence[GearboxBearing],
+        operation: GearboxOperation,
+        housing: GearboxHousing | None = None,
         faults: Sequence[_Table] = (),
-        sensors: Sequence[_Table] = (),
-        solver: _Table | None = None,
+        sensors: Sequence[GearboxSensor] = (),
+        solver: GearboxSolver | None = None,
         material: str | _Table = "steel",
         seed: int = 1,
     ) -> None:
         sections: dict[str, Any] = {"seed": seed, "material": _plain(material), "operation": _plain(operation)}
-        lists = {"shaft": shafts, "wheel": wheels, "mesh": meshes, "bearing": bearings, "fault": faults, "sensor": sensors}
+        lists: dict[str, Any] = {"shaft": shafts, "wheel": wheels, "mesh": meshes, "bearing": bearings, "fault": faults, "sensor": sensors}
         for name, entries in lists.items():
             if isinstance(entries, (str, Mapping)) or not isinstance(entries, Sequence):
                 raise TypeError(f"{name}: {entries!r} must be a sequence of dictionaries")
             if entries:
                 sections[name] = [_plain(entry) for entry in entries]
-        for name, table in (("housing", housing), ("solver", solver)):
-            if table is not None:
-                sections[name] = _plain(table)
+        tables: dict[str, Any] = {"housing": housing, "solver": solver}
+        sections.update({name: _plain(table) for name, table in tables.items() if table is not None})
         self._set(_core.Gearbox(sections))
 
     def _set(self, native: _core.Gearbox) -> None:
@@ -228,7 +237,7 @@ def simulate_gearbox(gearbox: Gearbox) -> GearboxSimulation:
     >>> list(simulation.channels)[:3]
     ['input_0_vertical_g', 'output_1_vertical_g', 'force_n.z1-z2']
     """
-    simulation: GearboxSimulation = simulate_gearboxes([gearbox])[0]
+    simulation = GearboxSimulation(gearbox, _core.simulate_gearbox(_checked(gearbox, "gearbox")))
     warn(simulation.warnings, simulation._native.warning_codes)
     return simulation
 
@@ -236,7 +245,8 @@ def simulate_gearbox(gearbox: Gearbox) -> GearboxSimulation:
 def simulate_gearboxes(
     gearboxes: Iterable[Gearbox], *, on_error: Literal["raise", "return"] = "raise"
 ) -> list[Any]:
-    """Simulate many gearboxes, in all cores.
+    """Simulate many gearboxes, in all cores. None is simulated a second time with half the step, as :func:`simulate_gearbox` does where the
+    step is doubtful: the estimate of its error decides alone, whatever the number of gearboxes.
 
     Parameters
     ----------
@@ -258,10 +268,7 @@ def simulate_gearboxes(
         Something that is no gearbox.
     """
     gearboxes = list(gearboxes)
-    for index, gearbox in enumerate(gearboxes):
-        if not isinstance(gearbox, Gearbox):
-            raise TypeError(f"gearboxes[{index}] = {gearbox!r}: must be a Gearbox")
-    results = _core.simulate_gearboxes([gearbox._native for gearbox in gearboxes])
+    results = _core.simulate_gearboxes([_checked(gearbox, f"gearboxes[{index}]") for index, gearbox in enumerate(gearboxes)])
     made: list[Union[GearboxSimulation, ValueError]] = []
     for gearbox, result in zip(gearboxes, results):
         if isinstance(result, Exception):
@@ -271,6 +278,13 @@ def simulate_gearboxes(
         else:
             made.append(GearboxSimulation(gearbox, result))
     return made
+
+
+def _checked(gearbox: Gearbox, name: str) -> _core.Gearbox:
+    """The gearbox as the compiled module has it."""
+    if not isinstance(gearbox, Gearbox):
+        raise TypeError(f"{name} = {gearbox!r}: must be a Gearbox")
+    return gearbox._native
 
 
 def gearbox_template(rig: Literal["phm2009-spur", "uconn", "tecnalia"] | None = None) -> str:

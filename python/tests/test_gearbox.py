@@ -67,6 +67,24 @@ def test_batch_gives_the_same_as_alone() -> None:
     assert not np.array_equal(alone[0]["input_0_vertical_g"], alone[1]["input_0_vertical_g"])
 
 
+def test_judgement_does_not_depend_on_how_many_there_are() -> None:
+    doubtful = mt.Gearbox.from_toml(mt.gearbox_template("uconn").replace("duration_s = 1.0", "duration_s = 0.2"))
+    [alone] = mt.simulate_gearboxes([doubtful])
+    [one, other] = mt.simulate_gearboxes([doubtful, doubtful])
+    assert alone.warnings == one.warnings == other.warnings
+    with pytest.warns(mt.MeshtoneWarning, match="S/s the rms is"):
+        mt.simulate_gearbox(doubtful)
+
+
+def test_profile_errors_are_of_the_wheel() -> None:
+    wheels = gearbox().sections["wheel"]
+    errors_mm = np.full((100, 17), 2e-3)
+    box = gearbox(wheels=[{**wheels[0], "profile_errors_mm": errors_mm}, wheels[1]])
+    assert np.array_equal(box.sections["wheel"][0]["profile_errors_mm"], errors_mm)
+    with pytest.raises(ValueError, match=r"wheel\[1\].profile_errors_mm .*must be 100 × 38"):
+        gearbox(wheels=[wheels[0], {**wheels[1], "profile_errors_mm": errors_mm}])
+
+
 def test_mistakes_are_named() -> None:
     with pytest.raises(ValueError, match=r"wheel\[1\].shaft = \"none\" .*: is no shaft's name; there are \"input\", \"output\""):
         gearbox(wheels=[gearbox().sections["wheel"][0], {**gearbox().sections["wheel"][1], "shaft": "none"}])

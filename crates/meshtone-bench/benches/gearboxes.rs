@@ -1,5 +1,5 @@
-//! Two stages of spur gears, 100 kS/s, 1 s kept and all of it simulated: alone, and of many, in one thread. The time is that of the
-//! processor, which a busy machine does not disturb; Linux tells it.
+//! Two stages of spur gears, 100 kS/s, 1 s kept and all of it simulated: alone, and of many, in one thread, both with all warnings, as a
+//! user gets them. The time is that of the processor, which a busy machine does not disturb; Linux tells it.
 #![allow(clippy::expect_used, missing_docs)]
 
 use std::hint::black_box;
@@ -8,7 +8,7 @@ use std::time::Duration;
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use meshtone::scenario::{Gearbox, gearbox_template};
-use meshtone::{gearbox_stages, simulate_gearbox, simulate_gearboxes};
+use meshtone::{GearboxSimulation, StepJudgement, gearbox_stages, simulate_gearbox, simulate_gearboxes};
 
 /// Time that this thread had the processor.
 struct ProcessorTime(WallTime);
@@ -53,6 +53,11 @@ fn two_stages(seed: u64) -> Gearbox {
     gearbox
 }
 
+/// Number of the warnings that a user gets.
+fn warnings(simulation: &GearboxSimulation, judgement: StepJudgement) -> usize {
+    simulation.stages.warnings().len() + simulation.warnings_of_signals(judgement).len()
+}
+
 fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().expect("a thread");
     let mut group = criterion.benchmark_group("gearbox/two stages");
@@ -61,12 +66,19 @@ fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
     group.bench_function("stages", |bencher| bencher.iter(|| gearbox_stages(black_box(&gearbox))));
     let stages = gearbox_stages(&gearbox).expect("the template is valid");
     group.bench_function("time loop", |bencher| bencher.iter(|| black_box(&stages).clone().simulate()));
-    group.bench_function("alone", |bencher| bencher.iter(|| simulate_gearbox(black_box(&gearbox))));
+    group.bench_function("alone", |bencher| {
+        bencher.iter(|| {
+            let simulation = simulate_gearbox(black_box(&gearbox)).expect("the template is valid");
+            warnings(&simulation, StepJudgement::Repeated)
+        });
+    });
     let many: Vec<Gearbox> = (1..=16).map(two_stages).collect();
     group.throughput(Throughput::Elements(many.len() as u64));
     group.bench_function("16 simulations, 1 thread", |bencher| {
         bencher.iter(|| {
-            pool.install(|| simulate_gearboxes(&many, |simulation| black_box(simulation.channels.len())))
+            pool.install(|| {
+                simulate_gearboxes(&many, |simulation| warnings(&simulation, StepJudgement::Estimated))
+            })
         });
     });
     group.finish();

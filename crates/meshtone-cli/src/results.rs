@@ -10,7 +10,7 @@ use meshtone_io::atomic_file::{StagedFile, WriteFileError};
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::{write_gearbox_signals, write_signals};
-use meshtone_io::summary::{GearboxSummary, Summary};
+use meshtone_io::summary::{GearboxSummary, Summary, write_json};
 use meshtone_io::trace_npz::write_trace;
 use meshtone_plot::{Figure, PlotError, panel};
 
@@ -48,7 +48,7 @@ pub fn write(
 ) -> Result<(), Failure> {
     let (panel, signals) = thread::scope(|scope| {
         let panel = scope.spawn(|| match with_panel {
-            true => stage_panel(directory, summary.run, &simulation.stages, &simulation.channels),
+            true => stage_panel(directory, summary.head.run, &simulation.stages, &simulation.channels),
             false => Ok(Vec::new()),
         });
         let signals = StagedFile::write(&directory.join(SIGNALS), |file| {
@@ -58,12 +58,12 @@ pub fn write(
         (panel, signals)
     });
     let traced = |(trace, path): (&Trace, &Path)| {
-        StagedFile::write(path, |file| write_trace(file, summary.run, trace))
+        StagedFile::write(path, |file| write_trace(file, summary.head.run, trace))
     };
     let staged = Staged {
         signals: signals?,
         trace: trace.map(traced).transpose()?,
-        summary: StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?,
+        summary: StagedFile::write(&directory.join(SUMMARY), |file| write_json(summary, file))?,
         panel,
     };
     staged.commit(directory)
@@ -84,16 +84,18 @@ pub fn write_gearbox(
     with_panel: bool,
 ) -> Result<(), Failure> {
     let traced = |path| {
-        StagedFile::write(path, |file| write_trace(file, summary.run, &meshtone::gearbox_trace(simulation)))
+        StagedFile::write(path, |file| {
+            write_trace(file, summary.head.run, &meshtone::gearbox_trace(simulation))
+        })
     };
     let staged = Staged {
         signals: StagedFile::write(&directory.join(SIGNALS), |file| {
             write_gearbox_signals(file, &simulation.stages.gearbox, &simulation.channels)
         })?,
         trace: trace.map(traced).transpose()?,
-        summary: StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?,
+        summary: StagedFile::write(&directory.join(SUMMARY), |file| write_json(summary, file))?,
         panel: match with_panel {
-            true => stage_gearbox_panel(directory, summary.run, simulation),
+            true => stage_gearbox_panel(directory, summary.head.run, simulation),
             false => Ok(Vec::new()),
         },
     };

@@ -1,6 +1,8 @@
 //! The main numbers of a run, for reading.
 
-use meshtone_io::summary::{ChannelSummary, FaultSummary, GearboxSummary, MeshForce, Summary};
+use meshtone_io::summary::{
+    ChannelSummary, FaultSummary, GearboxSummary, MeshForce, Summary, SummaryEnd, SummaryHead,
+};
 
 /// The table of one run.
 pub fn table(summary: &Summary) -> String {
@@ -36,22 +38,15 @@ pub fn gearbox_table(summary: &GearboxSummary) -> String {
         )
     });
     let faults: Vec<_> = faults.collect();
-    let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
+    let [model, sampling, time] = common_rows(&summary.head, &summary.end);
     let whole = [
-        ("model", format!("{}, seed {}", summary.model, summary.seed)),
+        model,
         ("fault", if faults.is_empty() { "none".to_owned() } else { faults.join(", ") }),
-        (
-            "sampling",
-            format!(
-                "{} samples, {duration_s:.3} s at {} S/s",
-                summary.samples,
-                short(summary.sampling_rate_hz)
-            ),
-        ),
+        sampling,
         ("shaft speeds, rev/s", shafts.collect::<Vec<_>>().join(", ")),
         ("repeats after", format!("{} revolutions of the input", summary.cycle_input_revolutions)),
         ("natural frequencies, Hz", format!("{} …", frequencies.join(" "))),
-        ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
+        time,
     ];
     let of_meshes = summary.meshes.iter().flat_map(|mesh| {
         let (stiffness, force, error) = (&mesh.mesh_stiffness, &mesh.mesh_force, &mesh.transmission_error_um);
@@ -85,19 +80,30 @@ fn range(values: [f64; 3]) -> String {
 fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     let (stiffness, force) = (&summary.mesh_stiffness, &summary.mesh_force);
     let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
-    let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
-    let rate = short(summary.sampling_rate_hz);
+    let [model, sampling, time] = common_rows(&summary.head, &summary.end);
     let stiffness = range([stiffness.min_n_per_mm, stiffness.mean_n_per_mm, stiffness.max_n_per_mm]);
     let forces = range([force.min_n, force.mean_n, force.max_n]);
     [
-        ("model", format!("{}, seed {}", summary.model, summary.seed)),
+        model,
         ("fault", faults(&summary.faults)),
-        ("sampling", format!("{} samples, {duration_s:.3} s at {rate} S/s", summary.samples)),
+        sampling,
         ("contact ratio", format!("{:.4}{}", summary.contact_ratio, along_the_face(summary))),
         ("mesh stiffness, N/mm", stiffness),
         ("mesh force, N", forces + &touching(force)),
         ("natural frequencies, Hz", frequencies.join(" ")),
-        ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
+        time,
+    ]
+}
+
+/// Model, sampling and computing time, which every run has.
+fn common_rows(head: &SummaryHead, end: &SummaryEnd) -> [(&'static str, String); 3] {
+    let SummaryHead { model, seed, samples, sampling_rate_hz, .. } = head;
+    let duration_s = *samples as f64 / sampling_rate_hz;
+    let rate = short(*sampling_rate_hz);
+    [
+        ("model", format!("{model}, seed {seed}")),
+        ("sampling", format!("{samples} samples, {duration_s:.3} s at {rate} S/s")),
+        ("computing time", format!("{} ms", short(end.total_time().as_secs_f64() * 1e3))),
     ]
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use meshtone::Stages;
 use meshtone::damage::{Fault, ToothPart};
-use meshtone::wheel::WheelName;
+use meshtone::wheel::{Teeth, WheelName};
 
 use crate::drawing::{Axes, Canvas, Fill, colour};
 
@@ -35,7 +35,7 @@ impl DamagedTooth {
     ///
     /// ```
     /// use meshtone::damage::{Fault, MissingTooth};
-    /// use meshtone::wheel::WheelName;
+    /// use meshtone::wheel::{Teeth, WheelName};
     /// use meshtone_plot::DamagedTooth;
     ///
     /// let faults = [Fault::new(WheelName::Pinion, 3, MissingTooth), Fault::on_first_gear_tooth(MissingTooth)];
@@ -66,8 +66,17 @@ impl DamagedTooth {
     /// * `stages` - what was simulated
     /// * `wheel` - whose teeth
     pub fn of_stages(stages: &Stages, wheel: WheelName) -> Vec<Self> {
-        let contact_pitches = stages.teeth.contact.contact_ratio;
-        let of_wheel = stages.damaged.iter().filter(|alike| alike.wheel == wheel).enumerate();
+        Self::of_teeth(&stages.teeth, &stages.damaged, wheel)
+    }
+
+    /// The same of a pair of wheels.
+    pub(crate) fn of_teeth(
+        teeth: &Teeth,
+        damaged: &[meshtone::damage::DamagedTooth],
+        wheel: WheelName,
+    ) -> Vec<Self> {
+        let contact_pitches = teeth.contact.contact_ratio;
+        let of_wheel = damaged.iter().filter(|alike| alike.wheel == wheel).enumerate();
         let mut damaged: Vec<(Self, usize)> = of_wheel
             .flat_map(|(group, alike)| {
                 let is_missing = alike.is_missing();
@@ -76,7 +85,7 @@ impl DamagedTooth {
             })
             .collect();
         damaged.sort_by_key(|(tooth, _)| tooth.tooth);
-        standing_out(damaged, stages.teeth.wheel(wheel).teeth)
+        standing_out(damaged, teeth.wheel(wheel).teeth)
     }
 }
 

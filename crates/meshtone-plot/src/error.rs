@@ -9,7 +9,7 @@ pub enum PlotError {
     #[error("the {wheel}'s tooth profile has {points} points; at least 2 are needed to draw it")]
     NoProfile {
         /// Pinion or gear.
-        wheel: &'static str,
+        wheel: String,
         /// Number of points.
         points: usize,
     },

@@ -153,20 +153,25 @@ impl GearboxSimulation {
     }
 }
 
-/// Simulates gearboxes, in all threads; the error of one stands in its place.
+/// Simulates a gearbox; it is simulated a second time where its step is doubtful.
+#[pyfunction]
+pub fn simulate_gearbox(py: Python<'_>, gearbox: PyRef<'_, Gearbox>) -> PyResult<GearboxSimulation> {
+    let gearbox = gearbox.0.clone();
+    let simulated = py
+        .detach(|| meshtone::simulate_gearbox(&gearbox).map(|of| with_warnings(of, StepJudgement::Repeated)));
+    let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
+    GearboxSimulation::new(py, simulation, warnings)
+}
+
+/// Simulates gearboxes, in all threads, none a second time; the error of one stands in its place.
 #[pyfunction]
 pub fn simulate_gearboxes<'py>(
     py: Python<'py>,
     gearboxes: Vec<PyRef<'py, Gearbox>>,
 ) -> PyResult<Vec<Py<PyAny>>> {
     let gearboxes: Vec<scenario::Gearbox> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
-    // Of many, none is simulated a second time.
-    let judgement = if gearboxes.len() == 1 { StepJudgement::Repeated } else { StepJudgement::Estimated };
-    let judged = |simulation: meshtone::GearboxSimulation| {
-        let warnings = [simulation.stages.warnings(), simulation.warnings_of_signals(judgement)].concat();
-        (simulation, warnings)
-    };
-    let results = py.detach(|| meshtone::simulate_gearboxes(&gearboxes, judged));
+    let estimated = |of| with_warnings(of, StepJudgement::Estimated);
+    let results = py.detach(|| meshtone::simulate_gearboxes(&gearboxes, estimated));
     let made = results.into_iter().map(|result| match result {
         Ok((simulation, warnings)) => {
             Ok(Py::new(py, GearboxSimulation::new(py, simulation, warnings)?)?.into_any())
@@ -174,6 +179,15 @@ pub fn simulate_gearboxes<'py>(
         Err(error) => Ok(simulation_error(&error).into_value(py).into_any()),
     });
     made.collect()
+}
+
+/// A simulation with all its warnings.
+fn with_warnings(
+    simulation: meshtone::GearboxSimulation,
+    judgement: StepJudgement,
+) -> (meshtone::GearboxSimulation, Vec<ScenarioWarning>) {
+    let warnings = [simulation.stages.warnings(), simulation.warnings_of_signals(judgement)].concat();
+    (simulation, warnings)
 }
 
 /// A commented gearbox, or what is published of a rig.

@@ -35,7 +35,7 @@ mod _core {
         dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset},
         diagnose::{Observation, diagnose},
         explore::ExploreServer,
-        gearbox::{Gearbox, GearboxSimulation, gearbox_template, simulate_gearboxes},
+        gearbox::{Gearbox, GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes},
         hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune},
         memory::set_memory_limit,
         phase::{ShaftPhase, repair_pulses, tachometer_pulses},

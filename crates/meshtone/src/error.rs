@@ -89,20 +89,23 @@ impl ScenarioError {
     }
 
     /// More pairs in contact at once than the model of contact looks at.
-    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64) -> Self {
+    ///
+    /// # Arguments
+    /// * `contact_ratio`, `most` - (-) the contact ratio, and the largest
+    /// * `whole`, `angle` - keys of the pair and of its pressure angle
+    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64, [whole, angle]: [String; 2]) -> Self {
         let problem = format!(
             "has a contact ratio of {contact_ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
         );
-        Self::new("gears", "", problem)
-            .with_help("raise gears.pressure_angle_deg, or set model = \"linear\", which has no such limit")
+        Self::new(whole, "", problem)
+            .with_help(format!("raise {angle}; of one pair, model = \"linear\" has no such limit"))
     }
 
     /// Flanks that close along the face, and no load that could decide how much of it bears.
     pub(crate) fn no_load_along_the_face() -> Self {
         let problem = "must be more than 0 where the flanks do not close alike along the face: the load decides how much of it bears";
-        Self::new("operation.brake_torque_nm", 0.0, problem).with_help(
-            "raise the torque, or set rig.misalignment_um, quality.helix_share and given helix slopes to 0",
-        )
+        Self::new("operation.brake_torque_nm", 0.0, problem)
+            .with_help("raise the torque, or set misalignment_um, helix_share and given helix slopes to 0")
     }
 
     /// Damage that leaves no tooth that could carry a load.
@@ -200,9 +203,7 @@ impl Error {
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Scenario(error) => error.help.as_deref(),
-            Self::Diverged { .. } => {
-                Some("raise the damping ratios of [rig], use more teeth, or change operation.pinion_speed_hz")
-            }
+            Self::Diverged { .. } => Some("raise damping ratios, use more teeth, or change the speed"),
         }
     }
 }
@@ -256,6 +257,7 @@ warning_kinds! {
     IgnoredKey "ignored-key" "a key has no effect";
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
+    Gyroscopic "gyroscopic" "a shaft is so fast that gyroscopic moments, which are left out, shift natural frequencies";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
     ProfileEnded "profile-ended" "a speed or torque profile ends before the kept signal starts";

@@ -68,7 +68,7 @@ pub use simd::InstructionSet;
 pub use simulate::Equations;
 pub use simulate::{
     GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
-    simulate_gearbox, simulate_gearboxes,
+    gearbox_stages_within, simulate_gearbox, simulate_gearboxes,
 };
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages, stages_within};
 pub use trace::{Trace, TraceField, gearbox_trace, stage_trace, trace, trace_at};

@@ -16,13 +16,13 @@ use web_time::Instant;
 pub use equations::Equations;
 pub use gearbox::{
     GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
-    simulate_gearbox, simulate_gearboxes,
+    gearbox_stages_within, simulate_gearbox, simulate_gearboxes,
 };
 use options::MachineOptions;
 
 use crate::damage::{DamagedTooth, ToothPart, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::Train;
+use crate::machine::{Machine, Modes, Train};
 use crate::mesh::{
     Contact, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
 };
@@ -33,7 +33,9 @@ use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
 use crate::solver::{Block, Diverged, Output, Recorder};
 use crate::wheel::quality::{deviations, profile_errors};
-use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth};
+use crate::wheel::{
+    Deviations, Gears, NamedGears, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth,
+};
 
 /// Results of every stage before the time loop.
 #[derive(Clone, PartialEq)]
@@ -202,7 +204,8 @@ fn machine_stages(
     };
     clock.lap("equations of motion");
     stages.meshes = stages.meshes_at(stages.points_per_pitch())?;
-    stages.meshes.iter().try_for_each(check_mesh)?;
+    let gears = NamedGears::of_pair(&stages.scenario.gears);
+    stages.meshes.iter().try_for_each(|mesh| check_mesh(mesh, &gears))?;
     clock.lap("mesh stiffness");
     stages.timings = clock.laps;
     Ok(stages)
@@ -247,15 +250,72 @@ fn healthy_teeth(scenario: &Scenario) -> Teeth {
 }
 
 /// Refuses a mesh that carries nothing, and one of more pairs at once than a step looks at.
-fn check_mesh(mesh: &Mesh) -> Result<(), ScenarioError> {
+fn check_mesh(mesh: &Mesh, gears: &NamedGears) -> Result<(), ScenarioError> {
     if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
         return Err(ScenarioError::not_stiff());
     }
     if mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
-        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO));
+        let keys = [gears.whole(), gears.key("pressure_angle_deg")];
+        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
     }
     let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
     if mesh.classes.iter().any(meets) { Ok(()) } else { Err(ScenarioError::nothing_left()) }
+}
+
+/// What a mesh is made of.
+struct MeshOf<'a> {
+    gears: &'a Gears,
+    teeth: &'a Teeth,
+    damaged: &'a [DamagedTooth],
+    machine: &'a Machine,
+    /// Without the meshes.
+    modes: &'a Modes,
+    /// Of the mesh in the machine.
+    number: usize,
+    /// (µm) By how much more the flanks close at one end of the face than at the other.
+    closer_um: f64,
+    static_force_n: f64,
+    contact: Contact,
+    turning: Turning,
+    damping_ratio: f64,
+    /// (kg) That the wheels' rotation has along the line of action.
+    mesh_mass_kg: f64,
+}
+
+impl MeshOf<'_> {
+    /// The mesh with its tables.
+    ///
+    /// # Errors
+    /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load.
+    fn with_tables(&self, points_per_pitch: NonZeroUsize) -> Result<Mesh, ScenarioError> {
+        let &Self { gears, teeth, damaged, closer_um, static_force_n, .. } = self;
+        let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, damaged)?;
+        if closer_um != 0.0 && static_force_n <= 0.0 {
+            return Err(ScenarioError::no_load_along_the_face());
+        }
+        let width_m = gears.face_width_mm * 1e-3;
+        let face = || FaceSlope {
+            slope: closer_um * 1e-6 / width_m,
+            width_m,
+            tilt_rad_per_m: self.modes.tilt_rad_per_nm(self.machine, self.number) * static_force_n,
+        };
+        let parameters = MeshParameters {
+            contact: self.contact,
+            turning: self.turning,
+            damping_ratio: self.damping_ratio,
+            mesh_mass_kg: self.mesh_mass_kg,
+            backlash_m: gears.normal_backlash_mm() * 1e-3,
+            static_force_n,
+            face: (closer_um != 0.0).then(face),
+        };
+        let shape = TipShape {
+            chamfer_mm: gears.chamfer_mm(),
+            active_profile_shortening: gears.active_profile_shortening,
+            relief: gears.flank_relief,
+        };
+        let pairs = Pairs::new(teeth, damaged, gears.material, &gears.foundation);
+        Ok(Mesh::new(&pairs, shape, sequence, points_per_pitch, parameters))
+    }
 }
 
 impl Simulation {
@@ -289,37 +349,26 @@ impl Stages {
             return Ok(Vec::new());
         };
         let Scenario { gears, rig, .. } = &self.scenario;
-        let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &self.damaged)?;
-        let static_force_n = self.static_force_n();
         let closer_um = if options.feels_misalignment {
             rig.misalignment_um + self.helix_slope_um.iter().sum::<f64>()
         } else {
             0.0
         };
-        if closer_um != 0.0 && static_force_n <= 0.0 {
-            return Err(ScenarioError::no_load_along_the_face());
-        }
-        let width_m = self.teeth.gear.face_width_mm * 1e-3;
-        let face = FaceSlope {
-            slope: closer_um * 1e-6 / width_m,
-            width_m,
-            tilt_rad_per_m: modes.tilt_rad_per_nm(&train.machine, 0) * static_force_n,
-        };
-        let parameters = MeshParameters {
+        let mesh = MeshOf {
+            gears,
+            teeth: &self.teeth,
+            damaged: &self.damaged,
+            machine: &train.machine,
+            modes,
+            number: 0,
+            closer_um,
+            static_force_n: self.static_force_n(),
             contact: options.contact,
             turning: Turning { pitches_per_revolution: f64::from(gears.pinion_teeth), first_pitch: 0.0 },
             damping_ratio: rig.mesh_damping_ratio,
             mesh_mass_kg: train.mesh_mass_kg,
-            backlash_m: gears.normal_backlash_mm() * 1e-3,
-            static_force_n,
-            face: (closer_um != 0.0).then_some(face),
         };
-        let shape = TipShape {
-            chamfer_mm: gears.chamfer_mm(),
-            active_profile_shortening: gears.active_profile_shortening,
-            relief: gears.flank_relief,
-        };
-        Ok(vec![Mesh::new(&self.pairs(), shape, sequence, points_per_pitch, parameters)])
+        Ok(vec![mesh.with_tables(points_per_pitch)?])
     }
 
     /// The deviations of the pinion and of the gear beside their profile errors: run-out and helix slope. With the profile errors, of
@@ -341,8 +390,7 @@ impl Stages {
         if !self.scenario.model.has_meshes() {
             return [0.0, TipRelief::PUBLISHED.length_mm];
         }
-        let relief = &gears.flank_relief;
-        [gears.chamfer_mm(), if relief.amount_um > 0.0 { relief.length_mm } else { 0.0 }]
+        gears.tip_lengths_mm()
     }
 
     /// (N) Force along the line of action that balances the brake's nominal torque.

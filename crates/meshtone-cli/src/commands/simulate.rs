@@ -10,6 +10,7 @@ use meshtone::scenario::{
 use meshtone::{GearboxStages, Simulation, StageTime, Stages, StepJudgement, Trace};
 use meshtone_io::atomic_file::check_target;
 use meshtone_io::experiment::{Tuned, read_tuned};
+use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FileKind, FilesBeside, ScenarioFile};
 use meshtone_io::summary::{GearboxSummary, Summary};
@@ -229,7 +230,7 @@ impl Simulate {
                 format!("leave {option} out, or simulate a scenario of one pair"),
             );
         }
-        match meshtone::gearbox_stages(&file.scenario) {
+        match meshtone::gearbox_stages_within(&file.scenario, memory::limit()) {
             Ok(stages) => Ok(Run::Gearbox(Box::new(GearboxRun { file, stages, directory }))),
             Err(error) => Err(file.refuse(error).into()),
         }

@@ -52,6 +52,44 @@ fn every_mesh_is_in_every_result() {
     assert!(read_signals(&path).unwrap_err().to_string().contains("is of a gearbox"));
 }
 
+// The file of a pair of wheels holds those of a mesh, and what its wheels have beside it is refused.
+#[test]
+fn wheels_of_a_file_are_those_of_a_mesh() {
+    let workplace = Workplace::new();
+    workplace.succeeds(&["init", "healthy", "-o", "pair.toml"]);
+    let pair = String::from_utf8(workplace.read("pair.toml")).unwrap();
+    let of_mesh = |key: &str, teeth: u32| {
+        let line = pair.lines().find(|line| line.starts_with(key)).unwrap().to_owned();
+        (line, format!("{key} = {teeth}"))
+    };
+    let changes = [of_mesh("pinion_teeth", 32), of_mesh("gear_teeth", 96)];
+    let text = changes.iter().fold(pair.clone(), |text, (from, to)| text.replace(from, to));
+    workplace.write("pair.toml", text);
+    workplace.succeeds(&["wheels", "pair.toml", "-o", "wheels.npz"]);
+    workplace.succeeds(&["init", "gearbox", "-o", "gearbox.toml"]);
+    let text = String::from_utf8(workplace.read("gearbox.toml")).unwrap();
+    let text = text.replace("duration_s = 1.0", "duration_s = 0.1");
+    let with_file = text.replacen("iso_class = 6", "errors_file = \"wheels.npz\"", 2);
+    workplace.write("file.toml", &with_file);
+    workplace.succeeds(&["simulate", "file.toml", "-o", "out", "--no-panel", "--trace", "trace.npz"]);
+    let recorded = read_gearbox_signals(&workplace.path("out/signals.parquet")).unwrap().unwrap();
+    let stages = meshtone::gearbox_stages(&recorded.gearbox).unwrap();
+    let read = meshtone_io::scenario_file::ScenarioFile::read(&workplace.path("pair.toml")).unwrap();
+    let of_pair = meshtone::stages(&read.scenario).unwrap();
+    let errors = of_pair.profile_errors.unwrap();
+    assert_eq!(recorded.gearbox.wheels[0].profile_errors_mm.as_ref(), Some(&errors.pinion_profile_errors_mm));
+    assert_eq!(recorded.gearbox.wheels[1].profile_errors_mm.as_ref(), Some(&errors.gear_profile_errors_mm));
+    assert_eq!(stages.pairs[0].profile_errors.as_ref(), Some(&errors));
+    assert_eq!(stages.pairs[0].run_out, of_pair.run_out);
+    workplace
+        .write("both.toml", text.replacen("iso_class = 6", "iso_class = 6\nerrors_file = \"wheels.npz\"", 1));
+    workplace.fails(2, &["simulate", "both.toml"], &["wheel[0].iso_class", "given beside profile errors"]);
+    workplace.write("run_out.toml", with_file.replacen("errors_file", "run_out_um = 5.0\nerrors_file", 1));
+    workplace.fails(2, &["simulate", "run_out.toml"], &["wheel[0].run_out_um", "given beside errors_file"]);
+    workplace.write("other.toml", with_file.replace("teeth = 32", "teeth = 33"));
+    workplace.fails(2, &["simulate", "other.toml"], &["wheel[0].profile_errors_mm", "must be 100 × 33"]);
+}
+
 #[test]
 fn published_rigs_are_printed_and_simulate() {
     let workplace = Workplace::new();
@@ -78,4 +116,12 @@ fn what_knows_one_pair_says_so() {
     ] {
         workplace.fails(2, arguments, &["of a gearbox"]);
     }
+    let experiment = stdout(&workplace.succeeds(&["init", "experiment"]));
+    let line = experiment.lines().find(|line| line.starts_with("scenario = ")).unwrap();
+    workplace.write("experiment.toml", experiment.replace(line, "scenario = \"gearbox.toml\""));
+    workplace.fails(
+        2,
+        &["tune", "experiment.toml", "-o", "tuned"],
+        &["of a gearbox", "tuning", "know one pair"],
+    );
 }

@@ -1,40 +1,24 @@
 //! The summary of a gearbox's simulation.
 
-use std::io::{self, Write};
-use std::time::Duration;
-
 use meshtone::GearboxSimulation;
 use meshtone::scenario::{FaultyTeeth, ScenarioWarning};
 use meshtone::sensor::ContactFigures;
 use serde::Serialize;
-use serde_json::json;
 
-use super::{ChannelSummary, FORMAT_VERSION, MeshForce, MeshStiffness, extremes, json};
+use super::{
+    ChannelSummary, FORMAT_VERSION, MeshForce, MeshStiffness, SummaryEnd, SummaryHead, extremes, json,
+};
 use crate::run_identity::RunIdentity;
 
 /// The main numbers of a gearbox's simulation; what a pair's summary has too has the same name there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct GearboxSummary {
-    /// Version of the format, as of a pair's summary.
-    pub format_version: u32,
-    /// Version of Meshtone.
-    pub meshtone_version: &'static str,
-    /// Identity of the run, which all its files carry.
-    #[serde(serialize_with = "json::run")]
-    pub run: RunIdentity,
-    /// Model of the meshes.
-    pub model: &'static str,
-    /// Seed of the random draws.
-    pub seed: u64,
+    /// What every summary begins with.
+    #[serde(flatten)]
+    pub head: SummaryHead,
     /// The faults.
     pub faults: Vec<WheelFault>,
-    /// (S/s) Actual sampling rate.
-    pub sampling_rate_hz: f64,
-    /// Number of samples kept.
-    pub samples: usize,
-    /// (s) Time of the first sample kept, since the start of the simulation.
-    pub start_s: f64,
     /// Samples per revolution of the input, at the nominal speed.
     pub samples_per_input_revolution: usize,
     /// Revolutions of the input after which all teeth and shafts stand as at the start.
@@ -48,12 +32,9 @@ pub struct GearboxSummary {
     /// Main numbers of each signal, by the name of its column.
     #[serde(serialize_with = "json::channels")]
     pub channels: Vec<ChannelSummary>,
-    /// Time that each stage took.
-    #[serde(rename = "computing_time_ms", serialize_with = "json::times")]
-    pub computing_time: Vec<(String, Duration)>,
-    /// What deserves attention.
-    #[serde(serialize_with = "json::warnings")]
-    pub warnings: Vec<ScenarioWarning>,
+    /// Computing time and warnings.
+    #[serde(flatten)]
+    pub end: SummaryEnd,
 }
 
 /// A fault of a gearbox: kind and place, each as in the scenario file, and how severe it is.
@@ -179,15 +160,17 @@ impl GearboxSummary {
         });
         let listed = channels.signals.iter();
         Self {
-            format_version: FORMAT_VERSION,
-            meshtone_version: env!("CARGO_PKG_VERSION"),
-            run,
-            model: "contact",
-            seed: gearbox.seed,
+            head: SummaryHead {
+                format_version: FORMAT_VERSION,
+                meshtone_version: env!("CARGO_PKG_VERSION"),
+                run,
+                model: "contact",
+                seed: gearbox.seed,
+                sampling_rate_hz: channels.sampling_rate_hz,
+                samples: channels.len(),
+                start_s: channels.start_s,
+            },
             faults: faults.collect(),
-            sampling_rate_hz: channels.sampling_rate_hz,
-            samples: channels.len(),
-            start_s: channels.start_s,
             samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
             cycle_input_revolutions: stages.layout.cycle_revolutions(),
             shafts: shafts.collect(),
@@ -196,28 +179,7 @@ impl GearboxSummary {
             channels: listed
                 .map(|signal| ChannelSummary::new(signal.name.clone(), signal.unit, &signal.values))
                 .collect(),
-            computing_time: simulation
-                .timings
-                .iter()
-                .map(|time| (time.stage.to_owned(), time.elapsed))
-                .collect(),
-            warnings: warnings.to_vec(),
+            end: SummaryEnd::new(&simulation.timings, warnings),
         }
-    }
-
-    /// (s) Time that all stages took.
-    pub fn total_time(&self) -> Duration {
-        self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
-    }
-
-    /// Writes the summary as indented JSON.
-    ///
-    /// # Arguments
-    /// * `to` - where it is written to
-    ///
-    /// # Errors
-    /// Those of `to`.
-    pub fn write_json(&self, mut to: impl Write) -> io::Result<()> {
-        to.write_all(format!("{:#}\n", json!(self)).as_bytes())
     }
 }

@@ -11,20 +11,19 @@ use meshtone::wheel::WheelName;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
-use super::{ChannelSummary, PittedTooth, Summary};
+use super::{ChannelSummary, PittedTooth};
 use crate::run_identity::RunIdentity;
 
-impl Summary {
-    /// Writes the summary as indented JSON.
-    ///
-    /// # Arguments
-    /// * `to` - where it is written to
-    ///
-    /// # Errors
-    /// Those of `to`.
-    pub fn write_json(&self, mut to: impl Write) -> io::Result<()> {
-        to.write_all(format!("{:#}\n", json!(self)).as_bytes())
-    }
+/// Writes a summary as indented JSON.
+///
+/// # Arguments
+/// * `summary` - of a pair or of a gearbox
+/// * `to` - where it is written to
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_json(summary: &impl Serialize, mut to: impl Write) -> io::Result<()> {
+    to.write_all(format!("{:#}\n", json!(summary)).as_bytes())
 }
 
 pub(super) fn run<S: Serializer>(run: &RunIdentity, serializer: S) -> Result<S::Ok, S::Error> {

@@ -7,6 +7,7 @@ mod gearbox;
 mod json;
 
 pub use gearbox::{GearboxSummary, MeshSummary, ShaftSummary, TransmissionError, WheelFault};
+pub use json::write_json;
 
 use std::path::Path;
 use std::time::Duration;
@@ -16,7 +17,7 @@ use meshtone::scenario::{Fault, FaultyTeeth, ScenarioWarning};
 use meshtone::sensor::{Channel, ContactFigures};
 use meshtone::signal::{ChainSettings, Indicators, SimulatedShafts, kurtosis, peak, rms};
 use meshtone::wheel::WheelName;
-use meshtone::{Simulation, Stages};
+use meshtone::{Simulation, StageTime, Stages};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -27,10 +28,10 @@ use crate::run_identity::RunIdentity;
 /// Version of the summary's format: it grows when a key changes its name or meaning.
 pub const FORMAT_VERSION: u32 = 2;
 
-/// The main numbers of a simulation.
+/// What every summary begins with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Summary {
+pub struct SummaryHead {
     /// [`FORMAT_VERSION`].
     pub format_version: u32,
     /// Version of Meshtone.
@@ -42,14 +43,47 @@ pub struct Summary {
     pub model: &'static str,
     /// Seed of the random draws.
     pub seed: u64,
-    /// The faults; none of a healthy pair.
-    pub faults: Vec<FaultSummary>,
     /// (S/s) Actual sampling rate.
     pub sampling_rate_hz: f64,
     /// Number of samples kept.
     pub samples: usize,
     /// (s) Time of the first sample kept, since the start of the simulation.
     pub start_s: f64,
+}
+
+/// What the summary of every simulation has of its computation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SummaryEnd {
+    /// Time that each stage took.
+    #[serde(rename = "computing_time_ms", serialize_with = "json::times")]
+    pub computing_time: Vec<(String, Duration)>,
+    /// What deserves attention.
+    #[serde(serialize_with = "json::warnings")]
+    pub warnings: Vec<ScenarioWarning>,
+}
+
+impl SummaryEnd {
+    fn new(timings: &[StageTime], warnings: &[ScenarioWarning]) -> Self {
+        let times = timings.iter().map(|time| (time.stage.to_owned(), time.elapsed));
+        Self { computing_time: times.collect(), warnings: warnings.to_vec() }
+    }
+
+    /// (s) Time that all stages took.
+    pub fn total_time(&self) -> Duration {
+        self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
+    }
+}
+
+/// The main numbers of a simulation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Summary {
+    /// What every summary begins with.
+    #[serde(flatten)]
+    pub head: SummaryHead,
+    /// The faults; none of a healthy pair.
+    pub faults: Vec<FaultSummary>,
     /// Samples per revolution of the pinion, at the nominal speed.
     pub samples_per_pinion_revolution: usize,
     /// (-) Contact ratio.
@@ -69,12 +103,9 @@ pub struct Summary {
     /// average.
     #[serde(serialize_with = "json::indicators")]
     pub indicators: [Option<Indicators>; 2],
-    /// Time that each stage took.
-    #[serde(rename = "computing_time_ms", serialize_with = "json::times")]
-    pub computing_time: Vec<(String, Duration)>,
-    /// What deserves attention.
-    #[serde(serialize_with = "json::warnings")]
-    pub warnings: Vec<ScenarioWarning>,
+    /// Computing time and warnings.
+    #[serde(flatten)]
+    pub end: SummaryEnd,
     /// The signal that [`Self::indicators`] are of: the first sensor's. Of a simulation without listed sensors they are the
     /// vertical acceleration's, as ever, and the file does not say so.
     #[serde(rename = "indicators_of", skip_serializing_if = "json::is_vertical")]
@@ -198,17 +229,18 @@ impl Summary {
         let channel_summary = |channel: &Channel| {
             Some(ChannelSummary::new(channel.name().into_owned(), channel.unit(), channels.signal(channel)?))
         };
-        let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
         Self {
-            format_version: FORMAT_VERSION,
-            meshtone_version: env!("CARGO_PKG_VERSION"),
-            run,
-            model: stages.scenario.model.name(),
-            seed: stages.scenario.seed,
+            head: SummaryHead {
+                format_version: FORMAT_VERSION,
+                meshtone_version: env!("CARGO_PKG_VERSION"),
+                run,
+                model: stages.scenario.model.name(),
+                seed: stages.scenario.seed,
+                sampling_rate_hz: channels.sampling_rate_hz,
+                samples: channels.len(),
+                start_s: channels.start_s,
+            },
             faults: FaultSummary::all(stages),
-            sampling_rate_hz: channels.sampling_rate_hz,
-            samples: channels.len(),
-            start_s: channels.start_s,
             samples_per_pinion_revolution: stages.time.samples_per_pinion_revolution,
             contact_ratio: stages.teeth.contact.contact_ratio,
             face_load_factor: mesh.and_then(|mesh| mesh.face_load_factor),
@@ -227,14 +259,8 @@ impl Summary {
                 let record = shafts.process(signal, shaft, &ChainSettings::default());
                 Some(record.ok()?.indicators)
             }),
-            computing_time: stage_times.collect(),
-            warnings: warnings.to_vec(),
+            end: SummaryEnd::new(&simulation.timings, warnings),
         }
-    }
-
-    /// (s) Time that all stages took.
-    pub fn total_time(&self) -> Duration {
-        self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
     }
 }
 
@@ -250,7 +276,7 @@ fn extremes(values: &[f64]) -> [f64; 3] {
 /// The identity of the run that a summary is of.
 ///
 /// # Arguments
-/// * `path` - what [`Summary::write_json`] wrote
+/// * `path` - what [`write_json`] wrote
 ///
 /// # Errors
 /// The file cannot be read, or it is no summary.

@@ -2,26 +2,33 @@
 
 use std::f64::consts::TAU;
 
-use meshtone::scenario::Coupled;
+use meshtone::scenario::{Coupled, GearboxWheel};
 use meshtone::signal::{AngularSettings, AngularSignal, ShaftPhase, angular_resample};
 use meshtone::{GearboxSimulation, GearboxStages};
 
+use super::side::Side;
 use super::spectrum::{self, InputSpectrum};
-use super::{COLUMN_GAP, FULL_WIDTH, LEFT, NAME_LEFT, WIDTH};
+use super::{
+    BELOW_HEADING, CIRCLE_NAMES, COLUMN_GAP, COLUMN_WIDTH, FULL_WIDTH, LEFT, NAME_LEFT, TEETH_HEIGHT, WIDTH,
+    column_left, heading, teeth, tooth,
+};
+use crate::damaged_tooth::{self, DamagedTooth};
 use crate::drawing::{
     Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, colour, number,
     over,
 };
 use crate::{Figure, PlotError};
 
-/// (px) Height of the panel.
-const HEIGHT: u32 = 1000;
 const TRAIN_TOP: f64 = 118.0;
 const TRAIN_HEIGHT: f64 = 300.0;
-const WHEELS_TOP: f64 = 500.0;
-const WHEELS_HEIGHT: f64 = 150.0;
-const SPECTRUM_TOP: f64 = 740.0;
+/// (px) From the bottom of a row to the top of the next.
+const ROW_GAP: f64 = 86.0;
+/// (px) The same where the next has a heading.
+const HEADING_GAP: f64 = 120.0;
+const CURVES_HEIGHT: f64 = 150.0;
 const SPECTRUM_HEIGHT: f64 = 200.0;
+/// (px) Below the last row.
+const FOOT: f64 = 62.0;
 
 const OUTLINE: Stroke = Stroke::solid(colour::INK, 1.2);
 const SHAFT: Stroke = Stroke::solid(colour::MUTED, 1.0);
@@ -38,20 +45,25 @@ const WHEEL: Fill = Fill::solid(colour::STEEL);
 /// Signals without a spectrum.
 pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError> {
     let stages = &simulation.stages;
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let wheels = Wheels::of(stages)?;
+    let wheels_top = TRAIN_TOP + TRAIN_HEIGHT;
+    let spectrum_top = wheels_top + wheels.height() + ROW_GAP;
+    let mut canvas = Canvas::new(WIDTH, (spectrum_top + SPECTRUM_HEIGHT + FOOT) as u32);
     let title = title(stages);
     let facts = facts(stages);
     let edge = LEFT - NAME_LEFT - 11.0;
     canvas.heading(edge, f64::from(WIDTH) - 2.0 * edge, (36.0, &title), (61.0, &facts.join(BETWEEN_FACTS)));
     let half = (FULL_WIDTH - COLUMN_GAP) / 2.0;
-    let train = Train::new(stages);
-    train.draw_front(&mut canvas, Area::new(LEFT, TRAIN_TOP, half, TRAIN_HEIGHT));
-    train.draw_above(&mut canvas, Area::new(LEFT + half + COLUMN_GAP, TRAIN_TOP, half, TRAIN_HEIGHT));
-    wheels(&mut canvas, Area::new(LEFT, WHEELS_TOP, FULL_WIDTH, WHEELS_HEIGHT), simulation);
-    spectrum(&mut canvas, Area::new(LEFT, SPECTRUM_TOP, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
+    let train = drawn_wheels(stages);
+    let [front, above] =
+        [LEFT, LEFT + half + COLUMN_GAP].map(|left| Area::new(left, TRAIN_TOP, half, TRAIN_HEIGHT));
+    draw_front(&mut canvas, front, stages, &train);
+    draw_above(&mut canvas, above, stages, &train);
+    wheels.draw(&mut canvas, wheels_top, simulation);
+    spectrum(&mut canvas, Area::new(LEFT, spectrum_top, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
     let description = format!(
-        "Results panel of a simulated gearbox: the train from the front and from above, the mesh stiffness and the average of its wheels, and the \
-         spectrum of a sensor in orders of the input. {}.",
+        "Results panel of a simulated gearbox: the train from the front and from above, teeth, mesh stiffness and \
+         averages of its wheels, and the spectrum of a sensor in orders of the input. {}.",
         facts.join(", ")
     );
     Ok(canvas.finish(&title, &description))
@@ -89,11 +101,6 @@ fn facts(stages: &GearboxStages) -> Vec<String> {
         .collect()
 }
 
-/// The train as it is drawn.
-struct Train<'a> {
-    stages: &'a GearboxStages,
-}
-
 /// A wheel on the drawing.
 struct DrawnWheel<'a> {
     name: &'a str,
@@ -106,123 +113,93 @@ struct DrawnWheel<'a> {
     is_damaged: bool,
 }
 
-impl<'a> Train<'a> {
-    fn new(stages: &'a GearboxStages) -> Self {
-        Self { stages }
-    }
+/// All wheels of the train.
+fn drawn_wheels<'a>(stages: &'a GearboxStages) -> Vec<DrawnWheel<'a>> {
+    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+    let drawn = |(number, wheel): (usize, &'a GearboxWheel)| {
+        let GearboxWheel { name, at, teeth, face_width_mm, .. } = wheel;
+        let (mesh, _) = layout.mesh_of(number)?;
+        let shaft = layout.shaft_of_wheel[number];
+        let [x, y] = layout.positions_m[shaft].map(|m| m * 1e3);
+        let z = at * gearbox.shafts[shaft].length_mm;
+        let radius = layout.gears[mesh].module_mm * f64::from(*teeth) / 2.0;
+        let is_damaged = gearbox.faults.iter().any(|fault| fault.wheel == *name);
+        Some(DrawnWheel { name, x, y, z, radius, width: *face_width_mm, is_damaged })
+    };
+    gearbox.wheels.iter().enumerate().filter_map(drawn).collect()
+}
 
-    fn wheels(&self) -> Vec<DrawnWheel<'a>> {
-        let (gearbox, layout) = (&self.stages.gearbox, &self.stages.layout);
-        let wheel = |(number, wheel): (usize, &'a meshtone::scenario::GearboxWheel)| {
-            let (mesh, _) = layout.mesh_of(number)?;
-            let shaft = layout.shaft_of_wheel[number];
-            let [x, y] = layout.positions_m[shaft];
-            Some(DrawnWheel {
-                name: &wheel.name,
-                x: x * 1e3,
-                y: y * 1e3,
-                z: wheel.at * gearbox.shafts[shaft].length_mm,
-                radius: layout.gears[mesh].module_mm * f64::from(wheel.teeth) / 2.0,
-                width: wheel.face_width_mm,
-                is_damaged: gearbox.faults.iter().any(|fault| fault.wheel == wheel.name),
-            })
+/// From where to where all wheels reach.
+fn extent(wheels: &[DrawnWheel], of: fn(&DrawnWheel) -> f64) -> [f64; 2] {
+    let low = wheels.iter().map(|wheel| of(wheel) - wheel.radius).fold(f64::INFINITY, f64::min);
+    let high = wheels.iter().map(|wheel| of(wheel) + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
+    [low, high]
+}
+
+/// A rectangle by its middle and half its sides.
+fn rectangle(axes: &Axes, (z, x): (f64, f64), (half_z, half_x): (f64, f64)) -> [Pixel; 4] {
+    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| axes.at(z + a * half_z, x + b * half_x))
+}
+
+/// Pitch circles and shafts across the axes.
+fn draw_front(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &[DrawnWheel]) {
+    let (x, y) = equal_scales(area, extent(wheels, |wheel| wheel.x), extent(wheels, |wheel| wheel.y));
+    let axes = Axes::titled(canvas, area, x, y, "Train from the front, pitch circles");
+    axes.x_axis(canvas, &Ticks::nice(x[0], x[1], 10), "x (mm)");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 6), "y (mm)", NAME_LEFT);
+    // The farther ones first.
+    let mut order: Vec<&DrawnWheel> = wheels.iter().collect();
+    order.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    for wheel in order {
+        let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
+        canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
+    }
+    for (shaft, [x_m, y_m]) in stages.gearbox.shafts.iter().zip(&stages.layout.positions_m) {
+        let radius = shaft.radius_at_mm(0.5);
+        canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
+    }
+    for wheel in wheels {
+        let at = axes.at(wheel.x, wheel.y + 0.72 * wheel.radius);
+        canvas.text(at, wheel.name, TextStyle::NOTE.anchored(Anchor::Middle).with_halo());
+    }
+    axes.frame(canvas);
+}
+
+/// Shafts, wheels and bearings along the axes.
+fn draw_above(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &[DrawnWheel]) {
+    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+    let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
+    let [low, high] = extent(wheels, |wheel| wheel.x);
+    let margin = 0.05 * (high - low);
+    let (z, x) = ([-0.12 * longest, 1.12 * longest], [low - margin, high + margin]);
+    let axes = Axes::titled(canvas, area, z, x, "From above");
+    axes.x_axis(canvas, &Ticks::nice(z[0], z[1], 10), "z (mm)");
+    axes.y_axis(canvas, &Ticks::nice(x[0], x[1], 6), "x (mm)", NAME_LEFT);
+    for (shaft, [x_m, _]) in gearbox.shafts.iter().zip(&layout.positions_m) {
+        let (x, radius, half) = (x_m * 1e3, shaft.radius_at_mm(0.5), shaft.length_mm / 2.0);
+        canvas.outlined(&rectangle(&axes, (half, x), (half, radius)), SHAFT, Fill::solid(colour::WHITE));
+        let coupled = match shaft.couples_to.name() {
+            "nothing" => String::new(),
+            to => format!(", {to}"),
         };
-        gearbox.wheels.iter().enumerate().filter_map(wheel).collect()
+        let style = TextStyle::NOTE.coloured(colour::MUTED).with_halo();
+        let at = axes.at(-0.11 * longest, x + 1.6 * radius);
+        canvas.text(at, &format!("{}{coupled}", shaft.name), style);
     }
-
-    /// Pitch circles and shafts across the axes.
-    fn draw_front(&self, canvas: &mut Canvas, area: Area) {
-        let wheels = self.wheels();
-        let extent = |of: &dyn Fn(&DrawnWheel) -> f64| {
-            let low = wheels.iter().map(|wheel| of(wheel) - wheel.radius).fold(f64::INFINITY, f64::min);
-            let high = wheels.iter().map(|wheel| of(wheel) + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
-            [low, high]
-        };
-        let (x, y) = equal_scales(area, extent(&|wheel| wheel.x), extent(&|wheel| wheel.y));
-        let axes = Axes::titled(canvas, area, x, y, "Train from the front, pitch circles");
-        axes.x_axis(canvas, &Ticks::nice(x[0], x[1], 10), "x (mm)");
-        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 6), "y (mm)", NAME_LEFT);
-        // The farther ones first.
-        let mut order: Vec<&DrawnWheel> = wheels.iter().collect();
-        order.sort_by(|a, b| b.radius.total_cmp(&a.radius));
-        for wheel in order {
-            let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
-            canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
-        }
-        for (shaft, [x_m, y_m]) in self.stages.gearbox.shafts.iter().zip(&self.stages.layout.positions_m) {
-            let radius = shaft.radius_at_mm(0.5);
-            canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
-        }
-        for wheel in &wheels {
-            let at = axes.at(wheel.x, wheel.y + 0.72 * wheel.radius);
-            canvas.text(at, wheel.name, TextStyle::NOTE.anchored(Anchor::Middle).with_halo());
-        }
-        axes.frame(canvas);
+    for wheel in wheels {
+        let fill = if wheel.is_damaged { DAMAGED } else { WHEEL };
+        let outline = rectangle(&axes, (wheel.z, wheel.x), (wheel.width / 2.0, wheel.radius));
+        canvas.outlined(&outline, OUTLINE, fill);
+        let style = TextStyle::NOTE.anchored(Anchor::Middle).with_halo();
+        canvas.text(axes.at(wheel.z, wheel.x), wheel.name, style);
     }
-
-    /// Shafts, wheels and bearings along the axes.
-    fn draw_above(&self, canvas: &mut Canvas, area: Area) {
-        let (gearbox, layout) = (&self.stages.gearbox, &self.stages.layout);
-        let wheels = self.wheels();
-        let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
-        let low = wheels.iter().map(|wheel| wheel.x - wheel.radius).fold(f64::INFINITY, f64::min);
-        let high = wheels.iter().map(|wheel| wheel.x + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
-        let margin = 0.05 * (high - low);
-        let axes = Axes::titled(
-            canvas,
-            area,
-            [-0.12 * longest, 1.12 * longest],
-            [low - margin, high + margin],
-            "From above",
-        );
-        axes.x_axis(canvas, &Ticks::nice(axes.x[0], axes.x[1], 10), "z (mm)");
-        axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "x (mm)", NAME_LEFT);
-        for (shaft, [x_m, _]) in gearbox.shafts.iter().zip(&layout.positions_m) {
-            let (x, radius) = (x_m * 1e3, shaft.radius_at_mm(0.5));
-            let corners = [
-                (0.0, x - radius),
-                (shaft.length_mm, x - radius),
-                (shaft.length_mm, x + radius),
-                (0.0, x + radius),
-            ];
-            canvas.outlined(&corners.map(|(z, x)| axes.at(z, x)), SHAFT, Fill::solid(colour::WHITE));
-            let coupled = match shaft.couples_to.name() {
-                "nothing" => String::new(),
-                to => format!(", {to}"),
-            };
-            let style = TextStyle::NOTE.coloured(colour::MUTED).with_halo();
-            canvas.text(
-                axes.at(-0.11 * longest, x + 1.6 * radius),
-                &format!("{}{coupled}", shaft.name),
-                style,
-            );
-        }
-        for wheel in &wheels {
-            let (from, to) = (wheel.z - wheel.width / 2.0, wheel.z + wheel.width / 2.0);
-            let (low, high) = (wheel.x - wheel.radius, wheel.x + wheel.radius);
-            let fill = if wheel.is_damaged { DAMAGED } else { WHEEL };
-            canvas.outlined(
-                &[(from, low), (to, low), (to, high), (from, high)].map(|(z, x)| axes.at(z, x)),
-                OUTLINE,
-                fill,
-            );
-            canvas.text(
-                axes.at(wheel.z, wheel.x),
-                wheel.name,
-                TextStyle::NOTE.anchored(Anchor::Middle).with_halo(),
-            );
-        }
-        for (bearing, shaft) in gearbox.bearings.iter().zip(&layout.shaft_of_bearing) {
-            let (shaft, [x_m, _]) = (&gearbox.shafts[*shaft], layout.positions_m[*shaft]);
-            let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
-            canvas.outlined(
-                &[(x - 5.0, y - 9.0), (x + 5.0, y - 9.0), (x + 5.0, y + 9.0), (x - 5.0, y + 9.0)],
-                OUTLINE,
-                Fill::hatch(colour::INK),
-            );
-        }
-        axes.frame(canvas);
+    for (bearing, shaft) in gearbox.bearings.iter().zip(&layout.shaft_of_bearing) {
+        let (shaft, [x_m, _]) = (&gearbox.shafts[*shaft], layout.positions_m[*shaft]);
+        let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
+        let corners = [(x - 5.0, y - 9.0), (x + 5.0, y - 9.0), (x + 5.0, y + 9.0), (x - 5.0, y + 9.0)];
+        canvas.outlined(&corners, OUTLINE, Fill::hatch(colour::INK));
     }
+    axes.frame(canvas);
 }
 
 /// Ranges that show both extents at the same scale.
@@ -244,51 +221,85 @@ fn circle(axes: &Axes, x: f64, y: f64, radius: f64) -> Vec<Pixel> {
 
 /// Most wheels that have room.
 const MOST_WHEELS: usize = 4;
-/// Most wheels beside whose averages the stiffness has room.
-const MOST_WITH_STIFFNESS: usize = 2;
+/// Most wheels of which face, profile errors and stiffness have room too.
+const MOST_WHOLE: usize = 2;
 
-/// A column for each damaged wheel, or for the first wheels where none is damaged: the stiffness of its mesh and the average of the first
-/// sensor's signal, both over a revolution of it.
-fn wheels(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
-    let stages = &simulation.stages;
-    let gearbox = &stages.gearbox;
-    let is_damaged =
-        |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
-    let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
-    let shown = match damaged.len() {
-        0 => stages.layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).take(MOST_WITH_STIFFNESS).collect(),
-        _ => damaged,
-    };
-    let each = if shown.len() <= MOST_WITH_STIFFNESS { 2 } else { 1 };
-    let columns = each * shown.len().clamp(1, MOST_WHEELS);
-    let mut areas = area.grid([columns, 1], [COLUMN_GAP, 0.0], area.height);
-    for wheel in shown.iter().take(MOST_WHEELS) {
-        let parts: Vec<Area> = areas.by_ref().take(each).collect();
-        if let [stiffness_area, average_area] = parts[..] {
-            stiffness(canvas, stiffness_area, stages, *wheel);
-            average(canvas, average_area, simulation, *wheel);
-        } else if let [average_area] = parts[..] {
-            average(canvas, average_area, simulation, *wheel);
+/// The wheels that have a column each: those that are damaged, or the first ones where none is.
+struct Wheels<'a> {
+    /// Their numbers.
+    numbers: Vec<usize>,
+    /// The damaged wheels' teeth.
+    damaged: Vec<Side<'a>>,
+}
+
+impl<'a> Wheels<'a> {
+    fn of(stages: &'a GearboxStages) -> Result<Self, PlotError> {
+        let gearbox = &stages.gearbox;
+        let is_damaged =
+            |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
+        let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
+        let sides = damaged.iter().take(MOST_WHEELS);
+        let sides = sides.filter_map(|number| Side::of_gearbox(stages, *number)).collect::<Result<_, _>>()?;
+        let first = || stages.layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).take(MOST_WHOLE).collect();
+        Ok(Self { numbers: if damaged.is_empty() { first() } else { damaged }, damaged: sides })
+    }
+
+    /// (px) Height of all that is drawn of them, with the gap above it.
+    fn height(&self) -> f64 {
+        match self.damaged.len() {
+            0 => ROW_GAP + CURVES_HEIGHT,
+            1 => HEADING_GAP + TEETH_HEIGHT,
+            _ => HEADING_GAP + TEETH_HEIGHT + ROW_GAP + CURVES_HEIGHT,
         }
     }
-    if shown.len() > MOST_WHEELS {
-        let text = format!("{} more damaged wheels are in the summary", shown.len() - MOST_WHEELS);
-        canvas.text((area.right(), area.top - 24.0), &text, TextStyle::NOTE.anchored(Anchor::End));
+
+    /// Draws a column for each: its first damaged tooth as a pair's, the stiffness of its mesh and the average of the first sensor's signal,
+    /// both over a revolution of it. One column leaves room for the curves beside the tooth; of more than two only tooth and average are
+    /// drawn.
+    fn draw(&self, canvas: &mut Canvas, above: f64, simulation: &GearboxSimulation) {
+        let teeth_top = above + HEADING_GAP;
+        let below_teeth = if self.damaged.is_empty() { above } else { teeth_top + TEETH_HEIGHT };
+        let curves = Area::new(LEFT, below_teeth + ROW_GAP, FULL_WIDTH, CURVES_HEIGHT);
+        let whole = self.numbers.len() <= MOST_WHOLE;
+        let each = if whole { 2 } else { 1 };
+        let columns = self.numbers.len().clamp(1, MOST_WHEELS);
+        let areas: Vec<Area> = match &self.damaged[..] {
+            [_] => {
+                let beside = Area::new(column_left(1), teeth_top, COLUMN_WIDTH, TEETH_HEIGHT);
+                beside.grid([1, 2], [0.0, ROW_GAP], (TEETH_HEIGHT - ROW_GAP) / 2.0).collect()
+            }
+            _ => curves.grid([each * columns, 1], [COLUMN_GAP, 0.0], CURVES_HEIGHT).collect(),
+        };
+        for (column, side) in self.damaged.iter().enumerate() {
+            if whole {
+                teeth(canvas, (column_left(column), teeth_top), side);
+            } else {
+                let Area { left, width, .. } = areas[column];
+                heading::column(canvas, (left, teeth_top - BELOW_HEADING), width, side);
+                let area = Area::new(left, teeth_top, width - CIRCLE_NAMES, TEETH_HEIGHT);
+                let (across, along) = side.view(area);
+                tooth::draw(canvas, area, across, along, side);
+            }
+        }
+        for (wheel, areas) in self.numbers.iter().zip(areas.chunks(each)) {
+            if let [area, _] = areas {
+                stiffness(canvas, *area, &simulation.stages, *wheel);
+            }
+            average(canvas, areas[each - 1], simulation, *wheel);
+        }
+        if let Some(more @ 1..) = self.numbers.len().checked_sub(MOST_WHEELS) {
+            let text = format!("{more} more damaged wheels are in the summary");
+            canvas.text((curves.right(), curves.top - 24.0), &text, TextStyle::NOTE.anchored(Anchor::End));
+        }
     }
 }
 
 /// Tints the turns of a wheel's damaged teeth, from where each enters contact.
 fn tint(canvas: &mut Canvas, axes: &Axes, stages: &GearboxStages, wheel: usize, pitch: f64) {
-    let gearbox = &stages.gearbox;
-    let wheel_of_file = &gearbox.wheels[wheel];
-    let Some((mesh, _)) = stages.layout.mesh_of(wheel) else { return };
-    for fault in gearbox.faults.iter().filter(|fault| fault.wheel == wheel_of_file.name) {
-        for tooth in fault.fault.tooth.numbers(wheel_of_file.teeth) {
-            let from = f64::from(tooth.saturating_sub(1));
-            let until = from + stages.meshes[mesh].contact_ratio;
-            axes.band(canvas, from * pitch, until * pitch, crate::damaged_tooth::TINT);
-        }
-    }
+    let Some((mesh, side)) = stages.layout.mesh_of(wheel) else { return };
+    let pair = &stages.pairs[mesh];
+    let damaged = DamagedTooth::of_teeth(&pair.teeth, &pair.damaged, side);
+    damaged_tooth::tint(canvas, axes, &damaged, stages.gearbox.wheels[wheel].teeth, pitch);
 }
 
 fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usize) {

@@ -21,7 +21,7 @@ use meshtone::Stages;
 use meshtone::sensor::Channels;
 use meshtone::wheel::WheelName;
 
-use crate::drawing::{Area, Canvas};
+use crate::drawing::{Area, Canvas, Pixel};
 use crate::{Figure, PlotError};
 use side::Side;
 
@@ -37,7 +37,8 @@ const FULL_WIDTH: f64 = 2.0 * COLUMN_WIDTH + COLUMN_GAP;
 /// (px) From the frame of a plot to the baseline of its vertical axis' name.
 const NAME_LEFT: f64 = 56.0;
 
-const HEADING_BASELINE: f64 = 96.0;
+/// (px) From the baseline of a column's heading to its teeth.
+const BELOW_HEADING: f64 = 38.0;
 const TEETH_TOP: f64 = 134.0;
 const TEETH_HEIGHT: f64 = 324.0;
 const AVERAGES_TOP: f64 = 534.0;
@@ -80,7 +81,7 @@ pub fn draw(stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
     let title = heading::title(stages);
     heading::draw(&mut canvas, &title, stages);
     for (column, wheel) in WheelName::BOTH.into_iter().enumerate() {
-        teeth(&mut canvas, column, &Side::new(stages, wheel)?);
+        teeth(&mut canvas, (column_left(column), TEETH_TOP), &Side::new(stages, wheel)?);
     }
     average::draw(&mut canvas, [0, 1].map(averages_area), stages, channels);
     stiffness::draw(&mut canvas, Area::new(LEFT, STIFFNESS_TOP, FULL_WIDTH, STIFFNESS_HEIGHT), stages);
@@ -101,10 +102,10 @@ fn averages_area(column: usize) -> Area {
     Area::new(column_left(column), AVERAGES_TOP, COLUMN_WIDTH, AVERAGES_HEIGHT)
 }
 
-fn teeth(canvas: &mut Canvas, column: usize, side: &Side) {
-    let left = column_left(column);
-    heading::column(canvas, (left, HEADING_BASELINE), COLUMN_WIDTH, side);
-    let area = |left: f64, width: f64| Area::new(left, TEETH_TOP, width, TEETH_HEIGHT);
+/// A wheel's tooth, its face and its profile errors, below a heading.
+fn teeth(canvas: &mut Canvas, (left, top): Pixel, side: &Side) {
+    heading::column(canvas, (left, top - BELOW_HEADING), COLUMN_WIDTH, side);
+    let area = |left: f64, width: f64| Area::new(left, top, width, TEETH_HEIGHT);
     let tooth = area(left, TOOTH_WIDTH);
     let (across, along) = side.view(tooth);
     tooth::draw(canvas, tooth, across, along, side);

@@ -1,16 +1,19 @@
-//! One of the two wheels, as the panel sees it.
+//! A wheel, as the panel sees it.
 
-use meshtone::Stages;
 use meshtone::damage::DamagedTooth;
-use meshtone::wheel::{ErrorTable, ToothProfile, Wheel, WheelName};
+use meshtone::wheel::{ErrorTable, ProfileErrors, Teeth, ToothProfile, Wheel, WheelName};
+use meshtone::{GearboxStages, Stages};
 
 use crate::PlotError;
 use crate::drawing::Area;
 
 /// A wheel, and one of its teeth: the first damaged one, or the first.
 pub(super) struct Side<'a> {
-    pub(super) name: &'static str,
-    pub(super) shaft: &'static str,
+    /// Its name as titles have it.
+    pub(super) name: String,
+    pub(super) shaft: String,
+    /// What stands before a tooth's number, with a space; nothing where the heading's name is enough.
+    of_tooth: &'static str,
     pub(super) wheel: &'a Wheel,
     pub(super) profile: &'a ToothProfile,
     /// Profile index where contact starts.
@@ -29,32 +32,57 @@ pub(super) struct Side<'a> {
 
 impl<'a> Side<'a> {
     pub(super) fn new(stages: &'a Stages, name: WheelName) -> Result<Self, PlotError> {
-        let errors = stages.profile_errors.as_ref();
-        let (title, shaft, errors_mm) = match name {
-            WheelName::Pinion => {
-                ("Pinion", "input shaft", errors.map(|errors| &errors.pinion_profile_errors_mm))
-            }
-            WheelName::Gear => ("Gear", "output shaft", errors.map(|errors| &errors.gear_profile_errors_mm)),
+        let [title, shaft, of_tooth] = match name {
+            WheelName::Pinion => ["Pinion", "input shaft", "pinion "],
+            WheelName::Gear => ["Gear", "output shaft", "gear "],
         };
-        let profile = stages.teeth.profile(name);
-        let contact_index = stages.teeth.initial_contact_index(name);
+        let heading = [title.to_owned(), shaft.to_owned()];
+        let (errors, tips) = (stages.profile_errors.as_ref(), stages.tip_lengths_mm());
+        let side = Self::of_pair(name, heading, &stages.teeth, &stages.damaged, errors, tips)?;
+        Ok(Self { of_tooth, ..side })
+    }
+
+    /// A wheel of a gearbox, in its first mesh; none of a wheel in no mesh.
+    pub(super) fn of_gearbox(stages: &'a GearboxStages, wheel: usize) -> Option<Result<Self, PlotError>> {
+        let (mesh, name) = stages.layout.mesh_of(wheel)?;
+        let (of_mesh, of_file) = (&stages.pairs[mesh], &stages.gearbox.wheels[wheel]);
+        let heading = [of_file.name.clone(), format!("shaft {}", of_file.shaft)];
+        let (errors, tips) = (of_mesh.profile_errors.as_ref(), stages.layout.gears[mesh].tip_lengths_mm());
+        Some(Self::of_pair(name, heading, &of_mesh.teeth, &of_mesh.damaged, errors, tips))
+    }
+
+    /// One of two wheels in mesh.
+    fn of_pair(
+        name: WheelName,
+        [title, shaft]: [String; 2],
+        teeth: &'a Teeth,
+        damaged: &'a [DamagedTooth],
+        errors: Option<&'a ProfileErrors>,
+        tip_lengths_mm: [f64; 2],
+    ) -> Result<Self, PlotError> {
+        let profile = teeth.profile(name);
+        let contact_index = teeth.initial_contact_index(name);
         let points = profile.len().min(profile.y_mm.len());
         if points < 2 || contact_index + 1 >= points {
             return Err(PlotError::NoProfile { wheel: title, points });
         }
-        let mut damaged = stages.damaged.iter().filter(|tooth| tooth.wheel == name);
-        let standing_out = crate::DamagedTooth::of_stages(stages, name);
+        let standing_out = crate::DamagedTooth::of_teeth(teeth, damaged, name);
         let first = standing_out.first().map(|tooth| tooth.tooth as usize - 1);
+        let mut of_wheel = damaged.iter().filter(|tooth| tooth.wheel == name);
         Ok(Self {
             name: title,
             shaft,
-            wheel: stages.teeth.wheel(name),
+            of_tooth: "",
+            wheel: teeth.wheel(name),
             profile,
             contact_index,
-            tip_shapes: tip_shapes(stages, profile),
-            tooth: first.and_then(|first| damaged.find(|alike| alike.teeth.contains(&first))),
+            tip_shapes: tip_shapes(tip_lengths_mm, profile),
+            tooth: first.and_then(|first| of_wheel.find(|alike| alike.teeth.contains(&first))),
             damaged: standing_out,
-            errors_mm,
+            errors_mm: errors.map(|errors| match name {
+                WheelName::Pinion => &errors.pinion_profile_errors_mm,
+                WheelName::Gear => &errors.gear_profile_errors_mm,
+            }),
             errors_from_tip: name == WheelName::Gear,
         })
     }
@@ -68,7 +96,7 @@ impl<'a> Side<'a> {
     pub(super) fn tooth_name(&self) -> String {
         match self.tooth_index() {
             0 => "first tooth".to_owned(),
-            index => format!("{} tooth {}", self.name.to_lowercase(), index + 1),
+            index => format!("{}tooth {}", self.of_tooth, index + 1),
         }
     }
 
@@ -120,8 +148,8 @@ impl<'a> Side<'a> {
 
 /// From the tip inwards, as the scenario says: the resampled pinion profile's own index is that of the profile before
 /// resampling.
-fn tip_shapes(stages: &Stages, profile: &ToothProfile) -> Vec<(f64, &'static str)> {
-    let named = stages.tip_lengths_mm().into_iter().zip(["chamfer", "tip relief"]);
+fn tip_shapes(lengths_mm: [f64; 2], profile: &ToothProfile) -> Vec<(f64, &'static str)> {
+    let named = lengths_mm.into_iter().zip(["chamfer", "tip relief"]);
     let shown = named.filter(|(length_mm, _)| *length_mm > 0.0 && profile.len() > 1);
     shown.map(|(length_mm, name)| (profile.tip_x_mm() - length_mm, name)).collect()
 }

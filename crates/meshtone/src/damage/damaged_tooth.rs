@@ -166,7 +166,7 @@ impl DamagedTooth {
     /// Refuses a cut where there is one already, and a pit without its edge towards the tip: what becomes of such a
     /// flank is not known.
     fn refuse_overlap(&self) -> Result<(), ScenarioError> {
-        let place = format!("the {}'s tooth {}", self.wheel.name(), self.first_tooth() + 1);
+        let place = format!("tooth {}", self.first_tooth() + 1);
         if self.upper_edges.iter().any(|&index| index >= self.gone_from_index) {
             let problem = format!(
                 "leaves a pit without its edge at the tip on {place}{}; a pit over the whole face must end below what has broken off",
@@ -256,10 +256,32 @@ fn alike(faults: &[Fault], teeth: &Teeth) -> Vec<Alike> {
 /// A fault that does not fit its tooth: a pit that misses the flank or is deeper than the tooth, a chip larger than the
 /// tooth, a line that leaves no tooth; faults that cut the same piece of a flank.
 pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<DamagedTooth>, ScenarioError> {
-    let sized = |(number, fault): (usize, &Fault)| {
+    let numbers: Vec<usize> = (0..faults.len()).collect();
+    damaged_teeth_of_file(faults, &numbers, faults.len(), teeth, seed)
+}
+
+/// Does what [`damaged_teeth`] does, of some of a file's faults.
+///
+/// # Arguments
+/// * `faults` - those of the pair
+/// * `numbers` - of each in the file
+/// * `entries` - how many faults the file has
+/// * `teeth` - the healthy teeth
+/// * `seed` - seed of what is drawn for each tooth
+///
+/// # Errors
+/// Those of [`damaged_teeth`].
+pub(crate) fn damaged_teeth_of_file(
+    faults: &[Fault],
+    numbers: &[usize],
+    entries: usize,
+    teeth: &Teeth,
+    seed: u64,
+) -> Result<Vec<DamagedTooth>, ScenarioError> {
+    let sized = |(&number, fault): (&usize, &Fault)| {
         Some((number, Fault { damage: fault.sized(teeth)?, ..fault.clone() }))
     };
-    let (numbers, shown): (Vec<usize>, Vec<Fault>) = faults.iter().enumerate().filter_map(sized).unzip();
+    let (numbers, shown): (Vec<usize>, Vec<Fault>) = numbers.iter().zip(faults).filter_map(sized).unzip();
     let groups = alike(&shown, teeth);
     let sound =
         |group: &Alike| DamagedTooth::sound(group.wheel, group.teeth.clone(), teeth.profile(group.wheel));
@@ -277,7 +299,7 @@ pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<D
                 tooth.descriptions.push(DamageDescription { fault: number, ..description });
                 tooth.refuse_overlap()
             });
-            done.map_err(|error| error.in_entry("fault", number, faults.len()))?;
+            done.map_err(|error| error.in_entry("fault", number, entries))?;
         }
     }
     Ok(damaged)

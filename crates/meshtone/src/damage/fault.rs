@@ -11,7 +11,7 @@ use crate::keys::{
     Check, KeyDescription, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe, describe_from,
     field, read_keys, require, row, rows_but, write_keys, write_rows,
 };
-use crate::wheel::{Gears, Teeth, WheelName};
+use crate::wheel::{NamedGears, Teeth, WheelName};
 
 /// Damage to one tooth, or to several alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -233,9 +233,9 @@ impl Fault {
     }
 
     /// Whether it can be, as far as no profile is needed; its keys are named `fault.…`.
-    fn check(&self, gears: &Gears) -> Check {
+    fn check(&self, gears: &NamedGears) -> Check {
         check_keys(self, "fault")?;
-        self.tooth.check(gears.teeth(self.wheel), self.wheel.name())?;
+        self.tooth.check(gears.teeth(self.wheel), &gears.name(self.wheel))?;
         match self.severity {
             None => self.damage.check(gears),
             Some(severity) => {
@@ -264,8 +264,10 @@ pub(super) fn keys_of_place(damage: Damage) -> Vec<KeyDescription> {
 ///
 /// # Arguments
 /// * `faults` - all of a pair
+/// * `numbers` - of each in the file
+/// * `entries` - how many faults the file has
 /// * `gears` - the wheels
-pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
+pub(crate) fn check_faults(faults: &[Fault], numbers: &[usize], entries: usize, gears: &NamedGears) -> Check {
     let on_teeth = faults_on_teeth(faults, |wheel| gears.teeth(wheel));
     for (index, fault) in faults.iter().enumerate() {
         let excluded_by = |number: usize| faults[number].damage.part().excludes(fault.damage.part());
@@ -275,10 +277,13 @@ pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
             earlier.find_map(|number| Some((number, tooth, excluded_by(number)?)))
         });
         let checked = match beside.min_by_key(|(number, ..)| *number) {
-            Some((number, tooth, why)) => Err(second_damage(fault, tooth, number, &faults[number], why)),
+            Some((earlier, tooth, why)) => {
+                let place = format!("tooth {tooth} of {}", gears.name(fault.wheel));
+                Err(second_damage(fault, &place, numbers[earlier], &faults[earlier], why))
+            }
             None => fault.check(gears),
         };
-        checked.map_err(|error| error.in_entry("fault", index, faults.len()))?;
+        checked.map_err(|error| error.in_entry("fault", numbers[index], entries))?;
     }
     Ok(())
 }
@@ -302,11 +307,9 @@ pub(super) fn faults_on_teeth(
 }
 
 /// A tooth that has lost already what the fault would take.
-fn second_damage(fault: &Fault, tooth: u32, number: usize, other: &Fault, why: &str) -> ScenarioError {
-    let (wheel, kind) = (fault.wheel.name(), fault.damage.kind());
-    let problem =
-        format!("tooth {tooth} of the {wheel} has fault[{number}] already ({}); {why}", other.damage.kind());
-    ScenarioError::new("fault.kind", format!("\"{kind}\""), problem)
+fn second_damage(fault: &Fault, place: &str, number: usize, other: &Fault, why: &str) -> ScenarioError {
+    let problem = format!("{place} has fault[{number}] already ({}); {why}", other.damage.kind());
+    ScenarioError::new("fault.kind", format!("\"{}\"", fault.damage.kind()), problem)
         .with_help("remove one of the two, or give it another tooth")
 }
 

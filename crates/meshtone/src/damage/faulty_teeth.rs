@@ -120,10 +120,10 @@ impl FaultyTeeth {
     ///
     /// # Arguments
     /// * `teeth` - how many teeth the wheel has
-    /// * `wheel` - its name
+    /// * `wheel` - what the wheel is called
     pub(super) fn check(&self, teeth: u32, wheel: &str) -> Check {
         let beyond = |key: String, tooth: u32| {
-            let problem = format!("must be at most {teeth}, the {wheel}'s teeth");
+            let problem = format!("must be at most {teeth}, {wheel}'s teeth");
             Err(ScenarioError::new(key, tooth, problem))
         };
         match self {
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn what_a_wheel_has_not_is_named() {
-        let refused = |teeth: FaultyTeeth| teeth.check(17, "pinion").unwrap_err().to_string();
+        let refused = |teeth: FaultyTeeth| teeth.check(17, "the pinion").unwrap_err().to_string();
         assert_eq!(refused(18.into()), "fault.tooth = 18: must be at most 17, the pinion's teeth");
         assert_eq!(
             refused(vec![1, 18].into()),
@@ -200,6 +200,6 @@ mod tests {
         );
         assert_eq!(refused(vec![4, 2, 4].into()), "fault.tooth[2] = 4: is named twice; must be named once");
         assert!(refused(Vec::new().into()).starts_with("fault.tooth = []: must name at least one tooth"));
-        assert!(FaultyTeeth::All.check(17, "pinion").is_ok());
+        assert!(FaultyTeeth::All.check(17, "the pinion").is_ok());
     }
 }

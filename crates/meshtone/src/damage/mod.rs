@@ -22,6 +22,7 @@ mod tooth_destruction;
 mod wear;
 
 pub(crate) use damaged_tooth::HealthyTooth;
+pub(crate) use damaged_tooth::damaged_teeth_of_file;
 pub use damaged_tooth::{DamagedTooth, damaged_teeth};
 pub(crate) use description::DamageResult;
 pub use description::{DamageDescription, FacePatch, QuantityValue, damages_of_fault};

@@ -62,7 +62,7 @@ impl Kind for PartialFace {
 
     fn check(&self, gears: &Gears) -> Check {
         check_keys(self, "fault")?;
-        let problem = format!("must be less than {} mm, gears.face_width_mm", gears.face_width_mm);
+        let problem = format!("must be less than {} mm, the face width", gears.face_width_mm);
         require("fault.width_mm", self.width_mm, self.width_mm < gears.face_width_mm, problem).map_err(
             |error| error.with_help("for a pit over the whole width, use kind = \"through-face\""),
         )?;

@@ -80,7 +80,7 @@ impl Kind for RootCrack {
         check_keys(self, "fault")?;
         below("fault.depth_mm", self.depth_mm, gears.tooth_height_mm(), "the tooth's height")?;
         self.length_mm.map_or(Ok(()), |length| {
-            let problem = format!("must be at most {} mm, gears.face_width_mm", gears.face_width_mm);
+            let problem = format!("must be at most {} mm, the face width", gears.face_width_mm);
             require("fault.length_mm", length, length <= gears.face_width_mm, problem).map_err(|error| {
                 error.with_help("for a crack that is equally deep over the whole face, leave out length_mm")
             })

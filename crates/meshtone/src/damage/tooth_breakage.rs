@@ -92,7 +92,7 @@ impl Kind for ToothBreakage {
         let height_is = "the tooth's height";
         below("fault.chip_height_mm", self.chip_height_mm, height, height_is)?;
         let width = self.chip_width_mm;
-        let problem = format!("must be at most {} mm, gears.face_width_mm", gears.face_width_mm);
+        let problem = format!("must be at most {} mm, the face width", gears.face_width_mm);
         require("fault.chip_width_mm", width, width <= gears.face_width_mm, problem)?;
         below("fault.tip_loss_mm", self.tip_loss_mm, height, height_is)
     }

@@ -8,6 +8,7 @@ use super::files::NumberFiles;
 use super::range::Range;
 use super::table::{Keys, check_keys, describe_from, read_keys, written_pairs};
 use super::text::{array, inline_table, number};
+use crate::error_table::ErrorTable;
 
 /// Written form of a key's value.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,7 +154,7 @@ macro_rules! optional {
         }
     )+};
 }
-optional!(f64, 0.0; u32, 0; u64, 0; [f64; 2], [0.0; 2]; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new());
+optional!(f64, 0.0; u32, 0; u64, 0; [f64; 2], [0.0; 2]; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new(); ErrorTable, ErrorTable::default());
 
 /// A text.
 impl KeyValue for String {

@@ -19,9 +19,10 @@ pub use gearbox::{
 pub(crate) use modes::connected_groups;
 pub(crate) use modes::KnownModes;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
-pub use parts::{Axis, Drive, Machine};
+pub use parts::{Axis, Drive, Machine, Place};
+pub(crate) use parts::weights;
 #[cfg(feature = "internals")]
-pub use parts::{LineOfAction, Place, Spring};
+pub use parts::{LineOfAction, Spring};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use support::{Support, SupportSprings};
 pub(crate) use train::turn_planes;

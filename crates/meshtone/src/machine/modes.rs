@@ -1,7 +1,7 @@
 //! Undamped modes of a machine, and their damping.
 
 use std::f64::consts::TAU;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -35,9 +35,6 @@ pub struct DecayingMode {
     /// (1/s) Rate.
     pub decay_per_s: f64,
 }
-
-/// Part of the largest entry of a vector, or of the largest frequency, below which another is rounding.
-const ROUNDING: f64 = 1e-12;
 
 impl Modes {
     /// Modes whose damping is that of the springs, weighted by their strain energy.
@@ -108,47 +105,18 @@ impl Modes {
         let yields = tilt.iter().zip(&self.angular_frequencies).filter(|(_, omega)| **omega > 0.0);
         yields.map(|(tilt, omega)| (tilt / omega).powi(2)).sum()
     }
-
-    /// The slowest to decay of the modes that the meshes move, with the meshes closed: at the rate `φᵀ C φ/2`, as if damping did not
-    /// couple modes.
-    ///
-    /// # Arguments
-    /// * `machine` - the machine whose modes these are
-    /// * `meshes` - its meshes, closed
-    pub fn slowest_closed(&self, machine: &Machine, meshes: &[ClosedMesh]) -> DecayingMode {
-        let stiffness: Vec<f64> = meshes.iter().map(|mesh| mesh.stiffness_n_per_m).collect();
-        let modes = mass_normalised_modes(&machine.mass, &machine.closed_stiffness(&stiffness));
-        let decay_per_s = |shape: &DVector<f64>| {
-            let own = self.shapes.transpose() * (&machine.mass * shape);
-            let structural: f64 = (0..own.len()).map(|n| self.damping_per_s(n) * own[n] * own[n]).sum();
-            let of_mesh = machine.lines.iter().zip(meshes).map(|(line, mesh)| {
-                let deflection = line.at_middle.dot(shape);
-                mesh.stiffness_n_per_m * mesh.damping_time_s * deflection * deflection
-            });
-            (structural + of_mesh.sum::<f64>()) / 2.0
-        };
-        let moved_by_mesh = |shape: &DVector<f64>| {
-            machine.lines.iter().map(|line| line.at_middle.dot(shape).abs()).fold(0.0, f64::max)
-        };
-        let largest = modes.iter().map(|(_, shape)| moved_by_mesh(shape)).fold(0.0, f64::max);
-        let moved = modes.iter().filter(|(_, shape)| moved_by_mesh(shape) > ROUNDING * largest);
-        let decaying = moved
-            .map(|(omega, shape)| DecayingMode { frequency_hz: omega / TAU, decay_per_s: decay_per_s(shape) });
-        let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
-        decaying
-            .fold(none, |slowest, mode| if mode.decay_per_s < slowest.decay_per_s { mode } else { slowest })
-    }
 }
 
 /// Modes that several simulations of the same machine share.
 #[derive(Debug, Default)]
-pub(crate) struct KnownModes(Mutex<Vec<KnownMachine>>);
+pub(crate) struct KnownModes(Mutex<Vec<Arc<KnownMachine>>>);
 
 #[derive(Debug)]
 struct KnownMachine {
     mass: DMatrix<f64>,
     springs: Vec<Spring>,
-    modes: Arc<Modes>,
+    /// Computed by the first thread that asks for them, while the others wait.
+    modes: OnceLock<Arc<Modes>>,
 }
 
 /// Machines whose modes are kept.
@@ -160,19 +128,25 @@ impl KnownModes {
     /// # Arguments
     /// * `machine` - the machine
     pub(crate) fn damped_by_springs(&self, machine: &Machine) -> Arc<Modes> {
-        let locked = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_same = |known: &&KnownMachine| known.mass == machine.mass && known.springs == machine.springs;
-        if let Some(known) = locked().iter().find(is_same) {
-            return known.modes.clone();
+        let entry = self.entry(machine);
+        entry.modes.get_or_init(|| Arc::new(Modes::damped_by_springs(machine))).clone()
+    }
+
+    /// The entry of a machine, made where there is none.
+    fn entry(&self, machine: &Machine) -> Arc<KnownMachine> {
+        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_same =
+            |known: &&Arc<KnownMachine>| known.mass == machine.mass && known.springs == machine.springs;
+        if let Some(known) = all.iter().find(is_same) {
+            return known.clone();
         }
-        let modes = Arc::new(Modes::damped_by_springs(machine));
+        if all.len() >= MOST_KNOWN {
+            all.remove(0);
+        }
         let (mass, springs) = (machine.mass.clone(), machine.springs.clone());
-        let mut known = locked();
-        if known.len() >= MOST_KNOWN {
-            known.remove(0);
-        }
-        known.push(KnownMachine { mass, springs, modes: modes.clone() });
-        modes
+        let entry = Arc::new(KnownMachine { mass, springs, modes: OnceLock::new() });
+        all.push(entry.clone());
+        entry
     }
 }
 
@@ -283,4 +257,48 @@ pub(crate) fn connected_groups(
         groups.push(group);
     }
     groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of masses on springs.
+    fn chain(mass_kg: f64) -> Machine {
+        let stiffness = DMatrix::from_fn(20, 20, |r, c| match r.abs_diff(c) {
+            0 => 2e8,
+            1 => -1e8,
+            _ => 0.0,
+        });
+        Machine {
+            names: vec!["x".into(); 20],
+            mass: DMatrix::identity(20, 20) * mass_kg,
+            turn: DMatrix::identity(20, 20),
+            springs: vec![Spring { stiffness, damping_ratio: 0.02 }],
+            lines: Vec::new(),
+            drives: Vec::new(),
+            places: Vec::new(),
+            rigid_rotation: DVector::zeros(20),
+        }
+    }
+
+    #[test]
+    fn modes_of_a_machine_are_computed_once() {
+        let known = KnownModes::default();
+        let ask = |mass_kg: f64| known.damped_by_springs(&chain(mass_kg));
+        // Threads that ask at the same time get the one that the first of them computes.
+        let asked: Vec<Arc<Modes>> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| ask(1.0))).collect();
+            threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
+        });
+        assert_eq!(asked.len(), 8);
+        assert!(asked.iter().all(|modes| Arc::ptr_eq(modes, &asked[0])));
+        assert_eq!(*asked[0], Modes::damped_by_springs(&chain(1.0)));
+        // Another machine has its own, and many of them push the first one out.
+        assert_ne!(ask(2.0).angular_frequencies, asked[0].angular_frequencies);
+        (3..=2 + MOST_KNOWN).for_each(|mass_kg| drop(ask(mass_kg as f64)));
+        assert!(known.0.lock().is_ok_and(|all| all.len() == MOST_KNOWN));
+        assert!(!Arc::ptr_eq(&ask(1.0), &asked[0]));
+        assert_eq!(ask(1.0), asked[0]);
+    }
 }

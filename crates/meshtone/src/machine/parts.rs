@@ -174,13 +174,19 @@ impl Machine {
     /// # Arguments
     /// * `place` - its name
     /// * `axis` - the axis
+    #[cfg(feature = "internals")]
     pub fn weights(&self, place: &str, axis: Axis) -> DVector<f64> {
-        let mut weights = DVector::zeros(self.coordinates());
-        let place = self.places.iter().find(|other| other.name == place);
-        let motion = place.and_then(|place| place.motion.iter().find(|(other, _)| *other == axis));
-        for &(coordinate, weight) in motion.iter().flat_map(|(_, motion)| motion) {
-            weights[coordinate] = weight;
-        }
-        weights
+        weights(&self.places, self.coordinates(), place, axis)
     }
+}
+
+/// [`Machine::weights`] of a machine's places and number of coordinates.
+pub(crate) fn weights(places: &[Place], coordinates: usize, place: &str, axis: Axis) -> DVector<f64> {
+    let mut weights = DVector::zeros(coordinates);
+    let place = places.iter().find(|other| other.name == place);
+    let motion = place.and_then(|place| place.motion.iter().find(|(other, _)| *other == axis));
+    for &(coordinate, weight) in motion.iter().flat_map(|(_, motion)| motion) {
+        weights[coordinate] = weight;
+    }
+    weights
 }

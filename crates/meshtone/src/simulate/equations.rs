@@ -154,7 +154,9 @@ impl Stages {
     /// The slowest mode in motion, with the mean meshes closed.
     pub(crate) fn slowest_mode(&self) -> DecayingMode {
         match &self.equations {
-            Equations::Machine(train, modes) => modes.slowest_closed(&train.machine, &self.closed_meshes()),
+            Equations::Machine(train, modes) => {
+                self.modal_machine(train, modes).slowest_closed(&self.closed_meshes(), f64::INFINITY)
+            }
             Equations::Published(published) => published.slowest_mode(),
         }
     }

@@ -1,28 +1,29 @@
 //! The stages of a gearbox: those of a pair for each mesh, one machine around all of them, one integration.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use super::{Clock, StageTime, check_mesh};
-use crate::damage::{DamagedTooth, Fault, damaged_teeth};
+use super::{Clock, MeshOf, StageTime, check_mesh};
+use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::{
     Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, KnownModes, MeshLine, Modes, WheelBody,
 };
-use crate::mesh::{
-    Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, Pairs, TipShape, Turning,
-};
+use crate::mesh::{Contact, Forcing, Mesh, PairDeviations, Turning};
 use crate::operation::{CycleGrid, Motion, TimeGrid, TorqueHarmonic};
 use crate::random::{Draws, Purpose};
-use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor};
+use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor, MemoryLimit};
 use crate::sensor::{GRAVITY_M_PER_S2, Measurement, measure};
 use crate::simd::InstructionSet;
 use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorder, StepCounts, integrate};
 use crate::threads;
 use crate::trace_fields::Trace;
 use crate::wheel::quality::deviations;
-use crate::wheel::{Deviations, Gears, ProfileErrors, RunOut, Teeth, WheelName, teeth};
+use crate::wheel::{
+    Deviations, ERROR_POINTS, ErrorTable, Gears, ProfileErrors, RunOut, Teeth, WheelName, teeth,
+};
 
 /// Two wheels of a gearbox in mesh: what the stages before the mesh make of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +72,8 @@ pub struct GearboxStages {
     /// The mode that is the slowest to decay with the meshes closed.
     pub(crate) slowest_mode: DecayingMode,
     pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
+    /// Most memory that the simulation may need, and one that repeats it.
+    pub(crate) memory_limit: MemoryLimit,
 }
 
 /// A signal of a gearbox.
@@ -195,69 +198,109 @@ impl GearboxSimulation {
 /// # Errors
 /// A gearbox that is not valid, or a fault that does not fit the tooth.
 pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError> {
-    stages_with(gearbox, &KnownModes::default())
+    gearbox_stages_within(gearbox, MemoryLimit::default())
 }
 
-/// Does what [`gearbox_stages`] does, with modes that are known already.
-fn stages_with(gearbox: &Gearbox, known: &KnownModes) -> Result<GearboxStages, ScenarioError> {
+/// Does what [`gearbox_stages`] does, with another limit of memory.
+///
+/// # Arguments
+/// * `gearbox` - what is simulated
+/// * `limit` - most memory that the simulation, and one that repeats it, may need
+///
+/// # Errors
+/// Those of [`gearbox_stages`].
+pub fn gearbox_stages_within(gearbox: &Gearbox, limit: MemoryLimit) -> Result<GearboxStages, ScenarioError> {
+    stages_with(gearbox, limit, &KnownModes::default())
+}
+
+/// (Hz) Natural frequency above which modes decay faster than those below.
+const HIGHEST_OF_SLOW_HZ: f64 = 2e3;
+
+/// Does what [`gearbox_stages_within`] does, with modes that are known already.
+///
+/// The wheels' teeth are made first, as the machine needs their base radii. It gives the static forces, which the meshes' tables need, and
+/// these say which modes are stepped.
+fn stages_with(
+    gearbox: &Gearbox,
+    memory_limit: MemoryLimit,
+    known: &KnownModes,
+) -> Result<GearboxStages, ScenarioError> {
     let mut clock = Clock::default();
-    let warnings_of_scenario = gearbox.validate()?;
+    let warnings_of_scenario = gearbox.validate_within(memory_limit)?;
     let layout = GearboxLayout::new(gearbox)?;
     let time = gearbox.time_grid();
     clock.lap("scenario");
-    let mut pairs: Vec<MeshedPair> = (0..gearbox.meshes.len())
-        .map(|mesh| meshed_pair(gearbox, &layout, mesh))
-        .collect::<Result<_, _>>()?;
-    clock.lap("teeth and faults");
-    let (mut machine, mesh_mass_kg) = machine_of(gearbox, &layout, &pairs);
+    let teeth: Vec<Teeth> =
+        (0..gearbox.meshes.len()).map(|mesh| teeth_of_mesh(gearbox, &layout, mesh)).collect();
+    clock.lap("tooth profiles");
     let sensors = gearbox.all_sensors();
-    for (sensor, place) in sensors.iter().zip(gearbox.places(&layout)?) {
-        machine.add_place(sensor.name(), place);
-    }
-    for (number, shaft) in gearbox.shafts.iter().enumerate() {
-        machine.add_rotation(speed_name(&shaft.name), number);
-    }
-    for (number, mesh) in gearbox.meshes.iter().enumerate() {
-        machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
-    }
+    let (machine, mesh_mass_kg) = machine_of(gearbox, &layout, &teeth, &sensors)?;
     let modes = known.damped_by_springs(&machine.machine);
-    let modal = ModalMachine::new(&machine.machine, &modes, &vec![0.0; pairs.len()], start(gearbox));
-    for (pair, line) in pairs.iter_mut().zip(&modal.lines) {
-        pair.static_force_n = line.static_force_n;
-    }
+    let modal_machine =
+        |face_reach_m: &[f64]| ModalMachine::new(&machine.machine, &modes, face_reach_m, start(gearbox));
+    let modal = modal_machine(&vec![0.0; teeth.len()]);
     clock.lap("equations of motion");
-    let mut fault_severities = vec![0.0; gearbox.faults.len()];
-    for pair in &pairs {
-        for (number, fault) in &pair.faults {
-            fault_severities[*number] = fault.severity_on(&pair.teeth);
-        }
-    }
-    let mut stages = GearboxStages {
+    let pairs: Vec<MeshedPair> = (teeth.into_iter().zip(&modal.lines).enumerate())
+        .map(|(mesh, (teeth, line))| meshed_pair(gearbox, &layout, mesh, teeth, line.static_force_n))
+        .collect::<Result<_, _>>()?;
+    clock.lap("profile errors and faults");
+    let meshes: Vec<Mesh> = (pairs.iter().zip(mesh_mass_kg).enumerate())
+        .map(|(number, (pair, mesh_mass_kg))| {
+            let gears = &layout.gears[number];
+            let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[number][0]];
+            let turning = Turning {
+                pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
+                first_pitch: layout.phases[number],
+            };
+            let mesh = MeshOf {
+                gears,
+                teeth: &pair.teeth,
+                damaged: &pair.damaged,
+                machine: &machine.machine,
+                modes: &modes,
+                number,
+                closer_um: pair.helix_slope_um.iter().sum(),
+                static_force_n: pair.static_force_n,
+                contact: Contact::Unilateral,
+                turning,
+                damping_ratio: gearbox.meshes[number].damping_ratio,
+                mesh_mass_kg,
+            };
+            let points = points_per_pitch(&time, gearbox.operation.is_steady(), &turning, gears);
+            let mesh = mesh.with_tables(NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN))?;
+            check_mesh(&mesh, &layout.named_gears(gearbox, number)).map(|()| mesh)
+        })
+        .collect::<Result<_, ScenarioError>>()?;
+    clock.lap("mesh stiffness");
+    let face_reach_m: Vec<f64> = meshes.iter().map(Mesh::face_reach_m).collect();
+    let is_tilted = face_reach_m.iter().any(|reach_m| *reach_m > 0.0);
+    let highest_hz = gearbox.solver.highest_mode_hz(time.sampling_rate_hz);
+    let modal = if is_tilted { modal_machine(&face_reach_m) } else { modal }.up_to(TAU * highest_hz);
+    let closed: Vec<_> = meshes.iter().map(Mesh::closed).collect();
+    let slowest_mode = modal.slowest_closed(&closed, TAU * HIGHEST_OF_SLOW_HZ);
+    let first_simulated_sample = start_of_settling(gearbox, &time, &slowest_mode);
+    clock.lap("settling");
+    let severities = pairs
+        .iter()
+        .flat_map(|pair| pair.faults.iter().map(|(number, fault)| (*number, fault.severity_on(&pair.teeth))));
+    // A wheel in two meshes is damaged in both.
+    let severities: BTreeMap<usize, f64> = severities.collect();
+    Ok(GearboxStages {
         gearbox: gearbox.clone(),
         layout,
-        time,
+        time: TimeGrid { first_simulated_sample, ..time },
         pairs,
-        meshes: Vec::new(),
+        meshes,
         sensors,
-        fault_severities,
-        timings: Vec::new(),
+        fault_severities: severities.into_values().collect(),
+        timings: clock.laps,
         machine,
         modes,
         modal,
-        slowest_mode: DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY },
+        slowest_mode,
         warnings_of_scenario,
-    };
-    stages.meshes = (mesh_mass_kg.iter().enumerate())
-        .map(|(mesh, &mass_kg)| stages.mesh(mesh, mass_kg))
-        .collect::<Result<_, _>>()?;
-    stages.meshes.iter().try_for_each(check_mesh)?;
-    clock.lap("mesh stiffness");
-    stages.step_low_modes();
-    stages.slowest_mode = stages.slowest_mode();
-    stages.time.first_simulated_sample = stages.start_of_settling();
-    clock.lap("settling");
-    stages.timings = clock.laps;
-    Ok(stages)
+        memory_limit,
+    })
 }
 
 /// Simulates a gearbox.
@@ -296,15 +339,26 @@ pub fn simulate_gearboxes<T: Send>(
     keep: impl Fn(GearboxSimulation) -> T + Sync,
 ) -> Vec<Result<T, Error>> {
     let known = KnownModes::default();
-    threads::map(gearboxes, |gearbox| stages_with(gearbox, &known)?.simulate().map(&keep))
+    let stages = |gearbox: &Gearbox| stages_with(gearbox, MemoryLimit::default(), &known);
+    threads::map(gearboxes, |gearbox| stages(gearbox)?.simulate().map(&keep))
 }
 
-/// The wheels of a mesh: teeth, deviations of each drawn with a seed of its own, damage.
-fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result<MeshedPair, ScenarioError> {
-    let numbers = layout.wheels_of_mesh[mesh];
-    let bores_mm = numbers
+/// The healthy teeth of a mesh's wheels.
+fn teeth_of_mesh(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Teeth {
+    let bores_mm = layout.wheels_of_mesh[mesh]
         .map(|wheel| gearbox.shafts[layout.shaft_of_wheel[wheel]].radius_at_mm(gearbox.wheels[wheel].at));
-    let teeth = teeth(&layout.gears[mesh], bores_mm);
+    teeth(&layout.gears[mesh], bores_mm)
+}
+
+/// The wheels of a mesh: deviations of each, drawn with a seed of its own, and damage.
+fn meshed_pair(
+    gearbox: &Gearbox,
+    layout: &GearboxLayout,
+    mesh: usize,
+    teeth: Teeth,
+    static_force_n: f64,
+) -> Result<MeshedPair, ScenarioError> {
+    let numbers = layout.wheels_of_mesh[mesh];
     let [of_pinion, of_gear] = WheelName::BOTH.map(|side| {
         let seed = Draws::new(gearbox.seed, Purpose::GearboxWheel, numbers[side as usize] as u64).bits();
         deviations(&layout.quality_of_mesh(gearbox, mesh, side), &teeth, seed)
@@ -314,8 +368,7 @@ fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result
     let Deviations { run_out: [_, gear_run_out], helix_slope_um: [_, gear_um], .. } = of_gear;
     let (numbers, faults): (Vec<usize>, Vec<Fault>) =
         layout.faults_of_mesh(gearbox, mesh).into_iter().unzip();
-    let damaged = damaged_teeth(&faults, &teeth, gearbox.seed)
-        .map_err(|error| gearbox.in_fault(error, mesh, &numbers))?;
+    let damaged = damaged_teeth_of_file(&faults, &numbers, gearbox.faults.len(), &teeth, gearbox.seed)?;
     let faults = faults.iter().map(|fault| fault.with_sizes(&teeth));
     Ok(MeshedPair {
         profile_errors,
@@ -323,7 +376,7 @@ fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result
         helix_slope_um: [pinion_um, gear_um],
         damaged,
         faults: numbers.into_iter().zip(faults).collect(),
-        static_force_n: 0.0,
+        static_force_n,
         teeth,
     })
 }
@@ -337,35 +390,39 @@ fn joined(
     if pinion.is_none() && gear.is_none() {
         return None;
     }
-    let ideal = |wheel: WheelName| {
-        crate::wheel::ErrorTable::filled(crate::wheel::ERROR_POINTS, teeth.wheel(wheel).teeth as usize, 0.0)
+    let table = |errors: Option<ProfileErrors>, wheel: WheelName| match errors {
+        Some(errors) => wheel.choose(errors.pinion_profile_errors_mm, errors.gear_profile_errors_mm),
+        None => ErrorTable::filled(ERROR_POINTS, teeth.wheel(wheel).teeth as usize, 0.0),
     };
     Some(ProfileErrors {
-        pinion_profile_errors_mm: pinion
-            .map_or_else(|| ideal(WheelName::Pinion), |errors| errors.pinion_profile_errors_mm),
-        gear_profile_errors_mm: gear
-            .map_or_else(|| ideal(WheelName::Gear), |errors| errors.gear_profile_errors_mm),
+        pinion_profile_errors_mm: table(pinion, WheelName::Pinion),
+        gear_profile_errors_mm: table(gear, WheelName::Gear),
     })
 }
 
-/// The machine, and (kg) the mass that the wheels' rotation has along each line of action.
-fn machine_of(gearbox: &Gearbox, layout: &GearboxLayout, pairs: &[MeshedPair]) -> (GearboxMachine, Vec<f64>) {
+/// The machine with the places that outputs read, and (kg) the mass that the wheels' rotation has along each line of action.
+fn machine_of(
+    gearbox: &Gearbox,
+    layout: &GearboxLayout,
+    teeth: &[Teeth],
+    sensors: &[GearboxSensor],
+) -> Result<(GearboxMachine, Vec<f64>), ScenarioError> {
     let shafts: Vec<_> = gearbox.shafts.iter().zip(layout.positions_m.iter().copied()).collect();
     let discs: Vec<Disc> = (gearbox.wheels.iter().enumerate())
         .map(|(number, wheel)| {
             // Every wheel is in a mesh, as the layout has checked.
             let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
-            let mut tooth = *pairs[mesh].teeth.wheel(side);
+            let mut tooth = *teeth[mesh].wheel(side);
             tooth.face_width_mm = wheel.face_width_mm;
             let body = WheelBody::new(&tooth, layout.gears[mesh].material, &wheel.inertia);
             Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
         })
         .collect();
-    let lines: Vec<MeshLine> = (pairs.iter().zip(&layout.wheels_of_mesh))
-        .map(|(pair, &wheels)| MeshLine {
+    let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh))
+        .map(|(teeth, &wheels)| MeshLine {
             wheels,
-            base_radii_m: WheelName::BOTH.map(|side| pair.teeth.wheel(side).base_radius_mm * 1e-3),
-            working_pressure_angle_rad: pair.teeth.gear.working_pressure_angle_rad,
+            base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
+            working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
         })
         .collect();
     let mass_kg = lines.iter().map(|line| {
@@ -375,7 +432,7 @@ fn machine_of(gearbox: &Gearbox, layout: &GearboxLayout, pairs: &[MeshedPair]) -
     let mass_kg: Vec<f64> = mass_kg.collect();
     let bearings: Vec<_> = layout.shaft_of_bearing.iter().copied().zip(&gearbox.bearings).collect();
     let ratios: Vec<f64> = layout.ratios.iter().map(|ratio| ratio.value()).collect();
-    let machine = GearboxMachine::new(&GearboxParts {
+    let mut machine = GearboxMachine::new(&GearboxParts {
         shafts: &shafts,
         speed_ratios: &ratios,
         discs: &discs,
@@ -385,7 +442,16 @@ fn machine_of(gearbox: &Gearbox, layout: &GearboxLayout, pairs: &[MeshedPair]) -
         material: gearbox.material,
         brake_inertia_kgm2: gearbox.operation.brake_inertia_kgm2,
     });
-    (machine, mass_kg)
+    for (sensor, place) in sensors.iter().zip(gearbox.places(layout)?) {
+        machine.add_place(sensor.name(), place);
+    }
+    for (number, shaft) in gearbox.shafts.iter().enumerate() {
+        machine.add_rotation(speed_name(&shaft.name), number);
+    }
+    for (number, mesh) in gearbox.meshes.iter().enumerate() {
+        machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
+    }
+    Ok((machine, mass_kg))
 }
 
 fn start(gearbox: &Gearbox) -> InitialMotion<'static> {
@@ -409,57 +475,31 @@ fn transmission_error_name(mesh: &str) -> String {
     format!("transmission_error_um.{mesh}")
 }
 
+/// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of
+/// the cycle, between which the tables are read.
+fn points_per_pitch(time: &TimeGrid, is_steady: bool, turning: &Turning, gears: &Gears) -> usize {
+    let samples = time.samples_per_pinion_revolution as f64 / turning.pitches_per_revolution;
+    let is_whole = (samples.round() / samples - 1.0).abs() < 1e-12;
+    if is_whole && turning.first_pitch == 0.0 && is_steady {
+        return samples.round() as usize;
+    }
+    CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz).points_per_pitch
+}
+
+/// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where the kept
+/// signal starts.
+fn start_of_settling(gearbox: &Gearbox, time: &TimeGrid, slowest: &DecayingMode) -> usize {
+    let settle_tolerance = gearbox.solver.settings.settle_tolerance;
+    if settle_tolerance == 0.0 || !gearbox.operation.is_steady() || time.first_kept_sample == 0 {
+        return 0;
+    }
+    // Where nothing decays, all of the settling is simulated: as a float, that takes forever.
+    let decay_s = -settle_tolerance.ln() / slowest.decay_per_s.max(0.0);
+    let settling = (decay_s * time.sampling_rate_hz).ceil();
+    time.first_kept_sample.saturating_sub(settling as usize)
+}
+
 impl GearboxStages {
-    /// A mesh with its tables, at the points of the cycle's coarse grid.
-    fn mesh(&self, mesh: usize, mesh_mass_kg: f64) -> Result<Mesh, ScenarioError> {
-        let Self { gearbox, layout, modes, machine, .. } = self;
-        let (pair, gears, of_file) = (&self.pairs[mesh], &layout.gears[mesh], &gearbox.meshes[mesh]);
-        let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[mesh][0]];
-        let turning = Turning {
-            pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
-            first_pitch: layout.phases[mesh],
-        };
-        let points = NonZeroUsize::new(self.points_per_pitch(&turning, gears)).unwrap_or(NonZeroUsize::MIN);
-        let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &pair.damaged)?;
-        let closer_um = pair.helix_slope_um.iter().sum::<f64>();
-        if closer_um != 0.0 && pair.static_force_n <= 0.0 {
-            return Err(ScenarioError::no_load_along_the_face());
-        }
-        let width_m = gears.face_width_mm * 1e-3;
-        let face = FaceSlope {
-            slope: closer_um * 1e-6 / width_m,
-            width_m,
-            tilt_rad_per_m: modes.tilt_rad_per_nm(&machine.machine, mesh) * pair.static_force_n,
-        };
-        let parameters = MeshParameters {
-            contact: Contact::Unilateral,
-            turning,
-            damping_ratio: of_file.damping_ratio,
-            mesh_mass_kg,
-            backlash_m: gears.normal_backlash_mm() * 1e-3,
-            static_force_n: pair.static_force_n,
-            face: (closer_um != 0.0).then_some(face),
-        };
-        let shape = TipShape {
-            chamfer_mm: gears.chamfer_mm(),
-            relief: gears.flank_relief,
-            active_profile_shortening: gears.active_profile_shortening,
-        };
-        let pairs = Pairs::new(&pair.teeth, &pair.damaged, gears.material, &gears.foundation);
-        Ok(Mesh::new(&pairs, shape, sequence, points, parameters))
-    }
-
-    /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of
-    /// the cycle, between which the tables are read.
-    fn points_per_pitch(&self, turning: &Turning, gears: &Gears) -> usize {
-        let samples = self.time.samples_per_pinion_revolution as f64 / turning.pitches_per_revolution;
-        let is_whole = (samples.round() / samples - 1.0).abs() < 1e-12;
-        if is_whole && turning.first_pitch == 0.0 && self.is_steady() {
-            return samples.round() as usize;
-        }
-        CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, self.time.sampling_rate_hz).points_per_pitch
-    }
-
     /// (Hz) Natural frequencies of the machine with its meshes closed at their mean stiffness, rising; 0 of the whole train's free rotation,
     /// where nothing holds it.
     pub fn natural_frequencies_hz(&self) -> Vec<f64> {
@@ -481,8 +521,7 @@ impl GearboxStages {
 
     /// Whether motor and brake are steady.
     pub fn is_steady(&self) -> bool {
-        let operation = &self.gearbox.operation;
-        operation.drive.is_steady() && operation.torque_ripple.is_empty()
+        self.gearbox.operation.is_steady()
     }
 
     /// Samples after which all teeth and shafts stand again as at the start, where motor and brake are steady.
@@ -490,30 +529,6 @@ impl GearboxStages {
         let revolutions = usize::try_from(self.layout.cycle_revolutions()).ok()?;
         let samples = revolutions.checked_mul(self.time.samples_per_pinion_revolution)?;
         self.is_steady().then_some(samples)
-    }
-
-    /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where the kept
-    /// signal starts.
-    fn start_of_settling(&self) -> usize {
-        let settle_tolerance = self.gearbox.solver.settings.settle_tolerance;
-        if settle_tolerance == 0.0 || !self.is_steady() || self.time.first_kept_sample == 0 {
-            return 0;
-        }
-        // Where nothing decays, all of the settling is simulated: as a float, that takes forever.
-        let decay_s = -settle_tolerance.ln() / self.slowest_mode.decay_per_s.max(0.0);
-        let settling = (decay_s * self.time.sampling_rate_hz).ceil();
-        self.time.first_kept_sample.saturating_sub(settling as usize)
-    }
-
-    /// The slowest to decay of the modes that are damped, with the meshes closed.
-    fn slowest_mode(&self) -> DecayingMode {
-        // Higher modes decay faster.
-        const HIGHEST_HZ: f64 = 2e3;
-        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
-        let modes = self.modal_machine().closed_modes(&closed, TAU * HIGHEST_HZ);
-        let damped = modes.into_iter().map(|mode| mode.decay).filter(|mode| mode.decay_per_s > 0.0);
-        let slowest = damped.min_by(|a, b| a.decay_per_s.total_cmp(&b.decay_per_s));
-        slowest.unwrap_or(DecayingMode { frequency_hz: 0.0, decay_per_s: 0.0 })
     }
 
     /// The machine around the meshes, and its modes without them.
@@ -545,17 +560,6 @@ impl GearboxStages {
         &self.modal
     }
 
-    /// Leaves the high modes out, and takes the tilts of wheels in whose meshes the load moves along the face.
-    fn step_low_modes(&mut self) {
-        let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
-        if face_reach_m.iter().any(|reach_m| *reach_m > 0.0) {
-            let machine = &self.machine.machine;
-            self.modal = ModalMachine::new(machine, &self.modes, &face_reach_m, start(&self.gearbox));
-        }
-        let highest_hz = self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz);
-        self.modal = self.modal.clone().up_to(TAU * highest_hz);
-    }
-
     /// Motion of motor and brake, sample by sample from the start of the simulation.
     pub fn motion(&self) -> Motion<'_> {
         let brake = self.machine.machine.rigid_rotation[self.machine.machine.coordinates() - 1].abs();
@@ -569,13 +573,16 @@ impl GearboxStages {
             .with_ripple(operation.torque_ripple.iter().map(harmonic).collect())
     }
 
-    /// The sensors whose noise does not hide what a finer step changes.
-    pub(crate) fn plain_sensors(&self) -> impl Iterator<Item = &GearboxSensor> {
-        self.sensors.iter().filter(|sensor| sensor.sensor.noise_density_g_per_rthz == 0.0)
+    /// (N) The forces of the meshes that hold a torque of the brake.
+    ///
+    /// # Arguments
+    /// * `torque_nm` - (N m) the torque
+    pub(crate) fn forces_of_torque_n(&self, torque_nm: f64) -> Vec<f64> {
+        self.modal.balancing_forces_n(torque_nm)
     }
 
     /// What the channels are made of.
-    fn outputs(&self) -> Vec<(String, &'static str, Output)> {
+    pub(crate) fn outputs(&self) -> Vec<(String, &'static str, Output)> {
         let sensors = self.sensors.iter().map(|sensor| {
             let (name, axis) = (sensor.name(), sensor.axis());
             let output =
@@ -629,13 +636,7 @@ impl GearboxStages {
         let mut clock = Clock::default();
         let outputs: Vec<Output> = self.outputs().into_iter().map(|(.., output)| output).collect();
         let mut channels = self.channels();
-        integrate(self.problem(&outputs), InstructionSet::fastest(), &mut channels).map_err(|diverged| {
-            Error::Diverged {
-                time_s: diverged.sample as f64 * self.time.step_s(),
-                key: "bearing.damping_ratio",
-                damping_ratios: self.modes.damping_ratio.clone(),
-            }
-        })?;
+        self.integrate(&outputs, &mut channels)?;
         clock.lap("time integration");
         for (index, (sensor, signal)) in self.sensors.iter().zip(&mut channels.signals).enumerate() {
             let measurement = Measurement {
@@ -651,6 +652,24 @@ impl GearboxStages {
         clock.lap("sensors");
         let timings = self.timings.iter().copied().chain(clock.laps).collect();
         Ok(GearboxSimulation { channels, timings, stages: self })
+    }
+
+    /// Solves the equations of motion and hands the kept samples on.
+    ///
+    /// # Arguments
+    /// * `outputs` - what is read off the solution
+    /// * `recorder` - takes it
+    ///
+    /// # Errors
+    /// A motion that grows without bound.
+    pub(crate) fn integrate(&self, outputs: &[Output], recorder: &mut dyn Recorder) -> Result<(), Error> {
+        integrate(self.problem(outputs), InstructionSet::fastest(), recorder).map_err(|diverged| {
+            Error::Diverged {
+                time_s: diverged.sample as f64 * self.time.step_s(),
+                key: "bearing.damping_ratio",
+                damping_ratios: self.modes.damping_ratio.clone(),
+            }
+        })
     }
 
     /// The simulation as the solver sees it.

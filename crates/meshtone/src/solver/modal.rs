@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::outputs::dot;
-use crate::machine::{ClosedMesh, DecayingMode, Drive, Machine, Modes};
+use crate::machine::{Axis, ClosedMesh, DecayingMode, Drive, Machine, Modes, Place, weights};
 
 /// A machine without its meshes, in the modes that take part in the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,8 +34,8 @@ pub struct ModalMachine {
     pub initial_velocity: Vec<f64>,
     /// The modes that are not stepped.
     pub residual: Residual,
-    /// The machine's own description, of which outputs need the places.
-    pub machine: Machine,
+    /// The machine's places, which outputs read.
+    pub places: Vec<Place>,
 }
 
 /// The modes that are not stepped: they are so high that they deform at every instant as at rest. Without such modes all lists are empty.
@@ -204,7 +204,7 @@ impl ModalMachine {
             static_displacement: Vec::new(),
             initial_velocity: pick(&velocity),
             residual: Residual::default(),
-            machine: machine.clone(),
+            places: machine.places.clone(),
         };
         this.balance(start.brake_torque_nm);
         this
@@ -233,11 +233,9 @@ impl ModalMachine {
 
     /// Finds the static forces of the meshes that hold the shafts that turn freely, and the displacement under these and the torque.
     fn balance(&mut self, torque_nm: f64) {
-        let free = self.free_modes();
-        let torques = DVector::from_iterator(free.len(), free.iter().map(|&n| torque_nm * self.brake[n]));
-        let forces = solve(&self.line_entries(&free).transpose(), &torques);
-        for (line, force) in self.lines.iter_mut().zip(forces.iter()) {
-            line.static_force_n = *force;
+        let forces_n = self.balancing_forces_n(torque_nm);
+        for (line, force_n) in self.lines.iter_mut().zip(forces_n) {
+            line.static_force_n = force_n;
         }
         self.static_displacement = (0..self.modes())
             .map(|n| {
@@ -248,6 +246,16 @@ impl ModalMachine {
                 if self.stiffness[n] == 0.0 { 0.0 } else { load / self.stiffness[n] }
             })
             .collect();
+    }
+
+    /// (N) The static forces of the meshes that hold the shafts that turn freely.
+    ///
+    /// # Arguments
+    /// * `torque_nm` - (N m) of the brake
+    pub(crate) fn balancing_forces_n(&self, torque_nm: f64) -> Vec<f64> {
+        let free = self.free_modes();
+        let torques = DVector::from_iterator(free.len(), free.iter().map(|&n| torque_nm * self.brake[n]));
+        solve(&self.line_entries(&free).transpose(), &torques).iter().copied().collect()
     }
 
     /// The modes with the meshes closed, of those up to a frequency without them; damping does not couple them.
@@ -281,6 +289,18 @@ impl ModalMachine {
         eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).map(mode).collect()
     }
 
+    /// The slowest to decay of the modes that the meshes move, with the meshes closed.
+    ///
+    /// # Arguments
+    /// They are those of [`Self::closed_modes`].
+    pub(crate) fn slowest_closed(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> DecayingMode {
+        let is_moved = |mode: &ClosedMode| mode.mesh_energies.iter().any(|energy| *energy > ROUNDING * ROUNDING);
+        let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
+        let moved = self.closed_modes(meshes, highest_rad_per_s).into_iter().filter(is_moved);
+        let decays = moved.map(|mode| mode.decay);
+        decays.min_by(|a, b| a.decay_per_s.total_cmp(&b.decay_per_s)).unwrap_or(none)
+    }
+
     /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.
     ///
     /// # Arguments
@@ -308,6 +328,11 @@ impl ModalMachine {
     /// Number of active modes.
     pub fn modes(&self) -> usize {
         self.stiffness.len()
+    }
+
+    /// Weights of the machine's coordinates in the motion of a place, as [`Machine::weights`].
+    pub(super) fn weights(&self, place: &str, axis: Axis) -> DVector<f64> {
+        weights(&self.places, self.rigid_rotation.len(), place, axis)
     }
 
     /// Weights of the modes in a combination of the machine's coordinates, and that combination per unit of the rigid rotation.

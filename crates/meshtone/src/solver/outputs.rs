@@ -88,14 +88,14 @@ impl Output {
     /// * `steps` - how each of its modes is stepped
     /// * `step_s` - (s) Δt
     pub(super) fn weights(&self, model: &ModalMachine, steps: &[StepOfMode], step_s: f64) -> OutputWeights {
-        let of_place = |place: &str, axis, factor: f64| model.machine.weights(place, axis) * factor;
+        let of_place = |place: &str, axis, factor: f64| model.weights(place, axis) * factor;
         let (weights, derivative) = match self {
             Self::Acceleration { place, axis, factor } => (of_place(place, *axis, *factor), 2),
             Self::Velocity { place, axis, factor } => (of_place(place, *axis, *factor), 1),
             Self::Displacement { place, axis, factor } => (of_place(place, *axis, *factor), 0),
             &Self::Coordinate { number, derivative } => {
                 let unit = |n: usize, _| f64::from(n == number);
-                (DVector::from_fn(model.machine.coordinates(), unit), derivative)
+                (DVector::from_fn(model.rigid_rotation.len(), unit), derivative)
             }
             Self::MeshForce { mesh } => return mesh_force(model, *mesh),
         };

@@ -43,7 +43,7 @@ impl<'a> MeanMachine<'a> {
         sensors: &[(Cow<'static, str>, Axis)],
     ) -> Self {
         let of_sensor =
-            |(place, axis): &(Cow<'static, str>, Axis)| model.of_coordinates(&model.machine.weights(place, *axis)).0;
+            |(place, axis): &(Cow<'static, str>, Axis)| model.of_coordinates(&model.weights(place, *axis)).0;
         // The first column of each line of action.
         let first: Vec<usize> = (model.lines.iter())
             .scan(0, |next, line| Some(std::mem::replace(next, *next + line.columns.len())))

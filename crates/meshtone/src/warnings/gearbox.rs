@@ -26,14 +26,14 @@ impl GearboxStages {
         of_scenario.chain(unsettled).chain(self.overloads()).chain(self.resonances()).collect()
     }
 
-    /// Teeth that the load would bend off, of the first mesh that has such.
-    fn overloads(&self) -> Option<ScenarioWarning> {
-        let operation = &self.gearbox.operation.drive;
-        let (key, torque_nm) = largest_torque(operation);
-        // Forces are in proportion to the torque, which is not 0 where any is larger.
-        let larger = torque_nm / operation.brake_torque_nm;
-        (self.pairs.iter().zip(&self.meshes).zip(&self.layout.gears)).find_map(|((pair, mesh), gears)| {
-            overload(key.clone(), torque_nm, pair.static_force_n * larger, mesh.mean_stiffness_n_per_m, gears)
+    /// Teeth that the load would bend off, mesh by mesh.
+    fn overloads(&self) -> impl Iterator<Item = ScenarioWarning> {
+        let (key, torque_nm) = largest_torque(&self.gearbox.operation.drive);
+        let forces_n = self.forces_of_torque_n(torque_nm).into_iter();
+        let meshes = self.gearbox.meshes.iter().zip(&self.meshes).zip(&self.layout.gears);
+        forces_n.zip(meshes).filter_map(move |(force_n, ((of_file, mesh), gears))| {
+            let teeth = format!("the teeth of mesh {}", of_file.name());
+            overload(&teeth, key.clone(), torque_nm, force_n, mesh.mean_stiffness_n_per_m, gears)
         })
     }
 
@@ -81,12 +81,13 @@ impl GearboxSimulation {
     /// * `judgement` - how the step is judged where a resonance is suspected
     pub fn warnings_of_signals(&self, judgement: StepJudgement) -> Vec<ScenarioWarning> {
         let (stages, channels) = (&self.stages, &self.channels);
-        let operation = &stages.gearbox.operation.drive;
-        let larger = largest_torque(operation).1 / operation.brake_torque_nm;
-        let forces = stages.gearbox.meshes.iter().zip(&stages.pairs).filter_map(|(mesh, pair)| {
+        let (_, torque_nm) = largest_torque(&stages.gearbox.operation.drive);
+        let static_n = stages.forces_of_torque_n(torque_nm);
+        let forces = stages.gearbox.meshes.iter().zip(static_n).filter_map(|(mesh, static_n)| {
             let force_n = channels.signal(&format!("force_n.{}", mesh.name()))?;
             let largest_n = force_n.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-            resonance("operation.input_speed_hz", largest_n, pair.static_force_n * larger)
+            let name = format!("mesh {}", mesh.name());
+            resonance(&name, "operation.input_speed_hz", largest_n, static_n)
         });
         let driven = stages.motion().skip(stages.time.first_kept_sample).take(channels.len());
         let driven_hz = driven.map(|motion| motion.speed_hz).sum::<f64>() / channels.len() as f64;
@@ -97,6 +98,6 @@ impl GearboxSimulation {
         });
         let rate_hz = channels.sampling_rate_hz;
         let step = step_error_of_gearbox(self, judgement).and_then(|error| long_step(error, rate_hz));
-        forces.take(1).chain(speeds.take(1)).chain(step).collect()
+        forces.chain(speeds).chain(step).collect()
     }
 }

@@ -64,7 +64,7 @@ impl Stages {
         let (key, torque_nm) = largest_torque(&self.scenario.operation);
         let force_n = self.force_of_torque_n(torque_nm);
         let weakest_n_per_m = self.mean_stiffness_n_per_m().into_iter().fold(f64::INFINITY, f64::min);
-        overload(key, torque_nm, force_n, weakest_n_per_m, &self.scenario.gears)
+        overload("the teeth", key, torque_nm, force_n, weakest_n_per_m, &self.scenario.gears)
     }
 
     /// Places at which no pair of teeth meets: nothing holds the wheels there, where real teeth would touch with their tips'
@@ -165,10 +165,12 @@ fn unsettled(
 /// Teeth that a load would bend off.
 ///
 /// # Arguments
+/// * `teeth` - what they are called
 /// * `key`, `torque_nm` - the torque of the brake, and where it stands
 /// * `force_n`, `stiffness_n_per_m` - what it makes the mesh carry, and the mesh's mean stiffness
 /// * `gears` - its wheels
 fn overload(
+    teeth: &str,
     key: String,
     torque_nm: f64,
     force_n: f64,
@@ -181,7 +183,7 @@ fn overload(
     (deflection_mm > most_mm).then(|| {
         let most_nm = torque_nm * most_mm / deflection_mm;
         let message = format!(
-            "{torque_nm:?} N m presses the teeth {deflection_mm:.3} mm together, {:.2} modules, with {force_n:.0} N on {width_mm} mm \
+            "{torque_nm:?} N m presses {teeth} {deflection_mm:.3} mm together, {:.2} modules, with {force_n:.0} N on {width_mm} mm \
              of face: they would break; at most {most_nm:.0} N m stays below a tenth of the module",
             deflection_mm / module_mm
         );

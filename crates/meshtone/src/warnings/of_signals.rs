@@ -45,7 +45,8 @@ impl Stages {
         let step = step_error(self, observer, judgement).and_then(|error| long_step(error, rate_hz));
         let (_, torque_nm) = largest_torque(&self.scenario.operation);
         let static_n = self.force_of_torque_n(torque_nm);
-        let resonance = resonance("operation.pinion_speed_hz", observer.force.largest_n, static_n);
+        let resonance =
+            resonance("the mesh", "operation.pinion_speed_hz", observer.force.largest_n, static_n);
         let braked = self.braked_rotation(observer.force.mean_n());
         let doubtful = [pulling, resonance, braked, self.other_speed(observer), step];
         doubtful.into_iter().flatten().collect()
@@ -102,13 +103,14 @@ pub(super) fn other_speed(what: &str, driven_hz: f64, hz: f64) -> Option<Scenari
 /// A mesh force so far beyond the static one that the machine could not be.
 ///
 /// # Arguments
+/// * `mesh` - what it is called
 /// * `key` - of the speed
 /// * `largest_n`, `static_n` - (N) the largest force, and that which holds the largest torque
-pub(super) fn resonance(key: &str, largest_n: f64, static_n: f64) -> Option<ScenarioWarning> {
+pub(super) fn resonance(mesh: &str, key: &str, largest_n: f64, static_n: f64) -> Option<ScenarioWarning> {
     (static_n > 0.0 && largest_n > TOLERATED_RESONANCE * static_n).then(|| {
         let message = format!(
-            "the mesh force reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
-             survives, or a load too light to be meant; raise the damping, change the speed, or load the pair",
+            "the force of {mesh} reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
+             survives, or a load too light to be meant; raise the damping, change the speed, or load the teeth",
             largest_n / static_n
         );
         ScenarioWarning::new(WarningKind::Resonance, key, message)

@@ -1,13 +1,17 @@
 //! The error of a steady vibration that the solver's step causes.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use crate::error::Error;
 use crate::machine::{Axis, PINION_SUPPORT};
 use crate::operation::greatest_common_divisor;
+use crate::scenario::GearboxSensor;
 use crate::sensor::ChannelKind;
-use crate::simulate::{Equations, GearboxSimulation, Stages, simulate_gearbox, stages_within};
-use crate::solver::{Block, MeanMachine, Recorder};
+use crate::simulate::{
+    Equations, GearboxSimulation, GearboxStages, Stages, gearbox_stages_within, stages_within,
+};
+use crate::solver::{Block, MeanMachine, Output, Recorder};
 use meshtone_fourier::real_spectrum;
 
 use super::observer::{Observer, TurnSum, WheelTurnSums};
@@ -17,8 +21,11 @@ const LEAST_PART: f64 = 1e-6;
 /// (g, N) Rms below which a signal is rounding, as where equal wheels move in opposition.
 const ROUNDING: f64 = 1e-9;
 
-/// (-) How far a mode's frequency may be from that of the mean mesh, whose stiffness varies: shifts at which a line is looked at.
-const SHIFTS: [f64; 5] = [-0.01, -0.005, 0.0, 0.005, 0.01];
+/// (-) From one frequency at which the machine's answer is computed to the next: lines have in common what lies near them.
+const APART: f64 = 0.005;
+/// How many such frequencies on either side of a line are looked at: a mode's may be so far from that of the mean mesh, whose stiffness
+/// varies.
+const NEAR: i64 = 2;
 
 /// (-) Estimate above which a simulation is repeated.
 const SUSPICIOUS: f64 = 0.02;
@@ -66,31 +73,44 @@ pub(super) fn step_error(
     let mut scenario = stages.scenario.clone();
     scenario.solver.sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
     let finer = stages_within(&scenario, stages.memory_limit).map_err(Error::from);
-    let Ok((finer_rate_hz, [finer_acceleration, finer_force])) = finer.and_then(|finer| rms_of(&finer))
-    else {
-        return Some(StepError::Suspected(estimate));
+    let finer = finer.and_then(|finer| {
+        let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
+        let mut squares = SquareSums::of(outputs.len());
+        finer.integrate(&outputs, finer.time.first_kept_sample, &mut squares)?;
+        Ok((finer.time.sampling_rate_hz, squares))
+    });
+    Some(judged_by(estimate, &[acceleration.rms(), force.rms()], finer))
+}
+
+/// The error of a step by a repetition with half of it.
+///
+/// # Arguments
+/// * `estimate` - (-) the error where there is no repetition
+/// * `coarse` - rms of the signals that are judged
+/// * `finer` - (S/s) sampling rate of the repetition, and the squares of its signals
+fn judged_by(estimate: f64, coarse: &[f64], finer: Result<(f64, SquareSums), Error>) -> StepError {
+    let Ok((finer_rate_hz, squares)) = finer else {
+        return StepError::Suspected(estimate);
     };
-    let (acceleration, force) =
-        (gain(acceleration.rms(), finer_acceleration), gain(force.rms(), finer_force));
-    let gain = if acceleration.abs() > force.abs() { acceleration } else { force };
-    Some(StepError::Shown { gain, finer_rate_hz })
+    let gains = coarse.iter().zip(squares.rms()).map(|(&coarse, finer)| gain(coarse, finer));
+    let gain = gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most });
+    StepError::Shown { gain, finer_rate_hz }
 }
 
-/// (S/s; g, N) A simulation's sampling rate, and the rms of its vertical acceleration and of its mesh force: the signals
-/// themselves are kept nowhere.
-fn rms_of(stages: &Stages) -> Result<(f64, [f64; 2]), Error> {
-    let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
-    let mut squares = SquareSums::default();
-    stages.integrate(&outputs, stages.time.first_kept_sample, &mut squares)?;
-    let rms = squares.sums.map(|sum| (sum / squares.samples.max(1) as f64).sqrt());
-    Ok((stages.time.sampling_rate_hz, rms))
-}
-
-/// Sums of the squares of two outputs.
-#[derive(Default)]
+/// Sums of the squares of outputs, whose samples are kept nowhere.
 struct SquareSums {
     samples: usize,
-    sums: [f64; 2],
+    sums: Vec<f64>,
+}
+
+impl SquareSums {
+    fn of(outputs: usize) -> Self {
+        Self { samples: 0, sums: vec![0.0; outputs] }
+    }
+
+    fn rms(&self) -> impl Iterator<Item = f64> {
+        self.sums.iter().map(|sum| (sum / self.samples.max(1) as f64).sqrt())
+    }
 }
 
 impl Recorder for SquareSums {
@@ -125,15 +145,22 @@ fn estimate(stages: &Stages, signals: [&WheelTurnSums; 2]) -> f64 {
 /// * `powers` - mean square of each signal
 fn growth(machine: &MeanMachine, lines: impl Iterator<Item = Line>, powers: &[f64]) -> f64 {
     let mut gained = vec![0.0; powers.len()];
+    let mut known: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for line in lines {
         let counts = |&n: &usize| powers[n] > ROUNDING * ROUNDING && line.powers[n] > LEAST_PART * powers[n];
         let counted: Vec<usize> = (0..powers.len()).filter(counts).collect();
         if counted.is_empty() {
             continue;
         }
-        let growths = SHIFTS.map(|shift| machine.squared_growth(TAU * line.frequency_hz * (1.0 + shift)));
+        let nearest = (line.frequency_hz.ln() / APART.ln_1p()).round() as i64;
+        let near = nearest - NEAR..=nearest + NEAR;
+        for place in near.clone() {
+            let frequency_hz = || (place as f64 * APART.ln_1p()).exp();
+            known.entry(place).or_insert_with(|| machine.squared_growth(TAU * frequency_hz()));
+        }
         for n in counted {
-            let most = growths.iter().map(|growth| (growth[n] - 1.0).abs()).fold(0.0, f64::max);
+            let growths = known.range(near.clone()).map(|(_, growth)| (growth[n] - 1.0).abs());
+            let most = growths.fold(0.0, f64::max);
             gained[n] += line.powers[n] / powers[n] * most;
         }
     }
@@ -147,7 +174,7 @@ struct Line {
     powers: Vec<f64>,
 }
 
-/// A gearbox's [`step_error`]: by its plain sensors and the forces of its meshes.
+/// A gearbox's [`step_error`]: by its plain sensors and the forces of its meshes, whose spectra have the lines.
 pub(super) fn step_error_of_gearbox(
     simulation: &GearboxSimulation,
     judgement: StepJudgement,
@@ -156,8 +183,9 @@ pub(super) fn step_error_of_gearbox(
     if !stages.is_steady() {
         return None;
     }
-    let signals = judged(simulation);
-    let powers: Vec<f64> = signals.iter().map(|values| rms(values).powi(2)).collect();
+    let signals = judged(stages).map(|index| channels.signals[index].values.as_slice());
+    let signals: Vec<&[f64]> = signals.collect();
+    let powers: Vec<f64> = signals.iter().map(|values| mean_square(values)).collect();
     let spectra: Vec<Vec<f64>> = signals.iter().map(|values| power_spectrum(values)).collect();
     let resolution_hz = channels.sampling_rate_hz / channels.len() as f64;
     let line = |index: usize| Line {
@@ -168,7 +196,7 @@ pub(super) fn step_error_of_gearbox(
         |line: &Line| line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole);
     let lines = (1..channels.len().div_ceil(2)).map(line).filter(is_strong);
     let sensors: Vec<_> =
-        stages.plain_sensors().map(|sensor| (sensor.name().into(), sensor.axis())).collect();
+        plain_sensors(stages).map(|(_, sensor)| (sensor.name().into(), sensor.axis())).collect();
     let laws = stages.meshes.iter().map(|mesh| mesh.law()).collect();
     let machine = MeanMachine::new(stages.modal_machine(), laws, stages.time.step_s(), &sensors);
     let estimate = growth(&machine, lines, &powers);
@@ -182,23 +210,34 @@ pub(super) fn step_error_of_gearbox(
     // The same machine, whose highest mode follows the rate where it is not stated.
     gearbox.solver.highest_mode_hz = Some(gearbox.solver.highest_mode_hz(channels.sampling_rate_hz));
     gearbox.solver.settings.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
-    let Ok(finer) = simulate_gearbox(&gearbox) else {
-        return Some(StepError::Suspected(estimate));
-    };
-    let gains = signals.iter().zip(judged(&finer)).map(|(coarse, finer)| gain(rms(coarse), rms(finer)));
-    let gain = gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most });
-    Some(StepError::Shown { gain, finer_rate_hz: finer.channels.sampling_rate_hz })
+    let finer = gearbox_stages_within(&gearbox, stages.memory_limit).map_err(Error::from).and_then(|finer| {
+        let all = finer.outputs();
+        let outputs: Vec<Output> = judged(&finer).map(|index| all[index].2.clone()).collect();
+        let mut squares = SquareSums::of(outputs.len());
+        finer.integrate(&outputs, &mut squares)?;
+        Ok((finer.time.sampling_rate_hz, squares))
+    });
+    let coarse: Vec<f64> = powers.iter().map(|power| power.sqrt()).collect();
+    Some(judged_by(estimate, &coarse, finer))
 }
 
 /// (-) Part of a gearbox's signal's power from which a line of its spectrum counts: there are many lines.
 const STRONG_PART: f64 = 1e-4;
 
-/// The signals of plain sensors and the forces of the meshes.
-fn judged(simulation: &GearboxSimulation) -> Vec<&[f64]> {
-    let GearboxSimulation { stages, channels, .. } = simulation;
-    let sensors = stages.plain_sensors().map(|sensor| format!("{}_g", sensor.name()));
-    let forces = stages.gearbox.meshes.iter().map(|mesh| format!("force_n.{}", mesh.name()));
-    sensors.chain(forces).filter_map(|name| channels.signal(&name)).collect()
+/// Numbers of the signals of plain sensors and of the forces of the meshes.
+fn judged(stages: &GearboxStages) -> impl Iterator<Item = usize> {
+    let forces = stages
+        .outputs()
+        .into_iter()
+        .enumerate()
+        .filter(|(_, (.., output))| matches!(output, Output::MeshForce { .. }));
+    plain_sensors(stages).map(|(index, _)| index).chain(forces.map(|(index, _)| index))
+}
+
+/// The sensors that show the motion of their places as it is, with their numbers: of these alone the motion is known at both steps without
+/// keeping it.
+fn plain_sensors(stages: &GearboxStages) -> impl Iterator<Item = (usize, &GearboxSensor)> {
+    stages.sensors.iter().enumerate().filter(|(_, of)| of.sensor.is_linear() && !of.sensor.filters())
 }
 
 /// By what part the rms of a signal is larger at the finer step; 0 where the signal is rounding alone.
@@ -206,8 +245,8 @@ fn gain(coarse: f64, finer: f64) -> f64 {
     if coarse < ROUNDING { 0.0 } else { finer / coarse - 1.0 }
 }
 
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+fn mean_square(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64
 }
 
 /// Mean square of each line of a signal's spectrum, from 0 on.

@@ -1,6 +1,6 @@
 //! Rules about profile shift, basic racks and centre distance. Each names the number that would do.
 
-use super::{Gears, Mounting, Wheel, WheelName};
+use super::{Gears, Mounting, NamedGears, Wheel, WheelName};
 use crate::error::{ScenarioWarning, WarningKind};
 use crate::keys::{Check, refuse, require};
 
@@ -15,7 +15,7 @@ pub(super) const TOOL_ROUNDING: f64 = 0.25;
 const THIN_TIP: f64 = 0.2;
 
 /// Checks wheels that are not standard ones, alone and together; standard ones have rules of their own.
-pub(super) fn check(gears: &Gears) -> Check {
+pub(super) fn check(gears: &NamedGears) -> Check {
     if gears.beyond_standard().is_empty() || is_sound(gears) {
         return Ok(());
     }
@@ -49,7 +49,7 @@ fn is_sound(gears: &Gears) -> bool {
 }
 
 /// Tips that could break off.
-pub(super) fn thin_tips(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> {
+pub(super) fn thin_tips(gears: &NamedGears<'_>) -> impl Iterator<Item = ScenarioWarning> {
     let least_mm = THIN_TIP * gears.module_mm;
     WheelName::BOTH.into_iter().filter_map(move |name| {
         let thickness_mm = tip_thickness_mm(gears, name);
@@ -59,7 +59,7 @@ pub(super) fn thin_tips(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> 
             "the tips of {teeth} teeth are {thickness_mm:.4} mm thick, less than {THIN_TIP} modules ({least_mm:.4} mm), and \
              could break off; lower the profile shift or the addendum"
         );
-        let key = format!("gears.{}_{key}", name.name());
+        let key = gears.key_of(name, key);
         (thickness_mm < least_mm).then(|| ScenarioWarning::new(WarningKind::ThinTips, key, message))
     })
 }
@@ -96,14 +96,14 @@ fn is_not_undercut(gears: &Gears, wheel: WheelName) -> bool {
     shift == 0.0 || shift >= least_shift(gears, wheel)
 }
 
-fn undercut(gears: &Gears, wheel: WheelName) -> Check {
+fn undercut(gears: &NamedGears, wheel: WheelName) -> Check {
     let problem = format!(
         "{} teeth are undercut at a pressure angle of {}°; must be at least {:.4}",
         gears.teeth(wheel),
         gears.pressure_angle_deg,
         least_shift(gears, wheel)
     );
-    let key = Coefficient::Shift(wheel).key();
+    let key = Coefficient::Shift(wheel).key(gears);
     require(&key, gears.profile_shift(wheel), is_not_undercut(gears, wheel), problem)
         .map_err(|error| error.with_help(undercut_help(gears, wheel)))
 }
@@ -122,7 +122,7 @@ fn can_mesh(gears: &Gears) -> bool {
     Mounting::without_backlash(gears).working_pressure_angle_rad > 0.0
 }
 
-fn shifts_together(gears: &Gears) -> Check {
+fn shifts_together(gears: &NamedGears) -> Check {
     let [smaller, other] = if gears.pinion_profile_shift < gears.gear_profile_shift {
         WheelName::BOTH
     } else {
@@ -137,7 +137,7 @@ fn has_tips(gears: &Gears, wheel: WheelName) -> bool {
     tip_thickness_mm(gears, wheel) > 0.0
 }
 
-fn pointed(gears: &Gears, wheel: WheelName) -> Check {
+fn pointed(gears: &NamedGears, wheel: WheelName) -> Check {
     let what = format!("the tips of {} teeth would be pointed", gears.teeth(wheel));
     let causes = [Coefficient::Shift(wheel), Coefficient::Addendum(wheel)];
     refuse_first(gears, &causes, &what, |gears| has_tips(gears, wheel))
@@ -150,7 +150,7 @@ fn has_spaces(gears: &Gears, wheel: WheelName) -> bool {
     wheel.half_thickness_angle_at_rad(foot_mm) < wheel.half_pitch_angle_rad()
 }
 
-fn closed_space(gears: &Gears, wheel: WheelName) -> Check {
+fn closed_space(gears: &NamedGears, wheel: WheelName) -> Check {
     let what = format!("the spaces between {} teeth would close above their roots", gears.teeth(wheel));
     let causes = [Coefficient::Dedendum(wheel), Coefficient::Shift(wheel)];
     refuse_first(gears, &causes, &what, |gears| has_spaces(gears, wheel))
@@ -168,19 +168,19 @@ fn has_backlash(gears: &Gears) -> bool {
     gears.backlash_mm.is_none_or(|backlash_mm| backlash_mm >= Mounting::new(gears).opened_backlash_mm)
 }
 
-fn centre_distance(gears: &Gears) -> Check {
-    const KEY: &str = "gears.centre_distance_mm";
+fn centre_distance(gears: &NamedGears) -> Check {
+    let key = gears.key("centre_distance_mm");
     let Some(distance_mm) = gears.centre_distance_mm else { return Ok(()) };
     let tight_mm = rounded_up(Mounting::without_backlash(gears).centre_distance_mm);
     let problem =
         format!("must be at least {tight_mm:.4} mm, where teeth with these profile shifts have no backlash");
-    require(KEY, distance_mm, has_room(gears), problem)
+    require(&key, distance_mm, has_room(gears), problem)
         .map_err(|error| error.with_help("leave it out for that distance, or lower a profile shift"))?;
     let opened_mm = rounded_up(Mounting::new(gears).opened_backlash_mm);
     let problem = format!(
-        "must be at least {opened_mm:.4} mm, which {KEY} = {distance_mm:?} opens between teeth of nominal thickness"
+        "must be at least {opened_mm:.4} mm, which {key} = {distance_mm:?} opens between teeth of nominal thickness"
     );
-    require("gears.backlash_mm", gears.backlash_mm.unwrap_or(0.0), has_backlash(gears), problem)
+    require(&gears.key("backlash_mm"), gears.backlash_mm.unwrap_or(0.0), has_backlash(gears), problem)
         .map_err(|error| error.with_help("leave it out for the standard's least backlash on top of that"))
 }
 
@@ -190,9 +190,9 @@ fn is_clear(gears: &Gears, wheel: WheelName) -> bool {
     own.working_pitch_radius_mm + mate.working_pitch_radius_mm > own.root_radius_mm + mate.tip_radius_mm
 }
 
-fn clearance(gears: &Gears, wheel: WheelName) -> Check {
+fn clearance(gears: &NamedGears, wheel: WheelName) -> Check {
     let mate = wheel.mate();
-    let what = format!("the {}'s tips would touch the {}'s roots", mate.name(), wheel.name());
+    let what = format!("{}'s tips would touch {}'s roots", gears.name(mate), gears.name(wheel));
     let causes = [Coefficient::Dedendum(wheel), Coefficient::Addendum(mate), Coefficient::Shift(wheel)];
     refuse_first(gears, &causes, &what, |gears| is_clear(gears, wheel))
 }
@@ -208,10 +208,10 @@ fn is_free(gears: &Gears, wheel: WheelName) -> bool {
         || touched_curvature_mm(&own, &mate) >= end_mm - ROUNDING * own.module_mm
 }
 
-fn interference(gears: &Gears, wheel: WheelName) -> Check {
+fn interference(gears: &NamedGears, wheel: WheelName) -> Check {
     let mate = wheel.mate();
     let what =
-        format!("the {}'s tips would reach into the fillets of the {}'s teeth", mate.name(), wheel.name());
+        format!("{}'s tips would reach into the fillets of {}'s teeth", gears.name(mate), gears.name(wheel));
     let causes = [
         Coefficient::Addendum(mate),
         Coefficient::Dedendum(wheel),
@@ -237,15 +237,15 @@ fn stays_in_contact(gears: &Gears) -> bool {
 }
 
 /// By the distance, else by one of the coefficients; what is left is refused as of standard wheels.
-fn contact_ratio(gears: &Gears) -> Check {
+fn contact_ratio(gears: &NamedGears) -> Check {
     let what = format!("the contact ratio is {:.3}, less than 1", gears.contact_ratio());
     if let Some(distance_mm) = gears.centre_distance_mm {
         let tight_mm = Mounting::without_backlash(gears).centre_distance_mm;
-        let at = |distance_mm| Gears { centre_distance_mm: Some(distance_mm), ..gears.clone() };
+        let at = |distance_mm| Gears { centre_distance_mm: Some(distance_mm), ..Gears::clone(gears) };
         let does = |distance_mm| stays_in_contact(&at(distance_mm));
         if let Some(most) = nearest_valid(distance_mm, tight_mm, does).filter(|_| !does(distance_mm)) {
             let problem = format!("{what}; must be at most {most:.4} mm");
-            return Err(refuse("gears.centre_distance_mm", distance_mm, problem));
+            return Err(refuse(&gears.key("centre_distance_mm"), distance_mm, problem));
         }
     }
     let of_wheel = |wheel| [Coefficient::Shift(wheel), Coefficient::Addendum(wheel)];
@@ -268,13 +268,13 @@ enum Coefficient {
 }
 
 impl Coefficient {
-    fn key(self) -> String {
+    fn key(self, gears: &NamedGears) -> String {
         let (wheel, name) = match self {
             Self::Shift(wheel) => (wheel, "profile_shift"),
             Self::Addendum(wheel) => (wheel, "addendum"),
             Self::Dedendum(wheel) => (wheel, "dedendum"),
         };
-        format!("gears.{}_{name}", wheel.name())
+        gears.key_of(wheel, name)
     }
 
     fn of(self, gears: &mut Gears) -> &mut f64 {
@@ -299,23 +299,32 @@ impl Coefficient {
 
 /// Refuses the first of several numbers with which a rule, and if possible all, would hold if it was nearer to its default, and
 /// says how near; passes where the rule holds, and where none is the cause alone.
-fn refuse_first(gears: &Gears, causes: &[Coefficient], what: &str, holds: impl Fn(&Gears) -> bool) -> Check {
+fn refuse_first(
+    gears: &NamedGears,
+    causes: &[Coefficient],
+    what: &str,
+    holds: impl Fn(&Gears) -> bool,
+) -> Check {
     if holds(gears) {
         return Ok(());
     }
     let all: &dyn Fn(&Gears) -> bool = &is_sound;
     for does in [all, &holds] {
         for cause in causes {
-            let mut changed = gears.clone();
+            let mut changed = Gears::clone(gears);
             let given = *cause.of(&mut changed);
             let nearest = nearest_valid(given, cause.default(), |value| {
-                let mut changed = gears.clone();
+                let mut changed = Gears::clone(gears);
                 *cause.of(&mut changed) = value;
                 does(&changed)
             });
             if let Some(nearest) = nearest {
                 let side = if given > nearest { "most" } else { "least" };
-                return Err(refuse(&cause.key(), given, format!("{what}; must be at {side} {nearest:.4}")));
+                return Err(refuse(
+                    &cause.key(gears),
+                    given,
+                    format!("{what}; must be at {side} {nearest:.4}"),
+                ));
             }
         }
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::contact::contact_ratio_of;
 use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
-use super::{Gears, Wheel, WheelName};
+use super::{Gears, NamedGears, Wheel, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::keys::{Check, below, check_keys, refuse, require};
 
@@ -30,31 +30,7 @@ impl Gears {
     /// Every key alone, and the two wheels together.
     pub(crate) fn check(&self) -> Check {
         check_keys(self, "gears")?;
-        mounting_rules::check(self)?;
-        pressure_angle(self)?;
-        contact_ratio(self)?;
-        let thinner_mm = self.half_thicknesses_mm().into_iter().fold(f64::INFINITY, f64::min);
-        below(
-            "gears.uniform_flank_reduction_mm",
-            self.uniform_flank_reduction_mm,
-            thinner_mm,
-            HALF_THICKNESS,
-        )?;
-        let relief = &self.flank_relief;
-        if relief.amount_um > 0.0 {
-            below("gears.flank_relief.length_mm", relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
-        }
-        below("gears.tip_chamfer_mm", self.chamfer_mm(), self.module_mm, "the module")?;
-        // The default grows with the centre distance: it is no typing error of the user.
-        if let Some(backlash_mm) = self.backlash_mm {
-            below("gears.backlash_mm", backlash_mm, self.module_mm, "the module")?;
-        }
-        tip_thickness(self)
-    }
-
-    /// Warnings about wheels that can be simulated.
-    pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
-        undercut(self).chain(thin_tips(self)).collect()
+        NamedGears::of_pair(self).check()
     }
 
     /// (mm) Half a tooth's thickness at the pitch circle, of the wheel whose teeth are thicker there.
@@ -75,6 +51,12 @@ impl Gears {
         of_both.into_iter().fold(f64::INFINITY, f64::min)
     }
 
+    /// (mm) How far the tips' chamfers and their relief reach inwards from the tip; 0 where there is none.
+    pub fn tip_lengths_mm(&self) -> [f64; 2] {
+        let relief = &self.flank_relief;
+        [self.chamfer_mm(), if relief.amount_um > 0.0 { relief.length_mm } else { 0.0 }]
+    }
+
     /// (mm) Height of a tooth from root to tip, of the wheel whose teeth are higher.
     pub(crate) fn tooth_height_mm(&self) -> f64 {
         let heights =
@@ -83,11 +65,39 @@ impl Gears {
     }
 }
 
+impl NamedGears<'_> {
+    /// The two wheels together, whose keys are each in their range.
+    pub(crate) fn check(&self) -> Check {
+        mounting_rules::check(self)?;
+        pressure_angle(self)?;
+        contact_ratio(self)?;
+        let thinner_mm = self.half_thicknesses_mm().into_iter().fold(f64::INFINITY, f64::min);
+        let reduction_mm = self.uniform_flank_reduction_mm;
+        below(&self.key("uniform_flank_reduction_mm"), reduction_mm, thinner_mm, HALF_THICKNESS)?;
+        let relief = &self.flank_relief;
+        if relief.amount_um > 0.0 {
+            let key = self.key("flank_relief.length_mm");
+            below(&key, relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
+        }
+        below(&self.key("tip_chamfer_mm"), self.chamfer_mm(), self.module_mm, "the module")?;
+        // The default grows with the centre distance: it is no typing error of the user.
+        if let Some(backlash_mm) = self.backlash_mm {
+            below(&self.key("backlash_mm"), backlash_mm, self.module_mm, "the module")?;
+        }
+        tip_thickness(self)
+    }
+
+    /// Warnings about wheels that can be simulated.
+    pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
+        undercut(self).chain(thin_tips(self)).collect()
+    }
+}
+
 /// Name of [`Gears::half_thickness_mm`] in messages.
 pub(crate) const HALF_THICKNESS: &str = "half the tooth's thickness at the pitch circle";
 
 /// Undercut of wheels without a shift.
-fn undercut(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> {
+fn undercut(gears: &NamedGears<'_>) -> impl Iterator<Item = ScenarioWarning> {
     WheelName::BOTH.into_iter().filter_map(move |name| {
         let limit = fewer_than_limit(gears, name)?;
         let (teeth, mate, angle) = (gears.teeth(name), gears.teeth(name.mate()), gears.pressure_angle_deg);
@@ -96,14 +106,14 @@ fn undercut(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> {
         } else {
             String::new()
         };
-        let wheel = name.name();
         let message = format!(
             "{teeth} teeth are undercut at a pressure angle of {angle}° (fewer than {limit}){reach}, which \
              the tooth profile of this model does not show; use at least {limit} teeth, a larger \
-             pressure angle, or gears.{wheel}_profile_shift = {:.4} or more",
+             pressure angle, or {} = {:.4} or more",
+            gears.key_of(name, "profile_shift"),
             least_shift(gears, name)
         );
-        Some(ScenarioWarning::new(WarningKind::Undercut, format!("gears.{wheel}_teeth"), message))
+        Some(ScenarioWarning::new(WarningKind::Undercut, gears.key_of(name, "teeth"), message))
     })
 }
 
@@ -112,8 +122,8 @@ fn interferes(wheel: &Wheel, mate: &Wheel) -> bool {
     touched_curvature_mm(wheel, mate) < 0.0
 }
 
-fn pressure_angle(gears: &Gears) -> Check {
-    const KEY: &str = "gears.pressure_angle_deg";
+fn pressure_angle(gears: &NamedGears) -> Check {
+    let key = gears.key("pressure_angle_deg");
     let is_pointed = |wheel: &Wheel| wheel.half_thickness_angle_at_rad(wheel.tip_radius_mm) <= 0.0;
     let Some(fewest) = gears.wheels().iter().filter(|wheel| is_pointed(wheel)).map(|wheel| wheel.teeth).min()
     else {
@@ -122,29 +132,29 @@ fn pressure_angle(gears: &Gears) -> Check {
     let problem = format!(
         "must be smaller for a wheel of {fewest} teeth, whose tips would be pointed below full height"
     );
-    Err(refuse(KEY, gears.pressure_angle_deg, problem)
-        .with_help("lower gears.pressure_angle_deg, or use more teeth"))
+    Err(refuse(&key, gears.pressure_angle_deg, problem).with_help(format!("lower {key}, or use more teeth")))
 }
 
-fn contact_ratio(gears: &Gears) -> Check {
+fn contact_ratio(gears: &NamedGears) -> Check {
     let ratio = gears.contact_ratio();
     if ratio >= 1.0 {
         return Ok(());
     }
     let problem =
         format!("the contact ratio is {ratio:.3}; it must be at least 1, or the teeth lose contact");
-    Err(ScenarioError::new("gears", format!("contact ratio {ratio:.3}"), problem)
-        .with_help("raise gears.pinion_teeth or gears.gear_teeth, or lower gears.pressure_angle_deg"))
+    let [pinion, gear] = WheelName::BOTH.map(|wheel| gears.key_of(wheel, "teeth"));
+    let help = format!("raise {pinion} or {gear}, or lower {}", gears.key("pressure_angle_deg"));
+    Err(ScenarioError::new(gears.whole(), format!("contact ratio {ratio:.3}"), problem).with_help(help))
 }
 
 /// Crowning must leave some of the tip: the compliances take what is beyond the tooth's centre line for a negative thickness.
-fn tip_thickness(gears: &Gears) -> Check {
+fn tip_thickness(gears: &NamedGears) -> Check {
     let left = gears.half_thickness_below_tip_mm(0.0);
     let removed = gears.uniform_flank_reduction_mm;
     let problem = format!(
         "{removed:?} mm is removed where the tooth is only {left:.4} mm thick from its centre line, at the tip; must leave some of the tip"
     );
-    require("gears.uniform_flank_reduction_mm", removed, removed < left, problem)
+    require(&gears.key("uniform_flank_reduction_mm"), removed, removed < left, problem)
 }
 
 /// (mm) Half thickness of an unrelieved tooth, `below_tip_mm` from the tip along its centre line; of its foot on the
@@ -198,7 +208,7 @@ mod tests {
     fn contact_ratio_below_one_names_what_to_change() {
         let mut gears = Gears::new(3.0, 1, 1, 15.0);
         gears.pressure_angle_deg = 40.0;
-        let error = contact_ratio(&gears).unwrap_err();
+        let error = contact_ratio(&NamedGears::of_pair(&gears)).unwrap_err();
         assert_eq!(error.key, "gears");
         assert!(error.problem.contains("contact ratio is 0.938"), "{}", error.problem);
         let help = error.help.unwrap();

@@ -269,7 +269,7 @@ fn what_cannot_be_is_refused() {
     let (key, text) = refused(crack(1.0, Some(0.0)));
     assert!(key == "fault.length_mm" && text.contains("more than 0 mm"), "{text}");
     let (key, text) = refused(crack(1.0, Some(15.1)));
-    assert!(key == "fault.length_mm" && text.contains("at most 15 mm, gears.face_width_mm"), "{text}");
+    assert!(key == "fault.length_mm" && text.contains("at most 15 mm, the face width"), "{text}");
     let (key, text) = of(Model::Published, &[crack(1.0, None)]);
     assert!(key == "fault.kind" && text.contains("is not known to the published model"), "{text}");
     let (key, text) = of(Model::Linear, &[crack(1.0, None), crack(2.0, None)]);

@@ -134,7 +134,7 @@ fn faults_out_of_range() {
         (breakage("0", "12", "3"), "chip_height_mm", 11, "more than 0 mm"),
         (breakage("7", "12", "3"), "chip_height_mm", 11, "less than 6.7500 mm, the tooth's height"),
         (breakage("5", "0", "3"), "chip_width_mm", 12, "more than 0 mm"),
-        (breakage("5", "15.5", "3"), "chip_width_mm", 12, "at most 15 mm, gears.face_width_mm"),
+        (breakage("5", "15.5", "3"), "chip_width_mm", 12, "at most 15 mm, the face width"),
         (breakage("5", "12", "-1"), "tip_loss_mm", 13, "0 mm or more"),
         (breakage("5", "12", "6.8"), "tip_loss_mm", 13, "less than 6.7500 mm"),
         (partial("0", "0.2", "0.8", "0.5"), "width_mm", 11, "more than 0 mm"),

@@ -6,7 +6,9 @@ use super::{Gearbox, GearboxFault, GearboxMesh, GearboxWheel};
 use crate::damage::Fault;
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::Coupled;
-use crate::wheel::{Gears, Mounting, Quality, WheelName};
+use crate::wheel::{
+    ERROR_POINTS, ErrorTable, Gears, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
+};
 
 /// A ratio of two whole numbers, reduced; its sign is the numerator's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,13 +116,7 @@ impl GearboxLayout {
         };
         for (index, mesh) in gearbox.meshes.iter().enumerate() {
             let gears = this.gears_of(gearbox, index, mesh)?;
-            gears.check().map_err(|mut error| {
-                let names = [0, 1].map(|side| mesh.wheels[side].as_str());
-                error.problem = with_names(&error.problem, names);
-                error.help = error.help.map(|help| with_names(&help, names));
-                let key = key_in_mesh(&error.key, index, meshes, &this.wheels_of_mesh[index]);
-                error.with_key(key)
-            })?;
+            this.named(&gears, gearbox, index).check()?;
             this.gears.push(gears);
         }
         this.ratios = this.turn(gearbox)?;
@@ -330,19 +326,22 @@ impl GearboxLayout {
 
     /// What is doubtful about the teeth of each mesh.
     pub(super) fn warnings_of_teeth(&self, gearbox: &Gearbox) -> Vec<ScenarioWarning> {
-        let of_mesh = |(index, gears): (usize, &Gears)| {
-            let names = self.wheels_of_mesh[index].map(|wheel| gearbox.wheels[wheel].name.as_str());
-            let named = move |warning: ScenarioWarning| {
-                let key = key_in_mesh(&warning.key, index, self.gears.len(), &self.wheels_of_mesh[index]);
-                ScenarioWarning::new(warning.kind, key, with_names(&warning.message, names))
-            };
-            gears.warnings().into_iter().map(named).collect::<Vec<_>>()
-        };
-        let mut warnings: Vec<ScenarioWarning> = self.gears.iter().enumerate().flat_map(of_mesh).collect();
+        let mut warnings: Vec<ScenarioWarning> =
+            (0..self.gears.len()).flat_map(|mesh| self.named_gears(gearbox, mesh).warnings()).collect();
         // A wheel in two meshes has the same teeth in both.
         warnings.sort_by(|a, b| a.key.cmp(&b.key));
         warnings.dedup_by(|a, b| a.key == b.key && a.kind == b.kind);
         warnings
+    }
+
+    /// A mesh's pair of wheels with their names.
+    pub(crate) fn named_gears<'a>(&'a self, gearbox: &'a Gearbox, mesh: usize) -> NamedGears<'a> {
+        self.named(&self.gears[mesh], gearbox, mesh)
+    }
+
+    fn named<'a>(&self, gears: &'a Gears, gearbox: &'a Gearbox, mesh: usize) -> NamedGears<'a> {
+        let wheels = self.wheels_of_mesh[mesh].map(|wheel| (wheel, gearbox.wheels[wheel].name.as_str()));
+        NamedGears::of_mesh(gears, section("mesh", mesh, gearbox.meshes.len()), wheels)
     }
 
     /// The first mesh that a wheel is in, and on which side.
@@ -451,7 +450,19 @@ impl GearboxLayout {
     pub fn quality_of_mesh(&self, gearbox: &Gearbox, mesh: usize, drawn: WheelName) -> Quality {
         let [pinion, gear] = self.wheels_of_mesh[mesh].map(|wheel| &gearbox.wheels[wheel]);
         let of = drawn.choose(pinion, gear);
+        // The flanks on the other side of a wheel that is driven in its first mesh and drives in another are others.
+        let works =
+            self.mesh_of(self.wheels_of_mesh[mesh][drawn as usize]).is_some_and(|(_, side)| side == drawn);
+        let of_side = |side: WheelName| match &of.profile_errors_mm {
+            Some(errors) if side == drawn => errors.clone(),
+            _ => ErrorTable::filled(ERROR_POINTS, self.gears[mesh].teeth(side) as usize, 0.0),
+        };
+        let given = of.profile_errors_mm.is_some() && works;
         Quality {
+            profile_errors: given.then(|| ProfileErrors {
+                pinion_profile_errors_mm: of_side(WheelName::Pinion),
+                gear_profile_errors_mm: of_side(WheelName::Gear),
+            }),
             din_grade: of.din_grade,
             iso_class: of.iso_class,
             tooth_share: of.tooth_share,
@@ -464,48 +475,14 @@ impl GearboxLayout {
     }
 }
 
-/// The key of an entry of a list: without a number where there is one entry only.
+/// The section of an entry of a list: without a number where there is one entry only.
+pub(super) fn section(list: &str, index: usize, entries: usize) -> String {
+    if entries > 1 { format!("{list}[{index}]") } else { list.to_owned() }
+}
+
+/// The key of an entry of a list.
 pub(super) fn entry_key(list: &str, index: usize, entries: usize, key: &str) -> String {
-    if entries > 1 { format!("{list}[{index}].{key}") } else { format!("{list}.{key}") }
-}
-
-/// The key of a pair as one of a mesh or of one of its wheels.
-fn key_in_mesh(key: &str, mesh: usize, meshes: usize, wheels: &[usize; 2]) -> String {
-    let key = key.strip_prefix("gears.").unwrap_or(key);
-    const OF_MESH: [&str; 4] = ["module_mm", "pressure_angle_deg", "centre_distance_mm", "backlash_mm"];
-    let of_wheel = |wheel: usize, key: &str| format!("wheel[{}].{key}", wheels[wheel]);
-    if OF_MESH.contains(&key) {
-        entry_key("mesh", mesh, meshes, key)
-    } else if let Some(own) = key.strip_prefix("pinion_") {
-        of_wheel(0, own)
-    } else if let Some(own) = key.strip_prefix("gear_") {
-        of_wheel(1, own)
-    } else if key == "gears" {
-        entry_key("mesh", mesh, meshes, "wheels")
-    } else {
-        of_wheel(0, key)
-    }
-}
-
-/// A text about a pair as one about two wheels of a gearbox: its words with their names, its keys without their section.
-///
-/// # Arguments
-/// * `text` - about pinion and gear
-/// * `names` - of the wheel that drives, and of the one that is driven
-pub(super) fn with_names(text: &str, names: [&str; 2]) -> String {
-    let mut named = text.replace("gears.pinion_", "").replace("gears.gear_", "").replace("gears.", "");
-    for (word, name) in ["the pinion", "the gear"].into_iter().zip(names) {
-        let mut parts = named.split(word);
-        let mut whole = parts.next().unwrap_or_default().to_owned();
-        for rest in parts {
-            // Not the gears.
-            let is_whole = !rest.starts_with(|letter: char| letter.is_ascii_alphabetic());
-            whole += if is_whole { name } else { word };
-            whole += rest;
-        }
-        named = whole;
-    }
-    named
+    format!("{}.{key}", section(list, index, entries))
 }
 
 fn unique(list: &str, names: &[&str]) -> Result<(), ScenarioError> {

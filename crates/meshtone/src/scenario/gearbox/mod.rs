@@ -23,8 +23,9 @@ use crate::keys::{
 };
 use crate::machine::{Bearing, GearboxShaft, Housing};
 use crate::operation::TimeGrid;
-use crate::wheel::{Material, WheelName};
-use layout::{entry_key, with_names};
+use crate::wheel::Material;
+use crate::wheel::quality::{check_errors, one_source};
+use layout::{entry_key, section};
 use parts::list;
 
 /// Everything that a simulation of a gearbox depends on.
@@ -210,8 +211,10 @@ impl Gearbox {
         }
         read_keys(&mut gearbox, root, files)?;
         gearbox.shafts = list(root, "shaft", files)?;
-        gearbox.wheels = list(root, "wheel", files)?;
         gearbox.meshes = list(root, "mesh", files)?;
+        let wheel = |table: &TomlTable<'_>| GearboxWheel::read(table, &gearbox.meshes, files);
+        let wheels = root.tables("wheel")?.into_iter().map(|table| table.read(wheel));
+        gearbox.wheels = wheels.collect::<Result<_, _>>()?;
         gearbox.bearings = list(root, "bearing", files)?;
         if root.optional("housing").is_some() {
             let mut housing = Housing::default();
@@ -404,45 +407,21 @@ impl Gearbox {
         for mesh in 0..self.meshes.len() {
             let (numbers, faults): (Vec<usize>, Vec<Fault>) =
                 layout.faults_of_mesh(self, mesh).into_iter().unzip();
-            check_faults(&faults, &layout.gears[mesh])
-                .map_err(|error| self.in_fault(error, mesh, &numbers))?;
+            check_faults(&faults, &numbers, self.faults.len(), &layout.named_gears(self, mesh))?;
         }
         Ok(())
     }
 
-    /// An error of a pair's fault as one of a gearbox's.
-    ///
-    /// # Arguments
-    /// * `error` - with the number of the pair's fault, where there are several
-    /// * `mesh` - number of the mesh whose wheels are the pair
-    /// * `numbers` - of the pair's faults in the gearbox
-    pub(crate) fn in_fault(&self, mut error: ScenarioError, mesh: usize, numbers: &[usize]) -> ScenarioError {
-        let names = [0, 1].map(|side| self.meshes[mesh].wheels[side].as_str());
-        error.problem = with_names(&error.problem, names);
-        error.help = error.help.map(|help| with_names(&help, names));
-        if let Some(rest) = error.key.strip_prefix("fault") {
-            let (number, rest) = match rest.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
-                Some((number, rest)) => (number.parse().unwrap_or(0), rest),
-                None => (0, rest),
-            };
-            let number: usize = numbers.get(number).copied().unwrap_or(0);
-            error.key =
-                if self.faults.len() > 1 { format!("fault[{number}]{rest}") } else { format!("fault{rest}") };
-        }
-        error
-    }
-
     fn check_quality(&self, layout: &GearboxLayout) -> Result<(), ScenarioError> {
-        for mesh in 0..self.meshes.len() {
-            for side in WheelName::BOTH {
-                let wheel = layout.wheels_of_mesh[mesh][side as usize];
-                let checked = layout.quality_of_mesh(self, mesh, side).check(&layout.gears[mesh]);
-                checked.map_err(|mut error| {
-                    let key = error.key.trim_start_matches("quality.").to_owned();
-                    let own = key.trim_start_matches("pinion_").trim_start_matches("gear_").to_owned();
-                    error.problem = error.problem.replace("quality.", "");
-                    error.with_key(entry_key("wheel", wheel, self.wheels.len(), &own))
-                })?;
+        for (index, wheel) in self.wheels.iter().enumerate() {
+            let section = section("wheel", index, self.wheels.len());
+            // Every wheel is in a mesh, as the layout has checked.
+            let module_mm = layout.mesh_of(index).map_or(f64::NAN, |(mesh, _)| layout.gears[mesh].module_mm);
+            one_source(&section, wheel.din_grade, wheel.iso_class, wheel.profile_errors_mm.is_some())?;
+            let pitches = format!("{section}.cumulative_pitch_um");
+            wheel.deviations.check_pitches(&pitches, wheel.teeth, module_mm)?;
+            if let Some(errors) = &wheel.profile_errors_mm {
+                check_errors(&format!("{section}.profile_errors_mm"), errors, wheel.teeth, module_mm)?;
             }
         }
         Ok(())
@@ -452,14 +431,17 @@ impl Gearbox {
     fn warnings(&self, layout: &GearboxLayout) -> Vec<ScenarioWarning> {
         const FAST_HZ: f64 = 100.0;
         const LONG_CYCLE: i64 = 1000;
-        let speed_hz = self.operation.drive.pinion_speed_hz;
-        let fastest = layout.ratios.iter().map(|ratio| ratio.value().abs()).fold(1.0, f64::max) * speed_hz;
-        let fast = (fastest > FAST_HZ).then(|| {
+        let (key, speed_hz) = self.driven_speed(layout).fastest();
+        let ratios = layout.ratios.iter().map(|ratio| ratio.value().abs());
+        let shafts = self.shafts.iter().zip(ratios.map(|ratio| ratio * speed_hz));
+        let fastest = shafts.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, hz)| *hz > FAST_HZ);
+        let fast = fastest.map(|(shaft, hz)| {
             let message = format!(
-                "a shaft turns at {fastest:.1} rev/s: gyroscopic moments, which are left out, shift natural frequencies by up to 2 % at \
-                 100 rev/s"
+                "shaft {:?} turns at {hz:.1} rev/s: gyroscopic moments, which are left out, shift natural frequencies by up to 2 % at \
+                 100 rev/s and by more above",
+                shaft.name
             );
-            ScenarioWarning::new(WarningKind::FastTeeth, "operation.input_speed_hz", message)
+            ScenarioWarning::new(WarningKind::Gyroscopic, key, message)
         });
         let cycle = layout.cycle_revolutions();
         let time = self.time_grid();

@@ -5,12 +5,15 @@ use std::ops::Bound::{Excluded, Included};
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::damage::Fault;
-use crate::keys::{KeyRow, Keys, NumberFiles, Range, field, flatten, read_keys, row};
+use crate::keys::{
+    KeyKind, KeyRow, Keys, NumberFiles, Range, documented, field, flatten, load, read_keys, row,
+};
 use crate::machine::{Axis, WheelInertia};
 use crate::operation::{Operation, Solver};
 use crate::sensor::{Sensor, SensorDirection, SensorPath};
+use crate::wheel::quality::file_deviations;
 use crate::wheel::rows::*;
-use crate::wheel::{FlankRelief, Material, WheelDeviations};
+use crate::wheel::{ErrorTable, FlankRelief, Material, WheelDeviations, WheelName};
 
 /// A wheel on a shaft of a gearbox.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +58,9 @@ pub struct GearboxWheel {
     pub pitch_share: f64,
     /// (-) Run-out as a part of its tolerance. Default 0.3.
     pub run_out_share: f64,
+    /// (mm) Profile errors of its teeth that are given instead of drawn: 100 rows of one number a tooth, in the order in which a tooth
+    /// passes through contact in the wheel's first mesh; flanks that work in another sense have none.
+    pub profile_errors_mm: Option<ErrorTable>,
     /// Deviations that are given instead of drawn.
     pub deviations: WheelDeviations,
 }
@@ -66,6 +72,35 @@ impl GearboxWheel {
     /// They are the fields of the same names.
     pub fn new(name: &str, shaft: &str, at: f64, teeth: u32, face_width_mm: f64) -> Self {
         Self { name: name.to_owned(), shaft: shaft.to_owned(), at, teeth, face_width_mm, ..Self::start() }
+    }
+
+    /// Reads a wheel.
+    ///
+    /// # Arguments
+    /// * `table` - its section
+    /// * `meshes` - the first in which it is tells whether it is a file's pinion or its gear
+    /// * `files` - loads the file that it names
+    pub(super) fn read(
+        table: &TomlTable<'_>,
+        meshes: &[GearboxMesh],
+        files: &dyn NumberFiles,
+    ) -> ReadResult<Self> {
+        let mut wheel = Self::start();
+        if let Some(file) = table.optional("errors_file") {
+            if table.optional("profile_errors_mm").is_some() {
+                let problem = "given beside profile_errors_mm; profile errors have only one source";
+                return Err(table.error("errors_file", problem).with_help("remove one of the two"));
+            }
+            let name = table.optional("name").map(|name| name.string().map(str::to_owned)).transpose()?;
+            let drives = |mesh: &GearboxMesh| mesh.wheels.iter().position(|of| Some(of) == name.as_ref());
+            let side = WheelName::BOTH[meshes.iter().find_map(drives).unwrap_or(0)];
+            let own = |key: &'static str| key.strip_prefix(side.name())?.strip_prefix('_');
+            let [pinion, gear] = load(&file, |name| files.matrices(name))?;
+            wheel.profile_errors_mm = Some(side.choose(pinion, gear));
+            let [pinion, gear] = file_deviations(table, &file, files, own)?;
+            wheel.deviations = side.choose(pinion, gear);
+        }
+        read_keys(&mut wheel, table, files).map(|()| wheel)
     }
 }
 
@@ -97,6 +132,7 @@ impl Keys for GearboxWheel {
             tooth_share: 0.4,
             pitch_share: 0.15,
             run_out_share: 0.3,
+            profile_errors_mm: None,
             deviations: WheelDeviations::default(),
         }
     }
@@ -144,6 +180,23 @@ impl Keys for GearboxWheel {
             row("pitch_share", "-", "its largest single pitch deviation over its tolerance f_p", field!(pitch_share))
                 .range(SHARE),
             row("run_out_share", "-", "its run-out over its tolerance F_r", field!(run_out_share)).range(SHARE),
+            documented(
+                "errors_file",
+                "an .npz with its deviations, as `meshtone wheels` writes it: the pinion's of a wheel that drives in its first mesh, the \
+                 gear's of one that is driven there",
+                KeyKind::File,
+            )
+            .otherwise("none")
+            .alternative("\"wheels.npz\""),
+            row(
+                "profile_errors_mm",
+                "mm",
+                "its profile errors, instead of a draw: 100 rows of one number a tooth, in the order of contact in its first mesh",
+                field!(profile_errors_mm),
+            )
+            .otherwise("none")
+            .rule("100 × teeth, each below the module; not beside errors_file, din_grade, iso_class")
+            .alternative("[ 100 rows of one number a tooth ]"),
             row(
                 "cumulative_pitch_um",
                 "µm",
@@ -269,6 +322,11 @@ impl GearboxOperation {
     /// * `brake_torque_nm` - (N m) torque of the brake
     pub fn new(input_speed_hz: f64, brake_torque_nm: f64) -> Self {
         Self { drive: Operation::new(input_speed_hz, brake_torque_nm), ..Self::start() }
+    }
+
+    /// Whether motor and brake are steady.
+    pub fn is_steady(&self) -> bool {
+        self.drive.is_steady() && self.torque_ripple.is_empty()
     }
 }
 

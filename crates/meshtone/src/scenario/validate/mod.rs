@@ -15,6 +15,7 @@ use super::{Scenario, ScenarioError, ScenarioWarning};
 use crate::damage::check_faults;
 use crate::keys::check_keys;
 use crate::sensor::check_sensors;
+use crate::wheel::NamedGears;
 
 impl Scenario {
     /// Checks every value, alone and against the others, as far as no tooth geometry is needed.
@@ -77,7 +78,7 @@ impl Scenario {
             pitch_line_mm: pitch_line_mm(honoured.gears.module_mm, honoured.gears.pinion_teeth),
         };
         speed.check()?;
-        let mut warnings = honoured.gears.warnings();
+        let mut warnings = NamedGears::of_pair(&honoured.gears).warnings();
         warnings.extend(speed.warnings());
         warnings.extend(honoured.operation.ended_profiles(honoured.time_grid().kept_from_s()));
         warnings.extend(honoured.quality.warnings());
@@ -91,7 +92,9 @@ fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {
     scenario.gears.check()?;
     scenario.operation.check()?;
     scenario.quality.check(&scenario.gears)?;
-    check_faults(&scenario.faults, &scenario.gears)?;
+    let numbers: Vec<usize> = (0..scenario.faults.len()).collect();
+    let gears = NamedGears::of_pair(&scenario.gears);
+    check_faults(&scenario.faults, &numbers, numbers.len(), &gears)?;
     model::check(scenario)?;
     scenario.rig.check(&scenario.gears)?;
     check_sensors(&scenario.sensors, scenario.model)?;

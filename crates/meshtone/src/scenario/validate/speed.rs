@@ -85,7 +85,7 @@ impl DrivenSpeed<'_> {
     }
 
     /// The key of the fastest speed, and the speed.
-    fn fastest(&self) -> (String, f64) {
+    pub(in crate::scenario) fn fastest(&self) -> (String, f64) {
         let nominal = (self.key.to_owned(), self.operation.pinion_speed_hz);
         let values = self.operation.speed_profile_hz.iter().flat_map(|profile| &profile.value).enumerate();
         values.fold(nominal, |(key, fastest), (index, &value)| {

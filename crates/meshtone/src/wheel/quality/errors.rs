@@ -233,7 +233,7 @@ impl Keys for Quality {
             (Some(file), None, None) => {
                 let [pinion_profile_errors_mm, gear_profile_errors_mm] =
                     load(&file, |name| files.matrices(name))?;
-                self.take_deviations(table, load(&file, |name| files.named_numbers(name))?)?;
+                [self.pinion_deviations, self.gear_deviations] = file_deviations(table, &file, files, Some)?;
                 Some(ProfileErrors { pinion_profile_errors_mm, gear_profile_errors_mm })
             }
             (None, Some(_), Some(_)) => Some(ProfileErrors {
@@ -257,28 +257,32 @@ impl Keys for Quality {
     }
 }
 
-impl Quality {
-    /// Deviations from the file of profile errors, which the table does not give again.
-    fn take_deviations(
-        &mut self,
-        table: &TomlTable<'_>,
-        entries: Vec<(&'static str, Vec<f64>)>,
-    ) -> ReadResult<()> {
-        let mut both = [WheelDeviations::default(), WheelDeviations::default()];
-        for (key, numbers) in entries {
-            if table.optional(key).is_some() {
-                return Err(table
-                    .error(key, "given beside errors_file, which has it too; it has only one source")
-                    .with_help(format!("remove {key} here or in the file")));
-            }
-            if WheelDeviations::set(&mut both, key, &numbers).is_none() {
-                let problem = format!("has {} numbers as its entry {key}; must have one", numbers.len());
-                return Err(table.error("errors_file", problem));
-            }
+/// Deviations of both wheels from the file of profile errors, which the table does not give again.
+///
+/// # Arguments
+/// * `table` - that names the file
+/// * `file` - its name
+/// * `files` - loads it
+/// * `key_here` - the table's own key of an entry of the file, if it has one
+pub(crate) fn file_deviations(
+    table: &TomlTable<'_>,
+    file: &TomlValue<'_>,
+    files: &dyn NumberFiles,
+    key_here: impl Fn(&'static str) -> Option<&'static str>,
+) -> ReadResult<[WheelDeviations; 2]> {
+    let mut both = [WheelDeviations::default(), WheelDeviations::default()];
+    for (key, numbers) in load(file, |name| files.named_numbers(name))? {
+        if let Some(key) = key_here(key).filter(|key| table.optional(key).is_some()) {
+            return Err(table
+                .error(key, "given beside errors_file, which has it too; it has only one source")
+                .with_help(format!("remove {key} here or in the file")));
         }
-        [self.pinion_deviations, self.gear_deviations] = both;
-        Ok(())
+        if WheelDeviations::set(&mut both, key, &numbers).is_none() {
+            let problem = format!("has {} numbers as its entry {key}; must have one", numbers.len());
+            return Err(table.error("errors_file", problem));
+        }
     }
+    Ok(both)
 }
 
 /// An array of rows, one line a row.

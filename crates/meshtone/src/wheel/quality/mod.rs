@@ -9,8 +9,10 @@ mod tolerances;
 
 pub use crate::error_table::ErrorTable;
 pub use deviations::{Deviations, RunOut, deviations};
+pub(crate) use errors::file_deviations;
 pub use errors::{ERROR_POINTS, ProfileErrors, Quality};
 pub use measured::WheelDeviations;
+pub(crate) use rules::{check_errors, one_source};
 pub use tolerances::Tolerances;
 
 use super::{Teeth, Wheel, WheelName};

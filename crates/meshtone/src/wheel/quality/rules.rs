@@ -10,60 +10,26 @@ impl Quality {
     /// Every key alone, and the profile errors with the wheels that have them.
     pub(crate) fn check(&self, gears: &Gears) -> Check {
         check_keys(self, "quality")?;
-        let class = self.iso_class;
-        if class != 0 && self.din_grade != 0 {
-            let problem = "given beside quality.din_grade; deviations are drawn for one of the two";
-            return Err(ScenarioError::new("quality.iso_class", class, problem)
-                .with_help("remove iso_class, or remove din_grade"));
-        }
+        one_source("quality", self.din_grade, self.iso_class, self.profile_errors.is_some())?;
         for wheel in WheelName::BOTH {
-            self.check_pitches(wheel, gears)?;
+            let key = format!("quality.{}_cumulative_pitch_um", wheel.name());
+            self.given(wheel).check_pitches(&key, gears.teeth(wheel), gears.module_mm)?;
         }
         let Some(errors) = &self.profile_errors else {
             return Ok(());
         };
-        let grade = self.din_grade;
-        if grade != 0 {
-            let problem = "given beside profile errors, which replace the errors drawn for a grade";
-            return Err(ScenarioError::new("quality.din_grade", grade, problem)
-                .with_help("remove din_grade or set it to 0, or remove the profile errors"));
-        }
-        if class != 0 {
-            let problem = "given beside profile errors, which replace the deviations drawn for a class";
-            return Err(ScenarioError::new("quality.iso_class", class, problem)
-                .with_help("remove iso_class, or the profile errors"));
-        }
         if let Some(seed) = self.seed {
             let problem = "given beside profile errors, which are not drawn";
             return Err(ScenarioError::new("quality.seed", seed, problem)
                 .with_help("remove quality.seed, or the profile errors"));
         }
         let module_mm = gears.module_mm;
-        matrix("pinion", &errors.pinion_profile_errors_mm, gears.pinion_teeth, module_mm)?;
-        matrix("gear", &errors.gear_profile_errors_mm, gears.gear_teeth, module_mm)
-    }
-
-    /// One pitch deviation a tooth, each so small that it can be one.
-    fn check_pitches(&self, wheel: WheelName, gears: &Gears) -> Check {
-        let Some(pitches_um) = &self.given(wheel).cumulative_pitch_um else {
-            return Ok(());
+        let check = |wheel: WheelName, errors: &ErrorTable| {
+            let key = format!("quality.{}_profile_errors_mm", wheel.name());
+            check_errors(&key, errors, gears.teeth(wheel), module_mm)
         };
-        let key = format!("quality.{}_cumulative_pitch_um", wheel.name());
-        let (teeth, module_mm) = (gears.teeth(wheel), gears.module_mm);
-        if pitches_um.len() != teeth as usize {
-            let problem = format!(
-                "has {} numbers; must have {teeth}, one for each of the {}'s teeth",
-                pitches_um.len(),
-                wheel.name()
-            );
-            return Err(ScenarioError::new(key, format!("{} numbers", pitches_um.len()), problem));
-        }
-        let mut entries = pitches_um.iter().enumerate();
-        entries.try_for_each(|(index, &pitch_um)| {
-            let is_less = pitch_um.abs() < module_mm * 1e3;
-            let problem = format!("must be smaller than the module, {module_mm} mm");
-            require(&format!("{key}[{index}]"), pitch_um, is_less, problem)
-        })
+        check(WheelName::Pinion, &errors.pinion_profile_errors_mm)?;
+        check(WheelName::Gear, &errors.gear_profile_errors_mm)
     }
 
     /// Shares of what is given and so not drawn, which have no effect.
@@ -98,17 +64,78 @@ impl Quality {
     }
 }
 
-fn matrix(wheel: &str, errors: &ErrorTable, teeth: u32, module_mm: f64) -> Check {
-    let key = format!("quality.{wheel}_profile_errors_mm");
+impl WheelDeviations {
+    /// One pitch deviation a tooth, each so small that it can be one.
+    ///
+    /// # Arguments
+    /// * `key` - of the pitch deviations
+    /// * `teeth`, `module_mm` - of the wheel
+    pub(crate) fn check_pitches(&self, key: &str, teeth: u32, module_mm: f64) -> Check {
+        let Some(pitches_um) = &self.cumulative_pitch_um else {
+            return Ok(());
+        };
+        let count = pitches_um.len();
+        if count != teeth as usize {
+            let problem =
+                format!("has {count} numbers; must have {teeth}, one for each of the wheel's teeth");
+            return Err(ScenarioError::new(key, format!("{count} numbers"), problem));
+        }
+        let mut entries = pitches_um.iter().enumerate();
+        entries.try_for_each(|(index, &pitch_um)| {
+            let is_less = pitch_um.abs() < module_mm * 1e3;
+            let problem = format!("must be smaller than the module, {module_mm} mm");
+            require(&format!("{key}[{index}]"), pitch_um, is_less, problem)
+        })
+    }
+}
+
+/// Deviations are drawn for a grade or for a class, or their profiles are given.
+///
+/// # Arguments
+/// * `section` - the keys' section
+/// * `grade`, `class` - of DIN 3962 and of ISO 1328; 0 for none
+/// * `has_errors` - whether profile errors are given
+pub(crate) fn one_source(section: &str, grade: u8, class: u8, has_errors: bool) -> Check {
+    let (key, value, problem, help) = match (grade, class) {
+        (1.., 1..) => (
+            "iso_class",
+            class,
+            "given beside din_grade; deviations are drawn for one of the two",
+            "remove iso_class, or remove din_grade",
+        ),
+        (1.., 0) if has_errors => (
+            "din_grade",
+            grade,
+            "given beside profile errors, which replace the errors drawn for a grade",
+            "remove din_grade or set it to 0, or remove the profile errors",
+        ),
+        (0, 1..) if has_errors => (
+            "iso_class",
+            class,
+            "given beside profile errors, which replace the deviations drawn for a class",
+            "remove iso_class, or the profile errors",
+        ),
+        _ => return Ok(()),
+    };
+    Err(ScenarioError::new(format!("{section}.{key}"), value, problem).with_help(help))
+}
+
+/// Profile errors of as many points and teeth as there are, each so small that it can be one.
+///
+/// # Arguments
+/// * `key` - of the errors
+/// * `errors` - the errors
+/// * `teeth`, `module_mm` - of the wheel
+pub(crate) fn check_errors(key: &str, errors: &ErrorTable, teeth: u32, module_mm: f64) -> Check {
     let (rows, columns) = (errors.points(), errors.teeth());
     if rows != ERROR_POINTS || columns != teeth as usize {
         let problem = format!(
             "is {rows} × {columns}; must be {ERROR_POINTS} × {teeth}: {ERROR_POINTS} points along each of the \
-             {wheel}'s {teeth} teeth"
+             wheel's {teeth} teeth"
         );
         let help = match (columns, rows == teeth as usize) {
             (ERROR_POINTS, true) => "it seems to be transposed: a row is a point, a column a tooth",
-            _ => "gears.pinion_teeth and gears.gear_teeth must be those of the wheels with these errors",
+            _ => "the tooth counts must be those of the wheels with these errors",
         };
         return Err(ScenarioError::new(key, format!("{rows} × {columns}"), problem).with_help(help));
     }

@@ -5,6 +5,7 @@
 
 mod both_wheels;
 mod damage_py;
+mod gearbox_py;
 mod guide;
 mod keys_py;
 mod python;
@@ -39,6 +40,11 @@ fn python_arguments_of_a_scenario() {
 #[test]
 fn python_classes_of_damage() {
     check("python/meshtone/_damage.py", &damage_py::text());
+}
+
+#[test]
+fn python_dictionaries_of_a_gearbox() {
+    check("python/meshtone/_gearbox_keys.py", &gearbox_py::text());
 }
 
 #[test]

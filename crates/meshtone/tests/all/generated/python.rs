@@ -8,7 +8,7 @@ pub const HEAD: &str =
 const WIDTH: usize = 120;
 
 /// Classes of tables that are not called as their key.
-const TABLE_NAMES: [(&str, &str); 7] = [
+const TABLE_NAMES: [(&str, &str); 10] = [
     ("pinion_shaft", "Shaft"),
     ("gear_shaft", "Shaft"),
     ("pinion_inertia", "WheelInertia"),
@@ -16,6 +16,9 @@ const TABLE_NAMES: [(&str, &str); 7] = [
     ("circle", "PitCircle"),
     ("random", "RandomPits"),
     ("path", "SensorPath"),
+    ("inertia", "WheelInertia"),
+    ("feet", "Foot"),
+    ("torque_ripple", "Ripple"),
 ];
 
 /// The class of a table.
@@ -67,9 +70,11 @@ pub fn argument_type(key: &KeyDescription) -> String {
         KeyKind::Numbers(_) | KeyKind::List => "Sequence[float]".into(),
         KeyKind::NumberOrNumbers(_) => "float | Sequence[float]".into(),
         KeyKind::Table => class_name(&key.key),
+        KeyKind::Tables => format!("Sequence[{}]", class_name(&key.key)),
         KeyKind::Profile => "Profile".into(),
         KeyKind::FrequencyResponse => "Mapping[str, Any]".into(),
         KeyKind::Text => "str".into(),
+        KeyKind::Texts => "Sequence[str]".into(),
         KeyKind::Matrix => "npt.ArrayLike".into(),
         other => panic!("a type for {other:?}"),
     }
@@ -110,6 +115,9 @@ pub fn parameter(indent: &str, key: &KeyDescription, name: &str, optional: bool)
         KeyKind::NumberOrNumbers(count) => format!("float or sequence of {count} floats"),
         KeyKind::Profile => "dict of time_s and value".into(),
         KeyKind::FrequencyResponse => "dict of frequency_hz, magnitude and phase_deg".into(),
+        KeyKind::Tables => format!("sequence of {}", class_name(&key.key)),
+        KeyKind::Texts => "sequence of two strs".into(),
+        KeyKind::Matrix if key.key == "segments" => "sequence of pairs of floats".into(),
         KeyKind::Matrix => "array of float64, shape (100, teeth)".into(),
         _ => argument_type(key),
     };

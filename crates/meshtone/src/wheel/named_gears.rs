@@ -1,0 +1,75 @@
+//! What messages call two wheels that mesh, and where their keys stand in the scenario file.
+
+use std::ops::Deref;
+
+use super::{Gears, WheelName};
+
+/// A pair of wheels with what messages call it.
+pub(crate) struct NamedGears<'a> {
+    gears: &'a Gears,
+    /// Of a gearbox's mesh: the key of its section, number and name of the driving and of the driven wheel.
+    mesh: Option<(String, [(usize, &'a str); 2])>,
+}
+
+impl<'a> NamedGears<'a> {
+    /// The pinion and the gear of `[gears]`.
+    pub(crate) fn of_pair(gears: &'a Gears) -> Self {
+        Self { gears, mesh: None }
+    }
+
+    /// The wheels of a gearbox's mesh.
+    ///
+    /// # Arguments
+    /// * `gears` - the wheels
+    /// * `section` - key of the mesh's section, such as `mesh[1]`
+    /// * `wheels` - number and name of the driving and of the driven wheel
+    pub(crate) fn of_mesh(gears: &'a Gears, section: String, wheels: [(usize, &'a str); 2]) -> Self {
+        Self { gears, mesh: Some((section, wheels)) }
+    }
+
+    /// The name of a wheel: `the pinion`, `z1`.
+    pub(crate) fn name(&self, wheel: WheelName) -> String {
+        match &self.mesh {
+            None => format!("the {}", wheel.name()),
+            Some((_, wheels)) => wheels[wheel as usize].1.to_owned(),
+        }
+    }
+
+    /// A key of one of the wheels: `gears.pinion_teeth`, `wheel[0].teeth`.
+    ///
+    /// # Arguments
+    /// * `wheel` - which
+    /// * `key` - without the name of the wheel
+    pub(crate) fn key_of(&self, wheel: WheelName, key: &str) -> String {
+        match &self.mesh {
+            None => format!("gears.{}_{key}", wheel.name()),
+            Some((_, wheels)) => format!("wheel[{}].{key}", wheels[wheel as usize].0),
+        }
+    }
+
+    /// A key that both wheels have in common: `gears.module_mm`, `mesh[0].module_mm`, `wheel[0].tip_chamfer_mm`.
+    pub(crate) fn key(&self, key: &str) -> String {
+        const OF_MESH: [&str; 4] = ["module_mm", "pressure_angle_deg", "centre_distance_mm", "backlash_mm"];
+        match &self.mesh {
+            None => format!("gears.{key}"),
+            Some((section, _)) if OF_MESH.contains(&key) => format!("{section}.{key}"),
+            Some(_) => self.key_of(WheelName::Pinion, key),
+        }
+    }
+
+    /// The key of the pair as a whole: `gears`, `mesh[0].wheels`.
+    pub(crate) fn whole(&self) -> String {
+        match &self.mesh {
+            None => "gears".to_owned(),
+            Some((section, _)) => format!("{section}.wheels"),
+        }
+    }
+}
+
+impl Deref for NamedGears<'_> {
+    type Target = Gears;
+
+    fn deref(&self) -> &Gears {
+        self.gears
+    }
+}

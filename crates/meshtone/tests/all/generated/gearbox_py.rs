@@ -1,0 +1,29 @@
+//! `python/meshtone/_gearbox_keys.py`: the dictionaries that a gearbox is made of.
+
+use meshtone::scenario::{KeyDescription, KeyKind, gearbox_sections};
+
+use super::python::{HEAD, class_name, inside, table_class};
+
+/// Tables that sections of a pair have too, whose classes are written with those.
+const OF_PAIR: [&str; 3] = ["FlankRelief", "WheelInertia", "SensorPath"];
+
+/// The file: a class for each section, before it those of its tables.
+pub fn text() -> String {
+    let mut text = format!(
+        "\"\"\"The dictionaries of a gearbox.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
+         from collections.abc import Mapping, Sequence\nfrom typing import Any, Literal, TypedDict\n\n\
+         import numpy.typing as npt\n\nfrom ._keys import FlankRelief, Profile, WheelInertia\nfrom ._sensor import SensorPath\n"
+    );
+    for section in gearbox_sections().into_iter().filter(|section| !section.name.is_empty()) {
+        let (inner, keys): (Vec<KeyDescription>, Vec<KeyDescription>) =
+            section.keys.into_iter().partition(|key| key.key.contains('.'));
+        let tables = keys.iter().filter(|key| matches!(key.kind, KeyKind::Table | KeyKind::Tables));
+        for table in tables.filter(|table| !OF_PAIR.contains(&class_name(&table.key).as_str())) {
+            text += &table_class(&class_name(&table.key), &inside(&inner, &table.key));
+        }
+        // A gearbox of dictionaries has no directory in which its files could be.
+        let keys: Vec<KeyDescription> = keys.into_iter().filter(|key| key.kind != KeyKind::File).collect();
+        text += &table_class(&format!("Gearbox{}", class_name(section.name)), &keys);
+    }
+    text
+}
