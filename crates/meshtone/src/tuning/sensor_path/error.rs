@@ -90,7 +90,7 @@ pub enum RecordingProblem {
     },
     /// It contradicts what is stated about it, or shows strong tones of something else.
     #[error("does not fit the scenario: {0}")]
-    DoesNotFit(SignalWarning),
+    DoesNotFit(Box<SignalWarning>),
     /// The signal chain refuses it.
     #[error("cannot be used: {0}")]
     Signal(#[from] SignalError),

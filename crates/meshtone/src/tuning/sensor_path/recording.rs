@@ -60,7 +60,10 @@ impl HealthyRecording {
         let angular = angular_resample(&self.values_g, &self.pinion, &AngularSettings::default())?;
         let stated = StatedFacts { teeth: pinion, mate_teeth: Some(gear), turning: StatedTurning::Other };
         let against = check_recording(&angular, &stated, &self.pinion, self.sampling_rate_hz);
-        against.into_iter().next().map_or(Ok(()), |warning| Err(RecordingProblem::DoesNotFit(warning)))
+        match against.into_iter().next() {
+            Some(warning) => Err(RecordingProblem::DoesNotFit(Box::new(warning))),
+            None => Ok(()),
+        }
     }
 }
 
