@@ -76,6 +76,14 @@ def test_judgement_does_not_depend_on_how_many_there_are() -> None:
         mt.simulate_gearbox(doubtful)
 
 
+def test_no_more_memory_is_taken_than_is_free() -> None:
+    mt.set_memory_limit(10**15)
+    large = gearbox(solver={"duration_s": 1e6})
+    mt.set_memory_limit(None)
+    with pytest.raises(ValueError, match="solver.duration_s.* free on this machine"):
+        mt.simulate_gearbox(large)
+
+
 def test_profile_errors_are_of_the_wheel() -> None:
     wheels = gearbox().sections["wheel"]
     errors_mm = np.full((100, 17), 2e-3)

@@ -35,7 +35,7 @@ impl DamagedTooth {
     ///
     /// ```
     /// use meshtone::damage::{Fault, MissingTooth};
-    /// use meshtone::wheel::{Teeth, WheelName};
+    /// use meshtone::wheel::WheelName;
     /// use meshtone_plot::DamagedTooth;
     ///
     /// let faults = [Fault::new(WheelName::Pinion, 3, MissingTooth), Fault::on_first_gear_tooth(MissingTooth)];

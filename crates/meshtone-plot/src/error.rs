@@ -6,9 +6,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum PlotError {
     /// A tooth without a profile.
-    #[error("the {wheel}'s tooth profile has {points} points; at least 2 are needed to draw it")]
+    #[error("{wheel}'s tooth profile has {points} points; at least 2 are needed to draw it")]
     NoProfile {
-        /// Pinion or gear.
+        /// `the pinion`, `z1`.
         wheel: String,
         /// Number of points.
         points: usize,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use meshtone::StepJudgement;
 use meshtone::scenario::{self, GearboxRig, ScenarioForm, ScenarioWarning};
+use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_io::summary::GearboxSummary;
@@ -62,7 +63,7 @@ impl Gearbox {
 
     /// Warnings about it, as far as they can be known before the time loop.
     fn warnings(&self) -> PyResult<Vec<String>> {
-        let warnings = self.0.validate().map_err(|error| scenario_error(&error))?;
+        let warnings = self.0.validate_within(memory::limit()).map_err(|error| scenario_error(&error))?;
         Ok(warnings.iter().map(ToString::to_string).collect())
     }
 }
@@ -86,13 +87,12 @@ pub struct GearboxSimulation {
 impl GearboxSimulation {
     fn new(
         py: Python<'_>,
-        mut simulation: meshtone::GearboxSimulation,
+        simulation: meshtone::GearboxSimulation,
         all_warnings: Vec<ScenarioWarning>,
     ) -> PyResult<Self> {
         let signals = simulation.channels.signals.iter();
         let named = signals.map(|signal| (signal.name.clone(), array(py, signal.values.clone())));
         let channels = named.collect::<Vec<_>>().into_py_dict(py)?.unbind();
-        simulation.timings.shrink_to_fit();
         Ok(Self {
             sampling_rate_hz: simulation.channels.sampling_rate_hz,
             start_s: simulation.channels.start_s,
@@ -155,10 +155,11 @@ impl GearboxSimulation {
 
 /// Simulates a gearbox; it is simulated a second time where its step is doubtful.
 #[pyfunction]
-pub fn simulate_gearbox(py: Python<'_>, gearbox: PyRef<'_, Gearbox>) -> PyResult<GearboxSimulation> {
-    let gearbox = gearbox.0.clone();
-    let simulated = py
-        .detach(|| meshtone::simulate_gearbox(&gearbox).map(|of| with_warnings(of, StepJudgement::Repeated)));
+pub fn simulate_gearbox(py: Python<'_>, gearbox: &Gearbox) -> PyResult<GearboxSimulation> {
+    let simulated = py.detach(|| {
+        let stages = meshtone::gearbox_stages_within(&gearbox.0, memory::limit())?;
+        stages.simulate().map(|of| with_warnings(of, StepJudgement::Repeated))
+    });
     let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
     GearboxSimulation::new(py, simulation, warnings)
 }

@@ -82,10 +82,12 @@ impl ScenarioError {
     }
 
     /// Foundation coefficients with which a healthy pair of teeth would not be stiff.
-    pub(crate) fn not_stiff() -> Self {
+    ///
+    /// # Arguments
+    /// * `key`, `help` - of [`NamedGears::foundation`](crate::wheel::NamedGears::foundation)
+    pub(crate) fn not_stiff((key, help): (String, &str)) -> Self {
         let problem = "the compliance of the healthy tooth pair would not be positive at every point of contact; must be";
-        Self::new("gears.foundation", "", problem)
-            .with_help("leave gears.foundation out for Sainsot's coefficients")
+        Self::new(key, "", problem).with_help(help)
     }
 
     /// More pairs in contact at once than the model of contact looks at.
@@ -102,10 +104,13 @@ impl ScenarioError {
     }
 
     /// Flanks that close along the face, and no load that could decide how much of it bears.
-    pub(crate) fn no_load_along_the_face() -> Self {
-        let problem = "must be more than 0 where the flanks do not close alike along the face: the load decides how much of it bears";
-        Self::new("operation.brake_torque_nm", 0.0, problem)
-            .with_help("raise the torque, or set misalignment_um, helix_share and given helix slopes to 0")
+    ///
+    /// # Arguments
+    /// * `key`, `uneven` - of [`NamedGears::load`](crate::wheel::NamedGears::load)
+    pub(crate) fn no_load_along_the_face((key, uneven): (String, String)) -> Self {
+        let problem = "the mesh carries nothing, and its flanks do not close alike along the face; must be loaded: the load decides how                        much of the face bears";
+        Self::new(key, "", problem)
+            .with_help(format!("load the mesh by operation.brake_torque_nm, or set {uneven} to 0"))
     }
 
     /// Damage that leaves no tooth that could carry a load.
@@ -193,6 +198,8 @@ pub enum Error {
         time_s: f64,
         /// The key that damps the modes.
         key: &'static str,
+        /// What the user can do.
+        help: &'static str,
         /// (-) The damping ratio of each mode, in the order of rising natural frequency.
         damping_ratios: Vec<f64>,
     },
@@ -203,16 +210,18 @@ impl Error {
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Scenario(error) => error.help.as_deref(),
-            Self::Diverged { .. } => Some("raise damping ratios, use more teeth, or change the speed"),
+            Self::Diverged { help, .. } => Some(help),
         }
     }
 }
 
-/// One number where all are the same.
+/// One number where all are the same, else the least and the largest: a gearbox has hundreds.
 fn in_short(ratios: &[f64]) -> String {
     match ratios {
         [first, rest @ ..] if rest.iter().all(|ratio| ratio == first) => format!("{first:?}"),
-        _ => format!("{ratios:?}"),
+        _ => [f64::min, f64::max]
+            .map(|of| format!("{:?}", ratios.iter().copied().fold(f64::NAN, of)))
+            .join(" to "),
     }
 }
 

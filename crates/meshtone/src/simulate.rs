@@ -22,7 +22,7 @@ use options::MachineOptions;
 
 use crate::damage::{DamagedTooth, ToothPart, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{Machine, Modes, Train};
+use crate::machine::{DecayingMode, Machine, Modes, Train};
 use crate::mesh::{
     Contact, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
 };
@@ -34,7 +34,7 @@ use crate::simd::InstructionSet;
 use crate::solver::{Block, Diverged, Output, Recorder};
 use crate::wheel::quality::{deviations, profile_errors};
 use crate::wheel::{
-    Deviations, Gears, NamedGears, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth,
+    Deviations, NamedGears, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth,
 };
 
 /// Results of every stage before the time loop.
@@ -204,8 +204,6 @@ fn machine_stages(
     };
     clock.lap("equations of motion");
     stages.meshes = stages.meshes_at(stages.points_per_pitch())?;
-    let gears = NamedGears::of_pair(&stages.scenario.gears);
-    stages.meshes.iter().try_for_each(|mesh| check_mesh(mesh, &gears))?;
     clock.lap("mesh stiffness");
     stages.timings = clock.laps;
     Ok(stages)
@@ -249,22 +247,30 @@ fn healthy_teeth(scenario: &Scenario) -> Teeth {
     if model.has_meshes() { teeth(gears, bore_radii_mm) } else { published::teeth(gears, bore_radii_mm) }
 }
 
-/// Refuses a mesh that carries nothing, and one of more pairs at once than a step looks at.
-fn check_mesh(mesh: &Mesh, gears: &NamedGears) -> Result<(), ScenarioError> {
+/// The mesh, unless it can carry nothing, or has more pairs at once than a step looks at.
+fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
     if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
-        return Err(ScenarioError::not_stiff());
+        return Err(ScenarioError::not_stiff(gears.foundation()));
     }
     if mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
         let keys = [gears.whole(), gears.key("pressure_angle_deg")];
         return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
     }
     let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
-    if mesh.classes.iter().any(meets) { Ok(()) } else { Err(ScenarioError::nothing_left()) }
+    if mesh.classes.iter().any(meets) { Ok(mesh) } else { Err(ScenarioError::nothing_left()) }
+}
+
+/// First sample that must be simulated, so that a mode's transient has decayed to the settling tolerance where the kept signal starts.
+fn start_of_settling(time: &TimeGrid, settle_tolerance: f64, slowest: &DecayingMode) -> usize {
+    // Where nothing decays, or nothing is tolerated, all of the settling is simulated: as a float, that takes forever.
+    let decay_s = -settle_tolerance.ln() / slowest.decay_per_s.clamp(0.0, f64::MAX);
+    let settling = (decay_s * time.sampling_rate_hz).ceil();
+    time.first_kept_sample.saturating_sub(settling as usize)
 }
 
 /// What a mesh is made of.
 struct MeshOf<'a> {
-    gears: &'a Gears,
+    gears: &'a NamedGears<'a>,
     teeth: &'a Teeth,
     damaged: &'a [DamagedTooth],
     machine: &'a Machine,
@@ -286,12 +292,12 @@ impl MeshOf<'_> {
     /// The mesh with its tables.
     ///
     /// # Errors
-    /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load.
+    /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load, and a mesh that cannot carry any.
     fn with_tables(&self, points_per_pitch: NonZeroUsize) -> Result<Mesh, ScenarioError> {
         let &Self { gears, teeth, damaged, closer_um, static_force_n, .. } = self;
         let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, damaged)?;
         if closer_um != 0.0 && static_force_n <= 0.0 {
-            return Err(ScenarioError::no_load_along_the_face());
+            return Err(ScenarioError::no_load_along_the_face(gears.load()));
         }
         let width_m = gears.face_width_mm * 1e-3;
         let face = || FaceSlope {
@@ -314,7 +320,7 @@ impl MeshOf<'_> {
             relief: gears.flank_relief,
         };
         let pairs = Pairs::new(teeth, damaged, gears.material, &gears.foundation);
-        Ok(Mesh::new(&pairs, shape, sequence, points_per_pitch, parameters))
+        checked(Mesh::new(&pairs, shape, sequence, points_per_pitch, parameters), gears)
     }
 }
 
@@ -355,7 +361,7 @@ impl Stages {
             0.0
         };
         let mesh = MeshOf {
-            gears,
+            gears: &NamedGears::of_pair(gears),
             teeth: &self.teeth,
             damaged: &self.damaged,
             machine: &train.machine,
@@ -423,13 +429,10 @@ impl Stages {
     fn start_of_settling(&self) -> usize {
         let Solver { settle_tolerance, initial_velocity, .. } = &self.scenario.solver;
         let starts_in_equilibrium = self.scenario.model.has_meshes() && initial_velocity.is_none();
-        if !starts_in_equilibrium || *settle_tolerance == 0.0 || !self.is_steady() {
+        if !starts_in_equilibrium || !self.is_steady() {
             return 0;
         }
-        let decay_s = -settle_tolerance.ln() / self.slowest_mode().decay_per_s;
-        let settling = (decay_s * self.time.sampling_rate_hz).ceil();
-        // As a float: a decay that takes forever saturates.
-        self.time.first_kept_sample.saturating_sub(settling as usize)
+        start_of_settling(&self.time, *settle_tolerance, &self.slowest_mode())
     }
 
     /// Stages 7 and 8: the rest of the simulation, for those who have looked at the first six.
@@ -528,7 +531,8 @@ impl Stages {
             return error.into();
         }
         let (key, damping_ratios) = self.damping();
-        Error::Diverged { time_s, key, damping_ratios }
+        let help = "raise the damping ratios of [rig], use more teeth, or change operation.pinion_speed_hz";
+        Error::Diverged { time_s, key, help, damping_ratios }
     }
 
     /// The same where more neighbours are missing on a wheel than pairs are in contact at once: nothing bears while they pass.

@@ -87,7 +87,12 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
     workplace.write("run_out.toml", with_file.replacen("errors_file", "run_out_um = 5.0\nerrors_file", 1));
     workplace.fails(2, &["simulate", "run_out.toml"], &["wheel[0].run_out_um", "given beside errors_file"]);
     workplace.write("other.toml", with_file.replace("teeth = 32", "teeth = 33"));
-    workplace.fails(2, &["simulate", "other.toml"], &["wheel[0].profile_errors_mm", "must be 100 × 33"]);
+    let line = text.lines().position(|line| line == "iso_class = 6").unwrap() + 1;
+    let words = [
+        &format!("line {line}: wheel[0].errors_file = \"wheels.npz\" (the 1st wheel)"),
+        "profile_errors_mm: is 100 × 32; must be 100 × 33",
+    ];
+    workplace.fails(2, &["simulate", "other.toml"], &words);
 }
 
 #[test]

@@ -288,7 +288,8 @@ impl<'a> Wheels<'a> {
             average(canvas, areas[each - 1], simulation, *wheel);
         }
         if let Some(more @ 1..) = self.numbers.len().checked_sub(MOST_WHEELS) {
-            let text = format!("{more} more damaged wheels are in the summary");
+            let wheels = if more == 1 { "wheel is" } else { "wheels are" };
+            let text = format!("{more} more damaged {wheels} in the summary");
             canvas.text((curves.right(), curves.top - 24.0), &text, TextStyle::NOTE.anchored(Anchor::End));
         }
     }

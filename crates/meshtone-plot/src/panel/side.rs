@@ -38,8 +38,7 @@ impl<'a> Side<'a> {
         };
         let heading = [title.to_owned(), shaft.to_owned()];
         let (errors, tips) = (stages.profile_errors.as_ref(), stages.tip_lengths_mm());
-        let side = Self::of_pair(name, heading, &stages.teeth, &stages.damaged, errors, tips)?;
-        Ok(Self { of_tooth, ..side })
+        Self::of_pair(name, heading, of_tooth, &stages.teeth, &stages.damaged, errors, tips)
     }
 
     /// A wheel of a gearbox, in its first mesh; none of a wheel in no mesh.
@@ -48,13 +47,14 @@ impl<'a> Side<'a> {
         let (of_mesh, of_file) = (&stages.pairs[mesh], &stages.gearbox.wheels[wheel]);
         let heading = [of_file.name.clone(), format!("shaft {}", of_file.shaft)];
         let (errors, tips) = (of_mesh.profile_errors.as_ref(), stages.layout.gears[mesh].tip_lengths_mm());
-        Some(Self::of_pair(name, heading, &of_mesh.teeth, &of_mesh.damaged, errors, tips))
+        Some(Self::of_pair(name, heading, "", &of_mesh.teeth, &of_mesh.damaged, errors, tips))
     }
 
     /// One of two wheels in mesh.
     fn of_pair(
         name: WheelName,
         [title, shaft]: [String; 2],
+        of_tooth: &'static str,
         teeth: &'a Teeth,
         damaged: &'a [DamagedTooth],
         errors: Option<&'a ProfileErrors>,
@@ -64,7 +64,8 @@ impl<'a> Side<'a> {
         let contact_index = teeth.initial_contact_index(name);
         let points = profile.len().min(profile.y_mm.len());
         if points < 2 || contact_index + 1 >= points {
-            return Err(PlotError::NoProfile { wheel: title, points });
+            let wheel = if of_tooth.is_empty() { title } else { format!("the {}", name.name()) };
+            return Err(PlotError::NoProfile { wheel, points });
         }
         let standing_out = crate::DamagedTooth::of_teeth(teeth, damaged, name);
         let first = standing_out.first().map(|tooth| tooth.tooth as usize - 1);
@@ -72,7 +73,7 @@ impl<'a> Side<'a> {
         Ok(Self {
             name: title,
             shaft,
-            of_tooth: "",
+            of_tooth,
             wheel: teeth.wheel(name),
             profile,
             contact_index,

@@ -5,7 +5,7 @@
 use crate::support::check;
 use meshtone::scenario::*;
 use meshtone::sensor::Channels;
-use meshtone::{Simulation, simulate, simulate_gearbox};
+use meshtone::{GearboxSimulation, Simulation, simulate, simulate_gearbox};
 use meshtone_plot::{Figure, PlotError, panel};
 
 /// (bytes) Of an SVG.
@@ -320,6 +320,73 @@ fn a_gearbox_whose_angle_is_not_known_has_no_order_spectrum() {
     let figure = panel::draw_gearbox(&simulation).unwrap();
     assert_shows(&figure, &[unknown]);
     assert!(!figure.labels().iter().any(|label| is_of_revolutions(&label.text)));
+}
+
+/// A gearbox of three stages with one tooth missing from each of the first wheels.
+fn with_damaged_wheels(damaged: usize) -> GearboxSimulation {
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    let name = |of: &str, n: usize| format!("{of}{n}");
+    let coupled = [Coupled::Motor, Coupled::Nothing, Coupled::Nothing, Coupled::Brake];
+    let shaft = |n: usize| {
+        let mut shaft = GearboxShaft::new(&name("shaft", n), 150.0, 12.0);
+        shaft.couples_to = coupled[n];
+        shaft
+    };
+    let wheel = |n: usize| {
+        let (on, at) = (name("shaft", n.div_ceil(2)), [0.2, 0.5, 0.8][n / 2]);
+        GearboxWheel::new(&name("z", n + 1), &on, at, [20, 40][n % 2], 15.0)
+    };
+    gearbox.shafts = (0..4).map(shaft).collect();
+    gearbox.wheels = (0..6).map(wheel).collect();
+    gearbox.meshes = [["z1", "z2"], ["z3", "z4"], ["z5", "z6"]].map(|of| GearboxMesh::new(of, 2.5)).to_vec();
+    let bearings = (0..4).flat_map(|n| [0.0, 1.0].map(|at| Bearing::new(&name("shaft", n), at)));
+    gearbox.bearings = bearings.collect();
+    gearbox.housing = None;
+    gearbox.sensors.clear();
+    let fault = |n: usize| GearboxFault {
+        wheel: name("z", n + 1),
+        fault: Fault::new(WheelName::Gear, 3, MissingTooth),
+    };
+    gearbox.faults = (0..damaged).map(fault).collect();
+    gearbox.solver.settings.duration_s = Some(1.0);
+    simulate_gearbox(&gearbox).unwrap()
+}
+
+#[test]
+fn damaged_wheels_of_a_gearbox_are_drawn_as_far_as_there_is_room() {
+    for damaged in [1, 2, 3, 5] {
+        let simulation = with_damaged_wheels(damaged);
+        let figure = panel::draw_gearbox(&simulation).unwrap();
+        check(&figure, LARGEST);
+        let shows = |text: &str| figure.labels().iter().any(|label| label.text.contains(text));
+        let drawn = damaged.min(4);
+        for wheel in 1..=6 {
+            let (is_drawn, name) = (wheel <= drawn, format!("z{wheel}"));
+            assert_eq!(shows(&format!("{name}, shaft shaft{}", wheel / 2)), is_drawn, "{damaged}: {name}");
+            assert_eq!(shows(&format!("revolutions of {name}")), is_drawn, "{damaged}: {name}");
+            // Of more than two wheels there is no room for the stiffness.
+            assert_eq!(
+                shows(&format!("over a turn of {name}")),
+                is_drawn && damaged <= 2,
+                "{damaged}: {name}"
+            );
+        }
+        assert_eq!(shows("1 more damaged wheel is in the summary"), damaged == 5);
+        let curves = if damaged <= 2 { 2 * damaged } else { drawn };
+        assert_eq!(tinted(&figure).len(), curves, "{damaged}");
+    }
+}
+
+#[test]
+fn a_wheel_without_a_profile_is_named() {
+    let mut simulation = with_damaged_wheels(1);
+    simulation.stages.pairs[0].teeth.pinion_profile.x_mm.truncate(1);
+    let error = panel::draw_gearbox(&simulation).map(drop).unwrap_err();
+    assert_eq!(error.to_string(), "z1's tooth profile has 1 points; at least 2 are needed to draw it");
+    let Simulation { mut stages, channels, .. } = simulated(&of_example(None));
+    stages.teeth.gear_profile.x_mm.truncate(1);
+    let error = panel::draw(&stages, &channels).map(drop).unwrap_err();
+    assert_eq!(error.to_string(), "the gear's tooth profile has 1 points; at least 2 are needed to draw it");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use super::{Clock, MeshOf, StageTime, check_mesh};
+use super::{Clock, MeshOf, StageTime, start_of_settling};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::{
@@ -228,7 +228,7 @@ fn stages_with(
     let mut clock = Clock::default();
     let warnings_of_scenario = gearbox.validate_within(memory_limit)?;
     let layout = GearboxLayout::new(gearbox)?;
-    let time = gearbox.time_grid();
+    let (time, is_steady) = (gearbox.time_grid(), gearbox.operation.is_steady());
     clock.lap("scenario");
     let teeth: Vec<Teeth> =
         (0..gearbox.meshes.len()).map(|mesh| teeth_of_mesh(gearbox, &layout, mesh)).collect();
@@ -246,14 +246,14 @@ fn stages_with(
     clock.lap("profile errors and faults");
     let meshes: Vec<Mesh> = (pairs.iter().zip(mesh_mass_kg).enumerate())
         .map(|(number, (pair, mesh_mass_kg))| {
-            let gears = &layout.gears[number];
+            let gears = layout.named_gears(gearbox, number);
             let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[number][0]];
             let turning = Turning {
                 pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
                 first_pitch: layout.phases[number],
             };
             let mesh = MeshOf {
-                gears,
+                gears: &gears,
                 teeth: &pair.teeth,
                 damaged: &pair.damaged,
                 machine: &machine.machine,
@@ -266,9 +266,8 @@ fn stages_with(
                 damping_ratio: gearbox.meshes[number].damping_ratio,
                 mesh_mass_kg,
             };
-            let points = points_per_pitch(&time, gearbox.operation.is_steady(), &turning, gears);
-            let mesh = mesh.with_tables(NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN))?;
-            check_mesh(&mesh, &layout.named_gears(gearbox, number)).map(|()| mesh)
+            let points = points_per_pitch(&time, is_steady, &turning, &gears);
+            mesh.with_tables(NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN))
         })
         .collect::<Result<_, ScenarioError>>()?;
     clock.lap("mesh stiffness");
@@ -278,7 +277,9 @@ fn stages_with(
     let modal = if is_tilted { modal_machine(&face_reach_m) } else { modal }.up_to(TAU * highest_hz);
     let closed: Vec<_> = meshes.iter().map(Mesh::closed).collect();
     let slowest_mode = modal.slowest_closed(&closed, TAU * HIGHEST_OF_SLOW_HZ);
-    let first_simulated_sample = start_of_settling(gearbox, &time, &slowest_mode);
+    let settle_tolerance = gearbox.solver.settings.settle_tolerance;
+    let first_simulated_sample =
+        if is_steady { start_of_settling(&time, settle_tolerance, &slowest_mode) } else { 0 };
     clock.lap("settling");
     let severities = pairs
         .iter()
@@ -387,14 +388,12 @@ fn joined(
     gear: Option<ProfileErrors>,
     teeth: &Teeth,
 ) -> Option<ProfileErrors> {
-    if pinion.is_none() && gear.is_none() {
-        return None;
-    }
+    let is_given = pinion.is_some() || gear.is_some();
     let table = |errors: Option<ProfileErrors>, wheel: WheelName| match errors {
         Some(errors) => wheel.choose(errors.pinion_profile_errors_mm, errors.gear_profile_errors_mm),
         None => ErrorTable::filled(ERROR_POINTS, teeth.wheel(wheel).teeth as usize, 0.0),
     };
-    Some(ProfileErrors {
+    is_given.then(|| ProfileErrors {
         pinion_profile_errors_mm: table(pinion, WheelName::Pinion),
         gear_profile_errors_mm: table(gear, WheelName::Gear),
     })
@@ -429,7 +428,6 @@ fn machine_of(
         let both = line.wheels.iter().zip(line.base_radii_m);
         1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
     });
-    let mass_kg: Vec<f64> = mass_kg.collect();
     let bearings: Vec<_> = layout.shaft_of_bearing.iter().copied().zip(&gearbox.bearings).collect();
     let ratios: Vec<f64> = layout.ratios.iter().map(|ratio| ratio.value()).collect();
     let mut machine = GearboxMachine::new(&GearboxParts {
@@ -451,7 +449,7 @@ fn machine_of(
     for (number, mesh) in gearbox.meshes.iter().enumerate() {
         machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
     }
-    Ok((machine, mass_kg))
+    Ok((machine, mass_kg.collect()))
 }
 
 fn start(gearbox: &Gearbox) -> InitialMotion<'static> {
@@ -484,19 +482,6 @@ fn points_per_pitch(time: &TimeGrid, is_steady: bool, turning: &Turning, gears: 
         return samples.round() as usize;
     }
     CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz).points_per_pitch
-}
-
-/// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where the kept
-/// signal starts.
-fn start_of_settling(gearbox: &Gearbox, time: &TimeGrid, slowest: &DecayingMode) -> usize {
-    let settle_tolerance = gearbox.solver.settings.settle_tolerance;
-    if settle_tolerance == 0.0 || !gearbox.operation.is_steady() || time.first_kept_sample == 0 {
-        return 0;
-    }
-    // Where nothing decays, all of the settling is simulated: as a float, that takes forever.
-    let decay_s = -settle_tolerance.ln() / slowest.decay_per_s.max(0.0);
-    let settling = (decay_s * time.sampling_rate_hz).ceil();
-    time.first_kept_sample.saturating_sub(settling as usize)
 }
 
 impl GearboxStages {
@@ -667,6 +652,7 @@ impl GearboxStages {
             Error::Diverged {
                 time_s: diverged.sample as f64 * self.time.step_s(),
                 key: "bearing.damping_ratio",
+                help: "raise bearing.damping_ratio or mesh.damping_ratio, use more teeth, or change operation.input_speed_hz",
                 damping_ratios: self.modes.damping_ratio.clone(),
             }
         })

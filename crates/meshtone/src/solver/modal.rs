@@ -289,11 +289,14 @@ impl ModalMachine {
         eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).map(mode).collect()
     }
 
-    /// The slowest to decay of the modes that the meshes move, with the meshes closed.
+    /// Of the modes that the meshes move, with the meshes closed: natural frequency in Hz and rate of decay in 1/s of the one that is the
+    /// slowest to decay; a rate without end where they move none.
     ///
     /// # Arguments
-    /// They are those of [`Self::closed_modes`].
+    /// * `meshes` - closed
+    /// * `highest_rad_per_s` - (rad/s) natural frequency of the highest mode that counts
     pub(crate) fn slowest_closed(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> DecayingMode {
+        // An energy is the square of a modal entry, which is rounding below ROUNDING of the largest.
         let is_moved = |mode: &ClosedMode| mode.mesh_energies.iter().any(|energy| *energy > ROUNDING * ROUNDING);
         let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
         let moved = self.closed_modes(meshes, highest_rad_per_s).into_iter().filter(is_moved);

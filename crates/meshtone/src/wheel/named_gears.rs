@@ -64,6 +64,29 @@ impl<'a> NamedGears<'a> {
             Some((section, _)) => format!("{section}.wheels"),
         }
     }
+
+    /// The key that says what the mesh carries, `operation.brake_torque_nm` or `mesh[0].wheels`, and the keys that make the flanks close
+    /// unevenly along the face.
+    pub(crate) fn load(&self) -> (String, String) {
+        match &self.mesh {
+            None => {
+                let uneven = "rig.misalignment_um, quality.helix_share and given helix slopes of [quality]";
+                ("operation.brake_torque_nm".to_owned(), uneven.to_owned())
+            }
+            Some(_) => (
+                self.whole(),
+                WheelName::BOTH.map(|wheel| self.key_of(wheel, "helix_slope_um")).join(" and "),
+            ),
+        }
+    }
+
+    /// The key that makes the wheels' bodies too soft, and what the user can do: `gears.foundation`, `mesh[0].wheels`.
+    pub(crate) fn foundation(&self) -> (String, &'static str) {
+        match &self.mesh {
+            None => (self.key("foundation"), "leave gears.foundation out for Sainsot's coefficients"),
+            Some(_) => (self.whole(), "change wheel.teeth, or shaft.radius_mm where the wheels sit"),
+        }
+    }
 }
 
 impl Deref for NamedGears<'_> {

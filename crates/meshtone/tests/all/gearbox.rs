@@ -7,9 +7,10 @@ use crate::dense::{Dense, DenseMesh};
 use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
 use meshtone::solver::InitialMotion;
+use meshtone::wheel::ErrorTable;
 use meshtone::{
-    GearboxSignal, GearboxSimulation, GearboxStages, StepJudgement, gearbox_stages, gearbox_stages_within,
-    simulate_gearbox, simulate_gearboxes,
+    GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, StepJudgement, gearbox_stages,
+    gearbox_stages_within, simulate_gearbox, simulate_gearboxes,
 };
 
 fn gearbox(rig: Option<GearboxRig>) -> Gearbox {
@@ -256,8 +257,8 @@ fn motion_repeats_after_a_cycle() {
     }
 }
 
-/// The phase of the second mesh of an idler less that of the first, with its mates in given directions.
-fn idler_phase(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> f64 {
+/// An idler with its mates in given directions.
+fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Gearbox {
     let radius_mm = |wheel: usize| f64::from(teeth[wheel]);
     let at = |direction_deg: f64, distance_mm: f64| {
         let (sin, cos) = direction_deg.to_radians().sin_cos();
@@ -274,15 +275,13 @@ fn idler_phase(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> f64 {
     });
     let wheels = (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
     let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-    let gearbox = Gearbox::new(
+    Gearbox::new(
         shafts.collect(),
         wheels.collect(),
         vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)],
         bearings.collect(),
         GearboxOperation::new(30.0, 10.0),
-    );
-    let layout = GearboxLayout::new(&gearbox).unwrap();
-    (layout.phases[1] - layout.phases[0]).rem_euclid(1.0)
+    )
 }
 
 // Numbers of involute flanks intersected with the lines of action. The idler turns against the input, and so in the negative sense: the
@@ -296,10 +295,65 @@ fn idler_phases_are_those_of_its_flanks() {
         ([20, 40, 25], [180.0, -70.0], 0.226837),
         ([23, 41, 57], [200.0, -33.0], 0.065243),
     ] {
-        let found = idler_phase(teeth, [-first_deg, -second_deg]);
+        let layout = GearboxLayout::new(&idler(teeth, [-first_deg, -second_deg])).unwrap();
+        let found = (layout.phases[1] - layout.phases[0]).rem_euclid(1.0);
         println!("{teeth:?}: {found:.6}, not {expected}");
         assert!((found - expected).abs() < 1e-6, "{teeth:?}: {found:.6}, not {expected}");
     }
+}
+
+fn profile_errors(teeth: u32, of: f64) -> ErrorTable {
+    let mut errors = ErrorTable::filled(ERROR_POINTS, teeth as usize, of);
+    errors[(7, 3)] = 2.0 * of;
+    errors
+}
+
+/// The profile errors of the driving and of the driven wheel of each mesh; none of ideal wheels.
+fn errors_of_meshes(gearbox: &Gearbox) -> Vec<Option<[ErrorTable; 2]>> {
+    let of_pair = |pair: MeshedPair| {
+        pair.profile_errors.map(|of| [of.pinion_profile_errors_mm, of.gear_profile_errors_mm])
+    };
+    gearbox_stages(gearbox).unwrap().pairs.into_iter().map(of_pair).collect()
+}
+
+// The given errors are those of the flanks that work in the wheel's first mesh.
+#[test]
+fn given_profile_errors_are_of_the_flanks_that_work_in_the_first_mesh() {
+    let mut gearbox = idler([24, 36, 30], [180.0, 0.0]);
+    let of_idler = profile_errors(36, 1e-3);
+    gearbox.wheels[1].profile_errors_mm = Some(of_idler.clone());
+    let ideal = |teeth: usize| ErrorTable::filled(ERROR_POINTS, teeth, 0.0);
+    assert_eq!(errors_of_meshes(&gearbox), [Some([ideal(24), of_idler]), None]);
+}
+
+// The power goes both ways round a rhombus: its first wheel drives in two meshes, and its last is driven in two.
+#[test]
+fn a_wheel_on_the_same_side_of_two_meshes_has_its_profile_errors_in_both() {
+    let half_mm = (48.0_f64.powi(2) - 40.0_f64.powi(2)).sqrt();
+    let shafts = [
+        ("a", [0.0, 0.0], Coupled::Motor),
+        ("b", [40.0, half_mm], Coupled::Nothing),
+        ("c", [40.0, -half_mm], Coupled::Nothing),
+        ("d", [80.0, 0.0], Coupled::Brake),
+    ];
+    let shaft = |(name, position_mm, couples_to): (&str, [f64; 2], Coupled)| {
+        let mut shaft = GearboxShaft::new(name, 100.0, 5.0);
+        (shaft.position_mm, shaft.couples_to) = (Some(position_mm), couples_to);
+        shaft
+    };
+    let mut gearbox = Gearbox::new(
+        shafts.map(shaft).to_vec(),
+        shafts.map(|(name, ..)| GearboxWheel::new(&format!("z{name}"), name, 0.5, 24, 20.0)).to_vec(),
+        [["za", "zb"], ["za", "zc"], ["zb", "zd"], ["zc", "zd"]].map(|of| GearboxMesh::new(of, 2.0)).to_vec(),
+        shafts.iter().flat_map(|(name, ..)| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]).collect(),
+        GearboxOperation::new(30.0, 10.0),
+    );
+    let (first, last) = (profile_errors(24, 1e-3), profile_errors(24, 2e-3));
+    gearbox.wheels[0].profile_errors_mm = Some(first.clone());
+    gearbox.wheels[3].profile_errors_mm = Some(last.clone());
+    let ideal = || ErrorTable::filled(ERROR_POINTS, 24, 0.0);
+    let (drives, driven) = (Some([first, ideal()]), Some([ideal(), last]));
+    assert_eq!(errors_of_meshes(&gearbox), [drives.clone(), drives, driven.clone(), driven]);
 }
 
 /// A gearbox of the one pair of the short form's example.
@@ -545,6 +599,28 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let of_run_up = run_up.iter().find(|warning| warning.kind == WarningKind::Gyroscopic).unwrap();
     assert_eq!(of_run_up.key, "operation.speed_profile_hz.value[1]");
     assert!(of_run_up.message.contains("shaft \"input\" turns at 105.0 rev/s"), "{of_run_up}");
+    // What is given is not drawn, and a share of it has no effect.
+    let ignored = warnings(&|gearbox| {
+        let [first, second, ..] = &mut gearbox.wheels[..] else { unreachable!() };
+        first.iso_class = 0;
+        first.profile_errors_mm = Some(ErrorTable::filled(ERROR_POINTS, 32, 1e-3));
+        (first.tooth_share, first.run_out_share) = (0.1, 0.1);
+        second.deviations.run_out_um = Some(5.0);
+        (second.tooth_share, second.run_out_share) = (0.1, 0.1);
+    });
+    let keys: Vec<&str> = ignored.iter().map(|warning| warning.key.as_str()).collect();
+    assert_eq!(keys, ["wheel[0].tooth_share", "wheel[0].run_out_share", "wheel[1].run_out_share"]);
+    assert!(codes(&ignored).iter().all(|code| *code == "ignored-key"), "{ignored:?}");
+    assert!(ignored[0].message.contains("beside given profile errors"), "{}", ignored[0]);
+    assert!(ignored[2].message.contains("remove run_out_share, or the run-outs"), "{}", ignored[2]);
+    let undamped = warnings(&|gearbox| {
+        gearbox.shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.0);
+        gearbox.bearings.iter_mut().for_each(|bearing| bearing.damping_ratio = 0.0);
+        gearbox.meshes.iter_mut().for_each(|mesh| mesh.damping_ratio = 0.0);
+        gearbox.housing = None;
+    });
+    assert_eq!(codes(&undamped), ["unsettled"]);
+    assert!(undamped[0].message.ends_with("it never decays: a mode has no damping"), "{}", undamped[0]);
     let long = warnings(&|gearbox| {
         (gearbox.wheels[1].teeth, gearbox.wheels[3].teeth) = (97, 79);
     });
@@ -666,6 +742,33 @@ fn a_step_that_is_too_long_is_reported() {
 }
 
 // A second mesh between two shafts that are geared already locks them unless its ratio is the same.
+// Only one tooth is left of a wheel, and whenever it meets its mate the train is thrown farther.
+#[test]
+fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
+    let mut gearbox = gearbox(None);
+    let missing = Fault::new(WheelName::Gear, (1..48).collect::<Vec<u32>>(), MissingTooth);
+    gearbox.faults = vec![GearboxFault { wheel: "z3".to_owned(), fault: missing }];
+    let error = simulate_gearbox(&gearbox).map(drop).unwrap_err();
+    let text = error.to_string();
+    assert!(text.starts_with("the motion grows without bound within") && text.len() < 250, "{text}");
+    assert!(text.contains("with bearing.damping_ratio = 0.0 to 0.02;"), "{text}");
+    assert!(error.help().unwrap().ends_with("or change operation.input_speed_hz"), "{error:?}");
+}
+
+// The second shaft of an idler's train that carries nothing is a dead end.
+#[test]
+fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
+    let mut gearbox = idler([24, 36, 30], [180.0, 0.0]);
+    gearbox.shafts[1].couples_to = Coupled::Brake;
+    gearbox.shafts[2].couples_to = Coupled::Nothing;
+    assert!(gearbox_stages(&gearbox).is_ok());
+    gearbox.wheels[2].deviations.helix_slope_um = Some(5.0);
+    let error = gearbox_stages(&gearbox).map(drop).unwrap_err();
+    assert_eq!(error.key, "mesh[1].wheels");
+    assert!(error.problem.starts_with("the mesh carries nothing"), "{error}");
+    assert!(error.help.unwrap().contains("set wheel[1].helix_slope_um and wheel[2].helix_slope_um to 0"));
+}
+
 #[test]
 fn a_locked_train_names_both_ratios() {
     let mut gearbox = one_pair();

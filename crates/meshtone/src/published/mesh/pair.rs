@@ -5,7 +5,7 @@ use crate::interpolation::{NotAKnotSpline, UniformLinear};
 use crate::published::compliance::ToothCompliance;
 use crate::published::damage::{FaultGeometry, ToothSection};
 use crate::stiffness::hertz_compliance_mm_per_n;
-use crate::wheel::{Gears, Teeth};
+use crate::wheel::{Gears, NamedGears, Teeth};
 
 /// Stiffness of the healthy and of the faulty tooth pair at the points of contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +33,7 @@ impl PairStiffness {
         let sound_pinion = ToothSection::sound(&teeth.pinion, &teeth.pinion_profile);
         let healthy_n_per_mm = pair_stiffness(gears, teeth, &sound_pinion, &sound_gear);
         if healthy_n_per_mm.contains(&0.0) {
-            return Err(ScenarioError::not_stiff());
+            return Err(ScenarioError::not_stiff(NamedGears::of_pair(gears).foundation()));
         }
         Ok(Self {
             healthy_n_per_mm,

@@ -118,10 +118,7 @@ fn read_and_validate(
         return Err(document.locate(Gearbox::refused_as_pair()).into());
     }
     let scenario = document.root().read(|root| read_scenario(root, files))?;
-    match scenario.validate_within(limit) {
-        Ok(_) => Ok(scenario),
-        Err(error) => Err(document.locate(in_its_file(&document, error)).into()),
-    }
+    scenario.validate_within(limit).map(|_| scenario).map_err(|error| located(&document, error))
 }
 
 fn read_scenario(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Scenario> {
@@ -176,21 +173,16 @@ fn refuse_not_modelled(section: &str, table: &TomlTable<'_>) -> ReadResult<()> {
     }
 }
 
-/// An error about deviations that came from a file is about the key that names the file.
-fn in_its_file(document: &TomlDocument<'_>, mut error: ScenarioError) -> ScenarioError {
-    const FILE: &str = "quality.errors_file";
-    let from_file = |entry: &&str| {
-        let key = entry.split('[').next().unwrap_or_default();
-        key.ends_with("profile_errors_mm")
-            || (WheelDeviations::keys().any(|of_wheel| of_wheel == key)
-                && document.value_as_written(&format!("quality.{key}")).is_none())
-    };
-    let Some(entry) = error.key.strip_prefix("quality.").filter(from_file) else {
-        return error;
-    };
-    if document.value_as_written(FILE).is_some() {
+/// An error with its line. One about deviations that came from a file is about the key that names the file, in `quality` or in `wheel[n]`.
+pub(super) fn located(document: &TomlDocument<'_>, mut error: ScenarioError) -> ScenarioError {
+    let (section, entry) = error.key.split_once('.').unwrap_or_default();
+    let key = entry.split('[').next().unwrap_or_default();
+    let mut of_file = WheelDeviations::keys().chain(["pinion_profile_errors_mm", "gear_profile_errors_mm"]);
+    let is_written = |key: &str| document.value_as_written(&format!("{section}.{key}")).is_some();
+    // A wheel's keys lack the name of the pinion or the gear.
+    if of_file.any(|of_wheel| of_wheel.ends_with(key)) && is_written("errors_file") && !is_written(key) {
         error.problem = format!("{entry}: {}", error.problem);
-        error.key = FILE.to_string();
+        error.key = format!("{section}.errors_file");
     }
-    error
+    document.locate(error).into()
 }

@@ -415,14 +415,8 @@ impl GearboxLayout {
 
     /// Revolutions of the input after which all teeth and shafts stand again as at the start.
     pub fn cycle_revolutions(&self) -> i64 {
-        let gcd = |mut a: i64, mut b: i64| {
-            while b != 0 {
-                (a, b) = (b, a % b);
-            }
-            a
-        };
         self.ratios.iter().fold(1, |multiple: i64, ratio| {
-            let step = ratio.denominator / gcd(multiple, ratio.denominator);
+            let step = Ratio::ONE.times(multiple, ratio.denominator).denominator;
             multiple.saturating_mul(step)
         })
     }
@@ -496,23 +490,18 @@ fn unique(list: &str, names: &[&str]) -> Result<(), ScenarioError> {
         }
         if let Some(other) = names[..index].iter().position(|other| other == name) {
             let problem = format!("is the name of {list}[{other}] already; each must have its own");
-            return Err(
-                ScenarioError::new(key, format!("{name:?}"), problem).with_help("give it another name")
-            );
+            let error = ScenarioError::new(key, format!("{name:?}"), problem);
+            return Err(error.with_help("give it another name"));
         }
     }
     Ok(())
 }
 
 /// The number of a name in a list.
-fn find(names: &[&str], name: &str, what: &str) -> Result<usize, ScenarioError> {
+pub(super) fn find(names: &[&str], name: &str, what: &str) -> Result<usize, ScenarioError> {
     names.iter().position(|other| *other == name).ok_or_else(|| {
         let known: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
-        let problem = if known.is_empty() {
-            format!("is no {what}'s name; there is none")
-        } else {
-            format!("is no {what}'s name; there are {}", known.join(", "))
-        };
+        let problem = format!("is no {what}'s name; there are {}", known.join(", "));
         ScenarioError::new(what, format!("{name:?}"), problem)
     })
 }

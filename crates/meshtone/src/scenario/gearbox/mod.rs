@@ -14,7 +14,7 @@ pub use parts::{
 
 use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 
-use super::from_toml::{Numbers, ScenarioFiles};
+use super::from_toml::{Numbers, ScenarioFiles, located};
 use super::validate::{DrivenSpeed, pitch_line_mm};
 use super::{MemoryLimit, Scenario, ScenarioError, ScenarioWarning, SectionDescription, WarningKind};
 use crate::damage::{Fault, check_faults};
@@ -25,7 +25,7 @@ use crate::machine::{Bearing, GearboxShaft, Housing};
 use crate::operation::TimeGrid;
 use crate::wheel::Material;
 use crate::wheel::quality::{check_errors, one_source};
-use layout::{entry_key, section};
+use layout::{entry_key, find, section};
 use parts::list;
 
 /// Everything that a simulation of a gearbox depends on.
@@ -193,10 +193,7 @@ impl Gearbox {
         Self::is_written_in(text)?;
         let document = TomlDocument::parse(text)?;
         let gearbox = document.root().read(|root| Self::from_table(root, files))?;
-        match gearbox.validate_within(limit) {
-            Ok(_) => Ok(gearbox),
-            Err(error) => Err(document.locate(error).into()),
-        }
+        gearbox.validate_within(limit).map(|_| gearbox).map_err(|error| located(&document, error))
     }
 
     fn from_table(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Self> {
@@ -303,9 +300,8 @@ impl Gearbox {
         let most = crate::solver::MOST_MESHES;
         if self.meshes.len() > most {
             let problem = format!("there are {} meshes; must be at most {most}", self.meshes.len());
-            return Err(
-                ScenarioError::new("mesh", "", problem).with_help("leave out meshes that carry no load")
-            );
+            let error = ScenarioError::new("mesh", "", problem);
+            return Err(error.with_help("leave out meshes that carry no load"));
         }
         Ok(())
     }
@@ -384,25 +380,17 @@ impl Gearbox {
         }
         if time.kept_samples() < 2 {
             let problem = "keeps less than two samples";
-            return Err(
-                ScenarioError::new("solver.duration_s", "", problem).with_help("keep a longer signal")
-            );
+            let error = ScenarioError::new("solver.duration_s", "", problem);
+            return Err(error.with_help("keep a longer signal"));
         }
         Ok(())
     }
 
     fn check_faults(&self, layout: &GearboxLayout) -> Result<(), ScenarioError> {
+        let names: Vec<&str> = self.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
         for (index, GearboxFault { wheel, .. }) in self.faults.iter().enumerate() {
-            if !self.wheels.iter().any(|of| of.name == *wheel) {
-                let known: Vec<String> =
-                    self.wheels.iter().map(|wheel| format!("\"{}\"", wheel.name)).collect();
-                let problem = format!("is no wheel's name; there are {}", known.join(", "));
-                return Err(ScenarioError::new(
-                    entry_key("fault", index, self.faults.len(), "wheel"),
-                    format!("{wheel:?}"),
-                    problem,
-                ));
-            }
+            let key = entry_key("fault", index, self.faults.len(), "wheel");
+            find(&names, wheel, "wheel").map_err(|error| error.with_key(key))?;
         }
         for mesh in 0..self.meshes.len() {
             let (numbers, faults): (Vec<usize>, Vec<Fault>) =
@@ -454,9 +442,12 @@ impl Gearbox {
             ScenarioWarning::new(WarningKind::LongCycle, "solver.duration_s", message)
         });
         let of_teeth = layout.warnings_of_teeth(self);
+        let wheels = self.wheels.len();
+        let of_wheel = |number: usize| self.wheels[number].ignored_shares(&section("wheel", number, wheels));
+        let of_shares = (0..wheels).flat_map(of_wheel);
         let ended = self.operation.drive.ended_profiles(time.kept_from_s());
         let of_speed = self.driven_speed(layout).warnings();
-        of_teeth.into_iter().chain(of_speed).chain(fast).chain(long).chain(ended).collect()
+        of_teeth.into_iter().chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()
     }
 
     fn driven_speed(&self, layout: &GearboxLayout) -> DrivenSpeed<'_> {

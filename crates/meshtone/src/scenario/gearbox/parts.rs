@@ -5,13 +5,14 @@ use std::ops::Bound::{Excluded, Included};
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::damage::Fault;
+use crate::error::ScenarioWarning;
 use crate::keys::{
     KeyKind, KeyRow, Keys, NumberFiles, Range, documented, field, flatten, load, read_keys, row,
 };
 use crate::machine::{Axis, WheelInertia};
 use crate::operation::{Operation, Solver};
 use crate::sensor::{Sensor, SensorDirection, SensorPath};
-use crate::wheel::quality::file_deviations;
+use crate::wheel::quality::{file_deviations, ignored_shares};
 use crate::wheel::rows::*;
 use crate::wheel::{ErrorTable, FlankRelief, Material, WheelDeviations, WheelName};
 
@@ -101,6 +102,20 @@ impl GearboxWheel {
             wheel.deviations = side.choose(pinion, gear);
         }
         read_keys(&mut wheel, table, files).map(|()| wheel)
+    }
+
+    /// Shares of what is given and so not drawn, which have no effect.
+    ///
+    /// # Arguments
+    /// * `section` - of its keys
+    pub(super) fn ignored_shares(&self, section: &str) -> Vec<ScenarioWarning> {
+        let (default, given) = (Self::start(), &self.deviations);
+        let shares = [
+            ("tooth_share", self.tooth_share != default.tooth_share, false),
+            ("pitch_share", self.pitch_share != default.pitch_share, given.cumulative_pitch_um.is_some()),
+            ("run_out_share", self.run_out_share != default.run_out_share, given.run_out_um.is_some()),
+        ];
+        ignored_shares(section, self.profile_errors_mm.is_some(), &shares)
     }
 }
 

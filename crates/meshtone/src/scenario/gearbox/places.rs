@@ -35,12 +35,9 @@ impl Gearbox {
             let name = sensor.name();
             if let Some(other) = sensors[..index].iter().position(|other| other.name() == name) {
                 let problem = format!("is the name of sensor[{other}] already; no two have the same channel");
-                return Err(ScenarioError::new(
-                    entry_key("sensor", index, entries, "name"),
-                    format!("{name:?}"),
-                    problem,
-                )
-                .with_help("give it a name of its own"));
+                let key = entry_key("sensor", index, entries, "name");
+                let error = ScenarioError::new(key, format!("{name:?}"), problem);
+                return Err(error.with_help("give it a name of its own"));
             }
             let place = self.place(&sensor.at, layout);
             places.push(place.map_err(|problem| {

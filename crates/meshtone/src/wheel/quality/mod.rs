@@ -12,7 +12,7 @@ pub use deviations::{Deviations, RunOut, deviations};
 pub(crate) use errors::file_deviations;
 pub use errors::{ERROR_POINTS, ProfileErrors, Quality};
 pub use measured::WheelDeviations;
-pub(crate) use rules::{check_errors, one_source};
+pub(crate) use rules::{check_errors, ignored_shares, one_source};
 pub use tolerances::Tolerances;
 
 use super::{Teeth, Wheel, WheelName};

@@ -41,27 +41,41 @@ impl Quality {
         let pitches = both(|given| given.cumulative_pitch_um.is_some());
         let run_out = both(|given| given.run_out_um.is_some());
         let helix = both(|given| given.helix_slope_um.is_some());
-        [
-            ("tooth_share", self.tooth_share != default.tooth_share, false, ""),
-            ("pitch_share", self.pitch_share != default.pitch_share, pitches, "cumulative pitch deviations"),
-            ("run_out_share", self.run_out_share != default.run_out_share, run_out, "run-outs"),
-            ("helix_share", self.helix_share != default.helix_share, helix, "helix slope deviations"),
-        ]
-        .into_iter()
-        .filter(|(_, is_set, ..)| *is_set)
-        .filter_map(|(key, _, is_given, what)| {
-            let given = match (&self.profile_errors, is_given) {
-                (Some(_), _) => "profile errors",
-                (None, true) => what,
-                (None, false) => return None,
-            };
-            let message = format!(
-                "is ignored: beside given {given} nothing is drawn that it is a share of; remove {key}, or the {given}"
-            );
-            Some(ScenarioWarning::new(WarningKind::IgnoredKey, format!("quality.{key}"), message))
-        })
-        .collect()
+        let shares = [
+            ("tooth_share", self.tooth_share != default.tooth_share, false),
+            ("pitch_share", self.pitch_share != default.pitch_share, pitches),
+            ("run_out_share", self.run_out_share != default.run_out_share, run_out),
+            ("helix_share", self.helix_share != default.helix_share, helix),
+        ];
+        ignored_shares("quality", self.profile_errors.is_some(), &shares)
     }
+}
+
+/// Warnings of shares of what is given and so not drawn, which have no effect.
+///
+/// # Arguments
+/// * `section` - the keys' section
+/// * `has_errors` - whether profile errors are given, beside which nothing is drawn
+/// * `shares` - the keys, whether each is set, and whether that of which it is a share is given
+pub(crate) fn ignored_shares(
+    section: &str,
+    has_errors: bool,
+    shares: &[(&str, bool, bool)],
+) -> Vec<ScenarioWarning> {
+    let ignored = shares.iter().filter(|(_, is_set, is_given)| *is_set && (has_errors || *is_given));
+    let warning = |&(key, ..): &(&str, bool, bool)| {
+        let given = match key {
+            _ if has_errors => "profile errors",
+            "pitch_share" => "cumulative pitch deviations",
+            "run_out_share" => "run-outs",
+            _ => "helix slope deviations",
+        };
+        let message = format!(
+            "is ignored: beside given {given} nothing is drawn that it is a share of; remove {key}, or the {given}"
+        );
+        ScenarioWarning::new(WarningKind::IgnoredKey, format!("{section}.{key}"), message)
+    };
+    ignored.map(warning).collect()
 }
 
 impl WheelDeviations {

@@ -50,7 +50,7 @@ fn tables() -> String {
             if !is_table || known.contains(&name) {
                 continue;
             }
-            text.push_str(&table_class(&name, &inside(&section.keys, &table.key)));
+            text.push_str(&table_class(&name, "A table of a scenario.", &inside(&section.keys, &table.key)));
             known.push(name);
         }
     }

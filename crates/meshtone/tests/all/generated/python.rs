@@ -30,10 +30,10 @@ pub fn class_name(key: &str) -> String {
     key.split('_').map(capital).collect()
 }
 
-/// The class of a table, behind two empty lines.
-pub fn table_class(name: &str, keys: &[KeyDescription]) -> String {
+/// The class of a table, behind two empty lines, with a sentence about it.
+pub fn table_class(name: &str, summary: &str, keys: &[KeyDescription]) -> String {
     let mut text = format!(
-        "\n\nclass {name}(TypedDict, total=False):\n    \"\"\"A table of a scenario.\n\n    Attributes\n    ----------\n"
+        "\n\nclass {name}(TypedDict, total=False):\n    \"\"\"{summary}\n\n    Attributes\n    ----------\n"
     );
     for key in keys {
         // Of two tables of one class each has its own defaults.

@@ -19,7 +19,7 @@ pub fn text() -> String {
     let of_sensor = sections().into_iter().filter(|section| section.name == "sensor");
     let (inner, keys): (Vec<KeyDescription>, Vec<_>) =
         of_sensor.flat_map(|section| section.keys).partition(|key| key.key.contains('.'));
-    let path = table_class("SensorPath", &inside(&inner, "path"));
+    let path = table_class("SensorPath", "The table ``path`` of a sensor.", &inside(&inner, "path"));
     let mut text = format!(
         "\"\"\"The class of a sensor.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
          from collections.abc import Mapping, Sequence\nfrom dataclasses import dataclass\nfrom typing import Any, Literal, TypedDict\n{path}\n\n\
