@@ -71,11 +71,11 @@ pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError>
 
 fn title(stages: &GearboxStages) -> String {
     let faults = stages.gearbox.faults.iter().map(|of| {
-        let kind = crate::drawing::capitalised(&of.fault.damage.kind().replace('-', " "));
+        let kind = of.fault.damage.kind().replace('-', " ");
         format!("{kind} on {} of {}", of.fault.tooth.in_words(), of.wheel)
     });
-    let faults: Vec<String> = faults.collect();
-    if faults.is_empty() { "Healthy gearbox".to_owned() } else { faults.join(", ") }
+    let faults = crate::drawing::capitalised(&faults.collect::<Vec<_>>().join(", "));
+    if faults.is_empty() { "Healthy gearbox".to_owned() } else { faults }
 }
 
 fn facts(stages: &GearboxStages) -> Vec<String> {

@@ -371,6 +371,7 @@ fn damaged_wheels_of_a_gearbox_are_drawn_as_far_as_there_is_room() {
                 "{damaged}: {name}"
             );
         }
+        assert!(shows("Missing tooth on tooth 3 of z1") && !shows(", Missing"));
         assert_eq!(shows("1 more damaged wheel is in the summary"), damaged == 5);
         let curves = if damaged <= 2 { 2 * damaged } else { drawn };
         assert_eq!(tinted(&figure).len(), curves, "{damaged}");
