@@ -6,9 +6,9 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, Mismatch, ShaftPhase, SignalError,
-    SimulatedShafts, angular_resample, find_mismatch,
+    SignalWarning, SimulatedShafts, angular_resample, find_mismatch,
 };
-use meshtone::tuning::HealthyRecording;
+use meshtone::tuning::{HealthyRecording, RecordingProblem};
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{Observation, SignalKind, other_teeth};
 use meshtone_io::indicators::WarningEntry;
@@ -115,7 +115,8 @@ impl<'a> Observer<'a> {
                 if let Some(mismatch) =
                     other.map_err(|error| refuse(path, &what, RefusedInput::Phase, &error))?
                 {
-                    let problem = format!("{}: does not fit the scenario: {mismatch}", path.display());
+                    let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
+                    let problem = format!("{}: {problem}", path.display());
                     return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
                 }
                 let doubtful = shaft.warnings.iter().map(|warning| about(&input.source, warning));

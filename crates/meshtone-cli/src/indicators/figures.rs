@@ -78,15 +78,12 @@ pub fn of_record(
 /// The figure of the orders of the first wheel's shaft over time, where the last recording is a run-up: where the speed changes so much that
 /// resonances pass over orders. Of another the average says all. A recording that has too few revolutions for a map has no figure.
 pub fn of_order_map(series: &Series, latest: &LatestRecords, phase: &PhaseOptions) -> Option<Figure> {
-    const PARTS: usize = 16;
-    const LEAST_RATIO: f64 = 1.1;
     let (input, (wheel, ..)) = (&latest.input, latest.wheels.first()?);
     let turning = match &latest.turning {
         ShaftAngle::Measured(turning) => Cow::Borrowed(turning),
         ShaftAngle::Simulated(shafts) => Cow::Owned(shafts.varying_phase(WheelName::Pinion).ok()??),
     };
-    let [lowest_hz, highest_hz] = turning.speed_range_hz(input.sampling_rate_hz, PARTS);
-    if highest_hz < LEAST_RATIO * lowest_hz {
+    if !turning.is_run_up(input.sampling_rate_hz) {
         return None;
     }
     let highest_order = Some(OrderMapSettings::MESH_ORDERS * f64::from(wheel.teeth));

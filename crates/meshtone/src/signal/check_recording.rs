@@ -2,16 +2,10 @@
 
 use super::{AngularSignal, ShaftPhase, SignalWarning, StatedFacts, find_mismatch, lines_off_shafts};
 
-/// (-) Ratio of the highest to the lowest speed up to which tones of neither shaft are looked for: over a run-up, what rings at a resonance
-/// looks like them, and a tone of a constant frequency has no order.
-const NEARLY_CONSTANT: f64 = 1.1;
-/// Parts of a recording whose speeds are compared.
-const PARTS: usize = 10;
-
 /// Looks for a sign that a recording does not fit the stated facts, and for tones that belong to neither shaft.
 ///
 /// Where a stated fact does not fit, the lines at wrong orders follow from it, and only that is reported. Tones are looked for where the mate's
-/// teeth are stated, since they may be its own orders otherwise, and where the speed changes by less than a tenth. That nothing repeats with the shaft is
+/// teeth are stated, since they may be its own orders otherwise, and where the recording is not [a run-up](ShaftPhase::is_run_up). That nothing repeats with the shaft is
 /// among the warnings of a [`Record`](super::Record).
 ///
 /// # Arguments
@@ -42,8 +36,8 @@ pub fn check_recording(
     if let Some(mismatch) = find_mismatch(angular, stated) {
         return vec![SignalWarning::DoesNotFit(mismatch)];
     }
-    let [lowest_hz, highest_hz] = phase.speed_range_hz(sampling_rate_hz, PARTS);
-    if highest_hz > NEARLY_CONSTANT * lowest_hz {
+    // Over a run-up, what rings at a resonance looks like a foreign tone, and a tone of a constant frequency has no order.
+    if phase.is_run_up(sampling_rate_hz) {
         return Vec::new();
     }
     let mean_speed_hz = phase.mean_speed_hz(sampling_rate_hz);

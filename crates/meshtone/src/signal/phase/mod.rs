@@ -17,6 +17,10 @@ pub use zero::AngleZero;
 use super::check::{check_count, check_finite};
 use super::{SignalError, SignalWarning};
 
+/// Parts of a recording whose speeds are compared, and the ratio of the highest to the lowest one of a run-up.
+const PARTS: usize = 16;
+const RUN_UP: f64 = 1.1;
+
 /// The angle of a shaft over the samples of a recording, in revolutions, always rising.
 ///
 /// A phase may cover a part of the recording only: pulses say nothing before the first and after the last one.
@@ -116,6 +120,16 @@ impl ShaftPhase {
         let at = |part: usize| self.sample_at(first + each * part as f64);
         let speeds = (0..parts.max(1)).map(|part| each * sampling_rate_hz / (at(part + 1) - at(part)));
         speeds.fold([f64::INFINITY, 0.0], |[low, high], speed| [low.min(speed), high.max(speed)])
+    }
+
+    /// Returns whether the highest speed is at least a tenth above the lowest one, so that resonances pass over orders: a run-up, a
+    /// coast-down, or a speed that fluctuates as much.
+    ///
+    /// # Arguments
+    /// * `sampling_rate_hz` - (S/s) of the recording
+    pub fn is_run_up(&self, sampling_rate_hz: f64) -> bool {
+        let [lowest_hz, highest_hz] = self.speed_range_hz(sampling_rate_hz, PARTS);
+        highest_hz >= RUN_UP * lowest_hz
     }
 
     /// Place of an angle between the samples of the recording; at the first or last one where the shaft did not turn so far.

@@ -168,7 +168,7 @@ impl Cells {
         powers
     }
 
-    /// (g²/Hz) Mean power density around each frequency in some windows.
+    /// (g²/Hz) Mean power density around each frequency in some windows; infinite far from those that are compared.
     ///
     /// # Arguments
     /// * `spectra` - of the windows
@@ -187,7 +187,7 @@ impl Cells {
         let last = self.frequency_hz.len();
         let mean = |at: usize| {
             let (from, to) = (sums[at.saturating_sub(AROUND)], sums[(at + AROUND + 1).min(last)]);
-            (to[0] - from[0]) / (to[1] - from[1])
+            if to[1] > from[1] { (to[0] - from[0]) / (to[1] - from[1]) } else { f64::INFINITY }
         };
         (0..last).map(mean).collect()
     }

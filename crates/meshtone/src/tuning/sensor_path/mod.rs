@@ -130,8 +130,9 @@ pub fn estimate_path(
     check_is_drawn(&scenario.quality)?;
     if scenario.sensors.first().is_some_and(|sensor| sensor.response_input == ResponseInput::Force) {
         let problem = "the path that is estimated is a ratio of accelerations";
-        return Err(ScenarioError::new("sensor.response_input", "force", problem)
+        return Err(ScenarioError::new("sensor.response_input", "\"force\"", problem)
             .with_help("remove response_input")
+            .in_entry("sensor", 0, scenario.sensors.len())
             .into());
     }
     let (window_s, pieces) = pieces(recordings, teeth[0])?;
@@ -177,8 +178,9 @@ fn check_is_drawn(quality: &Quality) -> Result<(), ScenarioError> {
     let help = "state the grade of the wheels with quality.din_grade or quality.iso_class";
     if quality.profile_errors.is_some() {
         let problem = "the errors of the teeth are given, so that no draw of the wheels differs from another";
-        Err(ScenarioError::new("quality.errors_file", "", problem)
-            .with_help(format!("leave it out, and {help}, by which the wheels are drawn")))
+        Err(ScenarioError::new("quality", "", problem).with_help(format!(
+            "leave errors_file and profile errors out, and {help}, by which the wheels are drawn"
+        )))
     } else if quality.din_grade == 0 && quality.iso_class == 0 {
         let problem = "ideal wheels have no sidebands, and no draw of them differs from another";
         Err(ScenarioError::new("quality.din_grade", 0, problem).with_help(help))

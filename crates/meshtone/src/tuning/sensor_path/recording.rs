@@ -145,12 +145,10 @@ pub(super) fn pieces(
         let length_s = (WINDOWS_IN_PIECE * window_s).max(SHORTEST_PIECE_S).min(recording_s);
         let length = ((length_s * rate_hz) as usize).min(samples);
         let count = (samples / length).min(most_of_each);
-        // Run-ups that are alike are cut at different speeds.
-        let shift = (number as f64 + 0.5) / recordings.len() as f64 - 0.5;
-        let first = |at: usize| {
-            let part = (at as f64 + shift) / count.saturating_sub(1).max(1) as f64;
-            (part.clamp(0.0, 1.0) * (samples - length) as f64) as usize
-        };
+        // Each piece lies in a slot of its own; run-ups that are alike are cut at different speeds.
+        let slot = samples as f64 / count as f64;
+        let shift = (number as f64 + 0.5) / recordings.len() as f64 * (slot - length as f64);
+        let first = |at: usize| (at as f64 * slot + shift) as usize;
         pieces.extend((0..count).map(|at| piece(recording, number, first(at), length, window_s)));
     }
     Ok((window_s, pieces))
@@ -171,5 +169,32 @@ fn piece(recording: &HealthyRecording, number: usize, first: usize, samples: usi
             time_s: (0..parts).map(middle_s).collect(),
             value: (0..parts).map(speed_hz).collect(),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Run-ups that are alike: no sample lies in two pieces of one recording, and the pieces of all of them begin at different places.
+    #[test]
+    fn pieces_of_a_recording_lie_apart() {
+        for recordings in [1, 2, 8] {
+            let recording = HealthyRecording {
+                values_g: vec![0.0; 45_000],
+                sampling_rate_hz: 1e4,
+                pinion: ShaftPhase::from_speed_profile(&[0.0, 4.5], &[20.0, 60.0], 1e4, 45_000).unwrap(),
+            };
+            let (_, pieces) = pieces(&vec![recording; recordings], 20).unwrap();
+            let mut first: Vec<usize> = pieces.iter().map(|piece| piece.first).collect();
+            for pair in pieces.windows(2).filter(|pair| pair[0].recording == pair[1].recording) {
+                assert!(pair[0].first + pair[0].samples <= pair[1].first, "{recordings}");
+            }
+            assert!(pieces.iter().all(|piece| piece.first + piece.samples <= 45_000), "{recordings}");
+            let all = first.len();
+            first.sort_unstable();
+            first.dedup();
+            assert_eq!((all, first.len()), (4 * recordings, all));
+        }
     }
 }
