@@ -15,7 +15,7 @@ from ._sensor import SensorPath
 
 
 class GearboxShaft(TypedDict, total=False):
-    """A table of a scenario.
+    """An entry ``[[shaft]]`` of a gearbox.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class GearboxShaft(TypedDict, total=False):
 
 
 class GearboxWheel(TypedDict, total=False):
-    """A table of a scenario.
+    """An entry ``[[wheel]]`` of a gearbox.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ class GearboxWheel(TypedDict, total=False):
 
 
 class GearboxMesh(TypedDict, total=False):
-    """A table of a scenario.
+    """An entry ``[[mesh]]`` of a gearbox.
 
     Attributes
     ----------
@@ -175,7 +175,7 @@ class GearboxMesh(TypedDict, total=False):
 
 
 class Seat(TypedDict, total=False):
-    """A table of a scenario.
+    """The table ``seat`` of an entry ``[[bearing]]`` of a gearbox.
 
     Attributes
     ----------
@@ -196,7 +196,7 @@ class Seat(TypedDict, total=False):
 
 
 class GearboxBearing(TypedDict, total=False):
-    """A table of a scenario.
+    """An entry ``[[bearing]]`` of a gearbox.
 
     Attributes
     ----------
@@ -229,7 +229,7 @@ class GearboxBearing(TypedDict, total=False):
 
 
 class Foot(TypedDict, total=False):
-    """A table of a scenario.
+    """An entry of ``feet`` of the section ``[housing]`` of a gearbox.
 
     Attributes
     ----------
@@ -244,7 +244,7 @@ class Foot(TypedDict, total=False):
 
 
 class GearboxHousing(TypedDict, total=False):
-    """A table of a scenario.
+    """The section ``[housing]`` of a gearbox.
 
     Attributes
     ----------
@@ -265,7 +265,7 @@ class GearboxHousing(TypedDict, total=False):
 
 
 class Ripple(TypedDict, total=False):
-    """A table of a scenario.
+    """An entry of ``torque_ripple`` of the section ``[operation]`` of a gearbox.
 
     Attributes
     ----------
@@ -283,7 +283,7 @@ class Ripple(TypedDict, total=False):
 
 
 class GearboxOperation(TypedDict, total=False):
-    """A table of a scenario.
+    """The section ``[operation]`` of a gearbox.
 
     Attributes
     ----------
@@ -320,7 +320,7 @@ class GearboxOperation(TypedDict, total=False):
 
 
 class GearboxSensor(TypedDict, total=False):
-    """A table of a scenario.
+    """An entry ``[[sensor]]`` of a gearbox.
 
     Attributes
     ----------
@@ -368,7 +368,7 @@ class GearboxSensor(TypedDict, total=False):
 
 
 class GearboxSolver(TypedDict, total=False):
-    """A table of a scenario.
+    """The section ``[solver]`` of a gearbox.
 
     Attributes
     ----------

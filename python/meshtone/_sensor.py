@@ -11,7 +11,7 @@ from typing import Any, Literal, TypedDict
 
 
 class SensorPath(TypedDict, total=False):
-    """A table of a scenario.
+    """The table ``path`` of a sensor.
 
     Attributes
     ----------
