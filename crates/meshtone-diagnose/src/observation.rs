@@ -5,6 +5,7 @@ use meshtone::signal::{
     Alternative, AngleZero, AngularSettings, AngularSignal, LinesOffShafts, Mismatch, SeparationSettings,
     ShaftPhase, SignalError, StatedFacts, StatedTurning, SynchronousAverage, angular_resample, check_channel,
     find_mismatch, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
+    synchronous_part,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -158,7 +159,9 @@ impl Observation {
         }
         let [of_pinion, of_gear] = [synchronous_average(pinion)?, synchronous_average(gear)?];
         let ratio = f64::from(teeth[1]) / f64::from(teeth[0]);
-        let mismatch = energy_off_both_shafts(gear, teeth, pinion_speed_hz / ratio);
+        let mismatch = nothing_synchronous([(pinion, &of_pinion), (gear, &of_gear)])
+            .or_else(|| silent_part(gear))
+            .or_else(|| energy_off_both_shafts(gear, teeth, pinion_speed_hz / ratio));
         Ok(Self {
             signal: SignalKind::Recording,
             pinion_speed_hz: Some(pinion_speed_hz),
@@ -340,6 +343,43 @@ fn noise(angular: &AngularSignal, teeth: u32, mate_teeth: u32) -> Vec<f64> {
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
+}
+
+/// Evidence against a recording of which nothing repeats with either shaft.
+///
+/// # Arguments
+/// * `views` - the recording over the angles of both shafts, with their averages
+fn nothing_synchronous(views: [(&AngularSignal, &SynchronousAverage); 2]) -> Option<String> {
+    let parts = views.map(|(view, average)| synchronous_part(&view.values, &average.values));
+    let [Some(pinion), Some(gear)] = parts else { return None };
+    (pinion.is_noise() && gear.is_noise()).then(|| {
+        format!(
+            "nothing in the recording clearly repeats with either shaft: the average of {} revolutions of the gear holds {:.2} % of the \
+             mean square, noise alone leaves {:.2} %; are channel, sampling rate and speed right?",
+            gear.revolutions,
+            100.0 * gear.of_mean_square,
+            100.0 / gear.revolutions as f64
+        )
+    })
+}
+
+/// (-) Level of the quietest revolution over that of the loudest, below which the sensor did not measure all the time.
+const QUIETEST: f64 = 1.0 / 30.0;
+
+/// Evidence against a recording that is silent for a part of the time.
+fn silent_part(gear: &AngularSignal) -> Option<String> {
+    let levels = gear.values.chunks_exact(gear.points_per_revolution).map(standard_deviation);
+    let levels: Vec<f64> = levels.collect();
+    let loudest = levels.iter().copied().fold(0.0, f64::max);
+    let silent = levels.iter().filter(|level| **level < QUIETEST * loudest).count();
+    (silent > 0).then(|| {
+        format!(
+            "{silent} of {} revolutions of the gear have less than 1/{:.0} of the level of the loudest: a sensor that failed, or knocks; cut the \
+             recording to where the machine runs evenly",
+            levels.len(),
+            1.0 / QUIETEST
+        )
+    })
 }
 
 /// (-) Kurtosis of what belongs to neither shaft, from which on it is impulsive.

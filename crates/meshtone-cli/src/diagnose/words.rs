@@ -19,11 +19,13 @@ pub fn percent(probability: f64) -> String {
 
 /// Meaning of the p-value.
 pub fn outside(answer: &Answer) -> String {
-    let means = match answer.outside_model < OUTSIDE {
-        true => "the recording is unlike all that was simulated",
-        false => "the recording is like what was simulated",
+    let healthy = answer.healthy_outside_model.filter(|p| *p < OUTSIDE);
+    let (means, p) = match (answer.outside_model < OUTSIDE, healthy) {
+        (true, _) => ("the recording is unlike all that was simulated", answer.outside_model),
+        (false, Some(p)) => ("the healthy recording is unlike all that was simulated", p),
+        (false, None) => ("the recording is like what was simulated", answer.outside_model),
     };
-    format!("{means} ({})", p_in_words(answer.outside_model))
+    format!("{means} ({})", p_in_words(p))
 }
 
 /// Meaning of tooth 1 of the wheel that is named.
