@@ -144,7 +144,17 @@ impl Answer {
 
     /// Returns whether the recording, or the healthy one, is unlike what was simulated, so that nothing can be said.
     pub fn is_outside(&self) -> bool {
-        self.outside_model < OUTSIDE || self.healthy_outside_model.is_some_and(|p| p < OUTSIDE)
+        self.is_recording_outside() || self.is_healthy_outside()
+    }
+
+    /// Returns whether the recording is unlike what was simulated: of two tests each has half of the level of one.
+    pub fn is_recording_outside(&self) -> bool {
+        self.outside_model < if self.has_healthy { 0.5 * OUTSIDE } else { OUTSIDE }
+    }
+
+    /// Returns whether the healthy recording is unlike the healthy pairs that were simulated.
+    pub fn is_healthy_outside(&self) -> bool {
+        self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
     }
 
     /// The likeliest damage.

@@ -17,7 +17,7 @@ const COMPONENTS: usize = 40;
 const FARTHEST: f64 = 20.0;
 /// (-) Parts of the simulations below and above which the values of a feature are looked at as beyond it.
 const NEARLY_ALL: [f64; 2] = [0.002, 0.998];
-/// (-) Least width of a feature's range, of logarithms: one that is the same in all simulations must not decide alone.
+/// (-) Least width of a feature's range: one that is the same in all simulations must not decide alone.
 const LEAST_WIDTH: f64 = 0.1;
 /// Neighbours whose mean distance counts.
 const NEIGHBOURS: usize = 8;
@@ -31,8 +31,9 @@ pub(crate) struct OutlierTest {
     left: f64,
     points: Vec<Vec<f64>>,
     units: Vec<u64>,
-    /// Range of each feature in nearly all simulations.
-    ranges: Vec<[f64; 2]>,
+    /// Range of each feature in nearly all simulations of the units with an even and with an odd number: a simulation is held against the
+    /// half in which its unit is not.
+    ranges: [Vec<[f64; 2]>; 2],
     /// Distances of the simulations from those of other units; how far they are beyond the ranges; the rarer of the two.
     by_distance: Ranking,
     by_feature: Ranking,
@@ -88,17 +89,19 @@ impl OutlierTest {
         });
         let left = order.iter().map(|&at| eigen.eigenvalues[at]).sum::<f64>();
         let left = (eigen.eigenvalues.sum() - left).max(1e-9).sqrt();
-        let range = |feature: usize| {
-            let values = rows.iter().zip(weights).map(|(row, weight)| (row[feature], *weight)).collect();
-            quantiles(values, NEARLY_ALL)
+        let range = |half: u64, feature: usize| {
+            let inside = rows.iter().zip(weights).zip(&units).filter(|(_, unit)| *unit % 2 == half);
+            quantiles(inside.map(|((row, weight), _)| (row[feature], *weight)).collect(), NEARLY_ALL)
         };
+        let ranges =
+            [0, 1].map(|half| (0..width).into_par_iter().map(|feature| range(half, feature)).collect());
         let mut of = Self {
             standard,
             components,
             left,
             points: Vec::new(),
             units,
-            ranges: (0..width).into_par_iter().map(range).collect(),
+            ranges,
             by_distance: Ranking::new(&[], &[]),
             by_feature: Ranking::new(&[], &[]),
             by_rarer: Ranking::new(&[], &[]),
@@ -107,7 +110,8 @@ impl OutlierTest {
         let places = || (0..rows.len()).into_par_iter();
         let distances: Vec<f64> =
             places().map(|row| of.distance(&of.points[row], Some(of.units[row]))).collect();
-        let beyond: Vec<f64> = rows.par_iter().map(|row| of.beyond(row)).collect();
+        let beyond: Vec<f64> =
+            places().map(|row| of.beyond(&rows[row], 1 - (of.units[row] % 2) as usize)).collect();
         of.by_distance = Ranking::new(&distances, weights);
         of.by_feature = Ranking::new(&beyond, weights);
         let rarer: Vec<f64> = places().map(|row| -of.rarer(distances[row], beyond[row])).collect();
@@ -136,12 +140,12 @@ impl OutlierTest {
         nearest.iter().map(|(distance, _)| distance).sum::<f64>() / nearest.len().max(1) as f64
     }
 
-    /// (-) How far the strangest feature is beyond its range, over the width of this.
-    fn beyond(&self, row: &[f64]) -> f64 {
+    /// (-) How far the strangest feature is beyond its range in a half of the simulations, over the width of this.
+    fn beyond(&self, row: &[f64], half: usize) -> f64 {
         let beyond = |(value, [low, high]): (&f64, &[f64; 2])| {
             (low - value).max(value - high) / (high - low).max(LEAST_WIDTH)
         };
-        row.iter().zip(&self.ranges).map(beyond).fold(f64::NEG_INFINITY, f64::max)
+        row.iter().zip(&self.ranges[half]).map(beyond).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// (-) The rarer of the two ways to be strange.
@@ -169,7 +173,8 @@ impl OutlierTest {
     /// * `row` - features of the recording
     pub fn p_value(&self, row: &[f64]) -> f64 {
         let distance = self.distance(&self.point(row), None);
-        self.by_rarer.p_value(-self.rarer(distance, self.beyond(row)))
+        let beyond = 0.5 * (self.beyond(row, 0) + self.beyond(row, 1));
+        self.by_rarer.p_value(-self.rarer(distance, beyond))
     }
 }
 

@@ -56,9 +56,9 @@ pub struct Focus {
 pub struct Prior {
     /// The rig, healthy; its wheels are one draw of those that may be.
     pub base: Scenario,
-    /// Spreads of what is not known well: stiffnesses, dampings, tip chamfer, backlash.
+    /// Spreads of what is not known well: stiffnesses, frequencies, masses, spans, dampings, tip chamfer, backlash.
     pub spreads: Vec<Spread>,
-    /// (-) Most by which the grade of the wheels is another; each step as likely as the next, within grades 1 to 12.
+    /// (-) Most by which the grade of the wheels is another; each step as likely as the next, within grades 1 to 12 or classes 1 to 11.
     pub grade_steps: u32,
     /// (-) Speed: the largest logarithm of its ratio to the rig's, either way. Seven tenths of it are the pair's, the rest is the
     /// record's, each uniform.
@@ -67,7 +67,7 @@ pub struct Prior {
     pub load_spread: f64,
     /// (dB) Standard deviation of the sensor path's gain.
     pub gain_db: f64,
-    /// Whether the rig names no sensor, so that it may be on either shaft's support, on a wall or not.
+    /// Whether the rig names no sensor and has supports, so that the sensor may be on either shaft's, on a wall or not.
     pub has_any_sensor: bool,
     /// Seed of all draws.
     pub seed: u64,
@@ -226,8 +226,10 @@ impl Prior {
         let mut scenario = self.base.with_known_numbers(&numbers)?.with_seed(seed);
         // Other wheels than those of the rig's own.
         scenario.quality.seed = None;
-        if self.has_any_sensor && is_on_gear_support {
-            scenario.sensors[0].at = SensorPlace::GearSupport;
+        if let Some(sensor) =
+            scenario.sensors.first_mut().filter(|_| self.has_any_sensor && is_on_gear_support)
+        {
+            sensor.at = SensorPlace::GearSupport;
         }
         let within = self.focus.as_ref().map(|focus| focus.severity);
         let class = self.class(kinds, number);

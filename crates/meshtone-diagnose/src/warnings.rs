@@ -35,8 +35,10 @@ pub enum DiagnosisWarningKind {
     NoHealthy,
     /// A level is far from those of the simulations.
     Level,
-    /// The recordings are of different states.
+    /// The levels of the recordings are those of different states.
     SeveralStates,
+    /// The answers about the recordings contradict each other.
+    Contradiction,
     /// Kinds that cannot be simulated.
     NotSimulated,
 }
@@ -55,6 +57,7 @@ impl DiagnosisWarningKind {
             Self::NoHealthy => "no-healthy",
             Self::Level => "level",
             Self::SeveralStates => "several-states",
+            Self::Contradiction => "contradiction",
             Self::NotSimulated => "not-simulated",
         }
     }
@@ -130,22 +133,22 @@ impl Question<'_> {
 /// * `answer` - all but its warnings
 /// * `learned`, `question` - what it was made of
 pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<DiagnosisWarning> {
-    use DiagnosisWarningKind::{HealthyOutside, Level, NotSimulated, Outside, SeveralStates};
+    use DiagnosisWarningKind::{Contradiction, HealthyOutside, Level, NotSimulated, Outside};
 
-    let outside = (answer.outside_model < OUTSIDE).then(|| {
+    let outside = answer.is_recording_outside().then(|| {
         format!(
             "the recording is unlike what was simulated ({}): what is wrong may be none of the kinds that are known here, or the scenario \
              is not this rig",
             p_in_words(answer.outside_model)
         )
     });
-    let healthy = answer.healthy_outside_model.filter(|p| *p < OUTSIDE);
+    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
     let healthy = healthy.map(|p| of_healthy(p, learned, question));
     let found = [
         (Outside, outside),
         (HealthyOutside, healthy),
         (Level, level::doubt(learned, question)),
-        (SeveralStates, consistency::contradicting_states(learned, question)),
+        (Contradiction, consistency::contradicting_states(learned, question)),
         (NotSimulated, not_simulated(answer)),
     ];
     let found = found.into_iter().filter_map(|(kind, said)| Some(DiagnosisWarning::new(kind, said?)));

@@ -26,7 +26,7 @@ const MARGIN: f64 = 0.08;
 const RECORDED: Stroke = Stroke::solid(colour::INK, 1.2);
 const EXPLAINED: Stroke = Stroke::solid(colour::BLUE, 1.4);
 /// Note in place of numbers that do not count.
-const OUTSIDE: &str = "unlike all that was simulated";
+const OUTSIDE: &str = "nothing can be said";
 /// The recording behind a simulation.
 const BEHIND: Stroke = Stroke::solid(colour::FRAME, 0.9);
 const BAND: Fill = Fill::tint(colour::BLUE, 0.22);
@@ -47,8 +47,8 @@ pub struct DiagnosisFigure<'a> {
     pub difference_g: &'a [f64],
     /// (g) Between which values nine in ten of the simulations that resemble it are, angle by angle.
     pub band_g: [&'a [f64]; 2],
-    /// Names of the kinds with their probabilities, the likeliest first; empty where they do not count, because the recording is unlike all
-    /// that was simulated.
+    /// Names of the kinds with their probabilities, the likeliest first; empty where they do not count, because the recordings are unlike
+    /// what was simulated.
     pub kinds: &'a [(&'a str, f64)],
     /// Severity of the likeliest damage.
     pub severity: Option<SeverityView<'a>>,
@@ -240,7 +240,8 @@ fn explanations(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     let (x, teeth) = revolution(figure);
     let areas = EXPLANATIONS.grid([1, shown.len()], [0.0, EXPLANATIONS_GAP], f64::INFINITY);
     for (row, ((words, signal), area)) in shown.iter().zip(areas).enumerate() {
-        let title = format!("Simulation that resembles it: {words}");
+        let what = if figure.kinds.is_empty() { "for comparison" } else { "that resembles it" };
+        let title = format!("Simulation {what}: {words}");
         let title = TextStyle::AXES_TITLE.fitted(&title, 0.75 * area.width);
         let axes = Axes::titled(canvas, area, x, y, &title);
         if row + 1 == shown.len() {

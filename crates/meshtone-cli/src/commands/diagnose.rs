@@ -121,7 +121,9 @@ impl Diagnose {
         let store = ReferenceStore::new(self.folder()?);
         let reference = self.reference(&store, &prior)?;
         let learned = Learned::new(&reference, &question)?;
-        let refined = self.refined(&learned, &question)?;
+        // What is not of the rig has no likeliest damage.
+        let is_of_rig = !now.iter().chain(&healthy).any(|asked| asked.mismatch.is_some());
+        let refined = if is_of_rig { self.refined(&learned, &question)? } else { None };
         let mut answer = diagnose(&learned, &question, refined.as_ref())?;
         answer.warnings.splice(0..0, of_reading);
         let json = self.json(&answer, &store.folder_of(&prior));

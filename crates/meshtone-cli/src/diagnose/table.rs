@@ -1,6 +1,6 @@
 //! A diagnosis, for reading.
 
-use meshtone_diagnose::{Answer, Explanation};
+use meshtone_diagnose::Answer;
 
 use super::words::{PROBABILITY, counted_from, learnt, outside, percent, place};
 
@@ -11,13 +11,7 @@ const SHOWN: f64 = 0.005;
 pub fn table(answer: &Answer) -> String {
     let mut text = format!("  {}\n", answer.summary);
     if answer.is_outside() {
-        let in_words = |explanation: &Explanation| match explanation.wheel {
-            Some(wheel) => format!("{} of the {}", explanation.label, wheel.name()),
-            None => explanation.label.to_owned(),
-        };
-        let resembled: Vec<String> = answer.explanations.iter().map(in_words).collect();
         text += &format!("  {}\n\n", outside(answer));
-        text += &format!("  the simulations that are nearest all the same: {}\n", resembled.join(", "));
         return text + &format!("  {}\n", learnt(answer));
     }
     text += &format!("  damaged with a probability of {}\n", percent(answer.damaged()));
