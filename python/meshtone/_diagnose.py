@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _progress
+from ._warnings import SignalWarning
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import finite_signal, positive, read_only, whole
@@ -48,8 +49,10 @@ class Diagnosis:
     outside_model : float
         (-) p-value: the part of the simulations that are as unlike the others as the recordings are. Below 0.05 the probabilities
         mean nothing.
-    warnings : list of str
-        What deserves attention.
+    is_outside : bool
+        Whether the recordings are unlike all that was simulated: nothing can be said then.
+    warnings : list of SignalWarning
+        What deserves attention: ``code`` and ``message``.
     difference_g : array, shape (points,)
         (g) The first recording's difference signal over a revolution of the gear.
     band_g : tuple of array, shape (points,)
@@ -61,7 +64,8 @@ class Diagnosis:
     summary: str
     damaged: float
     outside_model: float
-    warnings: list[str]
+    is_outside: bool
+    warnings: list[SignalWarning]
     difference_g: Array = field(repr=False)
     band_g: tuple[Array, Array] = field(repr=False)
     _report: dict[str, Any] = field(repr=False)
@@ -72,12 +76,14 @@ class Diagnosis:
         return copy
 
     def _repr_html_(self) -> str:
+        warnings = "".join(f"<p>{escape(warning.message)}</p>" for warning in self.warnings)
+        if self.is_outside:
+            return f"<p>{escape(self.summary)}</p>{warnings}"
         shown = [(kind, said) for kind, said in self.kinds.items() if said["probability"] >= SHOWN]
         rows = "".join(f"<tr><td>{kind}</td>{_cells(said)}</tr>" for kind, said in shown)
         head = "<tr><th>kind</th><th>probability</th><th>severity (90 %)</th><th>where</th></tr>"
         p = "p < 0.001" if self.outside_model < 0.001 else f"p = {self.outside_model:.3f}"
         facts = f"damaged with a probability of {100 * self.damaged:.1f} %, {p}; given the scenario"
-        warnings = "".join(f"<p>{escape(warning)}</p>" for warning in self.warnings)
         return f"<p>{escape(self.summary)}</p><p>{facts}</p><table>{head}{rows}</table>{warnings}"
 
 
@@ -169,7 +175,8 @@ def diagnose(
         summary=report["summary"],
         damaged=report["damaged"],
         outside_model=report["outside_model"],
-        warnings=report["warnings"],
+        is_outside=report["is_outside"],
+        warnings=[SignalWarning(said["code"], said["message"], {}) for said in report["warnings"]],
         difference_g=read_only(difference_g),
         band_g=(read_only(low), read_only(high)),
         _report=report,

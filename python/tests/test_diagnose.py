@@ -49,7 +49,7 @@ def test_from_signals_to_an_answer(tmp_path: Path) -> None:
 
     revolution = ask(found.difference_g, signal="difference")
     assert revolution.to_dict()["signal"] == "difference"
-    assert any("when it was healthy" in warning for warning in revolution.warnings)
+    assert any("when it was healthy" in warning.message for warning in revolution.warnings)
 
     # What has no mark names no tooth, nor does it after it was pickled.
     anywhere = mt.ShaftPhase.from_mesh_tone(np.cos(2 * np.pi * 800 * np.arange(gone.vertical_g.size) / 8000), 8000.0, 20, 40.0)

@@ -7,7 +7,8 @@
 //! Writes a row for each recording: what it is, what is said about it. Of every pair of wheels the first record is the healthy one
 //! that the others are compared with; with `alone` in place of `healthy` they are compared with none. A last argument leaves a kind
 //! of damage out of the reference set; goes on with refined rounds, `refined`; or asks about recordings that are not what they are stated to be: `bearing`,
-//! `teeth`, `ratio`; or about whole signals of healthy and damaged pairs: `signals`.
+//! `teeth`, `ratio`; or about whole signals of healthy and damaged pairs: `signals`. `matrix` asks about inputs that are no gear of the
+//! rig, with and without a healthy recording whatever the third argument says, and counts how many pass.
 #![allow(clippy::print_stderr)]
 
 use std::error::Error;
@@ -18,11 +19,13 @@ use std::fs;
 use meshtone::batch::Control;
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::Scenario;
-use meshtone::signal::{AngleZero, AngularSettings, ShaftPhase, angular_resample};
+use meshtone::signal::{
+    AngleZero, AngularSettings, ShaftPhase, StatedFacts, StatedTurning, angular_resample, find_mismatch,
+};
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{
-    Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceRecord, ReferenceStore, SignalKind,
-    WheelLines, diagnose, refine,
+    Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceRecord, ReferenceSet, ReferenceStore,
+    SignalKind, WheelLines, diagnose, refine,
 };
 use meshtone_fourier::{from_real_spectrum, real_spectrum};
 
@@ -54,6 +57,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         record.fault.as_ref().map_or(HEALTHY, |fault| reference_kind(&prior, fault.kind))
     };
     let other = other.first().map_or("", String::as_str);
+    if other == "matrix" {
+        fs::write(output, matrix(&asked.prior, &reference)?)?;
+        return Ok(());
+    }
     reference.records.retain(|record| name(record) != other);
     let mut learned: Option<Learned> = None;
     let mut table = String::from(
@@ -79,10 +86,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let Some(before) = asked.records.iter().find(|before| before.number == record.number / 8 * 8) else {
             continue;
         };
-        let now =
-            if is_strange { strange(&asked.prior, record.number, other)? } else { observed(record, signal) };
+        let now = if is_strange {
+            strange(&asked.prior, record.number, other, 0.0)?
+        } else {
+            observed(record, signal)
+        };
         let before = if is_strange {
-            strange(&asked.prior, before.number, "signals")?
+            strange(&asked.prior, before.number, "signals", 0.0)?
         } else {
             observed(before, signal)
         };
@@ -133,24 +143,108 @@ fn observed(record: &ReferenceRecord, signal: SignalKind) -> Observation {
     }
 }
 
+/// (g) Levels of inputs that are no gear.
+const LEVELS_G: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
+/// Inputs of each kind and level.
+const ASKED_OF_KIND: u64 = 20;
+
+/// How many of the inputs that are no gear of the rig pass as one, a row for each kind and level; and how many right ones are refused.
+fn matrix(prior: &Prior, reference: &ReferenceSet) -> Result<String, Box<dyn Error>> {
+    let mut cases: Vec<(&str, f64)> = Vec::new();
+    for kind in ["white", "pink", "sine", "bursts", "uniform", "shuffled"] {
+        cases.extend(LEVELS_G.map(|level_g| (kind, level_g)));
+    }
+    cases.extend(
+        ["half", "rate", "teeth", "ratio", "times", "divided", "load", "signals", "healthy", "same"]
+            .map(|kind| (kind, 0.0)),
+    );
+    let mut table = String::from("kind,level_g,with_healthy,asked,seen_before,outside\n");
+    for (kind, level_g) in cases {
+        for with_healthy in [true, false] {
+            let mut counts = [0; 3];
+            for unit in 0..ASKED_OF_KIND {
+                let first = 8 * unit;
+                let healthy = strange(prior, first, "signals", 0.0)?;
+                let number =
+                    if kind == "signals" || kind == "load" { first + 2 + unit % 6 } else { first + 1 };
+                let now = match kind {
+                    "healthy" => healthy.clone(),
+                    kind => strange(prior, number, kind, level_g)?,
+                };
+                counts[0] += 1;
+                let (now, healthy) = ([now], [healthy]);
+                let question = Question { now: &now, healthy: if with_healthy { &healthy } else { &[] } };
+                if now[0].mismatch.is_some() || question.check(prior).is_err() {
+                    counts[1] += 1;
+                    continue;
+                }
+                let learned = Learned::new(reference, &question)?;
+                let answer = diagnose(&learned, &question, None)?;
+                counts[2] += u64::from(answer.is_outside());
+            }
+            let [asked, before, outside] = counts;
+            writeln!(table, "{kind},{level_g},{with_healthy},{asked},{before},{outside}")?;
+            eprintln!("{kind} {level_g} g, healthy {with_healthy}: {before} + {outside} of {asked}");
+        }
+    }
+    Ok(table)
+}
+
+/// Puts an input that is no gear in the place of a recording.
+fn no_gear(signal: &mut Vec<f64>, kind: &str, level_g: f64, rate_hz: f64, draws: &mut Draws) {
+    match kind {
+        "white" => signal.fill_with(|| draws.normal()),
+        "uniform" => signal.fill_with(|| draws.uniform(0.0, 1.0)),
+        "pink" => {
+            signal.fill_with(|| draws.normal());
+            let mut spectrum = real_spectrum(signal);
+            spectrum[0] *= 0.0;
+            spectrum.iter_mut().enumerate().skip(1).for_each(|(line, value)| *value /= (line as f64).sqrt());
+            *signal = from_real_spectrum(spectrum, signal.len());
+        }
+        "sine" => {
+            let hz = draws.uniform(0.5, 0.4) * 0.2 * rate_hz;
+            signal
+                .iter_mut()
+                .enumerate()
+                .for_each(|(at, value)| *value = (TAU * hz * at as f64 / rate_hz).sin());
+        }
+        "bursts" => {
+            let every = draws.uniform(0.02, 0.015) * rate_hz;
+            let decay = 0.1 * every;
+            let value = |at: usize, normal: f64| normal * (-(at as f64 % every) / decay).exp();
+            signal.iter_mut().enumerate().for_each(|(at, old)| *old = value(at, draws.normal()));
+        }
+        _ => {
+            for at in (1..signal.len()).rev() {
+                signal.swap(at, (draws.bits() % (at as u64 + 1)) as usize);
+            }
+        }
+    }
+    let scale = level_g / meshtone::signal::rms(signal);
+    signal.iter_mut().for_each(|value| *value *= scale);
+}
+
 /// A recording that is not of the pair that it is stated to be of.
-fn strange(prior: &Prior, number: u64, what: &str) -> Result<Observation, Box<dyn Error>> {
+fn strange(prior: &Prior, number: u64, what: &str, level_g: f64) -> Result<Observation, Box<dyn Error>> {
     let mut draws = Draws::new(99, Purpose::DiagnosisNoise, number);
     let drawn = prior.draw(number)?;
     let mut scenario = drawn.scenario.clone();
     let stated = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
     match what {
         "teeth" => scenario.gears.pinion_teeth += 2,
+        // Another state of the same wheels: their speed and torque, as far as the draw goes.
+        "load" => scenario.operation.brake_torque_nm = 10.0 * draws.uniform(0.0, 2.3).exp(),
         "ratio" => scenario.gears.gear_teeth = (f64::from(stated[1]) * draws.uniform(0.8, 0.1)) as u32,
         _ => {}
     }
     let simulation = meshtone::simulate(&scenario)?;
     let rate_hz = simulation.stages.time.sampling_rate_hz;
     // Behind the path to the sensor. The same teeth meet again where the simulation ends: it goes on as it began.
-    let (path, (_, once)) = (prior.path(&drawn), simulation.channels.leading());
+    let (_, once) = simulation.channels.leading();
     let mut spectrum = real_spectrum(once);
-    let hz = |line: usize| line as f64 * rate_hz / once.len() as f64;
-    spectrum.iter_mut().enumerate().for_each(|(line, value)| *value *= path(hz(line)));
+    let gains = drawn.path_gains((0..spectrum.len()).map(|line| line as f64 * rate_hz / once.len() as f64));
+    spectrum.iter_mut().zip(gains).for_each(|(value, gain)| *value *= gain);
     let mut signal = from_real_spectrum(spectrum, once.len()).repeat(4);
     let rms = meshtone::signal::rms(&signal);
     if what == "bearing" {
@@ -175,12 +269,30 @@ fn strange(prior: &Prior, number: u64, what: &str) -> Result<Observation, Box<dy
     // Noise of the sensor and of the machine.
     signal.iter_mut().for_each(|value| *value += NOISE_PART * rms * draws.normal());
     let samples = signal.len();
-    let phase = ShaftPhase::constant(scenario.operation.pinion_speed_hz, rate_hz, samples)?;
+    let mut stated_hz = rate_hz;
+    match what {
+        "half" => signal[samples / 2..].fill(0.0),
+        "rate" => stated_hz *= 1.13,
+        "times" => signal.iter_mut().for_each(|value| *value *= 9.81),
+        "divided" => signal.iter_mut().for_each(|value| *value /= 9.81),
+        "white" | "pink" | "sine" | "bursts" | "uniform" | "shuffled" => {
+            no_gear(&mut signal, what, level_g, rate_hz, &mut draws);
+        }
+        _ => {}
+    }
+    let speed_hz = scenario.operation.pinion_speed_hz;
+    let phase = ShaftPhase::constant(speed_hz, stated_hz, samples)?;
     let mate = phase.of_mate(stated[0], stated[1])?;
     let settings = AngularSettings::default();
     let [pinion, gear] =
         [angular_resample(&signal, &phase, &settings)?, angular_resample(&signal, &mate, &settings)?];
-    Ok(Observation::of_recording(&pinion, &gear, stated, scenario.operation.pinion_speed_hz)?)
+    let turning = StatedTurning::ConstantSpeed { speed_hz };
+    let facts = StatedFacts { teeth: stated[0], mate_teeth: Some(stated[1]), turning };
+    let observation = Observation::of_recording(&pinion, &gear, stated, speed_hz)?;
+    Ok(match find_mismatch(&pinion, &facts) {
+        Some(mismatch) => observation.with_mismatch(mismatch),
+        None => observation,
+    })
 }
 
 fn row(

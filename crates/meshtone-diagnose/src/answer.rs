@@ -3,7 +3,9 @@
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 
+use crate::diagnose::OUTSIDE;
 use crate::observation::SignalKind;
+use crate::warnings::DiagnosisWarning;
 
 /// A number with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,7 +124,7 @@ pub struct Answer {
     /// p-value of the healthy recording among healthy simulations alone; none where there is no healthy recording.
     pub healthy_outside_model: Option<f64>,
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<DiagnosisWarning>,
     /// (g) The recording's difference signal over a revolution of the gear, at equal angles.
     pub difference_g: Vec<f64>,
     /// (g) Between which values nine in ten of the simulated signals that resemble it are, angle by angle.
@@ -138,6 +140,21 @@ impl Answer {
     pub fn damaged(&self) -> f64 {
         let healthy = self.kinds.iter().find(|kind| kind.label == HEALTHY);
         1.0 - healthy.map_or(0.0, |kind| kind.probability)
+    }
+
+    /// Returns whether the recording, or the healthy one, is unlike what was simulated, so that nothing can be said.
+    pub fn is_outside(&self) -> bool {
+        self.is_recording_outside() || self.is_healthy_outside()
+    }
+
+    /// Returns whether the recording is unlike what was simulated: of two tests each has half of the level of one.
+    pub fn is_recording_outside(&self) -> bool {
+        self.outside_model < if self.has_healthy { 0.5 * OUTSIDE } else { OUTSIDE }
+    }
+
+    /// Returns whether the healthy recording is unlike the healthy pairs that were simulated.
+    pub fn is_healthy_outside(&self) -> bool {
+        self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
     }
 
     /// The likeliest damage.

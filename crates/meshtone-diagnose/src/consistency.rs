@@ -9,15 +9,12 @@ const LOUDEST_DB: f64 = 6.0;
 /// (-) Probabilities of damage of which one says that it is there, the other that it is not.
 const DECIDED: [f64; 2] = [0.2, 0.8];
 
-/// Doubts that recordings are of one state.
-///
-/// # Arguments
-/// * `learned`, `question` - by what each recording is looked at alone
-pub(crate) fn doubts(learned: &Learned, question: &Question) -> Vec<String> {
+/// Doubts that recordings are of one state, by their levels alone.
+pub(crate) fn levels_apart(question: &Question) -> Vec<String> {
     let hardly = |which: &str, recordings: &[Observation]| {
         Some(format!("the {which} are hardly of one state: {}", much_louder_recording(recordings)?))
     };
-    let now = hardly("recordings", question.now).or_else(|| contradicting_states(learned, question));
+    let now = hardly("recordings", question.now);
     now.into_iter().chain(hardly("healthy recordings", question.healthy)).collect()
 }
 
@@ -44,9 +41,12 @@ fn level_db(asked: &Observation) -> f64 {
     10.0 * most.log10()
 }
 
-/// Recordings of which one is damaged and another is not.
-fn contradicting_states(learned: &Learned, question: &Question) -> Option<String> {
-    if question.now.len() < 2 {
+/// Recordings of which one is damaged and another is not, where their levels do not say so already.
+///
+/// # Arguments
+/// * `learned`, `question` - by what each recording is looked at alone
+pub(crate) fn contradicting_states(learned: &Learned, question: &Question) -> Option<String> {
+    if question.now.len() < 2 || much_louder_recording(question.now).is_some() {
         return None;
     }
     let damaged = |one: &Observation| {

@@ -105,8 +105,7 @@ pub fn diagnose(
         severity_draws: severity_draws.map_or_else(Vec::new, |(_, draws)| spread(draws)),
     };
     answer.warnings = warnings(&answer, learned, question);
-    let is_outside = [Some(outside_model), healthy_outside_model].into_iter().flatten().any(|p| p < OUTSIDE);
-    answer.summary = sentence(answer.damaged(), answer.any_damage.as_ref(), is_outside);
+    answer.summary = sentence(answer.damaged(), answer.any_damage.as_ref(), answer.is_outside());
     Ok(answer)
 }
 

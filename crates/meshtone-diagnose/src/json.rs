@@ -4,9 +4,10 @@ use meshtone::signal::AngleZero;
 use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, AnyDamage, Explanation, Interval, KindAnswer};
+use crate::warnings::DiagnosisWarning;
 
 /// Version of the layout; it is raised where a key changes its meaning.
-const FORMAT_VERSION: u32 = 1;
+const FORMAT_VERSION: u32 = 2;
 
 impl Answer {
     /// Writes the answer as JSON: probabilities, severities and places, the likeliest kinds first. The signals are not in it.
@@ -24,11 +25,16 @@ impl Answer {
             "any_damage": self.any_damage.as_ref().map(any_damage),
             "kinds": kinds,
             "outside_model": self.outside_model,
+            "is_outside": self.is_outside(),
             "healthy_outside_model": self.healthy_outside_model,
             "explanations": self.explanations.iter().map(explanation).collect::<Vec<_>>(),
-            "warnings": self.warnings,
+            "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
         })
     }
+}
+
+fn warning(warning: &DiagnosisWarning) -> Value {
+    json!({ "code": warning.kind.code(), "message": warning.message })
 }
 
 fn any_damage(any: &AnyDamage) -> Value {

@@ -16,6 +16,7 @@ use crate::matrix::{FOLDS, RandomFeatures, Standardisation, ridge};
 use crate::observation::{Observation, SignalKind, WheelLines};
 use crate::outlier_test::OutlierTest;
 use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
+use crate::quantile::quantiles;
 use crate::reference::{ReferenceRecord, ReferenceSet};
 use crate::severity::SizeModel;
 use crate::softmax::Softmax;
@@ -196,7 +197,10 @@ impl Layout {
                 let before = wheel_features(healthy, last, regular);
                 let beyond = wheel_features(&beyond_healthy(now, healthy, last), last, false);
                 row.burst_rev[wheel] = beyond.burst_rev;
-                row.values.extend(less(&plain.levels, &before.levels));
+                let louder = less(&plain.levels, &before.levels);
+                // A level that is wrong as a whole is wrong in all orders, damage in some.
+                row.values.push(quantiles(louder.iter().map(|level| (*level, 1.0)).collect(), [0.5])[0]);
+                row.values.extend(louder);
                 row.values.extend(less(&plain.shapes, &before.shapes));
                 row.values.extend(less(&beyond.levels, &before.levels));
                 row.values.extend(beyond.shapes);

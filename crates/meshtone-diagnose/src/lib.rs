@@ -42,3 +42,4 @@ pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
 pub use store::{ReferenceStore, StoreError};
+pub use warnings::{DiagnosisWarning, DiagnosisWarningKind};

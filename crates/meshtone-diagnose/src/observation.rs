@@ -3,8 +3,9 @@
 use meshtone::operation::greatest_common_divisor;
 use meshtone::signal::{
     Alternative, AngleZero, AngularSettings, AngularSignal, LinesOffShafts, Mismatch, SeparationSettings,
-    ShaftPhase, SignalError, StatedFacts, StatedTurning, SynchronousAverage, angular_resample, check_channel,
-    find_mismatch, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
+    ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage, angular_resample,
+    check_channel, find_mismatch, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
+    synchronous_part,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -158,7 +159,9 @@ impl Observation {
         }
         let [of_pinion, of_gear] = [synchronous_average(pinion)?, synchronous_average(gear)?];
         let ratio = f64::from(teeth[1]) / f64::from(teeth[0]);
-        let mismatch = energy_off_both_shafts(gear, teeth, pinion_speed_hz / ratio);
+        let mismatch = nothing_synchronous([(pinion, &of_pinion, teeth[0]), (gear, &of_gear, teeth[1])])
+            .or_else(|| silent_part(gear))
+            .or_else(|| energy_off_both_shafts(gear, teeth, pinion_speed_hz / ratio));
         Ok(Self {
             signal: SignalKind::Recording,
             pinion_speed_hz: Some(pinion_speed_hz),
@@ -342,6 +345,37 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
+/// Evidence against a recording of which nothing repeats with either shaft.
+///
+/// # Arguments
+/// * `views` - the recording over the angles of both shafts, with their averages and teeth
+fn nothing_synchronous(views: [(&AngularSignal, &SynchronousAverage, u32); 2]) -> Option<String> {
+    let parts = views.map(|(view, average, _)| synchronous_part(&view.values, &average.values));
+    let [Some(pinion), Some(part)] = parts else { return None };
+    let is_known = part.revolutions >= FEWEST_REVOLUTIONS;
+    let warning = SignalWarning::NothingSynchronous { part, teeth: views[1].2 };
+    (is_known && pinion.is_noise() && part.is_noise()).then(|| warning.to_string())
+}
+
+/// (-) Level of the quietest revolution over that of the loudest, below which the sensor did not measure all the time.
+const QUIETEST: f64 = 1.0 / 30.0;
+
+/// Evidence against a recording that is silent for a part of the time.
+fn silent_part(gear: &AngularSignal) -> Option<String> {
+    let levels = gear.values.chunks_exact(gear.points_per_revolution).map(standard_deviation);
+    let levels: Vec<f64> = levels.collect();
+    let loudest = levels.iter().copied().fold(0.0, f64::max);
+    let silent = levels.iter().filter(|level| **level < QUIETEST * loudest).count();
+    (silent > 0).then(|| {
+        format!(
+            "{silent} of {} revolutions of the gear have less than 1/{:.0} of the level of the loudest: a sensor that failed, or knocks; cut the \
+             recording to where the machine runs evenly",
+            levels.len(),
+            1.0 / QUIETEST
+        )
+    })
+}
+
 /// (-) Kurtosis of what belongs to neither shaft, from which on it is impulsive.
 const IMPULSIVE: f64 = 4.5;
 /// (-) Its part of the energy from which on it counts: teeth that strike and part make up to a seventh that repeats with neither
@@ -406,6 +440,21 @@ mod tests {
         (TAU * 38.0 * gear_rev).cos()
             + 0.1 * (TAU * 43.0 * gear_rev).cos()
             + 0.2 * (TAU * 5.0 * of_pinion).sin()
+    }
+
+    // Noise has nothing of either shaft, a sensor that failed nothing of a part of the time; tones in noise have both.
+    #[test]
+    fn noise_and_silence_are_no_recording_of_the_pair() {
+        let mut draws = Draws::new(5, Purpose::DiagnosisNoise, 0);
+        let mut said = |signal: &mut dyn FnMut(f64, f64) -> f64| {
+            let [pinion, gear] = views(&mut |rev| signal(rev, draws.normal()), 34);
+            Observation::of_recording(&pinion, &gear, TEETH, 40.0).unwrap().mismatch
+        };
+        assert_eq!(said(&mut |rev, noise| tones(rev) + 0.5 * noise), None);
+        let of_noise = said(&mut |_, noise| noise).unwrap();
+        assert!(of_noise.contains("nothing in the recording clearly repeats"), "{of_noise}");
+        let failed = said(&mut |rev, noise| if rev < 20.0 { tones(rev) + 0.1 * noise } else { 0.0 }).unwrap();
+        assert!(failed.starts_with("14 of 34 revolutions"), "{failed}");
     }
 
     // The variance of a mean over revolutions, and of a line of it: the sample's over their number and that of the points.

@@ -1,18 +1,24 @@
 //! A test whether a signal is like any that was simulated.
 //!
 //! A conformal p-value (Vovk, Gammerman, Shafer, "Algorithmic learning in a random world", 2005): the part of the simulations that
-//! are as far from those of other wheels as the recording is from all, or farther. The distance is that to the nearest of them, of
-//! whitened principal components and of what these leave.
+//! are as strange as the recording, or stranger. Two numbers say how strange a signal is: its distance to the nearest simulations of
+//! other wheels, of whitened principal components and of what these leave; and how far a single feature is beyond its values in nearly all
+//! simulations, which the distance loses among many features. The rarer of the two counts.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
 use crate::matrix::Standardisation;
+use crate::quantile::quantiles;
 
 /// Principal components that are whitened.
 const COMPONENTS: usize = 40;
 /// (standard deviations) Beyond which a feature is no farther away: one that is the same in all simulations must not decide alone.
 const FARTHEST: f64 = 20.0;
+/// (-) Parts of the simulations below and above which the values of a feature are looked at as beyond it.
+const NEARLY_ALL: [f64; 2] = [0.002, 0.998];
+/// (-) Least width of a feature's range: one that is the same in all simulations must not decide alone.
+const LEAST_WIDTH: f64 = 0.1;
 /// Neighbours whose mean distance counts.
 const NEIGHBOURS: usize = 8;
 
@@ -25,9 +31,41 @@ pub(crate) struct OutlierTest {
     left: f64,
     points: Vec<Vec<f64>>,
     units: Vec<u64>,
-    weights: Vec<f64>,
-    /// Distance of each simulation from those of other units.
-    scores: Vec<f64>,
+    /// Range of each feature in nearly all simulations of the units with an even and with an odd number: a simulation is held against the
+    /// half in which its unit is not.
+    ranges: [Vec<[f64; 2]>; 2],
+    /// Distances of the simulations from those of other units; how far they are beyond the ranges; the rarer of the two.
+    by_distance: Ranking,
+    by_feature: Ranking,
+    by_rarer: Ranking,
+}
+
+/// Weighted values of which the part is known that are as large as another, or larger.
+struct Ranking {
+    /// Falling values, with the sum of the weights up to them.
+    sums: Vec<(f64, f64)>,
+}
+
+impl Ranking {
+    fn new(values: &[f64], weights: &[f64]) -> Self {
+        let mut sums: Vec<(f64, f64)> = values.iter().copied().zip(weights.iter().copied()).collect();
+        sums.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut sum = 0.0;
+        for (_, weight) in &mut sums {
+            sum += *weight;
+            *weight = sum;
+        }
+        Self { sums }
+    }
+
+    /// (-) The part of the values that are as large, or larger, the asked one being one more.
+    fn p_value(&self, value: f64) -> f64 {
+        let total = self.sums.last().map_or(1.0, |(_, sum)| *sum);
+        let mean = total / self.sums.len().max(1) as f64;
+        let larger = self.sums.partition_point(|(other, _)| *other >= value);
+        let sum = larger.checked_sub(1).map_or(0.0, |last| self.sums[last].1);
+        (sum + mean) / (total + mean)
+    }
 }
 
 impl OutlierTest {
@@ -51,20 +89,33 @@ impl OutlierTest {
         });
         let left = order.iter().map(|&at| eigen.eigenvalues[at]).sum::<f64>();
         let left = (eigen.eigenvalues.sum() - left).max(1e-9).sqrt();
+        let range = |half: u64, feature: usize| {
+            let inside = rows.iter().zip(weights).zip(&units).filter(|(_, unit)| *unit % 2 == half);
+            quantiles(inside.map(|((row, weight), _)| (row[feature], *weight)).collect(), NEARLY_ALL)
+        };
+        let ranges =
+            [0, 1].map(|half| (0..width).into_par_iter().map(|feature| range(half, feature)).collect());
         let mut of = Self {
             standard,
             components,
             left,
             points: Vec::new(),
             units,
-            weights: weights.to_vec(),
-            scores: Vec::new(),
+            ranges,
+            by_distance: Ranking::new(&[], &[]),
+            by_feature: Ranking::new(&[], &[]),
+            by_rarer: Ranking::new(&[], &[]),
         };
         of.points = rows.par_iter().map(|row| of.point(row)).collect();
-        of.scores = (0..rows.len())
-            .into_par_iter()
-            .map(|row| of.distance(&of.points[row], Some(of.units[row])))
-            .collect();
+        let places = || (0..rows.len()).into_par_iter();
+        let distances: Vec<f64> =
+            places().map(|row| of.distance(&of.points[row], Some(of.units[row]))).collect();
+        let beyond: Vec<f64> =
+            places().map(|row| of.beyond(&rows[row], 1 - (of.units[row] % 2) as usize)).collect();
+        of.by_distance = Ranking::new(&distances, weights);
+        of.by_feature = Ranking::new(&beyond, weights);
+        let rarer: Vec<f64> = places().map(|row| -of.rarer(distances[row], beyond[row])).collect();
+        of.by_rarer = Ranking::new(&rarer, weights);
         of
     }
 
@@ -89,6 +140,19 @@ impl OutlierTest {
         nearest.iter().map(|(distance, _)| distance).sum::<f64>() / nearest.len().max(1) as f64
     }
 
+    /// (-) How far the strangest feature is beyond its range in a half of the simulations, over the width of this.
+    fn beyond(&self, row: &[f64], half: usize) -> f64 {
+        let beyond = |(value, [low, high]): (&f64, &[f64; 2])| {
+            (low - value).max(value - high) / (high - low).max(LEAST_WIDTH)
+        };
+        row.iter().zip(&self.ranges[half]).map(beyond).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// (-) The rarer of the two ways to be strange.
+    fn rarer(&self, distance: f64, beyond: f64) -> f64 {
+        self.by_distance.p_value(distance).min(self.by_feature.p_value(beyond))
+    }
+
     /// The nearest simulations among some, with their distances, nearest first.
     pub fn nearest(&self, point: &[f64], among: impl Fn(usize) -> bool, count: usize) -> Vec<(f64, usize)> {
         let mut nearest: Vec<(f64, usize)> = Vec::with_capacity(count + 1);
@@ -103,16 +167,14 @@ impl OutlierTest {
         nearest.into_iter().map(|(square, row)| (square.sqrt(), row)).collect()
     }
 
-    /// (-) The part of the simulations that are as far from the others, or farther.
+    /// (-) The part of the simulations that are as strange, or stranger.
     ///
     /// # Arguments
     /// * `row` - features of the recording
     pub fn p_value(&self, row: &[f64]) -> f64 {
         let distance = self.distance(&self.point(row), None);
-        let total: f64 = self.weights.iter().sum();
-        let farther = self.scores.iter().zip(&self.weights).filter(|(score, _)| **score >= distance);
-        let mean = total / self.weights.len().max(1) as f64;
-        (farther.map(|(_, weight)| weight).sum::<f64>() + mean) / (total + mean)
+        let beyond = 0.5 * (self.beyond(row, 0) + self.beyond(row, 1));
+        self.by_rarer.p_value(-self.rarer(distance, beyond))
     }
 }
 

@@ -2,14 +2,19 @@
 
 use meshtone::damage::{Fault, FaultyTeeth, damage_kinds};
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{DamageKind, Scenario, ScenarioError};
-use meshtone::sensor::PathRipple;
+use meshtone::scenario::{DamageKind, Scenario, ScenarioError, Sensor, SensorPath, SensorPlace};
 use meshtone::wheel::WheelName;
 
 /// Records of one pair of wheels: how it was when it was healthy, how it is healthy another day, and damaged.
 pub(crate) const RECORDS_PER_UNIT: u64 = 8;
 /// (-) The least severity that is drawn.
 const LEAST_SEVERITY: f64 = 0.02;
+/// (Hz) Frequency at which a wall under the sensor bends as far as its support moves, where one is drawn, and the standard deviation of its
+/// logarithm.
+const PLATE_HZ: f64 = 4000.0;
+const PLATE_SPREAD: f64 = 0.5;
+/// (-) Standard deviation of the share of a mode of the housing: least and largest.
+const HOUSING_STRENGTH: [f64; 2] = [0.1, 0.4];
 /// (-) How far the sizes of a damage lie from those of its severity: the largest logarithm of the ratio.
 const SIZE_SPREAD: f64 = 0.3;
 /// Draws of a damage before the record goes without other sizes than those of its severity.
@@ -51,9 +56,9 @@ pub struct Focus {
 pub struct Prior {
     /// The rig, healthy; its wheels are one draw of those that may be.
     pub base: Scenario,
-    /// Spreads of what is not known well: stiffnesses, dampings, tip chamfer, backlash.
+    /// Spreads of what is not known well: stiffnesses, frequencies, masses, spans, dampings, tip chamfer, backlash.
     pub spreads: Vec<Spread>,
-    /// (-) Most by which the grade of the wheels is another; each step as likely as the next, within grades 1 to 12.
+    /// (-) Most by which the grade of the wheels is another; each step as likely as the next, within grades 1 to 12 or classes 1 to 11.
     pub grade_steps: u32,
     /// (-) Speed: the largest logarithm of its ratio to the rig's, either way. Seven tenths of it are the pair's, the rest is the
     /// record's, each uniform.
@@ -62,8 +67,8 @@ pub struct Prior {
     pub load_spread: f64,
     /// (dB) Standard deviation of the sensor path's gain.
     pub gain_db: f64,
-    /// (dB) Standard deviation of its ripple at half octaves.
-    pub ripple_db: f64,
+    /// Whether the rig names no sensor and has supports, so that the sensor may be on either shaft's, on a wall or not.
+    pub has_any_sensor: bool,
     /// Seed of all draws.
     pub seed: u64,
     /// The damage of a refined round; none where every kind on either wheel is drawn.
@@ -94,8 +99,8 @@ pub struct Drawn {
     pub scenario: Scenario,
     /// The damage; none of a healthy record.
     pub fault: Option<DrawnFault>,
-    /// Seed of the path from the simulated sensor to the rig's.
-    pub path_seed: u64,
+    /// The wall and the housing between the simulated sensor and the rig's.
+    pub path: SensorPath,
     /// (dB) Gain of that path.
     pub gain_db: f64,
 }
@@ -107,19 +112,27 @@ impl Prior {
     /// * `rig` - the rig's scenario; its faults are left out
     pub fn new(rig: &Scenario) -> Self {
         let spread = |key: &str, deviation: f64| Spread { key: key.to_owned(), deviation };
+        let mut base = rig.clone().with_faults(Vec::new());
+        base.sensors.truncate(1);
+        let anywhere = base.clone().with_sensors(vec![unstated_sensor()]);
+        let has_any_sensor = base.sensors.is_empty() && anywhere.validate().is_ok();
         Self {
-            base: rig.clone().with_faults(Vec::new()),
+            base: if has_any_sensor { anywhere } else { base },
+            has_any_sensor,
             spreads: vec![
-                spread("rig.bearing_stiffness_n_per_m", 0.15),
+                spread("rig.bearing_stiffness_n_per_m", 0.3),
                 // Those of the frequencies or of the stiffnesses that the rig is given by; the others it does not have.
-                spread("rig.support.base_hz", 0.075),
-                spread("rig.support.differential_hz", 0.075),
-                spread("rig.support.stiffness_n_per_m", 0.15),
-                spread("rig.support.coupling_n_per_m", 0.15),
-                spread("rig.support.damping_ratio", 0.3),
-                spread("rig.pinion_shaft.damping_ratio", 0.3),
-                spread("rig.gear_shaft.damping_ratio", 0.3),
-                spread("rig.mesh_damping_ratio", 0.3),
+                spread("rig.support.base_hz", 0.3),
+                spread("rig.support.differential_hz", 0.3),
+                spread("rig.support.stiffness_n_per_m", 0.6),
+                spread("rig.support.coupling_n_per_m", 0.6),
+                spread("rig.support.mass_kg", 0.3),
+                spread("rig.pinion_shaft.bearing_span_mm", 0.15),
+                spread("rig.gear_shaft.bearing_span_mm", 0.15),
+                spread("rig.support.damping_ratio", 0.5),
+                spread("rig.pinion_shaft.damping_ratio", 0.5),
+                spread("rig.gear_shaft.damping_ratio", 0.5),
+                spread("rig.mesh_damping_ratio", 0.5),
                 spread("gears.tip_chamfer_mm", 0.3),
                 spread("gears.backlash_mm", 0.2),
             ],
@@ -127,7 +140,6 @@ impl Prior {
             speed_spread: 0.1,
             load_spread: 0.4,
             gain_db: 6.0,
-            ripple_db: 2.0,
             seed: 1,
             focus: None,
         }
@@ -154,15 +166,6 @@ impl Prior {
             self.base.clone().with_faults(faults).validate().is_ok()
         };
         damage_kinds().into_iter().filter(of_kind).collect()
-    }
-
-    /// The path's gain over frequency.
-    ///
-    /// # Arguments
-    /// * `drawn` - one of its records
-    pub fn path(&self, drawn: &Drawn) -> impl Fn(f64) -> f64 {
-        let (ripple, gain_db) = (PathRipple::new(drawn.path_seed, 0, self.ripple_db), drawn.gain_db);
-        move |hz| 10f64.powf((gain_db + ripple.db_at(hz)) / 20.0)
     }
 
     /// A record, the same whatever else is drawn.
@@ -204,11 +207,14 @@ impl Prior {
         }
         let steps = i64::from(self.grade_steps);
         let step = (common.bits() % (2 * steps as u64 + 1)) as i64 - steps;
-        let grade = (i64::from(self.base.quality.din_grade) + step).clamp(1, 12) as f64;
-        if self.base.quality.din_grade > 0 {
-            numbers.push(("quality.din_grade", grade));
+        let quality = &self.base.quality;
+        let grades =
+            [("quality.din_grade", quality.din_grade, 12), ("quality.iso_class", quality.iso_class, 11)];
+        for (key, grade, coarsest) in grades.into_iter().filter(|(_, grade, _)| *grade > 0) {
+            numbers.push((key, (i64::from(grade) + step).clamp(1, coarsest) as f64));
         }
-        let (path_seed, gain_db) = (common.bits(), self.gain_db * common.normal());
+        let (path, gain_db) = (self.draw_path(&mut common), self.gain_db * common.normal());
+        let is_on_gear_support = common.uniform(0.5, 0.5) < 0.5;
         let seed = common.bits() >> 1;
         // A pair runs at about its own load and speed.
         let mut about =
@@ -220,10 +226,48 @@ impl Prior {
         let mut scenario = self.base.with_known_numbers(&numbers)?.with_seed(seed);
         // Other wheels than those of the rig's own.
         scenario.quality.seed = None;
+        if let Some(sensor) =
+            scenario.sensors.first_mut().filter(|_| self.has_any_sensor && is_on_gear_support)
+        {
+            sensor.at = SensorPlace::GearSupport;
+        }
         let within = self.focus.as_ref().map(|focus| focus.severity);
         let class = self.class(kinds, number);
         let fault = class.map(|class| damage(kinds, class, within, &mut scenario, &mut own)).transpose()?;
-        Ok(Drawn { scenario, fault, path_seed, gain_db })
+        Ok(Drawn { scenario, fault, path, gain_db })
+    }
+
+    /// A housing, and where the rig names no sensor, in every other draw a wall.
+    fn draw_path(&self, common: &mut Draws) -> SensorPath {
+        let [least, largest] = HOUSING_STRENGTH;
+        let mut path = SensorPath::RIGID;
+        path.seed = common.bits() >> 1;
+        path.strength = least * (largest / least).powf(common.uniform(0.5, 0.5));
+        let (has_wall, plate_hz) =
+            (common.uniform(0.5, 0.5) < 0.5, PLATE_HZ * (PLATE_SPREAD * common.normal()).exp());
+        if self.has_any_sensor && has_wall {
+            path.plate_hz = plate_hz;
+        }
+        path
+    }
+}
+
+/// The sensor of a rig that names none: on a support, its wall is drawn.
+fn unstated_sensor() -> Sensor {
+    let mut sensor = Sensor::default();
+    sensor.name = Some("support".to_owned());
+    sensor.path = SensorPath::RIGID;
+    sensor
+}
+
+impl Drawn {
+    /// (-) Gains of the path from the simulated sensor to the rig's at some frequencies.
+    ///
+    /// # Arguments
+    /// * `frequencies_hz` - (Hz)
+    pub fn path_gains(&self, frequencies_hz: impl IntoIterator<Item = f64>) -> Vec<f64> {
+        let gain = 10f64.powf(self.gain_db / 20.0);
+        self.path.at(frequencies_hz).into_iter().map(|path| gain * path.norm()).collect()
     }
 }
 
@@ -310,7 +354,7 @@ mod tests {
         }
         assert!(counts.iter().all(|count| *count == counts[0]), "{counts:?}");
         let [first, second] = [0, 1].map(|number| prior.draw(number).unwrap());
-        assert_eq!((first.scenario.seed, first.path_seed), (second.scenario.seed, second.path_seed));
+        assert_eq!((first.scenario.seed, first.path), (second.scenario.seed, second.path));
     }
 
     #[test]

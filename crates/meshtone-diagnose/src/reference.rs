@@ -6,7 +6,6 @@ use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone::sensor::Channel;
 use meshtone::signal::{ChainSettings, SignalError, SimulatedShafts};
 use meshtone::wheel::WheelName;
-use meshtone_fourier::Complex64;
 
 use crate::observation::WheelLines;
 use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
@@ -79,11 +78,10 @@ pub fn build_reference(
         let (number, drawn) = &drawn[index];
         if let Ok(Ok(mut wheels)) = kept {
             let pinion_speed_hz = drawn.scenario.operation.pinion_speed_hz;
-            let path = prior.path(drawn);
             let ratio = f64::from(wheels[0].teeth) / f64::from(wheels[1].teeth);
             for (wheel, shaft_hz) in wheels.iter_mut().zip([pinion_speed_hz, pinion_speed_hz * ratio]) {
-                let pass = |(order, line): (usize, &mut Complex64)| *line *= path(order as f64 * shaft_hz);
-                wheel.lines.iter_mut().enumerate().for_each(pass);
+                let gains = drawn.path_gains((0..wheel.lines.len()).map(|order| order as f64 * shaft_hz));
+                wheel.lines.iter_mut().zip(gains).for_each(|(line, gain)| *line *= gain);
             }
             let fault = drawn.fault.clone();
             records.push(ReferenceRecord { number: *number, fault, pinion_speed_hz, wheels });

@@ -19,7 +19,7 @@ use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet, build_reference};
 
 /// Raised when a record of the same number becomes another one, or its file another.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Records of a batch, which is one file: whole pairs of wheels.
 const BATCH: u64 = 512;
 /// Numbers of a record beside its lines: its own, kind, wheel, tooth, whether on one, severity, speed.
@@ -155,35 +155,60 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
         let sizes = fault.map_or(&[][..], |fault| &fault.sizes);
         numbers.extend((0..SIZES).map(|size| sizes.get(size).copied().unwrap_or(f64::NAN)));
     }
-    archive.add("records", &[records.len(), COLUMNS + 1 + SIZES], &numbers)?;
+    let mut hash = Sha256::new();
+    let mut add = |name: &str, shape: &[usize], values: &[f64]| {
+        hash_values(&mut hash, values);
+        archive.add(name, shape, values)
+    };
+    add("records", &[records.len(), COLUMNS + 1 + SIZES], &numbers)?;
     for (wheel, name) in ["pinion", "gear"].into_iter().enumerate() {
         let lines = || records.iter().map(|record| &record.wheels[wheel].lines);
         let lengths: Vec<f64> = lines().map(|lines| lines.len() as f64).collect();
-        archive.add(&format!("{name}_lengths"), &[records.len()], &lengths)?;
+        add(&format!("{name}_lengths"), &[records.len()], &lengths)?;
         let parts: Vec<f64> = lines().flatten().flat_map(|line| [line.re, line.im]).collect();
-        archive.add(&format!("{name}_lines"), &[parts.len() / 2, 2], &parts)?;
+        add(&format!("{name}_lines"), &[parts.len() / 2, 2], &parts)?;
     }
+    archive.add(DIGEST, &[32], &digest(hash))?;
     archive.finish()?;
     Ok(())
 }
 
+/// Name of the array that holds the SHA-256 digest of all others.
+const DIGEST: &str = "sha256";
+
+fn hash_values(hash: &mut Sha256, values: &[f64]) {
+    values.iter().for_each(|value| hash.update(value.to_le_bytes()));
+}
+
+/// The bytes of a digest, as an archive of numbers holds them.
+fn digest(hash: Sha256) -> Vec<f64> {
+    hash.finalize().iter().map(|&byte| f64::from(byte)).collect()
+}
+
 /// Reads a batch of the reference set that was kept.
 ///
-/// The file is in the user's cache, where anything may have happened to it. Sizes are limited before they are read, and every number that
-/// is an index later is checked, so that a damaged batch is an error, upon which it is simulated again, and never a wrong answer.
+/// The file is in the user's cache, where anything may have happened to it. Sizes are limited before they are read, its digest is that of
+/// what was written, and every number that is an index later is checked, so that a changed batch is an error, upon which it is simulated
+/// again, and never a wrong answer.
 fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let wrong = || io::Error::other("it is no batch of a reference set");
     let mut archive = NpzReader::new(File::open(path)?)?;
     let gears = &prior.base.gears;
     let width = COLUMNS + 1 + SIZES;
-    let numbers = archive.floats("records", BATCH * width as u64)?.numbers;
+    let mut hash = Sha256::new();
+    let mut read = |name: &str, most: u64| -> io::Result<Vec<f64>> {
+        let numbers = archive.floats(name, most)?.numbers;
+        hash_values(&mut hash, &numbers);
+        Ok(numbers)
+    };
+    let numbers = read("records", BATCH * width as u64)?;
     if !numbers.len().is_multiple_of(width) {
         return Err(wrong());
     }
     let mut wheels_of = |name: &str, teeth: u32| -> io::Result<Vec<WheelLines>> {
-        let lengths = archive.floats(&format!("{name}_lengths"), BATCH)?.numbers;
+        let lengths = read(&format!("{name}_lengths"), BATCH)?;
         let most = BATCH * 2 * (WheelLines::most(teeth) as u64 + 1);
-        let parts = archive.floats(&format!("{name}_lines"), most)?.numbers;
+        let parts = read(&format!("{name}_lines"), most)?;
         let mut rest = &parts[..];
         let mut wheels = Vec::new();
         for length in &lengths {
@@ -197,6 +222,9 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     };
     let pinions = wheels_of("pinion", gears.pinion_teeth)?;
     let gears = wheels_of("gear", gears.gear_teeth)?;
+    if archive.floats(DIGEST, 32)?.numbers != digest(hash) {
+        return Err(wrong());
+    }
     let record = |(row, wheels): (&[f64], [WheelLines; 2])| {
         let fault = row[1].is_finite().then(|| DrawnFault {
             kind: row[1] as usize,
@@ -246,6 +274,38 @@ mod tests {
         let bytes = fs::read(&path).unwrap();
         fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
         assert!(matches!(store.get(&prior, 1, &control), Err(StoreError::Cancelled)));
+        // So is one whose numbers were changed: a severity that is no number, a line, a record that is left out.
+        let mut changed = [of_batch.clone(), of_batch.clone(), of_batch.clone()];
+        let damaged = changed[0].iter_mut().find_map(|record| record.fault.as_mut()).unwrap();
+        damaged.severity = f64::NAN;
+        changed[1][3].wheels[1].lines[5].re *= 2.0;
+        changed[2].remove(7);
+        let rewritten = [&of_batch].into_iter().chain(&changed).map(|changed| {
+            write_atomically(&path, |file| write(file, changed)).unwrap();
+            let mut other = NpzReader::new(File::open(&path).unwrap()).unwrap();
+            let arrays = ["records", "pinion_lengths", "pinion_lines", "gear_lengths", "gear_lines"];
+            let arrays = arrays.map(|name| (name, other.floats(name, u64::MAX).unwrap().numbers));
+            fs::write(&path, &bytes).unwrap();
+            let mut original = NpzReader::new(File::open(&path).unwrap()).unwrap();
+            let kept = original.floats(DIGEST, 32).unwrap().numbers;
+            write_atomically(&path, |file| {
+                let mut archive = NpzWriter::stored(file);
+                for (name, values) in &arrays {
+                    let width = match *name {
+                        "records" => COLUMNS + 1 + SIZES,
+                        name if name.ends_with("lines") => 2,
+                        _ => 1,
+                    };
+                    archive.add(name, &[values.len() / width, width], values)?;
+                }
+                archive.add(DIGEST, &[32], &kept)?;
+                archive.finish()?;
+                Ok(())
+            })
+            .unwrap();
+            store.get(&prior, 1, &control).is_ok()
+        });
+        assert_eq!(rewritten.collect::<Vec<_>>(), [true, false, false, false]);
         // Of another prior there is none.
         let other = Prior { load_spread: 0.3, ..prior.clone() };
         assert_ne!(store.folder_of(&other), store.folder_of(&prior));

@@ -1,55 +1,158 @@
 //! Warnings about an answer.
 
+use std::fmt::{self, Display, Formatter};
+
 use meshtone::damage::damage_kinds;
 
 use crate::answer::{Answer, p_in_words};
 use crate::diagnose::{OUTSIDE, diagnose};
 use crate::learn::{Learned, Question};
+use crate::prior::Prior;
 use crate::{consistency, level, speed};
 
 /// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
 const SURELY: f64 = 0.9;
 
-/// Warnings about an answer, in words.
+/// What a warning is about, for programs to distinguish.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DiagnosisWarningKind {
+    /// The reading of a recording, or the angle of its shaft.
+    Reading,
+    /// The wheels of the scenario have no deviations.
+    IdealWheels,
+    /// The recording is not what it is stated to be, or of something else than these wheels.
+    Mismatch,
+    /// What else is doubtful about a recording.
+    Doubt,
+    /// The speed is beside those of the simulations.
+    Speed,
+    /// The recording is unlike what was simulated.
+    Outside,
+    /// The healthy recording is.
+    HealthyOutside,
+    /// There is no healthy recording.
+    NoHealthy,
+    /// A level is far from those of the simulations.
+    Level,
+    /// The levels of the recordings are those of different states.
+    SeveralStates,
+    /// The answers about the recordings contradict each other.
+    Contradiction,
+    /// Kinds that cannot be simulated.
+    NotSimulated,
+}
+
+impl DiagnosisWarningKind {
+    /// The name by which programs distinguish it.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Reading => "reading",
+            Self::IdealWheels => "ideal-wheels",
+            Self::Mismatch => "mismatch",
+            Self::Doubt => "doubt",
+            Self::Speed => "speed",
+            Self::Outside => "outside",
+            Self::HealthyOutside => "healthy-outside",
+            Self::NoHealthy => "no-healthy",
+            Self::Level => "level",
+            Self::SeveralStates => "several-states",
+            Self::Contradiction => "contradiction",
+            Self::NotSimulated => "not-simulated",
+        }
+    }
+}
+
+/// Something that deserves attention about a diagnosis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DiagnosisWarning {
+    /// What it is about.
+    pub kind: DiagnosisWarningKind,
+    /// In words.
+    pub message: String,
+}
+
+impl Display for DiagnosisWarning {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.message)
+    }
+}
+
+impl DiagnosisWarning {
+    /// # Arguments
+    /// * `kind` - what it is about
+    /// * `message` - in words
+    pub fn new(kind: DiagnosisWarningKind, message: impl Into<String>) -> Self {
+        Self { kind, message: message.into() }
+    }
+}
+
+impl Question<'_> {
+    /// What is doubtful about the recordings and the scenario, as far as that is seen without a simulation.
+    ///
+    /// # Arguments
+    /// * `prior` - what may be about the rig
+    pub fn warnings(&self, prior: &Prior) -> Vec<DiagnosisWarning> {
+        use DiagnosisWarningKind::{Doubt, IdealWheels, Mismatch, NoHealthy, SeveralStates, Speed};
+
+        let mut warnings: Vec<DiagnosisWarning> = Vec::new();
+        let mut warn = |kind, message: String| {
+            let warning = DiagnosisWarning { kind, message };
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        };
+        let quality = &prior.base.quality;
+        if quality.din_grade == 0 && quality.iso_class == 0 && quality.profile_errors.is_none() {
+            warn(
+                IdealWheels,
+                "the scenario's wheels have no deviations (quality.din_grade and quality.iso_class are 0), as none has: the probabilities \
+                 are far too sure; write the grade of the rig's wheels"
+                    .to_owned(),
+            );
+        }
+        self.all().filter_map(|asked| asked.mismatch.clone()).for_each(|said| warn(Mismatch, said));
+        self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn(Doubt, said));
+        speed::doubts(self, prior).into_iter().for_each(|said| warn(Speed, said));
+        consistency::levels_apart(self).into_iter().for_each(|said| warn(SeveralStates, said));
+        if self.healthy.is_empty() {
+            warn(
+                NoHealthy,
+                "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own \
+                 deviations and the sensor's path"
+                    .to_owned(),
+            );
+        }
+        warnings
+    }
+}
+
+/// Warnings about an answer.
 ///
 /// # Arguments
 /// * `answer` - all but its warnings
 /// * `learned`, `question` - what it was made of
-pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let quality = &learned.reference.prior.base.quality;
-    if quality.din_grade == 0 && quality.profile_errors.is_none() {
-        warnings.push(
-            "the scenario's wheels have no deviations (quality.din_grade = 0), as none has: the probabilities are far too sure; \
-             write the grade of the rig's wheels"
-                .to_owned(),
-        );
-    }
-    let mismatches = question.all().filter_map(|asked| asked.mismatch.clone());
-    for said in mismatches.chain(question.all().flat_map(|asked| asked.doubts.clone())) {
-        if !warnings.contains(&said) {
-            warnings.push(said);
-        }
-    }
-    if answer.outside_model < OUTSIDE {
-        warnings.push(format!(
-            "the recording is unlike what was simulated ({}): what is wrong may be none of the kinds that are known here, or the scenario is not this rig; do not rely on the probabilities",
+pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<DiagnosisWarning> {
+    use DiagnosisWarningKind::{Contradiction, HealthyOutside, Level, NotSimulated, Outside};
+
+    let outside = answer.is_recording_outside().then(|| {
+        format!(
+            "the recording is unlike what was simulated ({}): what is wrong may be none of the kinds that are known here, or the scenario \
+             is not this rig",
             p_in_words(answer.outside_model)
-        ));
-    }
-    if let Some(p) = answer.healthy_outside_model.filter(|p| *p < OUTSIDE) {
-        warnings.push(of_healthy(p, learned, question));
-    }
-    if !answer.has_healthy {
-        warnings.push(
-            "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own deviations and the sensor's path".to_owned(),
-        );
-    }
-    warnings.extend(level::doubt(learned, question));
-    warnings.extend(consistency::doubts(learned, question));
-    warnings.extend(speed::doubts(question, &learned.reference.prior));
-    warnings.extend(not_simulated(answer));
-    warnings
+        )
+    });
+    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
+    let healthy = healthy.map(|p| of_healthy(p, learned, question));
+    let found = [
+        (Outside, outside),
+        (HealthyOutside, healthy),
+        (Level, level::doubt(learned, question)),
+        (Contradiction, consistency::contradicting_states(learned, question)),
+        (NotSimulated, not_simulated(answer)),
+    ];
+    let found = found.into_iter().filter_map(|(kind, said)| Some(DiagnosisWarning::new(kind, said?)));
+    question.warnings(&learned.reference.prior).into_iter().chain(found).collect()
 }
 
 /// Says why the healthy recording is unlike simulations of healthy pairs: the scenario, or it is of a damaged pair.
@@ -63,11 +166,11 @@ fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
     let damaged = if is_mismatch { None } else { alone() };
     match damaged.filter(|answer| answer.outside_model >= OUTSIDE && answer.damaged() > SURELY) {
         Some(answer) => format!(
-            "{given}, but like a damaged one ({}): was it healthy? If it was, {scenario}; do not rely on the probabilities",
+            "{given}, but like a damaged one ({}): was it healthy? If it was, {scenario}",
             answer.likeliest_damage().map_or("", |kind| kind.label)
         ),
         None => format!(
-            "{given}, and unlike a damaged one: {scenario}; or is it of something else than these teeth? Do not rely on the probabilities"
+            "{given}, and unlike a damaged one: {scenario}; or is it of something else than these teeth?"
         ),
     }
 }
@@ -103,7 +206,7 @@ mod tests {
     }
 
     fn has(answer: &Answer, words: &str) -> bool {
-        answer.warnings.iter().any(|warning| warning.contains(words))
+        answer.warnings.iter().any(|warning| warning.message.contains(words))
     }
 
     // One set for all that is asked: to learn from it is what takes long.

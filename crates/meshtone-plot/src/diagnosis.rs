@@ -25,6 +25,8 @@ const BINS: usize = 40;
 const MARGIN: f64 = 0.08;
 const RECORDED: Stroke = Stroke::solid(colour::INK, 1.2);
 const EXPLAINED: Stroke = Stroke::solid(colour::BLUE, 1.4);
+/// Note in place of numbers that do not count.
+const OUTSIDE: &str = "nothing can be said";
 /// The recording behind a simulation.
 const BEHIND: Stroke = Stroke::solid(colour::FRAME, 0.9);
 const BAND: Fill = Fill::tint(colour::BLUE, 0.22);
@@ -45,7 +47,8 @@ pub struct DiagnosisFigure<'a> {
     pub difference_g: &'a [f64],
     /// (g) Between which values nine in ten of the simulations that resemble it are, angle by angle.
     pub band_g: [&'a [f64]; 2],
-    /// Names of the kinds with their probabilities, the likeliest first.
+    /// Names of the kinds with their probabilities, the likeliest first; empty where they do not count, because the recordings are unlike
+    /// what was simulated.
     pub kinds: &'a [(&'a str, f64)],
     /// Severity of the likeliest damage.
     pub severity: Option<SeverityView<'a>>,
@@ -97,7 +100,7 @@ pub fn draw(figure: &DiagnosisFigure) -> Figure {
     canvas.heading(EDGE, width, (36.0, figure.title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
     recording(&mut canvas, figure);
     probabilities(&mut canvas, figure.kinds);
-    severity(&mut canvas, figure.severity.as_ref());
+    severity(&mut canvas, figure);
     explanations(&mut canvas, figure);
     canvas.finish(figure.title, &format!("What may be wrong with a gear. {}.", figure.facts.join(", ")))
 }
@@ -147,6 +150,10 @@ fn probabilities(canvas: &mut Canvas, kinds: &[(&str, f64)]) {
     let axes = Axes::titled(canvas, BARS, [0.0, 100.0], y, "Probability, given the scenario");
     let name = "Probability (%); before: healthy 50, kinds of damage alike";
     axes.x_axis(canvas, &Ticks::every(20.0, 0.0, 100.0), name);
+    if kinds.is_empty() {
+        axes.note(canvas, OUTSIDE);
+        return axes.frame(canvas);
+    }
     for (place, (label, probability)) in bars.iter().enumerate() {
         let place = place as f64;
         let fill = if *label == "healthy" { colour::BLUE } else { colour::VERMILLION };
@@ -172,7 +179,8 @@ fn probabilities(canvas: &mut Canvas, kinds: &[(&str, f64)]) {
 ///
 /// The axes are drawn in any case, so that the figure keeps its layout; a note stands in them where no damage, or only one severity, is
 /// known. Bands lie below the bars, and the legend on the side with more room.
-fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
+fn severity(canvas: &mut Canvas, figure: &DiagnosisFigure) {
+    let severity = figure.severity.as_ref();
     let mut counts = [0.0f64; BINS];
     let draws = severity.map_or(&[][..], |severity| severity.draws);
     for draw in draws {
@@ -189,7 +197,10 @@ fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
     axes.y_axis(canvas, &Ticks::nice(0.0, axes.y[1], 5), "Part of the draws (%)", 48.0);
     let severity = match severity {
         None => {
-            axes.note(canvas, "no damage is known to the scenario's model");
+            axes.note(
+                canvas,
+                if figure.kinds.is_empty() { OUTSIDE } else { "no damage is known to the scenario's model" },
+            );
             return axes.frame(canvas);
         }
         Some(severity) if severity.within_90[0] == severity.within_90[1] => {
@@ -229,7 +240,8 @@ fn explanations(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     let (x, teeth) = revolution(figure);
     let areas = EXPLANATIONS.grid([1, shown.len()], [0.0, EXPLANATIONS_GAP], f64::INFINITY);
     for (row, ((words, signal), area)) in shown.iter().zip(areas).enumerate() {
-        let title = format!("Simulation that resembles it: {words}");
+        let what = if figure.kinds.is_empty() { "for comparison" } else { "that resembles it" };
+        let title = format!("Simulation {what}: {words}");
         let title = TextStyle::AXES_TITLE.fitted(&title, 0.75 * area.width);
         let axes = Axes::titled(canvas, area, x, y, &title);
         if row + 1 == shown.len() {

@@ -8,8 +8,8 @@ use clap::Args;
 use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone_diagnose::{
-    Answer, Learned, Observation, Prior, Question, REFINED_RECORDS, ReferenceSet, ReferenceStore, Refined,
-    SignalKind, diagnose, refine,
+    Answer, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question, REFINED_RECORDS,
+    ReferenceSet, ReferenceStore, Refined, SignalKind, diagnose, refine,
 };
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
@@ -102,9 +102,8 @@ impl Diagnose {
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = self.scenario()?;
         let observer = Observer::new(&scenario, self.signal, &self.reading, &self.phase)?;
-        let (now, mut warnings) = observe(&observer, &self.recordings)?;
-        let (healthy, more) = observe(&observer, &self.healthy)?;
-        warnings.extend(more);
+        let (now, of_now) = observe(&observer, &self.recordings)?;
+        let (healthy, of_healthy) = observe(&observer, &self.healthy)?;
         let question = Question { now: &now, healthy: &healthy };
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.recordings[0], "diagnosis"));
         let recordings = self.recordings.iter().chain(&self.healthy).map(PathBuf::as_path);
@@ -113,15 +112,23 @@ impl Diagnose {
         let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
         let prior = Prior::new(&scenario);
         question.check(&prior)?;
+        // Before minutes of simulations.
+        let of_reading = of_now.iter().chain(&of_healthy).map(warnings::in_words);
+        let of_reading: Vec<DiagnosisWarning> =
+            of_reading.map(|said| DiagnosisWarning::new(DiagnosisWarningKind::Reading, said)).collect();
+        let known = [of_reading.clone(), question.warnings(&prior)].concat();
+        known.iter().for_each(warn);
         let store = ReferenceStore::new(self.folder()?);
         let reference = self.reference(&store, &prior)?;
         let learned = Learned::new(&reference, &question)?;
-        let refined = self.refined(&learned, &question)?;
+        // What is not of the rig has no likeliest damage.
+        let is_of_rig = !now.iter().chain(&healthy).any(|asked| asked.mismatch.is_some());
+        let refined = if is_of_rig { self.refined(&learned, &question)? } else { None };
         let mut answer = diagnose(&learned, &question, refined.as_ref())?;
-        answer.warnings.splice(0..0, warnings.iter().map(warnings::in_words));
+        answer.warnings.splice(0..0, of_reading);
         let json = self.json(&answer, &store.folder_of(&prior));
         self.write(&output.path, &answer, &json, scenario.gears.gear_teeth)?;
-        answer.warnings.iter().for_each(warn);
+        answer.warnings.iter().filter(|warning| !known.contains(warning)).for_each(warn);
         print_unless(
             self.quiet,
             &format!("{} -> {}\n{}", self.title(), directory.display(), table::table(&answer)),

@@ -1,7 +1,7 @@
 //! The figure of a diagnosis.
 
 use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Answer, HEALTHY};
+use meshtone_diagnose::{Answer, HEALTHY, KindAnswer};
 use meshtone_plot::Figure;
 use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
 
@@ -19,15 +19,17 @@ use super::words::{outside, percent};
 pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
     let compared =
         if answer.has_healthy { "with a healthy recording" } else { "without a healthy recording" };
+    let damaged = format!("damaged with a probability of {}", percent(answer.damaged()));
     let facts = [
-        format!("damaged with a probability of {}", percent(answer.damaged())),
+        if answer.is_outside() { "nothing can be said".to_owned() } else { damaged },
         outside(answer),
         compared.to_owned(),
         format!("{} simulations", answer.reference_records),
         format!("Meshtone {}", env!("CARGO_PKG_VERSION")),
     ];
     let kinds: Vec<(&str, f64)> = answer.kinds.iter().map(|kind| (kind.label, kind.probability)).collect();
-    let damage = answer.likeliest_damage();
+    let counts = |_: &&KindAnswer| !answer.is_outside();
+    let damage = answer.likeliest_damage().filter(counts);
     let is_damaged = answer.kinds.first().is_some_and(|kind| kind.label != HEALTHY);
     let on_gear =
         damage.and_then(|kind| kind.place).filter(|place| is_damaged && place.wheel == WheelName::Gear);
@@ -59,7 +61,7 @@ pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
         damaged_tooth: on_gear.and_then(|place| place.tooth).map(|tooth| tooth.number),
         difference_g: &answer.difference_g,
         band_g: [&answer.band_g[0], &answer.band_g[1]],
-        kinds: &kinds,
+        kinds: if answer.is_outside() { &[] } else { &kinds },
         severity,
         explanations: &explanations,
     })

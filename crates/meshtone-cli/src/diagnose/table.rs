@@ -9,8 +9,12 @@ const SHOWN: f64 = 0.005;
 
 /// The table of a diagnosis.
 pub fn table(answer: &Answer) -> String {
-    let damaged = percent(answer.damaged());
-    let mut text = format!("  {}\n  damaged with a probability of {damaged}\n", answer.summary);
+    let mut text = format!("  {}\n", answer.summary);
+    if answer.is_outside() {
+        text += &format!("  {}\n\n", outside(answer));
+        return text + &format!("  {}\n", learnt(answer));
+    }
+    text += &format!("  damaged with a probability of {}\n", percent(answer.damaged()));
     text += &format!("  {}\n\n", outside(answer));
     let (shown, others): (Vec<_>, Vec<_>) = answer.kinds.iter().partition(|kind| kind.probability >= SHOWN);
     let width = shown.iter().map(|kind| kind.label.len()).max().unwrap_or(0).max(6);

@@ -2,7 +2,7 @@
 
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Answer, OUTSIDE, PlaceAnswer, SignalKind, ToothAnswer, p_in_words};
+use meshtone_diagnose::{Answer, PlaceAnswer, SignalKind, ToothAnswer, p_in_words};
 
 /// Explanation of "probability", in few words.
 pub const PROBABILITY: &str =
@@ -19,11 +19,13 @@ pub fn percent(probability: f64) -> String {
 
 /// Meaning of the p-value.
 pub fn outside(answer: &Answer) -> String {
-    let means = match answer.outside_model < OUTSIDE {
-        true => "the recording is unlike all that was simulated",
-        false => "the recording is like what was simulated",
+    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
+    let (means, p) = match (answer.is_recording_outside(), healthy) {
+        (true, _) => ("the recording is unlike all that was simulated", answer.outside_model),
+        (false, Some(p)) => ("the healthy recording is unlike the healthy pairs that were simulated", p),
+        (false, None) => ("the recording is like what was simulated", answer.outside_model),
     };
-    format!("{means} ({})", p_in_words(answer.outside_model))
+    format!("{means} ({})", p_in_words(p))
 }
 
 /// Meaning of tooth 1 of the wheel that is named.
