@@ -148,7 +148,7 @@ const LEVELS_G: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
 /// Inputs of each kind and level.
 const ASKED_OF_KIND: u64 = 20;
 
-/// How many of the inputs that are no gear of the rig pass as one, a row for each kind and level; and how many right ones are refused.
+/// Counts the inputs that are no gear of the rig and pass as one, a row for each kind and level, and the right ones that are refused.
 fn matrix(prior: &Prior, reference: &ReferenceSet) -> Result<String, Box<dyn Error>> {
     let mut cases: Vec<(&str, f64)> = Vec::new();
     for kind in ["white", "pink", "sine", "bursts", "uniform", "shuffled"] {
@@ -233,7 +233,7 @@ fn strange(prior: &Prior, number: u64, what: &str, level_g: f64) -> Result<Obser
     let stated = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
     match what {
         "teeth" => scenario.gears.pinion_teeth += 2,
-        // Another state of the same wheels: their speed and torque, as far as the draw goes.
+        // Another torque on the same wheels, from 1 to 100 N m.
         "load" => scenario.operation.brake_torque_nm = 10.0 * draws.uniform(0.0, 2.3).exp(),
         "ratio" => scenario.gears.gear_teeth = (f64::from(stated[1]) * draws.uniform(0.8, 0.1)) as u32,
         _ => {}

@@ -67,7 +67,7 @@ pub struct Prior {
     pub load_spread: f64,
     /// (dB) Standard deviation of the sensor path's gain.
     pub gain_db: f64,
-    /// Whether the rig names no sensor and has supports, so that the sensor may be on either shaft's, on a wall or not.
+    /// States that the rig names no sensor and has supports, so that the sensor may be on either shaft's support, on a wall or not.
     pub has_any_sensor: bool,
     /// Seed of all draws.
     pub seed: u64,

@@ -13,7 +13,7 @@ use crate::{consistency, level, speed};
 /// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
 const SURELY: f64 = 0.9;
 
-/// What a warning is about, for programs to distinguish.
+/// Subject of a [`DiagnosisWarning`], by which programs distinguish warnings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DiagnosisWarningKind {
@@ -23,13 +23,13 @@ pub enum DiagnosisWarningKind {
     IdealWheels,
     /// The recording is not what it is stated to be, or of something else than these wheels.
     Mismatch,
-    /// What else is doubtful about a recording.
+    /// Something else about a recording is doubtful.
     Doubt,
     /// The speed is beside those of the simulations.
     Speed,
     /// The recording is unlike what was simulated.
     Outside,
-    /// The healthy recording is.
+    /// The healthy recording is unlike the healthy pairs that were simulated.
     HealthyOutside,
     /// There is no healthy recording.
     NoHealthy,
@@ -39,7 +39,7 @@ pub enum DiagnosisWarningKind {
     SeveralStates,
     /// The answers about the recordings contradict each other.
     Contradiction,
-    /// Kinds that cannot be simulated.
+    /// Some kinds cannot be simulated with this scenario.
     NotSimulated,
 }
 
@@ -66,7 +66,7 @@ impl DiagnosisWarningKind {
 /// Something that deserves attention about a diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiagnosisWarning {
-    /// What it is about.
+    /// Its subject.
     pub kind: DiagnosisWarningKind,
     /// In words.
     pub message: String,
@@ -88,7 +88,7 @@ impl DiagnosisWarning {
 }
 
 impl Question<'_> {
-    /// What is doubtful about the recordings and the scenario, as far as that is seen without a simulation.
+    /// Lists what is doubtful about the recordings and the scenario, as far as that is seen without a simulation.
     ///
     /// # Arguments
     /// * `prior` - what may be about the rig

@@ -1,7 +1,7 @@
 //! The figure of a diagnosis.
 
 use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Answer, HEALTHY, KindAnswer};
+use meshtone_diagnose::{Answer, HEALTHY};
 use meshtone_plot::Figure;
 use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
 
@@ -28,8 +28,7 @@ pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
         format!("Meshtone {}", env!("CARGO_PKG_VERSION")),
     ];
     let kinds: Vec<(&str, f64)> = answer.kinds.iter().map(|kind| (kind.label, kind.probability)).collect();
-    let counts = |_: &&KindAnswer| !answer.is_outside();
-    let damage = answer.likeliest_damage().filter(counts);
+    let damage = if answer.is_outside() { None } else { answer.likeliest_damage() };
     let is_damaged = answer.kinds.first().is_some_and(|kind| kind.label != HEALTHY);
     let on_gear =
         damage.and_then(|kind| kind.place).filter(|place| is_damaged && place.wheel == WheelName::Gear);
