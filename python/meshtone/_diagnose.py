@@ -37,7 +37,7 @@ class Diagnosis:
     Attributes
     ----------
     kinds : dict of str to dict
-        ``healthy`` and every kind of damage, the likeliest first: ``probability``; and if it is that, ``severity`` and ``sizes``
+        ``healthy``, every kind of damage, and ``several-damages``, two at once, the likeliest first: ``probability``; and if it is that, ``severity`` and ``sizes``
         (``median``, ``within_50``, ``within_90``), ``wheel``, ``wheel_probability``, ``is_on_one_tooth``, ``tooth``,
         ``tooth_probability``, ``angle_deg``. A tooth is None where nothing says from where to count, as after a mesh tone.
     any_damage : dict or None
@@ -53,8 +53,10 @@ class Diagnosis:
         Whether the recordings are unlike all that was simulated: nothing can be said then.
     warnings : list of SignalWarning
         What deserves attention: ``code`` and ``message``.
+    shown_wheel : str
+        The wheel that the signals are of: the likeliest damaged one.
     difference_g : array, shape (points,)
-        (g) The first recording's difference signal over a revolution of the gear.
+        (g) The first recording's difference signal over a revolution of that wheel.
     band_g : tuple of array, shape (points,)
         (g) Between which values nine in ten of the simulations that resemble it are.
     """
@@ -66,6 +68,7 @@ class Diagnosis:
     outside_model: float
     is_outside: bool
     warnings: list[SignalWarning]
+    shown_wheel: str
     difference_g: Array = field(repr=False)
     band_g: tuple[Array, Array] = field(repr=False)
     _report: dict[str, Any] = field(repr=False)
@@ -152,7 +155,7 @@ def diagnose(
     --------
     >>> from meshtone import MissingTooth, diagnose, examples, simulate
     >>> rig = examples.healthy()
-    >>> found = diagnose(simulate(rig.replace(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
+    >>> found = diagnose(simulate(rig.copy(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
     >>> next(iter(found.kinds)), found.damaged > 0.99                                      # doctest: +SKIP
     ('missing-tooth', True)
     """
@@ -177,6 +180,7 @@ def diagnose(
         outside_model=report["outside_model"],
         is_outside=report["is_outside"],
         warnings=[SignalWarning(said["code"], said["message"], {}) for said in report["warnings"]],
+        shown_wheel=report["shown_wheel"],
         difference_g=read_only(difference_g),
         band_g=(read_only(low), read_only(high)),
         _report=report,

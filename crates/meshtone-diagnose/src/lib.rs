@@ -1,7 +1,7 @@
 //! Diagnosis of a gear from its vibration, by simulations.
 //!
 //! A [`Prior`] says what may be: kinds of damage and their sizes, and everything that differs from rig to rig. A
-//! [`ReferenceSet`] holds simulations of it, as averages over the revolutions of both wheels. An [`Observation`] is what a recording
+//! [`ReferenceSet`] holds simulations of it, as averages over the revolutions of each wheel. An [`Observation`] is what a recording
 //! shows; [`diagnose`] says what it may be, by what it learns from the reference set.
 #![deny(missing_docs)]
 
@@ -22,6 +22,7 @@ mod prior;
 mod quantile;
 mod reference;
 mod refine;
+mod rig;
 mod severity;
 mod softmax;
 mod speed;
@@ -31,8 +32,8 @@ mod synthetic;
 mod warnings;
 
 pub use answer::{
-    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer, ToothAnswer,
-    p_in_words,
+    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer,
+    ToothAnswer, p_in_words,
 };
 pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
@@ -41,5 +42,6 @@ pub use observation::{Observation, SignalKind, WheelLines, other_teeth};
 pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
+pub use rig::{RigWheel, rig_wheels};
 pub use store::{ReferenceStore, StoreError};
 pub use warnings::{DiagnosisWarning, DiagnosisWarningKind};

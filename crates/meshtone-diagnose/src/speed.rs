@@ -21,7 +21,7 @@ impl Question<'_> {
     /// A recording whose speed is far from those of the simulations.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
         let nominal_hz = prior.base.operation.pinion_speed_hz;
-        for speed_hz in self.all().filter_map(|asked| asked.pinion_speed_hz) {
+        for speed_hz in self.all().filter_map(|asked| asked.input_speed_hz) {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 let reason = reason(speed_hz / nominal_hz, prior).unwrap_or_else(|| {
@@ -73,7 +73,7 @@ pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let nominal_hz = prior.base.operation.pinion_speed_hz;
     let mut doubts = Vec::new();
     let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
-    for speed_hz in question.all().filter_map(|asked| asked.pinion_speed_hz).filter(beside) {
+    for speed_hz in question.all().filter_map(|asked| asked.input_speed_hz).filter(beside) {
         let reason = reason(speed_hz / nominal_hz, prior);
         let reason = reason.map_or_else(String::new, |reason| format!("; {reason}"));
         let doubt = format!(

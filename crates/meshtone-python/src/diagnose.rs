@@ -40,7 +40,7 @@ impl Observation {
             let teeth = WheelName::BOTH.map(|shaft| shafts.teeth(shaft));
             let observed =
                 Observed::of_recording(&pinion, &gear, teeth, shafts.mean_speed_hz(WheelName::Pinion));
-            observed.map(|observed| observed.with_zero([AngleZero::Simulated; 2]))
+            observed.map(|observed| observed.with_zero(vec![AngleZero::Simulated; 2]))
         };
         py.detach(observe).map(Self).map_err(value_error)
     }
@@ -83,7 +83,7 @@ fn measured(
     let gear = angular_resample(signal, &of_gear, &settings)?;
     let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning: StatedTurning::Other };
     let observed = Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?
-        .with_zero([phase.0.zero, of_gear.zero]);
+        .with_zero(vec![phase.0.zero, of_gear.zero]);
     let is_doubtful = phase.0.zero == AngleZero::Chance && !phase.0.warnings.is_empty();
     let against = match find_mismatch(&pinion, &stated) {
         // Another tone than the mesh's may have been followed.

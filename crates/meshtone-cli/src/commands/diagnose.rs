@@ -9,7 +9,7 @@ use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone_diagnose::{
     Answer, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question, REFINED_RECORDS,
-    ReferenceSet, ReferenceStore, Refined, SignalKind, diagnose, refine,
+    ReferenceSet, ReferenceStore, Refined, RigWheel, SignalKind, diagnose, refine, rig_wheels,
 };
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
@@ -127,7 +127,7 @@ impl Diagnose {
         let mut answer = diagnose(&learned, &question, refined.as_ref())?;
         answer.warnings.splice(0..0, of_reading);
         let json = self.json(&answer, &store.folder_of(&prior));
-        self.write(&output.path, &answer, &json, scenario.gears.gear_teeth)?;
+        self.write(&output.path, &answer, &json, &rig_wheels(&scenario))?;
         answer.warnings.iter().filter(|warning| !known.contains(warning)).for_each(warn);
         print_unless(
             self.quiet,
@@ -216,10 +216,16 @@ impl Diagnose {
         all
     }
 
-    fn write(&self, directory: &Path, answer: &Answer, json: &Value, gear_teeth: u32) -> Result<(), Failure> {
+    fn write(
+        &self,
+        directory: &Path,
+        answer: &Answer,
+        json: &Value,
+        rig: &[RigWheel],
+    ) -> Result<(), Failure> {
         let staged = match self.no_figure {
             true => Vec::new(),
-            false => stage_figure(directory, FIGURE, &figure::draw(answer, &self.title(), gear_teeth))?,
+            false => stage_figure(directory, FIGURE, &figure::draw(answer, &self.title(), rig))?,
         };
         let json = stage_text(&directory.join(JSON), &format!("{json:#}\n"))?;
         Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)

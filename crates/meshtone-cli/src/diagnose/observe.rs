@@ -156,7 +156,7 @@ impl<'a> Observer<'a> {
     fn simulated(&self, input: &Input, scenario_toml: &str) -> Result<Observed, Failure> {
         let shafts = self.shafts(input, scenario_toml)?;
         let over = |shaft| shafts.angular(&input.channel.samples, shaft, &ChainSettings::default());
-        let zero = [AngleZero::Simulated; 2];
+        let zero = vec![AngleZero::Simulated; 2];
         let pinion_hz = shafts.mean_speed_hz(WheelName::Pinion);
         let observe = || self.of_angles([over(WheelName::Pinion)?, over(WheelName::Gear)?], zero, pinion_hz);
         let what = format!("channel {}", input.channel.name);
@@ -192,10 +192,10 @@ impl<'a> Observer<'a> {
             against => against,
         };
         let (wheels, zero, pinion_hz) = if own_teeth == pinion_teeth {
-            ([own, mate], [shaft.zero, of_mate.zero], speed_hz)
+            ([own, mate], vec![shaft.zero, of_mate.zero], speed_hz)
         } else {
             let pinion_hz = speed_hz * f64::from(gear_teeth) / f64::from(pinion_teeth);
-            ([mate, own], [of_mate.zero, shaft.zero], pinion_hz)
+            ([mate, own], vec![of_mate.zero, shaft.zero], pinion_hz)
         };
         let observation = self.of_angles(wheels, zero, pinion_hz)?;
         Ok(match against {
@@ -218,7 +218,7 @@ impl<'a> Observer<'a> {
     fn of_angles(
         &self,
         [pinion, gear]: [AngularSignal; 2],
-        zero: [AngleZero; 2],
+        zero: Vec<AngleZero>,
         pinion_hz: f64,
     ) -> Result<Observation, SignalError> {
         let observation = Observation::of_recording(&pinion, &gear, teeth_of(self.scenario), pinion_hz)?;

@@ -25,7 +25,7 @@ pub fn table(answer: &Answer) -> String {
             format!("{:.2} ({from:.2} to {to:.2})", severity.median)
         });
         let severity = severity.unwrap_or_else(|| "-".to_owned());
-        let at = kind.place.as_ref().map_or_else(|| "-".to_owned(), place);
+        let at = kind.place.as_ref().map_or_else(|| "-".to_owned(), |of| place(of, &answer.wheels));
         let probability = percent(kind.probability);
         text += &format!("  {:<width$}  {probability:>11}  {severity:<19}  {at}\n", kind.label);
     }

@@ -1,12 +1,10 @@
 //! Parts of a diagnosis in words.
 
 use meshtone::signal::AngleZero;
-use meshtone::wheel::WheelName;
 use meshtone_diagnose::{Answer, PlaceAnswer, SignalKind, ToothAnswer, p_in_words};
 
 /// Explanation of "probability", in few words.
-pub const PROBABILITY: &str =
-    "probabilities are given the scenario; before the recording: healthy one half, all kinds of damage alike";
+pub const PROBABILITY: &str = "probabilities are given the scenario; before the recording: healthy one half, all kinds of damage, and two at once, alike";
 
 /// `82 %`, and nothing more certain than a hundred simulations could show.
 pub fn percent(probability: f64) -> String {
@@ -31,7 +29,7 @@ pub fn outside(answer: &Answer) -> String {
 /// Meaning of tooth 1 of the wheel that is named.
 pub fn counted_from(answer: &Answer) -> Option<String> {
     let place = answer.likeliest_damage()?.place.filter(|place| place.is_on_one_tooth)?;
-    let zero = answer.counted_from[usize::from(place.wheel == WheelName::Gear)];
+    let zero = answer.counted_from[place.wheel];
     Some(match zero {
         Some(AngleZero::Simulated) => "teeth are counted as in the simulation".to_owned(),
         Some(zero) => format!("tooth 1 is the one in mesh at the {}", zero.name()),
@@ -57,8 +55,8 @@ pub fn learnt(answer: &Answer) -> String {
 }
 
 /// `gear (99.0 %), tooth 12 at 104° (88.0 %)`.
-pub fn place(place: &PlaceAnswer) -> String {
-    let mut text = format!("{} ({})", place.wheel.name(), percent(place.wheel_probability));
+pub fn place(place: &PlaceAnswer, wheels: &[String]) -> String {
+    let mut text = format!("{} ({})", wheels[place.wheel], percent(place.wheel_probability));
     if let Some(ToothAnswer { number, angle_deg, probability }) = place.tooth {
         text += &format!(", tooth {number} at {angle_deg:.0}° ({})", percent(probability));
     } else if place.is_on_one_tooth {
