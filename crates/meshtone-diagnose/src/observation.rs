@@ -2,10 +2,10 @@
 
 use meshtone::operation::greatest_common_divisor;
 use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, AngularSignal, LinesOffShafts, Mismatch, SeparationSettings,
-    ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage, angular_resample,
-    check_channel, find_mismatch, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
-    synchronous_part,
+    Alternative, AngleZero, AngularSettings, AngularSignal, ForeignTones, GearTrain, LinesOffShafts,
+    Mismatch, SeparationSettings, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning,
+    SynchronousAverage, angular_resample, check_channel, find_mismatch, foreign_tones, kurtosis,
+    lines_off_shafts, rms, standard_deviation, synchronous_average, synchronous_part,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -337,7 +337,8 @@ fn noise(angular: &AngularSignal, teeth: u32, mate_teeth: u32) -> Vec<f64> {
     if revolutions < FEWEST_REVOLUTIONS {
         return Vec::new();
     }
-    let LinesOffShafts { spectrum, is_off } = lines_off_shafts(angular, teeth, mate_teeth);
+    let LinesOffShafts { spectrum, is_off } =
+        lines_off_shafts(angular, &GearTrain::of_wheels([("wheel", teeth), ("mate", mate_teeth)]), 0);
     let per_mesh_order = teeth as usize * revolutions;
     let count = (revolutions * angular.points_per_revolution) as f64;
     let last = (PASSED * angular.nyquist_order) as usize * revolutions;
@@ -402,8 +403,9 @@ fn energy_off_both_shafts(gear: &AngularSignal, [pinion, teeth]: [u32; 2], gear_
         return None;
     }
     let whole = gear.revolutions() * gear.points_per_revolution;
-    let mut lines = lines_off_shafts(gear, teeth, pinion);
-    let tones = lines.tones(gear, gear_hz);
+    let train = GearTrain::of_wheels([("gear", teeth), ("pinion", pinion)]);
+    let mut lines = lines_off_shafts(gear, &train, 0);
+    let tones = foreign_tones(gear, &train, 0, gear_hz);
     let passed = (PASSED * gear.nyquist_order) as usize * gear.revolutions();
     for (line, value) in lines.spectrum.iter_mut().enumerate() {
         if !lines.is_off[line] || line >= passed {
@@ -422,7 +424,7 @@ fn energy_off_both_shafts(gear: &AngularSignal, [pinion, teeth]: [u32; 2], gear_
             100.0 * part
         ));
     }
-    tones.map(|tones| tones.to_string())
+    tones.as_deref().and_then(ForeignTones::that_count).map(|tones| tones.to_string())
 }
 
 #[cfg(test)]

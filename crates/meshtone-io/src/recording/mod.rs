@@ -69,7 +69,7 @@ pub struct Recording {
     pub channels: Vec<Channel>,
     /// The file that was read.
     pub source: PathBuf,
-    /// The scenario as TOML, where the file is one that `meshtone simulate` wrote.
+    /// The scenario of a pair or a gearbox as TOML, where the file is one that `meshtone simulate` wrote.
     pub scenario_toml: Option<String>,
     /// What is doubtful about the file.
     pub warnings: Vec<RecordingWarning>,

@@ -103,7 +103,6 @@ const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
 /// A scenario file, as what it is read.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 #[expect(clippy::large_enum_variant, reason = "there is one of a file")]
 pub enum ScenarioForm {
     /// The short form: one pair of gears.
@@ -498,6 +497,37 @@ fn check_list<S: Keys>(name: &str, entries: &[S]) -> Result<(), ScenarioError> {
 }
 
 impl ScenarioForm {
+    /// (Hz) The nominal speed of the pinion, or of a gearbox's input.
+    pub fn input_speed_hz(&self) -> f64 {
+        match self {
+            Self::Pair(scenario) => scenario.operation.pinion_speed_hz,
+            Self::Gearbox(gearbox) => gearbox.operation.drive.pinion_speed_hz,
+        }
+    }
+
+    /// (S/s) The sampling rate that it leads to.
+    pub fn sampling_rate_hz(&self) -> f64 {
+        match self {
+            Self::Pair(scenario) => scenario.time_grid().sampling_rate_hz,
+            Self::Gearbox(gearbox) => gearbox.time_grid().sampling_rate_hz,
+        }
+    }
+
+    /// Reads and validates either form of a scenario that names no other file.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line; sections of both forms.
+    pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
+        if Gearbox::is_written_in(text)? {
+            return Gearbox::from_toml(text).map(Self::Gearbox);
+        }
+        let scenario = Scenario::from_toml(text)?;
+        scenario.validate().map(|_| Self::Pair(scenario))
+    }
+
     /// Reads and validates either form.
     ///
     /// # Arguments
