@@ -10,11 +10,12 @@ mod question;
 mod read;
 mod rule;
 mod split;
+mod wheel;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
 use meshtone_io::experiment::Tuned;
 use meshtone_toml::TomlError;
 
@@ -25,6 +26,8 @@ pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
+pub use wheel::{AveragedWheels, ClassFault, Wheel};
+pub(crate) use wheel::{column_part, wheel_words, with_faults};
 
 use crate::digest::Digest;
 use crate::expression::Condition;
@@ -37,6 +40,15 @@ use crate::sampling::Design;
 /// * `help` - what the user can do
 pub(crate) fn refused(place: impl Into<String>, problem: impl Into<String>, help: &str) -> TomlError {
     TomlError::new(place, "", problem).with_help(help)
+}
+
+/// The name of a section and, of an entry of a list such as `wheel[z1]` or `fault[1]`, what stands in the brackets.
+///
+/// # Arguments
+/// * `section` - the first segment of a key
+pub(crate) fn list_and_entry(section: &str) -> (&str, Option<&str>) {
+    let entry = section.split_once('[').and_then(|(list, entry)| Some((list, entry.strip_suffix(']')?)));
+    entry.map_or((section, None), |(list, entry)| (list, Some(entry)))
 }
 
 /// The plan of a data set.
@@ -91,8 +103,8 @@ pub struct Content {
     /// Seed of all draws.
     pub seed: u64,
     /// The healthy scenario that all records have in common.
-    pub base: Scenario,
-    /// How many units there are: pairs of wheels.
+    pub base: ScenarioForm,
+    /// How many units there are: pairs of wheels, or gearboxes.
     pub units: u64,
     /// How often each unit is mounted: its records are spread evenly over that many mountings.
     pub mountings: u64,
