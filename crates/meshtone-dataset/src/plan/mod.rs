@@ -192,3 +192,35 @@ impl Plan {
 pub fn template() -> &'static str {
     include_str!("template.toml")
 }
+
+/// A commented plan of a data set of the gearbox that [`meshtone::scenario::gearbox_template`] prints.
+///
+/// ```
+/// use std::path::Path;
+/// use meshtone_dataset::plan::{Plan, gearbox_template};
+///
+/// let plan = Plan::read_text(gearbox_template(), Path::new("plan.toml"))?;
+/// assert_eq!((plan.records(), plan.content.keep.wheel.names()), (200, "z1, z2, z3, z4".to_owned()));
+/// # Ok::<(), meshtone_io::scenario_file::ReadScenarioError>(())
+/// ```
+pub fn gearbox_template() -> String {
+    // At the example's rate a data set would take twice as long, and its lowest mode decays slowly.
+    const SOLVER: &str = "\
+[scenario.solver]
+sampling_rate_hz = 50000.0
+duration_s = 1.0
+settle_fraction = 0.81
+settle_tolerance = 1e-2
+";
+    let gearbox = meshtone::scenario::gearbox_template(None);
+    let has_section =
+        |part: &&str| part.lines().any(|line| line.starts_with('[')) && !part.starts_with("[solver]");
+    let of_scenario = |line: &str| {
+        let brackets = line.len() - line.trim_start_matches('[').len();
+        let scenario = if brackets > 0 { "scenario." } else { "" };
+        format!("{}{scenario}{}\n", &line[..brackets], &line[brackets..])
+    };
+    let parts = gearbox.split("\n\n").filter(has_section);
+    let parts: String = parts.map(|part| part.lines().map(of_scenario).collect::<String>() + "\n").collect();
+    include_str!("template_gearbox.toml").replace("# <gearbox>\n", &format!("{parts}{SOLVER}\n"))
+}

@@ -158,12 +158,24 @@ impl ClassFault {
     /// * `table` - the class
     /// * `base` - the scenario whose wheels are damaged
     pub(super) fn read_all(table: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<Vec<Self>> {
-        Ok(match base {
-            ScenarioForm::Gearbox(_) => {
-                GearboxFault::list_from_table(table)?.into_iter().map(Self::of_gearbox).collect()
+        let ScenarioForm::Gearbox(_) = base else {
+            return Ok(Fault::list_from_table(table)?.into_iter().map(Self::of_pair).collect());
+        };
+        let faults: Vec<Self> =
+            GearboxFault::list_from_table(table)?.into_iter().map(Self::of_gearbox).collect();
+        let wheels = Wheel::all(base);
+        match faults.iter().find(|fault| !wheels.contains(&fault.wheel)) {
+            None => Ok(faults),
+            Some(fault) => {
+                let names: Vec<&str> = wheels.iter().map(Wheel::name).collect();
+                let problem = format!(
+                    "is on the wheel {:?}, which there is not; must be one of {}",
+                    fault.wheel.name(),
+                    names.join(", ")
+                );
+                Err(table.error("fault", problem))
             }
-            _ => Fault::list_from_table(table)?.into_iter().map(Self::of_pair).collect(),
-        })
+        }
     }
 }
 
