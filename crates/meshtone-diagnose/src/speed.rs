@@ -18,12 +18,13 @@ impl Question<'_> {
     /// * `prior` - what may be about the rig
     ///
     /// # Errors
-    /// A recording whose speed is far from those of the simulations.
+    /// Recordings of other wheels, of too few orders, or of different kinds; a speed far from those of the simulations.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
+        self.check_recordings(&prior.base.gears)?;
         let nominal_hz = prior.base.operation.pinion_speed_hz;
         for speed_hz in self.all().filter_map(|asked| asked.pinion_speed_hz) {
             let [least, most] = simulated_hz(prior);
-            if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
+            if speed_hz > most * FARTHEST || speed_hz < least / FARTHEST {
                 let reason = reason(speed_hz / nominal_hz, prior).unwrap_or_else(|| {
                     "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed \
                      (operation.pinion_speed_hz)?"

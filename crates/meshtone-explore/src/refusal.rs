@@ -3,6 +3,7 @@
 use meshtone::Error;
 use meshtone::scenario::{ErrorKind, ScenarioError};
 use meshtone::signal::SignalError;
+use meshtone_diagnose::{DiagnoseError, StoreError};
 use serde_json::{Value, json};
 
 /// Why there is no answer.
@@ -90,6 +91,18 @@ impl From<Error> for Refusal {
 
 impl From<SignalError> for Refusal {
     fn from(error: SignalError) -> Self {
+        Self::unfit(error.to_string())
+    }
+}
+
+impl From<DiagnoseError> for Refusal {
+    fn from(error: DiagnoseError) -> Self {
+        Self::unfit(error.to_string())
+    }
+}
+
+impl From<StoreError> for Refusal {
+    fn from(error: StoreError) -> Self {
         Self::unfit(error.to_string())
     }
 }
