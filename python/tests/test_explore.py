@@ -400,13 +400,21 @@ def test_a_recording_is_diagnosed(rig_page: Page, rig_explorer: mt.Explorer, tmp
 
     # What no simulation is like has no probabilities; that is said at once.
     noise = np.random.default_rng(1).normal(size=16_000)
-    csv = "time_s,bearing [g]\n" + "\n".join(f"{n / 8000:.6f},{x:.5f}" for n, x in enumerate(noise))
-    open_recording(page, "noise.csv", csv.encode())
+    rows = [f"{n / 8000:.6f},{x:.5f},{int(n % 200 < 20)}" for n, x in enumerate(noise)]
+    open_recording(page, "noise.csv", "\n".join(["time_s,bearing [g],tacho", *rows]).encode())
+    tachometer = """
+        const choice = [...document.querySelectorAll('#recording select')].at(-1);
+        choice.value = 'tacho';
+        choice.dispatchEvent(new Event('change'));
+    """
+    page.run(tachometer)
+    page.wait(lambda: "by tachometer" in text_of(page, "recording"), "the tachometer")
     assert text_of(page, "found") == ""
     page.run(diagnose, 512)
     page.wait(lambda: "unlike" in text_of(page, "found"), "the answer")
     assert text_of(page, "kinds") == "" and "probability" not in text_of(page, "found")
-    assert "repeats" in text_of(page, "seen")
+    seen = text_of(page, "seen")
+    assert "clearly repeats with its shaft" in seen and "sound.parquet: there is no channel tacho" in seen
 
 
 def test_a_diagnosis_is_stopped(rig_page: Page, rig_explorer: mt.Explorer) -> None:

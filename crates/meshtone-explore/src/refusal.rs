@@ -42,6 +42,17 @@ impl Refusal {
         }
     }
 
+    /// Returns the refusal with the name of the file that it is about.
+    ///
+    /// # Arguments
+    /// * `file` - the name
+    pub fn about(self, file: &str) -> Self {
+        match self {
+            Self::Unfit { problem, help } => Self::Unfit { problem: format!("{file}: {problem}"), help },
+            other => other,
+        }
+    }
+
     /// For the page: what kind of thing is wrong, the key, the value, what is allowed, what to do, the line, and all in a sentence.
     pub fn json(&self) -> Value {
         match self {

@@ -9,6 +9,7 @@ use meshtone_diagnose::{
     Answer, AnswerInWords, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question,
     REFINED_RECORDS, ReferenceStore, diagnose, refine,
 };
+use meshtone_io::recording::Recording;
 use serde_json::{Value, json};
 
 use super::recording::{RecordingQuestion, by_tachometer, chosen, read};
@@ -109,48 +110,64 @@ pub fn diagnosis(
     Ok(answer_json(&diagnose(&learned, &asked, refined.as_ref())?, &seen))
 }
 
-/// Observes the rig's wheels in a recording; the mesh tone makes the scenario's speed exact where no tachometer is named.
+/// Observes the rig's wheels in a recording, whose name stands before all that is said of it.
 fn observe(
     (file, question): &OpenedRecording,
     rig: &Scenario,
 ) -> Result<(Observation, Vec<DiagnosisWarning>), Refusal> {
     let recording = read(file, question)?;
-    let (simulated, channel) = chosen(&recording, question)?;
-    let (mut channel, name) = (channel.clone(), &question.name);
+    let name = &question.name;
+    let (observation, doubts) = of_recording(&recording, question, rig).map_err(|error| error.about(name))?;
+    let doubts = recording.warnings.iter().map(ToString::to_string).chain(doubts);
+    let about = |doubt| DiagnosisWarning::new(DiagnosisWarningKind::Reading, format!("{name}: {doubt}"));
+    Ok((observation, doubts.map(about).collect()))
+}
+
+/// Observes the rig's wheels in a recording that was read, and says what is doubtful about the angle of its shaft.
+///
+/// The shafts turn as the scenario of a simulation says, or by the tachometer, which has one pulse a revolution of the pinion. Where there
+/// is none, the mesh tone makes the speed of the page's scenario exact.
+fn of_recording(
+    recording: &Recording,
+    question: &RecordingQuestion,
+    rig: &Scenario,
+) -> Result<(Observation, Vec<String>), Refusal> {
+    let (simulated, channel) = chosen(recording, question)?;
+    let mut channel = channel.clone();
     if !channel.convert_to_g() {
         let is = channel.unit.map_or_else(|| "has no stated unit".to_owned(), |unit| format!("is in {unit}"));
-        let problem = format!("{name}: channel {} {is}; must be g or m/s²", channel.name);
+        let problem = format!("channel {} {is}; must be g or m/s²", channel.name);
         return Err(Refusal::unfit(problem).with_help(
             "write the unit behind the channel's name, as in `bearing [g]`, or use `meshtone diagnose` with --unit",
         ));
     }
     let (rate_hz, samples) = (recording.sampling_rate_hz, &channel.samples);
-    let mut doubts: Vec<String> = recording.warnings.iter().map(ToString::to_string).collect();
-    let observation = match (&simulated, &question.tachometer) {
-        (Some(simulated), None) => Observation::of_simulated(
-            samples,
-            &SimulatedShafts::new(simulated, recording.start_s, recording.len()),
-        ),
-        (_, tachometer) => {
-            let teeth = [rig.gears.pinion_teeth, rig.gears.gear_teeth];
+    let mut doubts = Vec::new();
+    let tachometer = question.tachometer.as_deref().filter(|name| {
+        let is_there = recording.channel(name).is_some();
+        if !is_there {
+            doubts.push(format!(
+                "there is no channel {name}: its shafts are taken to turn as without a tachometer"
+            ));
+        }
+        is_there
+    });
+    if let (Some(simulated), None) = (&simulated, tachometer) {
+        let shafts = SimulatedShafts::new(simulated, recording.start_s, recording.len());
+        return Ok((Observation::of_simulated(samples, &shafts)?, doubts));
+    }
+    let teeth = [rig.gears.pinion_teeth, rig.gears.gear_teeth];
+    let (turning, phase) = match tachometer {
+        Some(name) => by_tachometer(recording, name)?,
+        None => {
             let nominal_hz = rig.operation.pinion_speed_hz;
-            let (turning, phase) = match tachometer {
-                Some(name) => by_tachometer(&recording, name)?,
-                None => {
-                    let tone = MeshTone::new(teeth[0], nominal_hz);
-                    let phase = ShaftPhase::from_mesh_tone(samples, rate_hz, &tone)
-                        .map_err(|error| Refusal::unfit(format!("{name}: {error}")))?;
-                    (StatedTurning::MeshTone { nominal_hz }, phase)
-                }
-            };
-            doubts.extend(phase.warnings.iter().map(ToString::to_string));
-            let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning };
-            Observation::of_measured(samples, rate_hz, &phase, &stated, teeth)
+            let tone = MeshTone::new(teeth[0], nominal_hz);
+            (StatedTurning::MeshTone { nominal_hz }, ShaftPhase::from_mesh_tone(samples, rate_hz, &tone)?)
         }
     };
-    let observation = observation.map_err(|error| Refusal::unfit(format!("{name}: {error}")))?;
-    let about = |doubt| DiagnosisWarning::new(DiagnosisWarningKind::Reading, format!("{name}: {doubt}"));
-    Ok((observation, doubts.into_iter().map(about).collect()))
+    doubts.extend(phase.warnings.iter().map(ToString::to_string));
+    let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning };
+    Ok((Observation::of_measured(samples, rate_hz, &phase, &stated, teeth)?, doubts))
 }
 
 fn messages<'w>(warnings: impl IntoIterator<Item = &'w DiagnosisWarning>) -> Vec<&'w str> {
