@@ -82,6 +82,7 @@ def test_from_signals_to_an_answer(reference: Path) -> None:
         ask(gone.vertical_g)
 
 
+@pytest.mark.filterwarnings("ignore::meshtone.MeshtoneWarning")
 def test_what_is_seen_is_warned_of_before_anything_is_simulated(reference: Path, tmp_path: Path) -> None:
     gone = mt.simulate(RIG.copy(fault=mt.MissingTooth(tooth=8)))
     before: list[list[str | None]] = []

@@ -353,8 +353,8 @@ def rig_page(browser: Chrome, rig_explorer: mt.Explorer) -> Iterator[Page]:
 
 
 def text_of(page: Page, name: str) -> str:
-    """What an element that is in sight says; empty where it is hidden."""
-    shown: str = page.run("const e = document.getElementById(arguments[0]); return e.offsetParent ? e.innerText : ''", name)
+    """What an element that is in sight says; empty where there is none."""
+    shown: str = page.run("const e = document.getElementById(arguments[0]); return e?.offsetParent ? e.innerText : ''", name)
     return shown
 
 

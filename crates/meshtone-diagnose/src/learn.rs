@@ -49,8 +49,8 @@ impl Question<'_> {
         self.now.iter().chain(self.healthy)
     }
 
-    /// Refuses recordings that cannot be compared: of other wheels, with values that are not finite, signals of another kind, or too
-    /// few orders. Returns the kind of their signals.
+    /// Refuses recordings that cannot be compared: of other wheels, with values that are not finite, signals of another kind.
+    /// Returns the kind of their signals.
     pub(crate) fn check_recordings(&self, gears: &Gears) -> Result<SignalKind, DiagnoseError> {
         let first = self.now.first().ok_or(DiagnoseError::NoRecording)?;
         let expected = [gears.pinion_teeth, gears.gear_teeth];
@@ -72,14 +72,18 @@ impl Question<'_> {
                 let (healthy, asked) = (asked.signal.name(), first.signal.name());
                 return Err(DiagnoseError::OtherSignal { healthy, asked });
             }
-            check_orders(first.signal, asked.gear.last(), gears)?;
         }
         Ok(first.signal)
     }
 }
 
 /// Refuses a signal that shows too few mesh orders.
-fn check_orders(signal: SignalKind, last: usize, gears: &Gears) -> Result<(), DiagnoseError> {
+///
+/// # Arguments
+/// * `signal` - its kind
+/// * `last` - the last order of the gear's shaft that it shows
+/// * `gears` - of the rig
+pub(crate) fn check_orders(signal: SignalKind, last: usize, gears: &Gears) -> Result<(), DiagnoseError> {
     let needed = FEWEST_MESH_ORDERS * gears.gear_teeth as usize + gears.gear_teeth as usize / 2;
     if last < needed {
         return Err(DiagnoseError::TooFewOrders { of: signal.name(), last, needed });

@@ -1,7 +1,7 @@
 //! A check that simulations of the rig cover a recording's speed.
 
 use crate::DiagnoseError;
-use crate::learn::Question;
+use crate::learn::{Question, check_orders};
 use crate::prior::Prior;
 
 /// (-) How far beyond the speeds of the simulations a recording may be to be compared with them at all.
@@ -20,7 +20,7 @@ impl Question<'_> {
     /// # Errors
     /// Recordings of other wheels, of too few orders, or of different kinds; a speed far from those of the simulations.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
-        self.check_recordings(&prior.base.gears)?;
+        let signal = self.check_recordings(&prior.base.gears)?;
         let nominal_hz = prior.base.operation.pinion_speed_hz;
         for speed_hz in self.all().filter_map(|asked| asked.pinion_speed_hz) {
             let [least, most] = simulated_hz(prior);
@@ -33,7 +33,8 @@ impl Question<'_> {
                 return Err(DiagnoseError::OtherSpeed { speed_hz, nominal_hz, reason });
             }
         }
-        Ok(())
+        // A wrong speed moves the orders too.
+        self.all().try_for_each(|asked| check_orders(signal, asked.gear.last(), &prior.base.gears))
     }
 }
 
