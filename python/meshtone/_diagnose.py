@@ -166,7 +166,7 @@ def diagnose(
     ...         print(warning.code)
     no-healthy
 
-    >>> found = diagnose(simulate(rig.replace(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
+    >>> found = diagnose(simulate(rig.copy(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
     >>> next(iter(found.kinds)), found.damaged > 0.99                                      # doctest: +SKIP
     ('missing-tooth', True)
     """

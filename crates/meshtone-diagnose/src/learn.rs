@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{DamageKind, Gears};
+use meshtone::scenario::DamageKind;
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 use nalgebra::DMatrix;
@@ -48,47 +48,6 @@ impl Question<'_> {
     pub(crate) fn all(&self) -> impl Iterator<Item = &Observation> {
         self.now.iter().chain(self.healthy)
     }
-
-    /// Refuses recordings that cannot be compared: of other wheels, with values that are not finite, signals of another kind.
-    /// Returns the kind of their signals.
-    pub(crate) fn check_recordings(&self, gears: &Gears) -> Result<SignalKind, DiagnoseError> {
-        let first = self.now.first().ok_or(DiagnoseError::NoRecording)?;
-        let expected = [gears.pinion_teeth, gears.gear_teeth];
-        for asked in self.all() {
-            let pinion = asked.pinion.as_ref().map_or(expected[0], |wheel| wheel.teeth);
-            let given = [pinion, asked.gear.teeth];
-            if given != expected {
-                return Err(DiagnoseError::OtherWheels { given, expected });
-            }
-            if let Some(value) = asked.pinion_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
-                let (what, beside) = ("speed (Hz)", " and more than 0");
-                return Err(DiagnoseError::NotFinite { what, value, beside });
-            }
-            let lines = asked.wheels().into_iter().flatten().flat_map(|wheel| &wheel.lines);
-            if let Some(value) = lines.map(|line| line.norm()).find(|norm| !norm.is_finite()) {
-                return Err(DiagnoseError::NotFinite { what: "average", value, beside: "" });
-            }
-            if asked.signal != first.signal {
-                let (healthy, asked) = (asked.signal.name(), first.signal.name());
-                return Err(DiagnoseError::OtherSignal { healthy, asked });
-            }
-        }
-        Ok(first.signal)
-    }
-}
-
-/// Refuses a signal that shows too few mesh orders.
-///
-/// # Arguments
-/// * `signal` - its kind
-/// * `last` - the last order of the gear's shaft that it shows
-/// * `gears` - of the rig
-pub(crate) fn check_orders(signal: SignalKind, last: usize, gears: &Gears) -> Result<(), DiagnoseError> {
-    let needed = FEWEST_MESH_ORDERS * gears.gear_teeth as usize + gears.gear_teeth as usize / 2;
-    if last < needed {
-        return Err(DiagnoseError::TooFewOrders { of: signal.name(), last, needed });
-    }
-    Ok(())
 }
 
 /// A class: what is damaged; none where nothing is.
@@ -150,23 +109,47 @@ pub(crate) struct FeatureRow {
 impl Layout {
     /// What is compared for a question.
     ///
-    /// Recordings that cannot be compared are refused here, before any simulation is looked at. The orders reach as far as the shortest of all averages, since features over other orders would
+    /// Recordings that cannot be compared, of other wheels, values that are not finite, or a signal of another kind, are refused here,
+    /// before any simulation is looked at. The orders reach as far as the shortest of all averages, since features over other orders would
     /// differ without any damage.
     pub(crate) fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
-        let prior = &reference.prior;
-        let signal = question.check_recordings(&prior.base.gears)?;
+        let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
+        let gears = &reference.prior.base.gears;
+        let expected = [gears.pinion_teeth, gears.gear_teeth];
+        for asked in question.all() {
+            let pinion = asked.pinion.as_ref().map_or(expected[0], |wheel| wheel.teeth);
+            let given = [pinion, asked.gear.teeth];
+            if given != expected {
+                return Err(DiagnoseError::OtherWheels { given, expected });
+            }
+            if let Some(value) = asked.pinion_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
+                let (what, beside) = ("speed (Hz)", " and more than 0");
+                return Err(DiagnoseError::NotFinite { what, value, beside });
+            }
+            let lines = asked.wheels().into_iter().flatten().flat_map(|wheel| &wheel.lines);
+            if let Some(value) = lines.map(|line| line.norm()).find(|norm| !norm.is_finite()) {
+                return Err(DiagnoseError::NotFinite { what: "average", value, beside: "" });
+            }
+            if asked.signal != first.signal {
+                let (healthy, asked) = (asked.signal.name(), first.signal.name());
+                return Err(DiagnoseError::OtherSignal { healthy, asked });
+            }
+        }
         let last = [0, 1].map(|wheel| {
             let simulated = reference.records.iter().map(|record| &record.wheels[wheel]);
             let observed = question.all().filter_map(|asked| asked.wheels()[wheel]);
             simulated.chain(observed).map(WheelLines::last).min().unwrap_or(0)
         });
-        check_orders(signal, last[1], &prior.base.gears)?;
+        let needed = FEWEST_MESH_ORDERS * expected[1] as usize + expected[1] as usize / 2;
+        if last[1] < needed {
+            return Err(DiagnoseError::TooFewOrders { of: first.signal.name(), last: last[1], needed });
+        }
         Ok(Self {
-            signal,
+            signal: first.signal,
             has_healthy: !question.healthy.is_empty(),
             last,
             noises: [question.now, question.healthy].map(noise_of),
-            nominal_hz: prior.base.operation.pinion_speed_hz,
+            nominal_hz: reference.prior.base.operation.pinion_speed_hz,
             knows_speed: question.now.iter().any(|asked| asked.pinion_speed_hz.is_some()),
         })
     }

@@ -1,8 +1,9 @@
-//! A check that simulations of the rig cover a recording's speed.
+//! A check that simulations of the rig can be compared with a recording, and cover its speed.
 
 use crate::DiagnoseError;
-use crate::learn::{Question, check_orders};
+use crate::learn::{Layout, Question};
 use crate::prior::Prior;
+use crate::reference::ReferenceSet;
 
 /// (-) How far beyond the speeds of the simulations a recording may be to be compared with them at all.
 const FARTHEST: f64 = 1.5;
@@ -18,13 +19,12 @@ impl Question<'_> {
     /// * `prior` - what may be about the rig
     ///
     /// # Errors
-    /// Recordings of other wheels, of too few orders, or of different kinds; a speed far from those of the simulations.
+    /// A recording whose speed is far from those of the simulations; recordings of other wheels, of too few orders or of different kinds.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
-        let signal = self.check_recordings(&prior.base.gears)?;
         let nominal_hz = prior.base.operation.pinion_speed_hz;
         for speed_hz in self.all().filter_map(|asked| asked.pinion_speed_hz) {
             let [least, most] = simulated_hz(prior);
-            if speed_hz > most * FARTHEST || speed_hz < least / FARTHEST {
+            if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 let reason = reason(speed_hz / nominal_hz, prior).unwrap_or_else(|| {
                     "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed \
                      (operation.pinion_speed_hz)?"
@@ -33,8 +33,8 @@ impl Question<'_> {
                 return Err(DiagnoseError::OtherSpeed { speed_hz, nominal_hz, reason });
             }
         }
-        // A wrong speed moves the orders too.
-        self.all().try_for_each(|asked| check_orders(signal, asked.gear.last(), &prior.base.gears))
+        // A wrong speed moves the orders too, so it is reported before them.
+        Layout::of(self, &ReferenceSet { prior: prior.clone(), records: Vec::new() }).map(drop)
     }
 }
 
