@@ -63,7 +63,10 @@ impl<'a> DiagnosisQuestion<'a> {
     }
 }
 
-/// Diagnoses a recording by a scenario, as `meshtone diagnose` does: what is seen without a simulation is said first.
+/// Diagnoses a recording by a scenario, as `meshtone diagnose` does.
+///
+/// What is seen without a simulation is said first, because the simulations take minutes. Learning from them cannot be cancelled, so that
+/// it is asked before and after it whether the answer is still wanted.
 ///
 /// # Arguments
 /// * `question` - the recordings
@@ -135,7 +138,8 @@ fn of_recording(
     let (simulated, channel) = chosen(recording, question)?;
     let mut channel = channel.clone();
     if !channel.convert_to_g() {
-        let is = channel.unit.map_or_else(|| "has no stated unit".to_owned(), |unit| format!("is in {unit}"));
+        let unit = channel.unit.filter(|unit| !unit.trim().is_empty());
+        let is = unit.map_or_else(|| "has no stated unit".to_owned(), |unit| format!("is in {unit}"));
         let problem = format!("channel {} {is}; must be g or m/s²", channel.name);
         return Err(Refusal::unfit(problem).with_help(
             "write the unit behind the channel's name, as in `bearing [g]`, or use `meshtone diagnose` with --unit",
@@ -178,7 +182,6 @@ fn messages<'w>(warnings: impl IntoIterator<Item = &'w DiagnosisWarning>) -> Vec
 fn answer_json(answer: &Answer, seen: &[DiagnosisWarning]) -> Value {
     let AnswerInWords { summary, damaged, likeness, kinds, others, notes } = answer.in_words();
     json!({
-        "is_outside": answer.is_outside(),
         "summary": summary,
         "damaged": damaged,
         "likeness": likeness,

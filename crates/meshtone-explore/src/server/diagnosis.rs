@@ -44,7 +44,9 @@ pub(super) async fn of_diagnosis(
     Ok(respond(StatusCode::OK, LINES, Body::from_stream(lines)))
 }
 
-/// Waits until no other diagnosis is under way, and makes this one in threads of its own, so that others are answered meanwhile.
+/// Waits until no other diagnosis is under way, makes this one, and sends to the page all that is said of it.
+///
+/// It has threads of its own: in those of all other computations, these would wait until a batch of simulations is finished.
 async fn work(
     shared: Arc<Shared>,
     asked: AskedRequest,

@@ -276,7 +276,6 @@ fn a_recording_is_diagnosed_with_progress() {
         .collect();
     assert!(finished.len() > 2 && finished.is_sorted() && finished.last() == Some(&512), "{finished:?}");
     let answer = &all.last().unwrap()["answer"];
-    assert_eq!(answer["is_outside"], false, "{answer}");
     let damaged = answer["damaged"].as_str().unwrap();
     assert!(damaged.starts_with("damaged with a probability of"), "{damaged}");
     let likeliest = &answer["kinds"][0];
@@ -298,8 +297,8 @@ fn a_recording_is_diagnosed_with_progress() {
     let all = ask("noise.csv", file.as_bytes(), None);
     assert!(all[0]["seen"][0].as_str().unwrap().contains("repeats with its shaft"), "{}", all[0]);
     let answer = &all.last().unwrap()["answer"];
-    assert_eq!((&answer["is_outside"], &answer["damaged"]), (&json!(true), &Value::Null), "{answer}");
-    assert_eq!(answer["kinds"], json!([]));
+    assert!(answer["summary"].as_str().unwrap().starts_with("Nothing can be said"), "{answer}");
+    assert_eq!((&answer["kinds"], &answer["damaged"]), (&json!([]), &Value::Null));
 
     // What cannot be compared is refused before anything is simulated.
     let mut other = rig();
