@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _progress
-from ._warnings import SignalWarning
+from ._warnings import SignalWarning, typed, warn_of_signal
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import finite_signal, positive, read_only, whole
@@ -116,7 +116,8 @@ def diagnose(
 ) -> Diagnosis:
     """Say what may be wrong with a gear, by simulations of its rig with all kinds of damage.
 
-    The first question about a scenario takes minutes; its simulations are kept for the next one.
+    The first question about a scenario takes minutes; its simulations are kept for the next one. What is doubtful about the recordings
+    and the scenario is warned of before them, what the answer shows at the end; ``warnings`` of the answer has both.
 
     Parameters
     ----------
@@ -145,7 +146,8 @@ def diagnose(
     Raises
     ------
     ValueError
-        Recordings of other wheels, too short, or in which too few orders are whole; a ``tuned.toml`` of another model.
+        Recordings of other wheels, of a speed far from the scenario's, too short, or in which too few orders are whole: before anything is
+        simulated. A ``tuned.toml`` of another model.
     OSError
         A folder or file that cannot be read or written.
     KeyboardInterrupt
@@ -153,25 +155,39 @@ def diagnose(
 
     Examples
     --------
-    >>> from meshtone import MissingTooth, diagnose, examples, simulate
+    >>> import warnings
+    >>> from meshtone import MeshtoneWarning, MissingTooth, diagnose, examples, simulate
     >>> rig = examples.healthy()
+
+    What is doubtful is warned of before minutes of simulations, so that it can be an error:
+
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", MeshtoneWarning)
+    ...     try:
+    ...         diagnose(simulate(rig), rig)
+    ...     except MeshtoneWarning as warning:
+    ...         print(warning.code)
+    no-healthy
+
     >>> found = diagnose(simulate(rig.copy(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
     >>> next(iter(found.kinds)), found.damaged > 0.99                                      # doctest: +SKIP
     ('missing-tooth', True)
     """
     if signal not in ("recording", "average", "difference"):
         raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
-    report = _progress.shown("simulations") if progress is True else (progress or None)
-    text, difference_g, (low, high) = _core.diagnose(
-        native_scenario(scenario),
-        _observations("recordings", recordings, scenario, signal),
-        [] if healthy is None else _observations("healthy", healthy, scenario, signal),
-        tuned,
-        reference,
-        _records(records),
-        report,
-    )
+    rig = native_scenario(scenario)
+    if tuned is not None:
+        rig = _core.tuned_rig(rig, tuned)
+    now = _observations("recordings", recordings, scenario, signal)
+    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal)
+    count = _records(records)
+    known = typed((code, message, []) for code, message in _core.check_diagnosis(rig, now, before))
+    warn_of_signal(known)
+    shown = _progress.shown("simulations") if progress is True else (progress or None)
+    text, difference_g, (low, high) = _core.diagnose(rig, now, before, reference, count, shown)
     report = json.loads(text)
+    found = [SignalWarning(said["code"], said["message"], {}) for said in report["warnings"]]
+    warn_of_signal(warning for warning in found if warning not in known)
     return Diagnosis(
         kinds=report["kinds"],
         any_damage=report["any_damage"],
@@ -179,7 +195,7 @@ def diagnose(
         damaged=report["damaged"],
         outside_model=report["outside_model"],
         is_outside=report["is_outside"],
-        warnings=[SignalWarning(said["code"], said["message"], {}) for said in report["warnings"]],
+        warnings=found,
         shown_wheel=report["shown_wheel"],
         difference_g=read_only(difference_g),
         band_g=(read_only(low), read_only(high)),

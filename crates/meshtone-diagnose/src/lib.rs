@@ -20,6 +20,7 @@ mod observation;
 mod outlier_test;
 mod prior;
 mod quantile;
+mod recorded;
 mod reference;
 mod refine;
 mod rig;
@@ -30,6 +31,7 @@ mod store;
 #[cfg(test)]
 mod synthetic;
 mod warnings;
+mod words;
 
 pub use answer::{
     Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer,
@@ -38,10 +40,12 @@ pub use answer::{
 pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
-pub use observation::{Observation, SignalKind, WheelLines, other_teeth};
+pub use observation::{Observation, SignalKind, WheelLines};
 pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
+pub use recorded::other_tone;
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
 pub use rig::{RigWheel, rig_wheels};
 pub use store::{ReferenceStore, StoreError};
 pub use warnings::{DiagnosisWarning, DiagnosisWarningKind};
+pub use words::AnswerInWords;

@@ -253,7 +253,7 @@ impl Observation {
 ///
 /// # Errors
 /// Those of [`angular_resample`].
-pub fn other_teeth(
+pub(crate) fn other_teeth(
     signal: &[f64],
     sampling_rate_hz: f64,
     teeth: [u32; 2],

@@ -27,8 +27,8 @@ const TOO_WIDE: f64 = 0.7;
 /// Simulations of a refined round.
 pub const REFINED_RECORDS: u64 = 256;
 
-/// A refined round for a question, where the first answer is sure enough of something; none otherwise, where it was cancelled, and
-/// where too few of it could be simulated.
+/// A refined round for a question, where the first answer is sure enough of something; none otherwise, where a recording is not of the
+/// rig, where it was cancelled, and where too few of it could be simulated.
 ///
 /// # Arguments
 /// * `learned` - of the first round
@@ -42,6 +42,10 @@ pub fn refine(
     question: &Question,
     control: &Control,
 ) -> Result<Option<Refined>, DiagnoseError> {
+    // What is not of the rig has no likeliest damage.
+    if question.all().any(|asked| asked.mismatch.is_some()) {
+        return Ok(None);
+    }
     let Some((class, prior)) = learned.narrowed(question)? else { return Ok(None) };
     let records = build_reference(&prior, 0..REFINED_RECORDS, control);
     if control.cancelled.load(Ordering::Relaxed) || (records.len() as u64) < REFINED_RECORDS / 2 {

@@ -1,8 +1,9 @@
-//! A check that simulations of the rig cover a recording's speed.
+//! A check that simulations of the rig can be compared with a recording, and cover its speed.
 
 use crate::DiagnoseError;
-use crate::learn::Question;
+use crate::learn::{Layout, Question};
 use crate::prior::Prior;
+use crate::reference::ReferenceSet;
 
 /// (-) How far beyond the speeds of the simulations a recording may be to be compared with them at all.
 const FARTHEST: f64 = 1.5;
@@ -18,7 +19,7 @@ impl Question<'_> {
     /// * `prior` - what may be about the rig
     ///
     /// # Errors
-    /// A recording whose speed is far from those of the simulations.
+    /// A recording whose speed is far from those of the simulations; recordings of other wheels, of too few orders or of different kinds.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
         let nominal_hz = prior.base.operation.pinion_speed_hz;
         for speed_hz in self.all().filter_map(|asked| asked.input_speed_hz) {
@@ -32,7 +33,8 @@ impl Question<'_> {
                 return Err(DiagnoseError::OtherSpeed { speed_hz, nominal_hz, reason });
             }
         }
-        Ok(())
+        // A wrong speed moves the orders too, so it is reported before them.
+        Layout::of(self, &ReferenceSet { prior: prior.clone(), records: Vec::new() }).map(drop)
     }
 }
 

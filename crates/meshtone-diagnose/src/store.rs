@@ -57,6 +57,10 @@ pub struct ReferenceStore {
 impl ReferenceStore {
     /// Simulations that are kept together, in one file: whole pairs of wheels.
     pub const BATCH: u64 = BATCH;
+    /// Simulations to learn from, where no other number is asked for.
+    pub const USUAL_RECORDS: u64 = 6144;
+    /// Most simulations to learn from: time and memory grow with their square; so many take 70 s and 0.7 GB.
+    pub const MOST_RECORDS: u64 = 20_480;
 
     /// # Arguments
     /// * `folder` - in which the sets are; made where it is not there

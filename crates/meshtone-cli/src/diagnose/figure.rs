@@ -4,8 +4,6 @@ use meshtone_diagnose::{Answer, HEALTHY, RigWheel};
 use meshtone_plot::Figure;
 use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
 
-use super::words::{outside, percent};
-
 /// Draws a diagnosis.
 ///
 /// The severity is that of the likeliest damage even where healthy is likelier; a tooth is marked in the wheel's signal only where damage is
@@ -18,10 +16,10 @@ use super::words::{outside, percent};
 pub fn draw(answer: &Answer, title: &str, rig: &[RigWheel]) -> Figure {
     let compared =
         if answer.has_healthy { "with a healthy recording" } else { "without a healthy recording" };
-    let damaged = format!("damaged with a probability of {}", percent(answer.damaged()));
+    let words = answer.in_words();
     let facts = [
-        if answer.is_outside() { "nothing can be said".to_owned() } else { damaged },
-        outside(answer),
+        words.damaged.unwrap_or_else(|| "nothing can be said".to_owned()),
+        words.likeness,
         compared.to_owned(),
         format!("{} simulations", answer.reference_records),
         format!("Meshtone {}", env!("CARGO_PKG_VERSION")),
