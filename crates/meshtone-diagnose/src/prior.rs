@@ -2,11 +2,12 @@
 
 use meshtone::damage::{Fault, FaultyTeeth, damage_kinds};
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{DamageKind, Scenario, ScenarioError, Sensor, SensorPath, SensorPlace};
-use meshtone::wheel::WheelName;
+use meshtone::scenario::{
+    DamageKind, Gearbox, GearboxLayout, ScenarioError, ScenarioForm, Sensor, SensorPath, SensorPlace,
+};
+use meshtone::signal::GearTrain;
 
 use crate::answer::SEVERAL;
-use crate::rig::rig_wheels;
 
 /// Records of one pair of wheels: how it was when it was healthy, how it is healthy another day, and damaged.
 pub(crate) const RECORDS_PER_UNIT: u64 = 8;
@@ -60,7 +61,9 @@ pub struct Focus {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     /// The rig, healthy; its wheels are one draw of those that may be.
-    pub base: Scenario,
+    pub base: ScenarioForm,
+    /// Shafts and wheels of the rig.
+    pub train: GearTrain,
     /// Spreads of what is not known well: stiffnesses, frequencies, masses, spans, dampings, tip chamfer, backlash.
     pub spreads: Vec<Spread>,
     /// (-) Most by which the grade of the wheels is another; each step as likely as the next, within grades 1 to 12 or classes 1 to 11.
@@ -72,7 +75,8 @@ pub struct Prior {
     pub load_spread: f64,
     /// (dB) Standard deviation of the sensor path's gain.
     pub gain_db: f64,
-    /// States that the rig names no sensor and has supports, so that the sensor may be on either shaft's support, on a wall or not.
+    /// States that the rig names no sensor and has supports, so that the sensor may be on the support of either shaft, or on the seat of any
+    /// bearing, on a wall or not.
     pub has_any_sensor: bool,
     /// Seed of all draws.
     pub seed: u64,
@@ -101,7 +105,7 @@ pub struct DrawnFault {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// The scenario that is simulated.
-    pub scenario: Scenario,
+    pub scenario: ScenarioForm,
     /// The damage; none of a healthy record.
     pub fault: Option<DrawnFault>,
     /// The wall and the housing between the simulated sensor and the rig's.
@@ -114,51 +118,53 @@ impl Prior {
     /// The default prior of a rig.
     ///
     /// # Arguments
-    /// * `rig` - the rig's scenario; its faults are left out
-    pub fn new(rig: &Scenario) -> Self {
-        let spread = |key: &str, deviation: f64| Spread { key: key.to_owned(), deviation };
+    /// * `rig` - the rig's scenario, of a pair or a gearbox; its faults are left out
+    ///
+    /// # Errors
+    /// Those of [`GearTrain::of_form`].
+    pub fn new(rig: &ScenarioForm) -> Result<Self, ScenarioError> {
         let mut base = rig.clone().with_faults(Vec::new());
-        base.sensors.truncate(1);
-        let anywhere = base.clone().with_sensors(vec![unstated_sensor()]);
-        let has_any_sensor = base.sensors.is_empty() && anywhere.validate().is_ok();
-        Self {
-            base: if has_any_sensor { anywhere } else { base },
+        let has_any_sensor = match &mut base {
+            ScenarioForm::Pair(pair) => {
+                pair.sensors.truncate(1);
+                let anywhere = pair.clone().with_sensors(vec![unstated_sensor()]);
+                let has_any_sensor = pair.sensors.is_empty() && anywhere.validate().is_ok();
+                if has_any_sensor {
+                    *pair = anywhere;
+                }
+                has_any_sensor
+            }
+            ScenarioForm::Gearbox(gearbox) => {
+                gearbox.sensors.truncate(1);
+                once(gearbox)?;
+                gearbox.sensors.is_empty()
+            }
+        };
+        let deviations = base.numbers().into_iter().map(|number| (deviation(&number.key), number.key));
+        let spreads = deviations.filter_map(|(deviation, key)| Some(Spread { key, deviation: deviation? }));
+        Ok(Self {
+            spreads: spreads.collect(),
+            train: GearTrain::of_form(&base)?,
+            base,
             has_any_sensor,
-            spreads: vec![
-                spread("rig.bearing_stiffness_n_per_m", 0.3),
-                // Those of the frequencies or of the stiffnesses that the rig is given by; the others it does not have.
-                spread("rig.support.base_hz", 0.3),
-                spread("rig.support.differential_hz", 0.3),
-                spread("rig.support.stiffness_n_per_m", 0.6),
-                spread("rig.support.coupling_n_per_m", 0.6),
-                spread("rig.support.mass_kg", 0.3),
-                spread("rig.pinion_shaft.bearing_span_mm", 0.15),
-                spread("rig.gear_shaft.bearing_span_mm", 0.15),
-                spread("rig.support.damping_ratio", 0.5),
-                spread("rig.pinion_shaft.damping_ratio", 0.5),
-                spread("rig.gear_shaft.damping_ratio", 0.5),
-                spread("rig.mesh_damping_ratio", 0.5),
-                spread("gears.tip_chamfer_mm", 0.3),
-                spread("gears.backlash_mm", 0.2),
-            ],
             grade_steps: 1,
             speed_spread: 0.1,
             load_spread: 0.4,
             gain_db: 6.0,
             seed: 1,
             focus: None,
-        }
+        })
     }
 
     /// Other wheels with one damage, at a recording's speed.
     ///
     /// # Arguments
     /// * `focus` - the damage
-    /// * `pinion_speed_hz` - (Hz) of the recording, where it is known
-    pub fn narrowed(&self, focus: Focus, pinion_speed_hz: Option<f64>) -> Self {
+    /// * `input_speed_hz` - (Hz) of the recording, where it is known
+    pub fn narrowed(&self, focus: Focus, input_speed_hz: Option<f64>) -> Self {
         let mut narrowed = Self { seed: self.seed.wrapping_add(1), focus: Some(focus), ..self.clone() };
-        if let Some(speed_hz) = pinion_speed_hz {
-            narrowed.base.operation.pinion_speed_hz = speed_hz;
+        if let Some(speed_hz) = input_speed_hz {
+            narrowed.base.operation_mut().pinion_speed_hz = speed_hz;
             narrowed.speed_spread = KNOWN_SPEED_SPREAD;
         }
         narrowed
@@ -175,8 +181,8 @@ impl Prior {
     /// The kinds of damage that the rig's model knows.
     pub fn kinds(&self) -> Vec<DamageKind> {
         let of_kind = |kind: &DamageKind| {
-            let faults = vec![Fault::at_usual_place(kind.example.clone()).with_severity(1.0)];
-            self.base.clone().with_faults(faults).validate().is_ok()
+            let fault = Fault::at_usual_place(kind.example.clone()).with_severity(1.0);
+            self.base.clone().with_faults(vec![(self.train.wheels.len() - 1, fault)]).validate().is_ok()
         };
         damage_kinds().into_iter().filter(of_kind).collect()
     }
@@ -200,7 +206,7 @@ impl Prior {
             (Some(focus), _) => Some((focus.kind, focus.wheel)),
             (None, place) => {
                 let turn = number / RECORDS_PER_UNIT * (RECORDS_PER_UNIT - 2) + place - 2;
-                let (wheels, kinds) = (rig_wheels(&self.base).len(), kinds.len());
+                let (wheels, kinds) = (self.train.wheels.len(), kinds.len());
                 let turn = turn as usize % (wheels * (kinds + 1));
                 (kinds > 0).then_some((turn / wheels, turn % wheels))
             }
@@ -212,47 +218,61 @@ impl Prior {
         let mut common = Draws::new(self.seed, Purpose::DiagnosisUnit, number / RECORDS_PER_UNIT);
         let mut own = Draws::new(self.seed, Purpose::DiagnosisRecord, number);
         let mut numbers: Vec<(&str, f64)> = Vec::new();
+        let known = self.base.numbers();
         for spread in &self.spreads {
             let factor = (spread.deviation * common.normal()).exp();
-            if let Some(value) = self.base.number(&spread.key) {
-                numbers.push((&spread.key, value * factor));
+            if let Some(number) = known.iter().find(|number| number.key == spread.key) {
+                numbers.push((&spread.key, number.value * factor));
             }
         }
         let steps = i64::from(self.grade_steps);
         let step = (common.bits() % (2 * steps as u64 + 1)) as i64 - steps;
-        let quality = &self.base.quality;
-        let grades =
-            [("quality.din_grade", quality.din_grade, 12), ("quality.iso_class", quality.iso_class, 11)];
-        for (key, grade, coarsest) in grades.into_iter().filter(|(_, grade, _)| *grade > 0) {
-            numbers.push((key, (i64::from(grade) + step).clamp(1, coarsest) as f64));
+        for number in known.iter().filter(|number| number.value > 0.0) {
+            let coarsest = match own_name(&number.key) {
+                "din_grade" => 12.0,
+                "iso_class" => 11.0,
+                _ => continue,
+            };
+            numbers.push((&number.key, (number.value + step as f64).clamp(1.0, coarsest)));
         }
         let (path, gain_db) = (self.draw_path(&mut common), self.gain_db * common.normal());
-        let is_on_gear_support = common.uniform(0.5, 0.5) < 0.5;
+        let place = common.uniform(0.5, 0.5);
         let seed = common.bits() >> 1;
         // A pair runs at about its own load and speed.
         let mut about =
             |spread: f64| (spread * (0.7 * common.uniform(0.0, 1.0) + 0.3 * own.uniform(0.0, 1.0))).exp();
-        let speed_hz = self.base.operation.pinion_speed_hz * about(self.speed_spread);
-        let load_nm = self.base.operation.brake_torque_nm * about(self.load_spread);
-        numbers.push(("operation.pinion_speed_hz", speed_hz));
-        numbers.push(("operation.brake_torque_nm", load_nm));
-        let mut scenario = self.base.with_known_numbers(&numbers)?.with_seed(seed);
-        // Other wheels than those of the rig's own.
-        scenario.quality.seed = None;
-        if let Some(sensor) =
-            scenario.sensors.first_mut().filter(|_| self.has_any_sensor && is_on_gear_support)
-        {
-            sensor.at = SensorPlace::GearSupport;
+        let operation = self.base.operation();
+        let speed_hz = operation.pinion_speed_hz * about(self.speed_spread);
+        let load_nm = operation.brake_torque_nm * about(self.load_spread);
+        let mut scenario = self.base.with_numbers(&numbers)?;
+        let operation = scenario.operation_mut();
+        (operation.pinion_speed_hz, operation.brake_torque_nm) = (speed_hz, load_nm);
+        // Other wheels than those of the rig's own, and the sensor anywhere where no place is stated.
+        match &mut scenario {
+            ScenarioForm::Pair(pair) => {
+                (pair.seed, pair.quality.seed) = (seed, None);
+                let sensor = pair.sensors.first_mut().filter(|_| self.has_any_sensor && place < 0.5);
+                if let Some(sensor) = sensor {
+                    sensor.at = SensorPlace::GearSupport;
+                }
+            }
+            ScenarioForm::Gearbox(gearbox) => {
+                (gearbox.seed, gearbox.wheels_seed) = (seed, None);
+                let seats = gearbox.all_sensors();
+                let at = ((place * seats.len() as f64) as usize).min(seats.len().saturating_sub(1));
+                gearbox.sensors = seats.into_iter().skip(at).take(1).collect();
+            }
         }
         let within = self.focus.as_ref().map(|focus| focus.severity);
         let (scenario, fault) = match self.class(kinds, number) {
             None => (scenario, None),
             Some((kind, wheel)) if kind < kinds.len() => {
-                let (scenario, fault) = damaged(&kinds[kind], (kind, wheel), within, &scenario, &mut own)?;
+                let class = (kind, wheel);
+                let (scenario, fault) = self.damaged(&kinds[kind], class, within, &scenario, &mut own)?;
                 (scenario, Some(fault))
             }
             Some((_, wheel)) => {
-                let (scenario, fault) = twice_damaged(kinds, wheel, &scenario, &mut own)?;
+                let (scenario, fault) = self.twice_damaged(kinds, wheel, &scenario, &mut own)?;
                 (scenario, Some(fault))
             }
         };
@@ -293,92 +313,150 @@ impl Drawn {
     }
 }
 
-/// Damages a pair twice: any two kinds, the more severe one on a wheel, the other on any.
-fn twice_damaged(
-    kinds: &[DamageKind],
-    wheel: usize,
-    healthy: &Scenario,
-    own: &mut Draws,
-) -> Result<(Scenario, DrawnFault), ScenarioError> {
-    let wheels = rig_wheels(healthy).len() as u64;
-    let mut problem = None;
-    for _ in 0..MOST_PAIRS {
-        let drawn = [0, 1].map(|_| {
-            let kind = (own.bits() % kinds.len() as u64) as usize;
-            let wheel = (own.bits() % wheels) as usize;
-            damaged(&kinds[kind], (kind, wheel), None, healthy, own)
-        });
-        let [(one, first), (other, second)] = match drawn {
-            [Ok(first), Ok(second)] => [first, second],
-            [Err(error), _] | [_, Err(error)] => {
-                problem = Some(error);
-                continue;
-            }
-        };
-        let of = if first.severity >= second.severity { first } else { second };
-        let both = one.clone().with_faults([one.faults, other.faults].concat());
-        // Two damages of one tooth may not go together.
-        if of.wheel == wheel && both.validate().is_ok() {
-            let severity = of.severity;
-            let fault =
-                DrawnFault { kind: kinds.len(), is_on_one_tooth: false, sizes: Vec::new(), severity, ..of };
-            return Ok((both, fault));
-        }
-    }
-    let none = || ScenarioError::new("fault", SEVERAL, "no two damages that were drawn go together");
-    Err(problem.unwrap_or_else(none))
-}
-
-/// Damages a pair.
-///
-/// Severity and sizes are drawn until they fit the tooth: not every severity can be had with every scenario, and the sizes vary about those
-/// of the severity. The last attempt takes exactly the sizes of its severity. The severity that counts is that of the sizes in the end.
+/// (-) Standard deviation of the logarithm of a number that is not known well; none of the others.
 ///
 /// # Arguments
-/// * `of_kind` - the kind
-/// * `class` - its place among the kinds, and the wheel
-/// * `within` - (-) severities that count, others are drawn again; none: all
-/// * `healthy` - without the damage
-fn damaged(
-    of_kind: &DamageKind,
-    (kind, wheel): (usize, usize),
-    within: Option<[f64; 2]>,
-    healthy: &Scenario,
-    own: &mut Draws,
-) -> Result<(Scenario, DrawnFault), ScenarioError> {
-    let of_wheel = WheelName::BOTH[wheel];
-    let usual = Fault::at_usual_place(of_kind.example.clone()).tooth;
-    let tooth = 1 + (own.bits() % u64::from(healthy.gears.teeth(of_wheel))) as u32;
-    let is_on_one_tooth = usual == FaultyTeeth::One(1);
-    let teeth = if is_on_one_tooth { FaultyTeeth::One(tooth) } else { usual };
-    let attempts = if within.is_some() { MOST_FOCUSED_ATTEMPTS } else { MOST_ATTEMPTS };
-    for attempt in 0..attempts {
-        let least = LEAST_SEVERITY;
-        let drawn = least + (1.0 - least) * own.uniform(0.5, 0.5);
-        let severity = if of_kind.sizes.is_empty() { 1.0 } else { drawn };
-        let fault = Fault::new(of_wheel, teeth.clone(), of_kind.example.clone()).with_severity(severity);
-        let sized = healthy.clone().with_faults(vec![fault]).with_own_sizes()?;
-        if sized.faults.is_empty() {
-            continue;
-        }
-        let spread = if attempt + 1 < attempts { SIZE_SPREAD } else { 0.0 };
-        let keys: Vec<String> = of_kind.sizes.iter().map(|size| format!("fault.{size}")).collect();
-        let other: Vec<(&str, f64)> = keys
-            .iter()
-            .filter_map(|key| Some((key.as_str(), sized.number(key)? * own.uniform(0.0, spread).exp())))
-            .collect();
-        let Ok(damaged) = sized.with_known_numbers(&other) else { continue };
-        let Ok(severities) = damaged.fault_severities() else { continue };
-        let severity = severities[0].min(1.0);
-        if within.is_some_and(|[least, most]| severity < least || severity > most) {
-            continue;
-        }
-        let sizes = keys.iter().map(|key| damaged.number(key).unwrap_or(f64::NAN)).collect();
-        return Ok((damaged, DrawnFault { kind, wheel, tooth, is_on_one_tooth, severity, sizes }));
+/// * `key` - of the scenario file
+fn deviation(key: &str) -> Option<f64> {
+    const OF_PAIR: [(&str, f64); 14] = [
+        ("rig.bearing_stiffness_n_per_m", 0.3),
+        // A rig is given by these frequencies or by the stiffnesses; the others it does not have.
+        ("rig.support.base_hz", 0.3),
+        ("rig.support.differential_hz", 0.3),
+        ("rig.support.stiffness_n_per_m", 0.6),
+        ("rig.support.coupling_n_per_m", 0.6),
+        ("rig.support.mass_kg", 0.3),
+        ("rig.pinion_shaft.bearing_span_mm", 0.15),
+        ("rig.gear_shaft.bearing_span_mm", 0.15),
+        ("rig.support.damping_ratio", 0.5),
+        ("rig.pinion_shaft.damping_ratio", 0.5),
+        ("rig.gear_shaft.damping_ratio", 0.5),
+        ("rig.mesh_damping_ratio", 0.5),
+        ("gears.tip_chamfer_mm", 0.3),
+        ("gears.backlash_mm", 0.2),
+    ];
+    if let Some((_, deviation)) = OF_PAIR.into_iter().find(|(own, _)| *own == key) {
+        return Some(deviation);
     }
-    // A record that is counted as healthy because its damage cannot be would be wrong.
-    let problem = "no damage of this kind that was drawn fits the tooth";
-    Err(ScenarioError::new("fault.kind", format!("\"{}\"", of_kind.name), problem))
+    let is_of = |sections: &[&str]| sections.iter().any(|section| key.starts_with(section));
+    match own_name(key) {
+        "stiffness_n_per_m" if is_of(&["bearing["]) && !key.contains("].seat") => Some(0.3),
+        "stiffness_n_per_m" if is_of(&["bearing[", "housing"]) => Some(0.6),
+        "coupling_stiffness_nm_per_rad" => Some(0.6),
+        "mass_kg" if is_of(&["bearing[", "housing"]) => Some(0.3),
+        "damping_ratio" if is_of(&["shaft[", "bearing[", "mesh", "housing"]) => Some(0.5),
+        "backlash_mm" if is_of(&["mesh"]) => Some(0.2),
+        _ => None,
+    }
+}
+
+/// A key without its sections.
+fn own_name(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+/// Simulates no longer than until the same teeth meet again on all shafts, where it was longer and steady: what follows repeats it.
+fn once(gearbox: &mut Gearbox) -> Result<(), ScenarioError> {
+    let cycle = GearboxLayout::new(gearbox)?.cycle_revolutions() as f64;
+    let time = gearbox.time_grid();
+    let kept = time.kept_samples as f64 / time.samples_per_pinion_revolution as f64;
+    if gearbox.operation.is_steady() && cycle < kept {
+        gearbox.solver.settings.duration_s = None;
+        gearbox.solver.settings.pinion_revolutions = Some(cycle);
+    }
+    Ok(())
+}
+
+impl Prior {
+    /// Damages a rig twice: any two kinds, the more severe one on a wheel, the other on any.
+    fn twice_damaged(
+        &self,
+        kinds: &[DamageKind],
+        wheel: usize,
+        healthy: &ScenarioForm,
+        own: &mut Draws,
+    ) -> Result<(ScenarioForm, DrawnFault), ScenarioError> {
+        let mut problem = None;
+        for _ in 0..MOST_PAIRS {
+            let drawn = [0, 1].map(|_| {
+                let kind = (own.bits() % kinds.len() as u64) as usize;
+                let wheel = (own.bits() % self.train.wheels.len() as u64) as usize;
+                self.damaged(&kinds[kind], (kind, wheel), None, healthy, own)
+            });
+            let [(one, first), (other, second)] = match drawn {
+                [Ok(first), Ok(second)] => [first, second],
+                [Err(error), _] | [_, Err(error)] => {
+                    problem = Some(error);
+                    continue;
+                }
+            };
+            let of = if first.severity >= second.severity { first } else { second };
+            let faults = [&one, &other].map(ScenarioForm::faults).concat();
+            let faults = faults.into_iter().map(|(wheel, fault)| (wheel, fault.clone())).collect();
+            let both = healthy.clone().with_faults(faults);
+            // Two damages of one tooth may not go together.
+            if of.wheel == wheel && both.validate().is_ok() {
+                let fault =
+                    DrawnFault { kind: kinds.len(), is_on_one_tooth: false, sizes: Vec::new(), ..of };
+                return Ok((both, fault));
+            }
+        }
+        let none = || ScenarioError::new("fault", SEVERAL, "no two damages that were drawn go together");
+        Err(problem.unwrap_or_else(none))
+    }
+
+    /// Damages a rig.
+    ///
+    /// Severity and sizes are drawn until they fit the tooth: not every severity can be had with every scenario, and the sizes vary about those
+    /// of the severity. The last attempt takes exactly the sizes of its severity. The severity that counts is that of the sizes in the end.
+    ///
+    /// # Arguments
+    /// * `of_kind` - the kind
+    /// * `class` - its place among the kinds, and the wheel
+    /// * `within` - (-) severities that count, others are drawn again; none: all
+    /// * `healthy` - without the damage
+    fn damaged(
+        &self,
+        of_kind: &DamageKind,
+        (kind, wheel): (usize, usize),
+        within: Option<[f64; 2]>,
+        healthy: &ScenarioForm,
+        own: &mut Draws,
+    ) -> Result<(ScenarioForm, DrawnFault), ScenarioError> {
+        let usual = Fault::at_usual_place(of_kind.example.clone());
+        let tooth = 1 + (own.bits() % u64::from(self.train.wheels[wheel].teeth)) as u32;
+        let is_on_one_tooth = usual.tooth == FaultyTeeth::One(1);
+        let teeth = if is_on_one_tooth { FaultyTeeth::One(tooth) } else { usual.tooth };
+        let attempts = if within.is_some() { MOST_FOCUSED_ATTEMPTS } else { MOST_ATTEMPTS };
+        for attempt in 0..attempts {
+            let least = LEAST_SEVERITY;
+            let drawn = least + (1.0 - least) * own.uniform(0.5, 0.5);
+            let severity = if of_kind.sizes.is_empty() { 1.0 } else { drawn };
+            let fault = Fault::new(usual.wheel, teeth.clone(), of_kind.example.clone());
+            let faults = vec![(wheel, fault.with_severity(severity))];
+            let sized = healthy.clone().with_faults(faults).with_own_sizes()?;
+            if sized.fault_count() == 0 {
+                continue;
+            }
+            let spread = if attempt + 1 < attempts { SIZE_SPREAD } else { 0.0 };
+            let keys: Vec<String> = of_kind.sizes.iter().map(|size| format!("fault.{size}")).collect();
+            let other: Vec<(&str, f64)> = keys
+                .iter()
+                .filter_map(|key| Some((key.as_str(), sized.number(key)? * own.uniform(0.0, spread).exp())))
+                .collect();
+            let Ok(damaged) = sized.with_numbers(&other) else { continue };
+            let Ok(severities) = damaged.fault_severities() else { continue };
+            let severity = severities[0].min(1.0);
+            if within.is_some_and(|[least, most]| severity < least || severity > most) {
+                continue;
+            }
+            let sizes = keys.iter().map(|key| damaged.number(key).unwrap_or(f64::NAN)).collect();
+            return Ok((damaged, DrawnFault { kind, wheel, tooth, is_on_one_tooth, severity, sizes }));
+        }
+        // A record that is counted as healthy because its damage cannot be would be wrong.
+        let problem = "no damage of this kind that was drawn fits the tooth";
+        Err(ScenarioError::new("fault.kind", format!("\"{}\"", of_kind.name), problem))
+    }
 }
 
 #[cfg(test)]
@@ -393,7 +471,7 @@ mod tests {
         // A size that is a list is not a number, and not equal to itself.
         let [first, other, second] = again.each_ref().map(|drawn| format!("{drawn:?}"));
         assert!(first == second && first != other);
-        assert_ne!(again[0].scenario.seed, again[1].scenario.seed);
+        assert_ne!(again[0].scenario.number("seed"), again[1].scenario.number("seed"));
     }
 
     // The two healthy records of a pair have its wheels; each kind comes on each wheel as often as the next.
@@ -407,13 +485,14 @@ mod tests {
             assert_eq!(drawn.fault.is_none(), number % 8 < 2);
             if let Some(fault) = drawn.fault {
                 counts[2 * fault.kind + fault.wheel] += 1;
-                assert_eq!(drawn.scenario.faults.len(), if fault.kind + 1 < kinds { 1 } else { 2 });
+                assert_eq!(drawn.scenario.fault_count(), if fault.kind + 1 < kinds { 1 } else { 2 });
                 assert!((0.0..=1.0).contains(&fault.severity));
             }
         }
         assert!(counts.iter().all(|count| *count == counts[0]), "{counts:?}");
         let [first, second] = [0, 1].map(|number| prior.draw(number).unwrap());
-        assert_eq!((first.scenario.seed, first.path), (second.scenario.seed, second.path));
+        let seeds = [&first, &second].map(|drawn| drawn.scenario.number("seed"));
+        assert_eq!((seeds[0], first.path), (seeds[1], second.path));
     }
 
     #[test]
@@ -424,11 +503,12 @@ mod tests {
         let narrowed = prior.narrowed(focus, Some(43.0));
         for number in 0..24 {
             let drawn = narrowed.draw(number).unwrap();
-            assert!((drawn.scenario.operation.pinion_speed_hz / 43.0 - 1.0).abs() < 0.003);
+            assert!((drawn.scenario.operation().pinion_speed_hz / 43.0 - 1.0).abs() < 0.003);
             let Some(fault) = drawn.fault else { continue };
             assert_eq!((fault.kind, fault.wheel, number % 8 > 0), (kind, 0, true));
             assert!((0.3..=0.5).contains(&fault.severity), "{}", fault.severity);
         }
-        assert_ne!(narrowed.draw(0).unwrap().scenario.seed, prior.draw(0).unwrap().scenario.seed);
+        let seed = |prior: &Prior| prior.draw(0).unwrap().scenario.number("seed");
+        assert_ne!(seed(&narrowed), seed(&prior));
     }
 }

@@ -309,6 +309,17 @@ impl ScenarioForm {
         }
     }
 
+    /// Does what [`Scenario::number`] and [`Gearbox::number`] do.
+    ///
+    /// # Arguments
+    /// * `key` - dotted, as in the file
+    pub fn number(&self, key: &str) -> Option<f64> {
+        match self {
+            Self::Pair(scenario) => scenario.number(key),
+            Self::Gearbox(gearbox) => gearbox.number(key),
+        }
+    }
+
     /// Does what [`Scenario::with_numbers`] and [`Gearbox::with_numbers`] do.
     ///
     /// # Arguments

@@ -4,7 +4,7 @@ use super::gearbox::teeth_of_mesh;
 use super::healthy_teeth;
 use crate::damage::Fault;
 use crate::error::ScenarioError;
-use crate::scenario::{Gearbox, GearboxLayout, Scenario};
+use crate::scenario::{Gearbox, GearboxFault, GearboxLayout, Scenario, ScenarioForm};
 use crate::wheel::Teeth;
 
 impl Scenario {
@@ -54,15 +54,46 @@ impl Gearbox {
     /// # Errors
     /// Those of [`Gearbox::validate`].
     pub fn fault_severities(&self) -> Result<Vec<f64>, ScenarioError> {
+        self.of_faults(|fault, teeth| fault.severity_on(teeth))
+    }
+
+    /// Returns the gearbox with the sizes of every fault that was given by its severity, as [`Scenario::with_own_sizes`] does.
+    ///
+    /// # Errors
+    /// Those of [`Gearbox::validate`].
+    pub fn with_own_sizes(&self) -> Result<Self, ScenarioError> {
+        let sized = |fault: &Fault, teeth: &Teeth| {
+            Some(Fault::new(fault.wheel, fault.tooth.clone(), fault.sized(teeth)?))
+        };
+        let sized = self.faults.iter().zip(self.of_faults(sized)?);
+        let faults = sized.filter_map(|(of, fault)| Some(GearboxFault { fault: fault?, wheel: of.wheel.clone() }));
+        Ok(Self { faults: faults.collect(), ..self.clone() })
+    }
+
+    /// What is asked of each fault on the healthy teeth of its wheel's mesh.
+    fn of_faults<T: Default>(&self, ask: impl Fn(&Fault, &Teeth) -> T) -> Result<Vec<T>, ScenarioError> {
         self.validate()?;
         let layout = GearboxLayout::new(self)?;
-        let mut severities = vec![0.0; self.faults.len()];
+        let mut answers: Vec<T> = self.faults.iter().map(|_| T::default()).collect();
         for mesh in 0..self.meshes.len() {
             let teeth = teeth_of_mesh(self, &layout, mesh);
             for (number, fault) in layout.faults_of_mesh(self, mesh) {
-                severities[number] = fault.severity_on(&teeth);
+                answers[number] = ask(&fault, &teeth);
             }
         }
-        Ok(severities)
+        Ok(answers)
+    }
+}
+
+impl ScenarioForm {
+    /// Does what [`Scenario::with_own_sizes`] and [`Gearbox::with_own_sizes`] do.
+    ///
+    /// # Errors
+    /// Those of [`ScenarioForm::validate`].
+    pub fn with_own_sizes(&self) -> Result<Self, ScenarioError> {
+        Ok(match self {
+            Self::Pair(scenario) => Self::Pair(scenario.with_own_sizes()?),
+            Self::Gearbox(gearbox) => Self::Gearbox(gearbox.with_own_sizes()?),
+        })
     }
 }

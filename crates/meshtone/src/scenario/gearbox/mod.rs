@@ -25,7 +25,7 @@ use crate::keys::{
 };
 use crate::machine::{Bearing, GearboxShaft, Housing};
 use crate::operation::{Operation, Solver, TimeGrid};
-use crate::wheel::Material;
+use crate::wheel::{Material, WheelName};
 use crate::wheel::quality::{check_errors, one_source};
 use layout::{entry_key, find, section};
 use parts::list;
@@ -575,6 +575,14 @@ impl ScenarioForm {
         }
     }
 
+    /// Speed and load, to be changed.
+    pub fn operation_mut(&mut self) -> &mut Operation {
+        match self {
+            Self::Pair(scenario) => &mut scenario.operation,
+            Self::Gearbox(gearbox) => &mut gearbox.operation.drive,
+        }
+    }
+
     /// Sampling and settling.
     pub fn solver(&self) -> &Solver {
         match self {
@@ -622,6 +630,37 @@ impl ScenarioForm {
         match self {
             Self::Pair(scenario) => scenario.sensors.iter_mut().collect(),
             Self::Gearbox(gearbox) => gearbox.sensors.iter_mut().map(|sensor| &mut sensor.sensor).collect(),
+        }
+    }
+
+    /// Returns the scenario with other faults.
+    ///
+    /// # Arguments
+    /// * `faults` - each with the number of its wheel, of a pair 0 the pinion and 1 the gear; the wheel that it names itself does not count
+    #[must_use]
+    pub fn with_faults(mut self, faults: Vec<(usize, Fault)>) -> Self {
+        match &mut self {
+            Self::Pair(scenario) => {
+                let on_wheel = |(wheel, fault): (usize, Fault)| Fault { wheel: WheelName::BOTH[wheel.min(1)], ..fault };
+                scenario.faults = faults.into_iter().map(on_wheel).collect();
+            }
+            Self::Gearbox(gearbox) => {
+                let name = |wheel: usize| gearbox.wheels.get(wheel).map_or_else(String::new, |of| of.name.clone());
+                let on_wheel = |(wheel, fault): (usize, Fault)| GearboxFault { wheel: name(wheel), fault };
+                gearbox.faults = faults.into_iter().map(on_wheel).collect();
+            }
+        }
+        self
+    }
+
+    /// The faults, each with the number of its wheel.
+    pub fn faults(&self) -> Vec<(usize, &Fault)> {
+        match self {
+            Self::Pair(scenario) => scenario.faults.iter().map(|fault| (fault.wheel as usize, fault)).collect(),
+            Self::Gearbox(gearbox) => {
+                let number = |fault: &GearboxFault| gearbox.wheels.iter().position(|of| of.name == fault.wheel);
+                gearbox.faults.iter().filter_map(|fault| Some((number(fault)?, &fault.fault))).collect()
+            }
         }
     }
 
