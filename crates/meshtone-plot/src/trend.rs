@@ -134,7 +134,8 @@ fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigur
         axes.note(canvas, "not defined for these records");
     }
     let is_marked = trend.values.iter().all(|values| values.len() <= MARKED);
-    for ((values, places), stroke) in trend.values.iter().zip(figure.places).zip(STROKES.into_iter().cycle()) {
+    for ((values, places), stroke) in trend.values.iter().zip(figure.places).zip(STROKES.into_iter().cycle())
+    {
         let records: Vec<(f64, Option<f64>)> = places.iter().copied().zip(values.iter().copied()).collect();
         for run in records.split(|(_, value)| value.is_none()) {
             axes.line(canvas, run.iter().filter_map(|(x, value)| Some((*x, (*value)?))), stroke);

@@ -6,9 +6,8 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, Mismatch, ShaftPhase, SignalError,
-    SignalWarning, SimulatedShafts, angular_resample, find_mismatch,
+    SimulatedShafts, angular_resample, find_mismatch,
 };
-use meshtone::tuning::{HealthyRecording, RecordingProblem};
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{Observation, SignalKind, other_teeth};
 use meshtone_io::indicators::WarningEntry;
@@ -98,37 +97,6 @@ impl<'a> Observer<'a> {
             Some(toml) if !self.stated.states_shaft_angle() => self.simulated(&input, toml),
             _ => self.measured(&input),
         }
-    }
-
-    /// Reads a recording whole, with the angle of the pinion's shaft.
-    pub fn healthy(&self, path: &Path) -> Result<(HealthyRecording, Vec<WarningEntry>), Failure> {
-        let input = self.input(path)?;
-        let what = format!("channel {}", input.channel.name);
-        let (pinion, warnings) = match &input.scenario_toml {
-            Some(toml) if !self.stated.states_shaft_angle() => {
-                let phase = self.shafts(&input, toml)?.phase(WheelName::Pinion);
-                (phase, input.warnings.clone())
-            }
-            _ => {
-                let (shaft, of_phase) = self.phase.measured(&input)?;
-                let other = self.other_tone(&input, &shaft);
-                if let Some(mismatch) =
-                    other.map_err(|error| refuse(path, &what, RefusedInput::Phase, &error))?
-                {
-                    let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
-                    let problem = format!("{}: {problem}", path.display());
-                    return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
-                }
-                let doubtful = shaft.warnings.iter().map(|warning| about(&input.source, warning));
-                let warnings = input.warnings.iter().cloned().chain(of_phase).chain(doubtful).collect();
-                let [pinion, gear] = teeth_of(self.scenario);
-                let is_pinion = self.phase.teeth.is_none_or(|teeth| teeth == pinion);
-                (if is_pinion { Ok(shaft) } else { shaft.of_mate(gear, pinion) }, warnings)
-            }
-        };
-        let pinion = pinion.map_err(|error| refuse(&input.source, &what, RefusedInput::Phase, &error))?;
-        let Input { channel, sampling_rate_hz, .. } = input;
-        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, pinion }, warnings))
     }
 
     fn input(&self, path: &Path) -> Result<Input, Failure> {
@@ -262,7 +230,7 @@ fn with_scenario(stated: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOpti
 }
 
 /// Brings a channel to g.
-fn to_g(channel: &mut Channel, path: &Path, is_calibrated: bool) -> Result<(), Failure> {
+pub fn to_g(channel: &mut Channel, path: &Path, is_calibrated: bool) -> Result<(), Failure> {
     let unit = channel.unit.as_deref().unwrap_or("").trim();
     let in_g = match unit {
         "g" | "gn" | "g0" => 1.0,

@@ -12,6 +12,8 @@ pub struct SeparationSettings {
     pub teeth: usize,
     /// Teeth of other wheels on the same shaft, whose mesh orders belong to the regular part as well. Default none.
     pub other_teeth: Vec<usize>,
+    /// Orders whose multiples belong to it without sidebands: what other shafts and meshes of a gearbox bring into the average. Default none.
+    pub other_orders: Vec<usize>,
     /// Sidebands on each side of every mesh harmonic that belong to the regular part. Default 2.
     pub sidebands: usize,
     /// Orders of the shaft that belong to it. Default 1 to 7.
@@ -39,6 +41,7 @@ impl SeparationSettings {
         Self {
             teeth,
             other_teeth: Vec::new(),
+            other_orders: Vec::new(),
             sidebands: 2,
             shaft_orders: (1..=7).collect(),
             mean: MeanPart::Kept,
@@ -67,6 +70,7 @@ pub struct Separation {
 ///
 /// With z teeth, n sidebands and the Nyquist order `N/2` of N values:
 /// * the mesh orders are `z, 2z, …` up to the Nyquist order, and those of other wheels on the shaft;
+/// * with the shaft orders count the multiples of [`SeparationSettings::other_orders`];
 /// * *regular* are the shaft orders and, of every mesh order m, `m − n … m + n`;
 /// * *residual* = average − mesh orders − shaft orders;
 /// * *difference* = average − regular.
@@ -105,6 +109,9 @@ pub fn separate(average: &[f64], settings: &SeparationSettings) -> Result<Separa
     let mut low = vec![false; last + 1];
     for &order in settings.shaft_orders.iter().filter(|&&order| order <= last) {
         low[order] = true;
+    }
+    for &multiple in settings.other_orders.iter().filter(|&&multiple| multiple > 0) {
+        low.iter_mut().step_by(multiple).for_each(|is_low| *is_low = true);
     }
     low[0] = settings.mean == MeanPart::Removed;
     let mut meshing = low.clone();
