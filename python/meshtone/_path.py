@@ -12,16 +12,18 @@ import numpy.typing as npt
 
 from . import _core, _progress
 from ._files import written_whole
+from .gearbox import Gearbox, GearboxSimulation
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import finite_signal, positive, read_only, whole
 from .signal.phase import ShaftPhase, native_phase
+from .signal.train import native_machine
 from .simulation import Simulation, chosen_channel
 
 __all__ = ["PathEstimate", "estimate_path"]
 
 Array = npt.NDArray[np.float64]
-Recorded = Union[Simulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase]]
+Recorded = Union[Simulation, GearboxSimulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase]]
 FEWEST_DRAWS = 8
 
 
@@ -71,7 +73,7 @@ class PathEstimate:
 
 def estimate_path(
     recordings: Recorded | list[Recorded],
-    scenario: Scenario,
+    scenario: Scenario | Gearbox,
     *,
     draws: int = 24,
     seed: int = 1,
@@ -85,9 +87,9 @@ def estimate_path(
     Parameters
     ----------
     recordings : one, or a list of several, by one sensor
-        A :class:`Simulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal with its rate and the
-        pinion's phase, ``(signal_g, sampling_rate_hz, phase)``.
-    scenario : Scenario
+        A :class:`Simulation` or :class:`GearboxSimulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal
+        with its rate and the phase of the pinion, or of the input of a gearbox, ``(signal_g, sampling_rate_hz, phase)``.
+    scenario : Scenario or Gearbox
         The healthy machine, with the recordings' load. The wall and the mounted resonance of its first sensor stay beside the path; a
         ``frequency_response`` that it has is left out.
     draws : int
@@ -120,7 +122,7 @@ def estimate_path(
     several: list[Any] = recordings if isinstance(recordings, list) else [recordings]
     report = _progress.shown("simulations") if progress is True else (progress or None)
     (frequency_hz, magnitude_db, low_db, high_db, phase_deg), compared_hz, csv = _core.estimate_path(
-        native_scenario(scenario),
+        native_machine(scenario),
         [_healthy(one) for one in several],
         whole("draws", draws, FEWEST_DRAWS),
         whole("seed", seed),
@@ -138,6 +140,11 @@ def estimate_path(
 
 
 def _healthy(one: Any) -> tuple[Array, float, _core.ShaftPhase]:
+    gearbox = one.gearbox if isinstance(one, (Recording, GearboxSimulation)) else None
+    if gearbox is not None:
+        values = one[gearbox._native.leading_channel()]
+        phase = _core.ShaftPhase.of_simulated_input(gearbox._native, one.start_s, values.size)
+        return values, one.sampling_rate_hz, phase
     if isinstance(one, Recording) and one.scenario is not None:
         values, rig = one[chosen_channel(one.scenario, None)], one.scenario
     elif isinstance(one, Simulation):

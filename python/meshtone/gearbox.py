@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Literal, Union
+from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,9 @@ from ._gearbox_keys import (
 )
 from ._scenario_text import ScenarioText
 from ._warnings import warn
+
+if TYPE_CHECKING:
+    from .signal.train import TrainRecord
 
 __all__ = ["Gearbox", "GearboxSimulation", "gearbox_template", "simulate_gearbox", "simulate_gearboxes"]
 
@@ -177,6 +180,45 @@ class GearboxSimulation:
         """(s) Time of each sample since the start of the simulation."""
         samples = len(next(iter(self.channels.values())))
         return self.start_s + np.arange(samples) / self.sampling_rate_hz
+
+    def process(self, channel: str | None = None, *, sidebands: int | None = None) -> TrainRecord:
+        """Take one of the signals to the averages and indicators of every wheel.
+
+        Parameters
+        ----------
+        channel : str, optional
+            One of the channels; the first sensor's by default.
+        sidebands : int, optional
+            Sidebands on either side of each mesh harmonic that belong to the regular part.
+
+        Returns
+        -------
+        TrainRecord
+
+        Raises
+        ------
+        KeyError
+            A channel that there is not.
+        ValueError
+            As :func:`~meshtone.signal.process_train`.
+
+        Examples
+        --------
+        >>> from meshtone import Gearbox, gearbox_template, simulate_gearbox
+        >>> record = simulate_gearbox(Gearbox.from_toml(gearbox_template())).process()
+        >>> record.shafts
+        {'z1': 'input', 'z2': 'middle', 'z3': 'middle', 'z4': 'output'}
+        >>> record["z3"].revolutions
+        29
+        """
+        # They need a gearbox themselves.
+        from .signal.train import train_record
+
+        name = next(iter(self.channels)) if channel is None else channel
+        values = self[name]
+        phase = _core.ShaftPhase.of_simulated_input(self.gearbox._native, self.start_s, values.size)
+        parts = _core.process_train(values, phase, self.gearbox._native, self.sampling_rate_hz, None, sidebands)
+        return train_record(parts, name)
 
     def summary(self) -> dict[str, Any]:
         """What ``meshtone simulate`` writes to ``summary.json``.

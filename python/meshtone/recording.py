@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._names import hint
+from .gearbox import Gearbox
 from .scenario import Scenario
 from .signal._arguments import positive, whole
 
@@ -36,7 +37,9 @@ class Recording:
     units : dict of str to str or None
         Unit of each channel, where the file says it.
     scenario : Scenario or None
-        What was simulated, where the file is one that Meshtone wrote.
+        What was simulated, where the file is one that Meshtone wrote of a pair.
+    gearbox : Gearbox or None
+        The same of a gearbox.
     """
 
     sampling_rate_hz: float
@@ -44,6 +47,7 @@ class Recording:
     channels: dict[str, Array] = field(repr=False)
     units: dict[str, str | None]
     scenario: Scenario | None = field(repr=False)
+    gearbox: Gearbox | None = field(repr=False, default=None)
 
     def __getitem__(self, name: str) -> Array:
         """The samples of a channel."""
@@ -134,12 +138,14 @@ def read_recording(
     time = None if time is None else _column("time", time)
     read = _core.read_recording(path, chosen, rate_hz, variable, time, calibrations)
     text = read["scenario_toml"]
+    is_gearbox = text is not None and _core.Gearbox.is_written_in(text)
     return Recording(
         sampling_rate_hz=read["sampling_rate_hz"],
         start_s=read["start_s"],
         channels={name: samples for name, _, samples in read["channels"]},
         units={name: unit for name, unit, _ in read["channels"]},
-        scenario=None if text is None else Scenario.from_toml(text),
+        scenario=None if text is None or is_gearbox else Scenario.from_toml(text),
+        gearbox=Gearbox.from_toml(text) if is_gearbox else None,
     )
 
 

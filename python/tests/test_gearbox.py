@@ -114,3 +114,54 @@ def test_material_of_a_pair_is_a_table_too() -> None:
     given, named = pair.copy(material=steel), pair.copy(material="steel")
     assert given.material == steel
     assert np.array_equal(mt.simulate(given).vertical_g, mt.simulate(named).vertical_g)
+
+
+def two_stages(**changes: Any) -> mt.Gearbox:
+    """Two stages at a low rate."""
+    sections = mt.Gearbox.from_toml(mt.gearbox_template()).sections
+    lists = {"shaft": "shafts", "wheel": "wheels", "mesh": "meshes", "bearing": "bearings", "sensor": "sensors"}
+    arguments: dict[str, Any] = {name: sections[section] for section, name in lists.items()}
+    arguments["operation"], arguments["housing"] = sections["operation"], sections["housing"]
+    arguments["solver"] = {"sampling_rate_hz": 2e4, "duration_s": 2.0}
+    return mt.Gearbox(**{**arguments, **changes})
+
+
+def test_a_recording_shows_every_shaft() -> None:
+    damaged = two_stages(faults=[{"wheel": "z4", "tooth": 5, "kind": "missing-tooth"}])
+    simulation = mt.simulate_gearbox(damaged)
+    own = simulation.process()
+    assert own.mean_speeds_hz == pytest.approx({"input": 30, "middle": 10, "output": 6})
+    assert own["z2"].indicators["difference_rms"] == own["z3"].indicators["difference_rms"]
+    assert own.foreign_lines == []
+
+    # A tachometer on the output, and the tone of something else.
+    values, rate_hz = simulation["middle_1_vertical_g"], simulation.sampling_rate_hz
+    time_s = np.arange(values.size) / rate_hz
+    phase = mt.ShaftPhase.from_pulses(np.arange(0.01, 2.0, 1 / 6), 1, rate_hz, values.size)
+    tone = np.std(values) * np.cos(2 * np.pi * 91.57 * time_s)
+    record = mt.signal.process_train(values + tone, phase, damaged, rate_hz, shaft="output")
+    assert record.foreign_lines is not None
+    assert record.foreign_lines[0].frequency_hz == pytest.approx(91.57, abs=0.2)
+    assert record.foreign_lines[0].order == pytest.approx(91.57 / 30, abs=0.01)
+    assert {wheel: record[wheel].teeth for wheel in record.wheels} == {"z1": 32, "z2": 96, "z3": 48, "z4": 80}
+    with pytest.raises(ValueError, match="shaft = 'exit': must be one of input, middle, output"):
+        mt.signal.process_train(values, phase, damaged, rate_hz, shaft="exit")
+    with pytest.raises(KeyError, match="there is no wheel 'z5'"):
+        record["z5"]
+
+    # A pair is a train of two shafts.
+    pair = mt.simulate(mt.examples.healthy().copy(sampling_rate_hz=2e4))
+    of_pinion = mt.ShaftPhase.constant(40.0, pair.sampling_rate_hz, pair.vertical_g.size)
+    both = mt.signal.process_train(pair.vertical_g, of_pinion, pair.scenario, pair.sampling_rate_hz)
+    alone = mt.process_channel(pair.vertical_g, of_pinion, 17)
+    assert both["pinion"].indicators == alone.indicators and both.shafts["gear"] == "gear"
+
+
+def test_a_path_of_a_gearbox_is_found() -> None:
+    triple = {"frequency_hz": [0.0, 1e5], "magnitude": [3.0, 3.0], "phase_deg": [0.0, 0.0]}
+    rig = two_stages()
+    sensor = {**rig.sections["sensor"][0], "frequency_response": triple}
+    healthy = mt.simulate_gearbox(two_stages(sensors=[sensor], seed=7))
+    path = mt.estimate_path(healthy, rig, draws=8)
+    inside = (path.frequency_hz > path.compared_hz[0]) & (path.frequency_hz < path.compared_hz[1])
+    assert np.sqrt(np.mean((path.magnitude_db[inside] - 20 * np.log10(3)) ** 2)) < 3

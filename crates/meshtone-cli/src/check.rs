@@ -1,7 +1,7 @@
 //! Checks of a scenario before any result is written.
 
-use meshtone::Stages;
-use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
+use meshtone::scenario::{Scenario, ScenarioError, ScenarioForm, ScenarioWarning};
+use meshtone::{Stages, gearbox_stages_within};
 use meshtone_io::memory;
 
 /// Checks a scenario as far as that is possible without integrating in time: its values, the memory that it
@@ -11,4 +11,14 @@ use meshtone_io::memory;
 pub fn check(scenario: &Scenario) -> Result<(Vec<ScenarioWarning>, Stages), ScenarioError> {
     let (stages, warnings) = meshtone::stages_and_warnings(scenario, memory::limit())?;
     Ok((warnings, stages))
+}
+
+/// Does what [`check`] does of either form of a scenario, and returns what deserves attention.
+pub fn check_form(scenario: &ScenarioForm) -> Result<Vec<ScenarioWarning>, ScenarioError> {
+    match scenario {
+        ScenarioForm::Pair(scenario) => check(scenario).map(|(warnings, _)| warnings),
+        ScenarioForm::Gearbox(gearbox) => {
+            gearbox_stages_within(gearbox, memory::limit()).map(|stages| stages.warnings())
+        }
+    }
 }

@@ -19,10 +19,8 @@ use std::fs;
 
 use meshtone::batch::Control;
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::Scenario;
-use meshtone::signal::{
-    AngleZero, AngularSettings, ShaftPhase, StatedFacts, StatedTurning, angular_resample, find_mismatch,
-};
+use meshtone::scenario::ScenarioForm;
+use meshtone::signal::{AngleZero, GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
 use meshtone_diagnose::{
     Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceRecord, ReferenceSet, ReferenceStore,
     SEVERAL, SignalKind, WheelLines, diagnose, refine,
@@ -48,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let signal = SignalKind::NAMES.into_iter().find(|(name, _)| name == signal).ok_or("no such signal")?.1;
     let has_healthy = healthy == "healthy";
-    let prior = Prior::new(&Scenario::from_toml(&fs::read_to_string(rig)?)?);
+    let prior = Prior::new(&ScenarioForm::from_toml(&fs::read_to_string(rig)?)?)?;
     let store = ReferenceStore::new(std::env::temp_dir().join("meshtone-calibration"));
     let control = Control::default();
     let mut reference = store.get(&prior, LEARNT, &control)?;
@@ -64,8 +62,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     // A kind is left out alone and beside another.
     let has_other = |record: &ReferenceRecord| {
-        let faults = prior.draw(record.number).map_or_else(|_| Vec::new(), |drawn| drawn.scenario.faults);
-        faults.iter().any(|fault| fault.damage.kind() == other)
+        let drawn = prior.draw(record.number);
+        let has = |form: &ScenarioForm| form.faults().iter().any(|(_, fault)| fault.damage.kind() == other);
+        drawn.is_ok_and(|drawn| has(&drawn.scenario))
     };
     reference
         .records
@@ -256,7 +255,7 @@ fn no_gear(signal: &mut Vec<f64>, kind: &str, level_g: f64, rate_hz: f64, draws:
 fn strange(prior: &Prior, number: u64, what: &str, level_g: f64) -> Result<Observation, Box<dyn Error>> {
     let mut draws = Draws::new(99, Purpose::DiagnosisNoise, number);
     let drawn = prior.draw(number)?;
-    let mut scenario = drawn.scenario.clone();
+    let ScenarioForm::Pair(mut scenario) = drawn.scenario.clone() else { return Err("of a pair".into()) };
     let stated = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
     match what {
         "teeth" => scenario.gears.pinion_teeth += 2,
@@ -309,17 +308,11 @@ fn strange(prior: &Prior, number: u64, what: &str, level_g: f64) -> Result<Obser
     }
     let speed_hz = scenario.operation.pinion_speed_hz;
     let phase = ShaftPhase::constant(speed_hz, stated_hz, samples)?;
-    let mate = phase.of_mate(stated[0], stated[1])?;
-    let settings = AngularSettings::default();
-    let [pinion, gear] =
-        [angular_resample(&signal, &phase, &settings)?, angular_resample(&signal, &mate, &settings)?];
-    let turning = StatedTurning::ConstantSpeed { speed_hz };
-    let facts = StatedFacts { teeth: stated[0], mate_teeth: Some(stated[1]), turning };
-    let observation = Observation::of_recording(&pinion, &gear, stated, speed_hz)?;
-    Ok(match find_mismatch(&pinion, &facts) {
-        Some(mismatch) => observation.with_mismatch(mismatch),
-        None => observation,
-    })
+    let turning = TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::ConstantSpeed { speed_hz } };
+    let train = GearTrain::of_wheels([("pinion", stated[0]), ("gear", stated[1])]);
+    let recording =
+        TrainRecording { signal: &signal, sampling_rate_hz: stated_hz, train: &train, turning: &turning };
+    Ok(Observation::of_recording(&recording)?)
 }
 
 fn row(

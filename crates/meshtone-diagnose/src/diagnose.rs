@@ -14,7 +14,6 @@ use crate::observation::{Observation, WheelLines, revolution};
 use crate::prior::{DrawnFault, Prior};
 use crate::quantile::{interval, quantiles};
 use crate::refine::Refined;
-use crate::rig::{RigWheel, rig_wheels};
 use crate::warnings::warnings;
 
 /// (-) p-value below which a recording is called unlike all that was simulated.
@@ -81,7 +80,7 @@ pub fn diagnose(
         let alone = learned.row(&Question { now: question.healthy, healthy: &[] });
         outside.p_value(&alone.values).min(of_mismatch(question.healthy))
     });
-    let wheels: Vec<RigWheel> = rig_wheels(&learned.reference.prior.base);
+    let wheels = &learned.reference.prior.train.wheels;
     let of_wheel = |wheel: usize| {
         let classes = learned.classes.iter().zip(&of_class);
         let of_wheel = classes.filter(|(class, _)| class.is_some_and(|(_, of)| of == wheel));
@@ -99,7 +98,7 @@ pub fn diagnose(
         has_healthy: learned.layout.has_healthy,
         recordings: question.now.len(),
         counted_from: (0..wheels.len()).map(|wheel| counted_from(question, wheel)).collect(),
-        wheels: wheels.into_iter().map(|wheel| wheel.name).collect(),
+        wheels: wheels.iter().map(|wheel| wheel.name.clone()).collect(),
         shown_wheel,
         summary: String::new(),
         any_damage,
@@ -219,7 +218,7 @@ fn place(
     of_wheel: f64,
 ) -> PlaceAnswer {
     let mut answer = PlaceAnswer { wheel, wheel_probability: of_wheel, is_on_one_tooth: false, tooth: None };
-    let teeth = f64::from(rig_wheels(&learned.reference.prior.base)[wheel].teeth);
+    let teeth = f64::from(learned.reference.prior.train.wheels[wheel].teeth);
     let on_one = |fault: &DrawnFault| fault.is_on_one_tooth;
     let is_on_one = |row: &usize| learned.records[*row].fault.as_ref().is_some_and(on_one);
     answer.is_on_one_tooth = learned.rows_of(class).iter().all(is_on_one);

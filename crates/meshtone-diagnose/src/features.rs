@@ -6,7 +6,7 @@
 use meshtone::signal::{envelope, kurtosis, peak, rms};
 use meshtone_fourier::Complex64;
 
-use crate::observation::{WheelLines, revolution};
+use crate::observation::{WheelLines, revolution, separation};
 
 /// (-) Least amplitude, as a part of the largest, whose logarithm is taken.
 const FLOOR: f64 = 1e-6;
@@ -49,7 +49,7 @@ pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: b
     let last = last.min(view.last());
     let lines: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
     let points = (2 * last + 1).next_power_of_two().max(64);
-    let difference = Difference { teeth: view.teeth as usize, values: revolution(&lines, points), lines };
+    let difference = Difference { teeth: view.teeth(), values: revolution(&lines, points), lines };
     let energy = energy_over_tooth(&difference.values, difference.teeth);
     let at = largest_at(&energy);
     let mut shapes = difference.shapes();
@@ -164,7 +164,8 @@ impl Difference {
             if from.abs() < 3.0 { 0.5 + 0.5 * (std::f64::consts::PI * from / 3.0).cos() } else { 0.0 }
         };
         let cut = self.values.iter().enumerate().map(|(point, value)| value * window(point));
-        let local = WheelLines::of_values(&cut.collect::<Vec<f64>>(), self.teeth as u32, last);
+        let cut: Vec<f64> = cut.collect();
+        let local = WheelLines::of_values(&cut, separation(self.teeth as u32), last);
         let of = move |from, to| band(&local.lines, self.teeth, from, to);
         let energy = of(0.0, 16.5).max(f64::MIN_POSITIVE);
         LOCAL_BANDS.windows(2).map(move |limits| (of(limits[0], limits[1]) / energy).max(1e-3).ln())
@@ -193,7 +194,7 @@ pub(crate) fn burst_rev(view: &WheelLines, last: usize) -> f64 {
     let last = last.min(view.last());
     let difference: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
     let points = (2 * last + 1).next_power_of_two().max(64);
-    let smooth = energy_over_tooth(&revolution(&difference, points), view.teeth as usize);
+    let smooth = energy_over_tooth(&revolution(&difference, points), view.teeth());
     largest_at(&smooth) as f64 / points as f64
 }
 

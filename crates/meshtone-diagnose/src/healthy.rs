@@ -37,6 +37,7 @@ pub(crate) fn beyond_healthy(now: &WheelLines, healthy: &WheelLines, last: usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::observation::separation;
     use meshtone::random::{Draws, Purpose};
 
     // The same wheel from another tooth on, twice as loud, and a line that was not there.
@@ -47,8 +48,7 @@ mod tests {
             let [re, im] = draws.normals();
             Complex64::new(re, im)
         };
-        let healthy =
-            WheelLines { teeth: 38, beside_teeth: Vec::new(), lines: (0..400).map(&mut line).collect() };
+        let healthy = WheelLines { separation: separation(38), lines: (0..400).map(&mut line).collect() };
         let turned =
             |order: usize| Complex64::from_polar(2.0, std::f64::consts::TAU * order as f64 * 5.0 / 38.0);
         let mut now = healthy.clone();

@@ -17,7 +17,6 @@ use crate::outlier_test::OutlierTest;
 use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
 use crate::quantile::quantiles;
 use crate::reference::{ReferenceRecord, ReferenceSet};
-use crate::rig::rig_wheels;
 use crate::severity::SizeModel;
 use crate::softmax::Softmax;
 
@@ -115,11 +114,11 @@ impl Layout {
     /// differ without any damage.
     pub(crate) fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
         let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
-        let rig = rig_wheels(&reference.prior.base);
+        let rig = &reference.prior.train.wheels;
         let expected: Vec<u32> = rig.iter().map(|wheel| wheel.teeth).collect();
         for asked in question.all() {
             let teeth = |(seen, expected): (&Option<WheelLines>, &u32)| {
-                seen.as_ref().map_or(*expected, |wheel| wheel.teeth)
+                seen.as_ref().map_or(*expected, |wheel| wheel.teeth() as u32)
             };
             let given: Vec<u32> = asked.wheels.iter().zip(&expected).map(teeth).collect();
             if given != expected || asked.wheels.len() != expected.len() {
@@ -157,7 +156,7 @@ impl Layout {
             has_healthy: !question.healthy.is_empty(),
             last,
             noises: [question.now, question.healthy].map(noise_of),
-            nominal_hz: reference.prior.base.operation.pinion_speed_hz,
+            nominal_hz: reference.prior.base.operation().pinion_speed_hz,
             knows_speed: question.now.iter().any(|asked| asked.input_speed_hz.is_some()),
         })
     }
@@ -476,7 +475,7 @@ fn with_noise(record: &ReferenceRecord, layout: &Layout, noise: &[Vec<f64>], see
         let count = lines.lines.len().max(1) as f64;
         let energy: f64 = lines.difference().iter().map(Complex64::norm_sqr).sum();
         let unknown = part * (energy / count).sqrt();
-        let teeth = lines.teeth.max(1) as usize;
+        let teeth = lines.teeth().max(1);
         for (order, line) in lines.lines.iter_mut().enumerate() {
             let known = noise.get(wheel).map_or(&[][..], |known| known);
             let deviation = known.get((order + teeth / 2) / teeth).or(known.last()).unwrap_or(&unknown);

@@ -359,7 +359,7 @@ fn own_name(key: &str) -> &str {
 fn once(gearbox: &mut Gearbox) -> Result<(), ScenarioError> {
     let cycle = GearboxLayout::new(gearbox)?.cycle_revolutions() as f64;
     let time = gearbox.time_grid();
-    let kept = time.kept_samples as f64 / time.samples_per_pinion_revolution as f64;
+    let kept = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
     if gearbox.operation.is_steady() && cycle < kept {
         gearbox.solver.settings.duration_s = None;
         gearbox.solver.settings.pinion_revolutions = Some(cycle);
@@ -396,8 +396,7 @@ impl Prior {
             let both = healthy.clone().with_faults(faults);
             // Two damages of one tooth may not go together.
             if of.wheel == wheel && both.validate().is_ok() {
-                let fault =
-                    DrawnFault { kind: kinds.len(), is_on_one_tooth: false, sizes: Vec::new(), ..of };
+                let fault = DrawnFault { kind: kinds.len(), is_on_one_tooth: false, sizes: Vec::new(), ..of };
                 return Ok((both, fault));
             }
         }

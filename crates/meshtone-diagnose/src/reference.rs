@@ -1,15 +1,19 @@
 //! Simulations of what may be.
 
-use meshtone::Stages;
-use meshtone::batch::{Control, Keep, KeepChannels, Output, SignalRecorder, Signals, simulate_many};
-use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::batch::{
+    Control, Keep, KeepChannels, Output, SignalRecorder, Signals, simulate_many, simulate_many_gearboxes,
+};
+use meshtone::scenario::{Gearbox, Scenario, ScenarioError, ScenarioForm};
 use meshtone::sensor::Channel;
-use meshtone::signal::{ChainSettings, SignalError, SimulatedShafts};
+use meshtone::signal::{
+    AngularSettings, ChainSettings, GearTrain, SeparationSettings, SignalError, SimulatedShafts,
+    SynchronousAverage, TrainRecording, TrainTurning, TrainWheel, synchronous_average,
+};
 use meshtone::wheel::WheelName;
+use meshtone::{Error, GearboxSimulation, Stages};
 
-use crate::observation::WheelLines;
+use crate::observation::{WheelLines, separations};
 use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
-use crate::rig::rig_wheels;
 
 /// A simulation of a reference set.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,33 +76,62 @@ pub fn build_reference(
         let draw = |number| Some((number, prior.draw_among(&kinds, number).ok()?));
         numbers.into_par_iter().filter_map(draw).collect()
     };
-    let scenarios: Vec<Scenario> = drawn.iter().map(|(_, drawn)| drawn.scenario.clone()).collect();
-    let keep = KeepWheels { channel: KeepChannels::new([Channel::leading(&prior.base.sensors)]) };
-    let (mut records, rig) = (Vec::with_capacity(drawn.len()), rig_wheels(&prior.base));
-    simulate_many(scenarios, &keep, control, |index, kept| {
-        let (number, drawn) = &drawn[index];
-        if let Ok(Ok(mut wheels)) = kept {
-            let input_speed_hz = drawn.scenario.operation.pinion_speed_hz;
-            for (wheel, of_rig) in wheels.iter_mut().zip(&rig) {
-                let shaft_hz = of_rig.speed_ratio * input_speed_hz;
-                let gains = drawn.path_gains((0..wheel.lines.len()).map(|order| order as f64 * shaft_hz));
-                wheel.lines.iter_mut().zip(gains).for_each(|(line, gain)| *line *= gain);
-            }
-            let fault = drawn.fault.clone();
-            records.push(ReferenceRecord { number: *number, fault, input_speed_hz, wheels });
+    let mut records = Vec::with_capacity(drawn.len());
+    let take = |index: usize, kept: Result<Averages, Error>| {
+        let (number, drawn): &(u64, Drawn) = &drawn[index];
+        if let Ok(Ok(averages)) = kept {
+            records.push(record(prior, *number, drawn, &averages));
         }
-    });
+    };
+    match &prior.base {
+        ScenarioForm::Pair(pair) => {
+            let pair_of = |(_, drawn): &(u64, Drawn)| match &drawn.scenario {
+                ScenarioForm::Pair(pair) => pair.clone(),
+                ScenarioForm::Gearbox(_) => pair.clone(),
+            };
+            let scenarios: Vec<Scenario> = drawn.iter().map(pair_of).collect();
+            let keep = KeepAverages { channel: KeepChannels::new([Channel::leading(&pair.sensors)]) };
+            simulate_many(scenarios, &keep, control, take);
+        }
+        ScenarioForm::Gearbox(_) => {
+            let gearbox_of = |(_, drawn): &(u64, Drawn)| match &drawn.scenario {
+                ScenarioForm::Gearbox(gearbox) => Some(gearbox.clone()),
+                ScenarioForm::Pair(_) => None,
+            };
+            let gearboxes: Vec<Gearbox> = drawn.iter().filter_map(gearbox_of).collect();
+            let keep = |_: usize, simulation: GearboxSimulation| averages(&simulation, &prior.train);
+            simulate_many_gearboxes(gearboxes, &keep, control, take);
+        }
+    }
     records
 }
 
-/// Keeps the wheels' averages of each of many simulations.
-struct KeepWheels {
+/// The average of each wheel of a simulation.
+type Averages = Result<Vec<SynchronousAverage>, SignalError>;
+
+/// A record of what was simulated: the lines of its averages behind the path to the sensor.
+fn record(prior: &Prior, number: u64, drawn: &Drawn, averages: &[SynchronousAverage]) -> ReferenceRecord {
+    let input_speed_hz = drawn.scenario.operation().pinion_speed_hz;
+    let GearTrain { wheels, shafts, .. } = &prior.train;
+    let of = |((average, separation), wheel): ((&SynchronousAverage, SeparationSettings), &TrainWheel)| {
+        let mut of_wheel = WheelLines::of_average(average, separation);
+        let shaft_hz = shafts[wheel.shaft].speed_ratio.value() * input_speed_hz;
+        let gains = drawn.path_gains((0..of_wheel.lines.len()).map(|order| order as f64 * shaft_hz));
+        of_wheel.lines.iter_mut().zip(gains).for_each(|(line, gain)| *line *= gain);
+        of_wheel
+    };
+    let wheels = averages.iter().zip(separations(&prior.train)).zip(wheels).map(of).collect();
+    ReferenceRecord { number, fault: drawn.fault.clone(), input_speed_hz, wheels }
+}
+
+/// Keeps the wheels' averages of each of many simulations of a pair.
+struct KeepAverages {
     channel: KeepChannels,
 }
 
-impl Keep for KeepWheels {
+impl Keep for KeepAverages {
     type Recorder = SignalRecorder;
-    type Kept = Result<Vec<WheelLines>, SignalError>;
+    type Kept = Averages;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
         self.channel.outputs(scenario)
@@ -112,10 +145,40 @@ impl Keep for KeepWheels {
         let Signals { start_s, channels, .. } = recorder.finish(&stages);
         let signal: Vec<f64> = channels.into_iter().flatten().map(f64::from).collect();
         let shafts = SimulatedShafts::new(&stages.scenario, start_s, signal.len());
-        let lines = |shaft: WheelName| {
-            let average = shafts.average(&signal, shaft, &ChainSettings::default())?;
-            Ok(WheelLines::of_average(&average, shafts.teeth(shaft)))
-        };
-        WheelName::BOTH.into_iter().map(lines).collect()
+        let average = |shaft: WheelName| shafts.average(&signal, shaft, &ChainSettings::default());
+        WheelName::BOTH.into_iter().map(average).collect()
     }
+}
+
+/// Times that a gearbox's simulation of one cycle is repeated, so that the ends that resampling needs are outside whole cycles.
+const REPEATED: usize = 3;
+
+/// The averages of a gearbox's first sensor.
+///
+/// Where the simulation is one cycle, after which the same teeth meet again, it is repeated and averaged over whole cycles: then the lines of
+/// each shaft are free of the others'.
+fn averages(simulation: &GearboxSimulation, train: &GearTrain) -> Averages {
+    let GearboxSimulation { stages, channels, .. } = simulation;
+    let first = channels.signals.first().map_or(&[][..], |signal| &signal.values);
+    let cycle = train.revolutions_of_a_cycle(train.input());
+    let is_cycle = stages.is_steady() && first.len() == cycle * stages.time.samples_per_pinion_revolution;
+    let signal = if is_cycle { first.repeat(REPEATED) } else { first.to_vec() };
+    let form = ScenarioForm::Gearbox(stages.gearbox.clone());
+    let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len())?;
+    let recording = TrainRecording {
+        signal: &signal,
+        sampling_rate_hz: channels.sampling_rate_hz,
+        train,
+        turning: &turning,
+    };
+    let average = |wheel: usize| {
+        let mut angular = recording.angular(wheel, &AngularSettings::default())?;
+        if is_cycle {
+            let cycle = train.revolutions_of_a_cycle(train.wheels[wheel].shaft).max(1);
+            let whole = angular.revolutions() / cycle * cycle;
+            angular.values.truncate(whole * angular.points_per_revolution);
+        }
+        synchronous_average(&angular)
+    };
+    (0..train.wheels.len()).map(average).collect()
 }

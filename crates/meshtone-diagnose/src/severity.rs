@@ -19,7 +19,7 @@ const NEAR: f64 = 0.35;
 /// The fewest of them.
 const FEWEST: usize = 40;
 /// Fewest simulations of a class that can be learnt from.
-const FEWEST_TO_LEARN: usize = 20;
+const FEWEST_TO_LEARN: usize = 8;
 
 /// Model of one number of a damage.
 pub(crate) struct SizeModel {

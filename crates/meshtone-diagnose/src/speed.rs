@@ -1,5 +1,7 @@
 //! A check that simulations of the rig can be compared with a recording, and cover its speed.
 
+use meshtone::scenario::ScenarioForm;
+
 use crate::DiagnoseError;
 use crate::learn::{Layout, Question};
 use crate::prior::Prior;
@@ -21,7 +23,7 @@ impl Question<'_> {
     /// # Errors
     /// A recording whose speed is far from those of the simulations; recordings of other wheels, of too few orders or of different kinds.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
-        let nominal_hz = prior.base.operation.pinion_speed_hz;
+        let nominal_hz = prior.base.operation().pinion_speed_hz;
         for speed_hz in self.all().filter_map(|asked| asked.input_speed_hz) {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
@@ -40,28 +42,40 @@ impl Question<'_> {
 
 /// (Hz) Least and largest speed of the pinion in the simulations.
 fn simulated_hz(prior: &Prior) -> [f64; 2] {
-    let nominal_hz = prior.base.operation.pinion_speed_hz;
+    let nominal_hz = prior.base.operation().pinion_speed_hz;
     [-1.0, 1.0].map(|sign: f64| nominal_hz * (sign * prior.speed_spread).exp())
 }
 
 /// Explanation why a recording is so many times as quick as the rig; none where nothing explains it.
 fn reason(ratio: f64, prior: &Prior) -> Option<String> {
-    let [pinion, gear] = [prior.base.gears.pinion_teeth, prior.base.gears.gear_teeth].map(f64::from);
     let is = |other: f64| (ratio / other - 1.0).abs() < NEAR;
-    let of_shaft = |wheel: &str, mate: &str| {
+    let train = &prior.train;
+    let name = |shaft: usize| match prior.base {
+        ScenarioForm::Pair(_) => format!("the {}'s shaft", train.shafts[shaft].name),
+        ScenarioForm::Gearbox(_) => format!("shaft {}", train.shafts[shaft].name),
+    };
+    let of_shaft = |shaft: usize, other: usize| {
         format!(
-            "that is the ratio of the wheels: the speed may be of the {wheel}'s shaft, not the {mate}'s: say so with the \
-             {wheel}'s teeth"
+            "that is their ratio of speeds: the speed may be of {}, not of {}: say so with --shaft {}, or its wheel's teeth",
+            name(shaft),
+            name(other),
+            train.shafts[shaft].name
         )
     };
+    let input = train.input();
+    let others = (0..train.shafts.len()).filter(|shaft| *shaft != input);
+    let others = others.map(|shaft| (shaft, train.speed_ratio(shaft, input).value()));
+    let mut others = others.filter(|(_, of_input)| *of_input != 1.0);
     if is(SIXTY) {
         Some("it is 60 times as quick: a speed in rpm that was given as Hz? 1 Hz are 60 rpm".to_owned())
     } else if is(1.0 / SIXTY) {
         Some("it is 60 times as slow: has the scenario its speed in rpm? 1 Hz are 60 rpm".to_owned())
-    } else if pinion != gear && is(pinion / gear) {
-        Some(of_shaft("gear", "pinion"))
     } else {
-        (pinion != gear && is(gear / pinion)).then(|| of_shaft("pinion", "gear"))
+        others.find_map(|(shaft, of_input)| match () {
+            () if is(of_input) => Some(of_shaft(shaft, input)),
+            () if is(1.0 / of_input) => Some(of_shaft(input, shaft)),
+            () => None,
+        })
     }
 }
 
@@ -72,7 +86,7 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
 /// * `prior` - of the simulations
 pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let [least, most] = simulated_hz(prior);
-    let nominal_hz = prior.base.operation.pinion_speed_hz;
+    let nominal_hz = prior.base.operation().pinion_speed_hz;
     let mut doubts = Vec::new();
     let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
     for speed_hz in question.all().filter_map(|asked| asked.input_speed_hz).filter(beside) {

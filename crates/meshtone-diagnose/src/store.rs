@@ -13,10 +13,9 @@ use meshtone_io::atomic_file::{WriteFileError, write_atomically};
 use meshtone_io::npz::{NpzReader, NpzWriter};
 use sha2::{Digest, Sha256};
 
-use crate::observation::{MESH_ORDERS, WheelLines};
+use crate::observation::{MESH_ORDERS, WheelLines, separations};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet, build_reference};
-use crate::rig::{RigWheel, rig_wheels};
 
 /// Raised when a record of the same number becomes another one, or its file another.
 const FORMAT: u32 = 3;
@@ -197,7 +196,7 @@ fn digest(hash: Sha256) -> Vec<f64> {
 fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let wrong = || io::Error::other("it is no batch of a reference set");
     let mut archive = NpzReader::new(File::open(path)?)?;
-    let rig = rig_wheels(&prior.base);
+    let rig = &prior.train.wheels;
     let width = COLUMNS + 1 + SIZES;
     let mut hash = Sha256::new();
     let mut read = |name: &str, most: u64| -> io::Result<Vec<f64>> {
@@ -210,15 +209,16 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
         return Err(wrong());
     }
     let mut wheels: Vec<Vec<WheelLines>> = vec![Vec::new(); numbers.len() / width];
-    for (place, RigWheel { teeth, beside_teeth, .. }) in rig.iter().enumerate() {
+    for (place, separation) in separations(&prior.train).into_iter().enumerate() {
         let lengths = read(&format!("lengths_{place}"), BATCH)?;
-        let parts = read(&format!("lines_{place}"), BATCH * 2 * (WheelLines::most(*teeth) as u64 + 1))?;
+        let parts =
+            read(&format!("lines_{place}"), BATCH * 2 * (WheelLines::most(separation.teeth) as u64 + 1))?;
         let mut rest = &parts[..];
         for (of_record, length) in wheels.iter_mut().zip(&lengths) {
             let count = (*length as usize).saturating_mul(2);
             let own = rest.split_off(..count).ok_or_else(wrong)?;
             let lines = own.chunks_exact(2).map(|part| Complex64::new(part[0], part[1])).collect();
-            of_record.push(WheelLines { teeth: *teeth, beside_teeth: beside_teeth.clone(), lines });
+            of_record.push(WheelLines { separation: separation.clone(), lines });
         }
         if !rest.is_empty() || lengths.len() != wheels.len() {
             return Err(wrong());

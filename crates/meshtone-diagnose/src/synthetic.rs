@@ -1,14 +1,13 @@
 //! Reference sets that need no simulation, for tests.
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{DamageKind, GearPair, Scenario};
+use meshtone::scenario::{DamageKind, GearPair, Scenario, ScenarioForm};
 use meshtone::signal::AngleZero;
 use meshtone_fourier::Complex64;
 
-use crate::observation::{Observation, SignalKind, WheelLines};
+use crate::observation::{Observation, SignalKind, WheelLines, separations};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
-use crate::rig::rig_wheels;
 
 /// Mesh orders of the lines.
 const LAST_MESH: u32 = 6;
@@ -17,7 +16,7 @@ const LAST_MESH: u32 = 6;
 pub fn prior() -> Prior {
     let mut rig = Scenario::new(GearPair { brake_torque_nm: 20.0, ..GearPair::example() });
     rig.quality.din_grade = 7;
-    Prior::new(&rig)
+    Prior::new(&ScenarioForm::Pair(rig)).unwrap()
 }
 
 /// Records of a prior: deviations of the wheels' own, and of a damage a ringing on its tooth as large as it is severe, whose order
@@ -28,7 +27,7 @@ pub fn records(prior: &Prior, count: u64) -> Vec<ReferenceRecord> {
 }
 
 fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
-    let (unit, rig) = (number / RECORDS_PER_UNIT, rig_wheels(&prior.base));
+    let (unit, rig) = (number / RECORDS_PER_UNIT, &prior.train.wheels);
     let mut own = Draws::new(prior.seed, Purpose::DiagnosisRecord, number);
     let [least, most] = prior.focus.as_ref().map_or([0.0, 1.0], |focus| focus.severity);
     let fault = prior.class(kinds, number).map(|(kind, wheel)| {
@@ -44,8 +43,8 @@ fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
             sizes: vec![severity; sizes],
         }
     });
-    let wheels = rig.iter().enumerate().map(|(wheel, of_rig)| {
-        let teeth = of_rig.teeth;
+    let wheels = separations(&prior.train).into_iter().enumerate().map(|(wheel, separation)| {
+        let teeth = rig[wheel].teeth;
         let mut of_unit = Draws::new(prior.seed, Purpose::DiagnosisUnit, 2 * unit + wheel as u64);
         let mut lines: Vec<Complex64> = (0..=LAST_MESH * teeth)
             .map(|order| {
@@ -62,10 +61,10 @@ fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
                 *line += Complex64::from_polar(size, -std::f64::consts::TAU * order as f64 * at);
             }
         }
-        WheelLines { teeth, beside_teeth: of_rig.beside_teeth.clone(), lines }
+        WheelLines { separation, lines }
     });
     let wheels = wheels.collect();
-    ReferenceRecord { number, fault, input_speed_hz: prior.base.operation.pinion_speed_hz, wheels }
+    ReferenceRecord { number, fault, input_speed_hz: prior.base.operation().pinion_speed_hz, wheels }
 }
 
 /// A set of them.

@@ -3,6 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use meshtone::damage::damage_kinds;
+use meshtone::scenario::{Scenario, ScenarioForm};
 
 use crate::answer::{Answer, p_in_words};
 use crate::diagnose::{OUTSIDE, diagnose};
@@ -102,12 +103,11 @@ impl Question<'_> {
                 warnings.push(warning);
             }
         };
-        let quality = &prior.base.quality;
-        if quality.din_grade == 0 && quality.iso_class == 0 && quality.profile_errors.is_none() {
+        if has_ideal_wheels(&prior.base) {
             warn(
                 IdealWheels,
-                "the scenario's wheels have no deviations (quality.din_grade and quality.iso_class are 0), as none has: the probabilities \
-                 are far too sure; write the grade of the rig's wheels"
+                "the scenario's wheels have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; \
+                 write the grade of the rig's wheels"
                     .to_owned(),
             );
         }
@@ -124,6 +124,19 @@ impl Question<'_> {
             );
         }
         warnings
+    }
+}
+
+/// Whether no wheel of a rig has deviations.
+fn has_ideal_wheels(rig: &ScenarioForm) -> bool {
+    match rig {
+        ScenarioForm::Pair(Scenario { quality, .. }) => {
+            quality.din_grade == 0 && quality.iso_class == 0 && quality.profile_errors.is_none()
+        }
+        ScenarioForm::Gearbox(gearbox) => gearbox
+            .wheels
+            .iter()
+            .all(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0 && wheel.profile_errors_mm.is_none()),
     }
 }
 
@@ -267,8 +280,8 @@ mod tests {
         for (speed_hz, words) in [
             (2400.0, "rpm that was given as Hz"),
             (2.0 / 3.0, "has the scenario its speed in rpm"),
-            (40.0 * 38.0 / 17.0, "of the pinion's shaft, not the gear's"),
-            (40.0 * 17.0 / 38.0, "of the gear's shaft, not the pinion's"),
+            (40.0 * 38.0 / 17.0, "of the pinion's shaft, not of the gear's shaft"),
+            (40.0 * 17.0 / 38.0, "of the gear's shaft, not of the pinion's shaft"),
             (120.0, "is it in Hz"),
         ] {
             let now = [at(speed_hz)];

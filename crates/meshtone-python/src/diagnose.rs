@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use meshtone::batch::Control;
-use meshtone::signal::{AngleZero, SimulatedShafts, StatedFacts, StatedTurning};
+use meshtone::signal::{AngleZero, GearTrain, StatedTurning, TrainRecording, TrainTurning};
 use meshtone_diagnose::{
     Answer, DiagnoseError, Learned, Observation as Observed, Prior, Question, ReferenceStore, SignalKind,
     StoreError, refine,
@@ -16,6 +16,7 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{file_error, read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
+use crate::process::Machine;
 use crate::scenario::Scenario;
 
 /// Features of a recording.
@@ -26,32 +27,43 @@ pub struct Observation(Observed);
 impl Observation {
     /// Of a simulated signal, in g.
     #[staticmethod]
-    fn of_simulated(py: Python<'_>, scenario: &Scenario, signal: Signal<'_>, start_s: f64) -> PyResult<Self> {
+    fn of_simulated(
+        py: Python<'_>,
+        machine: Machine<'_>,
+        signal: Signal<'_>,
+        start_s: f64,
+    ) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        let observe =
-            || Observed::of_simulated(signal, &SimulatedShafts::new(&scenario.0, start_s, signal.len()));
+        let form = machine.form();
+        let train = GearTrain::of_form(&form).map_err(|error| scenario_error(&error))?;
+        let observe = || {
+            let turning = TrainTurning::of_simulated(&form, start_s, signal.len())?;
+            let sampling_rate_hz = form.time_grid().sampling_rate_hz;
+            let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+            Observed::of_recording(&recording)
+        };
         py.detach(observe).map(Self).map_err(value_error)
     }
 
-    /// Of a measured signal, in g, with the phase of the pinion's shaft.
+    /// Of a measured signal, in g, with the phase of the pinion's shaft or of the input.
     #[staticmethod]
     fn of_measured(
         py: Python<'_>,
         signal: Signal<'_>,
         sampling_rate_hz: f64,
         phase: &ShaftPhase,
-        scenario: &Scenario,
+        machine: Machine<'_>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        let rig = &scenario.0;
-        let teeth = [rig.gears.pinion_teeth, rig.gears.gear_teeth];
-        let turning = match phase.0.zero {
-            AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: rig.operation.pinion_speed_hz },
+        let form = machine.form();
+        let train = GearTrain::of_form(&form).map_err(|error| scenario_error(&error))?;
+        let stated = match phase.0.zero {
+            AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: form.operation().pinion_speed_hz },
             _ => StatedTurning::Other,
         };
-        let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning };
-        let observe = || Observed::of_measured(signal, sampling_rate_hz, &phase.0, &stated, teeth);
-        py.detach(observe).map(Self).map_err(value_error)
+        let turning = TrainTurning::Shaft { shaft: train.input(), phase: phase.0.clone(), stated };
+        let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+        py.detach(|| Observed::of_recording(&recording)).map(Self).map_err(value_error)
     }
 
     /// Of one revolution of the gear, in g.
@@ -83,13 +95,14 @@ pub fn tuned_rig(scenario: &Scenario, path: PathBuf) -> PyResult<Scenario> {
 #[pyfunction]
 pub fn check_diagnosis(
     py: Python<'_>,
-    scenario: &Scenario,
+    machine: Machine<'_>,
     now: Vec<PyRef<'_, Observation>>,
     healthy: Vec<PyRef<'_, Observation>>,
 ) -> PyResult<Vec<(&'static str, String)>> {
     let [now, healthy] = [now, healthy].map(observed);
+    let prior = Prior::new(&machine.form()).map_err(|error| scenario_error(&error))?;
     let check = || {
-        let (prior, question) = (Prior::new(&scenario.0), Question { now: &now, healthy: &healthy });
+        let question = Question { now: &now, healthy: &healthy };
         question.check(&prior)?;
         Ok(question.warnings(&prior))
     };
@@ -105,7 +118,7 @@ fn observed(all: Vec<PyRef<'_, Observation>>) -> Vec<Observed> {
 #[pyfunction]
 pub fn diagnose<'py>(
     py: Python<'py>,
-    scenario: &Scenario,
+    machine: Machine<'py>,
     now: Vec<PyRef<'py, Observation>>,
     healthy: Vec<PyRef<'py, Observation>>,
     reference: Option<PathBuf>,
@@ -117,7 +130,7 @@ pub fn diagnose<'py>(
         value_error("reference: the environment names no home directory; name a folder for the simulations")
     })?;
     let [now, healthy] = [now, healthy].map(observed);
-    let prior = Prior::new(&scenario.0);
+    let prior = Prior::new(&machine.form()).map_err(|error| scenario_error(&error))?;
     let store = ReferenceStore::new(folder);
     let answer = interruptible(py, progress, records, |cancelled, report| {
         let progress = |count| report((count as u64).min(records), records);

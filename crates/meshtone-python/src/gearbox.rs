@@ -49,6 +49,17 @@ impl Gearbox {
         }
     }
 
+    /// Whether a scenario file's text is of a gearbox.
+    #[staticmethod]
+    fn is_written_in(text: &str) -> PyResult<bool> {
+        scenario::Gearbox::is_written_in(text).map_err(|error| scenario_error(&error))
+    }
+
+    /// The name of the channel of its first sensor.
+    fn leading_channel(&self) -> String {
+        self.0.leading_channel()
+    }
+
     /// The text of a scenario file.
     fn to_toml(&self) -> String {
         self.0.to_toml()

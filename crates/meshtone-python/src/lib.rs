@@ -39,7 +39,7 @@ mod _core {
         hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune},
         memory::set_memory_limit,
         phase::{ShaftPhase, repair_pulses, tachometer_pulses},
-        process::{check_recording, find_mismatch, process_channel, process_series},
+        process::{check_recording, find_mismatch, process_channel, process_series, process_train},
         recording::read_recording,
         scenario::{Scenario, template},
         sensor_path::estimate_path,

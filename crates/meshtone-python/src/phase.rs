@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
+use crate::gearbox::Gearbox;
 use crate::process::{TypedWarning, typed};
 use crate::scenario::Scenario;
 
@@ -31,6 +32,12 @@ impl ShaftPhase {
     fn of_simulated(scenario: &Scenario, start_s: f64, samples: usize) -> PyResult<Self> {
         let shafts = SimulatedShafts::new(&scenario.0, start_s, samples);
         shafts.phase(WheelName::Pinion).map(Self).map_err(value_error)
+    }
+
+    /// Returns the phase of the input in a simulation of a gearbox.
+    #[staticmethod]
+    fn of_simulated_input(gearbox: &Gearbox, start_s: f64, samples: usize) -> PyResult<Self> {
+        signal::ShaftPhase::of_simulated_input(&gearbox.0, start_s, samples).map(Self).map_err(value_error)
     }
 
     /// Of a constant speed.

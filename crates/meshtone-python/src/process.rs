@@ -1,15 +1,19 @@
 //! From a channel to its indicators.
 
+use meshtone::scenario::ScenarioForm;
 use meshtone::signal::{
-    self, AngleZero, AngularSettings, ChainSettings, SeparationSettings, SignalError, SignalWarning,
-    StatedFacts, StatedTurning, SynchronousPart,
+    self, AngleZero, AngularSettings, ChainSettings, ForeignTone, GearTrain, SeparationSettings, SignalError,
+    SignalWarning, StatedFacts, StatedTurning, SynchronousPart, TrainRecording, TrainRecords, TrainSettings,
+    TrainTurning,
 };
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::array::{Signal, array, samples};
-use crate::error::value_error;
+use crate::error::{scenario_error, value_error};
+use crate::gearbox::Gearbox;
 use crate::phase::ShaftPhase;
+use crate::scenario::Scenario;
 
 /// Settings of the chain that are not at their defaults.
 #[derive(FromPyObject)]
@@ -85,6 +89,67 @@ pub fn process_channel<'py>(
     let settings = Settings::chain(settings);
     let record = py.detach(|| signal::process_channel(signal, &phase.0, teeth, &settings));
     record_parts(py, record.map_err(value_error)?)
+}
+
+/// A pair or a gearbox.
+#[derive(FromPyObject)]
+pub enum Machine<'py> {
+    Pair(PyRef<'py, Scenario>),
+    Gearbox(PyRef<'py, Gearbox>),
+}
+
+impl Machine<'_> {
+    /// The scenario as the library has it.
+    pub fn form(&self) -> ScenarioForm {
+        match self {
+            Self::Pair(scenario) => ScenarioForm::Pair(scenario.0.clone()),
+            Self::Gearbox(gearbox) => ScenarioForm::Gearbox(gearbox.0.clone()),
+        }
+    }
+}
+
+/// Takes one channel to the indicators of every wheel of a machine: name, shaft, teeth, speed and record of each wheel; the foreign lines; the
+/// warnings.
+#[pyfunction]
+#[pyo3(signature = (signal, phase, machine, sampling_rate_hz, shaft=None, sidebands=None, shaft_orders=None))]
+#[expect(clippy::too_many_arguments, reason = "they are those of the function in Python")]
+pub fn process_train<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    phase: &ShaftPhase,
+    machine: Machine<'py>,
+    sampling_rate_hz: f64,
+    shaft: Option<&str>,
+    sidebands: Option<usize>,
+    shaft_orders: Option<Vec<usize>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let signal = samples(&signal)?;
+    let train = GearTrain::of_form(&machine.form()).map_err(|error| scenario_error(&error))?;
+    let names: Vec<&str> = train.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
+    let number = |name: &str| {
+        let known = names.iter().position(|known| *known == name);
+        known.ok_or_else(|| value_error(format!("shaft = '{name}': must be one of {}", names.join(", "))))
+    };
+    let shaft = shaft.map_or_else(|| Ok(train.input()), number)?;
+    let turning = TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated: StatedTurning::Other };
+    let separation = separation(1, sidebands, shaft_orders);
+    let settings = TrainSettings { separation, ..TrainSettings::default() };
+    let processed = py.detach(|| {
+        TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning }.process(&settings)
+    });
+    let TrainRecords { wheels, foreign, warnings, .. } = processed.map_err(value_error)?;
+    let wheels = wheels.into_iter().map(|of| {
+        let wheel = &train.wheels[of.wheel];
+        let record = of.records.into_iter().next().ok_or_else(|| value_error("there is no record"))?;
+        let parts = record_parts(py, record)?;
+        Ok((&*wheel.name, &*train.shafts[wheel.shaft].name, wheel.teeth, of.mean_speed_hz, parts))
+    });
+    let line = |tone: &ForeignTone| (tone.frequency_hz, tone.order, tone.amplitude, tone.part);
+    let all = PyDict::new(py);
+    all.set_item("wheels", wheels.collect::<PyResult<Vec<_>>>()?)?;
+    all.set_item("foreign", foreign.map(|tones| tones.iter().map(line).collect::<Vec<_>>()))?;
+    all.set_item("warnings", typed(&warnings))?;
+    Ok(all)
 }
 
 /// Takes the recordings of a series to their indicators; NA4 knows the earlier ones.

@@ -10,16 +10,16 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::scenario::Scenario;
+use crate::process::Machine;
 
 /// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
 type Estimated<'py> = ([Array<'py>; 5], [f64; 2], String);
 
-/// Estimates the path from recordings: values in g, rate, and phase of the pinion.
+/// Estimates the path from recordings: values in g, rate, and phase of the pinion or the input.
 #[pyfunction]
 pub fn estimate_path<'py>(
     py: Python<'py>,
-    scenario: &Scenario,
+    machine: Machine<'py>,
     recordings: Vec<(Signal<'py>, f64, PyRef<'py, ShaftPhase>)>,
     draws: usize,
     seed: u64,
@@ -30,7 +30,7 @@ pub fn estimate_path<'py>(
         Ok(HealthyRecording { values_g, sampling_rate_hz: *sampling_rate_hz, pinion: phase.0.clone() })
     };
     let healthy = recordings.iter().map(healthy).collect::<PyResult<Vec<_>>>()?;
-    let (rig, settings) = (scenario.0.clone(), PathSettings { draws, seed });
+    let (rig, settings) = (machine.form(), PathSettings { draws, seed });
     let estimate = interruptible(py, progress, 0, |cancelled, report| {
         let progress = |finished: usize, all: usize| report(finished as u64, all as u64);
         tuning::estimate_path(

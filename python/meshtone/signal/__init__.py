@@ -30,9 +30,11 @@ from .phase import ShaftPhase, repair_pulses, tachometer_pulses
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
 from .spectra import envelope, envelope_spectrum, order_spectrum
+from .train import ForeignLine, TrainRecord, process_train
 
 __all__ = [
     "AngularSignal",
+    "ForeignLine",
     "Indicators",
     "Mismatch",
     "OrderMap",
@@ -40,6 +42,7 @@ __all__ = [
     "Record",
     "ShaftPhase",
     "SignalWarning",
+    "TrainRecord",
     "angular_resample",
     "check_recording",
     "difference",
@@ -56,6 +59,7 @@ __all__ = [
     "order_spectrum",
     "process_channel",
     "process_series",
+    "process_train",
     "repair_pulses",
     "resample",
     "separate",

@@ -6,10 +6,11 @@ use std::time::Instant;
 
 use clap::Args;
 use meshtone::batch::Control;
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
+use meshtone::signal::TrainWheel;
 use meshtone_diagnose::{
     Answer, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question, REFINED_RECORDS,
-    ReferenceSet, ReferenceStore, Refined, RigWheel, SignalKind, diagnose, refine, rig_wheels,
+    ReferenceSet, ReferenceStore, Refined, SignalKind, diagnose, refine,
 };
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
@@ -17,13 +18,13 @@ use meshtone_io::own_file::undisturbed;
 use meshtone_io::scenario_file::{FileKind, ScenarioFile};
 use serde_json::{Value, json};
 
-use crate::check::check;
+use crate::check::check_form;
 use crate::choice::{Choice, one_of};
 use crate::diagnose::observe::Observer;
 use crate::diagnose::{figure, table};
 use crate::failure::Failure;
 use crate::indicators::figures::several_names;
-use crate::indicators::options::{PhaseOptions, ReadingOptions};
+use crate::indicators::options::{PhaseOptions, ReadingOptions, ShaftOptions};
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_bar;
 use crate::replacement::{replace, stage_figure, stage_text};
@@ -47,10 +48,10 @@ const FILES: [&str; 3] = [JSON, FIGURE[0], FIGURE[1]];
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Diagnose {
-    /// Recordings of one state of the gear pair: any file of `meshtone indicators`, or directories that `meshtone simulate` wrote
+    /// Recordings of one state of the gears: any file of `meshtone indicators`, or directories that `meshtone simulate` wrote
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
-    /// The rig, with the recordings' speed and load; its faults are left out
+    /// The rig, a pair or a gearbox, with the recordings' speed and load; its faults are left out
     #[arg(long, value_name = "SCENARIO.toml")]
     scenario: PathBuf,
     /// Recordings of the same rig, by the same sensor, when it was healthy
@@ -59,7 +60,7 @@ pub struct Diagnose {
     /// Result of `meshtone tune`: numbers that it tuned are put into the scenario
     #[arg(long, value_name = "tuned.toml")]
     tuned: Option<PathBuf>,
-    /// Kind of the recordings; `average` and `difference`: one revolution of the gear
+    /// Kind of the recordings; `average` and `difference`: one revolution of the gear of a pair
     #[arg(long, default_value = "recording", value_parser = one_of(&SIGNALS))]
     signal: SignalKind,
     /// Folder in which the simulations are kept. [default: in the user's cache directory, see --help]
@@ -82,6 +83,8 @@ pub struct Diagnose {
     reading: ReadingOptions,
     #[command(flatten)]
     phase: PhaseOptions,
+    #[command(flatten)]
+    shafts: ShaftOptions,
 }
 
 const EXAMPLES: &str = "\
@@ -100,7 +103,7 @@ const SIGNALS: [Choice<SignalKind>; 3] = [
 impl Diagnose {
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = self.scenario()?;
-        let observer = Observer::new(&scenario, self.signal, &self.reading, &self.phase)?;
+        let observer = Observer::new(&scenario, self.signal, &self.reading, &self.phase, &self.shafts)?;
         let (now, of_now) = observe(&observer, &self.recordings)?;
         let (healthy, of_healthy) = observe(&observer, &self.healthy)?;
         let question = Question { now: &now, healthy: &healthy };
@@ -109,7 +112,7 @@ impl Diagnose {
         let of_rig = [self.scenario.as_path()].into_iter().chain(self.tuned.as_deref());
         let read: Vec<&Path> = recordings.chain(self.phase.files()).chain(of_rig).collect();
         let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
-        let prior = Prior::new(&scenario);
+        let prior = Prior::new(&scenario).map_err(|error| Failure::bad_input(error.to_string()))?;
         question.check(&prior)?;
         // Before minutes of simulations.
         let of_reading = of_now.iter().chain(&of_healthy).map(warnings::in_words);
@@ -124,7 +127,7 @@ impl Diagnose {
         let mut answer = diagnose(&learned, &question, refined.as_ref())?;
         answer.warnings.splice(0..0, of_reading);
         let json = self.json(&answer, &store.folder_of(&prior));
-        self.write(&output.path, &answer, &json, &rig_wheels(&scenario))?;
+        self.write(&output.path, &answer, &json, &prior.train.wheels)?;
         answer.warnings.iter().filter(|warning| !known.contains(warning)).for_each(warn);
         print_unless(
             self.quiet,
@@ -133,19 +136,23 @@ impl Diagnose {
     }
 
     /// The rig.
-    fn scenario(&self) -> Result<Scenario, Failure> {
-        let file = ScenarioFile::read(&self.scenario)?;
+    fn scenario(&self) -> Result<ScenarioForm, Failure> {
+        let file = ScenarioFile::read_form(&self.scenario)?;
         let mut scenario = file.scenario.clone().with_faults(Vec::new());
         if let Some(path) = &self.tuned {
-            let tuned = read_tuned(path).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
             let refuse = |problem: String| Failure::bad_input(format!("{}: {problem}", path.display()));
-            if let Some(problem) = tuned.warning_for(&scenario) {
+            let ScenarioForm::Pair(pair) = &scenario else {
+                let problem = "is of a pair, and the scenario of a gearbox".to_owned();
+                return Err(refuse(problem).with_help("leave out --tuned"));
+            };
+            let tuned = read_tuned(path).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
+            if let Some(problem) = tuned.warning_for(pair) {
                 return Err(refuse(problem).with_help("tune again with the scenario's model"));
             }
-            scenario = tuned.apply(&scenario).map_err(|error| refuse(error.to_string()))?;
+            scenario = ScenarioForm::Pair(tuned.apply(pair).map_err(|error| refuse(error.to_string()))?);
         }
-        let (warnings, _) = check(&scenario).map_err(|error| file.refuse(error))?;
-        warnings::print(&file, &warnings);
+        let doubts = check_form(&scenario).map_err(|error| file.refuse(error))?;
+        warnings::print(&file, &doubts);
         Ok(scenario)
     }
 
@@ -218,7 +225,7 @@ impl Diagnose {
         directory: &Path,
         answer: &Answer,
         json: &Value,
-        rig: &[RigWheel],
+        rig: &[TrainWheel],
     ) -> Result<(), Failure> {
         let staged = match self.no_figure {
             true => Vec::new(),

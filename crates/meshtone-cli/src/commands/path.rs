@@ -5,21 +5,30 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use meshtone::Error;
-use meshtone::tuning::{ExperimentControl, PathError, PathEstimate, PathSettings, estimate_path};
-use meshtone_diagnose::SignalKind;
+use meshtone::scenario::ScenarioForm;
+use meshtone::signal::{SignalWarning, StatedFacts, TrainRecording, TrainTurning};
+use meshtone::tuning::{
+    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
+    estimate_path,
+};
+use meshtone_diagnose::other_tone;
+use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::path_csv::path_csv;
 use meshtone_io::scenario_file::ScenarioFile;
 
-use crate::check::check;
-use crate::diagnose::observe::Observer;
+use crate::check::check_form;
+use crate::diagnose::observe::to_g;
 use crate::failure::Failure;
-use crate::indicators::options::{PhaseOptions, ReadingOptions};
+use crate::indicators::options::{PhaseOptions, ReadingOptions, ShaftOptions};
+use crate::indicators::reading::Input;
+use crate::indicators::refuse::{RefusedInput, refuse};
+use crate::indicators::train::Turned;
 use crate::progress::with_bar;
 use crate::replacement::stage_text;
 use crate::same_file::is_same_file;
 use crate::terminal::print_unless;
-use crate::warnings;
+use crate::warnings::{self, about};
 
 /// Estimate the path to a sensor from recordings of the healthy machine
 ///
@@ -33,7 +42,7 @@ pub struct Path {
     /// Recordings by one sensor: any file of `meshtone indicators`, or directories that `meshtone simulate` wrote
     #[arg(value_name = "HEALTHY", required = true)]
     recordings: Vec<PathBuf>,
-    /// The healthy machine, with the recordings' load; its first sensor is the one that recorded, its faults are left out
+    /// The healthy machine, a pair or a gearbox, with the recordings' load; its first sensor is the one that recorded, its faults are left out
     #[arg(long, value_name = "SCENARIO.toml")]
     scenario: PathBuf,
     /// File to write; it is replaced if it exists
@@ -52,6 +61,8 @@ pub struct Path {
     reading: ReadingOptions,
     #[command(flatten)]
     phase: PhaseOptions,
+    #[command(flatten)]
+    shafts: ShaftOptions,
 }
 
 const EXAMPLES: &str = "\
@@ -62,9 +73,9 @@ Examples:
 
 impl Path {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = ScenarioFile::read(&self.scenario)?;
+        let file = ScenarioFile::read_form(&self.scenario)?;
         let scenario = file.scenario.clone().with_faults(Vec::new());
-        let (doubts, _) = check(&scenario).map_err(|error| file.refuse(error))?;
+        let doubts = check_form(&scenario).map_err(|error| file.refuse(error))?;
         warnings::print(&file, &doubts);
         let recordings = self.recordings.iter().map(PathBuf::as_path);
         let mut read = file.sources().chain(recordings).chain(self.phase.files());
@@ -72,10 +83,9 @@ impl Path {
             let problem = format!("-o {}: is read, as {}", self.output.display(), source.display());
             return Failure::refuse(problem, "name another file with -o");
         }
-        let observer = Observer::new(&scenario, SignalKind::Recording, &self.reading, &self.phase)?;
         let mut healthy = Vec::with_capacity(self.recordings.len());
         for path in &self.recordings {
-            let (recording, doubts) = observer.healthy(path)?;
+            let (recording, doubts) = self.recording(path, &scenario)?;
             doubts.iter().for_each(|entry| crate::terminal::warn(warnings::in_words(entry)));
             healthy.push(recording);
         }
@@ -96,8 +106,44 @@ impl Path {
         print_unless(self.quiet, &summary(&estimate, &self.output))
     }
 
+    /// Reads a recording whole, with the angle of the pinion's shaft or the input, and what is doubtful about it.
+    ///
+    /// Where the mesh tone of a pair was followed, a doubtful phase may be that of another tone, which other tooth counts say.
+    fn recording(
+        &self,
+        path: &path::Path,
+        scenario: &ScenarioForm,
+    ) -> Result<(HealthyRecording, Vec<WarningEntry>), Failure> {
+        let mut input = Input::read(path, &self.reading, self.phase.channel())?;
+        to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
+        let Turned { train, turning, warnings, .. } =
+            Turned::new(&input, &self.phase, &self.shafts, Some(scenario))?;
+        let Input { source, channel, sampling_rate_hz, .. } = input;
+        let what = format!("channel {}", channel.name);
+        let refused = |error| refuse(&source, &what, RefusedInput::Phase, &error);
+        let mut doubtful = Vec::new();
+        if let TrainTurning::Shaft { shaft, phase, stated } = &turning {
+            doubtful.clone_from(&phase.warnings);
+            if train.meshes.len() == 1
+                && let Some(stated) = StatedFacts::of_shaft(&train, *shaft, *stated)
+                && let Some(mismatch) =
+                    other_tone(&channel.samples, sampling_rate_hz, phase, &stated).map_err(refused)?
+            {
+                let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
+                let problem = format!("{}: {problem}", path.display());
+                return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
+            }
+        }
+        let recording =
+            TrainRecording { signal: &channel.samples, sampling_rate_hz, train: &train, turning: &turning };
+        let pinion = recording.phase(train.input()).map_err(refused)?;
+        let doubtful = doubtful.iter().map(|warning| about(&source, warning));
+        let warnings = warnings.into_iter().chain(doubtful).collect();
+        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, pinion }, warnings))
+    }
+
     /// Names the file that an error is about.
-    fn refuse(&self, file: &ScenarioFile, error: PathError) -> Failure {
+    fn refuse<S>(&self, file: &ScenarioFile<S>, error: PathError) -> Failure {
         match error {
             PathError::Simulation(Error::Scenario(error)) => file.refuse(error).into(),
             PathError::Recording { index, problem } => {

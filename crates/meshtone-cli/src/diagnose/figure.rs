@@ -1,6 +1,7 @@
 //! The figure of a diagnosis.
 
-use meshtone_diagnose::{Answer, HEALTHY, RigWheel};
+use meshtone::signal::TrainWheel;
+use meshtone_diagnose::{Answer, HEALTHY};
 use meshtone_plot::Figure;
 use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
 
@@ -13,7 +14,7 @@ use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
 /// * `answer` - what is drawn
 /// * `title` - names of what was recorded
 /// * `rig` - wheels of the rig
-pub fn draw(answer: &Answer, title: &str, rig: &[RigWheel]) -> Figure {
+pub fn draw(answer: &Answer, title: &str, rig: &[TrainWheel]) -> Figure {
     let compared =
         if answer.has_healthy { "with a healthy recording" } else { "without a healthy recording" };
     let words = answer.in_words();

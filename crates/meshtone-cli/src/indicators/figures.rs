@@ -40,7 +40,15 @@ pub fn of_record(series: &Series, latest: &LatestRecords, processing: &Processin
     if processing.low_orders > 0 {
         removed.push(format!("shaft orders 1 to {}", processing.low_orders));
     }
+    if latest.wheels.iter().any(|(wheel, ..)| wheel.shaft.is_some()) {
+        removed.push("orders of other shafts and meshes".to_owned());
+    }
     facts.push(format!("difference without {}", removed.join(", ")));
+    let foreign = series.results.recordings.last().and_then(|recording| recording.foreign_lines.as_deref());
+    if let Some(lines @ [strongest, ..]) = foreign {
+        let (count, hz) = (lines.len(), strongest.frequency_hz);
+        facts.push(format!("{count} foreign lines, the strongest at {hz:.2} Hz"));
+    }
     facts.push(MESHTONE.to_owned());
     let wheels: Vec<WheelView> = latest
         .wheels
@@ -49,7 +57,8 @@ pub fn of_record(series: &Series, latest: &LatestRecords, processing: &Processin
             name: &wheel.name,
             teeth: wheel.teeth,
             shaft: wheel.shaft.as_deref(),
-            other_teeth: &wheel.other_teeth,
+            other_teeth: &wheel.separation.other_teeth,
+            other_orders: &wheel.separation.other_orders,
             mean_speed_hz: *mean_speed_hz,
             sidebands: processing.sidebands as usize,
             low_orders: processing.low_orders as usize,

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{Scenario, ScenarioForm};
-use meshtone::signal::{
-    MeshTone, ShaftPhase, SimulatedShafts, StatedFacts, StatedTurning, Tachometer, tachometer_pulses,
-};
+use meshtone::scenario::ScenarioForm;
+use meshtone::signal::{MeshTone, ShaftPhase, StatedFacts, StatedTurning, Tachometer, tachometer_pulses};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
 
@@ -205,16 +203,4 @@ pub fn check_rate(input: &Input, expected_hz: f64) -> Result<(), Failure> {
         return Failure::refuse(problem, SIMULATE_AGAIN);
     }
     Ok(())
-}
-
-/// The shafts of what was simulated of a pair.
-pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, SimulatedShafts), Failure> {
-    let ScenarioForm::Pair(scenario) = simulated_form(input, scenario_toml)? else {
-        let problem =
-            format!("{}: is of a gearbox, and one pair of gears is expected", input.source.display());
-        return Failure::refuse(problem, "state the wheels and the speed, as of a measured recording");
-    };
-    let shafts = SimulatedShafts::new(&scenario, input.start_s, input.channel.samples.len());
-    check_rate(input, shafts.sampling_rate_hz())?;
-    Ok((scenario, shafts))
 }

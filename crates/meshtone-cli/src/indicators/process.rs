@@ -24,8 +24,8 @@ pub struct Wheel {
     pub teeth: u32,
     /// Name of its shaft; none of a pair, whose wheels have a shaft each.
     pub shaft: Option<String>,
-    /// Teeth of the other wheels on its shaft.
-    pub other_teeth: Vec<u32>,
+    /// What belongs to the regular part of its average.
+    pub separation: SeparationSettings,
     /// Meaning of its tooth 1.
     pub first_tooth: String,
     /// The damaged teeth, where it is known which they are.
@@ -72,7 +72,8 @@ pub fn process(
     Ok(Processed { turned, records, warnings })
 }
 
-fn settings(processing: &ProcessingOptions) -> TrainSettings {
+/// The settings that the options state.
+pub fn settings(processing: &ProcessingOptions) -> TrainSettings {
     let defaults = TrainSettings::default();
     TrainSettings {
         separation: SeparationSettings {

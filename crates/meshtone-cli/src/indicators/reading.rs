@@ -20,13 +20,7 @@ const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
 /// The channel of a simulation that is processed unless another is chosen: the first sensor's, or the vertical acceleration.
 fn leading_of(scenario_toml: &str) -> String {
     let sensors = match ScenarioForm::from_toml(scenario_toml) {
-        Ok(ScenarioForm::Gearbox(gearbox)) => {
-            return gearbox
-                .all_sensors()
-                .first()
-                .map(|sensor| format!("{}_g", sensor.name()))
-                .unwrap_or_default();
-        }
+        Ok(ScenarioForm::Gearbox(gearbox)) => return gearbox.leading_channel(),
         Ok(ScenarioForm::Pair(scenario)) => scenario.sensors,
         // What another version wrote has no sensors, or is looked at without them.
         Err(_) => Vec::new(),

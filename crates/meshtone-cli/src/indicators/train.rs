@@ -1,7 +1,7 @@
 //! The machine that a recording is of, and how its shafts turned.
 
 use meshtone::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioForm, WheelName};
-use meshtone::signal::{GearTrain, TrainTurning};
+use meshtone::signal::{GearTrain, SeparationSettings, TrainTurning};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
 
@@ -114,7 +114,7 @@ impl Turned {
         form: &ScenarioForm,
     ) -> Result<Self, Failure> {
         let train = train_of(form)?;
-        let mut shaft = shafts.shaft(&train, stated.teeth)?;
+        let mut shaft = shafts.shaft(&train, [stated.teeth, stated.mate_teeth])?;
         let ratio = |shaft: usize| train.speed_ratio(shaft, train.input()).value();
         let mut phase = stated.clone();
         if !stated.states_shaft_angle() {
@@ -165,12 +165,11 @@ fn wheels(
     let is_pair = train.shafts.len() <= 2 && train.wheels.len() <= 2;
     let wheel = |(number, damaged_teeth): (usize, Vec<DamagedTooth>)| {
         let of = &train.wheels[number];
-        let others = train.wheels.iter().enumerate().filter(|(other, _)| *other != number);
         Wheel {
             name: of.name.clone(),
             teeth: of.teeth,
             shaft: (!is_pair).then(|| train.shafts[of.shaft].name.clone()),
-            other_teeth: others.filter(|(_, it)| it.shaft == of.shaft).map(|(_, it)| it.teeth).collect(),
+            separation: train.separation(number, &SeparationSettings::new(1)),
             first_tooth: first_tooth(number, &damaged_teeth),
             damaged_teeth,
         }
@@ -205,17 +204,26 @@ impl ShaftOptions {
     }
 
     /// Number of the shaft that speed or pulses are of: the named one, that of the wheel with the stated teeth, or the input.
-    fn shaft(&self, train: &GearTrain, teeth: Option<u32>) -> Result<usize, Failure> {
+    fn shaft(&self, train: &GearTrain, [teeth, mate_teeth]: [Option<u32>; 2]) -> Result<usize, Failure> {
+        let all = || {
+            let counts: Vec<String> = train.wheels.iter().map(|wheel| wheel.teeth.to_string()).collect();
+            counts.join(", ")
+        };
+        let count = |teeth: u32| train.wheels.iter().filter(|wheel| wheel.teeth == teeth).count();
+        if let Some(mate) = mate_teeth.filter(|mate| count(*mate) == 0) {
+            let problem = format!("--mate-teeth {mate}: is no wheel of the scenario; there are {}", all());
+            return Failure::refuse(problem, "leave it out: the scenario has the tooth counts");
+        }
         if let Some(name) = &self.shaft {
             return find("--shaft", name, train.shafts.iter().map(|shaft| shaft.name.clone()).collect());
         }
         let Some(teeth) = teeth else { return Ok(train.input()) };
-        match train.wheels.iter().filter(|wheel| wheel.teeth == teeth).collect::<Vec<_>>()[..] {
-            [wheel] => Ok(wheel.shaft),
-            ref found => {
-                let what = if found.is_empty() { "is no wheel of the scenario" } else { "are two wheels" };
-                let all: Vec<String> = train.wheels.iter().map(|wheel| wheel.teeth.to_string()).collect();
-                let problem = format!("--teeth {teeth}: {what}; there are {}", all.join(", "));
+        match train.wheels.iter().find(|wheel| wheel.teeth == teeth) {
+            Some(wheel) if count(teeth) == 1 || train.wheels.len() == 2 => Ok(wheel.shaft),
+            found => {
+                let what =
+                    if found.is_none() { "is no wheel of the scenario" } else { "is more than one wheel" };
+                let problem = format!("--teeth {teeth}: {what}; there are {}", all());
                 Failure::refuse(problem, "--shaft NAME names the shaft that speed or pulses are of")
             }
         }

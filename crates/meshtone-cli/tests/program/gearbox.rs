@@ -1,5 +1,8 @@
 //! Gearboxes: `meshtone init gearbox`, `simulate`, `panel`, and the commands that know one pair only.
 
+use std::f64::consts::TAU;
+
+use crate::indicators::{csv, tacho};
 use crate::support::{Workplace, stdout};
 use meshtone_io::signals::{read_gearbox_signals, read_signals};
 use serde_json::Value;
@@ -108,6 +111,83 @@ fn published_rigs_are_printed_and_simulate() {
     workplace.fails(2, &["init", "healthy", "--rig", "uconn"], &["only a gearbox has published rigs"]);
 }
 
+/// Every shaft of a simulation, and of a recording with a tachometer on one shaft and a bearing's tone.
+#[test]
+fn indicators_of_every_shaft() {
+    let workplace = Workplace::new();
+    broken(&workplace);
+    let text = String::from_utf8(workplace.read("gearbox.toml")).unwrap();
+    let text = text.replace("duration_s = 0.1", "duration_s = 2.0");
+    let text = text.replace("sampling_rate_hz = 100000.0", "sampling_rate_hz = 20000.0");
+    workplace.write("gearbox.toml", text.clone());
+    workplace.succeeds(&["simulate", "gearbox.toml", "-o", "out", "--no-panel", "-q"]);
+    let results = |directory: &str| -> Value {
+        serde_json::from_slice(&workplace.read(&format!("{directory}/indicators.json"))).unwrap()
+    };
+    let said = stdout(&workplace.succeeds(&["indicators", "out", "-o", "simulated"]));
+    for words in ["shaft middle with z2, 96 teeth, and z3, 48 teeth", "belongs to a shaft or a mesh"] {
+        assert!(said.contains(words), "{said}");
+    }
+    let simulated = results("simulated");
+    let of = |results: &Value, key: &str| -> Vec<String> {
+        results["records"].as_array().unwrap().iter().map(|record| record[key].to_string()).collect()
+    };
+    assert_eq!(of(&simulated, "shaft"), ["\"input\"", "\"middle\"", "\"middle\"", "\"output\""]);
+    assert_eq!(of(&simulated, "revolutions"), ["59", "19", "19", "11"]);
+    assert_eq!(simulated["recordings"][0]["foreign_lines"], serde_json::json!([]));
+    let figure = String::from_utf8(workplace.read("simulated/indicators.svg")).unwrap();
+    for words in [
+        "z3, 48 teeth, on shaft middle",
+        "z4, 80 teeth, on shaft output",
+        "orders of other shafts and meshes",
+    ] {
+        assert!(figure.contains(words), "{words}");
+    }
+
+    let recorded = read_gearbox_signals(&workplace.path("out/signals.parquet")).unwrap().unwrap();
+    let rate_hz = recorded.sampling_rate_hz;
+    let tone = |(i, value): (usize, &f64)| value + 0.3 * (TAU * 91.57 * i as f64 / rate_hz).cos();
+    let values: Vec<f64> = recorded.signals[0].1.iter().enumerate().map(tone).collect();
+    workplace.write("run.csv", csv(rate_hz, &values, tacho(6.0, rate_hz)));
+    let run = [
+        "indicators",
+        "run.csv",
+        "-c",
+        "bearing",
+        "--scenario",
+        "gearbox.toml",
+        "-o",
+        "measured",
+        "--no-figure",
+    ];
+    let with = |more: &[&str]| stdout(&workplace.succeeds(&[&run, more].concat()));
+    for more in [&["--tach", "tacho", "--shaft", "output"][..], &["--mesh", "z3-z4"], &["--shaft-hz", "30"]] {
+        let said = with(more);
+        assert!(said.contains("that belong to no shaft and no mesh") && said.contains("3.05"), "{said}");
+        let measured = results("measured");
+        let line = &measured["recordings"][0]["foreign_lines"][0];
+        assert!((line["frequency_hz"].as_f64().unwrap() - 91.57).abs() < 0.2, "{line}");
+        for (record, expected) in measured["records"].as_array().unwrap().iter().zip([30.0, 10.0, 10.0, 6.0])
+        {
+            assert!((record["mean_speed_hz"].as_f64().unwrap() / expected - 1.0).abs() < 1e-3, "{record}");
+        }
+    }
+    let fails = |more: &[&str], words: &[&str]| {
+        workplace.fails(2, &[&run, more].concat(), words);
+    };
+    fails(&["--tach", "tacho", "--shaft", "outptu"], &["--shaft outptu", "input, middle, output"]);
+    fails(&["--mesh", "z1-z4"], &["--mesh z1-z4", "z1-z2, z3-z4"]);
+    fails(&["--teeth", "32"], &["--teeth", "--scenario"]);
+    workplace.write("other.toml", text.replacen("teeth = 80", "teeth = 81", 1));
+    let other = ["indicators", "out", "--scenario", "other.toml", "-o", "other"];
+    workplace.fails(2, &other, &["48/80", "48/81", "own rig"]);
+    workplace.fails(
+        2,
+        &["indicators", "out", "--teeth", "32", "--shaft-hz", "30", "--shaft", "input"],
+        &["--scenario"],
+    );
+}
+
 #[test]
 fn what_knows_one_pair_says_so() {
     let workplace = Workplace::new();
@@ -117,7 +197,6 @@ fn what_knows_one_pair_says_so() {
         &["simulate", "gearbox.toml", "--model", "linear"],
         &["wheels", "gearbox.toml", "-o", "wheels.npz"],
         &["diagnose", "recording.csv", "--scenario", "gearbox.toml"],
-        &["path", "recording.csv", "--scenario", "gearbox.toml", "-o", "path.csv"],
     ] {
         workplace.fails(2, arguments, &["of a gearbox"]);
     }

@@ -3,8 +3,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use meshtone::batch::Control;
-use meshtone::scenario::Scenario;
-use meshtone::signal::{MeshTone, ShaftPhase, SimulatedShafts, StatedFacts, StatedTurning};
+use meshtone::scenario::{Scenario, ScenarioForm};
+use meshtone::signal::{
+    GearTrain, MeshTone, ShaftPhase, SimulatedShafts, StatedTurning, TrainRecording, TrainTurning,
+};
 use meshtone_diagnose::{
     Answer, AnswerInWords, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question,
     REFINED_RECORDS, ReferenceStore, diagnose, refine,
@@ -91,7 +93,8 @@ pub fn diagnosis(
         healthy.push(observed);
         seen.extend(warnings);
     }
-    let (asked, prior) = (Question { now: &[now], healthy: &healthy }, Prior::new(rig));
+    let prior = Prior::new(&ScenarioForm::Pair(rig.clone()))?;
+    let asked = Question { now: &[now], healthy: &healthy };
     asked.check(&prior)?;
     seen.extend(asked.warnings(&prior));
     say(json!({ "seen": messages(&seen) }));
@@ -158,20 +161,25 @@ fn of_recording(
     });
     if let (Some(simulated), None) = (&simulated, tachometer) {
         let shafts = SimulatedShafts::new(simulated, recording.start_s, recording.len());
-        return Ok((Observation::of_simulated(samples, &shafts)?, doubts));
+        let (train, turning) = (GearTrain::of_pair(simulated), TrainTurning::SimulatedPair(shafts));
+        let recording =
+            TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
+        return Ok((Observation::of_recording(&recording)?, doubts));
     }
-    let teeth = [rig.gears.pinion_teeth, rig.gears.gear_teeth];
-    let (turning, phase) = match tachometer {
+    let train = GearTrain::of_pair(rig);
+    let (stated, phase) = match tachometer {
         Some(name) => by_tachometer(recording, name)?,
         None => {
             let nominal_hz = rig.operation.pinion_speed_hz;
-            let tone = MeshTone::new(teeth[0], nominal_hz);
+            let tone = MeshTone::new(rig.gears.pinion_teeth, nominal_hz);
             (StatedTurning::MeshTone { nominal_hz }, ShaftPhase::from_mesh_tone(samples, rate_hz, &tone)?)
         }
     };
     doubts.extend(phase.warnings.iter().map(ToString::to_string));
-    let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning };
-    Ok((Observation::of_measured(samples, rate_hz, &phase, &stated, teeth)?, doubts))
+    let turning = TrainTurning::Shaft { shaft: 0, phase, stated };
+    let recording =
+        TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
+    Ok((Observation::of_recording(&recording)?, doubts))
 }
 
 fn messages<'w>(warnings: impl IntoIterator<Item = &'w DiagnosisWarning>) -> Vec<&'w str> {

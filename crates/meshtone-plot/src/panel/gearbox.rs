@@ -2,8 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use meshtone::scenario::{Coupled, GearboxWheel};
-use meshtone::signal::{AngularSettings, AngularSignal, ShaftPhase, angular_resample};
+use meshtone::scenario::GearboxWheel;
+use meshtone::signal::{
+    AngularSettings, AngularSignal, GearTrain, ShaftPhase, SignalError, StatedTurning, TrainRecording,
+    TrainTurning, angular_resample, revolution_average,
+};
 use meshtone::{GearboxSimulation, GearboxStages};
 
 use super::side::Side;
@@ -321,28 +324,50 @@ fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usi
 
 fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, wheel: usize) {
     let (stages, name) = (&simulation.stages, &simulation.stages.gearbox.wheels[wheel].name);
-    let signal = simulation.channels.signals.first().map_or(&[][..], |signal| &signal.values);
-    let average = simulation.wheel_average(signal, wheel);
-    let values = average.as_ref().map_or(&[][..], |(values, _)| values);
+    let average = over_wheel_angle(simulation, wheel);
+    let values = average.as_ref().map_or_else(
+        |_| Vec::new(),
+        |angular| revolution_average(&angular.values, angular.points_per_revolution),
+    );
     let y = axes::range(values.iter().copied(), 0.06);
-    let title = match &average {
-        Some((_, 1)) => format!("One revolution of {name}"),
-        Some((_, revolutions)) => format!("Average of {revolutions} revolutions of {name}"),
-        None => format!("Average over the revolutions of {name}"),
+    let title = match average.as_ref().map_or(0, AngularSignal::revolutions) {
+        0 => format!("Average over the revolutions of {name}"),
+        1 => format!("One revolution of {name}"),
+        revolutions => format!("Average of {revolutions} revolutions of {name}"),
     };
     let axes = Axes::titled(canvas, area, [0.0, 360.0], y, &title);
     tint(canvas, &axes, stages, wheel, 360.0 / f64::from(stages.gearbox.wheels[wheel].teeth));
     axes.x_axis(canvas, &Ticks::every(90.0, 0.0, 360.0), "Angle since its first tooth enters contact (°)");
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Acceleration (g)", NAME_LEFT);
     match average {
-        Some((values, _)) => axes.line(canvas, over(axes.x, &values), CURVE),
-        None => axes.note(canvas, "no whole revolution at a constant speed"),
+        Ok(_) => axes.line(canvas, over(axes.x, &values), CURVE),
+        Err(error) => axes.note(canvas, spectrum::note(&error)),
     }
     axes.frame(canvas);
 }
 
+/// The first sensor's signal over the revolutions of a wheel.
+fn over_wheel_angle(simulation: &GearboxSimulation, wheel: usize) -> Result<AngularSignal, SignalError> {
+    let train = GearTrain::of_layout(&simulation.stages.gearbox, &simulation.stages.layout);
+    let turning = TrainTurning::Shaft {
+        shaft: train.input(),
+        phase: input_phase(simulation)?,
+        stated: StatedTurning::Other,
+    };
+    let signal = simulation.channels.signals.first().map_or(&[][..], |signal| &signal.values);
+    let sampling_rate_hz = simulation.channels.sampling_rate_hz;
+    TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning }
+        .angular(wheel, &AngularSettings::default())
+}
+
+/// The phase of the input at the kept samples.
+fn input_phase(simulation: &GearboxSimulation) -> Result<ShaftPhase, SignalError> {
+    let channels = &simulation.channels;
+    ShaftPhase::of_simulated_input(&simulation.stages.gearbox, channels.start_s, channels.len())
+}
+
 /// The spectrum of the first sensor, with the orders of all meshes and shafts. Where the speed changes it is of the signal over the angle of the
-/// input, which the shaft's own speed gives.
+/// input.
 fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
     let (stages, channels) = (&simulation.stages, &simulation.channels);
     let Some(signal) = channels.signals.first() else { return };
@@ -352,7 +377,9 @@ fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
         let values = signal.values.clone();
         Ok(AngularSignal { points_per_revolution, start_rev: 0.0, nyquist_order, values })
     } else {
-        over_input_angle(simulation, &signal.values)
+        input_phase(simulation)
+            .and_then(|phase| angular_resample(&signal.values, &phase, &AngularSettings::default()))
+            .map_err(|error| spectrum::note(&error))
     };
     let meshes = stages.gearbox.meshes.iter().zip(&stages.meshes);
     let spectrum = InputSpectrum {
@@ -363,15 +390,4 @@ fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
         meshes: meshes.map(|(mesh, tables)| (mesh.name(), tables.turning.pitches_per_revolution)).collect(),
     };
     spectrum.draw(canvas, area);
-}
-
-/// The signal over the angle of the input, or the note that says why there is none.
-fn over_input_angle(simulation: &GearboxSimulation, signal: &[f64]) -> Result<AngularSignal, &'static str> {
-    let channels = &simulation.channels;
-    let input = simulation.stages.gearbox.shafts.iter().find(|shaft| shaft.couples_to == Coupled::Motor);
-    let speed_hz = input.and_then(|input| channels.signal(&format!("speed_hz.{}", input.name)));
-    let speed_hz = speed_hz.ok_or(spectrum::ANGLE_UNKNOWN)?;
-    ShaftPhase::from_speed_samples(speed_hz, channels.sampling_rate_hz)
-        .and_then(|phase| angular_resample(signal, &phase, &AngularSettings::default()))
-        .map_err(|error| spectrum::note(&error))
 }

@@ -76,8 +76,10 @@ pub struct WheelView<'a> {
     pub teeth: u32,
     /// Name of its shaft, where that has one of its own.
     pub shaft: Option<&'a str>,
-    /// Teeth of the other wheels on its shaft, whose mesh orders belong to the regular part too.
-    pub other_teeth: &'a [u32],
+    /// Teeth of the other wheels on its shaft, whose mesh orders with their sidebands belong to the regular part too.
+    pub other_teeth: &'a [usize],
+    /// Orders of other shafts and meshes, whose multiples belong to it as well.
+    pub other_orders: &'a [usize],
     /// (Hz) Mean speed of its shaft.
     pub mean_speed_hz: f64,
     /// Sidebands on each side of a mesh order that belong to the regular part.
@@ -90,6 +92,13 @@ pub struct WheelView<'a> {
     pub damaged_teeth: &'a [DamagedTooth],
     /// The record.
     pub record: &'a Record,
+}
+
+impl WheelView<'_> {
+    /// Its name in a sentence: that of a pair's wheel is a word, as in `the gear`.
+    fn called(&self) -> String {
+        if self.shaft.is_some() { self.name.to_owned() } else { format!("the {}", self.name) }
+    }
 }
 
 /// Draws the figure of one record.
@@ -111,6 +120,7 @@ pub struct WheelView<'a> {
 ///     teeth: 19,
 ///     shaft: None,
 ///     other_teeth: &[],
+///     other_orders: &[],
 ///     mean_speed_hz: 20.0,
 ///     sidebands: 2,
 ///     low_orders: 7,
@@ -145,7 +155,7 @@ pub fn draw(figure: &RecordFigure) -> Figure {
         let Area { left, width, .. } = area(AVERAGE);
         heading::column(&mut canvas, (left, HEADING_BASELINE + down), width, wheel);
         let record = wheel.record;
-        let title = format!("Average over a revolution of the {}", wheel.name);
+        let title = format!("Average over a revolution of {}", wheel.called());
         let average = [(None, &record.average.values[..], CURVE)];
         teeth::draw(&mut canvas, area(AVERAGE), (y, &unit), &title, wheel, &average);
         spectrum::draw(&mut canvas, area(SPECTRUM), &amplitudes, wheel, &unit);

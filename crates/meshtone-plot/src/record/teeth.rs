@@ -56,5 +56,5 @@ fn teeth_axis(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
         let at = (axes.px(f64::from(tooth) - 0.5), axes.area.bottom() + axes::NUMBERS_BELOW);
         canvas.text(at, &tooth.to_string(), TextStyle::TICK);
     }
-    axes.x_name(canvas, &format!("Tooth of the {} ({})", wheel.name, wheel.first_tooth));
+    axes.x_name(canvas, &format!("Tooth of {} ({})", wheel.called(), wheel.first_tooth));
 }

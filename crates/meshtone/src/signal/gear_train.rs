@@ -90,7 +90,15 @@ impl GearTrain {
     /// # Errors
     /// Those of [`GearboxLayout::new`].
     pub fn of_gearbox(gearbox: &Gearbox) -> Result<Self, ScenarioError> {
-        let layout = GearboxLayout::new(gearbox)?;
+        GearboxLayout::new(gearbox).map(|layout| Self::of_layout(gearbox, &layout))
+    }
+
+    /// The shafts of a gearbox whose layout is known, as after its simulation.
+    ///
+    /// # Arguments
+    /// * `gearbox` - the machine
+    /// * `layout` - its layout
+    pub fn of_layout(gearbox: &Gearbox, layout: &GearboxLayout) -> Self {
         let shafts = gearbox.shafts.iter().zip(&layout.ratios).map(|(shaft, ratio)| TrainShaft {
             name: shaft.name.clone(),
             speed_ratio: Ratio { numerator: ratio.numerator.abs(), ..*ratio },
@@ -103,7 +111,7 @@ impl GearTrain {
                 .mesh_of(number)
                 .map_or(0.0, |(mesh, _)| layout.phases[mesh] / f64::from(wheel.teeth)),
         });
-        Ok(Self { shafts: shafts.collect(), wheels: wheels.collect(), meshes: layout.wheels_of_mesh.clone() })
+        Self { shafts: shafts.collect(), wheels: wheels.collect(), meshes: layout.wheels_of_mesh.clone() }
     }
 
     /// The shafts of a scenario of either form.
@@ -172,11 +180,25 @@ impl GearTrain {
         if of == shaft { Ok(known.clone()) } else { known.geared(self.speed_ratio(shaft, of)) }
     }
 
-    /// The orders of a shaft that belong to the regular part of a wheel's average: the mesh orders of all wheels on its shaft.
+    /// What belongs to the regular part of a wheel's average: the mesh orders of all wheels on its shaft with their sidebands; in a gearbox of
+    /// three shafts or more also the whole orders that faster shafts and other meshes have.
+    ///
+    /// An average over the revolutions of a shaft that turns a third as fast as another holds all that repeats with the other one: its
+    /// damage would look like three damaged teeth. With a speed ratio of p to q in lowest terms those are multiples of the order p.
     ///
     /// # Arguments
     /// * `wheel` - number of the wheel
     /// * `settings` - sidebands, shaft orders and mean
+    ///
+    /// ```
+    /// use meshtone::scenario::{Gearbox, gearbox_template};
+    /// use meshtone::signal::{GearTrain, SeparationSettings};
+    ///
+    /// let train = GearTrain::of_gearbox(&Gearbox::from_toml(&gearbox_template(None))?)?;
+    /// let of_middle = train.separation(1, &SeparationSettings::new(96));
+    /// assert_eq!((of_middle.other_teeth, of_middle.other_orders), (vec![48], vec![3]));
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
     pub fn separation(&self, wheel: usize, settings: &SeparationSettings) -> SeparationSettings {
         let TrainWheel { teeth, shaft, .. } = self.wheels[wheel];
         let others =
@@ -184,8 +206,39 @@ impl GearTrain {
         SeparationSettings {
             teeth: teeth as usize,
             other_teeth: others.map(|(_, other)| other.teeth as usize).collect(),
+            other_orders: self.other_orders(shaft),
             ..settings.clone()
         }
+    }
+
+    /// The orders of a shaft whose multiples are orders of a faster shaft or of a mesh of others.
+    fn other_orders(&self, shaft: usize) -> Vec<usize> {
+        if self.shafts.len() < 3 {
+            return Vec::new();
+        }
+        let faster = (0..self.shafts.len())
+            .map(|other| self.speed_ratio(other, shaft))
+            .filter(|ratio| ratio.numerator > ratio.denominator);
+        let meshes = self.meshes.iter().map(|[driving, _]| &self.wheels[*driving]);
+        let meshes =
+            meshes.map(|wheel| self.speed_ratio(wheel.shaft, shaft).times(i64::from(wheel.teeth), 1));
+        let orders = faster.chain(meshes).filter_map(|ratio| usize::try_from(ratio.numerator).ok());
+        let own: Vec<usize> = self.teeth_on(shaft).map(|teeth| teeth as usize).collect();
+        let mut orders: Vec<usize> =
+            orders.filter(|order| *order > 1 && !own.iter().any(|teeth| order % teeth == 0)).collect();
+        orders.sort_unstable();
+        orders.dedup();
+        let all = orders.clone();
+        orders.retain(|order| !all.iter().any(|other| other < order && order % other == 0));
+        orders
+    }
+
+    /// (rev) Revolutions of a shaft after which the same teeth of all wheels meet again.
+    ///
+    /// # Arguments
+    /// * `shaft` - its number
+    pub fn revolutions_of_a_cycle(&self, shaft: usize) -> usize {
+        (1.0 / self.spacings(shaft).1).round() as usize
     }
 
     /// (orders of a shaft) Distances of the orders of each shaft, and of those at which the same teeth meet again: all that is periodic in

@@ -12,6 +12,8 @@ pub struct SeparationSettings {
     pub teeth: usize,
     /// Teeth of other wheels on the same shaft, whose mesh orders belong to the regular part as well. Default none.
     pub other_teeth: Vec<usize>,
+    /// Orders whose multiples belong to it without sidebands: what other shafts and meshes of a gearbox bring into the average. Default none.
+    pub other_orders: Vec<usize>,
     /// Sidebands on each side of every mesh harmonic that belong to the regular part. Default 2.
     pub sidebands: usize,
     /// Orders of the shaft that belong to it. Default 1 to 7.
@@ -39,10 +41,42 @@ impl SeparationSettings {
         Self {
             teeth,
             other_teeth: Vec::new(),
+            other_orders: Vec::new(),
             sidebands: 2,
             shaft_orders: (1..=7).collect(),
             mean: MeanPart::Kept,
         }
+    }
+
+    /// Whether each order belongs to the regular part.
+    ///
+    /// # Arguments
+    /// * `last` - the last order there is
+    pub fn regular_orders(&self, last: usize) -> Vec<bool> {
+        let mut regular = self.low_orders(last);
+        for order in self.mesh_orders(last) {
+            let from = order.saturating_sub(self.sidebands).min(last);
+            regular[from..=(order + self.sidebands).min(last)].fill(true);
+        }
+        regular
+    }
+
+    /// Whether each order is one of the shaft, or one that other shafts and meshes bring.
+    fn low_orders(&self, last: usize) -> Vec<bool> {
+        let mut low = vec![false; last + 1];
+        for &order in self.shaft_orders.iter().filter(|&&order| order <= last) {
+            low[order] = true;
+        }
+        for &multiple in self.other_orders.iter().filter(|&&multiple| multiple > 0) {
+            low.iter_mut().step_by(multiple).for_each(|is_low| *is_low = true);
+        }
+        low[0] = self.mean == MeanPart::Removed;
+        low
+    }
+
+    /// The mesh orders of all wheels on the shaft.
+    fn mesh_orders(&self, last: usize) -> impl Iterator<Item = usize> {
+        self.all_teeth().filter(|teeth| *teeth > 0).flat_map(move |teeth| (teeth..=last).step_by(teeth))
     }
 
     /// Teeth of all wheels on the shaft.
@@ -67,6 +101,7 @@ pub struct Separation {
 ///
 /// With z teeth, n sidebands and the Nyquist order `N/2` of N values:
 /// * the mesh orders are `z, 2z, …` up to the Nyquist order, and those of other wheels on the shaft;
+/// * with the shaft orders count the multiples of [`SeparationSettings::other_orders`];
 /// * *regular* are the shaft orders and, of every mesh order m, `m − n … m + n`;
 /// * *residual* = average − mesh orders − shaft orders;
 /// * *difference* = average − regular.
@@ -101,18 +136,9 @@ pub fn separate(average: &[f64], settings: &SeparationSettings) -> Result<Separa
     check_settings(average.len(), settings)?;
     let spectrum = real_spectrum(average);
     let last = average.len() / 2;
-    let mesh_orders = settings.all_teeth().flat_map(|teeth| (teeth..=last).step_by(teeth));
-    let mut low = vec![false; last + 1];
-    for &order in settings.shaft_orders.iter().filter(|&&order| order <= last) {
-        low[order] = true;
-    }
-    low[0] = settings.mean == MeanPart::Removed;
-    let mut meshing = low.clone();
-    let mut regular = low;
-    for order in mesh_orders {
-        meshing[order] = true;
-        regular[order - settings.sidebands..=(order + settings.sidebands).min(last)].fill(true);
-    }
+    let regular = settings.regular_orders(last);
+    let mut meshing = settings.low_orders(last);
+    settings.mesh_orders(last).for_each(|order| meshing[order] = true);
     let part = |belongs: &dyn Fn(usize) -> bool| {
         let chosen = |(order, &line)| if belongs(order) { line } else { Complex64::default() };
         from_real_spectrum(spectrum.iter().enumerate().map(chosen).collect(), average.len())

@@ -194,6 +194,27 @@ impl TrainRecording<'_> {
         Ok(phase)
     }
 
+    /// Looks for what does not fit over the angle of the shaft whose phase is known, and for foreign tones that make much of the recording. The
+    /// angles of the other shafts follow from the tooth counts.
+    ///
+    /// # Errors
+    /// Those of [`angular_resample`].
+    pub fn check(&self) -> Result<Vec<SignalWarning>, SignalError> {
+        let TrainTurning::Shaft { shaft, phase, .. } = self.turning else { return Ok(Vec::new()) };
+        check_channel(self.signal)?;
+        let angular = angular_resample(self.signal, phase, &AngularSettings::default())?;
+        Ok(self.check_over(&angular, phase, *shaft).warnings)
+    }
+
+    fn check_over(&self, angular: &AngularSignal, phase: &ShaftPhase, shaft: usize) -> RecordingCheck {
+        match self.turning {
+            TrainTurning::Shaft { shaft: of, stated, .. } if *of == shaft => {
+                RecordingCheck::new(angular, self.train, shaft, *stated, phase, self.sampling_rate_hz)
+            }
+            _ => RecordingCheck::default(),
+        }
+    }
+
     /// Processes the channel for every wheel, and looks for what does not fit and for foreign tones.
     ///
     /// # Arguments
@@ -246,11 +267,10 @@ impl TrainRecording<'_> {
         let is_first = self.train.wheels.iter().position(|other| other.shaft == of.shaft) == Some(wheel);
         let mut check = RecordingCheck::default();
         let (mean_speed_hz, phase) = match self.turning {
-            TrainTurning::Shaft { shaft, stated, .. } => {
+            TrainTurning::Shaft { .. } => {
                 let phase = self.wheel_phase(wheel)?;
-                if *shaft == of.shaft && is_first {
-                    let rate_hz = self.sampling_rate_hz;
-                    check = RecordingCheck::new(&angular, self.train, *shaft, *stated, &phase, rate_hz);
+                if is_first {
+                    check = self.check_over(&angular, &phase, of.shaft);
                 }
                 (phase.mean_speed_hz(self.sampling_rate_hz), Some(phase))
             }

@@ -147,49 +147,6 @@ pub struct GearboxSimulation {
     pub timings: Vec<StageTime>,
 }
 
-impl GearboxSimulation {
-    /// The average of a signal over the revolutions of a wheel, from the angle at which its first tooth enters contact, read straight
-    /// between the samples.
-    ///
-    /// # Arguments
-    /// * `signal` - all kept samples
-    /// * `wheel` - number of the wheel
-    ///
-    /// # Returns
-    /// As many values as whole samples pass in a revolution, and the number of revolutions; none where the speed changes or the signal is
-    /// shorter than a revolution.
-    pub fn wheel_average(&self, signal: &[f64], wheel: usize) -> Option<(Vec<f64>, usize)> {
-        let GearboxStages { time, layout, meshes, gearbox, .. } = &self.stages;
-        let (mesh, _) = layout.mesh_of(wheel)?;
-        let per_input = time.samples_per_pinion_revolution as f64;
-        let turning = meshes[mesh].turning;
-        let teeth = f64::from(gearbox.wheels[wheel].teeth);
-        let per_revolution = per_input * teeth / turning.pitches_per_revolution;
-        let passed =
-            turning.first_pitch + time.first_kept_sample as f64 / per_input * turning.pitches_per_revolution;
-        // Samples until the first tooth enters contact.
-        let first = (1.0 - (passed / teeth).rem_euclid(1.0)) * per_revolution;
-        let last = signal.len().checked_sub(1)? as f64;
-        let revolutions = ((last - first) / per_revolution).floor();
-        if !self.stages.is_steady() || revolutions < 1.0 {
-            return None;
-        }
-        let points = per_revolution.floor() as usize;
-        let at = |sample: f64| {
-            let (index, part) = (sample as usize, sample - sample.floor());
-            let next = signal[(index + 1).min(signal.len() - 1)];
-            signal[index] + part * (next - signal[index])
-        };
-        let mean = |point: usize| {
-            let turn = |revolution: usize| revolution as f64 + point as f64 / points as f64;
-            let values =
-                (0..revolutions as usize).map(|revolution| at(first + turn(revolution) * per_revolution));
-            values.sum::<f64>() / revolutions
-        };
-        Some(((0..points).map(mean).collect(), revolutions as usize))
-    }
-}
-
 /// Runs every stage of a gearbox before the time loop.
 ///
 /// # Arguments
@@ -580,7 +537,7 @@ impl GearboxStages {
             let (name, axis) = (sensor.name(), sensor.axis());
             let output =
                 Output::Acceleration { place: name.clone().into(), axis, factor: 1.0 / GRAVITY_M_PER_S2 };
-            (format!("{name}_g"), "g", output)
+            (sensor.channel(), "g", output)
         });
         let meshes = self.gearbox.meshes.iter().enumerate().flat_map(|(number, mesh)| {
             let name = transmission_error_name(&mesh.name());

@@ -66,7 +66,8 @@ impl Gearbox {
             Some(Fault::new(fault.wheel, fault.tooth.clone(), fault.sized(teeth)?))
         };
         let sized = self.faults.iter().zip(self.of_faults(sized)?);
-        let faults = sized.filter_map(|(of, fault)| Some(GearboxFault { fault: fault?, wheel: of.wheel.clone() }));
+        let faults =
+            sized.filter_map(|(of, fault)| Some(GearboxFault { fault: fault?, wheel: of.wheel.clone() }));
         Ok(Self { faults: faults.collect(), ..self.clone() })
     }
 

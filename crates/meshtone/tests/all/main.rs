@@ -12,6 +12,7 @@ mod fault_limits;
 mod faults_anywhere;
 mod gearbox;
 mod gearbox_machine;
+mod gearbox_recordings;
 mod generated;
 mod hybrid;
 mod hybrid_experiment;

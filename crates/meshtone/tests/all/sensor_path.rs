@@ -5,7 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{
-    Fault, FrequencyResponse, GearPair, MissingTooth, Profile, Scenario, Sensor, ToothBreakage,
+    Fault, FrequencyResponse, GearPair, Gearbox, MissingTooth, Profile, Scenario, ScenarioForm, Sensor,
+    ToothBreakage, gearbox_template,
 };
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, SimulatedShafts, resample_to};
 use meshtone::tuning::{
@@ -60,8 +61,12 @@ fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s
     let channels = meshtone::simulate(&machine).unwrap().channels;
     let shafts = SimulatedShafts::of_channels(&machine, &channels);
     let angles = shafts.phase(WheelName::Pinion).unwrap().revolutions;
-    let rate_hz = shafts.sampling_rate_hz();
-    let values_g = resample_to(channels.leading().1, rate_hz, RATE_HZ, Edge::Zero).unwrap();
+    at_rate_of_recordings(channels.leading().1, &angles, shafts.sampling_rate_hz())
+}
+
+/// A signal and the angle of the pinion or the input at the recordings' rate.
+fn at_rate_of_recordings(signal: &[f64], angles: &[f64], rate_hz: f64) -> HealthyRecording {
+    let values_g = resample_to(signal, rate_hz, RATE_HZ, Edge::Zero).unwrap();
     let angle = |sample: usize| {
         let at = sample as f64 * rate_hz / RATE_HZ;
         let below = (at as usize).min(angles.len() - 2);
@@ -74,7 +79,7 @@ fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s
 
 fn estimate(recording: HealthyRecording) -> Result<PathEstimate, PathError> {
     let control = ExperimentControl { progress: &|_, _| {}, cancelled: &AtomicBool::new(false) };
-    estimate_path(&rig(), &[recording], &PathSettings::default(), &control)
+    estimate_path(&ScenarioForm::Pair(rig()), &[recording], &PathSettings::default(), &control)
 }
 
 /// (dB) Errors of a path from a frequency on, and how many of them the intervals hold.
@@ -113,6 +118,66 @@ fn a_hidden_path_is_found_again() {
         // The points of one machine are off together, and these are six.
         assert!(part > 0.75, "{part}");
     }
+}
+
+/// Two stages, as their user knows them; the sensor sits on the intermediate shaft's bearing.
+fn gearbox() -> Gearbox {
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    gearbox.faults.clear();
+    gearbox.sensors.truncate(1);
+    gearbox
+}
+
+/// What the sensor of a hidden gearbox records over a run-up.
+fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) -> HealthyRecording {
+    let mut machine = gearbox();
+    machine.seed = seed;
+    let sensor = &mut machine.sensors[0].sensor;
+    sensor.frequency_response = Some(hidden_response());
+    sensor.noise_density_g_per_rthz = 2e-6;
+    let drive = &mut machine.operation.drive;
+    drive.pinion_speed_hz = (from_hz + to_hz) / 2.0;
+    drive.speed_profile_hz = Some(Profile { time_s: vec![0.5, 0.5 + length_s], value: vec![from_hz, to_hz] });
+    machine.solver.settings.discard_and_keep(0.5, length_s);
+    let channels = meshtone::simulate_gearbox(&machine).unwrap().channels;
+    let input = ShaftPhase::of_simulated_input(&machine, channels.start_s, channels.len()).unwrap();
+    at_rate_of_recordings(&channels.signals[0].values, &input.revolutions, channels.sampling_rate_hz)
+}
+
+/// A hidden path of a gearbox is found as well as one of a pair.
+#[test]
+fn a_hidden_path_of_a_gearbox_is_found_again() {
+    let control = ExperimentControl { progress: &|_, _| {}, cancelled: &AtomicBool::new(false) };
+    let (mut held, mut points) = (0, 0);
+    for seed in [500, 501] {
+        let healthy = recording_of_gearbox(seed, [20.0, 60.0], 10.0);
+        let machine = ScenarioForm::Gearbox(gearbox());
+        let path = estimate_path(&machine, &[healthy], &PathSettings::default(), &control).unwrap();
+        let (errors, inside) = errors_db(&path, 320.0);
+        let most = errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
+        let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+        for (at, hz) in path.frequency_hz.iter().enumerate().filter(|(at, hz)| at % 8 == 0 && **hz > 200.0) {
+            let db = 20.0 * hidden(*hz).norm().log10();
+            println!(
+                "  {hz:.0} Hz: error {:.2}, interval {:.2}",
+                path.magnitude_db[at] - db,
+                path.high_db[at] - path.low_db[at]
+            );
+        }
+        println!("gearbox {seed}: largest {most:.2} dB, rms {rms:.2} dB, misfit {:?}", path.misfit);
+        assert!(most < 3.0, "{most}");
+        (held, points) = (held + inside, points + errors.len());
+    }
+    let part = held as f64 / points as f64;
+    println!("gearboxes: the intervals hold {part:.2}");
+    assert!(part > 0.75, "{part}");
+    // Ideal wheels are not drawn.
+    let mut ideal = gearbox();
+    ideal.wheels.iter_mut().for_each(|wheel| wheel.iso_class = 0);
+    let healthy = recording_of_gearbox(500, [20.0, 60.0], 2.0);
+    let refused =
+        estimate_path(&ScenarioForm::Gearbox(ideal), &[healthy], &PathSettings::default(), &control);
+    assert!(refused.unwrap_err().to_string().contains("iso_class"));
 }
 
 /// Indicators of damage of some draws of the wheels: rms and kurtosis of the difference signal, kurtosis of its envelope.

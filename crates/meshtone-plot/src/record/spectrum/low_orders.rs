@@ -6,7 +6,7 @@ use crate::record::WheelView;
 
 const MESH: Stroke = Stroke::solid(colour::BLUE, 2.2);
 const SIDEBAND: Stroke = Stroke::solid(colour::PURPLE, 1.8);
-const OTHER_MESH: Stroke = Stroke::solid(colour::ORANGE, 2.0);
+const OTHER: Stroke = Stroke::solid(colour::ORANGE, 2.0);
 const SHAFT: Stroke = Stroke::solid(colour::GREEN, 1.8);
 /// (px) Least distance of two orders.
 const BETWEEN_ORDERS: f64 = 3.2;
@@ -33,7 +33,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
     legend(canvas, &axes, wheel);
     let teeth = wheel.teeth.max(1);
     let mesh_orders = Ticks::every(f64::from(teeth), 0.0, last as f64);
-    let name = format!("Order of the {}’s shaft (mesh orders {teeth}, {}, …)", wheel.name, 2 * teeth);
+    let name = format!("Order of {}’s shaft (mesh orders {teeth}, {}, …)", wheel.called(), 2 * teeth);
     axes.x_axis(canvas, &mesh_orders, &name);
     amplitude_axis(canvas, &axes, 6, unit);
     // The rest first, so that no marked order is hidden.
@@ -55,7 +55,7 @@ fn stroke(kind: LineKind) -> Stroke {
     match kind {
         LineKind::Mesh => MESH,
         LineKind::Sideband => SIDEBAND,
-        LineKind::OtherMesh => OTHER_MESH,
+        LineKind::Other => OTHER,
         LineKind::Shaft => SHAFT,
         LineKind::Difference => REST,
     }
@@ -70,12 +70,10 @@ fn legend(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
         1 => "shaft order 1".to_owned(),
         last => format!("shaft orders 1–{last}"),
     };
-    let others: Vec<String> = wheel.other_teeth.iter().map(u32::to_string).collect();
-    let other = format!("mesh of {} teeth", others.join(" and "));
     let entries = [
         (LineKind::Mesh, true, "mesh orders"),
         (LineKind::Sideband, wheel.sidebands > 0, &sidebands),
-        (LineKind::OtherMesh, !wheel.other_teeth.is_empty(), &other),
+        (LineKind::Other, !(wheel.other_teeth.is_empty() && wheel.other_orders.is_empty()), "others"),
         (LineKind::Shaft, wheel.low_orders > 0, &shaft),
         (LineKind::Difference, true, "difference"),
     ];

@@ -57,8 +57,8 @@ fn last_order(wheel: &WheelView) -> usize {
 enum LineKind {
     Mesh,
     Sideband,
-    /// Of the mesh of another wheel on the shaft, or a sideband of it.
-    OtherMesh,
+    /// Of another mesh, a sideband of it, or of another shaft.
+    Other,
     Shaft,
     Difference,
 }
@@ -66,16 +66,18 @@ enum LineKind {
 impl LineKind {
     fn of(order: usize, wheel: &WheelView) -> Self {
         // How far from a mesh order, where that is near enough for a sideband.
-        let beside = |teeth: u32| {
-            let teeth = teeth.max(1) as usize;
+        let beside = |teeth: usize| {
+            let teeth = teeth.max(1);
             let off = order.min(order % teeth).min(teeth - order % teeth);
             let beyond_first = order + wheel.sidebands >= teeth;
             (off == 0 || beyond_first && off <= wheel.sidebands).then_some(off)
         };
-        match beside(wheel.teeth) {
+        let is_other = |orders: &usize| order % (*orders).max(1) == 0;
+        match beside(wheel.teeth as usize) {
             Some(0) => Self::Mesh,
             Some(_) => Self::Sideband,
-            None if wheel.other_teeth.iter().any(|teeth| beside(*teeth).is_some()) => Self::OtherMesh,
+            None if wheel.other_teeth.iter().any(|teeth| beside(*teeth).is_some()) => Self::Other,
+            None if wheel.other_orders.iter().any(is_other) => Self::Other,
             None if order <= wheel.low_orders => Self::Shaft,
             None => Self::Difference,
         }

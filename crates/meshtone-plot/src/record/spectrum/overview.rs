@@ -57,8 +57,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
     let orders = Ticks::nice(0.0, last as f64, 10);
     let one = 10f64.powf((last as f64).log10().floor());
     let name = format!(
-        "Order of the {}’s shaft, the largest in each mesh spacing (order {one} is {} Hz at mean speed)",
-        wheel.name,
+        "Order of {}’s shaft, the largest in each mesh spacing (order {one} is {} Hz at mean speed)",
+        wheel.called(),
         number(one * wheel.mean_speed_hz)
     );
     axes.x_axis(canvas, &orders, &TextStyle::AXIS.fitted(&name, area.width));

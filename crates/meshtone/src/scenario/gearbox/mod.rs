@@ -25,8 +25,8 @@ use crate::keys::{
 };
 use crate::machine::{Bearing, GearboxShaft, Housing};
 use crate::operation::{Operation, Solver, TimeGrid};
-use crate::wheel::{Material, WheelName};
 use crate::wheel::quality::{check_errors, one_source};
+use crate::wheel::{Material, WheelName};
 use layout::{entry_key, find, section};
 use parts::list;
 
@@ -166,7 +166,7 @@ impl Gearbox {
     pub(crate) fn refused_as_pair() -> ScenarioError {
         let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
         ScenarioError::new("mesh", "", problem).with_help(
-            "`meshtone simulate` and `meshtone.simulate_gearbox` take gearboxes; the models published and linear, tuning, \
+            "`meshtone simulate`, `indicators`, `path`, `diagnose` and data sets take gearboxes; the models published and linear, tuning, \
              diagnosis and the page know one pair",
         )
     }
@@ -641,11 +641,13 @@ impl ScenarioForm {
     pub fn with_faults(mut self, faults: Vec<(usize, Fault)>) -> Self {
         match &mut self {
             Self::Pair(scenario) => {
-                let on_wheel = |(wheel, fault): (usize, Fault)| Fault { wheel: WheelName::BOTH[wheel.min(1)], ..fault };
+                let on_wheel =
+                    |(wheel, fault): (usize, Fault)| Fault { wheel: WheelName::BOTH[wheel.min(1)], ..fault };
                 scenario.faults = faults.into_iter().map(on_wheel).collect();
             }
             Self::Gearbox(gearbox) => {
-                let name = |wheel: usize| gearbox.wheels.get(wheel).map_or_else(String::new, |of| of.name.clone());
+                let name =
+                    |wheel: usize| gearbox.wheels.get(wheel).map_or_else(String::new, |of| of.name.clone());
                 let on_wheel = |(wheel, fault): (usize, Fault)| GearboxFault { wheel: name(wheel), fault };
                 gearbox.faults = faults.into_iter().map(on_wheel).collect();
             }
@@ -656,9 +658,12 @@ impl ScenarioForm {
     /// The faults, each with the number of its wheel.
     pub fn faults(&self) -> Vec<(usize, &Fault)> {
         match self {
-            Self::Pair(scenario) => scenario.faults.iter().map(|fault| (fault.wheel as usize, fault)).collect(),
+            Self::Pair(scenario) => {
+                scenario.faults.iter().map(|fault| (fault.wheel as usize, fault)).collect()
+            }
             Self::Gearbox(gearbox) => {
-                let number = |fault: &GearboxFault| gearbox.wheels.iter().position(|of| of.name == fault.wheel);
+                let number =
+                    |fault: &GearboxFault| gearbox.wheels.iter().position(|of| of.name == fault.wheel);
                 gearbox.faults.iter().filter_map(|fault| Some((number(fault)?, &fault.fault))).collect()
             }
         }

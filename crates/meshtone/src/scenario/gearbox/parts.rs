@@ -467,6 +467,11 @@ impl GearboxSensor {
         self.sensor.name.clone().unwrap_or_else(|| format!("{place}_{}", self.sensor.direction.name()))
     }
 
+    /// The name of its signal, with the unit in it.
+    pub fn channel(&self) -> String {
+        format!("{}_g", self.name())
+    }
+
     /// The axis that it measures along.
     pub(crate) fn axis(&self) -> Axis {
         match self.sensor.direction {

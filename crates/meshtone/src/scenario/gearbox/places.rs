@@ -20,6 +20,11 @@ impl Gearbox {
         self.bearings.iter().map(on_seat).collect()
     }
 
+    /// The channel of the first of [`Self::all_sensors`].
+    pub fn leading_channel(&self) -> String {
+        self.all_sensors().first().map(GearboxSensor::channel).unwrap_or_default()
+    }
+
     /// Where each of [`Self::all_sensors`] sits.
     ///
     /// # Arguments

@@ -136,7 +136,7 @@ pub enum Alternative {
 
 impl Alternative {
     /// Returns whether it is another speed.
-    pub(super) fn is_speed(&self) -> bool {
+    pub fn is_speed(&self) -> bool {
         matches!(self, Self::ShaftSpeed { .. } | Self::VaryingSpeed { .. })
     }
 

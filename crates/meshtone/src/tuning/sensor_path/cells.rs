@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use meshtone_fourier::{hann_window, real_spectrum};
 
 use super::recording::Piece;
+use crate::signal::GearTrain;
 
 /// Steps of the frequencies in an octave, where the window resolves them, and where nothing is compared.
 const STEPS_PER_OCTAVE: f64 = 48.0;
@@ -13,7 +14,7 @@ const STEPS_OUTSIDE: f64 = 6.0;
 const POINTS_BELOW: usize = 12;
 /// (lines) How near a mesh harmonic a line belongs to it: the main lobe of Hann's window.
 const NEAR_LINES: f64 = 2.0;
-/// (orders of the pinion) Beside a mesh harmonic, what belongs to its sidebands.
+/// (orders of a mesh's faster shaft) Beside a mesh harmonic, what belongs to its sidebands.
 const SIDEBAND_ORDERS: f64 = 3.5;
 /// Mesh harmonics that are told apart.
 const MOST_HARMONICS: usize = 60;
@@ -27,11 +28,11 @@ const FROM_MESH: f64 = 0.5;
 /// The wheels decide how strong each is, so that a recording may differ in each from the mean of the simulations, alike at all frequencies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum LineKind {
-    /// The mesh harmonic of this number.
-    Harmonic(usize),
-    /// The sidebands around the mesh harmonic of this number.
-    Sidebands(usize),
-    /// The broad-band remainder around the mesh harmonic of this number.
+    /// The harmonic of this number of a mesh, which comes first.
+    Harmonic(usize, usize),
+    /// The sidebands around it.
+    Sidebands(usize, usize),
+    /// The broad-band remainder around the harmonic of this number of the first mesh.
     Remainder(usize),
 }
 
@@ -42,8 +43,8 @@ impl LineKind {
     /// Its sort: mesh harmonics, sidebands, remainder.
     pub(super) fn sort(self) -> usize {
         match self {
-            Self::Harmonic(_) => 0,
-            Self::Sidebands(_) => 1,
+            Self::Harmonic(..) => 0,
+            Self::Sidebands(..) => 1,
             Self::Remainder(_) => 2,
         }
     }
@@ -56,6 +57,35 @@ pub(super) struct Cell {
     pub frequency: usize,
     /// What the lines belong to.
     pub kind: LineKind,
+}
+
+/// The orders of a mesh, of the pinion's shaft or the input.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct MeshOrders {
+    /// (orders) The mesh itself.
+    pub mesh: f64,
+    /// (orders) The faster one of its two shafts.
+    pub shaft: f64,
+}
+
+impl MeshOrders {
+    /// All meshes of a train.
+    pub(super) fn of(train: &GearTrain) -> Vec<Self> {
+        let faster = |mesh: [usize; 2]| {
+            let speeds = mesh.map(|wheel| train.shafts[train.wheels[wheel].shaft].speed_ratio.value());
+            speeds[0].max(speeds[1])
+        };
+        let orders = |(number, mesh): (usize, &[usize; 2])| Self {
+            mesh: train.mesh_order(number),
+            shaft: faster(*mesh),
+        };
+        train.meshes.iter().enumerate().map(orders).collect()
+    }
+
+    /// (orders) The slowest mesh.
+    pub(super) fn slowest(meshes: &[Self]) -> f64 {
+        meshes.iter().map(|of| of.mesh).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// The cells of some pieces of recordings, and which lines of which spectra fall into each.
@@ -85,16 +115,16 @@ impl Cells {
     /// * `window_s` - (s) length of a window
     /// * `most_hz` - (Hz) highest frequency that is compared
     /// * `end_hz` - (Hz) last frequency of the path
-    /// * `pinion_teeth` - tooth count
+    /// * `meshes` - all of the machine
     pub(super) fn new(
         pieces: &[Piece],
         window_s: f64,
         [most_hz, end_hz]: [f64; 2],
-        pinion_teeth: u32,
+        meshes: &[MeshOrders],
     ) -> Self {
-        let teeth = f64::from(pinion_teeth);
+        let slowest_order = MeshOrders::slowest(meshes);
         let speeds = pieces.iter().flat_map(|piece| piece.speed_hz.value.iter().copied());
-        let slowest_mesh_hz = teeth * speeds.fold(f64::INFINITY, f64::min);
+        let slowest_mesh_hz = slowest_order * speeds.fold(f64::INFINITY, f64::min);
         let first_line = (FROM_MESH * slowest_mesh_hz * window_s).ceil().max(2.0) as usize;
         let last_line = (most_hz * window_s) as usize;
         let [first_hz, last_hz] = [first_line, last_line].map(|line| line as f64 / window_s);
@@ -113,7 +143,7 @@ impl Cells {
             let [start, middle, end] = [0.0, 0.5, 1.0].map(speed_hz);
             let cell_of = |(line, &frequency): (usize, &usize)| {
                 let hz = (first_line + line) as f64 / window_s;
-                let kind = line_kind(hz, [middle, (end - start).abs()], teeth, window_s);
+                let kind = line_kind(hz, [middle, (end - start).abs()], meshes, window_s);
                 *known.entry(Cell { frequency, kind }).or_insert_with(|| {
                     cells.push(Cell { frequency, kind });
                     cells.len() - 1
@@ -212,28 +242,33 @@ fn frequencies([from_hz, to_hz]: [f64; 2], end_hz: f64, resolved_hz: f64) -> (Ve
     (below.chain(compared).chain(above).collect(), [from_hz, last_hz])
 }
 
-/// What a line belongs to.
+/// What a line belongs to: the nearest harmonic of any mesh, the sidebands of the nearest one, or the remainder.
 ///
 /// # Arguments
 /// * `hz` - (Hz) its frequency
-/// * `speed_hz` - (Hz) of the pinion: the mean in the window, and by how much it changes there
-/// * `teeth` - of the pinion
+/// * `speed_hz` - (Hz) of the pinion or the input: the mean in the window, and by how much it changes there
+/// * `meshes` - all of the machine
 /// * `window_s` - (s) length of the window
-fn line_kind(hz: f64, [speed_hz, change_hz]: [f64; 2], teeth: f64, window_s: f64) -> LineKind {
-    let mesh_hz = teeth * speed_hz;
-    let harmonic = (hz / mesh_hz).round();
-    let number = harmonic as usize;
-    let near_hz = NEAR_LINES / window_s + 0.5 * harmonic * teeth * change_hz;
-    let beside_hz = near_hz + SIDEBAND_ORDERS * speed_hz;
-    let from_hz = (hz - harmonic * mesh_hz).abs();
-    // Where the speed changes so much that neighbours run into each other nothing is told apart.
-    if number == 0 || number > MOST_HARMONICS || near_hz > 0.25 * mesh_hz {
-        LineKind::Remainder(number.min(MOST_HARMONICS))
-    } else if from_hz <= near_hz {
-        LineKind::Harmonic(number)
-    } else if from_hz <= beside_hz {
-        LineKind::Sidebands(number)
-    } else {
-        LineKind::Remainder(number.min(MOST_HARMONICS))
+fn line_kind(hz: f64, [speed_hz, change_hz]: [f64; 2], meshes: &[MeshOrders], window_s: f64) -> LineKind {
+    // Of each mesh the number of the nearest harmonic, how far that is, and how far harmonic and sidebands reach.
+    let nearest = meshes.iter().enumerate().map(|(mesh, orders)| {
+        let mesh_hz = orders.mesh * speed_hz;
+        let harmonic = (hz / mesh_hz).round();
+        let near_hz = NEAR_LINES / window_s + 0.5 * harmonic * orders.mesh * change_hz;
+        // Where the speed changes so much that neighbours run into each other nothing is told apart.
+        let is_told = (1.0..=MOST_HARMONICS as f64).contains(&harmonic) && near_hz <= 0.25 * mesh_hz;
+        let beside_hz = near_hz + SIDEBAND_ORDERS * orders.shaft * speed_hz;
+        (is_told, (hz - harmonic * mesh_hz).abs(), [near_hz, beside_hz], mesh, harmonic as usize)
+    });
+    let told = nearest.clone().filter(|(is_told, ..)| *is_told).min_by(|a, b| a.1.total_cmp(&b.1));
+    let around = nearest.map(|(.., number)| number.min(MOST_HARMONICS)).next().unwrap_or(0);
+    match told {
+        Some((_, from_hz, [near_hz, _], mesh, number)) if from_hz <= near_hz => {
+            LineKind::Harmonic(mesh, number)
+        }
+        Some((_, from_hz, [_, beside_hz], mesh, number)) if from_hz <= beside_hz => {
+            LineKind::Sidebands(mesh, number)
+        }
+        _ => LineKind::Remainder(around),
     }
 }

@@ -13,8 +13,9 @@ pub use error::{PathError, RecordingProblem};
 pub use recording::HealthyRecording;
 
 use std::ops::RangeInclusive;
+use std::sync::atomic::Ordering;
 
-use cells::Cells;
+use cells::{Cells, MeshOrders};
 use minimum_phase::minimum_phase_deg;
 use recording::{Piece, pieces};
 use smoothing::{CellLevel, smooth};
@@ -23,10 +24,10 @@ use super::ExperimentControl;
 use crate::batch::{Control, Keep, simulate_many};
 use crate::error::{Error, ScenarioError};
 use crate::random::{Draws, Purpose};
-use crate::scenario::{Quality, Scenario, Sensor};
+use crate::scenario::{Gearbox, Quality, Scenario, ScenarioForm, Sensor};
 use crate::sensor::{Channel, FrequencyResponse, ResponseInput};
 use crate::signal::{AngularSettings, GearTrain, SignalError, angular_resample, lines_off_shafts};
-use crate::simulate::Stages;
+use crate::simulate::{Stages, simulate_gearboxes};
 use crate::solver::{Block, Output, Recorder};
 
 /// (s) What is simulated before a piece of a recording, for the vibration to settle.
@@ -40,7 +41,7 @@ const ABOVE_NOISE_OF_ONE: f64 = 12.0;
 const QUIET_WINDOWS: usize = 4;
 /// (-) Median over mean of the squared magnitude of normal noise.
 const MEDIAN_OF_SQUARES: f64 = std::f64::consts::LN_2;
-/// Gear revolutions below which noise is not told from what repeats.
+/// Revolutions of the slowest shaft below which noise is not told from what repeats.
 const FEWEST_REVOLUTIONS: usize = 6;
 /// Standard deviations on either side that hold 90 %.
 const NINETY_PERCENT: f64 = 1.645;
@@ -99,7 +100,7 @@ impl PathEstimate {
     }
 }
 
-/// Estimates the path to the first sensor of a scenario from recordings of the healthy machine.
+/// Estimates the path to the first sensor of a scenario, of a pair or a gearbox, from recordings of the healthy machine.
 ///
 /// Several speeds or a run-up say more than one speed: the same mesh harmonic is then seen at many frequencies, and what the
 /// wheels make of it can be told from the path. The path is that from what the scenario's first sensor would show, its wall and mounted
@@ -113,37 +114,37 @@ impl PathEstimate {
 /// * `control` - progress over the simulations; cancellation
 ///
 /// # Errors
-/// A recording that is too short, or unlike this pair; recordings that no path explains; a scenario that cannot be simulated.
+/// A recording that is too short, or unlike this machine; recordings that no path explains; a scenario that cannot be simulated.
 pub fn estimate_path(
-    scenario: &Scenario,
+    scenario: &ScenarioForm,
     recordings: &[HealthyRecording],
     settings: &PathSettings,
     control: &ExperimentControl,
 ) -> Result<PathEstimate, PathError> {
-    let teeth = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+    let train = GearTrain::of_form(scenario)?;
+    let meshes = MeshOrders::of(&train);
     if recordings.is_empty() {
         return Err(PathError::NoRecording);
     }
     if !PathSettings::DRAWS.contains(&settings.draws) {
         return Err(PathError::Draws { draws: settings.draws, allowed: PathSettings::DRAWS });
     }
-    check_is_drawn(&scenario.quality)?;
-    if scenario.sensors.first().is_some_and(|sensor| sensor.response_input == ResponseInput::Force) {
-        let problem = "the path that is estimated is a ratio of accelerations";
-        return Err(ScenarioError::new("sensor.response_input", "\"force\"", problem)
-            .with_help("remove response_input")
-            .in_entry("sensor", 0, scenario.sensors.len())
-            .into());
+    match scenario {
+        ScenarioForm::Pair(scenario) => check_pair(scenario)?,
+        ScenarioForm::Gearbox(gearbox) => check_wheels(gearbox)?,
     }
-    let (window_s, pieces) = pieces(recordings, teeth[0])?;
+    let (window_s, pieces) = pieces(recordings, MeshOrders::slowest(&meshes))?;
     for (index, recording) in recordings.iter().enumerate() {
-        recording.check(teeth).map_err(|problem| PathError::Recording { index, problem })?;
+        recording.check(&train).map_err(|problem| PathError::Recording { index, problem })?;
     }
     let rate_hz = recordings.iter().map(|recording| recording.sampling_rate_hz).fold(f64::INFINITY, f64::min);
-    let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * scenario.solver.sampling_rate_hz);
-    let cells = Cells::new(&pieces, window_s, [most_hz, rate_hz / 2.0], teeth[0]);
-    let measured = measured_powers(recordings, &pieces, &cells, teeth)?;
-    let simulated = simulated_powers(scenario, &pieces, &cells, settings, control)?;
+    let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * nominal_rate_hz(scenario));
+    let cells = Cells::new(&pieces, window_s, [most_hz, rate_hz / 2.0], &meshes);
+    let measured = measured_powers(recordings, &pieces, &cells, &train)?;
+    let simulated = match scenario {
+        ScenarioForm::Pair(scenario) => simulated_pairs(scenario, &pieces, &cells, settings, control)?,
+        ScenarioForm::Gearbox(gearbox) => simulated_gearboxes(gearbox, &pieces, &cells, settings, control)?,
+    };
     let levels = levels(&cells, &measured, &simulated);
     if levels.is_empty() {
         return Err(PathError::OnlyNoise);
@@ -173,6 +174,42 @@ pub fn estimate_path(
     })
 }
 
+/// (S/s) The sampling rate that a scenario states.
+fn nominal_rate_hz(scenario: &ScenarioForm) -> f64 {
+    match scenario {
+        ScenarioForm::Pair(scenario) => scenario.solver.sampling_rate_hz,
+        ScenarioForm::Gearbox(gearbox) => gearbox.solver.settings.sampling_rate_hz,
+    }
+}
+
+/// Refuses a pair of which every draw is the same, or whose sensor shows forces.
+fn check_pair(scenario: &Scenario) -> Result<(), ScenarioError> {
+    if scenario.sensors.first().is_some_and(|sensor| sensor.response_input == ResponseInput::Force) {
+        let problem = "the path that is estimated is a ratio of accelerations";
+        return Err(ScenarioError::new("sensor.response_input", "\"force\"", problem)
+            .with_help("remove response_input")
+            .in_entry("sensor", 0, scenario.sensors.len()));
+    }
+    check_is_drawn(&scenario.quality)
+}
+
+/// Refuses a gearbox of which every draw is the same.
+fn check_wheels(gearbox: &Gearbox) -> Result<(), ScenarioError> {
+    let help = "state the class of the wheels with wheel.iso_class or wheel.din_grade";
+    let wheels = gearbox.wheels.len();
+    if let Some(given) = gearbox.wheels.iter().position(|wheel| wheel.profile_errors_mm.is_some()) {
+        let problem = "given, so that no draw of the wheel differs from another";
+        let error = ScenarioError::new("wheel.profile_errors_mm", "", problem).with_help(help);
+        return Err(error.in_entry("wheel", given, wheels));
+    }
+    if gearbox.wheels.iter().all(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0) {
+        let problem = "ideal wheels have no sidebands, and no draw of them differs from another";
+        let error = ScenarioError::new("wheel.iso_class", 0, problem).with_help(help);
+        return Err(error.in_entry("wheel", 0, wheels));
+    }
+    Ok(())
+}
+
 /// Refuses wheels of which every draw is the same.
 fn check_is_drawn(quality: &Quality) -> Result<(), ScenarioError> {
     let help = "state the grade of the wheels with quality.din_grade or quality.iso_class";
@@ -191,18 +228,18 @@ fn check_is_drawn(quality: &Quality) -> Result<(), ScenarioError> {
 
 /// (g²/Hz) Power of the recordings in each cell; 0 in a cell of hardly more than noise.
 ///
-/// Noise is at most what is beside the orders of both shafts, and at most what there is in the quietest windows: the former says it
+/// Noise is at most what is beside the orders of all shafts, and at most what there is in the quietest windows: the former says it
 /// at one speed, the latter over a run-up. As the most that it may be it is not subtracted.
 fn measured_powers(
     recordings: &[HealthyRecording],
     pieces: &[Piece],
     cells: &Cells,
-    teeth: [u32; 2],
+    train: &GearTrain,
 ) -> Result<Vec<f64>, PathError> {
     // Of each cell its power, that of noise, and its lines.
     let mut powers = vec![[0.0; 3]; cells.cells.len()];
     for (number, recording) in recordings.iter().enumerate() {
-        let mut noise = noise_density(recording, cells, teeth)
+        let mut noise = noise_density(recording, cells, train)
             .map_err(|error| PathError::Recording { index: number, problem: error.into() })?;
         let of_recording = || pieces.iter().enumerate().filter(|(_, piece)| piece.recording == number);
         let mut of_pieces = Vec::new();
@@ -231,25 +268,27 @@ fn measured_powers(
     Ok(powers.into_iter().map(above).collect())
 }
 
-/// (g²/Hz) Density of a recording's noise: the median of the lines beside the orders of both shafts; infinite of a recording too
+/// (g²/Hz) Density of a recording's noise: the median of the lines beside the orders of all shafts; infinite of a recording too
 /// short to tell.
 fn noise_density(
     recording: &HealthyRecording,
     cells: &Cells,
-    [pinion, gear]: [u32; 2],
+    train: &GearTrain,
 ) -> Result<Vec<f64>, SignalError> {
-    let of_gear = recording.pinion.of_mate(pinion, gear)?;
-    let angular = angular_resample(&recording.values_g, &of_gear, &AngularSettings::default())?;
+    let speed = |shaft: &usize| train.shafts[*shaft].speed_ratio.value();
+    let slowest = (0..train.shafts.len()).min_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
+    let of_slowest = train.carried(&recording.pinion, train.input(), slowest)?;
+    let angular = angular_resample(&recording.values_g, &of_slowest, &AngularSettings::default())?;
     let revolutions = angular.revolutions();
     if revolutions < FEWEST_REVOLUTIONS {
         return Ok(vec![f64::INFINITY; cells.frequency_hz.len()]);
     }
-    let gear_hz = of_gear.mean_speed_hz(recording.sampling_rate_hz);
-    let lines = lines_off_shafts(&angular, &GearTrain::of_wheels([("gear", gear), ("pinion", pinion)]), 0);
+    let shaft_hz = of_slowest.mean_speed_hz(recording.sampling_rate_hz);
+    let lines = lines_off_shafts(&angular, train, slowest);
     let points = (revolutions * angular.points_per_revolution) as f64;
     // The mean square of Hann's window is 3/8.
-    let scale = 1.0 / (0.375 * points * angular.points_per_revolution as f64 * gear_hz);
-    let line_at = |hz: f64| ((hz / gear_hz * revolutions as f64) as usize).min(lines.spectrum.len());
+    let scale = 1.0 / (0.375 * points * angular.points_per_revolution as f64 * shaft_hz);
+    let line_at = |hz: f64| ((hz / shaft_hz * revolutions as f64) as usize).min(lines.spectrum.len());
     let density = |pair: &[f64]| {
         let (from, to) = (line_at(pair[0]), line_at(pair[1]));
         let off = (from..to).filter(|&line| lines.is_off[line]);
@@ -264,8 +303,70 @@ fn noise_density(
     Ok((0..=last).map(|at| density(&[edge(at.saturating_sub(2)), edge(at + 2)])).collect())
 }
 
-/// (g²/Hz) Power in each cell of simulations with each draw of the wheels.
-fn simulated_powers(
+/// The seeds of the draws of the wheels.
+fn seeds(settings: &PathSettings) -> Vec<u64> {
+    let seed = |draw| Draws::new(settings.seed, Purpose::PathWheels, draw).bits() >> 1;
+    (0..settings.draws as u64).map(seed).collect()
+}
+
+/// (g²/Hz) Power in each cell of simulations of a gearbox with each draw of its wheels, piece by piece.
+fn simulated_gearboxes(
+    gearbox: &Gearbox,
+    pieces: &[Piece],
+    cells: &Cells,
+    settings: &PathSettings,
+    control: &ExperimentControl,
+) -> Result<Vec<Vec<f64>>, PathError> {
+    let seeds = seeds(settings);
+    let all = pieces.len() * seeds.len();
+    let mut powers = vec![vec![0.0; cells.cells.len()]; seeds.len()];
+    for (number, piece) in pieces.iter().enumerate() {
+        if control.cancelled.load(Ordering::Relaxed) {
+            return Err(PathError::Cancelled);
+        }
+        let of_piece = gearbox_at_speed_of(gearbox, piece);
+        let drawn: Vec<Gearbox> = seeds.iter().map(|&seed| Gearbox { seed, ..of_piece.clone() }).collect();
+        let of_draws = simulate_gearboxes(&drawn, |simulation| {
+            let channels = &simulation.channels;
+            let shown = channels.signals.first().map_or(&[][..], |signal| &signal.values);
+            cells.powers(number, &cells.spectra(number, shown, channels.sampling_rate_hz))
+        });
+        for (sums, of_draw) in powers.iter_mut().zip(of_draws) {
+            sums.iter_mut().zip(of_draw?).for_each(|(sum, power)| *sum += power);
+        }
+        (control.progress)((number + 1) * seeds.len(), all);
+    }
+    Ok(powers)
+}
+
+/// The healthy gearbox at the speed of a piece of a recording.
+fn gearbox_at_speed_of(gearbox: &Gearbox, piece: &Piece) -> Gearbox {
+    let mut healthy = gearbox.clone();
+    healthy.faults.clear();
+    healthy.sensors = gearbox.all_sensors().into_iter().take(1).collect();
+    healthy.sensors.iter_mut().for_each(|of| of.sensor = without_path(of.sensor.clone()));
+    let drive = &mut healthy.operation.drive;
+    drive.pinion_speed_hz = piece.mean_speed_hz();
+    drive.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
+    drive.torque_profile_nm = None;
+    healthy.solver.settings.discard_and_keep(SETTLING_S, piece.length_s);
+    healthy
+}
+
+/// A sensor that shows the motion of its place, through its wall and its mounted resonance alone.
+fn without_path(sensor: Sensor) -> Sensor {
+    Sensor {
+        frequency_response: None,
+        response_input: ResponseInput::default(),
+        noise_density_g_per_rthz: 0.0,
+        range_g: None,
+        bits: None,
+        ..sensor
+    }
+}
+
+/// (g²/Hz) Power in each cell of simulations of a pair with each draw of the wheels.
+fn simulated_pairs(
     scenario: &Scenario,
     pieces: &[Piece],
     cells: &Cells,
@@ -273,9 +374,7 @@ fn simulated_powers(
     control: &ExperimentControl,
 ) -> Result<Vec<Vec<f64>>, PathError> {
     let draws = settings.draws;
-    let seeds: Vec<u64> = (0..draws as u64)
-        .map(|draw| Draws::new(settings.seed, Purpose::PathWheels, draw).bits() >> 1)
-        .collect();
+    let seeds = seeds(settings);
     let scenarios = pieces.iter().flat_map(|piece| {
         let of_piece = at_speed_of(scenario, piece);
         seeds.iter().map(move |&seed| of_piece.clone().with_seed(seed)).collect::<Vec<Scenario>>()
@@ -300,15 +399,7 @@ fn simulated_powers(
 /// The healthy machine at the speed of a piece of a recording.
 fn at_speed_of(scenario: &Scenario, piece: &Piece) -> Scenario {
     let mut healthy = scenario.clone().with_faults(Vec::new());
-    let sensor = scenario.sensors.first().cloned().unwrap_or_default();
-    healthy.sensors = vec![Sensor {
-        frequency_response: None,
-        response_input: ResponseInput::default(),
-        noise_density_g_per_rthz: 0.0,
-        range_g: None,
-        bits: None,
-        ..sensor
-    }];
+    healthy.sensors = vec![without_path(scenario.sensors.first().cloned().unwrap_or_default())];
     // Other wheels than those of the scenario's own.
     healthy.quality.seed = None;
     healthy.operation.pinion_speed_hz = piece.mean_speed_hz();

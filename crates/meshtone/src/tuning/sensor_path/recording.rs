@@ -2,9 +2,7 @@
 
 use super::{PathError, RecordingProblem};
 use crate::operation::Profile;
-use crate::signal::{
-    AngularSettings, ShaftPhase, StatedFacts, StatedTurning, angular_resample, check_channel, check_recording,
-};
+use crate::signal::{GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
 
 /// Mesh periods in a window, so that mesh harmonics and the sidebands around them are apart.
 const PERIODS_IN_WINDOW: f64 = 20.0;
@@ -29,7 +27,7 @@ pub struct HealthyRecording {
     pub values_g: Vec<f64>,
     /// (S/s) Its sampling rate.
     pub sampling_rate_hz: f64,
-    /// Angle of the pinion's shaft over its samples.
+    /// Angle of the pinion's shaft over its samples, of a gearbox of the input.
     pub pinion: ShaftPhase,
 }
 
@@ -51,16 +49,16 @@ impl HealthyRecording {
         &self.values_g[first..first + piece.samples]
     }
 
-    /// Checks that the recording is of this pair and of nothing else.
+    /// Checks that the recording is of this machine and of nothing else.
     ///
     /// # Arguments
-    /// * `teeth` - of the pinion and of the gear
-    pub(super) fn check(&self, [pinion, gear]: [u32; 2]) -> Result<(), RecordingProblem> {
-        check_channel(&self.values_g)?;
-        let angular = angular_resample(&self.values_g, &self.pinion, &AngularSettings::default())?;
-        let stated = StatedFacts { teeth: pinion, mate_teeth: Some(gear), turning: StatedTurning::Other };
-        let against = check_recording(&angular, &stated, &self.pinion, self.sampling_rate_hz);
-        match against.into_iter().next() {
+    /// * `train` - its tooth counts
+    pub(super) fn check(&self, train: &GearTrain) -> Result<(), RecordingProblem> {
+        let (shaft, stated) = (train.input(), StatedTurning::Other);
+        let turning = TrainTurning::Shaft { shaft, phase: self.pinion.clone(), stated };
+        let sampling_rate_hz = self.sampling_rate_hz;
+        let recording = TrainRecording { signal: &self.values_g, sampling_rate_hz, train, turning: &turning };
+        match recording.check()?.into_iter().next() {
             Some(warning) => Err(RecordingProblem::DoesNotFit(Box::new(warning))),
             None => Ok(()),
         }
@@ -109,13 +107,13 @@ impl Piece {
 ///
 /// # Arguments
 /// * `recordings` - all of them
-/// * `pinion_teeth` - tooth count
+/// * `mesh_order` - (orders of the pinion or the input) of the slowest mesh
 ///
 /// # Returns
 /// (s) The window's length, and the pieces.
 pub(super) fn pieces(
     recordings: &[HealthyRecording],
-    pinion_teeth: u32,
+    mesh_order: f64,
 ) -> Result<(f64, Vec<Piece>), PathError> {
     let slowest_hz = |recording: &HealthyRecording| {
         let last = recording.samples().saturating_sub(1);
@@ -124,15 +122,13 @@ pub(super) fn pieces(
         speeds.fold(f64::INFINITY, f64::min)
     };
     let slowest_hz = recordings.iter().map(slowest_hz).fold(f64::INFINITY, f64::min);
-    let window_s =
-        (PERIODS_IN_WINDOW / (slowest_hz * f64::from(pinion_teeth))).clamp(WINDOW_S[0], WINDOW_S[1]);
+    let window_s = (PERIODS_IN_WINDOW / (slowest_hz * mesh_order)).clamp(WINDOW_S[0], WINDOW_S[1]);
     let most_of_each = (MOST_PIECES / recordings.len()).max(1);
     let mut pieces = Vec::new();
     for (number, recording) in recordings.iter().enumerate() {
         let (rate_hz, samples) = (recording.sampling_rate_hz, recording.samples());
         let refuse = |problem| Err(PathError::Recording { index: number, problem });
-        let needed_hz =
-            (LEAST_IN_WINDOW / window_s).max(SAMPLES_IN_PERIOD * slowest_hz * f64::from(pinion_teeth));
+        let needed_hz = (LEAST_IN_WINDOW / window_s).max(SAMPLES_IN_PERIOD * slowest_hz * mesh_order);
         // Neither is an infinite speed, that of a recording without two samples, a rate.
         if needed_hz.is_finite() && rate_hz < needed_hz {
             return refuse(RecordingProblem::LowRate { rate_hz, needed_hz });
@@ -185,7 +181,7 @@ mod tests {
                 sampling_rate_hz: 1e4,
                 pinion: ShaftPhase::from_speed_profile(&[0.0, 4.5], &[20.0, 60.0], 1e4, 45_000).unwrap(),
             };
-            let (_, pieces) = pieces(&vec![recording; recordings], 20).unwrap();
+            let (_, pieces) = pieces(&vec![recording; recordings], 20.0).unwrap();
             let mut first: Vec<usize> = pieces.iter().map(|piece| piece.first).collect();
             for pair in pieces.windows(2).filter(|pair| pair[0].recording == pair[1].recording) {
                 assert!(pair[0].first + pair[0].samples <= pair[1].first, "{recordings}");

@@ -1,0 +1,209 @@
+//! Recordings of gearboxes: the phase of one shaft gives the averages, indicators and foreign lines of all.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::f64::consts::TAU;
+
+use meshtone::scenario::*;
+use meshtone::signal::{
+    AngularSettings, Edge, GearTrain, ShaftPhase, StatedTurning, Tachometer, TrainRecording, TrainRecords,
+    TrainSettings, TrainTurning, resample_to, synchronous_average, tachometer_pulses,
+};
+
+fn healthy(rig: Option<GearboxRig>) -> Gearbox {
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(rig)).unwrap();
+    gearbox.faults.clear();
+    for wheel in &mut gearbox.wheels {
+        if wheel.din_grade == 0 {
+            wheel.iso_class = 6;
+        }
+    }
+    gearbox
+}
+
+/// What one sensor records, from a moment on at which all shafts have turned whole revolutions.
+struct Recorded {
+    train: GearTrain,
+    rate_hz: f64,
+    signal: Vec<f64>,
+    /// (rev) Angle of the input.
+    input_rev: Vec<f64>,
+}
+
+fn record(gearbox: &Gearbox, sensor: &str, cycles: usize, profile_hz: Option<[f64; 2]>) -> Recorded {
+    let mut gearbox = gearbox.clone();
+    gearbox.sensors = vec![GearboxSensor::new(sensor)];
+    let train = GearTrain::of_gearbox(&gearbox).unwrap();
+    let cycle_rev = GearboxLayout::new(&gearbox).unwrap().cycle_revolutions() as f64;
+    let speed_hz = gearbox.operation.drive.pinion_speed_hz;
+    let duration_s = (cycles + 1) as f64 * cycle_rev / speed_hz + 0.01;
+    gearbox.solver.settings.duration_s = Some(duration_s);
+    if let Some(value) = profile_hz {
+        let time_s = vec![0.0, 2.0 * duration_s];
+        gearbox.operation.drive.speed_profile_hz = Some(Profile { time_s, value: value.to_vec() });
+    }
+    let channels = meshtone::simulate_gearbox(&gearbox).unwrap().channels;
+    let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap();
+    let angle = phase.revolutions;
+    let from_rev = (angle[0] / cycle_rev).ceil() * cycle_rev;
+    let from = angle.partition_point(|rev| *rev < from_rev - 1e-3);
+    let to = angle.partition_point(|rev| *rev < from_rev + cycles as f64 * cycle_rev + 1e-3).min(angle.len());
+    Recorded {
+        train,
+        rate_hz: channels.sampling_rate_hz,
+        signal: channels.signals[0].values[from..to].to_vec(),
+        input_rev: angle[from..to].to_vec(),
+    }
+}
+
+impl Recorded {
+    /// The phase of a shaft by a tachometer on it, whose waveform is a sine.
+    fn tachometer(&self, shaft: usize) -> TrainTurning {
+        let ratio = self.train.shafts[shaft].speed_ratio.value();
+        let waveform: Vec<f64> = self.input_rev.iter().map(|rev| (TAU * rev * ratio).sin()).collect();
+        let settings = Tachometer { threshold: Some(0.0), ..Tachometer::default() };
+        let pulses = tachometer_pulses(&waveform, self.rate_hz, &settings).unwrap();
+        let phase = ShaftPhase::from_pulses(&pulses, 1, None, self.rate_hz, self.signal.len()).unwrap();
+        TrainTurning::Shaft { shaft, phase, stated: StatedTurning::Pulses { per_revolution: 1 } }
+    }
+
+    fn recording<'a>(&'a self, turning: &'a TrainTurning) -> TrainRecording<'a> {
+        TrainRecording { signal: &self.signal, sampling_rate_hz: self.rate_hz, train: &self.train, turning }
+    }
+
+    /// All records by a tachometer on the input.
+    fn process(&self) -> TrainRecords {
+        let turning = self.tachometer(self.train.input());
+        self.recording(&turning).process(&TrainSettings::default()).unwrap()
+    }
+}
+
+/// The averages of the intermediate and of the output shaft by the tachometer of the input are those by tachometers of their own, also where
+/// the speed drifts by 4 %.
+#[test]
+fn one_tachometer_gives_the_averages_of_all_shafts() {
+    for profile_hz in [None, Some([29.4, 30.6])] {
+        let recorded = record(&healthy(None), "middle:1", 5, profile_hz);
+        let of_input = recorded.tachometer(0);
+        for (wheel, shaft) in [(0, 0), (1, 1), (2, 1), (3, 2)] {
+            let own = recorded.tachometer(shaft);
+            let settings =
+                AngularSettings { points_per_revolution: Some(16_384), ..AngularSettings::default() };
+            let [carried, own] = [&of_input, &own].map(|turning| {
+                synchronous_average(&recorded.recording(turning).angular(wheel, &settings).unwrap()).unwrap()
+            });
+            assert_eq!(carried.revolutions, own.revolutions);
+            let square =
+                |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>();
+            let apart = square(&mut carried.values.iter().zip(&own.values).map(|(a, b)| a - b));
+            let part = (apart / square(&mut own.values.iter().copied())).sqrt();
+            println!("{profile_hz:?}, wheel {wheel}: {} revolutions, apart by {part:.2e}", own.revolutions);
+            assert!(part < 0.01, "{profile_hz:?}, wheel {wheel}: {part}");
+        }
+    }
+}
+
+/// A missing tooth shows on its own shaft: the kurtosis of the difference signal is at least twice that of the other shafts, at sensors that
+/// hear all of them, and no line is foreign. At the input's bearings the output's difference is a twentieth of the input's, and traces of the
+/// input's tooth make it impulsive.
+#[test]
+fn a_missing_tooth_shows_on_its_own_shaft() {
+    let gearbox = healthy(None);
+    for (number, wheel) in gearbox.wheels.iter().enumerate() {
+        let mut damaged = gearbox.clone();
+        let fault = Fault::new(WheelName::Gear, 5, MissingTooth);
+        damaged.faults = vec![GearboxFault { wheel: wheel.name.clone(), fault }];
+        for sensor in ["middle:1", "output:0", "output:1"] {
+            let recorded = record(&damaged, sensor, 5, None);
+            let records = recorded.process();
+            let differences = records.wheels.iter().map(|of| of.records[0].indicators.difference);
+            let kurtosis: Vec<f64> = differences.map(|of| of.kurtosis.unwrap()).collect();
+            println!("{} gone, {sensor}: kurtosis {kurtosis:.1?}", wheel.name);
+            let shaft = recorded.train.wheels[number].shaft;
+            let others = (0..4).filter(|other| recorded.train.wheels[*other].shaft != shaft);
+            let most = others.map(|other| kurtosis[other]).fold(0.0, f64::max);
+            assert!(kurtosis[number] >= 2.0 * most, "{} at {sensor}: {kurtosis:?}", wheel.name);
+            assert_eq!(records.foreign.as_deref(), Some(&[][..]), "{} at {sensor}", wheel.name);
+        }
+    }
+}
+
+/// No line of healthy gearboxes is foreign at any sensor, whatever their tooth counts; the tone of a bearing is.
+#[test]
+fn a_bearing_is_foreign_and_the_gearbox_is_not() {
+    for rig in [None, Some(GearboxRig::Uconn), Some(GearboxRig::Tecnalia)] {
+        let gearbox = healthy(rig);
+        let mut gearbox = gearbox.clone();
+        gearbox.solver.settings.duration_s = Some(3.0);
+        gearbox.sensors = ["input:0", "middle:1", "output:1"].map(GearboxSensor::new).to_vec();
+        let channels = meshtone::simulate_gearbox(&gearbox).unwrap().channels;
+        let train = GearTrain::of_gearbox(&gearbox).unwrap();
+        let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap();
+        let turning =
+            TrainTurning::Shaft { shaft: train.input(), phase: phase.clone(), stated: StatedTurning::Other };
+        for signal in channels.signals.iter().filter(|signal| signal.unit == "g") {
+            let process = |values: &[f64]| {
+                let recording = TrainRecording {
+                    signal: values,
+                    sampling_rate_hz: channels.sampling_rate_hz,
+                    train: &train,
+                    turning: &turning,
+                };
+                recording.process(&TrainSettings::default()).unwrap()
+            };
+            let records = process(&signal.values);
+            println!("{rig:?} {}: {:?} {:?}", signal.name, records.foreign, records.warnings);
+            assert_eq!(records.foreign.as_deref(), Some(&[][..]), "{rig:?} {}", signal.name);
+            // An output may not be heard at the input.
+            let codes = records.warnings.iter().map(|warning| warning.code());
+            assert!(codes.clone().all(|code| code == "nothing-synchronous"), "{rig:?} {}", signal.name);
+            // A tenth of the signal's level at the outer race's order of a bearing with eight balls.
+            let level = meshtone::signal::rms(&signal.values);
+            let tone = |rev: &f64| 0.1 * level * 2f64.sqrt() * (TAU * 3.0523 * rev).cos();
+            let values: Vec<f64> =
+                signal.values.iter().zip(&phase.revolutions).map(|(value, rev)| value + tone(rev)).collect();
+            let foreign = process(&values).foreign.unwrap();
+            let [bearing] = foreign[..] else { panic!("{rig:?} {}: {foreign:?}", signal.name) };
+            let hz = 3.0523 * gearbox.operation.drive.pinion_speed_hz;
+            assert!((bearing.order - 3.0523).abs() < 5e-3 && (bearing.frequency_hz / hz - 1.0).abs() < 2e-3);
+            let amplitude = 0.1 * level * 2f64.sqrt();
+            assert!((bearing.amplitude / amplitude - 1.0).abs() < 0.15, "{bearing:?} {amplitude}");
+        }
+    }
+}
+
+/// The mesh tone of a mesh gives the phase of its shaft, and a wrong constant speed is found.
+#[test]
+fn a_mesh_tone_and_a_wrong_speed() {
+    let recorded = record(&healthy(None), "middle:1", 5, None);
+    let tone = meshtone::signal::MeshTone::new(48, 10.01);
+    let phase = ShaftPhase::from_mesh_tone(&recorded.signal, recorded.rate_hz, &tone).unwrap();
+    let turning =
+        TrainTurning::Shaft { shaft: 1, phase, stated: StatedTurning::MeshTone { nominal_hz: 10.01 } };
+    let records = recorded.recording(&turning).process(&TrainSettings::default()).unwrap();
+    let speeds: Vec<f64> = records.wheels.iter().map(|of| of.mean_speed_hz).collect();
+    for (found, right) in speeds.iter().zip([30.0, 10.0, 10.0, 6.0]) {
+        assert!((found / right - 1.0).abs() < 1e-4, "{speeds:?}");
+    }
+    println!("{:?} {:?}", records.foreign, records.warnings);
+    assert_eq!(records.warnings, []);
+    let by_tachometer = recorded.process();
+    for (of_tone, of_tachometer) in records.wheels.iter().zip(&by_tachometer.wheels) {
+        let rms = |of: &meshtone::signal::WheelRecords| of.records[0].indicators.average.rms;
+        assert!((rms(of_tone) / rms(of_tachometer) - 1.0).abs() < 0.05);
+    }
+    // At a rate as of a rig, 1 % off.
+    let rate_hz = 20_000.0;
+    let signal = resample_to(&recorded.signal, recorded.rate_hz, rate_hz, Edge::Zero).unwrap();
+    let phase = ShaftPhase::constant(30.3, rate_hz, signal.len()).unwrap();
+    let turning =
+        TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::ConstantSpeed { speed_hz: 30.3 } };
+    let recording = TrainRecording {
+        signal: &signal,
+        sampling_rate_hz: rate_hz,
+        train: &recorded.train,
+        turning: &turning,
+    };
+    let records = recording.process(&TrainSettings::default()).unwrap();
+    println!("{:?}", records.warnings);
+    assert!(records.warnings.iter().any(|warning| warning.code() == "speed_hz"), "{:?}", records.warnings);
+}

@@ -1,0 +1,157 @@
+"""All shafts and wheels of a pair or a gearbox, by the phase of one shaft."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Union
+
+import numpy.typing as npt
+
+from .. import _core
+from .._warnings import SignalWarning, typed, warn_of_signal
+from ..gearbox import Gearbox
+from ..scenario import Scenario, native_scenario
+from ._arguments import positive, regular_part, signal_array
+from .phase import ShaftPhase, native_phase
+from .record import Record
+
+Machine = Union[Scenario, Gearbox]
+
+
+@dataclass(frozen=True)
+class ForeignLine:
+    """A line of a recording that belongs to no shaft and no mesh of a machine.
+
+    Attributes
+    ----------
+    frequency_hz : float
+        (Hz) At the mean speed of the recording.
+    order : float
+        (orders of the pinion's shaft, of a gearbox of the input) Its order.
+    amplitude : float
+        (unit of the signal) Its amplitude.
+    part_of_energy : float
+        (-) Its part of the recording's energy.
+    """
+
+    frequency_hz: float
+    order: float
+    amplitude: float
+    part_of_energy: float
+
+
+@dataclass(frozen=True)
+class TrainRecord:
+    """What one channel shows about all wheels of a machine.
+
+    Attributes
+    ----------
+    wheels : dict of str to Record
+        By the wheels' names. Wheels on one shaft have the same average and difference; their tooth counts differ.
+    shafts : dict of str to str
+        The shaft of each wheel.
+    mean_speeds_hz : dict of str to float
+        (Hz) Mean speed of each shaft that has a wheel.
+    foreign_lines : list of ForeignLine or None
+        Lines that belong to no shaft and no mesh, the strongest first; None where they were not looked for: over a run-up, where a stated value
+        does not fit, in fewer than six revolutions.
+    warnings : list of SignalWarning
+        What is doubtful.
+    """
+
+    wheels: dict[str, Record] = field(repr=False)
+    shafts: dict[str, str]
+    mean_speeds_hz: dict[str, float]
+    foreign_lines: list[ForeignLine] | None
+    warnings: list[SignalWarning]
+
+    def __getitem__(self, wheel: str) -> Record:
+        if wheel not in self.wheels:
+            raise KeyError(f"there is no wheel {wheel!r}; there are {', '.join(self.wheels)}")
+        return self.wheels[wheel]
+
+
+def native_machine(machine: Machine) -> _core.Scenario | _core.Gearbox:
+    """A pair or a gearbox as the compiled module has it."""
+    return machine._native if isinstance(machine, Gearbox) else native_scenario(machine)
+
+
+def process_train(
+    signal: npt.ArrayLike,
+    phase: ShaftPhase,
+    machine: Machine,
+    sampling_rate_hz: float,
+    *,
+    shaft: str | None = None,
+    sidebands: int | None = None,
+    shaft_orders: Sequence[int] | None = None,
+    name: str = "signal",
+) -> TrainRecord:
+    """Take one channel to the averages and indicators of every wheel of a pair or a gearbox, and to the lines of neither shafts nor meshes.
+
+    The phase of one shaft is carried to the others through the tooth counts. In a gearbox of three shafts or more the difference signal is also
+    without the whole orders of faster shafts and of other meshes.
+
+    Parameters
+    ----------
+    signal : array_like, shape (samples,)
+        (any unit) The channel.
+    phase : ShaftPhase
+        Of one shaft.
+    machine : Scenario or Gearbox
+        Its tooth counts are used.
+    sampling_rate_hz : float
+        (S/s) Of the signal.
+    shaft : str, optional
+        Name of the shaft that the phase is of: of a scenario ``pinion`` or ``gear``. By default the pinion's, or the input of a gearbox.
+    sidebands, shaft_orders
+        As of :func:`process_channel`.
+    name : str
+        Of the channel, for figures.
+
+    Returns
+    -------
+    TrainRecord
+
+    Raises
+    ------
+    ValueError
+        A shaft that there is not; for the first wheel of which that is so, what :func:`process_channel` refuses.
+
+    Examples
+    --------
+    A tachometer on the input shows all shafts of a gearbox:
+
+    >>> import numpy as np
+    >>> from meshtone import Gearbox, gearbox_template, signal, simulate_gearbox
+    >>> gearbox = Gearbox.from_toml(gearbox_template())
+    >>> simulation = simulate_gearbox(gearbox)
+    >>> vibration, rate_hz = simulation["middle_1_vertical_g"], simulation.sampling_rate_hz
+    >>> pulses_s = np.arange(0.0, 3.0, 1 / 30)
+    >>> phase = signal.ShaftPhase.from_pulses(pulses_s, 1, rate_hz, vibration.size)
+    >>> record = signal.process_train(vibration, phase, gearbox, rate_hz)
+    >>> {wheel: record[wheel].revolutions for wheel in record.wheels}
+    {'z1': 89, 'z2': 29, 'z3': 29, 'z4': 17}
+    >>> record.foreign_lines
+    []
+    """
+    bands, orders = regular_part(sidebands, shaft_orders)
+    rate_hz = positive("sampling_rate_hz", sampling_rate_hz)
+    parts = _core.process_train(signal_array(signal), native_phase(phase), native_machine(machine), rate_hz, shaft, bands, orders)
+    return train_record(parts, name)
+
+
+def train_record(parts: dict[str, Any], name: str) -> TrainRecord:
+    """The results of the compiled module, with its warnings."""
+    warnings = typed(parts["warnings"])
+    warn_of_signal(warnings)
+    wheels = parts["wheels"]
+    foreign = parts["foreign"]
+    return TrainRecord(
+        wheels={wheel: Record(record, teeth=teeth, name=name) for wheel, _, teeth, _, record in wheels},
+        shafts={wheel: shaft for wheel, shaft, *_ in wheels},
+        mean_speeds_hz={shaft: speed_hz for _, shaft, _, speed_hz, _ in wheels},
+        foreign_lines=None if foreign is None else [ForeignLine(*line) for line in foreign],
+        warnings=warnings,
+    )
