@@ -1,10 +1,12 @@
 //! The data card: README.md.
 
-use meshtone::scenario::WarningKind;
+use meshtone::scenario::{ScenarioForm, WarningKind};
 
 use crate::finish::Finished;
 use crate::manifest::PREVIEW;
-use crate::plan::{Class, Growth, PlanFile, Severity, SplitBy, kinds};
+use crate::plan::{
+    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, Wheel, wheel_words,
+};
 use crate::sampling::Design;
 use crate::shard::{Column, Topic, WARNINGS, column_name, varied_keys};
 use crate::words::counted;
@@ -27,7 +29,7 @@ fn head(set: &Finished) -> String {
         (Some(angle), _) => format!(
             "raw channels over {} of the {} at {} points each, of a sampling rate of {rate}",
             counted(angle.revolutions as u64, "revolution"),
-            keep.wheel.name(),
+            keep.wheel.all()[0].name(),
             angle.points_per_revolution,
         ),
         (None, Some(seconds)) => format!("raw channels at {rate} over {seconds} s"),
@@ -39,9 +41,13 @@ fn head(set: &Finished) -> String {
     let mounted = if mountings > 1 { format!(", each mounted {mountings} times") } else { String::new() };
     let records = counted(set.records(), "simulated record");
     let units = counted(set.plan.content.units, "unit");
+    let kind = match set.plan.content.base {
+        ScenarioForm::Gearbox(_) => "gearboxes",
+        _ => "pairs of wheels",
+    };
     let ([plan, scenario, _], version) = (PlanFile::NAMES, env!("CARGO_PKG_VERSION"));
     format!(
-        "{title}{description}{records} of spur gear vibration from {units} (pairs of wheels){mounted}, {channels}. Made with \
+        "{title}{description}{records} of spur gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
          Meshtone {version} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\
          **Licence of the data: {}.**\n\n\
          ![Examples of each class, distributions of the keys, indicators by class]({})\n\n",
@@ -70,16 +76,24 @@ fn counts(set: &Finished) -> String {
     for Class { label, .. } in &plan.content.classes {
         text += &row(label, &|split| contents.counts.get(split)?.get(label).copied());
     }
+    let kind = match plan.content.base {
+        ScenarioForm::Gearbox(_) => "gearbox",
+        _ => "pair of wheels",
+    };
     let (divided, meaning) = match plan.content.splits.by {
         SplitBy::Unit => (
             "unit",
-            "all records of a pair of wheels are in one split, so that nothing about particular wheels that was learned in training \
-             helps in the test",
+            format!(
+                "all records of a {kind} are in one split, so that nothing about particular wheels that was learned in training \
+                 helps in the test"
+            ),
         ),
         SplitBy::Mounting => (
             "mounting",
-            "all records of a pair of wheels as it was put together once are in one split, which may share the wheels with others, \
-             mounted anew: what was learned in training about particular wheels helps in the test, about a mounting it does not",
+            format!(
+                "all records of a {kind} as it was put together once are in one split, which may share the wheels with others, \
+                 mounted anew: what was learned in training about particular wheels helps in the test, about a mounting it does not"
+            ),
         ),
     };
     text += &row(&format!("*{divided}s*"), &|split| units_of_split.get(split).copied());
@@ -122,8 +136,15 @@ fn warnings(set: &Finished) -> String {
 }
 
 fn classes(set: &Finished) -> String {
+    let fault = |ClassFault { wheel, fault }: &ClassFault| match wheel {
+        Wheel::OfPair(_) => fault.damage.kind().to_owned(),
+        Wheel::OfGearbox(name) => format!("{} of {name}", fault.damage.kind()),
+    };
     let row = |class: &Class| {
-        let fault = kinds(&class.faults).unwrap_or_else(|| "none".to_owned());
+        let fault = match &class.faults[..] {
+            [] => "none".to_owned(),
+            faults => faults.iter().map(fault).collect::<Vec<_>>().join(" + "),
+        };
         let grows = class.growth.as_ref().map(grows).unwrap_or_default();
         format!("| {} | {fault}{grows} | {} |\n", class.label, severity(class))
     };
@@ -193,7 +214,7 @@ fn severity(class: &Class) -> String {
 
 fn columns(set: &Finished) -> String {
     let (indicators, others): (Vec<&Column>, Vec<&Column>) =
-        set.columns.iter().partition(|column| matches!(column.topic, Topic::Indicator(_)));
+        set.columns.iter().partition(|column| matches!(column.topic, Topic::Indicator { .. }));
     let row = |column: &Column| {
         let range = set.contents.summary.ranges.get(&column.name);
         let constant = range.filter(|[least, largest]| least == largest);
@@ -208,8 +229,19 @@ fn columns(set: &Finished) -> String {
     );
     if !indicators.is_empty() {
         let names: Vec<String> = indicators.iter().map(|column| format!("`{}`", column.name)).collect();
-        let (wheel, names) = (set.plan.content.keep.wheel.name(), names.join(", "));
-        text += &format!("\nIndicators of the analysed channel over the {wheel}'s revolutions: {names}.\n");
+        text += &match &set.plan.content.keep.wheel {
+            AveragedWheels::One(wheel) => format!(
+                "\nIndicators of the analysed channel over the {}'s revolutions: {}.\n",
+                wheel_words(wheel.name()),
+                names.join(", ")
+            ),
+            AveragedWheels::Each(wheels) => format!(
+                "\nIndicators of the analysed channel over the revolutions of the {}, and likewise of {}: {}.\n",
+                wheel_words(wheels[0].name()),
+                wheels[1..].iter().map(Wheel::name).collect::<Vec<_>>().join(", "),
+                names[..names.len() / wheels.len()].join(", ")
+            ),
+        };
     }
     text + "\n"
 }

@@ -1,5 +1,6 @@
 //! Finishing a data set: its data card, preview, Croissant metadata and manifest.
 
+use meshtone::scenario::ScenarioForm;
 use meshtone_plot::dataset::{DatasetPreview, Example, PreviewColumn, dataset_figure};
 
 use crate::card;
@@ -9,10 +10,13 @@ use crate::digest::Digest;
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, CROISSANT, Document, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::{self, PartList};
-use crate::plan::Plan;
+use crate::plan::{Plan, Wheel, column_part};
 use crate::shard::{self, Column, Shards, Topic, Wanted};
 use crate::store::Destination;
 use crate::words::{counted, words_of};
+
+/// Signals of an average that a preview shows, the first that is kept.
+const SHOWN: [&str; 2] = ["difference_g", "average_g"];
 
 /// A data set whose shards are all there and known.
 #[derive(Clone, Copy)]
@@ -105,16 +109,26 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
         Some(PreviewColumn { name: words_of(&column.name), values })
     };
     let classes: Vec<String> = plan.content.classes.iter().map(|class| class.label.clone()).collect();
-    let of_revolution = |name: &&str| {
-        columns.iter().find(|column| column.topic == Topic::Revolution && column.name == **name)
+    let of_name =
+        |name: &str| columns.iter().find(|column| column.topic == Topic::Revolution && column.name == name);
+    // Damage shows in the average of its own wheel.
+    let shown = |label: &str| {
+        let keep = &plan.content.keep;
+        let class = plan.content.classes.iter().find(|class| class.label == *label);
+        let damaged = class.and_then(|class| class.faults.first()).map(|fault| &fault.wheel);
+        let averaged = keep.wheel.all().iter().find(|wheel| damaged == Some(*wheel));
+        let prefix = keep.wheel.prefix(averaged.unwrap_or(&keep.wheel.all()[0]));
+        let of_revolution = SHOWN.iter().find_map(|name| of_name(&format!("{prefix}{name}")));
+        of_revolution.or_else(|| columns.iter().find(|column| column.is_signal()))
     };
-    let shown = ["difference_g", "average_g"].iter().find_map(of_revolution);
-    let shown = shown.or_else(|| columns.iter().find(|column| column.is_signal()));
+    let first = classes.first().and_then(|label| shown(label));
+    let signal_name = SHOWN.into_iter().find(|name| first.is_some_and(|column| column.name.ends_with(name)));
+    let signal_name = signal_name.or_else(|| first.map(|column| column.name.as_str()));
     let examples = classes.iter().filter_map(|label| {
         let &(shard, row) = contents.summary.first.get(label)?;
         let file = shards.name(shard);
-        let signal = shown.map_or_else(Vec::new, |column| signal(to, &file, row, &column.name));
-        Some(Example { label: label.clone(), conditions: conditions(to, &file, row), signal })
+        let signal = shown(label).map_or_else(Vec::new, |column| signal(to, &file, row, &column.name));
+        Some(Example { label: label.clone(), conditions: conditions(plan, to, &file, row), signal })
     });
     let place = |names: &[String], name: &str| names.iter().position(|other| other == name).unwrap_or(0);
     let splits: Vec<String> = plan.content.splits.names().into_iter().map(str::to_owned).collect();
@@ -131,9 +145,9 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
             counted(plan.content.units, "unit"),
             counted(contents.files.len() as u64, "shard")
         ),
-        signal_name: shown.map_or_else(String::new, |column| words_of(&column.name)),
+        signal_name: signal_name.map_or_else(String::new, words_of),
         over_angle: plan.content.keep.over_angle.is_some()
-            || shown.is_some_and(|column| column.topic != Topic::Channel),
+            || first.is_some_and(|column| column.topic != Topic::Channel),
         examples: examples.collect(),
         class_of: sampled.iter().map(|record| place(&classes, &record.label)).collect(),
         split_of: sampled.iter().map(|record| place(&splits, &record.split)).collect(),
@@ -150,12 +164,20 @@ fn signal(to: &Destination, shard: &str, row: usize, column: &str) -> Vec<f64> {
     read.map_or_else(|_| Vec::new(), |read| read.signal.iter().map(|&x| f64::from(x)).collect())
 }
 
-/// Speed, load and severity of one record, in words.
-fn conditions(to: &Destination, shard: &str, row: usize) -> String {
-    let names = ["pinion_teeth", "gear_teeth", "pinion_speed_hz", "brake_torque_nm", "severity"];
-    let Ok(read) = to.read_shard(shard, Wanted::Columns(&names)) else { return String::new() };
-    let number = |name: &str| read.numbers(name).get(row).copied().unwrap_or(f64::NAN);
-    let [pinion, gear, speed, torque, severity] = names.map(number);
-    let severity = if severity > 0.0 { format!(", severity {severity}") } else { String::new() };
-    format!("{pinion}/{gear} teeth, {speed:.1} Hz, {torque:.1} N m{severity}")
+/// Teeth, speed, load and severity of one record, in words.
+fn conditions(plan: &Plan, to: &Destination, shard: &str, row: usize) -> String {
+    let speed = match plan.content.base {
+        ScenarioForm::Gearbox(_) => "input_speed_hz",
+        _ => "pinion_speed_hz",
+    };
+    let teeth = Wheel::all(&plan.content.base).into_iter().map(|wheel| column_part(wheel.name()) + "_teeth");
+    let names: Vec<String> = teeth.chain([speed, "brake_torque_nm", "severity"].map(str::to_owned)).collect();
+    let wanted: Vec<&str> = names.iter().map(String::as_str).collect();
+    let Ok(read) = to.read_shard(shard, Wanted::Columns(&wanted)) else { return String::new() };
+    let number = |name: &&str| read.numbers(name).get(row).copied().unwrap_or(f64::NAN);
+    let numbers: Vec<f64> = wanted.iter().map(number).collect();
+    let (teeth, [speed, torque, severity]) = numbers.split_last_chunk().unwrap_or((&[], &[f64::NAN; 3]));
+    let teeth = teeth.iter().map(f64::to_string).collect::<Vec<_>>().join("/");
+    let severity = if *severity > 0.0 { format!(", severity {severity}") } else { String::new() };
+    format!("{teeth} teeth, {speed:.1} Hz, {torque:.1} N m{severity}")
 }

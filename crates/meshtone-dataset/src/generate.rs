@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
-use meshtone::batch::{Control, simulate_many};
-use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
+use meshtone::batch::{Control, simulate_many, simulate_many_gearboxes};
+use meshtone::scenario::{ScenarioError, ScenarioForm, WarningKind};
 use rayon::prelude::*;
 
 use crate::contents::{Contents, SummaryColumns, WRONG_BYTES, WarningCounts, add_warnings};
@@ -19,8 +19,8 @@ use crate::error::DatasetError;
 use crate::finish;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::Listing;
-use crate::plan::Plan;
-use crate::record::{KeepRecords, Role, simulated_scenario};
+use crate::plan::{Plan, with_faults};
+use crate::record::{KeepRecords, Record, Role, simulated_scenario};
 use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards};
 use crate::store::Destination;
 
@@ -307,34 +307,52 @@ impl Run<'_> {
             stop.store(sender.send(item).is_err() | stop.load(Ordering::Relaxed), Ordering::Relaxed)
         };
         let control = Control { cancelled: stop, ..Control::default() };
-        simulate_many(scenarios, &keep, &control, |number, result| {
+        let take = |number: usize, result: Result<Result<Box<Record>, String>, meshtone::Error>| {
             let Some((role, failed)) = lock(&asked).roles.remove(&number) else { return };
             failed.into_iter().for_each(|failed| send(Item::Failed(failed)));
             match (result.map_err(|error| explained(&error, error.help())).flatten(), role) {
-                (Ok(record), Role::Record(_)) => send(Item::Record(record)),
+                (Ok(record), Role::Record(..)) => send(Item::Record(record)),
                 (Ok(record), Role::HealthyTwin(..)) => send(Item::HealthyTwin(record)),
-                (Err(reason), Role::Record(drawn)) => {
+                (Err(reason), Role::Record(drawn, _)) => {
                     send(Item::Failed(FailedRecord { record: drawn.index, reason }));
                 }
                 // The failure of a twin is reported with its record, which needs the twin.
                 (Err(_), Role::HealthyTwin(..)) => {}
             }
-        });
+        };
+        match self.plan.content.base {
+            ScenarioForm::Gearbox(_) => {
+                let gearboxes = scenarios.filter_map(|form| match form {
+                    ScenarioForm::Gearbox(gearbox) => Some(gearbox),
+                    _ => None,
+                });
+                let of = |number, simulation| keep.of_gearbox(number, simulation);
+                simulate_many_gearboxes(gearboxes, &of, &control, take)
+            }
+            _ => {
+                let pairs = scenarios.filter_map(|form| match form {
+                    ScenarioForm::Pair(pair) => Some(pair),
+                    _ => None,
+                });
+                simulate_many(pairs, &keep, &control, take)
+            }
+        };
         let rest = std::mem::take(&mut lock(&asked).failed);
         rest.into_iter().for_each(|failed| send(Item::Failed(failed)));
     }
 
     /// Draws a record and asks for its simulations: a faulty record that is enhanced has its healthy twin before it.
-    fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<Scenario> {
+    fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<ScenarioForm> {
         let drawn = self.sampler.record(index).map_err(|error| error.problem).and_then(|record| {
             let of_scenario = |error: ScenarioError| explained(&error, error.help.as_deref());
             let scenario = self.sampler.scenario(&record).map_err(of_scenario)?;
             let scenario = simulated_scenario(&self.plan.content.keep, &record, scenario);
-            Ok((record, scenario.map_err(|error| error.to_string())?))
+            let (scenario, window) = scenario.map_err(|error| error.to_string())?;
+            Ok((record, scenario, window))
         });
         // The lock is taken after drawing: other threads wait for it.
         let mut asked = lock(asked);
-        let (record, scenario) = match drawn {
+        let (record, scenario, window) = match drawn {
             Ok(drawn) => drawn,
             Err(reason) => {
                 asked.failed.push(FailedRecord { record: index, reason });
@@ -342,11 +360,11 @@ impl Run<'_> {
             }
         };
         let mut scenarios = vec![scenario];
-        if self.plan.content.tuned.is_some() && !scenarios[0].faults.is_empty() {
-            asked.add(Role::HealthyTwin(record.clone(), scenarios[0].faults.clone()));
-            scenarios.insert(0, scenarios[0].clone().with_faults(Vec::new()));
+        if self.plan.content.tuned.is_some() && scenarios[0].fault_count() > 0 {
+            asked.add(Role::HealthyTwin(record.clone(), window.clone()));
+            scenarios.insert(0, with_faults(&scenarios[0], &[]));
         }
-        asked.add(Role::Record(record));
+        asked.add(Role::Record(record, window));
         scenarios
     }
 

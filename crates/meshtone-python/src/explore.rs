@@ -2,6 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use meshtone_diagnose::ReferenceStore;
 use meshtone_explore::{Embedding, Server, ServerSettings};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -26,7 +27,8 @@ impl ExploreServer {
     #[new]
     fn new(scenario: &Scenario, port: u16, in_notebook: bool) -> PyResult<Self> {
         let embedding = if in_notebook { Embedding::Notebook } else { Embedding::Refused };
-        let settings = ServerSettings { scenario: scenario.0.clone(), port, embedding };
+        let reference = ReferenceStore::default_folder();
+        let settings = ServerSettings { scenario: scenario.0.clone(), port, embedding, reference };
         let server = Server::start(settings).map_err(|error| {
             PyOSError::new_err(format!("port = {port}: cannot serve a page there: {error}"))
         })?;

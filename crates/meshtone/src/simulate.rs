@@ -14,6 +14,7 @@ use std::time::Duration;
 use web_time::Instant;
 
 pub use equations::Equations;
+pub(crate) use gearbox::gearbox_stages_with;
 pub use gearbox::{
     GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
     gearbox_stages_within, simulate_gearbox, simulate_gearboxes,

@@ -246,7 +246,7 @@ impl Scenario {
             "# Record {} of {name}: \"{label}\", severity {}, unit {}, {split}.\n",
             self.record, record.severity, record.unit
         );
-        if !scenario.faults.is_empty() {
+        if scenario.fault_count() > 0 {
             head += "# Teeth count from where the first two meet; in the data set, fault_tooth counts from the record's start.\n";
         }
         print(&(head + &scenario.to_toml()))

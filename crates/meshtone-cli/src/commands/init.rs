@@ -30,6 +30,9 @@ pub struct Init {
     /// Print what is published of a rig with a gearbox; what is assumed is marked
     #[arg(long, value_name = "RIG", value_parser = PossibleValuesParser::new(GearboxRig::ALL.map(GearboxRig::name)))]
     rig: Option<String>,
+    /// Print the plan of a data set of a gearbox, instead of one pair
+    #[arg(long)]
+    gearbox: bool,
     /// File to write, instead of standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -45,6 +48,7 @@ Examples:
   meshtone init gearbox -o gearbox.toml
   meshtone init gearbox --rig phm2009-spur
   meshtone init dataset -o plan.toml
+  meshtone init dataset --gearbox -o plan.toml
   meshtone init experiment -o experiment.toml";
 
 impl Init {
@@ -54,9 +58,15 @@ impl Init {
             let problem = format!("--rig: given with {}; only a gearbox has published rigs", self.kind);
             return Failure::refuse(problem, "write `meshtone init gearbox --rig RIG`");
         }
+        if self.gearbox && self.kind != DATASET {
+            let problem =
+                format!("--gearbox: given with {}; only a data set is of a pair or of a gearbox", self.kind);
+            return Failure::refuse(problem, "write `meshtone init dataset --gearbox`");
+        }
         let rig = GearboxRig::ALL.into_iter().find(|rig| self.rig.as_deref() == Some(rig.name()));
         let text = match self.kind.as_str() {
             GEARBOX => gearbox_template(rig),
+            DATASET if self.gearbox => plan::gearbox_template(),
             DATASET => plan::template().to_owned(),
             EXPERIMENT => experiment::template().to_owned(),
             kind => template(kind).ok_or_else(unknown)?,

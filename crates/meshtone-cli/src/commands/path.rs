@@ -5,13 +5,13 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use meshtone::scenario::ScenarioForm;
-use meshtone::signal::{SignalWarning, StatedFacts, StatedTurning, TrainRecording, TrainTurning};
+use meshtone::signal::{SignalWarning, StatedFacts, TrainRecording, TrainTurning};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
     estimate_path,
 };
 use meshtone::{Error, gearbox_stages};
-use meshtone_diagnose::other_teeth;
+use meshtone_diagnose::other_tone;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::path_csv::path_csv;
@@ -127,14 +127,9 @@ impl Path {
         let mut doubtful = Vec::new();
         if let TrainTurning::Shaft { shaft, phase, stated } = &turning {
             doubtful.clone_from(&phase.warnings);
-            if let (StatedTurning::MeshTone { nominal_hz }, [_], [_, ..]) =
-                (stated, &train.meshes[..], &doubtful[..])
-                && let Some(StatedFacts { teeth, mate_teeth: Some(mate), .. }) =
-                    StatedFacts::of_shaft(&train, *shaft, *stated)
-                && let Some(mismatch) =
-                    other_teeth(&channel.samples, sampling_rate_hz, [teeth, mate], *nominal_hz)
-                        .map_err(refused)?
-            {
+            let facts = StatedFacts::of_shaft(&train, *shaft, *stated).filter(|_| train.meshes.len() == 1);
+            let other = facts.map(|facts| other_tone(&channel.samples, sampling_rate_hz, phase, &facts));
+            if let Some(mismatch) = other.transpose().map_err(refused)?.flatten() {
                 let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
                 let problem = format!("{}: {problem}", path.display());
                 return Failure::refuse(problem, "state the speed, or a tachometer with --tach");

@@ -81,7 +81,7 @@ impl Turned {
         let form = simulated_form(input, scenario_toml)?;
         let train = train_of(&form)?;
         let samples = input.channel.samples.len();
-        check_rate(input, form.sampling_rate_hz())?;
+        check_rate(input, form.time_grid().sampling_rate_hz)?;
         let turning = TrainTurning::of_simulated(&form, input.start_s, samples)
             .map_err(|error| refuse(&input.source, "its time", RefusedInput::Phase, &error))?;
         let damaged = (0..train.wheels.len()).map(|wheel| damaged_teeth(&form, wheel));
@@ -118,7 +118,7 @@ impl Turned {
         let ratio = |shaft: usize| train.speed_ratio(shaft, train.input()).value();
         let mut phase = stated.clone();
         if !stated.states_shaft_angle() {
-            phase.shaft_hz = Some(form.input_speed_hz() * ratio(shaft));
+            phase.shaft_hz = Some(form.operation().pinion_speed_hz * ratio(shaft));
             phase.from_mesh_tone = true;
         }
         let mut source = phase.source().to_owned();

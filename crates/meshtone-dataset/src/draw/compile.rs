@@ -2,23 +2,26 @@
 
 use std::collections::BTreeMap;
 
-use meshtone::scenario::{Scenario, ScenarioNumber};
+use meshtone::scenario::{ScenarioForm, ScenarioNumber, split_key};
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::{SEVERITY, fault_of_severity};
 use super::{FAULT_SEVERITY, NOISE_KEYS, PATH_KEYS, Sampler, is_of_plan, shift_key};
 use crate::expression::{Condition, Expression, derived_names, underlying};
-use crate::plan::{Content, Level, Rule, Severity, SplitBy, kinds, refused};
+use crate::plan::{Content, Level, Rule, Severity, SplitBy, kinds, list_and_entry, refused, with_faults};
 
 /// Keys that cannot be varied, and why.
-const OWN: [(&str, &str); 2] =
-    [("seed", "every record has a seed of its own"), ("quality.seed", "every unit has wheels of its own")];
+const OWN: [(&str, &str); 3] = [
+    ("seed", "every record has a seed of its own"),
+    ("quality.seed", "every unit has wheels of its own"),
+    ("wheels_seed", "every unit has wheels of its own"),
+];
 
 /// The scenario and the rules by which the records of a class are drawn.
 #[derive(Debug, Clone)]
 pub(super) struct ClassRules<'a> {
     /// The base scenario with the class's faults.
-    pub base: Scenario,
+    pub base: ScenarioForm,
     /// All numbers of that scenario by their keys.
     pub numbers: BTreeMap<String, f64>,
     /// Rules for records. Rules that others depend on come first.
@@ -33,7 +36,7 @@ impl ClassRules<'_> {
 
     /// Returns whether a key is the severity of a fault that is given by its sizes or otherwise.
     fn computes_severity(&self, key: &str) -> bool {
-        fault_of_severity(key, &self.base.faults).is_some()
+        fault_of_severity(key, self.base.fault_count()).is_some()
     }
 }
 
@@ -69,7 +72,7 @@ impl<'a> Sampler<'a> {
 
 /// Checks the rules that concern a class, and puts those for its records in order.
 fn class_rules(content: &Content, class: usize) -> ReadResult<ClassRules<'_>> {
-    let base = content.base.clone().with_faults(content.classes[class].faults.clone());
+    let base = with_faults(&content.base, &content.classes[class].faults);
     let known = base.numbers();
     let mut own = content.class_rules(class);
     if let Some((rule, place)) = own.find(|(rule, _)| rule.level != Level::Record) {
@@ -80,7 +83,7 @@ fn class_rules(content: &Content, class: usize) -> ReadResult<ClassRules<'_>> {
     let has = |key: &String| is_of_plan(key) || find(&known, key).is_some();
     let concerned = content.top_rules().filter(|(rule, _)| rule.keys.iter().all(has));
     let rules: Vec<Placed> = concerned.chain(content.class_rules(class)).collect();
-    check_keys(&rules, &known, &base)?;
+    check_keys(&rules, &known, content, class)?;
     check_growth(content, class, &rules, &known)?;
     let mut rules = in_order(&rules, &known)?;
     rules.retain(|rule| rule.level == Level::Record);
@@ -101,6 +104,17 @@ fn is_of_fault(key: &str) -> bool {
     key.starts_with("fault.") || key.starts_with("fault[")
 }
 
+/// Returns whether a key is one of the teeth, which make a unit what it is.
+fn is_of_wheels(key: &str) -> bool {
+    const OF_TEETH: [&str; 2] = ["module_mm", "pressure_angle_deg"];
+    let (section, rest) = split_key(key);
+    match list_and_entry(section).0 {
+        "gears" | "quality" | "wheel" => true,
+        "mesh" => rest.is_some_and(|rest| OF_TEETH.contains(&rest)),
+        _ => false,
+    }
+}
+
 /// An error about a key that a rule varies.
 fn refuse_key((rule, place): &Placed, key: &str, problem: impl Into<String>) -> TomlError {
     let named = if rule.keys.len() == 1 { "key" } else { "keys" };
@@ -111,7 +125,7 @@ fn refuse_key((rule, place): &Placed, key: &str, problem: impl Into<String>) -> 
 ///
 /// A key that is varied twice would have two values, and one that differs within a unit would give one pair of wheels several shapes. The
 /// first problem is reported at its rule, so that a user finds it in the plan.
-fn check_keys(rules: &[Placed], known: &[ScenarioNumber], base: &Scenario) -> ReadResult<()> {
+fn check_keys(rules: &[Placed], known: &[ScenarioNumber], content: &Content, class: usize) -> ReadResult<()> {
     let mut seen: Vec<(&str, &str)> = Vec::new();
     for placed in rules {
         let (rule, place) = placed;
@@ -134,17 +148,16 @@ fn check_keys(rules: &[Placed], known: &[ScenarioNumber], base: &Scenario) -> Re
                 continue;
             }
             let Some(number) = find(known, key) else {
-                return Err(unknown(placed, key, known, base));
+                return Err(unknown(placed, key, known, content, Some(class)));
             };
             if number.whole && !draws_whole_numbers(rule, column) {
                 let problem = format!("`{key}` is a whole number, but what is drawn for it is not");
                 return Err(refuse(key, problem).with_help("use choice or grid with whole numbers"));
             }
-            let fixed_wheels = key.starts_with("gears.") || key.starts_with("quality.");
-            if fixed_wheels && rule.level != Level::Unit {
+            if is_of_wheels(key) && rule.level != Level::Unit {
                 let problem =
                     format!("`{key}` would differ between {level}s of one unit, which share their wheels");
-                let help = "leave out per: it is \"unit\" for gears and quality";
+                let help = "leave out per: it is \"unit\" for keys of wheels";
                 return Err(refuse(key, problem).with_help(help));
             }
             if is_of_fault(key) && rule.level != Level::Record {
@@ -165,11 +178,25 @@ fn draws_whole_numbers(rule: &Rule, column: usize) -> bool {
 }
 
 /// The error of a key that is no number of the scenario.
-fn unknown(placed: &Placed, key: &str, known: &[ScenarioNumber], base: &Scenario) -> TomlError {
-    let fault = kinds(&base.faults).unwrap_or_else(|| "a healthy pair".to_owned());
+///
+/// # Arguments
+/// * `class` - whose scenario it is; none for the base
+fn unknown(
+    placed: &Placed,
+    key: &str,
+    known: &[ScenarioNumber],
+    content: &Content,
+    class: Option<usize>,
+) -> TomlError {
+    let faults = class.map_or(&[][..], |class| &content.classes[class].faults);
+    let healthy = match content.base {
+        ScenarioForm::Gearbox(_) => "a healthy gearbox",
+        _ => "a healthy pair",
+    };
+    let fault = kinds(faults).unwrap_or_else(|| healthy.to_owned());
     let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
     let error = refuse_key(placed, key, problem);
-    if fault_of_severity(key, &base.faults).is_some() {
+    if fault_of_severity(key, faults.len()).is_some() {
         return error.with_help("write the fault with severity = … in place of its sizes");
     }
     error.with_help(match nearest_name(key, keys(known).chain(NOISE_KEYS).chain(PATH_KEYS)) {
@@ -194,7 +221,7 @@ fn check_top(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
         let key = rule_keys.iter().find(is_nowhere).unwrap_or(&rule_keys[0]);
         let mut known = content.base.numbers();
         known.extend(classes.iter().flat_map(|class| class.base.numbers()));
-        return Err(unknown(&placed, key, &known, &content.base));
+        return Err(unknown(&placed, key, &known, content, None));
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ mod compile;
 mod values;
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{Scenario, ScenarioError, SensorPath};
+use meshtone::scenario::{ScenarioError, ScenarioForm, SensorPath};
 use meshtone_toml::{ReadResult, TomlError};
 
 use crate::expression::{Condition, Expression};
@@ -201,7 +201,7 @@ impl Sampler<'_> {
     ///
     /// # Errors
     /// Values that the scenario does not allow.
-    pub fn scenario(&self, record: &DrawnRecord) -> Result<Scenario, ScenarioError> {
+    pub fn scenario(&self, record: &DrawnRecord) -> Result<ScenarioForm, ScenarioError> {
         // A gain and a ripple in dB may be negative.
         for key in &PATH_KEYS[2..] {
             if let Some(value) = record.value(key).filter(|value| *value < 0.0) {
@@ -209,10 +209,18 @@ impl Sampler<'_> {
             }
         }
         let mut scenario = self.classes[record.class].base.with_numbers(&of_scenario(&record.values))?;
-        scenario.seed = record.seed;
-        scenario.quality.seed = Some(record.wheels_seed);
+        match &mut scenario {
+            ScenarioForm::Pair(pair) => {
+                pair.seed = record.seed;
+                pair.quality.seed = Some(record.wheels_seed);
+            }
+            ScenarioForm::Gearbox(gearbox) => {
+                gearbox.seed = record.seed;
+                gearbox.wheels_seed = Some(record.wheels_seed);
+            }
+        }
         // What the plan puts between place and sensor stands instead of the sensor's own.
-        for sensor in &mut scenario.sensors {
+        for sensor in scenario.sensors_mut() {
             if record.value(PLATE_HZ).is_some() {
                 sensor.path.plate_hz = 0.0;
             }

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
 
 use super::is_of_plan;
 use crate::expression::derived;
@@ -12,7 +12,7 @@ use crate::expression::derived;
 pub(super) const SEVERITY: &str = "severity";
 
 pub(super) struct Values<'a> {
-    base: &'a Scenario,
+    base: &'a ScenarioForm,
     /// The numbers of `base`.
     numbers: &'a BTreeMap<String, f64>,
     /// Keys and values that have been drawn so far.
@@ -29,7 +29,7 @@ impl<'a> Values<'a> {
     /// # Arguments
     /// * `base` - the scenario
     /// * `numbers` - all its numbers, by their keys
-    pub fn new(base: &'a Scenario, numbers: &'a BTreeMap<String, f64>) -> Self {
+    pub fn new(base: &'a ScenarioForm, numbers: &'a BTreeMap<String, f64>) -> Self {
         Self { base, numbers, drawn: Vec::new(), severity: None, severities_by_sizes: OnceCell::new() }
     }
 
@@ -46,7 +46,7 @@ impl<'a> Values<'a> {
 
     /// The severity of a fault that is given by its sizes.
     fn severity_by_sizes(&self, key: &str) -> Option<f64> {
-        let fault = fault_of_severity(key, &self.base.faults)?;
+        let fault = fault_of_severity(key, self.base.fault_count())?;
         let of_drawn = || self.base.with_numbers(&of_scenario(&self.drawn)).ok()?.fault_severities().ok();
         self.severities_by_sizes.get_or_init(of_drawn).as_ref()?.get(fault).copied()
     }
@@ -64,12 +64,16 @@ pub(super) fn of_scenario(values: &[(String, f64)]) -> Vec<(&str, f64)> {
 }
 
 /// Finds the number of the fault, from 0, whose severity a key is: `fault.severity`, or of several `fault[1].severity`.
-pub(super) fn fault_of_severity(key: &str, faults: &[meshtone::scenario::Fault]) -> Option<usize> {
+///
+/// # Arguments
+/// * `key` - any
+/// * `faults` - how many there are
+pub(super) fn fault_of_severity(key: &str, faults: usize) -> Option<usize> {
     let section = key.strip_suffix(".severity")?;
-    let number = match (section, faults.len()) {
+    let number = match (section, faults) {
         ("fault", 1) => 0,
         (_, 2..) => section.strip_prefix("fault[")?.strip_suffix(']')?.parse().ok()?,
         _ => return None,
     };
-    (number < faults.len()).then_some(number)
+    (number < faults).then_some(number)
 }

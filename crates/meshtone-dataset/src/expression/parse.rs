@@ -128,7 +128,12 @@ impl<'a> Reader<'a> {
     }
 
     fn key(&mut self) -> Node {
-        let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
+        // What stands in brackets is the name of an entry of a list, in which there may be any sign.
+        let mut inside = false;
+        let mut is_part = |c: char| {
+            inside = (inside || c == '[') && c != ']';
+            inside || c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | ']')
+        };
         let len = self.rest.find(|c| !is_part(c)).unwrap_or(self.rest.len());
         let key = self.rest[..len].to_owned();
         self.skip(len);

@@ -2,12 +2,15 @@
 
 use std::collections::HashSet;
 
-use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
+use meshtone::scenario::{ScenarioError, ScenarioForm, ScenarioWarning};
 use meshtone::signal::FEWEST_REVOLUTIONS;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{Class, Content, Distribution, Keep, Level, Plan, Rule, SplitBy, Splits, refused};
+use super::{
+    Class, Content, Distribution, Keep, Level, Plan, Rule, SplitBy, Splits, Wheel, refused, wheel_words,
+};
 use crate::draw::{DrawnRecord, Sampler, is_of_plan};
+use crate::record::Turning;
 use crate::shard::FailedRecord;
 
 /// Largest number of records that are drawn to check a plan.
@@ -40,23 +43,39 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
         let key = if content.splits.by == SplitBy::Unit { "units" } else { "mountings" };
         return Err(root.error(key, problem).with_help("raise it, or write [split] with train = 1.0"));
     }
-    let quality = &content.base.quality;
-    for (is_given, key, why) in [
-        (quality.profile_errors.is_some(), "errors_file", "units draw their wheels by din_grade"),
-        (quality.seed.is_some(), "seed", "every unit has wheels of its own"),
-    ] {
-        if is_given {
-            let problem = format!("cannot be given: {why}");
-            let place = format!("scenario.quality.{key}");
-            return Err(refused(place, problem, "remove it from the base scenario"));
-        }
-    }
+    refuse_given_wheels(&content.base)?;
     let mut tuned = content.tuned.iter().flat_map(|tuned| &tuned.keys);
     if let Some((key, _)) = tuned.find(|(key, _)| content.all_rules().any(|rule| rule.varies(key))) {
         let problem = format!("has the key `{key}`, which a rule varies; must be one of the two");
         return Err(root.error("tuned", problem));
     }
     Sampler::new(content).map(drop)
+}
+
+/// Refuses wheels whose deviations or seed are given: every unit has wheels of its own.
+fn refuse_given_wheels(base: &ScenarioForm) -> ReadResult<()> {
+    const DRAWN: &str = "units draw their wheels by din_grade or iso_class";
+    const OWN: &str = "every unit has wheels of its own";
+    let given: Vec<(bool, String, &str)> = match base {
+        ScenarioForm::Gearbox(gearbox) => {
+            let wheels = gearbox.wheels.iter().map(|wheel| {
+                let key = format!("wheel[{}].errors_file", wheel.name);
+                (wheel.profile_errors_mm.is_some(), key, DRAWN)
+            });
+            wheels.chain([(gearbox.wheels_seed.is_some(), "wheels_seed".to_owned(), OWN)]).collect()
+        }
+        ScenarioForm::Pair(pair) => vec![
+            (pair.quality.profile_errors.is_some(), "quality.errors_file".to_owned(), DRAWN),
+            (pair.quality.seed.is_some(), "quality.seed".to_owned(), OWN),
+        ],
+    };
+    match given.into_iter().find(|(is_given, ..)| *is_given) {
+        Some((_, key, why)) => {
+            let problem = format!("cannot be given: {why}");
+            Err(refused(format!("scenario.{key}"), problem, "remove it from the base scenario"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Checks that no two columns of the data set have the same name.
@@ -102,7 +121,11 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
             });
             let result = made.map_err(of_class).and_then(|scenario| {
                 refuse_length(content, &scenario)?;
-                meshtone::stages(&scenario).map(drop).map_err(of_class)
+                let stages = match &scenario {
+                    ScenarioForm::Gearbox(gearbox) => meshtone::gearbox_stages(gearbox).map(drop),
+                    ScenarioForm::Pair(pair) => meshtone::stages(pair).map(drop),
+                };
+                stages.map_err(of_class)
             });
             if result.is_ok() || class.simulated.is_none() {
                 class.simulated = Some(result);
@@ -307,10 +330,10 @@ fn refuse_value(
 
 /// Refuses a record that lasts longer than a speed profile, channels over the angle of an unsteady motion, and averages over too few
 /// revolutions.
-fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
+fn refuse_length(content: &Content, scenario: &ScenarioForm) -> ReadResult<()> {
     let Keep { over_angle, duration_s, wheel, .. } = &content.keep;
-    let (operation, gears) = (&scenario.operation, &scenario.gears);
-    if over_angle.is_some() && !operation.is_steady() {
+    let (operation, is_steady) = (scenario.operation(), scenario.is_steady());
+    if over_angle.is_some() && !is_steady {
         let problem = "is of a speed and a load that are constant within a record; the scenario's are not";
         let help = "leave it and revolutions out, or the profiles and fluctuations";
         return Err(refused("keep.points_per_revolution", problem, help));
@@ -325,26 +348,31 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
         let error = TomlError::new("keep.duration_s", duration_s.to_string(), problem);
         return Err(error.with_help("shorten it, or leave it out: a record is then as long as that"));
     }
-    let shaft_hz = operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.teeth(*wheel));
-    let length = scenario.solver.length_key();
-    let (key, value, change, revolutions) = match (over_angle, duration_s) {
+    let turning = Turning::of(scenario)?;
+    let of_wheel = |wheel: &Wheel| &turning.wheels[turning.number(wheel)];
+    let first = of_wheel(&wheel.all()[0]);
+    // The slowest has the fewest revolutions; its first one begins up to a pitch after the record.
+    let slowest = wheel.all().iter().map(of_wheel).min_by(|a, b| a.speed_hz.total_cmp(&b.speed_hz));
+    let slowest = slowest.unwrap_or(first);
+    let before = if turning.enter_together { 0.0 } else { 1.0 / f64::from(slowest.teeth) };
+    let length = scenario.solver().length_key();
+    let (key, value, change, seconds) = match (over_angle, duration_s) {
         (Some(angle), _) => {
             let revolutions = angle.revolutions as f64;
-            ("keep.revolutions", revolutions, "raise", revolutions)
+            ("keep.revolutions", revolutions, "raise", revolutions / first.speed_hz)
         }
-        (None, Some(duration_s)) => ("keep.duration_s", *duration_s, "raise", duration_s * shaft_hz),
-        (None, None) => (
-            &*format!("scenario.solver.{}", length.name),
-            length.value,
-            length.change,
-            simulated_s * shaft_hz,
-        ),
+        (None, Some(duration_s)) => ("keep.duration_s", *duration_s, "raise", *duration_s),
+        (None, None) => {
+            (&*format!("scenario.solver.{}", length.name), length.value, length.change, simulated_s)
+        }
     };
+    let revolutions = seconds * slowest.speed_hz - before;
     // A whole number of revolutions may come out a rounding error below it.
-    if content.keep.is_analysed() && operation.is_steady() && revolutions + 1e-6 < FEWEST_REVOLUTIONS as f64 {
+    if content.keep.is_analysed() && is_steady && revolutions + 1e-6 < FEWEST_REVOLUTIONS as f64 {
         let problem = format!(
-            "gives {revolutions:.3} revolutions of the {} at {shaft_hz:.3} Hz, but an average needs at least {FEWEST_REVOLUTIONS}",
-            wheel.name()
+            "gives {revolutions:.3} revolutions of the {} at {:.3} Hz, but an average needs at least {FEWEST_REVOLUTIONS}",
+            wheel_words(&slowest.name),
+            slowest.speed_hz
         );
         let help = format!("{change} it, or set average, difference and indicators to false");
         return Err(TomlError::new(key, value.to_string(), problem).with_help(help));
@@ -353,7 +381,8 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
 }
 
 /// Refuses a varied key that the model ignores: it would be a label without effect.
-fn refuse_ignored(scenario: &Scenario, values: &[(String, f64)]) -> ReadResult<()> {
+fn refuse_ignored(scenario: &ScenarioForm, values: &[(String, f64)]) -> ReadResult<()> {
+    let ScenarioForm::Pair(scenario) = scenario else { return Ok(()) };
     let mut ignored = scenario.ignored_by_model().into_iter();
     let is_varied = |warning: &ScenarioWarning| values.iter().any(|(key, _)| key.starts_with(&warning.key));
     let refused = ignored.find(is_varied).map(|warning| TomlError::new(warning.key, "", warning.message));

@@ -1,8 +1,6 @@
 //! The classes of a data set.
 
-use meshtone::scenario::Fault;
-
-use super::{Growth, Rule};
+use super::{ClassFault, Growth, Rule};
 use crate::expression::Expression;
 
 /// Records of one label.
@@ -11,7 +9,7 @@ pub struct Class {
     /// The label.
     pub label: String,
     /// The faults, before their varied keys are drawn; empty for healthy records.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<ClassFault>,
     /// How many records.
     pub count: u64,
     /// How severe they are.
@@ -22,9 +20,9 @@ pub struct Class {
     pub growth: Option<Growth>,
 }
 
-/// The kinds of some faults, in their order; none of a healthy pair.
-pub(crate) fn kinds(faults: &[Fault]) -> Option<String> {
-    let kinds: Vec<_> = faults.iter().map(|fault| fault.damage.kind()).collect();
+/// The kinds of some faults, in their order; none of a healthy pair or gearbox.
+pub(crate) fn kinds(faults: &[ClassFault]) -> Option<String> {
+    let kinds: Vec<_> = faults.iter().map(|fault| fault.fault.damage.kind()).collect();
     (!kinds.is_empty()).then(|| kinds.join(" + "))
 }
 

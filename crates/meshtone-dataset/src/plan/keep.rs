@@ -1,7 +1,8 @@
 //! The signals and values that a data set keeps of each record.
 
-use meshtone::scenario::WheelName;
 use meshtone::sensor::Channel;
+
+use super::AveragedWheels;
 
 /// Most records in a shard.
 pub const MOST_SHARD_RECORDS: u64 = 65_536;
@@ -13,14 +14,14 @@ pub struct Keep {
     pub sampling_rate_hz: f64,
     /// (s) Length of the raw channels; none for a hunting period, after which the same teeth meet again.
     pub duration_s: Option<f64>,
-    /// How the raw channels lie over the angle of `wheel`, as many values in every record; none where they are over time.
+    /// How the raw channels lie over the angle of the first wheel of `wheel`, as many values in every record; none where they are over time.
     pub over_angle: Option<OverAngle>,
     /// Raw channels that are kept.
     pub channels: Vec<Channel>,
     /// The channel that is averaged.
     pub analysed: Channel,
-    /// The wheel over whose revolutions it is averaged.
-    pub wheel: WheelName,
+    /// The wheels over whose revolutions it is averaged.
+    pub wheel: AveragedWheels,
     /// Sidebands that are taken away for the difference signal.
     pub sidebands: usize,
     /// Shaft orders that are taken away for it.

@@ -10,11 +10,12 @@ mod question;
 mod read;
 mod rule;
 mod split;
+mod wheel;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
 use meshtone_io::experiment::Tuned;
 use meshtone_toml::TomlError;
 
@@ -25,6 +26,8 @@ pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
+pub use wheel::{AveragedWheels, ClassFault, Wheel};
+pub(crate) use wheel::{column_part, wheel_words, with_faults};
 
 use crate::digest::Digest;
 use crate::expression::Condition;
@@ -37,6 +40,15 @@ use crate::sampling::Design;
 /// * `help` - what the user can do
 pub(crate) fn refused(place: impl Into<String>, problem: impl Into<String>, help: &str) -> TomlError {
     TomlError::new(place, "", problem).with_help(help)
+}
+
+/// The name of a section and, of an entry of a list such as `wheel[z1]` or `fault[1]`, what stands in the brackets.
+///
+/// # Arguments
+/// * `section` - the first segment of a key
+pub(crate) fn list_and_entry(section: &str) -> (&str, Option<&str>) {
+    let entry = section.split_once('[').and_then(|(list, entry)| Some((list, entry.strip_suffix(']')?)));
+    entry.map_or((section, None), |(list, entry)| (list, Some(entry)))
 }
 
 /// The plan of a data set.
@@ -91,8 +103,8 @@ pub struct Content {
     /// Seed of all draws.
     pub seed: u64,
     /// The healthy scenario that all records have in common.
-    pub base: Scenario,
-    /// How many units there are: pairs of wheels.
+    pub base: ScenarioForm,
+    /// How many units there are: pairs of wheels, or gearboxes.
     pub units: u64,
     /// How often each unit is mounted: its records are spread evenly over that many mountings.
     pub mountings: u64,
@@ -179,4 +191,36 @@ impl Plan {
 /// ```
 pub fn template() -> &'static str {
     include_str!("template.toml")
+}
+
+/// A commented plan of a data set of the gearbox that [`meshtone::scenario::gearbox_template`] prints.
+///
+/// ```
+/// use std::path::Path;
+/// use meshtone_dataset::plan::{Plan, gearbox_template};
+///
+/// let plan = Plan::read_text(gearbox_template(), Path::new("plan.toml"))?;
+/// assert_eq!((plan.records(), plan.content.keep.wheel.names()), (200, "z1, z2, z3, z4".to_owned()));
+/// # Ok::<(), meshtone_io::scenario_file::ReadScenarioError>(())
+/// ```
+pub fn gearbox_template() -> String {
+    // At the example's rate a data set would take twice as long, and its lowest mode decays slowly.
+    const SOLVER: &str = "\
+[scenario.solver]
+sampling_rate_hz = 50000.0
+duration_s = 1.0
+settle_fraction = 0.81
+settle_tolerance = 1e-2
+";
+    let gearbox = meshtone::scenario::gearbox_template(None);
+    let has_section =
+        |part: &&str| part.lines().any(|line| line.starts_with('[')) && !part.starts_with("[solver]");
+    let of_scenario = |line: &str| {
+        let brackets = line.len() - line.trim_start_matches('[').len();
+        let scenario = if brackets > 0 { "scenario." } else { "" };
+        format!("{}{scenario}{}\n", &line[..brackets], &line[brackets..])
+    };
+    let parts = gearbox.split("\n\n").filter(has_section);
+    let parts: String = parts.map(|part| part.lines().map(of_scenario).collect::<String>() + "\n").collect();
+    include_str!("template_gearbox.toml").replace("# <gearbox>\n", &format!("{parts}{SOLVER}\n"))
 }

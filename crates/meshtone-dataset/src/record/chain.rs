@@ -5,98 +5,74 @@
 
 use std::error::Error;
 
-use meshtone::Stages;
 use meshtone::batch::{Observation, SignalRecorder};
-use meshtone::damage::damages_of_fault;
-use meshtone::scenario::{Fault, Sensor, WheelName};
+use meshtone::damage::{DamagedTooth, damages_of_fault};
+use meshtone::operation::TimeGrid;
+use meshtone::scenario::{ScenarioWarning, Sensor};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
     ShaftPhase, SignalError, angular_resample, octave_bands, process_channel,
 };
 use meshtone::tuning::DifferenceChain;
+use meshtone::{GearboxSimulation, GearboxStages, Stages, StepJudgement};
 
 use super::window::Window;
-use super::{Record, RecordFault, noise, path};
+use super::{Record, RecordAverage, RecordFault, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{Content, Keep, OverAngle};
+use crate::plan::{ClassFault, Content, Keep, OverAngle, Wheel};
 
-/// Makes a record of its simulation.
-///
-/// The channels are resampled, passed along the path to the sensor, and given noise, in this order. The enhanced signal starts from
-/// the difference before the noise; everything else is computed with it.
+/// Makes a record of the simulation of a pair.
 pub(super) fn record(
     content: &Content,
     drawn: DrawnRecord,
+    window: Window,
     stages: &Stages,
     observation: Observation,
     recorder: SignalRecorder,
 ) -> Result<Record, Box<dyn Error>> {
-    let keep = &content.keep;
-    let view = View::new(content, &drawn, &stages.scenario.faults, stages)?;
-    let simulated = keep.simulated();
-    let samples = view.before_linear_sensors(recorder);
-    if view.is_steady() {
-        refuse_growth(&simulated, &samples)?;
-    }
-    let mut channels = view.passed(&drawn, &simulated, &samples)?;
-    let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
-    let mut record = view.empty(drawn);
+    let view = View::new(content, window, Simulated::Pair(stages));
+    let samples = view.before_linear_sensors(stages, recorder);
     let parts = stages.scenario.model.teeth_part();
-    record.slack_fraction = if parts { observation.apart_fraction } else { observation.tension_fraction };
-    for warning in &observation.warnings {
-        if !record.warnings.contains(&warning.kind) {
-            record.warnings.push(warning.kind);
-        }
-    }
-    if let Some(analysed) = analysed {
-        record.clean_difference = view.clean_difference(&channels[analysed], content)?;
-    }
-    for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
-        if kind.is_acceleration() {
-            noise::add(&record.drawn, number as u64, channel);
-        }
-    }
-    if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
-        let analysis = view.analyse(&channels[analysed], AngularSettings::default(), MeanPart::default())?;
-        if keep.average {
-            record.average = view.of_revolution(&analysis.average.values)?;
-        }
-        if keep.difference {
-            record.difference = view.of_revolution(&analysis.parts.difference)?;
-        }
-        if keep.indicators {
-            record.indicators = analysis.indicators.table("g");
-            // At higher orders the filter attenuates the signal.
-            let passed = PASSED * analysis.average.nyquist_order;
-            record.octaves = octave_bands(&analysis.parts.difference, view.teeth(), passed)?;
-        }
-    }
-    channels.truncate(keep.channels.len());
-    if let Some(seconds) = keep.duration_s {
-        view.cut(&mut channels, seconds)?;
-    }
-    if let Some(angle) = keep.over_angle {
-        record.sampling_rate_hz = angle.points_per_revolution as f64 * view.shaft_hz();
-        for channel in &mut channels {
-            *channel = view.over_angle(channel, angle)?;
-        }
-    }
-    record.channels = channels;
-    Ok(record)
+    let slack = if parts { observation.apart_fraction } else { observation.tension_fraction };
+    view.record(content, drawn, &samples, &observation.warnings, vec![slack])
+}
+
+/// Makes a record of the simulation of a gearbox, whose sensors are applied already.
+pub(super) fn gearbox_record(
+    content: &Content,
+    drawn: DrawnRecord,
+    window: Window,
+    simulation: GearboxSimulation,
+) -> Result<Record, Box<dyn Error>> {
+    // The error is only estimated, as that of a pair's record.
+    let of_signals = simulation.warnings_of_signals(StepJudgement::Estimated);
+    let warnings = [simulation.stages.warnings(), of_signals].concat();
+    let GearboxSimulation { stages, channels, .. } = &simulation;
+    let single = |channel: &Channel| {
+        let signal = channels.signal(&channel.name()).unwrap_or_default();
+        signal.iter().map(|&value| value as f32).collect()
+    };
+    let samples: Vec<Vec<f32>> = content.keep.simulated().iter().map(single).collect();
+    let apart = stages.gearbox.meshes.iter().map(|mesh| {
+        let force_n = channels.signal(&format!("force_n.{}", mesh.name())).unwrap_or_default();
+        force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64
+    });
+    let apart = apart.collect();
+    View::new(content, window, Simulated::Gearbox(stages)).record(content, drawn, &samples, &warnings, apart)
 }
 
 /// Makes the record of a healthy twin, which has only the difference signal.
 pub(super) fn twin(
     content: &Content,
     drawn: DrawnRecord,
-    faults: &[Fault],
+    window: Window,
     stages: &Stages,
     recorder: SignalRecorder,
 ) -> Result<Record, SignalError> {
-    let view = View::new(content, &drawn, faults, stages)?;
+    let view = View::new(content, window, Simulated::Pair(stages));
     let simulated = content.keep.simulated();
-    let samples = view.before_linear_sensors(recorder);
+    let samples = view.before_linear_sensors(stages, recorder);
     let mut record = view.empty(drawn);
     if let Some(analysed) = simulated.iter().position(|channel| *channel == content.keep.analysed) {
         let only = analysed..analysed + 1;
@@ -146,50 +122,185 @@ fn at_points(
     Ok(read.into_iter().map(|value| value as f32).collect())
 }
 
+/// What is read like a recording.
+#[derive(Clone, Copy)]
+enum Simulated<'a> {
+    Pair(&'a Stages),
+    Gearbox(&'a GearboxStages),
+}
+
+impl<'a> Simulated<'a> {
+    fn time(self) -> &'a TimeGrid {
+        match self {
+            Self::Pair(stages) => &stages.time,
+            Self::Gearbox(stages) => &stages.time,
+        }
+    }
+
+    fn is_steady(self) -> bool {
+        match self {
+            Self::Pair(stages) => stages.is_steady(),
+            Self::Gearbox(stages) => stages.is_steady(),
+        }
+    }
+
+    /// The faults, each with its severity.
+    fn faults(self) -> Vec<(ClassFault, f64)> {
+        let (faults, severities): (Vec<ClassFault>, _) = match self {
+            Self::Pair(stages) => {
+                let faults = stages.scenario.faults.iter().cloned().map(ClassFault::of_pair);
+                (faults.collect(), &stages.fault_severities)
+            }
+            Self::Gearbox(stages) => {
+                let faults = stages.gearbox.faults.iter().cloned().map(ClassFault::of_gearbox);
+                (faults.collect(), &stages.fault_severities)
+            }
+        };
+        faults.into_iter().zip(severities.iter().copied()).collect()
+    }
+
+    /// The damaged teeth of all meshes.
+    fn damaged(self) -> Vec<&'a [DamagedTooth]> {
+        match self {
+            Self::Pair(stages) => vec![&stages.damaged],
+            Self::Gearbox(stages) => stages.pairs.iter().map(|pair| pair.damaged.as_slice()).collect(),
+        }
+    }
+
+    /// (rev) Angle of the input at every sample from one on.
+    fn input_revolutions(self, from: usize) -> Vec<f64> {
+        let time = self.time();
+        let motion = match self {
+            Self::Pair(stages) => stages.scenario.motion(time),
+            Self::Gearbox(stages) => stages.motion(),
+        };
+        let kept = motion.skip(time.first_kept_sample + from).take(time.kept_samples() - from);
+        kept.map(|sample| sample.revolutions).collect()
+    }
+}
+
 /// A simulation that is read like a recording: from the mark on, at the sampling rate of the data set.
 struct View<'a> {
     keep: &'a Keep,
-    stages: &'a Stages,
+    simulated: Simulated<'a>,
     window: Window,
 }
 
 impl<'a> View<'a> {
-    fn new(
-        content: &'a Content,
-        drawn: &DrawnRecord,
-        faults: &[Fault],
-        stages: &'a Stages,
-    ) -> Result<Self, SignalError> {
-        let keep = &content.keep;
-        let window = Window::new(keep, drawn, faults, &stages.scenario, &stages.time)?;
-        Ok(Self { keep, stages, window })
+    fn new(content: &'a Content, window: Window, simulated: Simulated<'a>) -> Self {
+        Self { keep: &content.keep, simulated, window }
+    }
+
+    /// Makes the record.
+    ///
+    /// The channels are resampled, passed along the path to the sensor, and given noise, in this order. The enhanced signal starts from
+    /// the difference before the noise; everything else is computed with it.
+    fn record(
+        &self,
+        content: &Content,
+        drawn: DrawnRecord,
+        samples: &[Vec<f32>],
+        warnings: &[ScenarioWarning],
+        slack_fractions: Vec<f64>,
+    ) -> Result<Record, Box<dyn Error>> {
+        let keep = self.keep;
+        let simulated = keep.simulated();
+        if self.is_steady() {
+            refuse_growth(&simulated, samples)?;
+        }
+        let mut channels = self.passed(&drawn, &simulated, samples)?;
+        let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
+        let mut record = Record { slack_fractions, ..self.empty(drawn) };
+        for warning in warnings {
+            if !record.warnings.contains(&warning.kind) {
+                record.warnings.push(warning.kind);
+            }
+        }
+        if let Some(analysed) = analysed {
+            record.clean_difference = self.clean_difference(&channels[analysed], content)?;
+        }
+        for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
+            if kind.is_acceleration() {
+                noise::add(&record.drawn, number as u64, channel);
+            }
+        }
+        if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
+            let averages = keep.wheel.all().iter().map(|wheel| self.average(&channels[analysed], wheel));
+            record.averages = averages.collect::<Result<_, _>>()?;
+        }
+        channels.truncate(keep.channels.len());
+        if let Some(seconds) = keep.duration_s {
+            self.cut(&mut channels, seconds)?;
+        }
+        if let Some(angle) = keep.over_angle {
+            let wheel = &keep.wheel.all()[0];
+            record.sampling_rate_hz = angle.points_per_revolution as f64 * self.wheel(wheel).speed_hz;
+            for channel in &mut channels {
+                *channel = self.over_angle(channel, wheel, angle)?;
+            }
+        }
+        record.channels = channels;
+        Ok(record)
+    }
+
+    /// What a channel shows over the revolutions of a wheel.
+    fn average(&self, signal: &[f32], wheel: &Wheel) -> Result<RecordAverage, SignalError> {
+        let analysis = self.analyse(signal, wheel, AngularSettings::default(), MeanPart::default())?;
+        let mut kept = RecordAverage::default();
+        if self.keep.average {
+            kept.average = self.of_revolution(&analysis.average.values)?;
+        }
+        if self.keep.difference {
+            kept.difference = self.of_revolution(&analysis.parts.difference)?;
+        }
+        if self.keep.indicators {
+            kept.indicators = analysis.indicators.table("g");
+            // At higher orders the filter attenuates the signal.
+            let passed = PASSED * analysis.average.nyquist_order;
+            kept.octaves = octave_bands(&analysis.parts.difference, self.wheel(wheel).teeth, passed)?;
+        }
+        Ok(kept)
     }
 
     /// Whether motor and brake are steady: the record then begins at the mark.
     fn is_steady(&self) -> bool {
-        self.stages.is_steady()
+        self.simulated.is_steady()
+    }
+
+    /// How a wheel turns.
+    fn wheel(&self, wheel: &Wheel) -> &TurningWheel {
+        &self.window.turning.wheels[self.window.turning.number(wheel)]
     }
 
     fn empty(&self, drawn: DrawnRecord) -> Record {
-        let scenario = &self.stages.scenario;
-        let fault = |(number, (fault, severity)): (usize, (&Fault, &f64))| RecordFault {
-            kind: fault.damage.kind(),
-            wheel: fault.wheel,
-            tooth: self.window.start.tooth(fault, &scenario.gears),
-            severity: *severity,
-            area_percent: damages_of_fault(&self.stages.damaged, number)
-                .into_iter()
+        let damaged = self.simulated.damaged();
+        let fault = |(number, (fault, severity)): (usize, (ClassFault, f64))| RecordFault {
+            kind: fault.fault.damage.kind(),
+            wheel: fault.wheel.name().to_owned(),
+            tooth: start::tooth(&fault, &self.window.turning, &self.window.counted_from),
+            severity,
+            area_percent: (damaged.iter().flat_map(|damaged| damages_of_fault(damaged, number)))
                 .flat_map(|(_, damage)| damage.numbers("area_percent"))
                 .reduce(f64::max),
         };
-        let faults = scenario.faults.iter().zip(&self.stages.fault_severities).enumerate();
+        let faults = self.simulated.faults().into_iter().enumerate();
+        let turning = &self.window.turning;
+        let starts_at_tooth = self.is_steady() && turning.enter_together;
+        let wheel = |(number, wheel): (usize, &TurningWheel)| RecordWheel {
+            teeth: wheel.teeth,
+            speed_hz: wheel.speed_hz,
+            angle_rev: if starts_at_tooth { 0.0 } else { self.angles(number, 1)[0] },
+        };
+        let operation = match self.simulated {
+            Simulated::Pair(stages) => &stages.scenario.operation,
+            Simulated::Gearbox(stages) => &stages.gearbox.operation.drive,
+        };
         Record {
             drawn,
             faults: faults.map(fault).collect(),
-            gear_angle_rev: if self.is_steady() { 0.0 } else { self.gear_angles()[0] },
-            teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
-            pinion_speed_hz: scenario.operation.pinion_speed_hz,
-            brake_torque_nm: scenario.operation.brake_torque_nm,
+            wheels: turning.wheels.iter().enumerate().map(wheel).collect(),
+            input_speed_hz: operation.pinion_speed_hz,
+            brake_torque_nm: operation.brake_torque_nm,
             sampling_rate_hz: self.keep.sampling_rate_hz,
             simulated_s: self.span_s(),
             ..Record::default()
@@ -198,7 +309,7 @@ impl<'a> View<'a> {
 
     /// (s) How long the record is.
     fn span_s(&self) -> f64 {
-        let time = &self.stages.time;
+        let time = self.simulated.time();
         (time.kept_samples() - 2 * self.window.margin) as f64 * time.step_s()
     }
 
@@ -210,18 +321,18 @@ impl<'a> View<'a> {
     }
 
     /// What was recorded of each channel: the signals of sensors that are not linear, else the motion of their places.
-    fn before_linear_sensors(&self, recorder: SignalRecorder) -> Vec<Vec<f32>> {
-        let stages = self.stages;
+    fn before_linear_sensors(&self, stages: &Stages, recorder: SignalRecorder) -> Vec<Vec<f32>> {
         recorder.channels_by(|channel, motion| match self.linear_sensor(channel) {
             Some(_) => motion,
             None => stages.shown(channel, motion),
         })
     }
 
-    /// The sensor of a channel, where its signal is a linear function of its place's motion.
-    fn linear_sensor(&self, channel: &Channel) -> Option<&Sensor> {
+    /// The sensor of a channel, where its signal is a linear function of its place's motion and not made yet.
+    fn linear_sensor(&self, channel: &Channel) -> Option<&'a Sensor> {
+        let Simulated::Pair(stages) = self.simulated else { return None };
         let is_of = |sensor: &&Sensor| *channel == Channel::Sensor(sensor.name());
-        self.stages.scenario.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
+        stages.scenario.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
     }
 
     /// The channels at the data set's rate, behind their sensors and the record's path.
@@ -235,7 +346,7 @@ impl<'a> View<'a> {
         samples: &[Vec<f32>],
     ) -> Result<Vec<Vec<f32>>, SignalError> {
         let keep = self.keep;
-        let (from_hz, to_hz) = (self.stages.time.sampling_rate_hz, keep.sampling_rate_hz);
+        let (from_hz, to_hz) = (self.simulated.time().sampling_rate_hz, keep.sampling_rate_hz);
         let step = from_hz / to_hz;
         // The filter is steep because records begin at any moment: frequencies that fold back would differ between them.
         let filter = AntiAliasing::steep(from_hz, to_hz)?;
@@ -254,32 +365,38 @@ impl<'a> View<'a> {
         Ok(signals)
     }
 
-    /// (rev) Angle of the gear at every kept sample of the simulation, from the mark.
-    fn gear_angles(&self) -> Vec<f64> {
-        let Stages { time, scenario, .. } = self.stages;
-        let gears = &scenario.gears;
-        let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
-        let mark = f64::from(self.window.start.mark_teeth) / f64::from(gears.gear_teeth);
-        let motion = scenario.motion(time).skip(time.first_kept_sample).take(time.kept_samples());
-        motion.map(|sample| sample.revolutions * ratio - mark).collect()
+    /// (rev) Angle of a wheel at samples of the simulation from the record's first on, from where its teeth begin to be counted.
+    ///
+    /// # Arguments
+    /// * `number` - of the wheel
+    /// * `most` - how many samples
+    fn angles(&self, number: usize, most: usize) -> Vec<f64> {
+        let wheel = &self.window.turning.wheels[number];
+        let teeth = f64::from(wheel.teeth);
+        let ratio = wheel.pitches_per_revolution / teeth;
+        let first = (wheel.first_pitch - self.window.counted_from[number] as f64) / teeth;
+        let revolutions = self.simulated.input_revolutions(self.window.margin).into_iter();
+        revolutions.take(most).map(|revolution| revolution * ratio + first).collect()
     }
 
-    /// Phase of the averaged wheel's shaft at the recording's samples.
-    fn phase(&self, samples: usize) -> Result<ShaftPhase, SignalError> {
+    /// Phase of an averaged wheel's shaft at the recording's samples.
+    fn phase(&self, wheel: &Wheel, samples: usize) -> Result<ShaftPhase, SignalError> {
         let rate_hz = self.keep.sampling_rate_hz;
-        let gears = &self.stages.scenario.gears;
-        if self.is_steady() {
-            return ShaftPhase::constant(self.shaft_hz(), rate_hz, samples);
+        let turning = &self.window.turning;
+        if self.is_steady() && turning.enter_together {
+            return ShaftPhase::constant(self.wheel(wheel).speed_hz, rate_hz, samples);
         }
-        let angles = self.gear_angles();
-        let turns_per_gear_turn = f64::from(gears.gear_teeth) / f64::from(gears.teeth(self.keep.wheel));
-        let step = self.stages.time.sampling_rate_hz / rate_hz;
+        // The wheels of a pair turn with the marked one.
+        let number = if turning.enter_together { turning.marked } else { turning.number(wheel) };
+        let turns = f64::from(turning.wheels[number].teeth) / f64::from(self.wheel(wheel).teeth);
+        let angles = self.angles(number, usize::MAX);
+        let step = self.simulated.time().sampling_rate_hz / rate_hz;
         let at = |i: usize| {
             let place = i as f64 * step;
             let (whole, last) = (place as usize, angles.len() - 1);
             let from = angles[whole.min(last)];
             let angle = from + (place - whole as f64) * (angles[(whole + 1).min(last)] - from);
-            angle * turns_per_gear_turn
+            angle * turns
         };
         ShaftPhase::new(0, (0..samples).map(at).collect())
     }
@@ -287,19 +404,26 @@ impl<'a> View<'a> {
     fn analyse(
         &self,
         signal: &[f32],
+        wheel: &Wheel,
         angular: AngularSettings,
         mean: MeanPart,
     ) -> Result<Analysis, SignalError> {
-        let teeth = self.teeth();
+        let turning = self.wheel(wheel);
+        let (teeth, sidebands) = (turning.teeth, self.keep.sidebands);
+        // The meshes of the other wheels on the shaft are as regular as its own.
+        let of_others = (turning.others_on_shaft.iter()).flat_map(|&other| {
+            let orders = (other as usize..=signal.len()).step_by(other as usize);
+            orders.flat_map(|order| order.saturating_sub(sidebands)..=order + sidebands)
+        });
         let separation = SeparationSettings {
-            sidebands: self.keep.sidebands,
-            shaft_orders: (1..=self.keep.shaft_orders).collect(),
+            sidebands,
+            shaft_orders: (1..=self.keep.shaft_orders).chain(of_others).collect(),
             mean,
             ..SeparationSettings::new(teeth as usize)
         };
         let settings = ChainSettings { angular, separation: Some(separation) };
         let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
-        process_channel(&double, &self.phase(signal.len())?, teeth, &settings)
+        process_channel(&double, &self.phase(wheel, signal.len())?, teeth, &settings)
     }
 
     /// The difference signal that is enhanced, without noise.
@@ -307,24 +431,11 @@ impl<'a> View<'a> {
         if content.tuned.is_none() {
             return Ok(Vec::new());
         }
+        let Simulated::Pair(stages) = self.simulated else { return Ok(Vec::new()) };
         // The same settings as those of the signals that the enhancement was tuned with.
-        let angular = DifferenceChain::angular_settings(self.stages.scenario.model);
-        Ok(self.analyse(signal, angular, MeanPart::Removed)?.parts.difference)
-    }
-
-    /// Teeth of the averaged wheel.
-    fn teeth(&self) -> u32 {
-        self.stages.scenario.gears.teeth(self.keep.wheel)
-    }
-
-    /// (Hz) Nominal speed of the averaged wheel's shaft.
-    fn shaft_hz(&self) -> f64 {
-        let gears = &self.stages.scenario.gears;
-        let pinion_hz = self.stages.scenario.operation.pinion_speed_hz;
-        match self.keep.wheel {
-            WheelName::Pinion => pinion_hz,
-            WheelName::Gear => pinion_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth),
-        }
+        let angular = DifferenceChain::angular_settings(stages.scenario.model);
+        let wheel = &self.keep.wheel.all()[0];
+        Ok(self.analyse(signal, wheel, angular, MeanPart::Removed)?.parts.difference)
     }
 
     /// A signal over one revolution, with as many values as are asked for.
@@ -336,14 +447,15 @@ impl<'a> View<'a> {
         at_points(values, values.len(), points, points, Edge::Periodic)
     }
 
-    /// A channel over whole revolutions, from the mark on.
-    fn over_angle(&self, signal: &[f32], angle: OverAngle) -> Result<Vec<f32>, SignalError> {
+    /// A channel over whole revolutions of a wheel, from the mark on.
+    fn over_angle(&self, signal: &[f32], wheel: &Wheel, angle: OverAngle) -> Result<Vec<f32>, SignalError> {
         // The chain refuses a constant channel.
         if let Some(&first) = signal.first().filter(|first| signal.iter().all(|x| x == *first)) {
             return Ok(vec![first; angle.values()]);
         }
         let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
-        let angular = angular_resample(&double, &self.phase(signal.len())?, &AngularSettings::default())?;
+        let angular =
+            angular_resample(&double, &self.phase(wheel, signal.len())?, &AngularSettings::default())?;
         if angular.revolutions() < angle.revolutions {
             let what = "revolutions of a record for keep.revolutions";
             let (given, needed) = (angular.revolutions(), angle.revolutions);

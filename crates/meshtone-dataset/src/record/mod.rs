@@ -4,16 +4,17 @@ mod chain;
 mod noise;
 mod path;
 mod start;
+mod turning;
 mod window;
 
-pub use start::Start;
-pub(crate) use window::simulated_scenario;
+pub(crate) use turning::{Turning, TurningWheel};
+pub(crate) use window::{Window, simulated_scenario};
 
 use meshtone::batch::{Keep as BatchKeep, KeepObserved, ObservedRecorder, Output};
 use meshtone::operation::TimeGrid;
-use meshtone::scenario::{Fault, Scenario, ScenarioError, WarningKind, WheelName};
+use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
 use meshtone::signal::{IndicatorValue, OctaveBand};
-use meshtone::{Stages, StepJudgement};
+use meshtone::{GearboxSimulation, Stages, StepJudgement};
 
 use crate::draw::DrawnRecord;
 use crate::plan::Content;
@@ -25,29 +26,21 @@ pub struct Record {
     pub drawn: DrawnRecord,
     /// The faults; empty for a healthy record.
     pub faults: Vec<RecordFault>,
-    /// (rev) Angle of the gear at the first sample, from where tooth 1 comes into contact. 0 at constant speed.
-    pub gear_angle_rev: f64,
-    /// Teeth of pinion and gear.
-    pub teeth: [u32; 2],
-    /// (Hz) Mean speed of the pinion's shaft.
-    pub pinion_speed_hz: f64,
+    /// The wheels: pinion and gear, or those of the gearbox in its order.
+    pub wheels: Vec<RecordWheel>,
+    /// (Hz) Nominal speed of the pinion's shaft, or of a gearbox's input.
+    pub input_speed_hz: f64,
     /// (N m) Brake torque.
     pub brake_torque_nm: f64,
     /// Kinds of warnings about the simulation, each once.
     pub warnings: Vec<WarningKind>,
-    /// (-) Part of the simulated time in which the teeth do not push: with the model `contact`, in which no teeth touch; with the others,
-    /// in which the mesh pulls.
-    pub slack_fraction: f64,
+    /// (-) Part of the simulated time in which the teeth of each mesh do not push: with the model `contact`, in which no teeth touch; with
+    /// the others, in which the mesh pulls.
+    pub slack_fractions: Vec<f64>,
     /// The raw channels that the plan keeps.
     pub channels: Vec<Vec<f32>>,
-    /// Synchronous average of the analysed channel over the revolutions of the plan's wheel.
-    pub average: Vec<f32>,
-    /// Difference signal of the average.
-    pub difference: Vec<f32>,
-    /// Indicators of the average.
-    pub indicators: Vec<IndicatorValue>,
-    /// The difference signal in octaves of mesh orders.
-    pub octaves: Vec<OctaveBand>,
+    /// What the analysed channel shows over the revolutions of each of the plan's averaged wheels.
+    pub averages: Vec<RecordAverage>,
     /// (S/s) Sampling rate of the raw channels; the mean rate, if they are over the angle.
     pub sampling_rate_hz: f64,
     /// (s) Simulated time that the average is computed from.
@@ -62,17 +55,42 @@ impl Record {
     /// (bytes) Size of the signals that are kept.
     pub(crate) fn signal_bytes(&self) -> usize {
         let channels = self.channels.iter().map(Vec::len).sum::<usize>();
-        4 * (channels + self.average.len() + self.difference.len() + self.enhanced.len())
+        let averages = self.averages.iter().map(|of| of.average.len() + of.difference.len()).sum::<usize>();
+        4 * (channels + averages + self.enhanced.len())
     }
 }
 
+/// What a channel shows over the revolutions of a wheel; empty of what is not kept.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RecordAverage {
+    /// Synchronous average.
+    pub average: Vec<f32>,
+    /// Difference signal of the average.
+    pub difference: Vec<f32>,
+    /// Indicators of the average.
+    pub indicators: Vec<IndicatorValue>,
+    /// The difference signal in octaves of mesh orders.
+    pub octaves: Vec<OctaveBand>,
+}
+
+/// A wheel of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RecordWheel {
+    /// Number of its teeth.
+    pub teeth: u32,
+    /// (Hz) Nominal speed of its shaft.
+    pub speed_hz: f64,
+    /// (rev) Its angle at the first sample, from where its tooth 1 comes into contact. 0 of a pair at constant speed.
+    pub angle_rev: f64,
+}
+
 /// A fault of a record.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RecordFault {
     /// Kind of damage, by its name in the scenario file.
     pub kind: &'static str,
-    /// The damaged wheel.
-    pub wheel: WheelName,
+    /// Name of the damaged wheel.
+    pub wheel: String,
     /// Number of the damaged tooth, counted from 1 in the order in which its wheel's teeth come into contact from the start of
     /// the record on; none where it is several.
     pub tooth: Option<u32>,
@@ -86,9 +104,9 @@ pub struct RecordFault {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Role {
     /// It simulates the record itself.
-    Record(DrawnRecord),
-    /// It simulates the record's gears without the faults. The faults are given because they decide where the record begins.
-    HealthyTwin(DrawnRecord, Vec<Fault>),
+    Record(DrawnRecord, Window),
+    /// It simulates the record's gears without the faults.
+    HealthyTwin(DrawnRecord, Window),
 }
 
 /// Makes a record of each of many simulations.
@@ -116,16 +134,31 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
 
     fn keep(&self, index: usize, stages: Stages, recorder: ObservedRecorder) -> Self::Kept {
         let record = match (self.role)(index).ok_or("it was not asked for")? {
-            Role::Record(drawn) => {
+            Role::Record(drawn, window) => {
                 // The error is only estimated: simulating doubtful records again would triple the work.
                 let observation = recorder.observation(&stages, StepJudgement::Estimated);
-                chain::record(self.content, drawn, &stages, observation, recorder.into_signals())
+                chain::record(self.content, drawn, window, &stages, observation, recorder.into_signals())
             }
-            Role::HealthyTwin(drawn, faults) => {
-                chain::twin(self.content, drawn, &faults, &stages, recorder.into_signals())
-                    .map_err(Into::into)
+            Role::HealthyTwin(drawn, window) => {
+                chain::twin(self.content, drawn, window, &stages, recorder.into_signals()).map_err(Into::into)
             }
         };
+        record.map(Box::new).map_err(|error| error.to_string())
+    }
+}
+
+impl<F: Fn(usize) -> Option<Role> + Sync> KeepRecords<'_, F> {
+    /// Makes the record of a simulation of a gearbox.
+    ///
+    /// # Arguments
+    /// * `index` - number of the simulation
+    /// * `simulation` - with all its signals
+    pub fn of_gearbox(&self, index: usize, simulation: GearboxSimulation) -> Result<Box<Record>, String> {
+        // A gearbox has no twins: nothing of it is enhanced.
+        let Some(Role::Record(drawn, window)) = (self.role)(index) else {
+            return Err("it was not asked for".to_owned());
+        };
+        let record = chain::gearbox_record(self.content, drawn, window, simulation);
         record.map(Box::new).map_err(|error| error.to_string())
     }
 }
@@ -147,6 +180,7 @@ pub(crate) fn kept_bytes(content: &Content, time: &TimeGrid) -> usize {
         None => 4.0 * period / turns.max(1.0),
     };
     let averages = f64::from(u8::from(keep.average) + u8::from(keep.difference)) * average;
+    let averages = averages * keep.wheel.all().len() as f64;
     let enhanced = if content.tuned.is_some() { 3.0 * average } else { 0.0 };
     (4.0 * (raw * keep.channels.len() as f64 + averages + enhanced)) as usize + 1000
 }

@@ -1,63 +1,79 @@
-//! The start of a record within the hunting period.
+//! The start of a record within the period after which the same teeth meet again.
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{Fault, Gears, WheelName};
 
+use super::Turning;
 use crate::draw::DrawnRecord;
+use crate::plan::{ClassFault, Keep};
 
-/// The start of a record: at the mark on its unit's gear, in some revolution of the hunting period.
+/// (rev) Angle of the input at which a record begins, from the start of the simulation: at the mark on its unit's marked wheel, in some
+/// revolution.
 ///
-/// A rig's tachometer does not know the damaged tooth, so the mark is at any tooth, the same for all records of a unit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Start {
-    /// (teeth) How far the gear has turned at the mark since the simulation's first teeth came into contact.
-    pub mark_teeth: u32,
-    /// Revolution of the gear.
-    pub revolution: u32,
+/// A rig's tachometer does not know the damaged tooth, so the mark is at any tooth, the same for all records of a unit. Where records are
+/// aligned, they begin when a damaged tooth comes into contact: that of the first fault, and of a healthy record the first tooth of the
+/// marked wheel.
+///
+/// # Arguments
+/// * `keep` - what is kept of the record
+/// * `drawn` - the record
+/// * `faults` - of the record
+/// * `turning` - how its wheels turn
+/// * `is_steady` - whether motor and brake are steady; if not, teeth are counted from the first time that the mark passes
+pub(super) fn input_rev(
+    keep: &Keep,
+    drawn: &DrawnRecord,
+    faults: &[ClassFault],
+    turning: &Turning,
+    is_steady: bool,
+) -> f64 {
+    let marked = &turning.wheels[turning.marked];
+    let (wheel, passed, turn) = if keep.aligned {
+        let (number, tooth) = faults.first().map_or((turning.marked, 0), |fault| turning.place_of(fault));
+        let wheel = &turning.wheels[number];
+        let of_marked = f64::from(turning.turns) * f64::from(marked.teeth);
+        let pitches = of_marked * wheel.pitches_per_revolution / marked.pitches_per_revolution;
+        let turns = (pitches / f64::from(wheel.teeth) + 1e-9).floor().max(1.0);
+        (wheel, tooth, one_of(drawn.seed, turns as u32))
+    } else {
+        let after = one_of(drawn.wheels_seed, marked.teeth);
+        let mark = (marked.teeth - after) % marked.teeth.max(1);
+        (marked, u64::from(mark), one_of(drawn.seed, turning.turns))
+    };
+    let teeth = u64::from(wheel.teeth.max(1));
+    let pitches = match passed + u64::from(turn) * teeth {
+        pitches if is_steady => pitches,
+        pitches if turning.enter_together => pitches % u64::from(marked.teeth.max(1)),
+        _ => passed,
+    };
+    wheel.input_rev(pitches as f64)
 }
 
-impl Start {
-    /// The start of a record.
-    ///
-    /// # Arguments
-    /// * `drawn` - the record
-    /// * `gears` - the wheels
-    /// * `revolutions` - of the gear that were simulated
-    pub fn new(drawn: &DrawnRecord, gears: &Gears, revolutions: u32) -> Self {
-        let after = one_of(drawn.wheels_seed, gears.gear_teeth);
-        let mark_teeth = (gears.gear_teeth - after) % gears.gear_teeth.max(1);
-        Self { mark_teeth, revolution: one_of(drawn.seed, revolutions) }
-    }
+/// The pitches that have passed each wheel where teeth begin to be counted: the next tooth to enter contact is the first.
+///
+/// # Arguments
+/// * `turning` - how the wheels turn
+/// * `input_rev` - (rev) angle of the input there
+/// * `tolerance_rev` - (rev) how far that may have been rounded: a tooth that came so much earlier comes there
+pub(super) fn counted_from(turning: &Turning, input_rev: f64, tolerance_rev: f64) -> Vec<i64> {
+    let of_wheel = |wheel: &super::TurningWheel| {
+        let tolerance = tolerance_rev * wheel.pitches_per_revolution + 1e-9;
+        (wheel.pitches(input_rev) - tolerance).ceil() as i64
+    };
+    turning.wheels.iter().map(of_wheel).collect()
+}
 
-    /// The start of a record that begins when a damaged tooth comes into contact: that of the first fault, and in a healthy
-    /// pair the first tooth.
-    ///
-    /// # Arguments
-    /// * `drawn`, `gears`, `revolutions` - as for [`Self::new`]
-    /// * `faults` - of the record
-    pub fn aligned(drawn: &DrawnRecord, gears: &Gears, revolutions: u32, faults: &[Fault]) -> Self {
-        let (wheel, tooth) =
-            faults.first().map_or((WheelName::Gear, 0), |fault| (fault.wheel, fault.tooth_index() as u32));
-        let turn = gears.teeth(wheel);
-        let turns = u64::from(revolutions) * u64::from(gears.gear_teeth) / u64::from(turn.max(1));
-        let passed = tooth + one_of(drawn.seed, turns as u32) * turn;
-        let gear_teeth = gears.gear_teeth.max(1);
-        Self { mark_teeth: passed % gear_teeth, revolution: passed / gear_teeth }
-    }
-
-    /// Number of a fault's tooth, from 1, in the order in which its wheel's teeth come into contact from the start of the
-    /// record on; none of a fault on several teeth.
-    ///
-    /// # Arguments
-    /// * `fault` - which
-    /// * `gears` - the wheels
-    pub fn tooth(&self, fault: &Fault, gears: &Gears) -> Option<u32> {
-        let index = u64::from(fault.tooth.only()?.saturating_sub(1));
-        let passed = u64::from(self.mark_teeth) + u64::from(self.revolution) * u64::from(gears.gear_teeth);
-        let teeth = u64::from(gears.teeth(fault.wheel)).max(1);
-        let since = (index + teeth - passed % teeth) % teeth;
-        Some(since as u32 + 1)
-    }
+/// Number of a fault's tooth, from 1, in the order in which its wheel's teeth come into contact from where they are counted; none of a
+/// fault on several teeth.
+///
+/// # Arguments
+/// * `fault` - which
+/// * `turning` - how the wheels turn
+/// * `counted_from` - of [`counted_from`]
+pub(super) fn tooth(fault: &ClassFault, turning: &Turning, counted_from: &[i64]) -> Option<u32> {
+    let index = i64::from(fault.fault.tooth.only()?.saturating_sub(1));
+    let number = turning.number(&fault.wheel);
+    let teeth = i64::from(turning.wheels[number].teeth.max(1));
+    Some((index - counted_from[number]).rem_euclid(teeth) as u32 + 1)
 }
 
 /// A number below a count.

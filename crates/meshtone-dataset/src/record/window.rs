@@ -1,75 +1,31 @@
 //! The part of a motion that is simulated for a record.
 
-use meshtone::operation::{TimeGrid, greatest_common_divisor};
-use meshtone::scenario::{Fault, Scenario};
+use std::error::Error;
+
+use meshtone::operation::TimeGrid;
+use meshtone::scenario::ScenarioForm;
 use meshtone::sensor::Channel;
 use meshtone::signal::{AntiAliasing, SignalError};
 
-use super::{Start, path};
+use super::{Turning, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::Keep;
+use crate::plan::{ClassFault, Keep};
 
 /// The window of its simulation that a record takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Window {
-    /// Where it begins within the hunting-tooth period.
-    pub start: Start,
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Window {
+    /// How the wheels turn.
+    pub turning: Turning,
+    /// (pitches) What has passed each wheel where its teeth begin to be counted.
+    pub counted_from: Vec<i64>,
     /// Samples of the simulation before the record's first and after its last, which filters read.
     pub margin: usize,
 }
 
-impl Window {
-    /// The window of a record. A steady motion is simulated from where the record begins; any other from the start of the scenario's
-    /// own kept signal, without a margin.
-    ///
-    /// # Arguments
-    /// * `keep` - what is kept of the record
-    /// * `drawn` - the record
-    /// * `faults` - of the record
-    /// * `scenario` - what is simulated for it
-    /// * `time` - its division of time
-    pub fn new(
-        keep: &Keep,
-        drawn: &DrawnRecord,
-        faults: &[Fault],
-        scenario: &Scenario,
-        time: &TimeGrid,
-    ) -> Result<Self, SignalError> {
-        let gears = &scenario.gears;
-        let revolutions = gears.pinion_teeth / greatest_common_divisor(gears.pinion_teeth, gears.gear_teeth);
-        let start = if keep.aligned {
-            Start::aligned(drawn, gears, revolutions, faults)
-        } else {
-            Start::new(drawn, gears, revolutions)
-        };
-        if !scenario.operation.is_steady() {
-            // It is counted from the first time that the mark passes.
-            return Ok(Self { start: Start { revolution: 0, ..start }, margin: 0 });
-        }
-        let reach = AntiAliasing::steep(time.sampling_rate_hz, keep.sampling_rate_hz)?.reach();
-        let simulated = keep.simulated();
-        let is_read =
-            |name: String| simulated.iter().any(|channel| *channel == Channel::Sensor(name.clone()));
-        let sensors = scenario.sensors.iter().filter(|sensor| is_read(sensor.name()));
-        let of_paths = (simulated.iter().filter(|channel| channel.is_acceleration()))
-            .map(|channel| path::structure(drawn, &channel.name()).memory_s());
-        let memory_s = sensors.map(|sensor| sensor.memory_s()).chain(of_paths).fold(0.0, f64::max);
-        let remembered = (memory_s * time.sampling_rate_hz).ceil() as usize;
-        // One sample of the record more on either side, as the last one may lie behind the end of its last revolution.
-        let step = (time.sampling_rate_hz / keep.sampling_rate_hz).ceil() as usize;
-        let margin = reach + step + remembered.min(time.hunting_period_samples(gears));
-        Ok(Self { start, margin })
-    }
-
-    /// Sample at which the record begins, of those from where the first teeth meet.
-    fn first_sample(&self, scenario: &Scenario, time: &TimeGrid) -> usize {
-        let passed = self.start.mark_teeth + self.start.revolution * scenario.gears.gear_teeth;
-        passed as usize * time.samples_per_pitch(&scenario.gears)
-    }
-}
-
-/// The scenario that is simulated for a record: no more than the record keeps, with a margin for the filters, after as much settling at
-/// least as the scenario of the plan has.
+/// The scenario that is simulated for a record, and the record's window of it: no more than the record keeps, with a margin for the
+/// filters, after as much settling at least as the scenario of the plan has.
+///
+/// A steady motion is simulated from where the record begins; any other from the start of the scenario's own kept signal, without a margin.
 ///
 /// # Arguments
 /// * `keep` - what is kept of the record
@@ -77,40 +33,72 @@ impl Window {
 /// * `scenario` - of the plan, with the record's values and faults
 ///
 /// # Errors
-/// A sampling rate of the record below 1e-5 of the simulation's.
+/// A sampling rate of the record below 1e-5 of the simulation's; a gearbox that cannot turn.
 pub(crate) fn simulated_scenario(
     keep: &Keep,
     drawn: &DrawnRecord,
-    mut scenario: Scenario,
-) -> Result<Scenario, SignalError> {
-    let time = scenario.time_grid();
-    let window = Window::new(keep, drawn, &scenario.faults, &scenario, &time)?;
-    let kept = kept_samples(keep, &scenario, &time);
+    mut scenario: ScenarioForm,
+) -> Result<(ScenarioForm, Window), Box<dyn Error>> {
+    let (time, is_steady) = (scenario.time_grid(), scenario.is_steady());
+    let turning = Turning::of(&scenario)?;
+    let per_revolution = time.samples_per_pinion_revolution as f64;
+    let input_rev = start::input_rev(keep, drawn, &ClassFault::all_of(&scenario), &turning, is_steady);
+    let margin = if is_steady { margin(keep, drawn, &scenario, &turning, &time)? } else { 0 };
     let mut first = time.first_kept_sample;
-    if scenario.operation.is_steady() {
-        let begins = window.first_sample(&scenario, &time);
-        let period = time.hunting_period_samples(&scenario.gears).max(1);
+    let counted_from = if is_steady {
+        let begins = (input_rev * per_revolution).round() as usize;
+        let period = (turning.period_rev * per_revolution).round().max(1.0) as usize;
         // So many periods later that the settling comes before it.
-        first =
-            begins + (first + window.margin).saturating_sub(begins).div_ceil(period) * period - window.margin;
-    }
+        first = begins + (first + margin).saturating_sub(begins).div_ceil(period) * period - margin;
+        start::counted_from(&turning, (first + margin) as f64 / per_revolution, 0.5 / per_revolution)
+    } else {
+        start::counted_from(&turning, input_rev, 0.0)
+    };
+    let kept = kept_samples(keep, &turning, is_steady, &time);
     let seconds = |samples: usize| samples as f64 * time.step_s();
-    scenario.solver.discard_and_keep(seconds(first), seconds(kept + 2 * window.margin));
-    Ok(scenario)
+    scenario.solver_mut().discard_and_keep(seconds(first), seconds(kept + 2 * margin));
+    Ok((scenario, Window { turning, counted_from, margin }))
+}
+
+/// Samples of a steady simulation before a record's first and after its last, which filters read.
+fn margin(
+    keep: &Keep,
+    drawn: &DrawnRecord,
+    scenario: &ScenarioForm,
+    turning: &Turning,
+    time: &TimeGrid,
+) -> Result<usize, SignalError> {
+    let reach = AntiAliasing::steep(time.sampling_rate_hz, keep.sampling_rate_hz)?.reach();
+    let simulated = keep.simulated();
+    let is_read = |name: &str| simulated.contains(&Channel::Sensor(name.to_owned()));
+    let sensors = scenario.sensors().into_iter().filter(|(name, _)| is_read(name));
+    let of_paths = (simulated.iter().filter(|channel| channel.is_acceleration()))
+        .map(|channel| path::structure(drawn, &channel.name()).memory_s());
+    let memory_s = sensors.map(|(_, sensor)| sensor.memory_s()).chain(of_paths).fold(0.0, f64::max);
+    let remembered = (memory_s * time.sampling_rate_hz).ceil() as usize;
+    let period = (turning.cycle_rev() * time.samples_per_pinion_revolution as f64).round() as usize;
+    // One sample of the record more on either side, as the last one may lie behind the end of its last revolution.
+    let step = (time.sampling_rate_hz / keep.sampling_rate_hz).ceil() as usize;
+    Ok(reach + step + remembered.min(period))
 }
 
 /// Samples of the simulation that a record is made of.
-fn kept_samples(keep: &Keep, scenario: &Scenario, time: &TimeGrid) -> usize {
+fn kept_samples(keep: &Keep, turning: &Turning, is_steady: bool, time: &TimeGrid) -> usize {
     match (keep.over_angle, keep.duration_s) {
         (Some(angle), _) => {
-            let teeth = scenario.gears.teeth(keep.wheel) as usize;
-            angle.revolutions * teeth * time.samples_per_pitch(&scenario.gears)
+            let wheel = &turning.wheels[turning.number(&keep.wheel.all()[0])];
+            // Its first tooth may come a pitch after the record's start.
+            let before = if turning.enter_together { 0.0 } else { 1.0 };
+            let pitches = angle.revolutions as f64 * f64::from(wheel.teeth) + before;
+            let samples = pitches * time.samples_per_pinion_revolution as f64 / wheel.pitches_per_revolution;
+            // A whole number may come out a rounding error above it.
+            (samples - 1e-6).ceil() as usize
         }
         (None, Some(duration_s)) => {
             let kept = (duration_s * time.sampling_rate_hz).round() as usize;
             // Of an unsteady motion there is no margin, from which the last sample could be read.
             let last = (time.sampling_rate_hz / keep.sampling_rate_hz).ceil() as usize;
-            if scenario.operation.is_steady() { kept } else { kept + last }
+            if is_steady { kept } else { kept + last }
         }
         (None, None) => time.kept_samples(),
     }

@@ -1,20 +1,25 @@
 //! The columns of a data set: names, units, meanings, and the cells of each record.
 
-use meshtone::scenario::{Fault, Model};
+use meshtone::scenario::{Gearbox, Model, ScenarioForm, WheelName, split_key};
 use meshtone::signal::OCTAVES;
 use meshtone_io::table::{CellType, Cells, TableColumn};
 use meshtone_plot::without_unit;
 
 use crate::draw::{NOISE_KEYS, PATH_KEYS, is_of_plan};
-use crate::plan::{Content, OverAngle, Plan, Rule};
+use crate::plan::{
+    AveragedWheels, ClassFault, Content, Keep, OverAngle, Plan, Rule, Wheel, column_part, list_and_entry,
+    wheel_words,
+};
 use crate::record::Record;
 
 /// Name of the column of warnings' codes.
 pub(crate) const WARNINGS: &str = "warnings";
 /// Separator of two codes in that column.
 pub(crate) const BETWEEN_CODES: &str = ";";
-/// Indicators that a preview shows.
+/// Indicators that a preview shows of a wheel.
 const PREVIEWED_INDICATORS: [&str; 4] = ["average_rms", "difference_rms", "fm4", "energy_ratio"];
+/// Those that it shows where several wheels are averaged.
+const PREVIEWED_OF_SEVERAL: [&str; 1] = ["difference_rms"];
 
 /// A column.
 pub(crate) struct Column {
@@ -43,8 +48,11 @@ pub(crate) enum Topic {
     Drawn,
     /// The value of a key that a rule varies.
     Key(String),
-    /// An indicator, by its name.
-    Indicator(String),
+    /// An indicator, and whether a preview shows it.
+    Indicator {
+        /// Whether it does.
+        is_previewed: bool,
+    },
     /// A raw channel.
     Channel,
     /// A signal over one revolution.
@@ -119,7 +127,7 @@ impl Column {
 
     /// Returns whether the column holds one of the indicators that a preview shows.
     pub fn is_previewed_indicator(&self) -> bool {
-        matches!(&self.topic, Topic::Indicator(name) if PREVIEWED_INDICATORS.contains(&name.as_str()))
+        self.topic == Topic::Indicator { is_previewed: true }
     }
 
     /// Returns whether a preview shows the column, unless all records have the same value.
@@ -152,7 +160,7 @@ impl From<&Column> for TableColumn {
 /// * `plan` - the plan
 pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
     let Content { classes, keep, .. } = &plan.content;
-    let wheel = keep.wheel.name();
+    let wheel = &wheel_words(keep.wheel.all()[0].name());
     let mut columns = of_record(&plan.content);
     if classes.iter().any(|class| class.growth.is_some()) {
         columns.extend(of_run());
@@ -161,13 +169,12 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
         let meaning = format!("values in a revolution of the {wheel}, of channels, average and difference");
         columns.push(Column::int32("points_per_revolution", move |_| Some(points)).meaning(meaning));
     }
-    columns.extend(of_simulation(plan.content.base.model));
+    columns.extend(of_simulation(&plan.content.base));
     let keys = varied_keys(&plan.content).into_iter().map(|(_, key)| of_key(key));
     let keys: Vec<Column> = keys.filter(|key| columns.iter().all(|column| column.name != key.name)).collect();
     columns.extend(keys);
     if keep.indicators {
-        columns.extend(indicator_names().into_iter().map(|(name, unit)| of_indicator(&name, &unit, wheel)));
-        columns.extend(OCTAVES.iter().enumerate().flat_map(|(number, (name, _))| of_octave(number, name)));
+        columns.extend((0..keep.wheel.all().len()).flat_map(|number| of_indicators(keep, number)));
     }
     for (number, channel) in keep.channels.iter().enumerate() {
         let samples = match keep.over_angle {
@@ -179,17 +186,7 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
         let column = Column::signal(&channel.name(), channel.unit(), move |r| &r.channels[number]);
         columns.push(column.about(Topic::Channel).meaning(format!("{samples}: {}", channel.meaning())));
     }
-    let turn = format!(
-        "over one revolution of the {wheel}, at equal angles from where its tooth 1 comes into contact"
-    );
-    if keep.average {
-        let average = Column::signal("average_g", "g", |r| &r.average);
-        columns.push(average.meaning(format!("synchronous average {turn}")));
-    }
-    if keep.difference {
-        let difference = Column::signal("difference_g", "g", |r| &r.difference);
-        columns.push(difference.meaning(format!("difference signal {turn}")));
-    }
+    columns.extend((0..keep.wheel.all().len()).flat_map(|number| of_revolution(keep, number)));
     if plan.content.tuned.is_some() {
         columns.push(Column::signal("enhanced_relative_difference", "-", |r| &r.enhanced).meaning(
             "enhanced difference signal over one revolution of the gear, the fault's response in the middle, \
@@ -204,13 +201,17 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
 /// A class may have several faults, and a record of a class with fewer has no values in the columns of the others. The pits' area has a
 /// column only where some class has pits in that place.
 fn of_record(content: &Content) -> Vec<Column> {
+    let unit = match content.base {
+        ScenarioForm::Gearbox(_) => "gearbox with its wheels",
+        _ => "pair of wheels",
+    };
     let splits: Vec<String> = content.splits.names().into_iter().map(str::to_owned).collect();
     let labels: Vec<String> = content.classes.iter().map(|class| class.label.clone()).collect();
     let mut columns = vec![
         Column::int64("record", |r| r.drawn.index)
             .meaning("number of the record; with the plan it determines everything else"),
         Column::int64("unit", |r| r.drawn.unit)
-            .meaning("number of the unit: the pair of wheels, shared by several records"),
+            .meaning(format!("number of the unit: the {unit}, shared by several records")),
         Column::int64("mounting", |r| r.drawn.mounting)
             .meaning("number of the mounting: a unit as it was put together once"),
         Column::text("split", move |r| Some(splits[r.drawn.split].clone()))
@@ -225,9 +226,10 @@ fn of_record(content: &Content) -> Vec<Column> {
     ];
     // All data sets have the columns of one fault, even if every class is healthy.
     let most_faults = content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
+    let wheels = Wheel::all(&content.base);
     for number in 0..most_faults.max(1) {
-        columns.extend(of_fault(number));
-        let has_area = |fault: &Fault| fault.damage.has_area();
+        columns.extend(of_fault(number, &wheels));
+        let has_area = |fault: &ClassFault| fault.fault.damage.has_area();
         if content.classes.iter().any(|class| class.faults.get(number).is_some_and(has_area)) {
             let name = format!("{}_area_percent", name_in_list("fault", number));
             let column = Column::float64(&name, "%", move |r| r.faults.get(number)?.area_percent);
@@ -235,52 +237,106 @@ fn of_record(content: &Content) -> Vec<Column> {
             columns.push(column.nullable().meaning(meaning));
         }
     }
-    let gear_speed_hz = |r: &Record| r.pinion_speed_hz * f64::from(r.teeth[0]) / f64::from(r.teeth[1]);
     columns.extend([
         Column::int64("seed", |r| r.drawn.seed).meaning("seed of the record's noise and fluctuations"),
         Column::int64("wheels_seed", |r| r.drawn.wheels_seed).meaning("seed of the unit's profile errors"),
         Column::float64("sampling_rate_hz", "Hz", |r| Some(r.sampling_rate_hz))
             .meaning("sampling rate of the raw channels"),
-        Column::float64("gear_angle_rev", "rev", |r| Some(r.gear_angle_rev))
-            .meaning("angle of the gear at the first sample, from where its tooth 1 comes into contact"),
-        Column::int32("pinion_teeth", |r| Some(r.teeth[0]))
-            .about(Topic::Drawn)
-            .meaning("teeth of the pinion, the driving wheel"),
-        Column::int32("gear_teeth", |r| Some(r.teeth[1]))
-            .about(Topic::Drawn)
-            .meaning("teeth of the gear, the driven wheel"),
-        Column::float64("pinion_speed_hz", "Hz", |r| Some(r.pinion_speed_hz))
-            .about(Topic::Drawn)
-            .meaning("speed of the pinion's shaft"),
-        Column::float64("gear_speed_hz", "Hz", move |r| Some(gear_speed_hz(r)))
-            .meaning("speed of the gear's shaft"),
-        Column::float64("brake_torque_nm", "N m", |r| Some(r.brake_torque_nm))
-            .about(Topic::Drawn)
-            .meaning("brake torque on the gear's shaft"),
     ]);
+    match &content.base {
+        ScenarioForm::Gearbox(gearbox) => columns.extend(of_gearbox(gearbox)),
+        _ => columns.extend(of_pair()),
+    }
     columns
 }
 
+/// Lists the columns of the two wheels of a pair and of how they are driven.
+fn of_pair() -> [Column; 6] {
+    let speed_hz = |wheel: WheelName| move |r: &Record| Some(r.wheels[wheel as usize].speed_hz);
+    [
+        angle_of("gear", WheelName::Gear as usize),
+        teeth_of("pinion", WheelName::Pinion as usize, "the pinion, the driving wheel"),
+        teeth_of("gear", WheelName::Gear as usize, "the gear, the driven wheel"),
+        Column::float64("pinion_speed_hz", "Hz", speed_hz(WheelName::Pinion))
+            .about(Topic::Drawn)
+            .meaning("speed of the pinion's shaft"),
+        Column::float64("gear_speed_hz", "Hz", speed_hz(WheelName::Gear))
+            .meaning("speed of the gear's shaft"),
+        torque("the gear's shaft"),
+    ]
+}
+
+/// Lists the columns of the drive and of the wheels of a gearbox.
+fn of_gearbox(gearbox: &Gearbox) -> Vec<Column> {
+    let input = Column::float64("input_speed_hz", "Hz", |r| Some(r.input_speed_hz))
+        .about(Topic::Drawn)
+        .meaning("speed of the motor and of the shaft that is coupled to it");
+    let wheels = gearbox.wheels.iter().enumerate().flat_map(|(number, wheel)| {
+        let words = format!("wheel {}", wheel.name);
+        let speed = Column::float64(&of_wheel(&wheel.name, "speed_hz"), "Hz", move |r| {
+            Some(r.wheels[number].speed_hz)
+        });
+        [
+            teeth_of(&wheel.name, number, &words),
+            speed.meaning(format!("speed of the shaft of {words}, {:?}", wheel.shaft)),
+            angle_of(&wheel.name, number),
+        ]
+    });
+    [input, torque("the shaft that the brake holds")].into_iter().chain(wheels).collect()
+}
+
+/// Name of a column about a wheel.
+fn of_wheel(wheel: &str, last: &str) -> String {
+    format!("{}_{last}", column_part(wheel))
+}
+
+fn angle_of(wheel: &str, number: usize) -> Column {
+    let meaning = format!(
+        "angle of the {} at the first sample, from where its tooth 1 comes into contact",
+        wheel_words(wheel)
+    );
+    let angle = move |r: &Record| Some(r.wheels[number].angle_rev);
+    Column::float64(&of_wheel(wheel, "angle_rev"), "rev", angle).meaning(meaning)
+}
+
+fn teeth_of(wheel: &str, number: usize, words: &str) -> Column {
+    let teeth = Column::int32(&of_wheel(wheel, "teeth"), move |r| Some(r.wheels[number].teeth));
+    teeth.about(Topic::Drawn).meaning(format!("teeth of {words}"))
+}
+
+fn torque(shaft: &str) -> Column {
+    let torque = Column::float64("brake_torque_nm", "N m", |r| Some(r.brake_torque_nm));
+    torque.about(Topic::Drawn).meaning(format!("brake torque on {shaft}"))
+}
+
 /// Lists the columns of what the simulation of a record says about itself.
-fn of_simulation(model: Model) -> [Column; 3] {
-    let (name, slack) = if model.teeth_part() {
-        ("apart_fraction", "part of the simulated time in which no teeth touch")
-    } else {
-        (
+fn of_simulation(base: &ScenarioForm) -> Vec<Column> {
+    const APART: &str = "part of the simulated time in which no teeth touch";
+    let slack = |name: &str, mesh: usize, meaning: &str| {
+        Column::float64(name, "-", move |r| r.slack_fractions.get(mesh).copied()).meaning(meaning)
+    };
+    let slack = match base {
+        ScenarioForm::Gearbox(gearbox) => {
+            let of_mesh = |(number, mesh): (usize, &meshtone::scenario::GearboxMesh)| {
+                let name = of_wheel(&mesh.name(), "apart_fraction");
+                slack(&name, number, &format!("{APART} in mesh {}", mesh.name()))
+            };
+            gearbox.meshes.iter().enumerate().map(of_mesh).collect()
+        }
+        ScenarioForm::Pair(pair) if !Model::teeth_part(pair.model) => vec![slack(
             "tension_fraction",
+            0,
             "part of the simulated time in which the linear mesh pulls where real teeth would part",
-        )
+        )],
+        _ => vec![slack("apart_fraction", 0, APART)],
     };
     let codes =
         |r: &Record| r.warnings.iter().map(|kind| kind.code()).collect::<Vec<_>>().join(BETWEEN_CODES);
-    [
-        Column::text(WARNINGS, move |r| Some(codes(r))).meaning(
-            "codes of what is doubtful about the simulation, with `;` between; empty where nothing is",
-        ),
-        Column::float64(name, "-", |r| Some(r.slack_fraction)).meaning(slack),
-        Column::float64("simulated_s", "s", |r| Some(r.simulated_s))
-            .meaning("simulated time that average and indicators are of"),
-    ]
+    let warnings = Column::text(WARNINGS, move |r| Some(codes(r)))
+        .meaning("codes of what is doubtful about the simulation, with `;` between; empty where nothing is");
+    let simulated = Column::float64("simulated_s", "s", |r| Some(r.simulated_s))
+        .meaning("simulated time that average and indicators are of");
+    [warnings].into_iter().chain(slack).chain([simulated]).collect()
 }
 
 /// Lists the columns of where a record is in its unit's run to failure.
@@ -297,45 +353,82 @@ fn of_run() -> [Column; 3] {
     .map(Column::nullable)
 }
 
-/// An indicator of the analysed channel.
-fn of_indicator(name: &str, unit: &str, wheel: &str) -> Column {
-    let column = if unit == "g" { format!("{name}_g") } else { name.to_owned() };
-    let of_name = name.to_owned();
-    let value = move |r: &Record| r.indicators.iter().find(|value| value.name == of_name)?.value;
-    Column::float64(&column, unit, value)
-        .about(Topic::Indicator(name.to_owned()))
-        .nullable()
-        .meaning(format!("indicator {name} of the analysed channel over the {wheel}'s revolutions"))
+/// The indicators of the analysed channel over the revolutions of one of the averaged wheels.
+fn of_indicators(keep: &Keep, number: usize) -> Vec<Column> {
+    let wheel = &keep.wheel.all()[number];
+    let (prefix, words) = (keep.wheel.prefix(wheel), wheel_words(wheel.name()));
+    let previewed = match keep.wheel {
+        AveragedWheels::One(_) => &PREVIEWED_INDICATORS[..],
+        AveragedWheels::Each(_) => &PREVIEWED_OF_SEVERAL,
+    };
+    let of_indicator = |(name, unit): (String, String)| {
+        let column = if unit == "g" { format!("{prefix}{name}_g") } else { format!("{prefix}{name}") };
+        let topic = Topic::Indicator { is_previewed: previewed.contains(&name.as_str()) };
+        let meaning = format!("indicator {name} of the analysed channel over the {words}'s revolutions");
+        let value = move |r: &Record| {
+            r.averages.get(number)?.indicators.iter().find(|value| value.name == name)?.value
+        };
+        Column::float64(&column, &unit, value).about(topic).nullable().meaning(meaning)
+    };
+    let octaves = OCTAVES.iter().enumerate();
+    let octaves = octaves.flat_map(|(octave, (name, _))| of_octave(&prefix, number, octave, name));
+    indicator_names().into_iter().map(of_indicator).chain(octaves).collect()
 }
 
-/// Rms and kurtosis of the difference signal in an octave.
-fn of_octave(number: usize, name: &str) -> [Column; 2] {
-    let orders = if number > 1 { "orders" } else { "order" };
-    let octave = format!("of the difference signal in the octave around {name} mesh {orders}");
-    let column = format!("difference_octave_{name}");
+/// Rms and kurtosis of the difference signal of an averaged wheel in an octave.
+fn of_octave(prefix: &str, wheel: usize, octave: usize, name: &str) -> [Column; 2] {
+    let orders = if octave > 1 { "orders" } else { "order" };
+    let words = format!("of the difference signal in the octave around {name} mesh {orders}");
+    let column = format!("{prefix}difference_octave_{name}");
+    let band = move |r: &Record| r.averages.get(wheel)?.octaves.get(octave).cloned();
     [
-        Column::float64(&format!("{column}_rms_g"), "g", move |r| Some(r.octaves.get(number)?.rms))
-            .meaning(format!("rms {octave}; null beyond 0.8 of half the sampling rate")),
-        Column::float64(&format!("{column}_kurtosis"), "-", move |r| r.octaves.get(number)?.kurtosis)
-            .meaning(format!("kurtosis {octave}; likewise")),
+        Column::float64(&format!("{column}_rms_g"), "g", move |r| Some(band(r)?.rms))
+            .meaning(format!("rms {words}; null beyond 0.8 of half the sampling rate")),
+        Column::float64(&format!("{column}_kurtosis"), "-", move |r| band(r)?.kurtosis)
+            .meaning(format!("kurtosis {words}; likewise")),
     ]
     .map(Column::nullable)
 }
 
+/// Average and difference signal over a revolution of one of the averaged wheels.
+fn of_revolution(keep: &Keep, number: usize) -> Vec<Column> {
+    let wheel = &keep.wheel.all()[number];
+    let prefix = keep.wheel.prefix(wheel);
+    let turn = format!(
+        "over one revolution of the {}, at equal angles from where its tooth 1 comes into contact",
+        wheel_words(wheel.name())
+    );
+    let mut columns = Vec::new();
+    if keep.average {
+        let average = Column::signal(&format!("{prefix}average_g"), "g", move |r| {
+            r.averages.get(number).map_or(&[], |of| &of.average)
+        });
+        columns.push(average.meaning(format!("synchronous average {turn}")));
+    }
+    if keep.difference {
+        let difference = Column::signal(&format!("{prefix}difference_g"), "g", move |r| {
+            r.averages.get(number).map_or(&[], |of| &of.difference)
+        });
+        columns.push(difference.meaning(format!("difference signal {turn}")));
+    }
+    columns
+}
+
 /// Kind, place and severity of a fault.
-fn of_fault(number: usize) -> [Column; 4] {
+fn of_fault(number: usize, wheels: &[Wheel]) -> [Column; 4] {
     let named = |last: &str| format!("{}_{last}", name_in_list("fault", number));
-    let fault = move |r: &Record| r.faults.get(number).copied();
+    let names: Vec<String> = wheels.iter().map(|wheel| wheel.name().to_owned()).collect();
     [
-        Column::text(&named("kind"), move |r| Some(fault(r)?.kind.to_owned())).meaning("kind of damage"),
-        Column::text(&named("wheel"), move |r| Some(fault(r)?.wheel.name().to_owned()))
-            .meaning("the damaged wheel: pinion or gear"),
-        Column::int32(&named("tooth"), move |r| fault(r)?.tooth).meaning(
+        Column::text(&named("kind"), move |r| Some(r.faults.get(number)?.kind.to_owned()))
+            .meaning("kind of damage"),
+        Column::text(&named("wheel"), move |r| Some(r.faults.get(number)?.wheel.clone()))
+            .meaning(format!("the damaged wheel: {}", names.join(" or "))),
+        Column::int32(&named("tooth"), move |r| r.faults.get(number)?.tooth).meaning(
             "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
              start of the record on, null where it is several; in the plan and the scenario teeth are counted from where \
              the first two meet",
         ),
-        Column::float64(&named("severity"), "-", move |r| Some(fault(r)?.severity)).meaning(
+        Column::float64(&named("severity"), "-", move |r| Some(r.faults.get(number)?.severity)).meaning(
             "how severe the damage is, from 0, none, to 1, the largest that the tooth allows; each kind's scale is in \
              the guide",
         ),
@@ -392,31 +485,31 @@ fn of_key(key: &str) -> Column {
     column.about(Topic::Key(key.to_owned())).nullable()
 }
 
-/// Name of a varied key's column: without its section, unless that is a fault, a sensor or one of the plan's own.
+/// Name of a varied key's column: without its section, unless that is a fault, a sensor, a part of a gearbox or one of the plan's own. Of a
+/// wheel its name stands before the key, and of another named part of a gearbox the section too.
 pub(crate) fn column_name(key: &str) -> String {
-    let name = match key.split_once('.') {
-        Some(("fault" | "noise" | "path" | "latent" | "sensor", _)) | None => key.to_owned(),
-        Some((section, rest)) => {
-            let numbered = |list| Some(name_in_list(list, number_in(section, list)?));
-            let entry = ["fault", "sensor"].into_iter().find_map(numbered);
-            entry.map_or_else(|| rest.to_owned(), |entry| [&entry, rest].join("_"))
+    let (section, Some(rest)) = split_key(key) else { return key.to_owned() };
+    let name = match list_and_entry(section) {
+        ("wheel", Some(name)) => [name, rest].join("_"),
+        ("shaft" | "mesh" | "bearing", Some(name)) => {
+            let (list, _) = list_and_entry(section);
+            [list, name, rest].join("_")
         }
+        ("fault" | "noise" | "path" | "latent" | "sensor" | "housing", None) => key.to_owned(),
+        (list @ ("fault" | "sensor"), Some(number)) => {
+            [&name_in_list(list, number.parse().unwrap_or(0)), rest].join("_")
+        }
+        _ => rest.to_owned(),
     };
-    let name = name.replace('.', "_");
+    let name = column_part(&name);
     // `fault_tooth` counts from the record's start.
     if is_tooth(key) { format!("{name}_of_scenario") } else { name }
 }
 
 /// Returns whether a key is the number of a damaged tooth.
 fn is_tooth(key: &str) -> bool {
-    key.split_once('.').is_some_and(|(section, last)| {
-        last == "tooth" && (section == "fault" || number_in(section, "fault").is_some())
-    })
-}
-
-/// The number of an entry of a list such as `fault[1]`, from 0.
-fn number_in(section: &str, list: &str) -> Option<usize> {
-    section.strip_prefix(list)?.strip_prefix('[')?.strip_suffix(']')?.parse().ok()
+    let (section, rest) = split_key(key);
+    rest == Some("tooth") && list_and_entry(section).0 == "fault"
 }
 
 /// Names and units of all indicators, in their order.
@@ -456,6 +549,11 @@ mod tests {
             ("rig.bearing_stiffness_n_per_m", "bearing_stiffness_n_per_m", "N/m"),
             ("rig.wheel_rotational_stiffness_nm_per_rad", "wheel_rotational_stiffness_nm_per_rad", "N m/rad"),
             ("operation.brake_torque_nm", "brake_torque_nm", "N m"),
+            ("wheel[z1].face_width_mm", "z1_face_width_mm", "mm"),
+            ("mesh[z1-z2].backlash_mm", "mesh_z1_z2_backlash_mm", "mm"),
+            ("bearing[input:0.5].damping_ratio", "bearing_input_0_5_damping_ratio", "-"),
+            ("shaft[input].inertia.mass_kg", "shaft_input_inertia_mass_kg", "kg"),
+            ("housing.mass_kg", "housing_mass_kg", "kg"),
         ] {
             assert_eq!(column_name(key), name);
             assert_eq!(of_key(key).unit, unit);

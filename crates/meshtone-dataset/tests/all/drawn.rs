@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::support::{FAST, plan};
+use crate::support::{FAST, pair_of, plan};
 use meshtone_dataset::draw::{DrawnRecord, Sampler};
 use meshtone_dataset::plan::Plan;
 
@@ -54,7 +54,7 @@ fn a_unit_is_in_one_split_with_the_same_wheels() {
             assert!((20..=30).contains(&count), "{count}");
         }
         // Their profile errors are the same, those of other units are not; their seeds differ.
-        let [a, b] = [first, records.last().unwrap()].map(|record| sampler.scenario(record).unwrap());
+        let [a, b] = [first, records.last().unwrap()].map(|record| pair_of(&sampler, record));
         assert_ne!(a.seed, b.seed);
         let errors = |scenario: &meshtone::scenario::Scenario| {
             meshtone::stages(scenario).unwrap().profile_errors.unwrap()
@@ -279,7 +279,7 @@ fn a_mounting_has_its_own_values_and_every_class() {
 }
 
 fn plan_torque(plan: &Plan, record: &DrawnRecord) -> f64 {
-    Sampler::new(&plan.content).unwrap().scenario(record).unwrap().operation.brake_torque_nm
+    pair_of(&Sampler::new(&plan.content).unwrap(), record).operation.brake_torque_nm
 }
 
 #[test]
@@ -327,7 +327,7 @@ fn a_drawn_wall_replaces_the_sensors_own() {
         let text = FAST.replacen("[[class]]", sensor, 1).replace("[keep]", &format!("{more}\n[keep]"));
         let plan = plan(&text);
         let sampler = Sampler::new(&plan.content).unwrap();
-        let path = sampler.scenario(&sampler.record(0).unwrap()).unwrap().sensors[0].path;
+        let path = pair_of(&sampler, &sampler.record(0).unwrap()).sensors[0].path;
         (path.plate_hz, path.strength)
     };
     assert_eq!(own(""), (5000.0, 0.2));

@@ -2,6 +2,7 @@
 
 mod drawn;
 mod exact;
+mod gearbox;
 #[cfg(feature = "objects")]
 mod objects;
 mod places;

@@ -4,8 +4,8 @@
 use std::fs::File;
 use std::path::Path;
 
-use crate::support::{FAST, plan, run};
-use meshtone::scenario::{MemoryLimit, WheelName};
+use crate::support::{FAST, pair_of, plan, run};
+use meshtone::scenario::MemoryLimit;
 use meshtone::signal::{
     ChainSettings, Edge, ShaftPhase, angular_resample, kaiser, kurtosis, octave_bands, process_channel,
     resample_with, resampling_ratio, rms,
@@ -17,12 +17,12 @@ use meshtone_dataset::store::Destination;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 
-struct Made {
-    directory: tempfile::TempDir,
-    rows: Vec<Row>,
+pub struct Made {
+    pub directory: tempfile::TempDir,
+    pub rows: Vec<Row>,
 }
 
-fn made(plan: &Plan) -> Made {
+pub fn made(plan: &Plan) -> Made {
     let directory = tempfile::tempdir().unwrap();
     let to = directory.path().join("set");
     let generated = run(plan, &Destination::directory(&to), Part::WHOLE, 2).unwrap();
@@ -42,12 +42,12 @@ fn read(directory: &Path) -> Vec<Row> {
 }
 
 impl Made {
-    fn field(&self, name: &str, row: usize) -> &Field {
+    pub fn field(&self, name: &str, row: usize) -> &Field {
         let mut fields = self.rows[row].get_column_iter();
         fields.find(|(other, _)| *other == name).unwrap_or_else(|| panic!("{name}")).1
     }
 
-    fn signal(&self, name: &str, row: usize) -> Vec<f64> {
+    pub fn signal(&self, name: &str, row: usize) -> Vec<f64> {
         let Field::ListInternal(list) = self.field(name, row) else { panic!("{name}") };
         let number = |item: &Field| match item {
             Field::Float(number) => f64::from(*number),
@@ -56,14 +56,14 @@ impl Made {
         list.elements().iter().map(number).collect()
     }
 
-    fn number(&self, name: &str, row: usize) -> f64 {
+    pub fn number(&self, name: &str, row: usize) -> f64 {
         match self.field(name, row) {
             Field::Double(number) => *number,
             other => panic!("{name}: {other}"),
         }
     }
 
-    fn integer(&self, name: &str, row: usize) -> i64 {
+    pub fn integer(&self, name: &str, row: usize) -> i64 {
         match self.field(name, row) {
             Field::Long(number) => *number,
             other => panic!("{name}: {other}"),
@@ -71,7 +71,7 @@ impl Made {
     }
 
     /// A whole number of any width.
-    fn whole(&self, name: &str, row: usize) -> i64 {
+    pub fn whole(&self, name: &str, row: usize) -> i64 {
         match self.field(name, row) {
             Field::Int(number) => i64::from(*number),
             Field::Long(number) => *number,
@@ -79,7 +79,7 @@ impl Made {
         }
     }
 
-    fn tooth(&self, row: usize) -> Option<i32> {
+    pub fn tooth(&self, row: usize) -> Option<i32> {
         match self.field("fault_tooth", row) {
             Field::Int(number) => Some(*number),
             Field::Null => None,
@@ -87,7 +87,7 @@ impl Made {
         }
     }
 
-    fn text(&self, name: &str, row: usize) -> String {
+    pub fn text(&self, name: &str, row: usize) -> String {
         match self.field(name, row) {
             Field::Str(text) => text.clone(),
             other => panic!("{name}: {other}"),
@@ -141,7 +141,7 @@ fn warnings_are_columns_and_are_counted() {
         let sampler = Sampler::new(&plan.content).unwrap();
         let mut counts = std::collections::BTreeMap::new();
         for row in 0..12 {
-            let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+            let scenario = pair_of(&sampler, &sampler.record(row as u64).unwrap());
             let (stages, mut warnings) =
                 meshtone::stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
             let simulation = stages.simulate().unwrap();
@@ -198,7 +198,7 @@ fn a_step_too_long_is_warned_of_without_a_second_simulation() {
             .collect();
         assert!(expected.contains(&warned.len()), "{rate}: {warned:?}");
         let is_confirmed = |row: &&usize| {
-            let scenario = sampler.scenario(&sampler.record(**row as u64).unwrap()).unwrap();
+            let scenario = pair_of(&sampler, &sampler.record(**row as u64).unwrap());
             let (stages, _) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
             let repeated = stages.simulate().unwrap().warnings_of_signals();
             repeated.iter().any(|warning| warning.kind.code() == "step-error")
@@ -280,7 +280,7 @@ fn compare_with_simulations(
     let sampler = Sampler::new(&plan.content).unwrap();
     for row in 0..6 {
         let record = sampler.record(row as u64).unwrap();
-        let simulation = meshtone::simulate(&sampler.scenario(&record).unwrap()).unwrap();
+        let simulation = meshtone::simulate(&pair_of(&sampler, &record)).unwrap();
         let (up, down) = resampling_ratio(simulation.channels.sampling_rate_hz, 8e3).unwrap();
         // It begins when some tooth comes into contact; nothing else differs.
         let simulated = simulated(&simulation);
@@ -403,7 +403,7 @@ fn a_drawn_tooth_is_stated_twice() {
     let sampler = Sampler::new(&plan.content).unwrap();
     let mut seen = Vec::new();
     for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
-        let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+        let scenario = pair_of(&sampler, &sampler.record(row as u64).unwrap());
         let of_scenario = made.number("fault_tooth_of_scenario", row);
         assert_eq!(of_scenario, f64::from(scenario.faults[0].tooth.only().unwrap()));
         // An aligned record begins with it.
@@ -429,7 +429,7 @@ fn a_severity_is_stated_of_every_fault() {
             Field::Null => None,
             other => panic!("{name}: {other}"),
         });
-        let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+        let scenario = pair_of(&sampler, &sampler.record(row as u64).unwrap());
         let expected = scenario.fault_severities().unwrap();
         assert_eq!(severities.into_iter().flatten().collect::<Vec<_>>(), expected);
         seen.extend(expected);
@@ -516,7 +516,7 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
     let sampler = Sampler::new(&plan.content).unwrap();
     let made = made(&plan);
     for row in 0..24 {
-        let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+        let scenario = pair_of(&sampler, &sampler.record(row as u64).unwrap());
         assert_eq!(scenario.number("rig.support.damping_ratio"), Some(0.08));
         let relative = rms(&made.signal("enhanced_relative_difference", row));
         match made.text("label", row).as_str() {
@@ -578,7 +578,7 @@ fn what_is_enhanced_is_averaged_over_the_wheel_that_was_tuned_to() {
         Plan::read(&path)
     };
     let of_pinion = plan("[keep]").unwrap();
-    assert_eq!(of_pinion.content.keep.wheel, WheelName::Pinion);
+    assert_eq!(of_pinion.content.keep.wheel.names(), "pinion");
     let made = made(&of_pinion);
     let points = made.signal("enhanced_relative_difference", 0).len();
     assert_eq!(points, made.signal("difference_g", 0).len());

@@ -8,7 +8,7 @@ use meshtone_dataset::plan::Plan;
 
 /// Asserts that a plan is refused with all of `words`.
 #[track_caller]
-fn refused(text: &str, words: &[&str]) {
+pub fn refused(text: &str, words: &[&str]) {
     let error = match Plan::read_text(text.to_owned(), Path::new("plan.toml")) {
         Ok(_) => panic!("accepted:\n{text}"),
         Err(meshtone_io::scenario_file::ReadScenarioError::Invalid { error, .. }) => {

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use meshtone::scenario::{Scenario, ScenarioForm};
 use meshtone_dataset::DatasetError;
+use meshtone_dataset::draw::{DrawnRecord, Sampler};
 use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
 use meshtone_dataset::plan::Plan;
 use meshtone_dataset::store::Destination;
@@ -100,4 +102,12 @@ pub fn differing(a: &BTreeMap<String, Vec<u8>>, b: &BTreeMap<String, Vec<u8>>) -
     names.sort();
     names.dedup();
     names
+}
+
+/// The scenario of a record of a pair.
+pub fn pair_of(sampler: &Sampler, record: &DrawnRecord) -> Scenario {
+    match sampler.scenario(record).unwrap() {
+        ScenarioForm::Pair(scenario) => scenario,
+        other => panic!("{other:?}"),
+    }
 }

@@ -1,5 +1,6 @@
 //! From a scenario to everything that the page draws.
 
+mod diagnosis;
 mod healthy;
 mod mesh_cycle;
 mod recording;
@@ -15,6 +16,7 @@ use meshtone::{Simulation, StageTime, Stages};
 use meshtone_plot::DamagedTooth;
 use serde_json::{Map, Value, json};
 
+pub use diagnosis::{DiagnosisQuestion, diagnosis};
 pub use healthy::{HealthyIndicators, healthy_indicators, healthy_json};
 pub use mesh_cycle::MeshCycle;
 pub use recording::{RecordingQuestion, recording};

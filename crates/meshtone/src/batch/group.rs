@@ -8,7 +8,7 @@ use crate::simulate::{Stages, stages};
 use crate::solver::{LANES, Output, Problem, Recorder, integrate_side_by_side};
 
 /// A scenario and its number.
-pub(super) type Numbered = (usize, Scenario);
+pub(super) type Numbered<S> = (usize, S);
 
 /// Result of a scenario and its number.
 pub(super) type NumberedResult<T> = (usize, Result<T, Error>);
@@ -23,7 +23,7 @@ struct Ready<R> {
 
 /// Simulates at most [`LANES`] scenarios that go together.
 pub(super) fn simulate_group<K: Keep>(
-    scenarios: Vec<Numbered>,
+    scenarios: Vec<Numbered<Scenario>>,
     keep: &K,
     instructions: InstructionSet,
 ) -> Vec<NumberedResult<K::Kept>> {

@@ -15,4 +15,4 @@ pub use crate::machine::Axis;
 pub use crate::solver::{Block, Output, Recorder};
 pub use keep::{Keep, KeepChannels, KeepSimulation, SignalRecorder, Signals};
 pub use observed::{KeepObserved, Observation, ObservedRecorder, ObservedSignals};
-pub use run::{Control, simulate_many};
+pub use run::{Control, simulate_many, simulate_many_gearboxes};

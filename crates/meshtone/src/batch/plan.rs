@@ -36,13 +36,13 @@ impl Cost {
 }
 
 /// Divides scenarios into groups of at most [`LANES`], of like kinds and of similar length.
-pub(super) fn groups(scenarios: Vec<Numbered>) -> Vec<Vec<Numbered>> {
+pub(super) fn groups(scenarios: Vec<Numbered<Scenario>>) -> Vec<Vec<Numbered<Scenario>>> {
     let mut keyed: Vec<_> = scenarios
         .into_iter()
         .map(|(index, scenario)| ((Cost::of(&scenario), samples(&scenario), index), scenario))
         .collect();
     keyed.sort_by_key(|(key, _)| *key);
-    let mut groups: Vec<Vec<Numbered>> = Vec::new();
+    let mut groups: Vec<Vec<Numbered<Scenario>>> = Vec::new();
     let mut last: Option<Cost> = None;
     for ((cost, _, index), scenario) in keyed {
         match groups.last_mut() {

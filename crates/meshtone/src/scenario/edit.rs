@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::{Scenario, ScenarioError, Sensor};
+use super::{Gearbox, Scenario, ScenarioError, ScenarioForm, Sensor};
 
 /// A number of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,14 +22,119 @@ fn collect(table: &Table, path: &str, numbers: &mut Vec<ScenarioNumber>) {
         match value {
             Value::Table(table) => collect(table, &key, numbers),
             Value::Array(entries) => {
-                let tables = entries.iter().filter_map(Value::as_table).enumerate();
-                tables.for_each(|(index, table)| collect(table, &format!("{key}[{index}]"), numbers));
+                let tables = entries.iter().filter_map(Value::as_table);
+                let named = tables.zip(entry_names(name, entries));
+                named.for_each(|(table, entry)| collect(table, &format!("{key}{entry}"), numbers));
             }
             Value::Float(value) => numbers.push(ScenarioNumber { key, value: *value, whole: false }),
             Value::Integer(value) => numbers.push(ScenarioNumber { key, value: *value as f64, whole: true }),
             _ => {}
         }
     }
+}
+
+/// What follows the name of a list in the keys of each of its entries: `[z1]` of a wheel, `[z1-z2]` of a mesh, `[input:0]` of a bearing, and
+/// the number from 0 where an entry has no name of its own; nothing of the only fault and of the only sensor.
+fn entry_names(list: &str, entries: &[Value]) -> Vec<String> {
+    let name = |entry: &Value| match list {
+        "shaft" | "wheel" => entry.get("name")?.as_str().map(str::to_owned),
+        "mesh" => {
+            let wheels = entry.get("wheels")?.as_array()?.iter().filter_map(Value::as_str);
+            Some(wheels.collect::<Vec<_>>().join("-"))
+        }
+        "bearing" => Some(format!("{}:{}", entry.get("shaft")?.as_str()?, entry.get("at")?.as_float()?)),
+        _ => None,
+    };
+    if entries.len() == 1 && ["fault", "sensor"].contains(&list) {
+        return vec![String::new()];
+    }
+    let names: Vec<Option<String>> = entries.iter().map(name).collect();
+    let is_only = |name: &Option<String>| names.iter().filter(|other| *other == name).count() == 1;
+    let shown = |(number, name): (usize, &Option<String>)| match name {
+        Some(own) if is_only(name) => format!("[{own}]"),
+        _ => format!("[{number}]"),
+    };
+    names.iter().enumerate().map(shown).collect()
+}
+
+/// All numbers of a scenario file, by their keys.
+fn numbers_of(table: Result<Table, ScenarioError>) -> Vec<ScenarioNumber> {
+    let mut numbers = Vec::new();
+    if let Ok(table) = table {
+        collect(&table, "", &mut numbers);
+    }
+    numbers
+}
+
+/// The number at a key of a scenario file.
+fn number_at(table: Result<Table, ScenarioError>, key: &str) -> Option<f64> {
+    match at_mut(&mut table.ok()?, key)? {
+        Value::Float(number) => Some(*number),
+        Value::Integer(number) => Some(*number as f64),
+        _ => None,
+    }
+}
+
+/// Puts numbers into a scenario file. Returns its text; none where there was nothing to put.
+///
+/// # Arguments
+/// * `table` - the scenario file
+/// * `numbers` - dotted key, as in the file, and value in the key's unit
+/// * `missing` - what is said of a key at which there is no number
+fn with_numbers_that(
+    table: Result<Table, ScenarioError>,
+    numbers: &[(&str, f64)],
+    missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
+) -> Result<Option<String>, ScenarioError> {
+    let mut table = table?;
+    let mut known = false;
+    for &(key, value) in numbers {
+        match at_mut(&mut table, key) {
+            Some(place @ (Value::Integer(_) | Value::Float(_))) => {
+                let whole = matches!(place, Value::Integer(_)) && value.fract() == 0.0;
+                *place = if whole { Value::Integer(value as i64) } else { Value::Float(value) };
+                known = true;
+            }
+            _ => missing(key, value)?,
+        }
+    }
+    Ok(known.then(|| table.to_string()))
+}
+
+/// The error of a number at a key that a scenario does not have.
+fn no_such_number(key: &str, value: f64) -> Result<(), ScenarioError> {
+    Err(ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
+        .with_help("`meshtone init KIND` prints every key of a kind of fault"))
+}
+
+/// Refuses a seed that is too large for a number of a table.
+fn check_seeds(seeds: impl IntoIterator<Item = (String, Option<u64>)>) -> Result<(), ScenarioError> {
+    const MOST: u64 = i64::MAX as u64;
+    let mut seeds = seeds.into_iter();
+    if let Some((key, Some(seed))) = seeds.find(|(_, seed)| seed.is_some_and(|seed| seed > MOST)) {
+        let problem =
+            format!("must be at most {MOST}, where a scenario's numbers are read or set by their keys");
+        return Err(ScenarioError::new(key, seed, problem).with_help("take a smaller seed"));
+    }
+    Ok(())
+}
+
+/// The seeds of sensors' noise, with their keys.
+fn noise_seeds<'s>(
+    sensors: impl ExactSizeIterator<Item = &'s Sensor>,
+) -> impl Iterator<Item = (String, Option<u64>)> {
+    let entries = sensors.len();
+    sensors.enumerate().map(move |(index, sensor)| {
+        let key = match entries {
+            1 => "sensor.noise_seed".to_owned(),
+            _ => format!("sensor[{index}].noise_seed"),
+        };
+        (key, sensor.noise_seed)
+    })
+}
+
+fn parsed(text: &str) -> Result<Table, ScenarioError> {
+    text.parse().map_err(|error: toml::de::Error| ScenarioError::new("", "", error.message()))
 }
 
 impl Scenario {
@@ -49,11 +154,7 @@ impl Scenario {
     /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
     /// ```
     pub fn number(&self, key: &str) -> Option<f64> {
-        match at_mut(&mut self.table().ok()?, key)? {
-            Value::Float(number) => Some(*number),
-            Value::Integer(number) => Some(*number as f64),
-            _ => None,
-        }
+        number_at(self.table(), key)
     }
 
     /// Returns the scenario with another number at a key of the scenario file.
@@ -101,10 +202,7 @@ impl Scenario {
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
-        self.with_numbers_that(numbers, |key, value| {
-            Err(ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
-                .with_help("`meshtone init KIND` prints every key of a kind of fault"))
-        })
+        self.changed(with_numbers_that(self.table(), numbers, no_such_number)?)
     }
 
     /// Does what [`Self::with_numbers`] does, but numbers at keys that this scenario does not have, such as another fault's, are left out.
@@ -115,31 +213,14 @@ impl Scenario {
     /// # Errors
     /// A value that is not allowed; a seed of more than 2⁶³ − 1.
     pub fn with_known_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
-        self.with_numbers_that(numbers, |_, _| Ok(()))
+        self.changed(with_numbers_that(self.table(), numbers, |_, _| Ok(()))?)
     }
 
-    fn with_numbers_that(
-        &self,
-        numbers: &[(&str, f64)],
-        missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
-    ) -> Result<Self, ScenarioError> {
-        let mut table = self.table()?;
-        let mut known = false;
-        for &(key, value) in numbers {
-            match at_mut(&mut table, key) {
-                Some(place @ (Value::Integer(_) | Value::Float(_))) => {
-                    let whole = matches!(place, Value::Integer(_)) && value.fract() == 0.0;
-                    *place = if whole { Value::Integer(value as i64) } else { Value::Float(value) };
-                    known = true;
-                }
-                _ => missing(key, value)?,
-            }
-        }
-        if !known {
-            return Ok(self.clone());
-        }
+    /// The scenario of a text that was made of its table; itself where nothing was changed.
+    fn changed(&self, text: Option<String>) -> Result<Self, ScenarioError> {
+        let Some(text) = text else { return Ok(self.clone()) };
         // A line of this text is no line that anybody has written.
-        let mut changed = Self::from_toml(&table.to_string()).map_err(|error| error.at_line(None))?;
+        let mut changed = Self::from_toml(&text).map_err(|error| error.at_line(None))?;
         // Not part of the text's table.
         changed.quality.profile_errors.clone_from(&self.quality.profile_errors);
         Ok(changed)
@@ -155,11 +236,7 @@ impl Scenario {
     /// assert!(teeth.whole && teeth.value == 17.0);
     /// ```
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        let mut numbers = Vec::new();
-        if let Ok(table) = self.table() {
-            collect(&table, "", &mut numbers);
-        }
-        numbers
+        numbers_of(self.table())
     }
 
     /// The scenario file as a table, without the profile errors given, which are large.
@@ -167,45 +244,120 @@ impl Scenario {
     /// # Errors
     /// A seed that is too large for a number of the table.
     fn table(&self) -> Result<Table, ScenarioError> {
-        const MOST: u64 = i64::MAX as u64;
-        let of_sensor = |(index, sensor): (usize, &Sensor)| {
-            let key = match self.sensors.len() {
-                1 => "sensor.noise_seed".to_owned(),
-                _ => format!("sensor[{index}].noise_seed"),
-            };
-            (key, sensor.noise_seed)
-        };
-        let seeds = [("seed".to_owned(), Some(self.seed)), ("quality.seed".to_owned(), self.quality.seed)];
-        let mut seeds = seeds.into_iter().chain(self.sensors.iter().enumerate().map(of_sensor));
-        if let Some((key, Some(seed))) = seeds.find(|(_, seed)| seed.is_some_and(|seed| seed > MOST)) {
-            let problem =
-                format!("must be at most {MOST}, where a scenario's numbers are read or set by their keys");
-            return Err(ScenarioError::new(key, seed, problem).with_help("take a smaller seed"));
-        }
+        let own = [("seed".to_owned(), Some(self.seed)), ("quality.seed".to_owned(), self.quality.seed)];
+        check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter())))?;
         let mut small = self.clone();
         small.quality.profile_errors = None;
-        small.to_toml().parse().map_err(|error: toml::de::Error| ScenarioError::new("", "", error.message()))
+        parsed(&small.to_toml())
+    }
+}
+
+impl Gearbox {
+    /// The number at a key of the scenario file, defaults included.
+    ///
+    /// # Arguments
+    /// * `key` - dotted, as in the file; entries of lists by name, `wheel[z1].teeth`, `mesh[z1-z2].module_mm`, `shaft[input].radius_mm`,
+    ///   `bearing[input:0].damping_ratio`; of several faults and sensors by number, `fault[1].tooth`
+    ///
+    /// None where there is no such key in this gearbox, or no single number at it.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        number_at(self.table(), key)
+    }
+
+    /// Every key of the scenario file at which this gearbox has a single number, defaults included.
+    pub fn numbers(&self) -> Vec<ScenarioNumber> {
+        numbers_of(self.table())
+    }
+
+    /// Returns the gearbox with other numbers at some keys. All are set before anything is checked.
+    ///
+    /// # Arguments
+    /// * `numbers` - key, as of [`Self::number`], and value in the key's unit
+    ///
+    /// # Errors
+    /// A key that the gearbox does not have, a value that is not allowed there, as for the scenario file.
+    ///
+    /// ```
+    /// use meshtone::scenario::{Gearbox, gearbox_template};
+    ///
+    /// let gearbox = Gearbox::from_toml(&gearbox_template(None))?;
+    /// let other = gearbox.with_numbers(&[("wheel[z3].face_width_mm", 15.0), ("operation.input_speed_hz", 40.0)])?;
+    /// assert_eq!((other.wheels[2].face_width_mm, other.number("operation.input_speed_hz")), (15.0, Some(40.0)));
+    /// assert_eq!(gearbox.with_numbers(&[("wheel[z9].teeth", 20.0)]).unwrap_err().key, "wheel[z9].teeth");
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
+        match with_numbers_that(self.table(), numbers, no_such_number)? {
+            Some(text) => Self::from_toml(&text).map_err(|error| error.at_line(None)),
+            None => Ok(self.clone()),
+        }
+    }
+
+    fn table(&self) -> Result<Table, ScenarioError> {
+        let own = [("seed".to_owned(), Some(self.seed)), ("wheels_seed".to_owned(), self.wheels_seed)];
+        check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter().map(|sensor| &sensor.sensor))))?;
+        parsed(&self.to_toml())
+    }
+}
+
+impl ScenarioForm {
+    /// Does what [`Scenario::numbers`] and [`Gearbox::numbers`] do.
+    pub fn numbers(&self) -> Vec<ScenarioNumber> {
+        match self {
+            Self::Pair(scenario) => scenario.numbers(),
+            Self::Gearbox(gearbox) => gearbox.numbers(),
+        }
+    }
+
+    /// Does what [`Scenario::with_numbers`] and [`Gearbox::with_numbers`] do.
+    ///
+    /// # Arguments
+    /// * `numbers` - dotted key, as in the file, and value in the key's unit
+    ///
+    /// # Errors
+    /// A key that the scenario does not have, a value that is not allowed there.
+    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
+        Ok(match self {
+            Self::Pair(scenario) => Self::Pair(scenario.with_numbers(numbers)?),
+            Self::Gearbox(gearbox) => Self::Gearbox(gearbox.with_numbers(numbers)?),
+        })
+    }
+}
+
+/// The first segment of a dotted key, and the rest. A name in brackets may have dots.
+///
+/// # Arguments
+/// * `key` - such as `bearing[input:0.5].damping_ratio`
+///
+/// ```
+/// use meshtone::scenario::split_key;
+///
+/// assert_eq!(split_key("bearing[input:0.5].damping_ratio"), ("bearing[input:0.5]", Some("damping_ratio")));
+/// assert_eq!(split_key("seed"), ("seed", None));
+/// ```
+pub fn split_key(key: &str) -> (&str, Option<&str>) {
+    let bracket = key.find('[').filter(|&from| key.find('.').is_none_or(|dot| from < dot));
+    let inside = bracket.and_then(|from| Some(from + key[from..].find(']')?)).unwrap_or(0);
+    match key[inside..].find('.') {
+        Some(dot) => (&key[..inside + dot], Some(&key[inside + dot + 1..])),
+        None => (key, None),
     }
 }
 
 /// The value at a dotted key, if there is one.
 fn at_mut<'a>(table: &'a mut Table, key: &str) -> Option<&'a mut Value> {
-    let (segment, rest) = key.split_once('.').map_or((key, None), |(segment, rest)| (segment, Some(rest)));
-    let (name, index) = name_and_index(segment)?;
-    let value = match index {
-        Some(index) => table.get_mut(name)?.as_array_mut()?.get_mut(index)?,
-        None => table.get_mut(name)?,
-    };
+    let (segment, rest) = split_key(key);
+    let (name, entry) = segment.find('[').map_or((segment, ""), |from| segment.split_at(from));
+    let mut value = table.get_mut(name)?;
+    if value.is_array() && (rest.is_some() || !entry.is_empty()) {
+        let entries = value.as_array_mut()?;
+        let place = entry_names(name, entries).iter().position(|own| own == entry)?;
+        value = entries.get_mut(place)?;
+    } else if !entry.is_empty() {
+        return None;
+    }
     match rest {
         Some(rest) => at_mut(value.as_table_mut()?, rest),
         None => Some(value),
-    }
-}
-
-/// `fault[1]` as name and index from 0.
-fn name_and_index(segment: &str) -> Option<(&str, Option<usize>)> {
-    match segment.split_once('[') {
-        Some((name, index)) => Some((name, Some(index.strip_suffix(']')?.parse().ok()?))),
-        None => Some((segment, None)),
     }
 }

@@ -30,7 +30,7 @@ pub use crate::wheel::{
     ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, MaterialConstants, ProfileErrors,
     Quality, ReliefShape, WheelDeviations, WheelName,
 };
-pub use edit::ScenarioNumber;
+pub use edit::{ScenarioNumber, split_key};
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use gearbox::{
     Gearbox, GearboxFault, GearboxLayout, GearboxMesh, GearboxOperation, GearboxRig, GearboxSensor,

@@ -170,6 +170,14 @@ pub fn gearbox_stages_within(gearbox: &Gearbox, limit: MemoryLimit) -> Result<Ge
     stages_with(gearbox, limit, &KnownModes::default())
 }
 
+/// Does what [`gearbox_stages`] does, with modes that are known already.
+pub(crate) fn gearbox_stages_with(
+    gearbox: &Gearbox,
+    known: &KnownModes,
+) -> Result<GearboxStages, ScenarioError> {
+    stages_with(gearbox, MemoryLimit::default(), known)
+}
+
 /// (Hz) Natural frequency above which modes decay faster than those below.
 const HIGHEST_OF_SLOW_HZ: f64 = 2e3;
 
@@ -297,12 +305,11 @@ pub fn simulate_gearboxes<T: Send>(
     keep: impl Fn(GearboxSimulation) -> T + Sync,
 ) -> Vec<Result<T, Error>> {
     let known = KnownModes::default();
-    let stages = |gearbox: &Gearbox| stages_with(gearbox, MemoryLimit::default(), &known);
-    threads::map(gearboxes, |gearbox| stages(gearbox)?.simulate().map(&keep))
+    threads::map(gearboxes, |gearbox| gearbox_stages_with(gearbox, &known)?.simulate().map(&keep))
 }
 
 /// The healthy teeth of a mesh's wheels.
-fn teeth_of_mesh(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Teeth {
+pub(super) fn teeth_of_mesh(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Teeth {
     let bores_mm = layout.wheels_of_mesh[mesh]
         .map(|wheel| gearbox.shafts[layout.shaft_of_wheel[wheel]].radius_at_mm(gearbox.wheels[wheel].at));
     teeth(&layout.gears[mesh], bores_mm)
@@ -318,7 +325,8 @@ fn meshed_pair(
 ) -> Result<MeshedPair, ScenarioError> {
     let numbers = layout.wheels_of_mesh[mesh];
     let [of_pinion, of_gear] = WheelName::BOTH.map(|side| {
-        let seed = Draws::new(gearbox.seed, Purpose::GearboxWheel, numbers[side as usize] as u64).bits();
+        let seed = gearbox.wheels_seed.unwrap_or(gearbox.seed);
+        let seed = Draws::new(seed, Purpose::GearboxWheel, numbers[side as usize] as u64).bits();
         deviations(&layout.quality_of_mesh(gearbox, mesh, side), &teeth, seed)
     });
     let profile_errors = joined(of_pinion.flanks.clone(), of_gear.flanks.clone(), &teeth);

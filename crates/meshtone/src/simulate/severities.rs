@@ -1,9 +1,10 @@
 //! Severities of a scenario's faults.
 
+use super::gearbox::teeth_of_mesh;
 use super::healthy_teeth;
 use crate::damage::Fault;
 use crate::error::ScenarioError;
-use crate::scenario::Scenario;
+use crate::scenario::{Gearbox, GearboxLayout, Scenario};
 use crate::wheel::Teeth;
 
 impl Scenario {
@@ -44,5 +45,24 @@ impl Scenario {
 
     fn healthy_teeth(&self) -> Teeth {
         healthy_teeth(&self.without_ignored_keys())
+    }
+}
+
+impl Gearbox {
+    /// (-) How severe each fault is, from 0, none, to 1, the largest that the tooth allows: as given, or by its sizes.
+    ///
+    /// # Errors
+    /// Those of [`Gearbox::validate`].
+    pub fn fault_severities(&self) -> Result<Vec<f64>, ScenarioError> {
+        self.validate()?;
+        let layout = GearboxLayout::new(self)?;
+        let mut severities = vec![0.0; self.faults.len()];
+        for mesh in 0..self.meshes.len() {
+            let teeth = teeth_of_mesh(self, &layout, mesh);
+            for (number, fault) in layout.faults_of_mesh(self, mesh) {
+                severities[number] = fault.severity_on(&teeth);
+            }
+        }
+        Ok(severities)
     }
 }

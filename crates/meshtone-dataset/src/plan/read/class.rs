@@ -1,10 +1,10 @@
 //! The array `[[class]]`.
 
-use meshtone::scenario::Fault;
+use meshtone::scenario::ScenarioForm;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::split::largest_remainder;
-use super::super::{Class, Severity};
+use super::super::{Class, ClassFault, Severity};
 use super::{growth, over_zero, rule};
 
 const MOST_RECORDS: u64 = 1 << 40;
@@ -16,7 +16,7 @@ enum Share {
     Weight(f64),
 }
 
-pub(super) fn read_all(root: &TomlTable<'_>) -> ReadResult<Vec<Class>> {
+pub(super) fn read_all(root: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<Vec<Class>> {
     let listed = root.required("class", "the classes, [[class]] each")?;
     let values = listed.array()?;
     if values.is_empty() {
@@ -25,7 +25,7 @@ pub(super) fn read_all(root: &TomlTable<'_>) -> ReadResult<Vec<Class>> {
     let mut classes = Vec::with_capacity(values.len());
     let mut shares = Vec::with_capacity(values.len());
     for value in &values {
-        let (class, share) = value.table()?.read(class)?;
+        let (class, share) = value.table()?.read(|table| class(table, base))?;
         if classes.iter().any(|other: &Class| other.label == class.label) {
             return Err(value.error(format!("has the label \"{}\" of another class", class.label)));
         }
@@ -69,13 +69,13 @@ fn counts(root: &TomlTable<'_>, classes: &[TomlValue<'_>], shares: &[Share]) -> 
     Ok(counts)
 }
 
-fn class(table: &TomlTable<'_>) -> ReadResult<(Class, Share)> {
+fn class(table: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<(Class, Share)> {
     let label = table.required("label", "the class's name in the column label")?;
     let name = label.string()?;
     if name.is_empty() {
         return Err(label.error("must not be empty"));
     }
-    let faults = Fault::list_from_table(table)?;
+    let faults = ClassFault::read_all(table, base)?;
     let severity = severity(table, !faults.is_empty())?;
     let share = match (table.optional("count"), table.optional("weight")) {
         (Some(count), None) => Share::Count(count.integer(1..=MOST_RECORDS)?),

@@ -1,9 +1,8 @@
 //! The table `growth` of a class.
 
-use meshtone::scenario::Fault;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use super::super::{Distribution, Growth, Law};
+use super::super::{ClassFault, Distribution, Growth, Law};
 use super::rule::distribution;
 use super::{fraction, number_where};
 
@@ -15,7 +14,7 @@ const LARGEST_EXPONENT: f64 = 10.0;
 /// The keys of all laws.
 const KEYS: [&str; 7] = ["law", "exponent", "count", "start", "failure", "life_rev", "censored"];
 
-pub(super) fn read(value: &TomlValue<'_>, faults: &[Fault]) -> ReadResult<Growth> {
+pub(super) fn read(value: &TomlValue<'_>, faults: &[ClassFault]) -> ReadResult<Growth> {
     if faults.len() != 1 {
         let count = faults.len();
         return Err(value.error(format!("is of a class with {count} faults; must be one, which grows")));

@@ -1,14 +1,14 @@
 //! The table `[keep]`.
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{ScenarioForm, Sensor};
 use meshtone::sensor::{Channel, ChannelKind};
 use meshtone_io::channel_name::{accelerations, read_channel};
 use meshtone_io::experiment::Tuned;
-use meshtone_io::wheel_name::read_wheel;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use super::super::{Keep, MOST_SHARD_RECORDS, OverAngle};
+use super::super::{AveragedWheels, Keep, MOST_SHARD_RECORDS, OverAngle, Wheel};
 use super::{number_where, over_zero};
+use crate::record::Turning;
 
 const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
@@ -20,8 +20,9 @@ const MOST_REVOLUTIONS: u64 = 1 << 20;
 /// Absent keys take their values from a tuning, where the plan names one, so that the records are processed as the recordings were, and
 /// else from the base scenario. The checks of several keys against each other come after all of them have been read, because any of them
 /// may be missing.
-pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
-    let simulated_hz = base.solver.sampling_rate_hz;
+pub(super) fn read(table: &TomlTable<'_>, base: &ScenarioForm, tuned: Option<&Tuned>) -> ReadResult<Keep> {
+    let simulated_hz = base.solver().sampling_rate_hz;
+    let known = Known::of(base);
     let default_hz = tuned.map_or(RATE_HZ.min(simulated_hz), |tuned| tuned.sampling_rate_hz);
     let given_hz = table.read_optional("sampling_rate_hz", |value| {
         let otherwise = format!("must be more than 0 and at most {LARGEST_RATE_HZ:e} S/s");
@@ -36,7 +37,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     let channels = table.read_optional("channels", |value| {
         let mut chosen = Vec::new();
         for value in value.array()? {
-            let channel = read_channel(&value, &Channel::all(&base.sensors))?;
+            let channel = read_channel(&value, &known.channels)?;
             if chosen.contains(&channel) {
                 return Err(value.error("is named twice"));
             }
@@ -45,11 +46,13 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         Ok(chosen)
     })?;
     let duration_s = table.read_optional("duration_s", |value| over_zero(value, "must be more than 0 s"))?;
-    let wheel =
-        table.read_optional("wheel", read_wheel)?.or(tuned.map(|tuned| tuned.wheel)).unwrap_or_default();
-    let teeth = u64::from(base.gears.teeth(wheel));
-    let analysed =
-        table.read_optional("analysed", |value| read_channel(value, &accelerations(&base.sensors)))?;
+    let of_tuned = || tuned.map(|tuned| AveragedWheels::One(Wheel::OfPair(tuned.wheel)));
+    let wheel = table.read_optional("wheel", |value| wheels(value, base))?.or_else(of_tuned);
+    let wheel = wheel.unwrap_or_else(|| default_wheels(base));
+    let turning = Turning::of(base)?;
+    let fewest = wheel.all().iter().map(|wheel| turning.wheels[turning.number(wheel)].teeth).min();
+    let teeth = u64::from(fewest.unwrap_or(1));
+    let analysed = table.read_optional("analysed", |value| read_channel(value, &known.accelerations))?;
     let integer = |key, allowed| table.read_optional(key, |value| value.integer(allowed));
     let sidebands = integer("sidebands", 0..=teeth.saturating_sub(2) / 2)?;
     let orders = integer("shaft_orders", 0..=teeth - 1)?;
@@ -60,10 +63,9 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         sampling_rate_hz,
         duration_s,
         over_angle: over_angle(table)?,
-        channels: channels.unwrap_or_else(|| default_channels(base)),
+        channels: channels.unwrap_or(known.usual),
         wheel,
-        analysed: analysed
-            .unwrap_or_else(|| tuned.map_or(Channel::leading(&base.sensors), |tuned| tuned.channel.clone())),
+        analysed: analysed.unwrap_or_else(|| tuned.map_or(known.leading, |tuned| tuned.channel.clone())),
         sidebands: sidebands.map_or(tuned.map_or(2, |tuned| tuned.sidebands), |count| count as usize),
         shaft_orders: orders.map_or(tuned.map_or(7, |tuned| tuned.shaft_orders), |last| last as usize),
         average: flag("average", true)?,
@@ -105,12 +107,74 @@ fn over_angle(table: &TomlTable<'_>) -> ReadResult<Option<OverAngle>> {
     }))
 }
 
-/// The listed sensors, or the horizontal and the vertical acceleration.
-fn default_channels(base: &Scenario) -> Vec<Channel> {
-    if base.sensors.is_empty() {
-        return [ChannelKind::Horizontal, ChannelKind::Vertical].map(Channel::from).into();
+/// One wheel, or a list of several.
+fn wheels(value: &TomlValue<'_>, base: &ScenarioForm) -> ReadResult<AveragedWheels> {
+    let all = Wheel::all(base);
+    let choices: Vec<(&str, Wheel)> = all.iter().map(|wheel| (wheel.name(), wheel.clone())).collect();
+    if !value.is_array() {
+        return value.choice(&choices).map(AveragedWheels::One);
     }
-    base.sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect()
+    let mut chosen = Vec::new();
+    for value in value.array()? {
+        let wheel = value.choice(&choices)?;
+        if chosen.contains(&wheel) {
+            return Err(value.error("is named twice"));
+        }
+        chosen.push(wheel);
+    }
+    if chosen.is_empty() {
+        return Err(value.error("is empty; must name a wheel or several"));
+    }
+    Ok(AveragedWheels::Each(chosen))
+}
+
+/// The gear of a pair; all wheels of a gearbox.
+fn default_wheels(base: &ScenarioForm) -> AveragedWheels {
+    match base {
+        ScenarioForm::Gearbox(_) => AveragedWheels::Each(Wheel::all(base)),
+        _ => AveragedWheels::One(Wheel::OfPair(Default::default())),
+    }
+}
+
+/// The channels of the simulations of a base scenario.
+struct Known {
+    /// All that can be kept.
+    channels: Vec<Channel>,
+    /// All that can be averaged.
+    accelerations: Vec<Channel>,
+    /// What is kept by default: the listed sensors, of a pair without one the horizontal and the vertical acceleration, and of a gearbox
+    /// without one the vertical accelerations of the bearings' seats.
+    usual: Vec<Channel>,
+    /// What is averaged by default.
+    leading: Channel,
+}
+
+impl Known {
+    fn of(base: &ScenarioForm) -> Self {
+        match base {
+            ScenarioForm::Gearbox(gearbox) => {
+                let sensors = gearbox.all_sensors().into_iter().map(|sensor| Channel::Sensor(sensor.name()));
+                let channels: Vec<Channel> = sensors.collect();
+                let leading = channels.first().cloned().unwrap_or_else(|| Channel::leading(&[]));
+                Self { accelerations: channels.clone(), usual: channels.clone(), leading, channels }
+            }
+            _ => {
+                let sensors: Vec<Sensor> =
+                    base.sensors().into_iter().map(|(_, sensor)| sensor.clone()).collect();
+                let usual = if sensors.is_empty() {
+                    [ChannelKind::Horizontal, ChannelKind::Vertical].map(Channel::from).into()
+                } else {
+                    sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect()
+                };
+                Self {
+                    channels: Channel::all(&sensors),
+                    accelerations: accelerations(&sensors),
+                    usual,
+                    leading: Channel::leading(&sensors),
+                }
+            }
+        }
+    }
 }
 
 /// An enhancement is only what it is for the signals that it was tuned to.
@@ -119,7 +183,7 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     for (key, same) in [
         ("sampling_rate_hz", keep.sampling_rate_hz == tuned.sampling_rate_hz),
         ("analysed", keep.analysed == tuned.channel),
-        ("wheel", keep.wheel == tuned.wheel),
+        ("wheel", keep.wheel == AveragedWheels::One(Wheel::OfPair(tuned.wheel))),
         ("sidebands", keep.sidebands == tuned.sidebands),
         ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
         ("duration_s", keep.duration_s.is_none()),

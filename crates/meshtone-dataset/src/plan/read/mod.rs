@@ -127,14 +127,15 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         base = base::tuned(&base, &tuned, value)?;
         Ok(tuned)
     })?;
-    let units = root.required("units", "how many units, that is pairs of wheels, share the records")?;
+    let units =
+        root.required("units", "how many units, that is pairs of wheels or gearboxes, share the records")?;
     let content = Content {
         seed: seed.unwrap_or(1),
         units: units.integer(1..=MOST_UNITS)?,
         mountings: root.read_optional("mountings", |value| value.integer(1..=MOST_MOUNTINGS))?.unwrap_or(1),
         design: design.unwrap_or_default(),
         keep: root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?,
-        classes: class::read_all(root)?,
+        classes: class::read_all(root, &base)?,
         rules: rule::read_all(root)?,
         constraints: root.read_optional("constraints", conditions)?.unwrap_or_default(),
         splits: root.read_optional("split", |value| value.table()?.read(split::read))?.unwrap_or_default(),

@@ -1,15 +1,16 @@
 //! The array `[[vary]]`, at the top or in a class.
 
+use meshtone::scenario::split_key;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use super::super::{Distribution, Level, Rule};
+use super::super::{Distribution, Level, Rule, list_and_entry};
 use super::over_zero;
 use crate::expression::Expression;
 
 /// The keys that say how a value is drawn, of which a rule has one.
 const DISTRIBUTIONS: [&str; 6] = ["fixed", "grid", "choice", "uniform", "log_uniform", "normal"];
 /// Sections whose keys make the wheels and the rig, which a unit's records share unless said otherwise.
-const OF_A_UNIT: [&str; 3] = ["gears", "quality", "rig"];
+const OF_A_UNIT: [&str; 8] = ["gears", "quality", "rig", "shaft", "wheel", "mesh", "bearing", "housing"];
 const MOST_STEPS: u64 = 100_000;
 /// The other keys of a rule.
 const OTHER_KEYS: [&str; 5] = ["weights", "times", "plus", "fraction_of", "per"];
@@ -38,7 +39,7 @@ fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
     if fraction_of.is_some() {
         check_fractions(table, &distribution)?;
     }
-    let unit = OF_A_UNIT.iter().any(|section| keys[0].starts_with(&format!("{section}.")));
+    let unit = OF_A_UNIT.contains(&list_and_entry(split_key(&keys[0]).0).0);
     let default = if unit { Level::Unit } else { Level::Record };
     let level = table.read_optional("per", |value| value.choice(&Level::NAMES))?;
     Ok(Rule { keys, level: level.unwrap_or(default), distribution, times: times.or(fraction_of), plus })

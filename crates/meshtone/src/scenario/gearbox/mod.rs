@@ -12,17 +12,19 @@ pub use parts::{
     GearboxFault, GearboxMesh, GearboxOperation, GearboxSensor, GearboxSolver, GearboxWheel, Ripple,
 };
 
-use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
+use std::fmt;
+
+use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable};
 
 use super::from_toml::{Numbers, ScenarioFiles, located};
 use super::validate::{DrivenSpeed, pitch_line_mm};
-use super::{MemoryLimit, Scenario, ScenarioError, ScenarioWarning, SectionDescription, WarningKind};
+use super::{MemoryLimit, Scenario, ScenarioError, ScenarioWarning, SectionDescription, Sensor, WarningKind};
 use crate::damage::{Fault, check_faults};
 use crate::keys::{
     KeyRow, Keys, NoFiles, NumberFiles, check_keys, describe, field, read_keys, row, write_keys,
 };
 use crate::machine::{Bearing, GearboxShaft, Housing};
-use crate::operation::TimeGrid;
+use crate::operation::{Operation, Solver, TimeGrid};
 use crate::wheel::Material;
 use crate::wheel::quality::{check_errors, one_source};
 use layout::{entry_key, find, section};
@@ -43,6 +45,8 @@ use parts::list;
 pub struct Gearbox {
     /// Seed of every random draw.
     pub seed: u64,
+    /// Seed of the wheels' deviations; none for that of everything else.
+    pub wheels_seed: Option<u64>,
     /// Material of shafts and wheels. Default steel.
     pub material: Material,
     /// The shafts.
@@ -70,6 +74,7 @@ impl Keys for Gearbox {
     fn start() -> Self {
         Self {
             seed: 1,
+            wheels_seed: None,
             material: Material::default(),
             shafts: Vec::new(),
             wheels: Vec::new(),
@@ -91,6 +96,9 @@ impl Keys for Gearbox {
                 "the seed of every random draw: deviations, fluctuations, sensors' noise",
                 field!(seed),
             ),
+            row("wheels_seed", "", "the seed of the wheels' deviations: with one of its own the same wheels have other noise and fluctuations", field!(wheels_seed))
+                .otherwise("seed")
+                .alternative("2"),
             row("material", "", "the material of shafts and wheels", field!(material)),
         ]
     }
@@ -102,7 +110,7 @@ const OF_GEARBOX: [&str; 5] = ["shaft", "wheel", "mesh", "bearing", "housing"];
 const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
 /// A scenario file, as what it is read.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is one of a file")]
 pub enum ScenarioForm {
     /// The short form: one pair of gears.
@@ -136,16 +144,19 @@ impl Gearbox {
     /// Text that is not TOML; sections of both forms.
     pub fn is_written_in(text: &str) -> Result<bool, ScenarioError> {
         let document = TomlDocument::parse(text)?;
-        let has =
-            |names: &[&'static str]| names.iter().find(|name| document.line_of_key(name).is_some()).copied();
+        Self::is_table(&document.root()).map_err(|error| document.locate(error).into())
+    }
+
+    /// Whether a table has the sections of a gearbox.
+    fn is_table(root: &TomlTable<'_>) -> ReadResult<bool> {
+        let has = |names: &[&'static str]| names.iter().find(|name| root.has(name)).copied();
         match (has(&OF_GEARBOX), has(&OF_PAIR)) {
             (Some(gearbox), Some(pair)) => {
                 let problem = format!(
                     "given beside {gearbox}: one pair has [gears] and [rig], a gearbox [[shaft]], [[wheel]] and [[mesh]]"
                 );
-                let error = ScenarioError::new(pair, "", problem)
-                    .with_help("remove the sections of one of the two forms");
-                Err(document.locate(error).into())
+                let error = TomlError::new(root.path_of(pair), "", problem);
+                Err(error.with_help("remove the sections of one of the two forms"))
             }
             (gearbox, _) => Ok(gearbox.is_some()),
         }
@@ -155,7 +166,7 @@ impl Gearbox {
     pub(crate) fn refused_as_pair() -> ScenarioError {
         let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
         ScenarioError::new("mesh", "", problem).with_help(
-            "`meshtone simulate`, `indicators` and `path` take gearboxes; the models published and linear, tuning, data sets, \
+            "`meshtone simulate`, `indicators` and `path` take gearboxes; the models published and linear, tuning, \
              diagnosis and the page know one pair",
         )
     }
@@ -218,8 +229,7 @@ impl Gearbox {
             gearbox.housing = Some(housing);
         }
         root.table_or_empty("operation")?.read(|table| read_keys(&mut gearbox.operation, table, files))?;
-        let faults = Fault::list_on_named_wheels(root)?;
-        gearbox.faults = faults.into_iter().map(|(wheel, fault)| GearboxFault { wheel, fault }).collect();
+        gearbox.faults = GearboxFault::list_from_table(root)?;
         gearbox.sensors = list(root, "sensor", files)?;
         root.table_or_empty("solver")?.read(|table| read_keys(&mut gearbox.solver, table, files))?;
         Ok(gearbox)
@@ -496,23 +506,17 @@ fn check_list<S: Keys>(name: &str, entries: &[S]) -> Result<(), ScenarioError> {
     entries.iter().enumerate().try_for_each(check)
 }
 
+/// Shows what it holds, as that shows itself.
+impl fmt::Debug for ScenarioForm {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pair(scenario) => scenario.fmt(formatter),
+            Self::Gearbox(gearbox) => gearbox.fmt(formatter),
+        }
+    }
+}
+
 impl ScenarioForm {
-    /// (Hz) The nominal speed of the pinion, or of a gearbox's input.
-    pub fn input_speed_hz(&self) -> f64 {
-        match self {
-            Self::Pair(scenario) => scenario.operation.pinion_speed_hz,
-            Self::Gearbox(gearbox) => gearbox.operation.drive.pinion_speed_hz,
-        }
-    }
-
-    /// (S/s) The sampling rate that it leads to.
-    pub fn sampling_rate_hz(&self) -> f64 {
-        match self {
-            Self::Pair(scenario) => scenario.time_grid().sampling_rate_hz,
-            Self::Gearbox(gearbox) => gearbox.time_grid().sampling_rate_hz,
-        }
-    }
-
     /// Reads and validates either form of a scenario that names no other file.
     ///
     /// # Arguments
@@ -526,6 +530,118 @@ impl ScenarioForm {
         }
         let scenario = Scenario::from_toml(text)?;
         scenario.validate().map(|_| Self::Pair(scenario))
+    }
+
+    /// Reads either form that is a table of another file, without validating it.
+    ///
+    /// # Arguments
+    /// * `table` - with the sections of a scenario file
+    /// * `files` - loads the files that it names
+    ///
+    /// # Errors
+    /// An unknown or missing key, a value of the wrong type, what `files` reports; sections of both forms.
+    pub fn from_table(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Self> {
+        if Gearbox::is_table(table)? {
+            Gearbox::from_table(table, &Numbers(files)).map(Self::Gearbox)
+        } else {
+            Scenario::from_table(table, files).map(Self::Pair)
+        }
+    }
+
+    /// The scenario file, defaults explicitly.
+    pub fn to_toml(&self) -> String {
+        match self {
+            Self::Pair(scenario) => scenario.to_toml(),
+            Self::Gearbox(gearbox) => gearbox.to_toml(),
+        }
+    }
+
+    /// Checks every value, alone and against the others.
+    ///
+    /// # Errors
+    /// Those of [`Scenario::validate`] and [`Gearbox::validate`].
+    pub fn validate(&self) -> Result<Vec<ScenarioWarning>, ScenarioError> {
+        match self {
+            Self::Pair(scenario) => scenario.validate(),
+            Self::Gearbox(gearbox) => gearbox.validate(),
+        }
+    }
+
+    /// Speed and load.
+    pub fn operation(&self) -> &Operation {
+        match self {
+            Self::Pair(scenario) => &scenario.operation,
+            Self::Gearbox(gearbox) => &gearbox.operation.drive,
+        }
+    }
+
+    /// Sampling and settling.
+    pub fn solver(&self) -> &Solver {
+        match self {
+            Self::Pair(scenario) => &scenario.solver,
+            Self::Gearbox(gearbox) => &gearbox.solver.settings,
+        }
+    }
+
+    /// Sampling and settling, to be changed.
+    pub fn solver_mut(&mut self) -> &mut Solver {
+        match self {
+            Self::Pair(scenario) => &mut scenario.solver,
+            Self::Gearbox(gearbox) => &mut gearbox.solver.settings,
+        }
+    }
+
+    /// Whether motor and brake are steady.
+    pub fn is_steady(&self) -> bool {
+        match self {
+            Self::Pair(scenario) => scenario.operation.is_steady(),
+            Self::Gearbox(gearbox) => gearbox.operation.is_steady(),
+        }
+    }
+
+    /// Division of time.
+    pub fn time_grid(&self) -> TimeGrid {
+        match self {
+            Self::Pair(scenario) => scenario.time_grid(),
+            Self::Gearbox(gearbox) => gearbox.time_grid(),
+        }
+    }
+
+    /// The listed sensors, each with its name.
+    pub fn sensors(&self) -> Vec<(String, &Sensor)> {
+        match self {
+            Self::Pair(scenario) => scenario.sensors.iter().map(|sensor| (sensor.name(), sensor)).collect(),
+            Self::Gearbox(gearbox) => {
+                gearbox.sensors.iter().map(|sensor| (sensor.name(), &sensor.sensor)).collect()
+            }
+        }
+    }
+
+    /// The listed sensors, to be changed.
+    pub fn sensors_mut(&mut self) -> Vec<&mut Sensor> {
+        match self {
+            Self::Pair(scenario) => scenario.sensors.iter_mut().collect(),
+            Self::Gearbox(gearbox) => gearbox.sensors.iter_mut().map(|sensor| &mut sensor.sensor).collect(),
+        }
+    }
+
+    /// Number of the faults.
+    pub fn fault_count(&self) -> usize {
+        match self {
+            Self::Pair(scenario) => scenario.faults.len(),
+            Self::Gearbox(gearbox) => gearbox.faults.len(),
+        }
+    }
+
+    /// (-) How severe each fault is, from 0, none, to 1, the largest that the tooth allows: as given, or by its sizes.
+    ///
+    /// # Errors
+    /// Those of [`Self::validate`].
+    pub fn fault_severities(&self) -> Result<Vec<f64>, ScenarioError> {
+        match self {
+            Self::Pair(scenario) => scenario.fault_severities(),
+            Self::Gearbox(gearbox) => gearbox.fault_severities(),
+        }
     }
 
     /// Reads and validates either form.

@@ -426,6 +426,20 @@ pub struct GearboxFault {
     pub fault: Fault,
 }
 
+impl GearboxFault {
+    /// Reads the key `fault` of a table: one fault, or a list of them.
+    ///
+    /// # Arguments
+    /// * `table` - a scenario file, or another table that has faults
+    ///
+    /// # Errors
+    /// An unknown or missing key, a value that is not allowed.
+    pub fn list_from_table(table: &TomlTable<'_>) -> ReadResult<Vec<Self>> {
+        let faults = Fault::list_on_named_wheels(table)?.into_iter();
+        Ok(faults.map(|(wheel, fault)| Self { wheel, fault }).collect())
+    }
+}
+
 /// An accelerometer on a gearbox.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearboxSensor {

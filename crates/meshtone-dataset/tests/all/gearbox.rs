@@ -1,0 +1,196 @@
+//! Data sets of a gearbox.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
+
+use meshtone::scenario::ScenarioForm;
+use meshtone_dataset::draw::Sampler;
+use meshtone_dataset::generate::Part;
+use meshtone_dataset::merge::merge;
+use meshtone_dataset::plan::gearbox_template;
+use meshtone_dataset::store::Destination;
+use meshtone_dataset::verify::{Check, verify};
+use parquet::record::Field;
+
+use crate::records::made;
+use crate::refused::refused;
+use crate::support::{bytes, differing, plan, run};
+
+const WHEELS: [&str; 4] = ["z1", "z2", "z3", "z4"];
+
+/// The plan that `meshtone init dataset --gearbox` prints, with fewer records and a lower rate.
+fn fast() -> String {
+    let mut text = gearbox_template();
+    for (written, other) in [
+        ("records = 200", "records = 48\nseed = 5"),
+        ("sampling_rate_hz = 50000.0", "sampling_rate_hz = 20000.0"),
+        ("#sampling_rate_hz = 25e3", "records_per_shard = 20\nsampling_rate_hz = 1e4"),
+        ("duration_s = 1.0     ", "duration_s = 0.6     "),
+    ] {
+        assert!(text.contains(written), "{written}");
+        text = text.replace(written, other);
+    }
+    text
+}
+
+#[test]
+fn records_are_labelled_by_wheel_and_no_unit_is_in_two_splits() {
+    let plan = plan(&fast());
+    let made = made(&plan);
+    let mut classes = BTreeMap::new();
+    let mut splits_of_units: BTreeMap<i64, BTreeSet<String>> = BTreeMap::new();
+    let mut damaged_teeth = BTreeSet::new();
+    for row in 0..made.rows.len() {
+        let label = made.text("label", row);
+        *classes.entry(label.clone()).or_insert(0) += 1;
+        splits_of_units.entry(made.integer("unit", row)).or_default().insert(made.text("split", row));
+        if label == "healthy" {
+            for name in ["fault_kind", "fault_wheel", "fault_tooth", "fault_severity"] {
+                assert_eq!(made.field(name, row), &Field::Null);
+            }
+            assert_eq!(made.whole("severity", row), 0);
+            continue;
+        }
+        let (wheel, kind) = label.split_once('-').unwrap();
+        assert_eq!(made.text("fault_wheel", row), wheel);
+        assert!(made.text("fault_kind", row).contains(kind), "{label}");
+        if let Some(tooth) = made.tooth(row) {
+            damaged_teeth.insert((wheel.to_owned(), tooth));
+            assert!((1..=made.whole(&format!("{wheel}_teeth"), row)).contains(&i64::from(tooth)));
+        }
+        let severity = made.number("fault_severity", row);
+        let grade = if kind == "missing" { 5 } else { 1 + (severity * 4.0) as i64 };
+        assert_eq!(made.whole("severity", row), grade, "{label} {severity}");
+    }
+    let expected =
+        [("healthy", 16), ("z1-breakage", 8), ("z3-breakage", 8), ("z3-missing", 8), ("z4-pits", 8)];
+    assert_eq!(classes, expected.map(|(label, count)| (label.to_owned(), count)).into());
+    // The tooth is no label that the wheel alone gives away.
+    assert!(damaged_teeth.len() > 12, "{damaged_teeth:?}");
+    assert_eq!(splits_of_units.len(), 10);
+    assert!(splits_of_units.values().all(|splits| splits.len() == 1), "{splits_of_units:?}");
+    let all: BTreeSet<_> = splits_of_units.values().flatten().cloned().collect();
+    assert_eq!(all, ["train", "validation", "test", "fast"].map(str::to_owned).into());
+}
+
+/// Jobs, parts, and a run that was stopped change no byte.
+#[test]
+fn a_data_set_of_a_gearbox_is_resumed_merged_and_verified_as_one_of_a_pair() {
+    let plan = plan(&fast());
+    let directory = tempfile::tempdir().unwrap();
+    let place = |name: &str| Destination::directory(directory.path().join(name));
+    assert!(run(&plan, &place("whole"), Part::WHOLE, 2).unwrap().complete);
+    let whole = bytes(&directory.path().join("whole"));
+    assert!(verify(&place("whole"), Check::Bytes).unwrap().is_good());
+    let shard = directory.path().join("whole/data/records-000001.parquet");
+    std::fs::remove_file(&shard).unwrap();
+    assert_eq!(verify(&place("whole"), Check::Sizes).unwrap().missing.len(), 1);
+    let again = run(&plan, &place("whole"), Part::WHOLE, 1).unwrap();
+    assert_eq!((again.kept_shards, again.written_shards), (2, 1));
+    assert_eq!(differing(&whole, &bytes(&directory.path().join("whole"))), [""; 0]);
+    for number in 1..=2 {
+        run(&plan, &place(&format!("part{number}")), Part { number, of: 2 }, 2).unwrap();
+    }
+    merge(&[place("part1"), place("part2")], &place("merged"), Check::Bytes).unwrap();
+    assert_eq!(differing(&whole, &bytes(&directory.path().join("merged"))), [""; 0]);
+    let card = std::str::from_utf8(&whole["README.md"]).unwrap();
+    assert!(card.contains("10 units (gearboxes)") && card.contains("missing-tooth of z3"), "{card}");
+}
+
+/// (g) Order of an average, of which one value a point is given.
+fn order(values: &[f64], order: usize) -> [f64; 2] {
+    let phase = |point: usize| TAU * order as f64 * point as f64 / values.len() as f64;
+    let sum = |part: fn(f64) -> f64| {
+        let terms = values.iter().enumerate().map(|(point, value)| value * part(phase(point)));
+        2.0 * terms.sum::<f64>() / values.len() as f64
+    };
+    [sum(f64::cos), sum(f64::sin)]
+}
+
+/// The average of every wheel is that of the gearbox's own simulation, which begins at the scenario's first tooth, turned as the labels say:
+/// over whole cycles of the train both are averages of the same periodic motion.
+#[test]
+fn averages_begin_at_the_tooth_that_the_labels_count_from() {
+    let text = fast()
+        .replace("uniform = [25.0, 45.0]", "fixed = 30.0")
+        .replace("uniform = [20.0, 40.0]", "fixed = 200.0")
+        .replace("records = 48", "records = 12\nconstraints = [\"latent.load_nm > 20\"]")
+        .replace("units = 10", "units = 4")
+        .replace("duration_s = 0.6     ", "duration_s = 0.51    ")
+        .replace("settle_tolerance = 1e-2", "settle_tolerance = 1e-6");
+    let text = text.replace("settle_fraction = 0.81", "settle_fraction = 0.95");
+    let text = &text[..text.find("[[split.shift]]").unwrap()];
+    let plan = plan(text);
+    let made = made(&plan);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let mut compared = 0;
+    for row in 0..made.rows.len() {
+        let drawn = sampler.record(made.integer("record", row) as u64).unwrap();
+        let ScenarioForm::Gearbox(mut gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
+        let Some(tooth) = made.tooth(row) else { continue };
+        let of_scenario = gearbox.faults[0].fault.tooth.only().unwrap();
+        let wheel = made.text("fault_wheel", row);
+        let number = WHEELS.iter().position(|name| *name == wheel).unwrap();
+        let teeth = gearbox.wheels[number].teeth;
+        // A cycle of the train, 15 revolutions of the input, after what is left of the wheel's first revolution.
+        let speed_hz = made.number(&format!("{wheel}_speed_hz"), row);
+        gearbox.solver.settings.duration_s = Some(0.5 + 1.0 / speed_hz);
+        let simulation = meshtone::simulate_gearbox(&gearbox).unwrap();
+        let signal = simulation.channels.signal("output_1_vertical_g").unwrap();
+        let (expected, _) = simulation.wheel_average(signal, number).unwrap();
+        let found = made.signal(&format!("{wheel}_average_g"), row);
+        // Tooth `tooth` of the record is tooth `of_scenario` of the scenario.
+        let turn = (f64::from(of_scenario) - f64::from(tooth)) / f64::from(teeth);
+        let (mut difference, mut whole) = (0.0, 0.0);
+        for k in 1..=2 * teeth as usize {
+            let ([a, b], [c, d]) = (order(&expected, k), order(&found, k));
+            let (sin, cos) = (TAU * k as f64 * turn).sin_cos();
+            // Begun so much later, a cos kθ + b sin kθ has these.
+            let turned = [a * cos + b * sin, b * cos - a * sin];
+            difference += (turned[0] - c).powi(2) + (turned[1] - d).powi(2);
+            whole += a * a + b * b;
+        }
+        assert!(difference < 4e-3 * whole, "{wheel}, tooth {tooth}: {difference} of {whole}");
+        compared += 1;
+    }
+    assert!(compared >= 6, "{compared}");
+}
+
+#[test]
+fn what_a_gearbox_does_not_have_is_refused_at_its_key() {
+    for (written, other, words) in [
+        ("fault = { wheel = \"z4\"", "fault = { wheel = \"z9\"", vec!["class[4].fault", "z1, z2, z3, z4"]),
+        (
+            "key = \"wheel[z3].face_width_mm\"",
+            "key = \"wheel[z3].face_widht_mm\"",
+            vec!["did you mean `wheel[z3].face_width_mm`"],
+        ),
+        (
+            "key = \"wheel[z3].face_width_mm\"",
+            "per = \"record\"\nkey = \"wheel[z3].face_width_mm\"",
+            vec!["would differ between records of one unit"],
+        ),
+        (
+            "[[scenario.shaft]]",
+            "[scenario]\nwheels_seed = 3\n[[scenario.shaft]]",
+            vec!["scenario.wheels_seed", "every unit has wheels of its own"],
+        ),
+        ("#wheel = [\"z1\", \"z2\", \"z3\", \"z4\"]", "wheel = [\"z1\", \"gear\"]", vec!["keep.wheel", "z3"]),
+        ("duration_s = 0.6     ", "duration_s = 0.3     ", vec!["revolutions of the wheel z4"]),
+        (
+            "#channels = [\"input_0_vertical_g\",",
+            "channels = [\"mesh_force_n\",",
+            vec!["keep.channels", "input_0_vertical_g"],
+        ),
+        (
+            "[[scenario.sensor]]\nat = \"input:0\"",
+            "[scenario.gears]\nmodule_mm = 3.0\n[[scenario.sensor]]\nat = \"input:0\"",
+            vec!["two forms"],
+        ),
+    ] {
+        let text = fast();
+        assert!(text.contains(written), "{written}");
+        refused(&text.replacen(written, other, 1), &words);
+    }
+}
