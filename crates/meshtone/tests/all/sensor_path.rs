@@ -156,14 +156,6 @@ fn a_hidden_path_of_a_gearbox_is_found_again() {
         let (errors, inside) = errors_db(&path, 320.0);
         let most = errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
         let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
-        for (at, hz) in path.frequency_hz.iter().enumerate().filter(|(at, hz)| at % 8 == 0 && **hz > 200.0) {
-            let db = 20.0 * hidden(*hz).norm().log10();
-            println!(
-                "  {hz:.0} Hz: error {:.2}, interval {:.2}",
-                path.magnitude_db[at] - db,
-                path.high_db[at] - path.low_db[at]
-            );
-        }
         println!("gearbox {seed}: largest {most:.2} dB, rms {rms:.2} dB, misfit {:?}", path.misfit);
         assert!(most < 3.0, "{most}");
         (held, points) = (held + inside, points + errors.len());

@@ -18,8 +18,8 @@ const NEAR_LINES: f64 = 2.0;
 const SIDEBAND_ORDERS: f64 = 3.5;
 /// Mesh harmonics that are told apart.
 const MOST_HARMONICS: usize = 60;
-/// Frequencies on either side of one over which noise is taken to be the same.
-const AROUND: usize = 8;
+/// Frequencies on either side of one over which noise is taken to be the same: no more, since a notch of the path would be taken for noise.
+const AROUND: usize = 2;
 /// (-) Part of the lowest mesh frequency from which on lines are compared.
 const FROM_MESH: f64 = 0.5;
 
