@@ -355,14 +355,18 @@ fn own_name(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }
 
-/// Simulates no longer than until the same teeth meet again on all shafts, where it was longer and steady: what follows repeats it.
+/// Keeps no more than until the same teeth meet again on all shafts, where it was longer and steady: what follows repeats it. It settles as
+/// long as before.
 fn once(gearbox: &mut Gearbox) -> Result<(), ScenarioError> {
     let cycle = GearboxLayout::new(gearbox)?.cycle_revolutions() as f64;
     let time = gearbox.time_grid();
-    let kept = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
-    if gearbox.operation.is_steady() && cycle < kept {
-        gearbox.solver.settings.duration_s = None;
-        gearbox.solver.settings.pinion_revolutions = Some(cycle);
+    let revolutions = |samples: usize| samples as f64 / time.samples_per_pinion_revolution as f64;
+    if gearbox.operation.is_steady() && cycle < revolutions(time.kept_samples()) {
+        let settled = revolutions(time.first_kept_sample);
+        let solver = &mut gearbox.solver.settings;
+        solver.duration_s = None;
+        solver.pinion_revolutions = Some(cycle);
+        solver.settle_fraction = settled / (settled + cycle);
     }
     Ok(())
 }
