@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use axum::Router;
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, oneshot};
 
@@ -38,8 +38,8 @@ pub enum Embedding {
 /// Settings by which the page is served.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServerSettings {
-    /// The scenario that the page opens with.
-    pub scenario: Scenario,
+    /// The scenario that the page opens with: a pair or a gearbox, which have pages of their own.
+    pub scenario: ScenarioForm,
     /// The port; 0 for any that is free.
     pub port: u16,
     /// Whether a notebook may show it.
@@ -60,9 +60,9 @@ pub struct Server {
 #[derive(Debug)]
 struct Shared {
     /// Scenario with which the page opens.
-    start: Scenario,
+    start: ScenarioForm,
     /// The scenario on the page: the last scenario that was answered in full.
-    current: Mutex<Scenario>,
+    current: Mutex<ScenarioForm>,
     /// The newest request of each page.
     latest: NewestRequests,
     /// Room for computations.
@@ -81,10 +81,10 @@ impl Server {
     /// The port cannot be had; no random numbers for the address; no thread.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{Scenario, ScenarioForm};
     /// use meshtone_explore::{Embedding, Server, ServerSettings, presets};
     ///
-    /// let scenario = Scenario::from_toml(presets()[0].toml)?;
+    /// let scenario = ScenarioForm::Pair(Scenario::from_toml(presets()[0].toml)?);
     /// let server = Server::start(ServerSettings { scenario: scenario.clone(), port: 0, embedding: Embedding::Refused })?;
     /// assert!(server.url().starts_with("http://127.0.0.1:"));
     /// assert_eq!(server.scenario(), scenario);
@@ -104,7 +104,7 @@ impl Server {
             healthy: Mutex::new(None),
         });
         let guard = Guard::new(address.port(), &token, embedding);
-        let router = guard.protect(requests::router(Arc::clone(&shared)).merge(files::router()));
+        let router = guard.protect(requests::router(Arc::clone(&shared)).merge(files::router(&shared.start)));
         // What needs the runtime is made before the thread, so that its failure is reported.
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
@@ -130,7 +130,7 @@ impl Server {
     }
 
     /// The scenario on the page: the last scenario that it was answered in full, or the one that it opens with.
-    pub fn scenario(&self) -> Scenario {
+    pub fn scenario(&self) -> ScenarioForm {
         self.shared.current.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
