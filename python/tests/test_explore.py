@@ -438,7 +438,7 @@ def test_any_number_of_a_gearbox_is_changed(train_page: Page, train: mt.Explorer
     text = train.gearbox.to_toml()
     assert all(words in text for words in ("input_speed_hz = 33", "face_width_mm = 15", "damping_ratio = 0.03", "mass_kg = 25"))
     assert page.run("return document.querySelectorAll('#controls .control').length") > 120
-    assert page.enter("mesh[1].module_mm", "-1") == "mesh[1].module_mm = -1: must be more than 0 mm"
+    assert page.enter("mesh[1].module_mm", "-1") == "mesh[1].module_mm = -1 (the 2nd mesh): must be more than 0 mm"
     assert page.run("return document.getElementById('key-mesh[1].module_mm').getAttribute('aria-invalid')") == "true"
     assert train.gearbox.to_toml() == text
     assert page.enter("mesh[1].module_mm", "1.5875") == ""

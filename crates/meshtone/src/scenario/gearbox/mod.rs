@@ -167,8 +167,8 @@ impl Gearbox {
     pub(crate) fn refused_as_pair() -> ScenarioError {
         let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
         ScenarioError::new("mesh", "", problem).with_help(
-            "`meshtone simulate` and `meshtone.simulate_gearbox` take gearboxes; the models published and linear, tuning, \
-             diagnosis and the page know one pair",
+            "`meshtone simulate` and `meshtone.simulate_gearbox` take gearboxes; the models published and linear, tuning and \
+             diagnosis know one pair",
         )
     }
 
