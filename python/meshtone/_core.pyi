@@ -25,6 +25,7 @@ __all__ = [
     "angular_resample",
     "change_duration",
     "change_fault_to_harmonics_ratio",
+    "check_diagnosis",
     "check_plan",
     "check_recording",
     "dataset_template",
@@ -64,6 +65,7 @@ __all__ = [
     "template",
     "trace",
     "tune",
+    "tuned_rig",
     "verify_dataset",
 ]
 
@@ -302,15 +304,18 @@ class Observation:
     @staticmethod
     def of_revolution(values: _Array, gear_teeth: int, signal: str) -> Observation: ...
 
+def check_diagnosis(
+    scenario: Scenario, now: Sequence[Observation], healthy: Sequence[Observation]
+) -> list[tuple[str, str]]: ...
 def diagnose(
     scenario: Scenario,
     now: Sequence[Observation],
     healthy: Sequence[Observation],
-    tuned: _Path | None,
     reference: _Path | None,
     records: int,
     progress: Callable[[int, int], None] | None,
 ) -> tuple[str, _Array, list[_Array]]: ...
+def tuned_rig(scenario: Scenario, path: _Path) -> Scenario: ...
 def estimate_path(
     scenario: Scenario,
     recordings: Sequence[tuple[_Array, float, ShaftPhase]],

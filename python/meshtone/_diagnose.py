@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _progress
-from ._warnings import SignalWarning
+from ._warnings import SignalWarning, typed, warn_of_signal
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import finite_signal, positive, read_only, whole
@@ -37,7 +37,7 @@ class Diagnosis:
     Attributes
     ----------
     kinds : dict of str to dict
-        ``healthy`` and every kind of damage, the likeliest first: ``probability``; and if it is that, ``severity`` and ``sizes``
+        ``healthy``, every kind of damage, and ``several-damages``, two at once, the likeliest first: ``probability``; and if it is that, ``severity`` and ``sizes``
         (``median``, ``within_50``, ``within_90``), ``wheel``, ``wheel_probability``, ``is_on_one_tooth``, ``tooth``,
         ``tooth_probability``, ``angle_deg``. A tooth is None where nothing says from where to count, as after a mesh tone.
     any_damage : dict or None
@@ -53,8 +53,10 @@ class Diagnosis:
         Whether the recordings are unlike all that was simulated: nothing can be said then.
     warnings : list of SignalWarning
         What deserves attention: ``code`` and ``message``.
+    shown_wheel : str
+        The wheel that the signals are of: the likeliest damaged one.
     difference_g : array, shape (points,)
-        (g) The first recording's difference signal over a revolution of the gear.
+        (g) The first recording's difference signal over a revolution of that wheel.
     band_g : tuple of array, shape (points,)
         (g) Between which values nine in ten of the simulations that resemble it are.
     """
@@ -66,6 +68,7 @@ class Diagnosis:
     outside_model: float
     is_outside: bool
     warnings: list[SignalWarning]
+    shown_wheel: str
     difference_g: Array = field(repr=False)
     band_g: tuple[Array, Array] = field(repr=False)
     _report: dict[str, Any] = field(repr=False)
@@ -113,7 +116,8 @@ def diagnose(
 ) -> Diagnosis:
     """Say what may be wrong with a gear, by simulations of its rig with all kinds of damage.
 
-    The first question about a scenario takes minutes; its simulations are kept for the next one.
+    The first question about a scenario takes minutes; its simulations are kept for the next one. What is doubtful about the recordings
+    and the scenario is warned of before them, what the answer shows at the end; ``warnings`` of the answer has both.
 
     Parameters
     ----------
@@ -142,7 +146,8 @@ def diagnose(
     Raises
     ------
     ValueError
-        Recordings of other wheels, too short, or in which too few orders are whole; a ``tuned.toml`` of another model.
+        Recordings of other wheels, of a speed far from the scenario's, too short, or in which too few orders are whole: before anything is
+        simulated. A ``tuned.toml`` of another model.
     OSError
         A folder or file that cannot be read or written.
     KeyboardInterrupt
@@ -150,25 +155,39 @@ def diagnose(
 
     Examples
     --------
-    >>> from meshtone import MissingTooth, diagnose, examples, simulate
+    >>> import warnings
+    >>> from meshtone import MeshtoneWarning, MissingTooth, diagnose, examples, simulate
     >>> rig = examples.healthy()
-    >>> found = diagnose(simulate(rig.replace(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
+
+    What is doubtful is warned of before minutes of simulations, so that it can be an error:
+
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", MeshtoneWarning)
+    ...     try:
+    ...         diagnose(simulate(rig), rig)
+    ...     except MeshtoneWarning as warning:
+    ...         print(warning.code)
+    no-healthy
+
+    >>> found = diagnose(simulate(rig.copy(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
     >>> next(iter(found.kinds)), found.damaged > 0.99                                      # doctest: +SKIP
     ('missing-tooth', True)
     """
     if signal not in ("recording", "average", "difference"):
         raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
-    report = _progress.shown("simulations") if progress is True else (progress or None)
-    text, difference_g, (low, high) = _core.diagnose(
-        native_scenario(scenario),
-        _observations("recordings", recordings, scenario, signal),
-        [] if healthy is None else _observations("healthy", healthy, scenario, signal),
-        tuned,
-        reference,
-        _records(records),
-        report,
-    )
+    rig = native_scenario(scenario)
+    if tuned is not None:
+        rig = _core.tuned_rig(rig, tuned)
+    now = _observations("recordings", recordings, scenario, signal)
+    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal)
+    count = _records(records)
+    known = typed((code, message, []) for code, message in _core.check_diagnosis(rig, now, before))
+    warn_of_signal(known)
+    shown = _progress.shown("simulations") if progress is True else (progress or None)
+    text, difference_g, (low, high) = _core.diagnose(rig, now, before, reference, count, shown)
     report = json.loads(text)
+    found = [SignalWarning(said["code"], said["message"], {}) for said in report["warnings"]]
+    warn_of_signal(warning for warning in found if warning not in known)
     return Diagnosis(
         kinds=report["kinds"],
         any_damage=report["any_damage"],
@@ -176,7 +195,8 @@ def diagnose(
         damaged=report["damaged"],
         outside_model=report["outside_model"],
         is_outside=report["is_outside"],
-        warnings=[SignalWarning(said["code"], said["message"], {}) for said in report["warnings"]],
+        warnings=found,
+        shown_wheel=report["shown_wheel"],
         difference_g=read_only(difference_g),
         band_g=(read_only(low), read_only(high)),
         _report=report,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -24,13 +25,19 @@ RIG = mt.Scenario(
 )
 
 
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with the simulations of all tests."""
+    return tmp_path_factory.mktemp("reference")
+
+
 @pytest.mark.filterwarnings("ignore::meshtone.MeshtoneWarning")
-def test_from_signals_to_an_answer(tmp_path: Path) -> None:
+def test_from_signals_to_an_answer(reference: Path) -> None:
     reported: list[tuple[int, int]] = []
     gone = mt.simulate(RIG.copy(fault=mt.MissingTooth(tooth=8)))
 
     def ask(recording: object, healthy: object = None, **options: object) -> mt.Diagnosis:
-        return mt.diagnose(recording, RIG, healthy, reference=tmp_path, records=512, **options)  # type: ignore[arg-type]
+        return mt.diagnose(recording, RIG, healthy, reference=reference, records=512, **options)  # type: ignore[arg-type]
 
     found = ask(gone, mt.simulate(RIG), progress=lambda *counts: reported.append(counts))
     assert reported[-1] == (512, 512)
@@ -73,3 +80,30 @@ def test_from_signals_to_an_answer(tmp_path: Path) -> None:
             ask(recording, signal=signal)
     with pytest.raises(TypeError, match="sampling_rate_hz, phase"):
         ask(gone.vertical_g)
+
+
+@pytest.mark.filterwarnings("ignore::meshtone.MeshtoneWarning")
+def test_what_is_seen_is_warned_of_before_anything_is_simulated(reference: Path, tmp_path: Path) -> None:
+    gone = mt.simulate(RIG.copy(fault=mt.MissingTooth(tooth=8)))
+    before: list[list[str | None]] = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", mt.MeshtoneWarning)
+
+        def codes() -> list[str | None]:
+            return [given.message.code for given in caught if isinstance(given.message, mt.MeshtoneWarning)]
+
+        # A scenario of its own, of which no simulations are kept.
+        rig = RIG.copy(din_grade=0)
+        found = mt.diagnose(gone, rig, reference=reference, records=512, progress=lambda *_: before.append(codes()))
+    assert before[0] == ["ideal-wheels", "no-healthy"]
+    assert codes() == [warning.code for warning in found.warnings]
+    assert caught[0].filename == __file__
+
+    # A refusal makes no simulations, nor does a warning that is an error.
+    with pytest.raises(ValueError, match=r"wheels with \[20, 60\] teeth"):
+        mt.diagnose(mt.simulate(RIG.copy(gear_teeth=60)), RIG, reference=tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", mt.MeshtoneWarning)
+        with pytest.raises(mt.MeshtoneWarning, match="when it was healthy"):
+            mt.diagnose(gone, RIG, reference=tmp_path)
+    assert list(tmp_path.iterdir()) == []

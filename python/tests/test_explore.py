@@ -11,6 +11,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -185,7 +186,12 @@ def browser() -> Iterator[Chrome]:
 
 @pytest.fixture
 def page(browser: Chrome, explorer: mt.Explorer) -> Iterator[Page]:
-    """The page in the browser, at whose end the console holds no error."""
+    """The page in the browser."""
+    yield from shown(browser, explorer)
+
+
+def shown(browser: Chrome, explorer: mt.Explorer) -> Iterator[Page]:
+    """A page in the browser, at whose end the console holds no error."""
     assert explorer.url is not None
     page = Page(browser, explorer.url)
     yield page
@@ -326,6 +332,109 @@ def test_a_recording_is_dropped(page: Page) -> None:
     page.wait(lambda: page.run(table), "a table of which nothing is cut off")
     page.drop("rig.wav", b"no sound")
     page.wait(lambda: "rig.wav" in changes_words(page.browser), "the refusal")
+
+
+RIG = fast().copy(model="linear", din_grade=6, sampling_rate_hz=8000)
+"""A rig whose simulations take milliseconds."""
+
+
+@pytest.fixture
+def rig_explorer(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Iterator[mt.Explorer]:
+    """A page of the rig, which keeps its simulations in a folder of its own."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+    with mt.explore(RIG, open_browser=False) as explorer:
+        yield explorer
+
+
+@pytest.fixture
+def rig_page(browser: Chrome, rig_explorer: mt.Explorer) -> Iterator[Page]:
+    """The same in the browser."""
+    yield from shown(browser, rig_explorer)
+
+
+def text_of(page: Page, name: str) -> str:
+    """What an element that is in sight says; empty where there is none."""
+    shown: str = page.run("const e = document.getElementById(arguments[0]); return e?.offsetParent ? e.innerText : ''", name)
+    return shown
+
+
+def open_recording(page: Page, name: str, content: bytes) -> None:
+    """Drop a recording, and wait until it is read."""
+    page.drop(name, content)
+    page.wait(lambda: name in text_of(page, "recording"), f"{name} to be read")
+
+
+def signals_of(explorer: mt.Explorer, scenario: mt.Scenario) -> bytes:
+    """The file of a simulation."""
+    return ask(explorer, "export/parquet", {"page": "files", "number": 1, "toml": scenario.to_toml()})
+
+
+def test_a_recording_is_diagnosed(rig_page: Page, rig_explorer: mt.Explorer, tmp_path: Path) -> None:
+    page = rig_page
+    assert text_of(page, "diagnosis") == ""
+    sound = tmp_path / "sound.parquet"
+    sound.write_bytes(signals_of(rig_explorer, RIG.copy(seed=5)))
+    broken = signals_of(rig_explorer, RIG.copy(fault=mt.MissingTooth(tooth=8), seed=5))
+    open_recording(page, "broken.parquet", broken)
+    page.browser.find_element("id", "healthy-file").send_keys(str(sound))
+    page.wait(lambda: "sound.parquet, as healthy" in text_of(page, "diagnosis"), "the healthy recording")
+    diagnose = """
+        window.progress = [];
+        new MutationObserver(() => progress.push(document.getElementById('diagnosis-status').textContent))
+          .observe(document.getElementById('diagnosis-status'), { childList: true });
+        document.getElementById('records').value = arguments[0];
+        document.getElementById('diagnose').click();
+    """
+    page.run(diagnose, 512)
+    page.wait(lambda: text_of(page, "kinds"), "the table of kinds")
+    found = text_of(page, "found")
+    assert found.startswith("The gear is damaged") and "look at tooth 8 of the gear" in found
+    assert "damaged with a probability of" in found and "severity (90 %)" in found
+    assert "512 of 512 simulations" in page.run("return progress")
+    assert text_of(page, "seen") == ""
+    # Of another rig it is no answer, of other damage it is.
+    page.enter("operation.brake_torque_nm", "210")
+    assert "has been changed" in text_of(page, "diagnosis")
+    page.enter("operation.brake_torque_nm", "200")
+    assert "has been changed" not in text_of(page, "diagnosis")
+
+    # What no simulation is like has no probabilities; that is said at once.
+    noise = np.random.default_rng(1).normal(size=16_000)
+    rows = [f"{n / 8000:.6f},{x:.5f},{int(n % 200 < 20)}" for n, x in enumerate(noise)]
+    open_recording(page, "noise.csv", "\n".join(["time_s,bearing [g],tacho", *rows]).encode())
+    tachometer = """
+        const choice = [...document.querySelectorAll('#recording select')].at(-1);
+        choice.value = 'tacho';
+        choice.dispatchEvent(new Event('change'));
+    """
+    page.run(tachometer)
+    page.wait(lambda: "by tachometer" in text_of(page, "recording"), "the tachometer")
+    assert text_of(page, "found") == ""
+    page.run(diagnose, 512)
+    page.wait(lambda: "unlike" in text_of(page, "found"), "the answer")
+    assert text_of(page, "kinds") == "" and "probability" not in text_of(page, "found")
+    seen = text_of(page, "seen")
+    assert "clearly repeats with its shaft" in seen and "sound.parquet: there is no channel tacho" in seen
+
+
+def test_a_diagnosis_is_stopped(rig_page: Page, rig_explorer: mt.Explorer) -> None:
+    page = rig_page
+    open_recording(page, "sound.parquet", signals_of(rig_explorer, RIG))
+    status = "diagnosis-status"
+    page.run("document.getElementById('records').value = 20480; document.getElementById('diagnose').click()")
+    page.wait(lambda: " of 20480 simulations" in text_of(page, status), "progress")
+    assert "when it was healthy" in text_of(page, "seen") and text_of(page, "diagnose") == ""
+    page.wait(lambda: int(text_of(page, status).split()[0]) > 512, "a batch")
+    # The scenario is simulated meanwhile.
+    page.enter("operation.brake_torque_nm", "210")
+    page.run("document.getElementById('stop').click()")
+    assert "stopped" in text_of(page, status) and text_of(page, "diagnose") == "Diagnose"
+    page.enter("operation.brake_torque_nm", "200")
+    # It goes on with what is kept.
+    page.run("document.getElementById('records').value = 512; document.getElementById('diagnose').click()")
+    page.wait(lambda: text_of(page, "kinds"), "the answer")
+    page.run("document.getElementById('records').value = 1; document.getElementById('diagnose').click()")
+    page.wait(lambda: "from 512 to 20480" in text_of(page, "found"), "the refusal")
 
 
 def test_many_random_changes_leave_no_error(page: Page, explorer: mt.Explorer) -> None:

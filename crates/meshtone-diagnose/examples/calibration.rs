@@ -8,7 +8,8 @@
 //! that the others are compared with; with `alone` in place of `healthy` they are compared with none. A last argument leaves a kind
 //! of damage out of the reference set; goes on with refined rounds, `refined`; or asks about recordings that are not what they are stated to be: `bearing`,
 //! `teeth`, `ratio`; or about whole signals of healthy and damaged pairs: `signals`. `matrix` asks about inputs that are no gear of the
-//! rig, with and without a healthy recording whatever the third argument says, and counts how many pass.
+//! rig, with and without a healthy recording whatever the third argument says, and counts how many pass; after it the kinds of input may
+//! be named, `half,rate`.
 #![allow(clippy::print_stderr)]
 
 use std::error::Error;
@@ -22,10 +23,9 @@ use meshtone::scenario::Scenario;
 use meshtone::signal::{
     AngleZero, AngularSettings, ShaftPhase, StatedFacts, StatedTurning, angular_resample, find_mismatch,
 };
-use meshtone::wheel::WheelName;
 use meshtone_diagnose::{
     Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceRecord, ReferenceSet, ReferenceStore,
-    SignalKind, WheelLines, diagnose, refine,
+    SEVERAL, SignalKind, WheelLines, diagnose, refine,
 };
 use meshtone_fourier::{from_real_spectrum, real_spectrum};
 
@@ -56,12 +56,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let name = |record: &ReferenceRecord| {
         record.fault.as_ref().map_or(HEALTHY, |fault| reference_kind(&prior, fault.kind))
     };
+    let kinds = other.get(1..).unwrap_or_default();
     let other = other.first().map_or("", String::as_str);
     if other == "matrix" {
-        fs::write(output, matrix(&asked.prior, &reference)?)?;
+        fs::write(output, matrix(&asked.prior, &reference, kinds.first().map_or("", String::as_str))?)?;
         return Ok(());
     }
-    reference.records.retain(|record| name(record) != other);
+    // A kind is left out alone and beside another.
+    let has_other = |record: &ReferenceRecord| {
+        let faults = prior.draw(record.number).map_or_else(|_| Vec::new(), |drawn| drawn.scenario.faults);
+        faults.iter().any(|fault| fault.damage.kind() == other)
+    };
+    reference
+        .records
+        .retain(|record| name(record) != other && (name(record) != SEVERAL || !has_other(record)));
     let mut learned: Option<Learned> = None;
     let mut table = String::from(
         "unit,kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability\n",
@@ -69,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let is_refined = other == "refined";
     let is_strange = ["signals", "bearing", "teeth", "ratio"].contains(&other);
     for record in &asked.records {
-        let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel == WheelName::Gear);
+        let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel + 1 == record.wheels.len());
         let kind = name(record);
         let is_asked = if is_strange {
             record.number < 8 * OTHERS
@@ -114,7 +122,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn reference_kind(prior: &Prior, kind: usize) -> &'static str {
-    prior.kinds().get(kind).map_or("", |kind| kind.name)
+    prior.kinds().get(kind).map_or(SEVERAL, |kind| kind.name)
 }
 
 /// What a simulated record shows, with noise.
@@ -131,13 +139,15 @@ fn observed(record: &ReferenceRecord, signal: SignalKind) -> Observation {
     };
     let is_recording = signal == SignalKind::Recording;
     let noise = if is_recording { vec![NOISE_G] } else { Vec::new() };
+    let last = record.wheels.len() - 1;
+    let seen = |(place, wheel)| (is_recording || place == last).then(|| noisy(wheel));
+    let wheels: Vec<Option<WheelLines>> = record.wheels.iter().enumerate().map(seen).collect();
     Observation {
         signal,
-        pinion_speed_hz: is_recording.then_some(record.pinion_speed_hz),
-        zero: [AngleZero::Simulated; 2],
-        gear: noisy(&record.wheels[1]),
-        pinion: is_recording.then(|| noisy(&record.wheels[0])),
-        noise: [noise.clone(), noise],
+        input_speed_hz: is_recording.then_some(record.input_speed_hz),
+        zero: vec![AngleZero::Simulated; wheels.len()],
+        noise: vec![noise; wheels.len()],
+        wheels,
         mismatch: None,
         doubts: Vec::new(),
     }
@@ -148,25 +158,33 @@ const LEVELS_G: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
 /// Inputs of each kind and level.
 const ASKED_OF_KIND: u64 = 20;
 
-/// Counts the inputs that are no gear of the rig and pass as one, a row for each kind and level, and the right ones that are refused.
-fn matrix(prior: &Prior, reference: &ReferenceSet) -> Result<String, Box<dyn Error>> {
+/// Inputs that are no gear, at each of the levels, and recordings that are not what they are stated to be, or are.
+const NO_GEARS: [&str; 6] = ["white", "pink", "sine", "bursts", "uniform", "shuffled"];
+const OTHER_GEARS: [&str; 10] =
+    ["half", "rate", "teeth", "ratio", "times", "divided", "load", "signals", "healthy", "same"];
+/// (-) Probability that is sure, and severity that should not be missed then.
+const SURE: f64 = 0.9;
+const SEVERE: f64 = 0.6;
+
+/// Counts the inputs that are no gear of the rig and pass as one, a row for each kind and level, the right ones that are refused, and the
+/// answers that are surely wrong.
+fn matrix(prior: &Prior, reference: &ReferenceSet, only: &str) -> Result<String, Box<dyn Error>> {
+    let is_asked = |kind: &&str| only.is_empty() || only.split(',').any(|one| one == *kind);
     let mut cases: Vec<(&str, f64)> = Vec::new();
-    for kind in ["white", "pink", "sine", "bursts", "uniform", "shuffled"] {
+    for kind in NO_GEARS.into_iter().filter(is_asked) {
         cases.extend(LEVELS_G.map(|level_g| (kind, level_g)));
     }
-    cases.extend(
-        ["half", "rate", "teeth", "ratio", "times", "divided", "load", "signals", "healthy", "same"]
-            .map(|kind| (kind, 0.0)),
-    );
-    let mut table = String::from("kind,level_g,with_healthy,asked,seen_before,outside\n");
+    cases.extend(OTHER_GEARS.into_iter().filter(is_asked).map(|kind| (kind, 0.0)));
+    let mut table = String::from("kind,level_g,with_healthy,asked,seen_before,outside,wrong\n");
     for (kind, level_g) in cases {
         for with_healthy in [true, false] {
-            let mut counts = [0; 3];
+            let mut counts = [0; 4];
             for unit in 0..ASKED_OF_KIND {
                 let first = 8 * unit;
                 let healthy = strange(prior, first, "signals", 0.0)?;
-                let number =
-                    if kind == "signals" || kind == "load" { first + 2 + unit % 6 } else { first + 1 };
+                // Healthy and damaged pairs in turn.
+                let is_damaged = ["signals", "load"].contains(&kind) && unit % 2 > 0;
+                let number = if is_damaged { first + 2 + unit / 2 % 6 } else { first + 1 };
                 let now = match kind {
                     "healthy" => healthy.clone(),
                     kind => strange(prior, number, kind, level_g)?,
@@ -181,10 +199,19 @@ fn matrix(prior: &Prior, reference: &ReferenceSet) -> Result<String, Box<dyn Err
                 let learned = Learned::new(reference, &question)?;
                 let answer = diagnose(&learned, &question, None)?;
                 counts[2] += u64::from(answer.is_outside());
+                let severity = prior.draw(number)?.fault.map_or(0.0, |fault| fault.severity);
+                let is_wrong = if is_damaged {
+                    severity > SEVERE && answer.damaged() < 1.0 - SURE
+                } else {
+                    answer.damaged() > SURE
+                };
+                counts[3] += u64::from(!answer.is_outside() && is_wrong);
             }
-            let [asked, before, outside] = counts;
-            writeln!(table, "{kind},{level_g},{with_healthy},{asked},{before},{outside}")?;
-            eprintln!("{kind} {level_g} g, healthy {with_healthy}: {before} + {outside} of {asked}");
+            let [asked, before, outside, wrong] = counts;
+            writeln!(table, "{kind},{level_g},{with_healthy},{asked},{before},{outside},{wrong}")?;
+            eprintln!(
+                "{kind} {level_g} g, healthy {with_healthy}: {before} + {outside} of {asked}, {wrong} surely wrong"
+            );
         }
     }
     Ok(table)
@@ -302,8 +329,9 @@ fn row(
     answer: &Answer,
 ) -> Result<(), Box<dyn Error>> {
     let of_kind = answer.kinds.iter().find(|of| of.label == kind);
+    let names = &answer.wheels;
     let (wheel, severity, tooth) = record.fault.as_ref().map_or(("", 0.0, 0), |fault| {
-        (fault.wheel.name(), fault.severity, if fault.is_on_one_tooth { fault.tooth } else { 0 })
+        (names[fault.wheel].as_str(), fault.severity, if fault.is_on_one_tooth { fault.tooth } else { 0 })
     });
     write!(
         table,
@@ -328,7 +356,7 @@ fn row(
         None => write!(table, ",,,,,")?,
     }
     let place = of_kind.and_then(|of| of.place);
-    let said_wheel = place.map_or("", |place| place.wheel.name());
+    let said_wheel = place.map_or("", |place| names[place.wheel].as_str());
     let tooth = place.and_then(|place| place.tooth);
     let said_tooth = tooth.map_or(0, |tooth| tooth.number);
     let sure = tooth.map_or(f64::NAN, |tooth| tooth.probability);

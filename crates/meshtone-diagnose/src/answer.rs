@@ -1,7 +1,6 @@
 //! The answer of a diagnosis.
 
 use meshtone::signal::AngleZero;
-use meshtone::wheel::WheelName;
 
 use crate::diagnose::OUTSIDE;
 use crate::observation::SignalKind;
@@ -30,9 +29,9 @@ pub struct SizeAnswer {
 /// Place of a damage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaceAnswer {
-    /// The damaged wheel.
-    pub wheel: WheelName,
-    /// (-) Probability that it is this one rather than its mate.
+    /// The damaged wheel, by its place in [`Answer::wheels`].
+    pub wheel: usize,
+    /// (-) Probability that it is this one rather than another.
     pub wheel_probability: f64,
     /// Whether such damage is on one tooth.
     pub is_on_one_tooth: bool,
@@ -57,9 +56,9 @@ pub struct ToothAnswer {
 pub struct AnyDamage {
     /// (-) How severe it is, from 0 to 1.
     pub severity: Interval,
-    /// The damaged wheel.
-    pub wheel: WheelName,
-    /// (-) Probability that it is this one rather than its mate.
+    /// The damaged wheel, by its place in [`Answer::wheels`].
+    pub wheel: usize,
+    /// (-) Probability that it is this one rather than another.
     pub wheel_probability: f64,
     /// (-) Probability that it is of a kind that is on one tooth.
     pub one_tooth_probability: f64,
@@ -70,7 +69,7 @@ pub struct AnyDamage {
 /// Answer about one kind of damage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KindAnswer {
-    /// `healthy`, or the name of a kind of damage.
+    /// `healthy`, the name of a kind of damage, or [`SEVERAL`].
     pub label: &'static str,
     /// (-) Its probability.
     pub probability: f64,
@@ -87,11 +86,11 @@ pub struct KindAnswer {
 pub struct Explanation {
     /// `healthy`, or the name of a kind of damage.
     pub label: &'static str,
-    /// The damaged wheel; none of a healthy pair.
-    pub wheel: Option<WheelName>,
+    /// The damaged wheel, by its place in [`Answer::wheels`]; none of a healthy rig.
+    pub wheel: Option<usize>,
     /// (-) How severe it is; 0 of a healthy pair.
     pub severity: f64,
-    /// (g) The gear's difference signal over a revolution, turned so that the burst is where the recording has it.
+    /// (g) The shown wheel's difference signal over a revolution, turned so that the burst is where the recording has it.
     pub difference_g: Vec<f64>,
 }
 
@@ -104,9 +103,11 @@ pub struct Answer {
     pub has_healthy: bool,
     /// Recordings that were asked about.
     pub recordings: usize,
-    /// Meaning of tooth 1 of the pinion and of the gear; none where teeth cannot be counted: after a mesh tone, or in several
+    /// Names of the rig's wheels.
+    pub wheels: Vec<String>,
+    /// Meaning of tooth 1 of each wheel; none where teeth cannot be counted: after a mesh tone, or in several
     /// recordings without a mark in common.
-    pub counted_from: [Option<AngleZero>; 2],
+    pub counted_from: Vec<Option<AngleZero>>,
     /// Summary, in a sentence.
     pub summary: String,
     /// Answer about a damage, whatever its kind, given that there is one.
@@ -125,7 +126,9 @@ pub struct Answer {
     pub healthy_outside_model: Option<f64>,
     /// Warnings.
     pub warnings: Vec<DiagnosisWarning>,
-    /// (g) The recording's difference signal over a revolution of the gear, at equal angles.
+    /// The wheel that the signals below are of, by its place: the likeliest damaged one.
+    pub shown_wheel: usize,
+    /// (g) The recording's difference signal over a revolution of that wheel, at equal angles.
     pub difference_g: Vec<f64>,
     /// (g) Between which values nine in ten of the simulated signals that resemble it are, angle by angle.
     pub band_g: [Vec<f64>; 2],
@@ -157,6 +160,11 @@ impl Answer {
         self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
     }
 
+    /// Returns whether several damages at once are likelier than any single one.
+    pub fn has_likely_several(&self) -> bool {
+        self.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL)
+    }
+
     /// The likeliest damage.
     pub fn likeliest_damage(&self) -> Option<&KindAnswer> {
         self.kinds.iter().find(|kind| kind.label != HEALTHY)
@@ -177,5 +185,7 @@ pub fn p_in_words(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {p:.3}") }
 }
 
-/// The label of a pair without damage.
+/// The label of a rig without damage.
 pub const HEALTHY: &str = "healthy";
+/// The label of two damages of the rig at once.
+pub const SEVERAL: &str = "several-damages";

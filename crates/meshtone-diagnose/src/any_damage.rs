@@ -1,8 +1,6 @@
 //! The answer about a damage whatever its kind.
 
-use meshtone::wheel::WheelName;
-
-use crate::answer::{AnyDamage, HEALTHY, KindAnswer, ToothAnswer};
+use crate::answer::{Answer, AnyDamage, HEALTHY, KindAnswer, ToothAnswer};
 use crate::quantile::interval;
 
 /// (-) Probability of damage from which on it is said to be there, and below which it is not seen.
@@ -22,7 +20,12 @@ impl AnyDamage {
     /// # Arguments
     /// * `kinds` - what is said of each
     /// * `severities` - draws of each damage's severity with their weights, by its label
-    pub(crate) fn over(kinds: &[KindAnswer], severities: &[(&'static str, Vec<(f64, f64)>)]) -> Option<Self> {
+    /// * `of_wheel` - (-) probability of damage to each wheel
+    pub(crate) fn over(
+        kinds: &[KindAnswer],
+        severities: &[(&'static str, Vec<(f64, f64)>)],
+        of_wheel: &[f64],
+    ) -> Option<Self> {
         let damaged = || kinds.iter().filter(|kind| kind.label != HEALTHY);
         let mut draws = Vec::new();
         for kind in damaged() {
@@ -38,13 +41,9 @@ impl AnyDamage {
         let part = |of: &dyn Fn(&KindAnswer) -> f64| {
             damaged().map(|kind| kind.probability * of(kind)).sum::<f64>() / total
         };
-        let of_gear = part(&|kind| match kind.place {
-            Some(place) if place.wheel == WheelName::Gear => place.wheel_probability,
-            Some(place) => 1.0 - place.wheel_probability,
-            None => 0.0,
-        });
-        let (wheel, wheel_probability) =
-            if of_gear >= 0.5 { (WheelName::Gear, of_gear) } else { (WheelName::Pinion, 1.0 - of_gear) };
+        let by_probability = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
+        let (wheel, of_likeliest) = of_wheel.iter().enumerate().max_by(by_probability)?;
+        let wheel_probability = of_likeliest / total;
         // The kinds' teeth on this wheel, each with the sum of its shares.
         let mut teeth: Vec<ToothAnswer> = Vec::new();
         for kind in damaged() {
@@ -82,11 +81,11 @@ impl AnyDamage {
         format!("{degree} ({:.1} of 1, 90 %: {from:.1} to {to:.1})", severity.median)
     }
 
-    fn where_to_look(&self) -> String {
+    fn where_to_look(&self, wheels: &[String]) -> String {
         if self.wheel_probability < NAMED {
-            return "look at both wheels".to_owned();
+            return format!("look at {} wheels", if wheels.len() == 2 { "both" } else { "all" });
         }
-        let wheel = self.wheel.name();
+        let wheel = &wheels[self.wheel];
         // All teeth may be likelier than one.
         match self.tooth.filter(|_| self.one_tooth_probability >= 0.5) {
             Some(ToothAnswer { number, probability, .. }) if probability >= NAMED => {
@@ -104,25 +103,29 @@ impl AnyDamage {
 /// Summary of an answer, in a sentence.
 ///
 /// # Arguments
-/// * `damaged` - (-) probability that anything is damaged
-/// * `any` - what can be said of it
-/// * `is_outside` - whether the recording, or the healthy one, is unlike what was simulated
-pub(crate) fn sentence(damaged: f64, any: Option<&AnyDamage>, is_outside: bool) -> String {
-    if is_outside {
+/// * `answer` - all but the summary
+pub(crate) fn sentence(answer: &Answer) -> String {
+    if answer.is_outside() {
         return "Nothing can be said: the recordings are unlike what was simulated.".to_owned();
     }
-    let [unseen, seen] = DECIDED;
-    match any {
+    let ([unseen, seen], damaged, wheels) = (DECIDED, answer.damaged(), &answer.wheels);
+    match &answer.any_damage {
         Some(any) if damaged >= seen => {
             let what = if any.wheel_probability < NAMED {
                 "One of the wheels".to_owned()
             } else {
-                format!("The {}", any.wheel.name())
+                format!("The {}", wheels[any.wheel])
             };
-            format!("{what} is damaged, {}; {}.", any.in_words(), any.where_to_look())
+            let several = if answer.has_likely_several() {
+                " Two damages at once are likelier than a single one."
+            } else {
+                ""
+            };
+            format!("{what} is damaged, {}; {}.{several}", any.in_words(), any.where_to_look(wheels))
         }
         Some(any) if damaged >= 0.5 => {
-            format!("Damage is likely, but not sure; if so, {}; {}.", any.in_words(), any.where_to_look())
+            let (how, place) = (any.in_words(), any.where_to_look(wheels));
+            format!("Damage is likely, but not sure; if so, {how}; {place}.")
         }
         Some(_) if damaged > unseen => "Damage is not likely, but not excluded.".to_owned(),
         _ => "No damage is seen; what is small may be there all the same.".to_owned(),
@@ -132,9 +135,10 @@ pub(crate) fn sentence(damaged: f64, any: Option<&AnyDamage>, is_outside: bool) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::answer::PlaceAnswer;
+    use crate::answer::{PlaceAnswer, SEVERAL};
+    use crate::observation::SignalKind;
 
-    fn kind(label: &'static str, probability: f64, tooth: Option<u32>, wheel: WheelName) -> KindAnswer {
+    fn kind(label: &'static str, probability: f64, tooth: Option<u32>, wheel: usize) -> KindAnswer {
         let place = PlaceAnswer {
             wheel,
             wheel_probability: 0.9,
@@ -145,42 +149,71 @@ mod tests {
         KindAnswer { label, probability, severity: None, sizes: Vec::new(), place }
     }
 
+    /// An answer that holds no more than a sentence says.
+    fn answer(kinds: Vec<KindAnswer>, any_damage: Option<AnyDamage>, outside_model: f64) -> Answer {
+        Answer {
+            signal: SignalKind::Recording,
+            has_healthy: false,
+            recordings: 1,
+            wheels: ["pinion", "gear"].map(str::to_owned).into(),
+            counted_from: vec![None; 2],
+            summary: String::new(),
+            any_damage,
+            simulated_records: 0,
+            reference_records: 0,
+            refined_records: 0,
+            kinds,
+            outside_model,
+            healthy_outside_model: None,
+            warnings: Vec::new(),
+            shown_wheel: 1,
+            difference_g: Vec::new(),
+            band_g: Default::default(),
+            explanations: Vec::new(),
+            severity_draws: Vec::new(),
+        }
+    }
+
     // Three quarters of the damage is a missing tooth, the rest a pit; both on the gear.
     #[test]
     fn kinds_count_as_they_are_probable() {
         let kinds = [
-            kind("missing-tooth", 0.6, Some(8), WheelName::Gear),
-            kind(HEALTHY, 0.2, None, WheelName::Gear),
-            kind("pits", 0.2, Some(3), WheelName::Pinion),
+            kind("missing-tooth", 0.6, Some(8), 1),
+            kind(HEALTHY, 0.2, None, 1),
+            kind("pits", 0.2, Some(3), 0),
         ];
         let draws = [("missing-tooth", vec![(1.0, 5.0)]), ("pits", vec![(0.2, 0.5), (0.4, 0.5)])];
-        let any = AnyDamage::over(&kinds, &draws).unwrap();
+        let any = AnyDamage::over(&kinds, &draws, &[0.24, 0.56]).unwrap();
         let tooth = any.tooth.unwrap();
-        assert_eq!((any.wheel, tooth.number), (WheelName::Gear, 8));
-        assert!((any.wheel_probability - (0.75 * 0.9 + 0.25 * 0.1)).abs() < 1e-12);
+        assert_eq!((any.wheel, tooth.number), (1, 8));
+        assert!((any.wheel_probability - 0.7).abs() < 1e-12);
         // Of the gear's 0.7: all of the missing tooth's 0.75 × 0.9.
         assert!((tooth.probability - 0.675 / 0.7).abs() < 1e-12);
         assert!(any.severity.median > 0.8 && any.severity.within_90[0] < 0.3, "{:?}", any.severity);
-        assert!(AnyDamage::over(&kinds[1..2], &draws).is_none());
+        assert!(AnyDamage::over(&kinds[1..2], &draws, &[0.0, 0.0]).is_none());
     }
 
     #[test]
     fn a_sentence_says_no_more_than_is_known() {
-        let kinds = [kind("missing-tooth", 1.0, Some(8), WheelName::Gear)];
-        let any = AnyDamage::over(&kinds, &[("missing-tooth", vec![(1.0, 1.0)])]);
-        let said = |damaged: f64, is_outside: bool| sentence(damaged, any.as_ref(), is_outside);
+        let draws = [("missing-tooth", vec![(1.0, 1.0)]), (SEVERAL, vec![(1.0, 1.0)])];
+        let said_of = |label, tooth, damaged: f64, outside_model| {
+            let kinds = vec![kind(label, damaged, tooth, 1), kind(HEALTHY, 1.0 - damaged, None, 1)];
+            let any = AnyDamage::over(&kinds, &draws, &[0.0, damaged]);
+            sentence(&answer(kinds, any, outside_model))
+        };
+        let said = |damaged| said_of("missing-tooth", Some(8), damaged, 1.0);
         assert_eq!(
-            said(0.99, false),
+            said(0.99),
             "The gear is damaged, heavily (1.0 of 1, 90 %: 1.0 to 1.0); look at tooth 8 of the gear."
         );
-        assert!(said(0.99, true).starts_with("Nothing can be said"));
-        assert!(said(0.6, false).starts_with("Damage is likely, but not sure"));
-        assert!(said(0.3, false).contains("not excluded"));
-        assert!(said(0.05, false).starts_with("No damage is seen"));
-        let unknown = [kind("missing-tooth", 1.0, None, WheelName::Gear)];
-        let any = AnyDamage::over(&unknown, &[("missing-tooth", vec![(1.0, 1.0)])]);
+        assert!(said_of("missing-tooth", Some(8), 0.99, 0.001).starts_with("Nothing can be said"));
+        assert!(said(0.6).starts_with("Damage is likely, but not sure"));
+        assert!(said(0.3).contains("not excluded"));
+        assert!(said(0.05).starts_with("No damage is seen"));
+        let unknown = said_of("missing-tooth", None, 1.0, 1.0);
+        assert!(unknown.ends_with("look at every tooth of the gear: one is damaged."));
         assert!(
-            sentence(1.0, any.as_ref(), false).ends_with("look at every tooth of the gear: one is damaged.")
+            said_of(SEVERAL, None, 1.0, 1.0).ends_with("Two damages at once are likelier than a single one.")
         );
     }
 }

@@ -34,10 +34,10 @@ fn much_louder_recording(recordings: &[Observation]) -> Option<String> {
     })
 }
 
-/// (dB) Level of the larger difference signal of both wheels.
+/// (dB) Level of the largest difference signal of a wheel.
 fn level_db(asked: &Observation) -> f64 {
     let energy = |wheel: &WheelLines| wheel.difference().iter().map(|line| line.norm_sqr()).sum::<f64>();
-    let most = asked.pinion.iter().chain([&asked.gear]).map(energy).fold(f64::MIN_POSITIVE, f64::max);
+    let most = asked.wheels.iter().flatten().map(energy).fold(f64::MIN_POSITIVE, f64::max);
     10.0 * most.log10()
 }
 

@@ -1,20 +1,20 @@
 //! From a question to its answer.
 
 use meshtone::signal::AngleZero;
-use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 
 use crate::DiagnoseError;
 use crate::answer::{
-    Answer, AnyDamage, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SizeAnswer, ToothAnswer,
+    Answer, AnyDamage, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer, ToothAnswer,
 };
 use crate::any_damage::sentence;
 use crate::features::burst_rev;
 use crate::learn::{FeatureRow, Layout, Learned, Question};
 use crate::observation::{Observation, WheelLines, revolution};
-use crate::prior::DrawnFault;
+use crate::prior::{DrawnFault, Prior};
 use crate::quantile::{interval, quantiles};
 use crate::refine::Refined;
+use crate::rig::{RigWheel, rig_wheels};
 use crate::warnings::warnings;
 
 /// (-) p-value below which a recording is called unlike all that was simulated.
@@ -29,7 +29,7 @@ const NEGLIGIBLE: f64 = 0.02;
 /// Values that a number may have, with their weights.
 type Draws = Vec<(f64, f64)>;
 
-/// Says what is wrong with a gear pair.
+/// Says what is wrong with the wheels of a rig.
 ///
 /// A question that needs other features than those that were learnt is refused, since its values would stand in the wrong columns. Then
 /// follow the answers of the kinds, the likeliest first, the tests whether the recordings are like any simulation, and what is shown.
@@ -50,7 +50,7 @@ pub fn diagnose(
     question.check(&learned.reference.prior)?;
     let layout = Layout::of(question, learned.reference)?;
     let known = &learned.layout;
-    let is_shorter = layout.last.iter().zip(known.last).any(|(asked, known)| *asked < known);
+    let is_shorter = layout.last.iter().zip(&known.last).any(|(asked, known)| asked < known);
     if layout.signal != known.signal || layout.has_healthy != known.has_healthy || is_shorter {
         return Err(DiagnoseError::OtherQuestion);
     }
@@ -63,7 +63,7 @@ pub fn diagnose(
         vec![KindAnswer { label: HEALTHY, probability, severity: None, sizes: Vec::new(), place: None }];
     let asked = Asked { learned, question, refined, row, features, of_class };
     let mut draws_of: Vec<(&'static str, Draws)> = Vec::new();
-    for kind in 0..learned.kinds.len() {
+    for kind in 0..=learned.kinds.len() {
         if let Some((answer, severity)) = asked.kind_answer(kind)? {
             draws_of.push((answer.label, severity));
             kinds.push(answer);
@@ -81,15 +81,26 @@ pub fn diagnose(
         let alone = learned.row(&Question { now: question.healthy, healthy: &[] });
         outside.p_value(&alone.values).min(of_mismatch(question.healthy))
     });
-    let any_damage = AnyDamage::over(&kinds, &draws_of);
+    let wheels: Vec<RigWheel> = rig_wheels(&learned.reference.prior.base);
+    let of_wheel = |wheel: usize| {
+        let classes = learned.classes.iter().zip(&of_class);
+        let of_wheel = classes.filter(|(class, _)| class.is_some_and(|(_, of)| of == wheel));
+        of_wheel.map(|(_, probability)| probability).sum()
+    };
+    let of_wheels: Vec<f64> = (0..wheels.len()).map(of_wheel).collect();
+    let any_damage = AnyDamage::over(&kinds, &draws_of, &of_wheels);
+    let is_seen = |wheel: &usize| question.now[0].wheels[*wheel].is_some();
+    let shown_wheel = any_damage.as_ref().map(|any| any.wheel).filter(is_seen).unwrap_or(wheels.len() - 1);
     let likeliest = kinds.iter().find(|kind| kind.label != HEALTHY).map(|kind| kind.label);
     let severity_draws = draws_of.into_iter().find(|(label, _)| Some(*label) == likeliest);
-    let shown = GearView::new(learned, question, &row, &of_class);
+    let shown = WheelView::new(learned, question, &row, &of_class, shown_wheel);
     let mut answer = Answer {
         signal: learned.layout.signal,
         has_healthy: learned.layout.has_healthy,
         recordings: question.now.len(),
-        counted_from: [WheelName::Pinion, WheelName::Gear].map(|wheel| counted_from(question, wheel)),
+        counted_from: (0..wheels.len()).map(|wheel| counted_from(question, wheel)).collect(),
+        wheels: wheels.into_iter().map(|wheel| wheel.name).collect(),
+        shown_wheel,
         summary: String::new(),
         any_damage,
         simulated_records: learned.reference.records.len(),
@@ -99,13 +110,15 @@ pub fn diagnose(
         outside_model,
         healthy_outside_model,
         warnings: Vec::new(),
-        difference_g: shown.difference_g(&question.now[0].gear),
+        difference_g: question.now[0].wheels[shown_wheel]
+            .as_ref()
+            .map_or_else(Vec::new, |of| shown.difference_g(of)),
         band_g: shown.band(),
         explanations: shown.explanations(),
         severity_draws: severity_draws.map_or_else(Vec::new, |(_, draws)| spread(draws)),
     };
     answer.warnings = warnings(&answer, learned, question);
-    answer.summary = sentence(answer.damaged(), answer.any_damage.as_ref(), answer.is_outside());
+    answer.summary = sentence(&answer);
     Ok(answer)
 }
 
@@ -128,11 +141,12 @@ impl Asked<'_> {
     /// wheel's, since a tooth is one of one wheel.
     fn kind_answer(&self, kind: usize) -> Result<Option<(KindAnswer, Draws)>, DiagnoseError> {
         let learned = self.learned;
-        let described = &learned.kinds[kind];
+        let (label, size_keys) =
+            learned.kinds.get(kind).map_or((SEVERAL, &[][..]), |kind| (kind.name, kind.sizes));
         let wheel_of = |class: usize| learned.classes[class].filter(|(of, _)| *of == kind).map(|of| of.1);
         let classes = (0..self.of_class.len())
             .filter_map(|class| Some((class, wheel_of(class)?, self.of_class[class])))
-            .collect::<Vec<(usize, WheelName, f64)>>();
+            .collect::<Vec<(usize, usize, f64)>>();
         let Some(&(likeliest, wheel, of_wheel)) = classes.iter().max_by(|a, b| a.2.total_cmp(&b.2)) else {
             return Ok(None);
         };
@@ -140,7 +154,7 @@ impl Asked<'_> {
         let share = |part: f64| part / probability.max(f64::MIN_POSITIVE);
         // The severity, then the sizes that vary.
         let mut numbers: Vec<(Option<usize>, Draws)> = Vec::new();
-        if described.sizes.is_empty() {
+        if size_keys.is_empty() && kind < learned.kinds.len() {
             numbers.push((None, vec![(1.0, 1.0)]));
         } else {
             for (class, _, part) in classes {
@@ -152,10 +166,10 @@ impl Asked<'_> {
         }
         let severity = numbers.remove(0).1;
         let size = |(place, draws): &(Option<usize>, Draws)| {
-            Some(SizeAnswer { key: described.sizes[(*place)?], interval: interval(draws) })
+            Some(SizeAnswer { key: size_keys[(*place)?], interval: interval(draws) })
         };
         let answer = KindAnswer {
-            label: described.name,
+            label,
             probability,
             severity: Some(interval(&severity)),
             sizes: numbers.iter().filter_map(size).collect(),
@@ -201,12 +215,11 @@ fn place(
     question: &Question,
     row: &FeatureRow,
     class: usize,
-    wheel: WheelName,
+    wheel: usize,
     of_wheel: f64,
 ) -> PlaceAnswer {
     let mut answer = PlaceAnswer { wheel, wheel_probability: of_wheel, is_on_one_tooth: false, tooth: None };
-    let index = usize::from(wheel == WheelName::Gear);
-    let teeth = f64::from(learned.reference.prior.base.gears.teeth(wheel));
+    let teeth = f64::from(rig_wheels(&learned.reference.prior.base)[wheel].teeth);
     let on_one = |fault: &DrawnFault| fault.is_on_one_tooth;
     let is_on_one = |row: &usize| learned.records[*row].fault.as_ref().is_some_and(on_one);
     answer.is_on_one_tooth = learned.rows_of(class).iter().all(is_on_one);
@@ -218,7 +231,7 @@ fn place(
     let near = learned.outside.nearest(&point, |other| learned.class_of[other] == class, 60);
     let behind = near.iter().filter_map(|&(_, other)| {
         let tooth = f64::from(learned.records[other].fault.as_ref()?.tooth) - 1.0;
-        let pitches = learned.rows[other].burst_rev[index] * teeth - tooth;
+        let pitches = learned.rows[other].burst_rev[wheel] * teeth - tooth;
         Some((pitches + teeth / 2.0).rem_euclid(teeth) - teeth / 2.0)
     });
     let behind: Vec<f64> = behind.collect();
@@ -228,7 +241,7 @@ fn place(
     let inside: Vec<f64> = behind.iter().copied().filter(|pitches| (pitches - most).abs() <= 0.5).collect();
     let offset = inside.iter().sum::<f64>() / inside.len() as f64;
     // A zero without a sign.
-    let tooth = (row.burst_rev[index] * teeth - offset).round().rem_euclid(teeth) + 0.0;
+    let tooth = (row.burst_rev[wheel] * teeth - offset).round().rem_euclid(teeth) + 0.0;
     answer.tooth = Some(ToothAnswer {
         number: tooth as u32 + 1,
         angle_deg: 360.0 * tooth / teeth,
@@ -238,17 +251,18 @@ fn place(
 }
 
 /// From what the teeth of a wheel are counted; none where that is chance, or another place of the wheel in each recording.
-fn counted_from(question: &Question, wheel: WheelName) -> Option<AngleZero> {
-    let zero = |asked: &Observation| asked.zero[usize::from(wheel == WheelName::Gear)];
+fn counted_from(question: &Question, wheel: usize) -> Option<AngleZero> {
+    let zero = |asked: &Observation| asked.zero[wheel];
     let first = zero(question.now.first()?);
     let is_one = question.now.len() == 1 || first.is_mark();
     let counts = first.counts_teeth() && is_one && question.now.iter().all(|asked| zero(asked) == first);
     counts.then_some(first)
 }
 
-/// Part of the figure that shows the gear.
-struct GearView<'a> {
+/// Part of the figure that shows a wheel.
+struct WheelView<'a> {
     learned: &'a Learned<'a>,
+    wheel: usize,
     /// (-) Probability of each class.
     of_class: &'a [f64],
     /// The recording among the simulations.
@@ -261,23 +275,31 @@ struct GearView<'a> {
     points: usize,
 }
 
-impl<'a> GearView<'a> {
-    fn new(learned: &'a Learned, question: &Question, row: &FeatureRow, of_class: &'a [f64]) -> Self {
-        let last = learned.layout.last[1];
+impl<'a> WheelView<'a> {
+    fn new(
+        learned: &'a Learned,
+        question: &Question,
+        row: &FeatureRow,
+        of_class: &'a [f64],
+        wheel: usize,
+    ) -> Self {
+        let last = learned.layout.last[wheel];
+        let of = |asked: &'_ Observation| asked.wheels[wheel].clone();
         Self {
             learned,
+            wheel,
             of_class,
             point: learned.outside.point(&row.values),
-            burst_rev: burst_rev(&question.now[0].gear, last),
-            healthy_rms_g: question.healthy.first().map(|healthy| rms_g(&healthy.gear, last)),
+            burst_rev: of(&question.now[0]).map_or(0.0, |of| burst_rev(&of, last)),
+            healthy_rms_g: question.healthy.first().and_then(of).map(|of| rms_g(&of, last)),
             last,
             points: (2 * last + 1).next_power_of_two(),
         }
     }
 
-    /// (g) The difference signal of a gear over one revolution.
-    fn difference_g(&self, gear: &WheelLines) -> Vec<f64> {
-        let lines: Vec<Complex64> = gear.difference().into_iter().take(self.last + 1).collect();
+    /// (g) The difference signal over one revolution.
+    fn difference_g(&self, wheel: &WheelLines) -> Vec<f64> {
+        let lines: Vec<Complex64> = wheel.difference().into_iter().take(self.last + 1).collect();
         revolution(&lines, self.points)
     }
 
@@ -291,16 +313,16 @@ impl<'a> GearView<'a> {
     /// A simulation's difference signal, its burst where the recording has it, and as large as behind the recording's path.
     fn of_record(&self, record: usize) -> Vec<f64> {
         let record = self.learned.records[record];
-        let gear = &record.wheels[1];
+        let wheel = &record.wheels[self.wheel];
         let of_unit = self.learned.reference.healthy_of(record);
         let gain = match (self.healthy_rms_g, of_unit) {
             (Some(measured), Some(healthy)) => {
-                measured / rms_g(&healthy.wheels[1], self.last).max(f64::MIN_POSITIVE)
+                measured / rms_g(&healthy.wheels[self.wheel], self.last).max(f64::MIN_POSITIVE)
             }
             _ => 1.0,
         };
-        let signal = self.difference_g(gear);
-        let shift = ((self.burst_rev - burst_rev(gear, self.last)) * self.points as f64).round();
+        let signal = self.difference_g(wheel);
+        let shift = ((self.burst_rev - burst_rev(wheel, self.last)) * self.points as f64).round();
         let from =
             |point: usize| (point as f64 - shift).rem_euclid(self.points as f64) as usize % self.points;
         (0..self.points).map(|point| gain * signal[from(point)]).collect()
@@ -330,7 +352,7 @@ impl<'a> GearView<'a> {
             let record = self.nearest(class, 1).next()?;
             let fault = self.learned.records[record].fault.as_ref();
             Some(Explanation {
-                label: fault.map_or(HEALTHY, |fault| self.learned.kinds[fault.kind].name),
+                label: fault.map_or(HEALTHY, |fault| Prior::label(&self.learned.kinds, fault.kind)),
                 wheel: fault.map(|fault| fault.wheel),
                 severity: fault.map_or(0.0, |fault| fault.severity),
                 difference_g: self.of_record(record),
@@ -341,6 +363,6 @@ impl<'a> GearView<'a> {
 }
 
 /// (g) Rms of the difference signal.
-fn rms_g(gear: &WheelLines, last: usize) -> f64 {
-    gear.difference().iter().take(last + 1).map(|line| 2.0 * line.norm_sqr()).sum::<f64>().sqrt()
+fn rms_g(wheel: &WheelLines, last: usize) -> f64 {
+    wheel.difference().iter().take(last + 1).map(|line| 2.0 * line.norm_sqr()).sum::<f64>().sqrt()
 }

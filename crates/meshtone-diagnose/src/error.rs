@@ -13,20 +13,22 @@ pub enum DiagnoseError {
     #[error("the regression on the reference set has no solution")]
     NotSolved,
     /// The wheels of the recording are not those of the scenario.
-    #[error("the recording is of wheels with {given:?} teeth, the scenario has {expected:?} (pinion, gear)")]
+    #[error("the recording is of wheels with {given:?} teeth, the scenario has {expected:?}, in its order")]
     OtherWheels {
-        /// Of the recording, pinion and gear.
-        given: [u32; 2],
+        /// Of the recording, wheel by wheel.
+        given: Vec<u32>,
         /// Of the scenario.
-        expected: [u32; 2],
+        expected: Vec<u32>,
     },
     /// So few orders that no mesh order is whole.
     #[error(
-        "the {of}, or the simulations, show orders up to {last} of the gear's shaft; at least 2 mesh orders, {needed}, are needed"
+        "the {of}, or the simulations, show orders up to {last} of the {wheel}'s shaft; at least 2 mesh orders, {needed}, are needed"
     )]
     TooFewOrders {
         /// Name of the signal.
         of: &'static str,
+        /// Name of the wheel.
+        wheel: String,
         /// The last whole order.
         last: usize,
         /// The least that is needed.

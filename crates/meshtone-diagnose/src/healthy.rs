@@ -31,7 +31,7 @@ pub(crate) fn beyond_healthy(now: &WheelLines, healthy: &WheelLines, last: usize
     let shared: f64 = (0..count).map(|order| (new[order] * (old[order] * turn(order)).conj()).re).sum();
     let scale = (shared / energy.max(f64::MIN_POSITIVE)).clamp(0.0, 3.0);
     let lines = (0..count).map(|order| new[order] - old[order] * turn(order) * scale).collect();
-    WheelLines { teeth: now.teeth, lines }
+    WheelLines { lines, ..now.clone() }
 }
 
 #[cfg(test)]
@@ -47,7 +47,8 @@ mod tests {
             let [re, im] = draws.normals();
             Complex64::new(re, im)
         };
-        let healthy = WheelLines { teeth: 38, lines: (0..400).map(&mut line).collect() };
+        let healthy =
+            WheelLines { teeth: 38, beside_teeth: Vec::new(), lines: (0..400).map(&mut line).collect() };
         let turned =
             |order: usize| Complex64::from_polar(2.0, std::f64::consts::TAU * order as f64 * 5.0 / 38.0);
         let mut now = healthy.clone();

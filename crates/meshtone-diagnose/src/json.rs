@@ -12,22 +12,27 @@ const FORMAT_VERSION: u32 = 2;
 impl Answer {
     /// Writes the answer as JSON: probabilities, severities and places, the likeliest kinds first. The signals are not in it.
     pub fn to_json(&self) -> Value {
+        let wheels = &self.wheels;
         let kinds: Map<String, Value> =
-            self.kinds.iter().map(|kind| (kind.label.to_owned(), kind_json(kind))).collect();
+            self.kinds.iter().map(|kind| (kind.label.to_owned(), kind_json(kind, wheels))).collect();
+        let zeros = wheels.iter().zip(&self.counted_from);
+        let counted_from: Map<String, Value> =
+            zeros.map(|(wheel, zero)| (wheel.clone(), json!(zero.map(AngleZero::name)))).collect();
         json!({
             "format_version": FORMAT_VERSION,
             "meshtone_version": env!("CARGO_PKG_VERSION"),
             "signal": self.signal.name(),
             "has_healthy": self.has_healthy,
             "damaged": self.damaged(),
-            "teeth_counted_from": { "pinion": self.counted_from[0].map(AngleZero::name), "gear": self.counted_from[1].map(AngleZero::name) },
+            "teeth_counted_from": counted_from,
             "summary": self.summary,
-            "any_damage": self.any_damage.as_ref().map(any_damage),
+            "any_damage": self.any_damage.as_ref().map(|any| any_damage(any, wheels)),
             "kinds": kinds,
             "outside_model": self.outside_model,
             "is_outside": self.is_outside(),
             "healthy_outside_model": self.healthy_outside_model,
-            "explanations": self.explanations.iter().map(explanation).collect::<Vec<_>>(),
+            "shown_wheel": wheels[self.shown_wheel],
+            "explanations": self.explanations.iter().map(|one| explanation(one, wheels)).collect::<Vec<_>>(),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
         })
     }
@@ -37,10 +42,10 @@ fn warning(warning: &DiagnosisWarning) -> Value {
     json!({ "code": warning.kind.code(), "message": warning.message })
 }
 
-fn any_damage(any: &AnyDamage) -> Value {
+fn any_damage(any: &AnyDamage, wheels: &[String]) -> Value {
     json!({
         "severity": interval(&any.severity),
-        "wheel": any.wheel.name(),
+        "wheel": wheels[any.wheel],
         "wheel_probability": any.wheel_probability,
         "one_tooth_probability": any.one_tooth_probability,
         "tooth": any.tooth.map(|tooth| tooth.number),
@@ -49,7 +54,7 @@ fn any_damage(any: &AnyDamage) -> Value {
     })
 }
 
-fn kind_json(kind: &KindAnswer) -> Value {
+fn kind_json(kind: &KindAnswer, wheels: &[String]) -> Value {
     let sizes: Map<String, Value> =
         kind.sizes.iter().map(|size| (size.key.to_owned(), interval(&size.interval))).collect();
     let place = kind.place;
@@ -58,7 +63,7 @@ fn kind_json(kind: &KindAnswer) -> Value {
         "probability": kind.probability,
         "severity": kind.severity.as_ref().map(interval),
         "sizes": sizes,
-        "wheel": place.map(|place| place.wheel.name()),
+        "wheel": place.map(|place| &wheels[place.wheel]),
         "wheel_probability": place.map(|place| place.wheel_probability),
         "is_on_one_tooth": place.map(|place| place.is_on_one_tooth),
         "tooth": tooth.map(|tooth| tooth.number),
@@ -71,10 +76,10 @@ fn interval(interval: &Interval) -> Value {
     json!({ "median": interval.median, "within_50": interval.within_50, "within_90": interval.within_90 })
 }
 
-fn explanation(explanation: &Explanation) -> Value {
+fn explanation(explanation: &Explanation, wheels: &[String]) -> Value {
     json!({
         "kind": explanation.label,
-        "wheel": explanation.wheel.map(|wheel| wheel.name()),
+        "wheel": explanation.wheel.map(|wheel| &wheels[wheel]),
         "severity": explanation.severity,
     })
 }

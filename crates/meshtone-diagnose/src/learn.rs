@@ -4,7 +4,6 @@ use std::sync::OnceLock;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::DamageKind;
-use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -18,6 +17,7 @@ use crate::outlier_test::OutlierTest;
 use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
 use crate::quantile::quantiles;
 use crate::reference::{ReferenceRecord, ReferenceSet};
+use crate::rig::rig_wheels;
 use crate::severity::SizeModel;
 use crate::softmax::Softmax;
 
@@ -34,7 +34,7 @@ const FEWEST_RECORDS: usize = 200;
 /// Fewest mesh orders that a signal must show.
 const FEWEST_MESH_ORDERS: usize = 2;
 
-/// A question: recordings of a gear pair in one state, and of the same pair when it was healthy.
+/// A question: recordings of a rig in one state, and of the same rig when it was healthy.
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
     /// Recordings of the state in question, at least one.
@@ -51,7 +51,7 @@ impl Question<'_> {
 }
 
 /// A class: what is damaged; none where nothing is.
-pub(crate) type Class = Option<(usize, WheelName)>;
+pub(crate) type Class = Option<(usize, usize)>;
 
 /// A model that is learnt from a reference set for one question.
 pub struct Learned<'a> {
@@ -83,27 +83,28 @@ pub(crate) type SizeModels = Result<Vec<(Option<usize>, SizeModel)>, DiagnoseErr
 pub(crate) struct Layout {
     pub signal: SignalKind,
     pub has_healthy: bool,
-    /// The last order that is whole everywhere, of the pinion and of the gear.
-    pub last: [usize; 2],
+    /// The last order of each wheel that is whole everywhere.
+    pub last: Vec<usize>,
     /// (g) Noise in the lines of the recordings that are asked about, and of the healthy ones.
-    noises: [[Vec<f64>; 2]; 2],
-    /// (Hz) The rig's speed of the pinion.
+    noises: [Vec<Vec<f64>>; 2],
+    /// (Hz) The rig's speed of the shaft that drives.
     nominal_hz: f64,
     /// Whether the recordings' speed is known.
     knows_speed: bool,
 }
 
-/// The wheels that a signal shows.
-fn shown(signal: SignalKind, wheels: &[WheelLines; 2]) -> [Option<&WheelLines>; 2] {
-    [(signal == SignalKind::Recording).then_some(&wheels[0]), Some(&wheels[1])]
+/// The wheels that a signal shows: all, or of a single revolution the gear, a pair's last.
+fn shown(signal: SignalKind, wheels: &[WheelLines]) -> Vec<Option<&WheelLines>> {
+    let is_shown = |place: usize| signal == SignalKind::Recording || place + 1 == wheels.len();
+    wheels.iter().enumerate().map(|(place, wheel)| is_shown(place).then_some(wheel)).collect()
 }
 
 /// Features of one record.
 #[derive(Debug, Clone)]
 pub(crate) struct FeatureRow {
     pub values: Vec<f64>,
-    /// (rev) Where the burst is, of the pinion and of the gear.
-    pub burst_rev: [f64; 2],
+    /// (rev) Where the burst of each wheel is.
+    pub burst_rev: Vec<f64>,
 }
 
 impl Layout {
@@ -114,19 +115,21 @@ impl Layout {
     /// differ without any damage.
     pub(crate) fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
         let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
-        let gears = &reference.prior.base.gears;
-        let expected = [gears.pinion_teeth, gears.gear_teeth];
+        let rig = rig_wheels(&reference.prior.base);
+        let expected: Vec<u32> = rig.iter().map(|wheel| wheel.teeth).collect();
         for asked in question.all() {
-            let pinion = asked.pinion.as_ref().map_or(expected[0], |wheel| wheel.teeth);
-            let given = [pinion, asked.gear.teeth];
-            if given != expected {
+            let teeth = |(seen, expected): (&Option<WheelLines>, &u32)| {
+                seen.as_ref().map_or(*expected, |wheel| wheel.teeth)
+            };
+            let given: Vec<u32> = asked.wheels.iter().zip(&expected).map(teeth).collect();
+            if given != expected || asked.wheels.len() != expected.len() {
                 return Err(DiagnoseError::OtherWheels { given, expected });
             }
-            if let Some(value) = asked.pinion_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
+            if let Some(value) = asked.input_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
                 let (what, beside) = ("speed (Hz)", " and more than 0");
                 return Err(DiagnoseError::NotFinite { what, value, beside });
             }
-            let lines = asked.wheels().into_iter().flatten().flat_map(|wheel| &wheel.lines);
+            let lines = asked.wheels.iter().flatten().flat_map(|wheel| &wheel.lines);
             if let Some(value) = lines.map(|line| line.norm()).find(|norm| !norm.is_finite()) {
                 return Err(DiagnoseError::NotFinite { what: "average", value, beside: "" });
             }
@@ -135,14 +138,19 @@ impl Layout {
                 return Err(DiagnoseError::OtherSignal { healthy, asked });
             }
         }
-        let last = [0, 1].map(|wheel| {
+        let last = |wheel: usize| {
             let simulated = reference.records.iter().map(|record| &record.wheels[wheel]);
-            let observed = question.all().filter_map(|asked| asked.wheels()[wheel]);
+            let observed = question.all().filter_map(|asked| asked.wheels[wheel].as_ref());
             simulated.chain(observed).map(WheelLines::last).min().unwrap_or(0)
-        });
-        let needed = FEWEST_MESH_ORDERS * expected[1] as usize + expected[1] as usize / 2;
-        if last[1] < needed {
-            return Err(DiagnoseError::TooFewOrders { of: first.signal.name(), last: last[1], needed });
+        };
+        let last: Vec<usize> = (0..rig.len()).map(last).collect();
+        for ((wheel, &last), _) in rig.iter().zip(&last).zip(&first.wheels).filter(|(_, seen)| seen.is_some())
+        {
+            let needed = FEWEST_MESH_ORDERS * wheel.teeth as usize + wheel.teeth as usize / 2;
+            if last < needed {
+                let (of, wheel) = (first.signal.name(), wheel.name.clone());
+                return Err(DiagnoseError::TooFewOrders { of, wheel, last, needed });
+            }
         }
         Ok(Self {
             signal: first.signal,
@@ -150,7 +158,7 @@ impl Layout {
             last,
             noises: [question.now, question.healthy].map(noise_of),
             nominal_hz: reference.prior.base.operation.pinion_speed_hz,
-            knows_speed: question.now.iter().any(|asked| asked.pinion_speed_hz.is_some()),
+            knows_speed: question.now.iter().any(|asked| asked.input_speed_hz.is_some()),
         })
     }
 
@@ -169,31 +177,31 @@ impl Layout {
         let [now, before] = &self.noises;
         let noisy = |record, noise| with_noise(record, self, noise, seed);
         let (now, before) = (noisy(record, now), healthy.map(|healthy| noisy(healthy, before)));
-        let speed = if self.knows_speed { (record.pinion_speed_hz / self.nominal_hz).ln() } else { 0.0 };
-        let before = before.as_ref().map_or([None, None], |wheels| shown(self.signal, wheels));
-        self.row(shown(self.signal, &now), before, speed)
+        let speed = if self.knows_speed { (record.input_speed_hz / self.nominal_hz).ln() } else { 0.0 };
+        let before = before.as_ref().map(|wheels| shown(self.signal, wheels));
+        self.row(&shown(self.signal, &now), before.as_deref(), speed)
     }
 
     /// Features of two states of one rig, or of one alone.
     ///
     /// # Arguments
-    /// * `now`, `healthy` - lines of the pinion, of a recording, and of the gear
+    /// * `now`, `healthy` - lines of the wheels that are seen
     /// * `speed` - (-) logarithm of the speed over the rig's; 0 where it is not known
     fn row(
         &self,
-        now: [Option<&WheelLines>; 2],
-        healthy: [Option<&WheelLines>; 2],
+        now: &[Option<&WheelLines>],
+        healthy: Option<&[Option<&WheelLines>]>,
         speed: f64,
     ) -> FeatureRow {
-        let mut row = FeatureRow { values: vec![speed], burst_rev: [0.0; 2] };
+        let mut row = FeatureRow { values: vec![speed], burst_rev: vec![0.0; now.len()] };
         let regular = self.signal.has_regular_part();
-        for wheel in [0, 1] {
-            let (Some(now), last) = (now[wheel], self.last[wheel]) else { continue };
+        for (wheel, now) in now.iter().enumerate() {
+            let (Some(now), last) = (now, self.last[wheel]) else { continue };
             let plain = wheel_features(now, last, regular);
             row.burst_rev[wheel] = plain.burst_rev;
             row.values.extend(&plain.levels);
             row.values.extend(&plain.shapes);
-            if let Some(healthy) = healthy[wheel] {
+            if let Some(healthy) = healthy.and_then(|healthy| healthy[wheel]) {
                 let before = wheel_features(healthy, last, regular);
                 let beyond = wheel_features(&beyond_healthy(now, healthy, last), last, false);
                 row.burst_rev[wheel] = beyond.burst_rev;
@@ -211,14 +219,16 @@ impl Layout {
 
     /// Features of the question: the mean over its recordings.
     fn question(&self, question: &Question) -> FeatureRow {
-        let healthy: Vec<[Option<&WheelLines>; 2]> = match question.healthy {
-            [] => vec![[None, None]],
-            several => several.iter().map(Observation::wheels).collect(),
-        };
         let mut rows = Vec::new();
         for now in question.now {
-            let speed = now.pinion_speed_hz.map_or(0.0, |hz| (hz / self.nominal_hz).ln());
-            rows.extend(healthy.iter().map(|before| self.row(now.wheels(), *before, speed)));
+            let speed = now.input_speed_hz.map_or(0.0, |hz| (hz / self.nominal_hz).ln());
+            let now = now.seen();
+            match question.healthy {
+                [] => rows.push(self.row(&now, None, speed)),
+                several => {
+                    rows.extend(several.iter().map(|before| self.row(&now, Some(&before.seen()), speed)));
+                }
+            }
         }
         let count = rows.len() as f64;
         let mut mean = rows[0].clone();
@@ -236,7 +246,7 @@ fn less(now: &[f64], before: &[f64]) -> Vec<f64> {
 
 /// The test whether a healthy recording is like the healthy simulations, in its own noise and without another recording beside it.
 fn healthy_test(layout: &Layout, reference: &ReferenceSet) -> OutlierTest {
-    let alone = Layout { noises: [layout.noises[1].clone(), Default::default()], ..layout.clone() };
+    let alone = Layout { noises: [layout.noises[1].clone(), Vec::new()], ..layout.clone() };
     let healthy: Vec<&ReferenceRecord> =
         reference.records.iter().filter(|record| record.fault.is_none()).collect();
     let row_of = |record: &&ReferenceRecord| alone.simulation(record, None, reference.prior.seed).values;
@@ -262,7 +272,7 @@ impl<'a> Learned<'a> {
         let layout = Layout::of(question, reference)?;
         let kinds = reference.prior.kinds();
         let is_asked = |record: &&ReferenceRecord| {
-            let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel == WheelName::Gear);
+            let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel + 1 == record.wheels.len());
             let is_first = record.number.is_multiple_of(RECORDS_PER_UNIT);
             (layout.signal == SignalKind::Recording || of_gear)
                 && (!layout.has_healthy || (!is_first && reference.healthy_of(record).is_some()))
@@ -277,7 +287,7 @@ impl<'a> Learned<'a> {
         };
         let rows: Vec<FeatureRow> = records.par_iter().map(row_of).collect();
         let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();
-        classes.sort_unstable_by_key(|class| class.map(|(kind, wheel)| (kind, wheel as usize)));
+        classes.sort_unstable();
         classes.dedup();
         let place = |record: &&ReferenceRecord| classes.iter().position(|class| *class == class_of(record));
         let class_of: Vec<usize> = records.iter().filter_map(place).collect();
@@ -293,8 +303,13 @@ impl<'a> Learned<'a> {
         let targets = DMatrix::from_fn(classes.len(), records.len(), is_class);
         let regression = ridge(&features, &targets, &weights, &folds, PENALTY)?;
         let softmax = Softmax::fit(&regression.out_of_fold, &class_of, &weights)?;
-        let outside =
-            OutlierTest::new(&values, records.iter().map(|record| record.unit()).collect(), &weights);
+        // Two damages at once may be anything between and beside the kinds: what is unlike a single one is outside.
+        let is_single =
+            |record: &ReferenceRecord| record.fault.as_ref().is_none_or(|of| of.kind < kinds.len());
+        let expected = records.iter().zip(&weights);
+        let expected = expected.map(|(record, weight)| if is_single(record) { *weight } else { 0.0 });
+        let units = records.iter().map(|record| record.unit()).collect();
+        let outside = OutlierTest::new(&values, units, &expected.collect::<Vec<f64>>());
         let healthy_outside = layout.has_healthy.then(|| healthy_test(&layout, reference));
         let size_models = classes.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
@@ -399,7 +414,7 @@ impl<'a> Learned<'a> {
     /// The damaged records of a refined round that can be compared with the question, with what they show.
     fn refined_rows<'r>(&self, refined: &'r ReferenceSet) -> Vec<(&'r ReferenceRecord, FeatureRow)> {
         let is_whole = |record: &ReferenceRecord| {
-            record.wheels.iter().zip(self.layout.last).all(|(wheel, last)| wheel.last() >= last)
+            record.wheels.iter().zip(&self.layout.last).all(|(wheel, last)| wheel.last() >= *last)
         };
         let seed = refined.prior.seed;
         let row = |record: &'r ReferenceRecord| {
@@ -437,40 +452,38 @@ fn weights(class_of: &[usize], classes: &[Class]) -> Vec<f64> {
 }
 
 /// (g) The noise in the lines by mesh order, the mean of the recordings; empty where it is not known.
-fn noise_of(recordings: &[Observation]) -> [Vec<f64>; 2] {
-    [0, 1].map(|wheel| {
+fn noise_of(recordings: &[Observation]) -> Vec<Vec<f64>> {
+    let wheels = recordings.first().map_or(0, |asked| asked.noise.len());
+    let of_wheel = |wheel: usize| {
         let known: Vec<&Vec<f64>> =
             recordings.iter().map(|asked| &asked.noise[wheel]).filter(|noise| !noise.is_empty()).collect();
         let Some(count) = known.iter().map(|noise| noise.len()).min() else { return Vec::new() };
         let square =
             |band: usize| known.iter().map(|noise| noise[band].powi(2)).sum::<f64>() / known.len() as f64;
         (0..count).map(|band| square(band).sqrt()).collect()
-    })
+    };
+    (0..wheels).map(of_wheel).collect()
 }
 
 /// The lines of a record as they would be in a recording with such noise.
-fn with_noise(
-    record: &ReferenceRecord,
-    layout: &Layout,
-    noise: &[Vec<f64>; 2],
-    seed: u64,
-) -> [WheelLines; 2] {
+fn with_noise(record: &ReferenceRecord, layout: &Layout, noise: &[Vec<f64>], seed: u64) -> Vec<WheelLines> {
     let mut draws = Draws::new(seed, Purpose::DiagnosisNoise, record.number);
     let [least, largest] = UNKNOWN_NOISE;
     let part = least * (largest / least).powf(draws.uniform(0.5, 0.5));
-    [0, 1].map(|wheel| {
-        let mut lines = record.wheels[wheel].clone();
+    let mut noisy = |(wheel, lines): (usize, &WheelLines)| {
+        let mut lines = lines.clone();
         lines.lines.truncate(layout.last[wheel] + 1);
         let count = lines.lines.len().max(1) as f64;
         let energy: f64 = lines.difference().iter().map(Complex64::norm_sqr).sum();
         let unknown = part * (energy / count).sqrt();
         let teeth = lines.teeth.max(1) as usize;
         for (order, line) in lines.lines.iter_mut().enumerate() {
-            let known = &noise[wheel];
+            let known = noise.get(wheel).map_or(&[][..], |known| known);
             let deviation = known.get((order + teeth / 2) / teeth).or(known.last()).unwrap_or(&unknown);
             let [re, im] = draws.normals();
             *line += Complex64::new(re, im) * (deviation * std::f64::consts::FRAC_1_SQRT_2);
         }
         lines
-    })
+    };
+    record.wheels.iter().enumerate().map(&mut noisy).collect()
 }

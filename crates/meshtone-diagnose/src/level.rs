@@ -12,14 +12,14 @@ const BEYOND_DB: f64 = 10.0;
 /// # Arguments
 /// * `learned`, `question` - the simulations, and the recordings
 pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
-    let of = |asked: &Observation| level_db(learned, &asked.gear);
+    let of = |asked: &Observation| level_db(learned, asked.wheels.iter().map(Option::as_ref));
     // A healthy recording is held against healthy simulations: damage is loud.
     let (name, asked, is_healthy) = match question.healthy.first() {
         Some(healthy) => ("healthy recording", of(healthy), true),
         None => ("recording", of(question.now.first()?), false),
     };
     let counted = learned.reference.records.iter().filter(|record| !is_healthy || record.fault.is_none());
-    let levels = counted.map(|record| (level_db(learned, &record.wheels[1]), 1.0)).collect();
+    let levels = counted.map(|record| (level_db(learned, record.wheels.iter().map(Some)), 1.0)).collect();
     let [low, median, high] = quantiles(levels, [0.05, 0.5, 0.95]);
     let is_within = (low - BEYOND_DB..=high + BEYOND_DB).contains(&asked);
     (!is_within).then(|| {
@@ -31,9 +31,13 @@ pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
     })
 }
 
-/// (dB) Level of a gear's average, or of its difference signal where no more is known.
-fn level_db(learned: &Learned, gear: &WheelLines) -> f64 {
-    let lines = if learned.layout.signal.has_regular_part() { gear.lines.clone() } else { gear.difference() };
-    let energy: f64 = lines.iter().take(learned.layout.last[1] + 1).skip(1).map(|line| line.norm_sqr()).sum();
+/// (dB) Level of the last wheel's average, of a pair the gear's, or of its difference signal where no more is known.
+fn level_db<'w>(learned: &Learned, wheels: impl Iterator<Item = Option<&'w WheelLines>>) -> f64 {
+    let layout = &learned.layout;
+    let lines = wheels.last().flatten().map_or_else(Vec::new, |wheel| {
+        if layout.signal.has_regular_part() { wheel.lines.clone() } else { wheel.difference() }
+    });
+    let last = layout.last.last().copied().unwrap_or(0);
+    let energy: f64 = lines.iter().take(last + 1).skip(1).map(|line| line.norm_sqr()).sum();
     10.0 * energy.max(f64::MIN_POSITIVE).log10()
 }

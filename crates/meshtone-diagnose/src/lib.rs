@@ -1,7 +1,7 @@
 //! Diagnosis of a gear from its vibration, by simulations.
 //!
 //! A [`Prior`] says what may be: kinds of damage and their sizes, and everything that differs from rig to rig. A
-//! [`ReferenceSet`] holds simulations of it, as averages over the revolutions of both wheels. An [`Observation`] is what a recording
+//! [`ReferenceSet`] holds simulations of it, as averages over the revolutions of each wheel. An [`Observation`] is what a recording
 //! shows; [`diagnose`] says what it may be, by what it learns from the reference set.
 #![deny(missing_docs)]
 
@@ -20,8 +20,10 @@ mod observation;
 mod outlier_test;
 mod prior;
 mod quantile;
+mod recorded;
 mod reference;
 mod refine;
+mod rig;
 mod severity;
 mod softmax;
 mod speed;
@@ -29,17 +31,21 @@ mod store;
 #[cfg(test)]
 mod synthetic;
 mod warnings;
+mod words;
 
 pub use answer::{
-    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer, ToothAnswer,
-    p_in_words,
+    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer,
+    ToothAnswer, p_in_words,
 };
 pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
-pub use observation::{Observation, SignalKind, WheelLines, other_teeth};
+pub use observation::{Observation, SignalKind, WheelLines};
 pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
+pub use recorded::other_tone;
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
+pub use rig::{RigWheel, rig_wheels};
 pub use store::{ReferenceStore, StoreError};
 pub use warnings::{DiagnosisWarning, DiagnosisWarningKind};
+pub use words::AnswerInWords;

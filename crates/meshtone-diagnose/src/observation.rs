@@ -1,11 +1,11 @@
-//! Features of the two wheels in a recording or a simulation.
+//! Features of the wheels in a recording or a simulation.
 
 use meshtone::operation::greatest_common_divisor;
 use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, AngularSignal, LinesOffShafts, Mismatch, SeparationSettings,
-    ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage, angular_resample,
-    check_channel, find_mismatch, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
-    synchronous_part,
+    Alternative, AngleZero, AngularSettings, AngularSignal, ForeignTones, GearTrain, LinesOffShafts,
+    Mismatch, SeparationSettings, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning,
+    SynchronousAverage, angular_resample, check_channel, find_mismatch, foreign_tones, kurtosis,
+    lines_off_shafts, rms, standard_deviation, synchronous_average, synchronous_part,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -46,6 +46,8 @@ impl SignalKind {
 pub struct WheelLines {
     /// Teeth of the wheel.
     pub teeth: u32,
+    /// Teeth of the other wheels on its shaft, whose meshes are in the same average.
+    pub beside_teeth: Vec<u32>,
     /// (g) Complex amplitude at each order from 0 on: half the peak of a tone, as a line of the spectrum over its length.
     pub lines: Vec<Complex64>,
 }
@@ -61,6 +63,16 @@ impl WheelLines {
         Self::of_values(&average.values, teeth, passed)
     }
 
+    /// Returns the lines of a wheel whose shaft carries other wheels too.
+    ///
+    /// # Arguments
+    /// * `beside_teeth` - teeth of the others
+    #[must_use]
+    pub fn beside(mut self, beside_teeth: Vec<u32>) -> Self {
+        self.beside_teeth = beside_teeth;
+        self
+    }
+
     /// The lines of one revolution.
     ///
     /// # Arguments
@@ -72,7 +84,7 @@ impl WheelLines {
         let mut lines = real_spectrum(values);
         lines.truncate(1 + last.min(Self::most(teeth)));
         lines.iter_mut().for_each(|line| *line /= count);
-        Self { teeth, lines }
+        Self { teeth, beside_teeth: Vec::new(), lines }
     }
 
     /// The last order that is looked at.
@@ -96,9 +108,10 @@ impl WheelLines {
     /// The lines without the regular part.
     pub(crate) fn difference(&self) -> Vec<Complex64> {
         let settings = SeparationSettings::new(self.teeth as usize);
-        let kept = |(order, &line): (usize, &Complex64)| {
-            if Self::is_regular(order, self.teeth, &settings) { Complex64::default() } else { line }
-        };
+        let meshes: Vec<u32> = [self.teeth].into_iter().chain(self.beside_teeth.iter().copied()).collect();
+        let is_regular = |order| meshes.iter().any(|&teeth| Self::is_regular(order, teeth, &settings));
+        let kept =
+            |(order, &line): (usize, &Complex64)| if is_regular(order) { Complex64::default() } else { line };
         self.lines.iter().enumerate().map(kept).collect()
     }
 }
@@ -120,17 +133,15 @@ pub(crate) fn revolution(lines: &[Complex64], points: usize) -> Vec<f64> {
 pub struct Observation {
     /// Kind of the signal.
     pub signal: SignalKind,
-    /// (Hz) Speed of the pinion's shaft, where it is known.
-    pub pinion_speed_hz: Option<f64>,
-    /// Meaning of angle 0 of the pinion and of the gear, from which their teeth are counted.
-    pub zero: [AngleZero; 2],
-    /// The gear's average, or its difference signal.
-    pub gear: WheelLines,
-    /// The pinion's average, of a recording.
-    pub pinion: Option<WheelLines>,
-    /// (g) Standard deviation of what does not repeat, as it is left in the averages' lines, by mesh order from 0 on, of the gear
-    /// and of the pinion; empty where it is not known.
-    pub noise: [Vec<f64>; 2],
+    /// (Hz) Speed of the shaft that drives, of a pair the pinion's, where it is known.
+    pub input_speed_hz: Option<f64>,
+    /// Meaning of angle 0 of each wheel, from which its teeth are counted.
+    pub zero: Vec<AngleZero>,
+    /// The average of each wheel in the rig's order, of a pair pinion and gear; of a single revolution that of the gear alone.
+    pub wheels: Vec<Option<WheelLines>>,
+    /// (g) Standard deviation of what does not repeat, as it is left in the averages' lines, of each wheel by mesh order from 0 on; empty
+    /// where it is not known.
+    pub noise: Vec<Vec<f64>>,
     /// Why the recording is not what it is stated to be, where that is seen without a simulation.
     pub mismatch: Option<String>,
     /// Other warnings about it.
@@ -164,11 +175,12 @@ impl Observation {
             .or_else(|| energy_off_both_shafts(gear, teeth, pinion_speed_hz / ratio));
         Ok(Self {
             signal: SignalKind::Recording,
-            pinion_speed_hz: Some(pinion_speed_hz),
-            zero: [AngleZero::Given; 2],
-            gear: WheelLines::of_average(&of_gear, teeth[1]),
-            pinion: Some(WheelLines::of_average(&of_pinion, teeth[0])),
-            noise: [noise(pinion, teeth[0], teeth[1]), noise(gear, teeth[1], teeth[0])],
+            input_speed_hz: Some(pinion_speed_hz),
+            zero: vec![AngleZero::Given; 2],
+            wheels: [(&of_pinion, teeth[0]), (&of_gear, teeth[1])]
+                .map(|(average, teeth)| Some(WheelLines::of_average(average, teeth)))
+                .into(),
+            noise: vec![noise(pinion, teeth[0], teeth[1]), noise(gear, teeth[1], teeth[0])],
             mismatch,
             doubts: too_short(gear.revolutions(), teeth, pinion_speed_hz / ratio).into_iter().collect(),
         })
@@ -177,9 +189,9 @@ impl Observation {
     /// Returns the observation with the meaning of angle 0.
     ///
     /// # Arguments
-    /// * `zero` - of the pinion and of the gear
+    /// * `zero` - of each wheel
     #[must_use]
-    pub fn with_zero(mut self, zero: [AngleZero; 2]) -> Self {
+    pub fn with_zero(mut self, zero: Vec<AngleZero>) -> Self {
         self.zero = zero;
         self
     }
@@ -194,9 +206,9 @@ impl Observation {
         self
     }
 
-    /// The lines of the pinion, where they are known, and of the gear.
-    pub(crate) fn wheels(&self) -> [Option<&WheelLines>; 2] {
-        [self.pinion.as_ref(), Some(&self.gear)]
+    /// The lines of each wheel, where they are known.
+    pub(crate) fn seen(&self) -> Vec<Option<&WheelLines>> {
+        self.wheels.iter().map(Option::as_ref).collect()
     }
 
     /// Observes one revolution of the gear.
@@ -221,11 +233,10 @@ impl Observation {
         let last = last_order.map_or(nyquist_order, |order| order.min(nyquist_order));
         Ok(Self {
             signal,
-            pinion_speed_hz: None,
-            zero: [AngleZero::FirstSample; 2],
-            gear: WheelLines::of_values(values_g, gear_teeth, (PASSED * last) as usize),
-            pinion: None,
-            noise: [Vec::new(), Vec::new()],
+            input_speed_hz: None,
+            zero: vec![AngleZero::FirstSample; 2],
+            wheels: vec![None, Some(WheelLines::of_values(values_g, gear_teeth, (PASSED * last) as usize))],
+            noise: vec![Vec::new(); 2],
             mismatch: None,
             doubts: beyond_a_revolution(values_g, gear_teeth).into_iter().collect(),
         })
@@ -242,7 +253,7 @@ impl Observation {
 ///
 /// # Errors
 /// Those of [`angular_resample`].
-pub fn other_teeth(
+pub(crate) fn other_teeth(
     signal: &[f64],
     sampling_rate_hz: f64,
     teeth: [u32; 2],
@@ -326,7 +337,8 @@ fn noise(angular: &AngularSignal, teeth: u32, mate_teeth: u32) -> Vec<f64> {
     if revolutions < FEWEST_REVOLUTIONS {
         return Vec::new();
     }
-    let LinesOffShafts { spectrum, is_off } = lines_off_shafts(angular, teeth, mate_teeth);
+    let LinesOffShafts { spectrum, is_off } =
+        lines_off_shafts(angular, &GearTrain::of_wheels([("wheel", teeth), ("mate", mate_teeth)]), 0);
     let per_mesh_order = teeth as usize * revolutions;
     let count = (revolutions * angular.points_per_revolution) as f64;
     let last = (PASSED * angular.nyquist_order) as usize * revolutions;
@@ -391,8 +403,9 @@ fn energy_off_both_shafts(gear: &AngularSignal, [pinion, teeth]: [u32; 2], gear_
         return None;
     }
     let whole = gear.revolutions() * gear.points_per_revolution;
-    let mut lines = lines_off_shafts(gear, teeth, pinion);
-    let tones = lines.tones(gear, gear_hz);
+    let train = GearTrain::of_wheels([("gear", teeth), ("pinion", pinion)]);
+    let mut lines = lines_off_shafts(gear, &train, 0);
+    let tones = foreign_tones(gear, &train, 0, gear_hz);
     let passed = (PASSED * gear.nyquist_order) as usize * gear.revolutions();
     for (line, value) in lines.spectrum.iter_mut().enumerate() {
         if !lines.is_off[line] || line >= passed {
@@ -411,7 +424,7 @@ fn energy_off_both_shafts(gear: &AngularSignal, [pinion, teeth]: [u32; 2], gear_
             100.0 * part
         ));
     }
-    tones.map(|tones| tones.to_string())
+    tones.as_deref().and_then(ForeignTones::that_count).map(|tones| tones.to_string())
 }
 
 #[cfg(test)]

@@ -31,6 +31,8 @@ pub(crate) struct OutlierTest {
     left: f64,
     points: Vec<Vec<f64>>,
     units: Vec<u64>,
+    /// Whether a simulation is to be expected at all.
+    counts: Vec<bool>,
     /// Range of each feature in nearly all simulations of the units with an even and with an odd number: a simulation is held against the
     /// half in which its unit is not.
     ranges: [Vec<[f64; 2]>; 2],
@@ -72,7 +74,7 @@ impl OutlierTest {
     /// # Arguments
     /// * `rows` - features of the simulations
     /// * `units` - the pair of wheels of each
-    /// * `weights` - how often each is to be expected
+    /// * `weights` - how often each is to be expected; one of 0 is a point, but no other is held against it
     pub fn new(rows: &[Vec<f64>], units: Vec<u64>, weights: &[f64]) -> Self {
         let standard = Standardisation::of(rows);
         let width = rows.first().map_or(0, Vec::len);
@@ -101,6 +103,7 @@ impl OutlierTest {
             left,
             points: Vec::new(),
             units,
+            counts: weights.iter().map(|weight| *weight > 0.0).collect(),
             ranges,
             by_distance: Ranking::new(&[], &[]),
             by_feature: Ranking::new(&[], &[]),
@@ -136,7 +139,7 @@ impl OutlierTest {
     }
 
     fn distance(&self, point: &[f64], but: Option<u64>) -> f64 {
-        let nearest = self.nearest(point, |row| Some(self.units[row]) != but, NEIGHBOURS);
+        let nearest = self.nearest(point, |row| self.counts[row] && Some(self.units[row]) != but, NEIGHBOURS);
         nearest.iter().map(|(distance, _)| distance).sum::<f64>() / nearest.len().max(1) as f64
     }
 

@@ -5,6 +5,9 @@ use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{DamageKind, Scenario, ScenarioError, Sensor, SensorPath, SensorPlace};
 use meshtone::wheel::WheelName;
 
+use crate::answer::SEVERAL;
+use crate::rig::rig_wheels;
+
 /// Records of one pair of wheels: how it was when it was healthy, how it is healthy another day, and damaged.
 pub(crate) const RECORDS_PER_UNIT: u64 = 8;
 /// (-) The least severity that is drawn.
@@ -17,6 +20,8 @@ const PLATE_SPREAD: f64 = 0.5;
 const HOUSING_STRENGTH: [f64; 2] = [0.1, 0.4];
 /// (-) How far the sizes of a damage lie from those of its severity: the largest logarithm of the ratio.
 const SIZE_SPREAD: f64 = 0.3;
+/// Draws of two damages before the record is given up: every second has the more severe one on the other wheel.
+const MOST_PAIRS: usize = 60;
 /// Draws of a damage before the record goes without other sizes than those of its severity.
 const MOST_ATTEMPTS: usize = 4;
 
@@ -42,8 +47,8 @@ pub struct Spread {
 pub struct Focus {
     /// The kind, by its place in [`Prior::kinds`].
     pub kind: usize,
-    /// The damaged wheel.
-    pub wheel: WheelName,
+    /// The damaged wheel, by its place among the rig's.
+    pub wheel: usize,
     /// (-) The least and the largest severity.
     pub severity: [f64; 2],
 }
@@ -78,15 +83,15 @@ pub struct Prior {
 /// A damage that was drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnFault {
-    /// Its kind, by its place in [`Prior::kinds`].
+    /// Its kind, by its place in [`Prior::kinds`]; as many as these are two damages at once.
     pub kind: usize,
-    /// The damaged wheel.
-    pub wheel: WheelName,
+    /// The damaged wheel, by its place among the rig's; of two damages that of the more severe one.
+    pub wheel: usize,
     /// Number of the damaged tooth from 1, of several of the first.
     pub tooth: u32,
     /// Whether that is the only one.
     pub is_on_one_tooth: bool,
-    /// (-) How severe it is, from 0 to 1.
+    /// (-) How severe it is, from 0 to 1; of two damages the more severe one.
     pub severity: f64,
     /// Its sizes, in the order and units of the kind's [`DamageKind::sizes`].
     pub sizes: Vec<f64>,
@@ -159,6 +164,14 @@ impl Prior {
         narrowed
     }
 
+    /// The name of a damage that was drawn.
+    ///
+    /// # Arguments
+    /// * `kind` - its place among the kinds
+    pub(crate) fn label(kinds: &[DamageKind], kind: usize) -> &'static str {
+        kinds.get(kind).map_or(SEVERAL, |kind| kind.name)
+    }
+
     /// The kinds of damage that the rig's model knows.
     pub fn kinds(&self) -> Vec<DamageKind> {
         let of_kind = |kind: &DamageKind| {
@@ -179,17 +192,17 @@ impl Prior {
         self.draw_among(&self.kinds(), number)
     }
 
-    /// Finds the kind and the wheel that a record damages, each kind on each wheel in turn; none of a healthy record, and where there
-    /// are no kinds.
-    pub(crate) fn class(&self, kinds: &[DamageKind], number: u64) -> Option<(usize, WheelName)> {
+    /// Finds the kind and the wheel that a record damages: each kind, and two damages at once, on each wheel in turn; none of a healthy
+    /// record, and where there are no kinds.
+    pub(crate) fn class(&self, kinds: &[DamageKind], number: u64) -> Option<(usize, usize)> {
         match (&self.focus, number % RECORDS_PER_UNIT) {
             (_, 0) | (None, 1) => None,
             (Some(focus), _) => Some((focus.kind, focus.wheel)),
             (None, place) => {
                 let turn = number / RECORDS_PER_UNIT * (RECORDS_PER_UNIT - 2) + place - 2;
-                let class = turn.checked_rem(2 * kinds.len() as u64)?;
-                let wheel = if class.is_multiple_of(2) { WheelName::Gear } else { WheelName::Pinion };
-                Some(((class / 2) as usize, wheel))
+                let (wheels, kinds) = (rig_wheels(&self.base).len(), kinds.len());
+                let turn = turn as usize % (wheels * (kinds + 1));
+                (kinds > 0).then_some((turn / wheels, turn % wheels))
             }
         }
     }
@@ -232,8 +245,17 @@ impl Prior {
             sensor.at = SensorPlace::GearSupport;
         }
         let within = self.focus.as_ref().map(|focus| focus.severity);
-        let class = self.class(kinds, number);
-        let fault = class.map(|class| damage(kinds, class, within, &mut scenario, &mut own)).transpose()?;
+        let (scenario, fault) = match self.class(kinds, number) {
+            None => (scenario, None),
+            Some((kind, wheel)) if kind < kinds.len() => {
+                let (scenario, fault) = damaged(&kinds[kind], (kind, wheel), within, &scenario, &mut own)?;
+                (scenario, Some(fault))
+            }
+            Some((_, wheel)) => {
+                let (scenario, fault) = twice_damaged(kinds, wheel, &scenario, &mut own)?;
+                (scenario, Some(fault))
+            }
+        };
         Ok(Drawn { scenario, fault, path, gain_db })
     }
 
@@ -271,25 +293,62 @@ impl Drawn {
     }
 }
 
+/// Damages a pair twice: any two kinds, the more severe one on a wheel, the other on any.
+fn twice_damaged(
+    kinds: &[DamageKind],
+    wheel: usize,
+    healthy: &Scenario,
+    own: &mut Draws,
+) -> Result<(Scenario, DrawnFault), ScenarioError> {
+    let wheels = rig_wheels(healthy).len() as u64;
+    let mut problem = None;
+    for _ in 0..MOST_PAIRS {
+        let drawn = [0, 1].map(|_| {
+            let kind = (own.bits() % kinds.len() as u64) as usize;
+            let wheel = (own.bits() % wheels) as usize;
+            damaged(&kinds[kind], (kind, wheel), None, healthy, own)
+        });
+        let [(one, first), (other, second)] = match drawn {
+            [Ok(first), Ok(second)] => [first, second],
+            [Err(error), _] | [_, Err(error)] => {
+                problem = Some(error);
+                continue;
+            }
+        };
+        let of = if first.severity >= second.severity { first } else { second };
+        let both = one.clone().with_faults([one.faults, other.faults].concat());
+        // Two damages of one tooth may not go together.
+        if of.wheel == wheel && both.validate().is_ok() {
+            let severity = of.severity;
+            let fault =
+                DrawnFault { kind: kinds.len(), is_on_one_tooth: false, sizes: Vec::new(), severity, ..of };
+            return Ok((both, fault));
+        }
+    }
+    let none = || ScenarioError::new("fault", SEVERAL, "no two damages that were drawn go together");
+    Err(problem.unwrap_or_else(none))
+}
+
 /// Damages a pair.
 ///
 /// Severity and sizes are drawn until they fit the tooth: not every severity can be had with every scenario, and the sizes vary about those
 /// of the severity. The last attempt takes exactly the sizes of its severity. The severity that counts is that of the sizes in the end.
 ///
 /// # Arguments
-/// * `kinds` - that the model knows
-/// * `class` - kind and wheel
+/// * `of_kind` - the kind
+/// * `class` - its place among the kinds, and the wheel
 /// * `within` - (-) severities that count, others are drawn again; none: all
-fn damage(
-    kinds: &[DamageKind],
-    (kind, wheel): (usize, WheelName),
+/// * `healthy` - without the damage
+fn damaged(
+    of_kind: &DamageKind,
+    (kind, wheel): (usize, usize),
     within: Option<[f64; 2]>,
-    scenario: &mut Scenario,
+    healthy: &Scenario,
     own: &mut Draws,
-) -> Result<DrawnFault, ScenarioError> {
-    let of_kind = &kinds[kind];
+) -> Result<(Scenario, DrawnFault), ScenarioError> {
+    let of_wheel = WheelName::BOTH[wheel];
     let usual = Fault::at_usual_place(of_kind.example.clone()).tooth;
-    let tooth = 1 + (own.bits() % u64::from(scenario.gears.teeth(wheel))) as u32;
+    let tooth = 1 + (own.bits() % u64::from(healthy.gears.teeth(of_wheel))) as u32;
     let is_on_one_tooth = usual == FaultyTeeth::One(1);
     let teeth = if is_on_one_tooth { FaultyTeeth::One(tooth) } else { usual };
     let attempts = if within.is_some() { MOST_FOCUSED_ATTEMPTS } else { MOST_ATTEMPTS };
@@ -297,8 +356,8 @@ fn damage(
         let least = LEAST_SEVERITY;
         let drawn = least + (1.0 - least) * own.uniform(0.5, 0.5);
         let severity = if of_kind.sizes.is_empty() { 1.0 } else { drawn };
-        let fault = Fault::new(wheel, teeth.clone(), of_kind.example.clone()).with_severity(severity);
-        let sized = scenario.clone().with_faults(vec![fault]).with_own_sizes()?;
+        let fault = Fault::new(of_wheel, teeth.clone(), of_kind.example.clone()).with_severity(severity);
+        let sized = healthy.clone().with_faults(vec![fault]).with_own_sizes()?;
         if sized.faults.is_empty() {
             continue;
         }
@@ -315,8 +374,7 @@ fn damage(
             continue;
         }
         let sizes = keys.iter().map(|key| damaged.number(key).unwrap_or(f64::NAN)).collect();
-        *scenario = damaged;
-        return Ok(DrawnFault { kind, wheel, tooth, is_on_one_tooth, severity, sizes });
+        return Ok((damaged, DrawnFault { kind, wheel, tooth, is_on_one_tooth, severity, sizes }));
     }
     // A record that is counted as healthy because its damage cannot be would be wrong.
     let problem = "no damage of this kind that was drawn fits the tooth";
@@ -342,13 +400,14 @@ mod tests {
     #[test]
     fn pairs_have_healthy_records_and_all_damages_in_turn() {
         let prior = prior();
-        let kinds = prior.kinds().len();
+        let kinds = prior.kinds().len() + 1;
         let mut counts = vec![0; 2 * kinds];
         for number in 0..8 * kinds as u64 {
             let drawn = prior.draw(number).unwrap();
             assert_eq!(drawn.fault.is_none(), number % 8 < 2);
             if let Some(fault) = drawn.fault {
-                counts[2 * fault.kind + fault.wheel as usize] += 1;
+                counts[2 * fault.kind + fault.wheel] += 1;
+                assert_eq!(drawn.scenario.faults.len(), if fault.kind + 1 < kinds { 1 } else { 2 });
                 assert!((0.0..=1.0).contains(&fault.severity));
             }
         }
@@ -361,13 +420,13 @@ mod tests {
     fn a_focus_draws_its_damage_at_the_recordings_speed() {
         let prior = prior();
         let kind = prior.kinds().iter().position(|kind| kind.name == "tooth-breakage").unwrap();
-        let focus = Focus { kind, wheel: WheelName::Pinion, severity: [0.3, 0.5] };
+        let focus = Focus { kind, wheel: 0, severity: [0.3, 0.5] };
         let narrowed = prior.narrowed(focus, Some(43.0));
         for number in 0..24 {
             let drawn = narrowed.draw(number).unwrap();
             assert!((drawn.scenario.operation.pinion_speed_hz / 43.0 - 1.0).abs() < 0.003);
             let Some(fault) = drawn.fault else { continue };
-            assert_eq!((fault.kind, fault.wheel, number % 8 > 0), (kind, WheelName::Pinion, true));
+            assert_eq!((fault.kind, fault.wheel, number % 8 > 0), (kind, 0, true));
             assert!((0.3..=0.5).contains(&fault.severity), "{}", fault.severity);
         }
         assert_ne!(narrowed.draw(0).unwrap().scenario.seed, prior.draw(0).unwrap().scenario.seed);

@@ -9,6 +9,7 @@ use meshtone::wheel::WheelName;
 
 use crate::observation::WheelLines;
 use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
+use crate::rig::rig_wheels;
 
 /// A simulation of a reference set.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,10 +18,10 @@ pub struct ReferenceRecord {
     pub number: u64,
     /// The damage; none of a healthy record.
     pub fault: Option<DrawnFault>,
-    /// (Hz) Speed of the pinion's shaft.
-    pub pinion_speed_hz: f64,
-    /// The averages of the pinion and of the gear, behind the path to the sensor.
-    pub wheels: [WheelLines; 2],
+    /// (Hz) Speed of the shaft that drives.
+    pub input_speed_hz: f64,
+    /// The average of each wheel of the rig, behind the path to the sensor.
+    pub wheels: Vec<WheelLines>,
 }
 
 impl ReferenceRecord {
@@ -73,31 +74,31 @@ pub fn build_reference(
     };
     let scenarios: Vec<Scenario> = drawn.iter().map(|(_, drawn)| drawn.scenario.clone()).collect();
     let keep = KeepWheels { channel: KeepChannels::new([Channel::leading(&prior.base.sensors)]) };
-    let mut records = Vec::with_capacity(drawn.len());
+    let (mut records, rig) = (Vec::with_capacity(drawn.len()), rig_wheels(&prior.base));
     simulate_many(scenarios, &keep, control, |index, kept| {
         let (number, drawn) = &drawn[index];
         if let Ok(Ok(mut wheels)) = kept {
-            let pinion_speed_hz = drawn.scenario.operation.pinion_speed_hz;
-            let ratio = f64::from(wheels[0].teeth) / f64::from(wheels[1].teeth);
-            for (wheel, shaft_hz) in wheels.iter_mut().zip([pinion_speed_hz, pinion_speed_hz * ratio]) {
+            let input_speed_hz = drawn.scenario.operation.pinion_speed_hz;
+            for (wheel, of_rig) in wheels.iter_mut().zip(&rig) {
+                let shaft_hz = of_rig.speed_ratio * input_speed_hz;
                 let gains = drawn.path_gains((0..wheel.lines.len()).map(|order| order as f64 * shaft_hz));
                 wheel.lines.iter_mut().zip(gains).for_each(|(line, gain)| *line *= gain);
             }
             let fault = drawn.fault.clone();
-            records.push(ReferenceRecord { number: *number, fault, pinion_speed_hz, wheels });
+            records.push(ReferenceRecord { number: *number, fault, input_speed_hz, wheels });
         }
     });
     records
 }
 
-/// Keeps both wheels' averages of each of many simulations.
+/// Keeps the wheels' averages of each of many simulations.
 struct KeepWheels {
     channel: KeepChannels,
 }
 
 impl Keep for KeepWheels {
     type Recorder = SignalRecorder;
-    type Kept = Result<[WheelLines; 2], SignalError>;
+    type Kept = Result<Vec<WheelLines>, SignalError>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
         self.channel.outputs(scenario)
@@ -115,6 +116,6 @@ impl Keep for KeepWheels {
             let average = shafts.average(&signal, shaft, &ChainSettings::default())?;
             Ok(WheelLines::of_average(&average, shafts.teeth(shaft)))
         };
-        Ok([lines(WheelName::Pinion)?, lines(WheelName::Gear)?])
+        WheelName::BOTH.into_iter().map(lines).collect()
     }
 }

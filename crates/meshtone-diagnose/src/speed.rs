@@ -1,8 +1,9 @@
-//! A check that simulations of the rig cover a recording's speed.
+//! A check that simulations of the rig can be compared with a recording, and cover its speed.
 
 use crate::DiagnoseError;
-use crate::learn::Question;
+use crate::learn::{Layout, Question};
 use crate::prior::Prior;
+use crate::reference::ReferenceSet;
 
 /// (-) How far beyond the speeds of the simulations a recording may be to be compared with them at all.
 const FARTHEST: f64 = 1.5;
@@ -18,10 +19,10 @@ impl Question<'_> {
     /// * `prior` - what may be about the rig
     ///
     /// # Errors
-    /// A recording whose speed is far from those of the simulations.
+    /// A recording whose speed is far from those of the simulations; recordings of other wheels, of too few orders or of different kinds.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
         let nominal_hz = prior.base.operation.pinion_speed_hz;
-        for speed_hz in self.all().filter_map(|asked| asked.pinion_speed_hz) {
+        for speed_hz in self.all().filter_map(|asked| asked.input_speed_hz) {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 let reason = reason(speed_hz / nominal_hz, prior).unwrap_or_else(|| {
@@ -32,7 +33,8 @@ impl Question<'_> {
                 return Err(DiagnoseError::OtherSpeed { speed_hz, nominal_hz, reason });
             }
         }
-        Ok(())
+        // A wrong speed moves the orders too, so it is reported before them.
+        Layout::of(self, &ReferenceSet { prior: prior.clone(), records: Vec::new() }).map(drop)
     }
 }
 
@@ -73,7 +75,7 @@ pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let nominal_hz = prior.base.operation.pinion_speed_hz;
     let mut doubts = Vec::new();
     let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
-    for speed_hz in question.all().filter_map(|asked| asked.pinion_speed_hz).filter(beside) {
+    for speed_hz in question.all().filter_map(|asked| asked.input_speed_hz).filter(beside) {
         let reason = reason(speed_hz / nominal_hz, prior);
         let reason = reason.map_or_else(String::new, |reason| format!("; {reason}"));
         let doubt = format!(

@@ -8,7 +8,6 @@ use std::sync::atomic::Ordering;
 
 use meshtone::PHYSICS_VERSION;
 use meshtone::batch::Control;
-use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 use meshtone_io::atomic_file::{WriteFileError, write_atomically};
 use meshtone_io::npz::{NpzReader, NpzWriter};
@@ -17,9 +16,10 @@ use sha2::{Digest, Sha256};
 use crate::observation::{MESH_ORDERS, WheelLines};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet, build_reference};
+use crate::rig::{RigWheel, rig_wheels};
 
 /// Raised when a record of the same number becomes another one, or its file another.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 /// Records of a batch, which is one file: whole pairs of wheels.
 const BATCH: u64 = 512;
 /// Numbers of a record beside its lines: its own, kind, wheel, tooth, whether on one, severity, speed.
@@ -57,6 +57,10 @@ pub struct ReferenceStore {
 impl ReferenceStore {
     /// Simulations that are kept together, in one file: whole pairs of wheels.
     pub const BATCH: u64 = BATCH;
+    /// Simulations to learn from, where no other number is asked for.
+    pub const USUAL_RECORDS: u64 = 6144;
+    /// Most simulations to learn from: time and memory grow with their square; so many take 70 s and 0.7 GB.
+    pub const MOST_RECORDS: u64 = 20_480;
 
     /// # Arguments
     /// * `folder` - in which the sets are; made where it is not there
@@ -143,11 +147,11 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
         numbers.extend([
             record.number as f64,
             of(&|fault| fault.kind as f64),
-            of(&|fault| f64::from(u8::from(fault.wheel == WheelName::Gear))),
+            of(&|fault| fault.wheel as f64),
             of(&|fault| f64::from(fault.tooth)),
             of(&|fault| f64::from(u8::from(fault.is_on_one_tooth))),
             of(&|fault| fault.severity),
-            record.pinion_speed_hz,
+            record.input_speed_hz,
         ]);
         // One more than there are, so that NaN among them is not the end.
         let count = fault.map_or(0, |fault| fault.sizes.len());
@@ -161,12 +165,12 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
         archive.add(name, shape, values)
     };
     add("records", &[records.len(), COLUMNS + 1 + SIZES], &numbers)?;
-    for (wheel, name) in ["pinion", "gear"].into_iter().enumerate() {
+    for wheel in 0..records.first().map_or(0, |record| record.wheels.len()) {
         let lines = || records.iter().map(|record| &record.wheels[wheel].lines);
         let lengths: Vec<f64> = lines().map(|lines| lines.len() as f64).collect();
-        add(&format!("{name}_lengths"), &[records.len()], &lengths)?;
+        add(&format!("lengths_{wheel}"), &[records.len()], &lengths)?;
         let parts: Vec<f64> = lines().flatten().flat_map(|line| [line.re, line.im]).collect();
-        add(&format!("{name}_lines"), &[parts.len() / 2, 2], &parts)?;
+        add(&format!("lines_{wheel}"), &[parts.len() / 2, 2], &parts)?;
     }
     archive.add(DIGEST, &[32], &digest(hash))?;
     archive.finish()?;
@@ -193,7 +197,7 @@ fn digest(hash: Sha256) -> Vec<f64> {
 fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let wrong = || io::Error::other("it is no batch of a reference set");
     let mut archive = NpzReader::new(File::open(path)?)?;
-    let gears = &prior.base.gears;
+    let rig = rig_wheels(&prior.base);
     let width = COLUMNS + 1 + SIZES;
     let mut hash = Sha256::new();
     let mut read = |name: &str, most: u64| -> io::Result<Vec<f64>> {
@@ -205,44 +209,42 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     if !numbers.len().is_multiple_of(width) {
         return Err(wrong());
     }
-    let mut wheels_of = |name: &str, teeth: u32| -> io::Result<Vec<WheelLines>> {
-        let lengths = read(&format!("{name}_lengths"), BATCH)?;
-        let most = BATCH * 2 * (WheelLines::most(teeth) as u64 + 1);
-        let parts = read(&format!("{name}_lines"), most)?;
+    let mut wheels: Vec<Vec<WheelLines>> = vec![Vec::new(); numbers.len() / width];
+    for (place, RigWheel { teeth, beside_teeth, .. }) in rig.iter().enumerate() {
+        let lengths = read(&format!("lengths_{place}"), BATCH)?;
+        let parts = read(&format!("lines_{place}"), BATCH * 2 * (WheelLines::most(*teeth) as u64 + 1))?;
         let mut rest = &parts[..];
-        let mut wheels = Vec::new();
-        for length in &lengths {
+        for (of_record, length) in wheels.iter_mut().zip(&lengths) {
             let count = (*length as usize).saturating_mul(2);
             let own = rest.split_off(..count).ok_or_else(wrong)?;
             let lines = own.chunks_exact(2).map(|part| Complex64::new(part[0], part[1])).collect();
-            wheels.push(WheelLines { teeth, lines });
+            of_record.push(WheelLines { teeth: *teeth, beside_teeth: beside_teeth.clone(), lines });
         }
-        let is_whole = rest.is_empty() && wheels.len() == numbers.len() / width;
-        if is_whole { Ok(wheels) } else { Err(wrong()) }
-    };
-    let pinions = wheels_of("pinion", gears.pinion_teeth)?;
-    let gears = wheels_of("gear", gears.gear_teeth)?;
+        if !rest.is_empty() || lengths.len() != wheels.len() {
+            return Err(wrong());
+        }
+    }
     if archive.floats(DIGEST, 32)?.numbers != digest(hash) {
         return Err(wrong());
     }
-    let record = |(row, wheels): (&[f64], [WheelLines; 2])| {
+    let record = |(row, wheels): (&[f64], Vec<WheelLines>)| {
         let fault = row[1].is_finite().then(|| DrawnFault {
             kind: row[1] as usize,
-            wheel: if row[2] == 0.0 { WheelName::Pinion } else { WheelName::Gear },
+            wheel: row[2] as usize,
             tooth: row[3] as u32,
             is_on_one_tooth: row[4] != 0.0,
             severity: row[5],
             sizes: row[COLUMNS + 1..].iter().take(row[COLUMNS] as usize).copied().collect(),
         });
-        ReferenceRecord { number: row[0] as u64, fault, pinion_speed_hz: row[6], wheels }
+        ReferenceRecord { number: row[0] as u64, fault, input_speed_hz: row[6], wheels }
     };
-    let wheels = pinions.into_iter().zip(gears).map(|(pinion, gear)| [pinion, gear]);
     let records: Vec<ReferenceRecord> = numbers.chunks_exact(width).zip(wheels).map(record).collect();
     let kinds = prior.kinds();
     let is_known = |fault: &DrawnFault| {
-        let teeth = prior.base.gears.teeth(fault.wheel);
-        kinds.get(fault.kind).is_some_and(|kind| kind.sizes.len() == fault.sizes.len())
-            && (1..=teeth).contains(&fault.tooth)
+        let sizes = kinds.get(fault.kind).map_or(0, |kind| kind.sizes.len());
+        fault.kind <= kinds.len()
+            && fault.sizes.len() == sizes
+            && rig.get(fault.wheel).is_some_and(|wheel| (1..=wheel.teeth).contains(&fault.tooth))
     };
     let is_good = |record: &ReferenceRecord| {
         record.fault.as_ref().is_none_or(is_known)
@@ -283,7 +285,7 @@ mod tests {
         let rewritten = [&of_batch].into_iter().chain(&changed).map(|changed| {
             write_atomically(&path, |file| write(file, changed)).unwrap();
             let mut other = NpzReader::new(File::open(&path).unwrap()).unwrap();
-            let arrays = ["records", "pinion_lengths", "pinion_lines", "gear_lengths", "gear_lines"];
+            let arrays = ["records", "lengths_0", "lines_0", "lengths_1", "lines_1"];
             let arrays = arrays.map(|name| (name, other.floats(name, u64::MAX).unwrap().numbers));
             fs::write(&path, &bytes).unwrap();
             let mut original = NpzReader::new(File::open(&path).unwrap()).unwrap();
@@ -293,7 +295,7 @@ mod tests {
                 for (name, values) in &arrays {
                     let width = match *name {
                         "records" => COLUMNS + 1 + SIZES,
-                        name if name.ends_with("lines") => 2,
+                        name if name.starts_with("lines") => 2,
                         _ => 1,
                     };
                     archive.add(name, &[values.len() / width, width], values)?;

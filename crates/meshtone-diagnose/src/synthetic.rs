@@ -3,12 +3,12 @@
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{DamageKind, GearPair, Scenario};
 use meshtone::signal::AngleZero;
-use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 
 use crate::observation::{Observation, SignalKind, WheelLines};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
+use crate::rig::rig_wheels;
 
 /// Mesh orders of the lines.
 const LAST_MESH: u32 = 6;
@@ -28,24 +28,24 @@ pub fn records(prior: &Prior, count: u64) -> Vec<ReferenceRecord> {
 }
 
 fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
-    let unit = number / RECORDS_PER_UNIT;
+    let (unit, rig) = (number / RECORDS_PER_UNIT, rig_wheels(&prior.base));
     let mut own = Draws::new(prior.seed, Purpose::DiagnosisRecord, number);
     let [least, most] = prior.focus.as_ref().map_or([0.0, 1.0], |focus| focus.severity);
     let fault = prior.class(kinds, number).map(|(kind, wheel)| {
         let drawn = least + (most - least) * own.uniform(0.5, 0.5);
-        let sizes = kinds[kind].sizes.len();
-        let severity = if sizes == 0 { 1.0 } else { drawn };
+        let sizes = kinds.get(kind).map_or(0, |kind| kind.sizes.len());
+        let severity = if kind < kinds.len() && sizes == 0 { 1.0 } else { drawn };
         DrawnFault {
             kind,
             wheel,
-            tooth: 1 + (own.bits() % u64::from(prior.base.gears.teeth(wheel))) as u32,
-            is_on_one_tooth: true,
+            tooth: 1 + (own.bits() % u64::from(rig[wheel].teeth)) as u32,
+            is_on_one_tooth: kind < kinds.len(),
             severity,
             sizes: vec![severity; sizes],
         }
     });
-    let wheels = [WheelName::Pinion, WheelName::Gear].map(|wheel| {
-        let teeth = prior.base.gears.teeth(wheel);
+    let wheels = rig.iter().enumerate().map(|(wheel, of_rig)| {
+        let teeth = of_rig.teeth;
         let mut of_unit = Draws::new(prior.seed, Purpose::DiagnosisUnit, 2 * unit + wheel as u64);
         let mut lines: Vec<Complex64> = (0..=LAST_MESH * teeth)
             .map(|order| {
@@ -62,9 +62,10 @@ fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
                 *line += Complex64::from_polar(size, -std::f64::consts::TAU * order as f64 * at);
             }
         }
-        WheelLines { teeth, lines }
+        WheelLines { teeth, beside_teeth: of_rig.beside_teeth.clone(), lines }
     });
-    ReferenceRecord { number, fault, pinion_speed_hz: prior.base.operation.pinion_speed_hz, wheels }
+    let wheels = wheels.collect();
+    ReferenceRecord { number, fault, input_speed_hz: prior.base.operation.pinion_speed_hz, wheels }
 }
 
 /// A set of them.
@@ -88,11 +89,10 @@ pub fn observed(record: &ReferenceRecord) -> Observation {
     };
     Observation {
         signal: SignalKind::Recording,
-        pinion_speed_hz: Some(record.pinion_speed_hz),
-        zero: [AngleZero::Simulated; 2],
-        gear: noisy(&record.wheels[1]),
-        pinion: Some(noisy(&record.wheels[0])),
-        noise: [vec![NOISE_G], vec![NOISE_G]],
+        input_speed_hz: Some(record.input_speed_hz),
+        zero: vec![AngleZero::Simulated; 2],
+        wheels: record.wheels.iter().map(|wheel| Some(noisy(wheel))).collect(),
+        noise: vec![vec![NOISE_G]; 2],
         mismatch: None,
         doubts: Vec::new(),
     }

@@ -3,6 +3,7 @@
 use meshtone::Error;
 use meshtone::scenario::{ErrorKind, ScenarioError};
 use meshtone::signal::SignalError;
+use meshtone_diagnose::{DiagnoseError, StoreError};
 use serde_json::{Value, json};
 
 /// Why there is no answer.
@@ -37,6 +38,17 @@ impl Refusal {
     pub fn with_help(self, advice: impl Into<String>) -> Self {
         match self {
             Self::Unfit { problem, .. } => Self::Unfit { problem, help: Some(advice.into()) },
+            other => other,
+        }
+    }
+
+    /// Returns the refusal with the name of the file that it is about.
+    ///
+    /// # Arguments
+    /// * `file` - the name
+    pub fn about(self, file: &str) -> Self {
+        match self {
+            Self::Unfit { problem, help } => Self::Unfit { problem: format!("{file}: {problem}"), help },
             other => other,
         }
     }
@@ -90,6 +102,18 @@ impl From<Error> for Refusal {
 
 impl From<SignalError> for Refusal {
     fn from(error: SignalError) -> Self {
+        Self::unfit(error.to_string())
+    }
+}
+
+impl From<DiagnoseError> for Refusal {
+    fn from(error: DiagnoseError) -> Self {
+        Self::unfit(error.to_string())
+    }
+}
+
+impl From<StoreError> for Refusal {
+    fn from(error: StoreError) -> Self {
         Self::unfit(error.to_string())
     }
 }

@@ -39,11 +39,13 @@ pub struct DiagnosisFigure<'a> {
     pub title: &'a str,
     /// Facts in the line below it.
     pub facts: &'a [String],
-    /// Teeth of the gear.
-    pub gear_teeth: u32,
-    /// The damaged tooth of the gear from 1, if it is on the gear and it is known which.
+    /// Name of the wheel whose signal is shown.
+    pub wheel: &'a str,
+    /// Teeth of that wheel.
+    pub teeth: u32,
+    /// The damaged tooth of that wheel from 1, if it is on it and it is known which.
     pub damaged_tooth: Option<u32>,
-    /// (g) The recording's difference signal over a revolution of the gear.
+    /// (g) The recording's difference signal over a revolution of that wheel.
     pub difference_g: &'a [f64],
     /// (g) Between which values nine in ten of the simulations that resemble it are, angle by angle.
     pub band_g: [&'a [f64]; 2],
@@ -84,7 +86,8 @@ pub struct SeverityView<'a> {
 /// let figure = DiagnosisFigure {
 ///     title: "worn.csv",
 ///     facts: &["damaged with a probability of 90 %".to_owned()],
-///     gear_teeth: 38,
+///     wheel: "gear",
+///     teeth: 38,
 ///     damaged_tooth: Some(7),
 ///     difference_g: &signal,
 ///     band_g: [&low, &high],
@@ -102,12 +105,12 @@ pub fn draw(figure: &DiagnosisFigure) -> Figure {
     probabilities(&mut canvas, figure.kinds);
     severity(&mut canvas, figure);
     explanations(&mut canvas, figure);
-    canvas.finish(figure.title, &format!("What may be wrong with a gear. {}.", figure.facts.join(", ")))
+    canvas.finish(figure.title, &format!("What may be wrong with the gears. {}.", figure.facts.join(", ")))
 }
 
-/// Range and ticks of a revolution of the gear: tooth k is from k − 1 to k.
+/// Range and ticks of a revolution of the wheel: tooth k is from k − 1 to k.
 fn revolution(figure: &DiagnosisFigure) -> ([f64; 2], Ticks) {
-    let teeth = f64::from(figure.gear_teeth);
+    let teeth = f64::from(figure.teeth);
     ([0.0, teeth], Ticks::whole(0.0, teeth, 20))
 }
 
@@ -121,7 +124,8 @@ fn recording(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     let values = figure.difference_g.iter().chain(figure.band_g[0]).chain(figure.band_g[1]).copied();
     let (x, teeth) = revolution(figure);
     let y = axes::range(values, MARGIN);
-    let axes = Axes::titled(canvas, SIGNALS, x, y, "Difference signal of the recording");
+    let title = format!("Difference signal of the recording, {}", figure.wheel);
+    let axes = Axes::titled(canvas, SIGNALS, x, y, &title);
     let tooth_in_words = figure.damaged_tooth.map(|tooth| format!("tooth {tooth}"));
     let marked = tooth_in_words.as_deref().map(|text| (Sample::Area(DAMAGE), text));
     let others = [
@@ -130,7 +134,8 @@ fn recording(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     ];
     let entries: Vec<Entry> = marked.into_iter().chain(others).collect();
     axes.legend(canvas, &entries);
-    axes.x_axis(canvas, &teeth, "Pitches that the gear has turned (tooth k: from k – 1 to k)");
+    let turned = format!("Pitches that the {} has turned", figure.wheel);
+    axes.x_axis(canvas, &teeth, &format!("{turned} (tooth k: from k – 1 to k)"));
     axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "Acceleration (g)", NAME_LEFT);
     tooth(canvas, &axes, figure);
     let [low, high] = figure.band_g.map(|end| axes.along_x(over(axes.x, end)));
@@ -245,7 +250,7 @@ fn explanations(canvas: &mut Canvas, figure: &DiagnosisFigure) {
         let title = TextStyle::AXES_TITLE.fitted(&title, 0.75 * area.width);
         let axes = Axes::titled(canvas, area, x, y, &title);
         if row + 1 == shown.len() {
-            axes.x_axis(canvas, &teeth, "Pitches that the gear has turned");
+            axes.x_axis(canvas, &teeth, &format!("Pitches that the {} has turned", figure.wheel));
         } else {
             axes.x_grid(canvas, &teeth);
         }

@@ -22,7 +22,15 @@ const EDGE: f64 = 17.0;
 const MARKED: usize = 60;
 /// (px) Half of a marker's size.
 const HALF_MARKER: f64 = 3.0;
-const STROKES: [Stroke; 2] = [Stroke::solid(colour::BLUE, 1.5), Stroke::solid(colour::PURPLE, 1.5)];
+/// Of the wheels, one after the other; from the seventh on again the first.
+const STROKES: [Stroke; 6] = [
+    Stroke::solid(colour::BLUE, 1.5),
+    Stroke::solid(colour::PURPLE, 1.5),
+    Stroke::solid(colour::GREEN, 1.5),
+    Stroke::solid(colour::ORANGE, 1.5),
+    Stroke::solid(colour::VERMILLION, 1.5),
+    Stroke::solid(colour::INK, 1.5),
+];
 
 /// Content of the figure.
 #[derive(Debug, Clone)]
@@ -33,7 +41,7 @@ pub struct TrendFigure<'a> {
     pub facts: &'a [String],
     /// Quantity of the horizontal axis.
     pub along: Along,
-    /// Names of the wheels: one, or both of a pair.
+    /// Names of the wheels.
     pub wheels: &'a [String],
     /// For each wheel where its records lie along that axis, record by record.
     pub places: &'a [Vec<f64>],
@@ -106,7 +114,7 @@ pub fn draw(figure: &TrendFigure) -> Figure {
     let width = f64::from(WIDTH) - 2.0 * EDGE;
     let title = TextStyle::TITLE.fitted(figure.title, width - LEGEND_WIDTH);
     canvas.heading(EDGE, width, (36.0, &title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
-    let named = figure.wheels.iter().zip(STROKES);
+    let named = figure.wheels.iter().zip(STROKES.into_iter().cycle());
     let entries: Vec<Entry> = named.map(|(name, stroke)| (Sample::Line(stroke), name.as_str())).collect();
     legend::row(&mut canvas, (PLOTS.right(), 34.0), &entries);
     for (trend, area) in figure.indicators.iter().zip(PLOTS.grid([3, 3], GAP, f64::INFINITY)) {
@@ -126,7 +134,8 @@ fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigur
         axes.note(canvas, "not defined for these records");
     }
     let is_marked = trend.values.iter().all(|values| values.len() <= MARKED);
-    for ((values, places), stroke) in trend.values.iter().zip(figure.places).zip(STROKES) {
+    for ((values, places), stroke) in trend.values.iter().zip(figure.places).zip(STROKES.into_iter().cycle())
+    {
         let records: Vec<(f64, Option<f64>)> = places.iter().copied().zip(values.iter().copied()).collect();
         for run in records.split(|(_, value)| value.is_none()) {
             axes.line(canvas, run.iter().filter_map(|(x, value)| Some((*x, (*value)?))), stroke);

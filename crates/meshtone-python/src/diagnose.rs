@@ -1,17 +1,12 @@
 //! Diagnosis of a gear.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use meshtone::batch::Control;
-use meshtone::scenario;
-use meshtone::signal::{
-    AngleZero, AngularSettings, ChainSettings, SignalError, SimulatedShafts, StatedFacts, StatedTurning,
-    angular_resample, find_mismatch,
-};
-use meshtone::wheel::WheelName;
+use meshtone::signal::{AngleZero, SimulatedShafts, StatedFacts, StatedTurning};
 use meshtone_diagnose::{
-    Answer, Learned, Observation as Observed, Prior, Question, ReferenceStore, SignalKind, StoreError,
-    other_teeth, refine,
+    Answer, DiagnoseError, Learned, Observation as Observed, Prior, Question, ReferenceStore, SignalKind,
+    StoreError, refine,
 };
 use meshtone_io::experiment::read_tuned;
 use pyo3::exceptions::{PyOSError, PyRuntimeError};
@@ -33,15 +28,8 @@ impl Observation {
     #[staticmethod]
     fn of_simulated(py: Python<'_>, scenario: &Scenario, signal: Signal<'_>, start_s: f64) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        let observe = || {
-            let shafts = SimulatedShafts::new(&scenario.0, start_s, signal.len());
-            let over = |shaft| shafts.angular(signal, shaft, &ChainSettings::default());
-            let (pinion, gear) = (over(WheelName::Pinion)?, over(WheelName::Gear)?);
-            let teeth = WheelName::BOTH.map(|shaft| shafts.teeth(shaft));
-            let observed =
-                Observed::of_recording(&pinion, &gear, teeth, shafts.mean_speed_hz(WheelName::Pinion));
-            observed.map(|observed| observed.with_zero([AngleZero::Simulated; 2]))
-        };
+        let observe =
+            || Observed::of_simulated(signal, &SimulatedShafts::new(&scenario.0, start_s, signal.len()));
         py.detach(observe).map(Self).map_err(value_error)
     }
 
@@ -55,7 +43,15 @@ impl Observation {
         scenario: &Scenario,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        py.detach(|| measured(signal, sampling_rate_hz, phase, &scenario.0)).map(Self).map_err(value_error)
+        let rig = &scenario.0;
+        let teeth = [rig.gears.pinion_teeth, rig.gears.gear_teeth];
+        let turning = match phase.0.zero {
+            AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: rig.operation.pinion_speed_hz },
+            _ => StatedTurning::Other,
+        };
+        let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning };
+        let observe = || Observed::of_measured(signal, sampling_rate_hz, &phase.0, &stated, teeth);
+        py.detach(observe).map(Self).map_err(value_error)
     }
 
     /// Of one revolution of the gear, in g.
@@ -70,36 +66,40 @@ impl Observation {
     }
 }
 
-fn measured(
-    signal: &[f64],
-    sampling_rate_hz: f64,
-    phase: &ShaftPhase,
-    scenario: &scenario::Scenario,
-) -> Result<Observed, SignalError> {
-    let teeth = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
-    let settings = AngularSettings::default();
-    let pinion = angular_resample(signal, &phase.0, &settings)?;
-    let of_gear = phase.0.of_mate(teeth[0], teeth[1])?;
-    let gear = angular_resample(signal, &of_gear, &settings)?;
-    let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning: StatedTurning::Other };
-    let observed = Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?
-        .with_zero([phase.0.zero, of_gear.zero]);
-    let is_doubtful = phase.0.zero == AngleZero::Chance && !phase.0.warnings.is_empty();
-    let against = match find_mismatch(&pinion, &stated) {
-        // Another tone than the mesh's may have been followed.
-        None if is_doubtful => {
-            other_teeth(signal, sampling_rate_hz, teeth, scenario.operation.pinion_speed_hz)?
-        }
-        against => against,
-    };
-    Ok(match against {
-        Some(against) => observed.with_mismatch(against),
-        None => observed,
-    })
-}
-
 /// The text of the answer's JSON, the difference signal, and the predictive band's ends.
 type Diagnosed<'py> = (String, Array<'py>, [Array<'py>; 2]);
+
+/// The rig with the numbers of a `tuned.toml`.
+#[pyfunction]
+pub fn tuned_rig(scenario: &Scenario, path: PathBuf) -> PyResult<Scenario> {
+    let tuned = read_tuned(&path).map_err(|error| read_error(&path, &error))?;
+    match tuned.warning_for(&scenario.0) {
+        Some(problem) => Err(value_error(format!("{}: {problem}", path.display()))),
+        None => tuned.apply(&scenario.0).map(Scenario).map_err(|error| scenario_error(&error)),
+    }
+}
+
+/// Checks a question, and lists the codes and messages of what is doubtful about it before anything is simulated.
+#[pyfunction]
+pub fn check_diagnosis(
+    py: Python<'_>,
+    scenario: &Scenario,
+    now: Vec<PyRef<'_, Observation>>,
+    healthy: Vec<PyRef<'_, Observation>>,
+) -> PyResult<Vec<(&'static str, String)>> {
+    let [now, healthy] = [now, healthy].map(observed);
+    let check = || {
+        let (prior, question) = (Prior::new(&scenario.0), Question { now: &now, healthy: &healthy });
+        question.check(&prior)?;
+        Ok(question.warnings(&prior))
+    };
+    let warnings = py.detach(check).map_err(|error: DiagnoseError| value_error(error))?;
+    Ok(warnings.into_iter().map(|warning| (warning.kind.code(), warning.message)).collect())
+}
+
+fn observed(all: Vec<PyRef<'_, Observation>>) -> Vec<Observed> {
+    all.iter().map(|one| one.0.clone()).collect()
+}
 
 /// Says what may be wrong.
 #[pyfunction]
@@ -108,19 +108,16 @@ pub fn diagnose<'py>(
     scenario: &Scenario,
     now: Vec<PyRef<'py, Observation>>,
     healthy: Vec<PyRef<'py, Observation>>,
-    tuned: Option<PathBuf>,
     reference: Option<PathBuf>,
     records: u64,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Diagnosed<'py>> {
-    let rig = with_tuned(&scenario.0, tuned.as_deref())?;
     let folder = reference.or_else(ReferenceStore::default_folder);
     let folder = folder.ok_or_else(|| {
         value_error("reference: the environment names no home directory; name a folder for the simulations")
     })?;
-    let [now, healthy] =
-        [now, healthy].map(|all| all.iter().map(|one| one.0.clone()).collect::<Vec<Observed>>());
-    let prior = Prior::new(&rig);
+    let [now, healthy] = [now, healthy].map(observed);
+    let prior = Prior::new(&scenario.0);
     let store = ReferenceStore::new(folder);
     let answer = interruptible(py, progress, records, |cancelled, report| {
         let progress = |count| report((count as u64).min(records), records);
@@ -146,7 +143,6 @@ fn answer(
     question: &Question,
     control: &Control,
 ) -> PyResult<Answer> {
-    question.check(prior).map_err(value_error)?;
     let reference = store.get(prior, records, control);
     let reference = reference.map_err(|error| match &error {
         StoreError::Folder { path, source } => file_error(path, Some(source), &error),
@@ -158,13 +154,4 @@ fn answer(
     let control = Control { progress: &|_| {}, ..*control };
     let refined = refine(&learned, question, &control).map_err(value_error)?;
     meshtone_diagnose::diagnose(&learned, question, refined.as_ref()).map_err(value_error)
-}
-
-fn with_tuned(scenario: &scenario::Scenario, path: Option<&Path>) -> PyResult<scenario::Scenario> {
-    let Some(path) = path else { return Ok(scenario.clone()) };
-    let tuned = read_tuned(path).map_err(|error| read_error(path, &error))?;
-    match tuned.warning_for(scenario) {
-        Some(problem) => Err(value_error(format!("{}: {problem}", path.display()))),
-        None => tuned.apply(scenario).map_err(|error| scenario_error(&error)),
-    }
 }

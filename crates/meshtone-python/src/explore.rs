@@ -3,6 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use meshtone::scenario::ScenarioForm;
+use meshtone_diagnose::ReferenceStore;
 use meshtone_explore::{Embedding, Server, ServerSettings};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -41,7 +42,8 @@ impl ExploreServer {
             Ok(gearbox) => ScenarioForm::Gearbox(gearbox.get().0.clone()),
             Err(_) => ScenarioForm::Pair(scenario.cast::<Scenario>()?.get().0.clone()),
         };
-        let settings = ServerSettings { scenario, port, embedding };
+        let reference = ReferenceStore::default_folder();
+        let settings = ServerSettings { scenario, port, embedding, reference };
         let server = Server::start(settings).map_err(|error| {
             PyOSError::new_err(format!("port = {port}: cannot serve a page there: {error}"))
         })?;
@@ -59,15 +61,14 @@ impl ExploreServer {
 
     /// The scenario on the page, or the last one.
     #[getter]
-    fn scenario(&self) -> PyResult<Form> {
+    fn scenario(&self) -> Form {
         let form = match &*self.served.lock().unwrap_or_else(PoisonError::into_inner) {
             Served::Now(server) => server.scenario(),
             Served::Before(scenario) => (**scenario).clone(),
         };
         match form {
-            ScenarioForm::Pair(scenario) => Ok(Form::Pair(Scenario(scenario))),
-            ScenarioForm::Gearbox(gearbox) => Ok(Form::Gearbox(Gearbox(gearbox))),
-            _ => Err(PyOSError::new_err("the page has a scenario of another form")),
+            ScenarioForm::Pair(scenario) => Form::Pair(Scenario(scenario)),
+            ScenarioForm::Gearbox(gearbox) => Form::Gearbox(Gearbox(gearbox)),
         }
     }
 

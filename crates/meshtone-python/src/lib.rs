@@ -33,7 +33,7 @@ mod _core {
     use crate::{
         batch::simulate_many,
         dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset},
-        diagnose::{Observation, diagnose},
+        diagnose::{Observation, check_diagnosis, diagnose, tuned_rig},
         explore::ExploreServer,
         gearbox::{Gearbox, GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes},
         hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune},

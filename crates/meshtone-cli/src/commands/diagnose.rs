@@ -9,7 +9,7 @@ use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone_diagnose::{
     Answer, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question, REFINED_RECORDS,
-    ReferenceSet, ReferenceStore, Refined, SignalKind, diagnose, refine,
+    ReferenceSet, ReferenceStore, Refined, RigWheel, SignalKind, diagnose, refine, rig_wheels,
 };
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
@@ -30,8 +30,6 @@ use crate::replacement::{replace, stage_figure, stage_text};
 use crate::terminal::{print_error_line, print_unless, warn};
 use crate::warnings;
 
-/// Most simulations that are learnt from: time and memory grow with their square; so many take 70 s and 0.7 GB.
-const MOST_RECORDS: u64 = 20_480;
 const JSON: &str = "diagnosis.json";
 const FIGURE: [&str; 2] = ["diagnosis.svg", "diagnosis.png"];
 const FILES: [&str; 3] = [JSON, FIGURE[0], FIGURE[1]];
@@ -68,7 +66,8 @@ pub struct Diagnose {
     #[arg(long, value_name = "DIR")]
     reference: Option<PathBuf>,
     /// Simulations to learn from, in batches of 512, up to 20480: twice as many take four times as long to compare
-    #[arg(long, value_name = "N", default_value_t = 6144, value_parser = clap::value_parser!(u64).range(512..=MOST_RECORDS))]
+    #[arg(long, value_name = "N", default_value_t = ReferenceStore::USUAL_RECORDS,
+        value_parser = clap::value_parser!(u64).range(ReferenceStore::BATCH..=ReferenceStore::MOST_RECORDS))]
     records: u64,
     /// Directory to write to. [default: <name of the first recording>_diagnosis in the current directory]
     #[arg(short, long, value_name = "DIR")]
@@ -121,13 +120,11 @@ impl Diagnose {
         let store = ReferenceStore::new(self.folder()?);
         let reference = self.reference(&store, &prior)?;
         let learned = Learned::new(&reference, &question)?;
-        // What is not of the rig has no likeliest damage.
-        let is_of_rig = !now.iter().chain(&healthy).any(|asked| asked.mismatch.is_some());
-        let refined = if is_of_rig { self.refined(&learned, &question)? } else { None };
+        let refined = self.refined(&learned, &question)?;
         let mut answer = diagnose(&learned, &question, refined.as_ref())?;
         answer.warnings.splice(0..0, of_reading);
         let json = self.json(&answer, &store.folder_of(&prior));
-        self.write(&output.path, &answer, &json, scenario.gears.gear_teeth)?;
+        self.write(&output.path, &answer, &json, &rig_wheels(&scenario))?;
         answer.warnings.iter().filter(|warning| !known.contains(warning)).for_each(warn);
         print_unless(
             self.quiet,
@@ -216,10 +213,16 @@ impl Diagnose {
         all
     }
 
-    fn write(&self, directory: &Path, answer: &Answer, json: &Value, gear_teeth: u32) -> Result<(), Failure> {
+    fn write(
+        &self,
+        directory: &Path,
+        answer: &Answer,
+        json: &Value,
+        rig: &[RigWheel],
+    ) -> Result<(), Failure> {
         let staged = match self.no_figure {
             true => Vec::new(),
-            false => stage_figure(directory, FIGURE, &figure::draw(answer, &self.title(), gear_teeth))?,
+            false => stage_figure(directory, FIGURE, &figure::draw(answer, &self.title(), rig))?,
         };
         let json = stage_text(&directory.join(JSON), &format!("{json:#}\n"))?;
         Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)

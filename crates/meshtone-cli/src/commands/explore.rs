@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 
 use clap::Args;
 use meshtone::scenario::{Scenario, ScenarioForm, template};
+use meshtone_diagnose::ReferenceStore;
 use meshtone_explore::{Embedding, Server, ServerSettings};
 use meshtone_io::scenario_file::ScenarioFile;
 
@@ -15,7 +16,8 @@ use crate::terminal;
 /// Change a scenario on a page in the browser and see what comes of it at once
 ///
 /// Serves the page on this machine alone, until Ctrl-C; it needs no network. Nothing is written but what the page's buttons
-/// hand out: the scenario as TOML or Python, the picture as SVG, the signals as Parquet.
+/// hand out (the scenario as TOML or Python, the picture as SVG, the signals as Parquet) and the simulations of a diagnosis, which are
+/// kept where `meshtone diagnose` keeps them.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Explore {
@@ -39,8 +41,12 @@ Examples:
 
 impl Explore {
     pub fn run(&self) -> Result<(), Failure> {
-        let settings =
-            ServerSettings { scenario: self.scenario()?, port: self.port, embedding: Embedding::Refused };
+        let settings = ServerSettings {
+            scenario: self.scenario()?,
+            port: self.port,
+            embedding: Embedding::Refused,
+            reference: ReferenceStore::default_folder(),
+        };
         let server = Server::start(settings).map_err(|error| self.not_served(&error))?;
         let url = server.url();
         terminal::print(&format!(

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use meshtone_io::indicators::WarningEntry;
+use meshtone_io::scenario_file::ScenarioFile;
 
 use crate::failure::Failure;
-use crate::indicators::options::{PhaseOptions, ProcessingOptions, ReadingOptions};
+use crate::indicators::options::{PhaseOptions, ProcessingOptions, ReadingOptions, ShaftOptions};
 use crate::indicators::process::process;
 use crate::indicators::reading::Input;
 use crate::indicators::results::{Series, settings};
@@ -45,8 +46,13 @@ pub struct Indicators {
     no_figure: bool,
     #[command(flatten)]
     reading: ReadingOptions,
+    /// The machine, a pair or a gearbox: its tooth counts carry the phase of one shaft to all others, and every wheel is processed
+    #[arg(long, value_name = "SCENARIO.toml", conflicts_with_all = ["teeth", "mate_teeth"])]
+    scenario: Option<PathBuf>,
     #[command(flatten)]
     phase: PhaseOptions,
+    #[command(flatten)]
+    shafts: ShaftOptions,
     #[command(flatten)]
     processing: ProcessingOptions,
 }
@@ -56,29 +62,37 @@ Examples:
   meshtone indicators broken                                        what `meshtone simulate` wrote there, both wheels
   meshtone indicators run.csv --channel bearing --teeth 38 --shaft-hz 17.9
   meshtone indicators run.csv -c bearing --tach tacho --teeth 17 --mate-teeth 38
+  meshtone indicators run.csv -c bearing --scenario gearbox.toml --tach tacho --shaft input     every shaft of a gearbox
   meshtone indicators day*.parquet -c bearing --teeth 38 --shaft-hz 17.9 -o trend   a series, in this order";
 
 impl Indicators {
     pub fn run(&self) -> Result<(), Failure> {
         let directory = self.directory();
+        let file = self.scenario.as_deref().map(ScenarioFile::read_form).transpose()?;
+        let scenario = file.as_ref().map(|file| &file.scenario);
         let mut series = Series::default();
         for (number, path) in self.recordings.iter().enumerate() {
             let of = format!("({} of {})", number + 1, self.recordings.len());
             with_spinner(format!("{} {of}", path.display()), !self.quiet, || {
                 let input = Input::read(path, &self.reading, self.phase.channel())?;
-                let processed = process(&input, &self.phase, &self.processing).map_err(|failure| {
-                    Failure { help: self.reading.in_kilohertz().or(failure.help), ..failure }
+                let processed = process(&input, &self.phase, &self.shafts, scenario, &self.processing);
+                let processed = processed.map_err(|failure| Failure {
+                    help: self.reading.in_kilohertz().or(failure.help),
+                    ..failure
                 })?;
                 series.add(input, processed, self.processing.revolutions.is_some())
             })?;
         }
         series.finish()?;
-        series.results.settings = settings(&self.phase, &self.processing);
+        let source = series.latest.as_ref().map_or("", |latest| &latest.turned.source).to_owned();
+        let scenario = self.scenario.as_deref();
+        series.results.settings = settings(&self.phase, &self.shafts, scenario, &source, &self.processing);
         if let Some(message) = order_of_names(&self.recordings) {
             series.results.warnings.push(WarningEntry { source: None, message, kind: None });
         }
-        let read: Vec<&Path> =
-            self.recordings.iter().map(PathBuf::as_path).chain(self.phase.files()).collect();
+        let sources = file.iter().flat_map(ScenarioFile::sources);
+        let recordings = self.recordings.iter().map(PathBuf::as_path);
+        let read: Vec<&Path> = recordings.chain(self.phase.files()).chain(sources).collect();
         let output = OutputDirectory::for_files(&directory, &files::FILES, &read)?;
         self.write(&output.path, &series)?;
         print_warnings(&series.results.warnings);
@@ -101,9 +115,11 @@ impl Indicators {
         let figures = match series.latest.as_ref().filter(|_| !self.no_figure) {
             None => files::Figures::default(),
             Some(latest) => files::Figures {
-                record: Some(figures::of_record(series, latest, &self.phase, &self.processing)),
-                trend: series.is_series().then(|| figures::of_trend(series, &self.phase, &self.processing)),
-                order_map: figures::of_order_map(series, latest, &self.phase),
+                record: Some(figures::of_record(series, latest, &self.processing)),
+                trend: series
+                    .is_series()
+                    .then(|| figures::of_trend(series, &latest.turned.source, &self.processing)),
+                order_map: figures::of_order_map(series, latest),
             },
         };
         files::write(directory, &series.results, &figures)

@@ -185,12 +185,6 @@ impl Simulate {
         let mut scenario = match file.scenario.clone() {
             ScenarioForm::Pair(scenario) => scenario,
             ScenarioForm::Gearbox(gearbox) => return self.prepare_gearbox(file.with(gearbox), directory),
-            _ => {
-                return Failure::refuse(
-                    format!("{} is of a form that is not known here", path.display()),
-                    TRACE_HELP,
-                );
-            }
         };
         let file = file.with(scenario.clone());
         if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {

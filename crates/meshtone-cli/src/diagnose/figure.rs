@@ -1,28 +1,25 @@
 //! The figure of a diagnosis.
 
-use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Answer, HEALTHY};
+use meshtone_diagnose::{Answer, HEALTHY, RigWheel};
 use meshtone_plot::Figure;
 use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
 
-use super::words::{outside, percent};
-
 /// Draws a diagnosis.
 ///
-/// The severity is that of the likeliest damage even where healthy is likelier; a tooth is marked in the gear's signal only where damage is
-/// the likeliest answer, and on the gear.
+/// The severity is that of the likeliest damage even where healthy is likelier; a tooth is marked in the wheel's signal only where damage is
+/// the likeliest answer, and on that wheel.
 ///
 /// # Arguments
 /// * `answer` - what is drawn
 /// * `title` - names of what was recorded
-/// * `gear_teeth` - teeth of the gear
-pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
+/// * `rig` - wheels of the rig
+pub fn draw(answer: &Answer, title: &str, rig: &[RigWheel]) -> Figure {
     let compared =
         if answer.has_healthy { "with a healthy recording" } else { "without a healthy recording" };
-    let damaged = format!("damaged with a probability of {}", percent(answer.damaged()));
+    let words = answer.in_words();
     let facts = [
-        if answer.is_outside() { "nothing can be said".to_owned() } else { damaged },
-        outside(answer),
+        words.damaged.unwrap_or_else(|| "nothing can be said".to_owned()),
+        words.likeness,
         compared.to_owned(),
         format!("{} simulations", answer.reference_records),
         format!("Meshtone {}", env!("CARGO_PKG_VERSION")),
@@ -30,8 +27,9 @@ pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
     let kinds: Vec<(&str, f64)> = answer.kinds.iter().map(|kind| (kind.label, kind.probability)).collect();
     let damage = if answer.is_outside() { None } else { answer.likeliest_damage() };
     let is_damaged = answer.kinds.first().is_some_and(|kind| kind.label != HEALTHY);
-    let on_gear =
-        damage.and_then(|kind| kind.place).filter(|place| is_damaged && place.wheel == WheelName::Gear);
+    let shown = &rig[answer.shown_wheel];
+    let on_shown =
+        damage.and_then(|kind| kind.place).filter(|place| is_damaged && place.wheel == answer.shown_wheel);
     let severity = damage.and_then(|kind| {
         let severity = kind.severity?;
         Some(SeverityView {
@@ -46,9 +44,9 @@ pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
         .explanations
         .iter()
         .map(|explanation| {
-            let wheel = explanation
-                .wheel
-                .map(|wheel| format!(" of the {}, severity {:.2}", wheel.name(), explanation.severity));
+            let wheel = explanation.wheel.map(|wheel| {
+                format!(" of the {}, severity {:.2}", answer.wheels[wheel], explanation.severity)
+            });
             let words = format!("{}{}", explanation.label, wheel.unwrap_or_default());
             (words, &explanation.difference_g[..])
         })
@@ -56,8 +54,9 @@ pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
     diagnosis::draw(&DiagnosisFigure {
         title,
         facts: &facts,
-        gear_teeth,
-        damaged_tooth: on_gear.and_then(|place| place.tooth).map(|tooth| tooth.number),
+        wheel: &shown.name,
+        teeth: shown.teeth,
+        damaged_tooth: on_shown.and_then(|place| place.tooth).map(|tooth| tooth.number),
         difference_g: &answer.difference_g,
         band_g: [&answer.band_g[0], &answer.band_g[1]],
         kinds: if answer.is_outside() { &[] } else { &kinds },

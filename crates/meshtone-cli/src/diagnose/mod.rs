@@ -4,4 +4,3 @@ pub mod figure;
 pub mod observe;
 pub mod refuse;
 pub mod table;
-pub mod words;

@@ -3,14 +3,10 @@
 use std::path::Path;
 
 use meshtone::scenario::Scenario;
-use meshtone::sensor::GRAVITY_M_PER_S2;
-use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, ChainSettings, Mismatch, ShaftPhase, SignalError,
-    SignalWarning, SimulatedShafts, angular_resample, find_mismatch,
-};
+use meshtone::signal::{SignalWarning, SimulatedShafts, StatedFacts};
 use meshtone::tuning::{HealthyRecording, RecordingProblem};
 use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Observation, SignalKind, other_teeth};
+use meshtone_diagnose::{Observation, SignalKind, other_tone};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::Channel;
 
@@ -111,7 +107,8 @@ impl<'a> Observer<'a> {
             }
             _ => {
                 let (shaft, of_phase) = self.phase.measured(&input)?;
-                let other = self.other_tone(&input, &shaft);
+                let (samples, stated) = (&input.channel.samples, self.stated_facts());
+                let other = other_tone(samples, input.sampling_rate_hz, &shaft, &stated);
                 if let Some(mismatch) =
                     other.map_err(|error| refuse(path, &what, RefusedInput::Phase, &error))?
                 {
@@ -155,12 +152,8 @@ impl<'a> Observer<'a> {
 
     fn simulated(&self, input: &Input, scenario_toml: &str) -> Result<Observed, Failure> {
         let shafts = self.shafts(input, scenario_toml)?;
-        let over = |shaft| shafts.angular(&input.channel.samples, shaft, &ChainSettings::default());
-        let zero = [AngleZero::Simulated; 2];
-        let pinion_hz = shafts.mean_speed_hz(WheelName::Pinion);
-        let observe = || self.of_angles([over(WheelName::Pinion)?, over(WheelName::Gear)?], zero, pinion_hz);
         let what = format!("channel {}", input.channel.name);
-        let observation = observe().map_err(|error| {
+        let observation = Observation::of_simulated(&input.channel.samples, &shafts).map_err(|error| {
             refuse(&input.source, &what, RefusedInput::Simulated { in_segments: false }, &error)
         })?;
         Ok((observation, input.warnings.clone()))
@@ -168,61 +161,21 @@ impl<'a> Observer<'a> {
 
     fn measured(&self, input: &Input) -> Result<Observed, Failure> {
         let (shaft, of_phase) = self.phase.measured(input)?;
-        let speed_hz = shaft.mean_speed_hz(input.sampling_rate_hz);
+        let (rate_hz, teeth) = (input.sampling_rate_hz, teeth_of(self.scenario));
+        let speed_hz = shaft.mean_speed_hz(rate_hz);
         let subject = RefusedInput::Measured { speed_hz, by: self.phase.source() };
-        let observe = || self.of_phase(input, &shaft, speed_hz);
+        let stated = self.stated_facts();
+        let observation = Observation::of_measured(&input.channel.samples, rate_hz, &shaft, &stated, teeth);
         let what = format!("channel {}", input.channel.name);
-        let observation = observe().map_err(|error| refuse(&input.source, &what, subject, &error))?;
+        let observation = observation.map_err(|error| refuse(&input.source, &what, subject, &error))?;
         let doubtful = shaft.warnings.iter().map(|warning| about(&input.source, warning));
         let warnings = input.warnings.iter().cloned().chain(of_phase).chain(doubtful).collect();
         Ok((observation, warnings))
     }
 
-    fn of_phase(&self, input: &Input, shaft: &ShaftPhase, speed_hz: f64) -> Result<Observation, SignalError> {
-        let [pinion_teeth, gear_teeth] = teeth_of(self.scenario);
-        let own_teeth = self.phase.teeth.unwrap_or(pinion_teeth);
-        let mate_teeth = self.phase.mate_teeth.unwrap_or(gear_teeth);
-        let over =
-            |phase: &ShaftPhase| angular_resample(&input.channel.samples, phase, &AngularSettings::default());
-        let own = over(shaft)?;
-        let of_mate = shaft.of_mate(own_teeth, mate_teeth)?;
-        let mate = over(&of_mate)?;
-        let against = match find_mismatch(&own, &self.phase.stated_facts(own_teeth)) {
-            None => self.other_tone(input, shaft)?,
-            against => against,
-        };
-        let (wheels, zero, pinion_hz) = if own_teeth == pinion_teeth {
-            ([own, mate], [shaft.zero, of_mate.zero], speed_hz)
-        } else {
-            let pinion_hz = speed_hz * f64::from(gear_teeth) / f64::from(pinion_teeth);
-            ([mate, own], [of_mate.zero, shaft.zero], pinion_hz)
-        };
-        let observation = self.of_angles(wheels, zero, pinion_hz)?;
-        Ok(match against {
-            Some(against) => observation.with_mismatch(against),
-            None => observation,
-        })
-    }
-
-    /// Tooth counts that fit better, where another tone than the mesh's may have been followed.
-    fn other_tone(&self, input: &Input, shaft: &ShaftPhase) -> Result<Option<Mismatch>, SignalError> {
-        let [teeth, mate_teeth] = [self.phase.teeth, self.phase.mate_teeth];
-        let (Some(teeth), Some(mate_teeth)) = (teeth, mate_teeth) else { return Ok(None) };
-        if !self.phase.from_mesh_tone || shaft.warnings.is_empty() {
-            return Ok(None);
-        }
-        let speed_hz = self.phase.shaft_hz.unwrap_or_else(|| shaft.mean_speed_hz(input.sampling_rate_hz));
-        other_teeth(&input.channel.samples, input.sampling_rate_hz, [teeth, mate_teeth], speed_hz)
-    }
-
-    fn of_angles(
-        &self,
-        [pinion, gear]: [AngularSignal; 2],
-        zero: [AngleZero; 2],
-        pinion_hz: f64,
-    ) -> Result<Observation, SignalError> {
-        let observation = Observation::of_recording(&pinion, &gear, teeth_of(self.scenario), pinion_hz)?;
-        Ok(observation.with_zero(zero))
+    fn stated_facts(&self) -> StatedFacts {
+        let [pinion, _] = teeth_of(self.scenario);
+        self.phase.stated_facts(self.phase.teeth.unwrap_or(pinion))
     }
 }
 
@@ -263,29 +216,16 @@ fn with_scenario(stated: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOpti
 
 /// Brings a channel to g.
 fn to_g(channel: &mut Channel, path: &Path, is_calibrated: bool) -> Result<(), Failure> {
-    let unit = channel.unit.as_deref().unwrap_or("").trim();
-    let in_g = match unit {
-        "g" | "gn" | "g0" => 1.0,
-        "m/s²" | "m/s2" | "m/s^2" | "m/s**2" | "m s-2" | "ms-2" | "m·s⁻²" => 1.0 / GRAVITY_M_PER_S2,
-        "mm/s²" | "mm/s2" | "mm/s^2" => 1e-3 / GRAVITY_M_PER_S2,
-        "mg" => 1e-3,
-        _ => {
-            let is = match (unit.is_empty(), is_calibrated) {
-                (true, true) => {
-                    "is divided by --sensitivity-mv-per-unit, but per which unit is not said".to_owned()
-                }
-                (true, false) => "has no stated unit".to_owned(),
-                (false, _) => format!("is in {unit}"),
-            };
-            let problem = format!("{}: channel {} {is}; must be g or m/s²", path.display(), channel.name);
-            let help =
-                "state what it is with --unit g or --unit m/s², of volts with --sensitivity-mv-per-unit too";
-            return Failure::refuse(problem, help);
-        }
-    };
-    if in_g != 1.0 {
-        channel.samples.iter_mut().for_each(|value| *value *= in_g);
+    if channel.convert_to_g() {
+        return Ok(());
     }
-    channel.unit = Some("g".to_owned());
-    Ok(())
+    let unit = channel.unit.as_deref().unwrap_or("").trim();
+    let is = match (unit.is_empty(), is_calibrated) {
+        (true, true) => "is divided by --sensitivity-mv-per-unit, but per which unit is not said".to_owned(),
+        (true, false) => "has no stated unit".to_owned(),
+        (false, _) => format!("is in {unit}"),
+    };
+    let problem = format!("{}: channel {} {is}; must be g or m/s²", path.display(), channel.name);
+    let help = "state what it is with --unit g or --unit m/s², of volts with --sensitivity-mv-per-unit too";
+    Failure::refuse(problem, help)
 }

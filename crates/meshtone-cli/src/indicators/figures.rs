@@ -1,19 +1,18 @@
 //! The figure of the last record, and that of the trend.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::WheelName;
-use meshtone::signal::{OrderMapSettings, order_map};
+use meshtone::signal::{OrderMapSettings, TrainTurning, order_map};
 use meshtone_io::indicators::RecordEntry;
 use meshtone_plot::Figure;
 use meshtone_plot::order_map::{self as order_map_figure, OrderMapFigure};
 use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
 use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 
-use super::options::{PhaseOptions, ProcessingOptions};
-use super::phase::ShaftAngle;
+use super::options::ProcessingOptions;
 use super::results::{LatestRecords, Series};
+use super::train::Turned;
 
 const MESHTONE: &str = concat!("Meshtone ", env!("CARGO_PKG_VERSION"));
 
@@ -27,14 +26,9 @@ pub fn name(path: &Path) -> String {
 ///
 /// The facts below its title say how its signals were made, the source of the phase and what was removed from the average, because the
 /// signals cannot be compared with others without that.
-pub fn of_record(
-    series: &Series,
-    latest: &LatestRecords,
-    phase: &PhaseOptions,
-    processing: &ProcessingOptions,
-) -> Figure {
+pub fn of_record(series: &Series, latest: &LatestRecords, processing: &ProcessingOptions) -> Figure {
     let channel = &latest.input.channel;
-    let mut facts = vec![format!("phase from the {}", phase.source())];
+    let mut facts = vec![format!("phase from the {}", latest.turned.source)];
     if series.is_series() {
         let records = if processing.revolutions.is_some() { "segments" } else { "recordings" };
         facts.insert(0, format!("the last of {} {records}", counted(series)));
@@ -48,18 +42,18 @@ pub fn of_record(
     }
     facts.push(format!("difference without {}", removed.join(", ")));
     facts.push(MESHTONE.to_owned());
-    let first_teeth: Vec<String> = latest.wheels.iter().map(|(wheel, ..)| phase.first_tooth(wheel)).collect();
     let wheels: Vec<WheelView> = latest
         .wheels
         .iter()
-        .zip(&first_teeth)
-        .map(|((wheel, mean_speed_hz, record), first_tooth)| WheelView {
-            name: wheel.name,
+        .map(|(wheel, mean_speed_hz, record)| WheelView {
+            name: &wheel.name,
             teeth: wheel.teeth,
+            shaft: wheel.shaft.as_deref(),
+            other_teeth: &wheel.other_teeth,
             mean_speed_hz: *mean_speed_hz,
             sidebands: processing.sidebands as usize,
             low_orders: processing.low_orders as usize,
-            first_tooth,
+            first_tooth: &wheel.first_tooth,
             damaged_teeth: &wheel.damaged_teeth,
             record,
         })
@@ -77,11 +71,14 @@ pub fn of_record(
 
 /// The figure of the orders of the first wheel's shaft over time, where the last recording is a run-up: where the speed changes so much that
 /// resonances pass over orders. Of another the average says all. A recording that has too few revolutions for a map has no figure.
-pub fn of_order_map(series: &Series, latest: &LatestRecords, phase: &PhaseOptions) -> Option<Figure> {
+pub fn of_order_map(series: &Series, latest: &LatestRecords) -> Option<Figure> {
     let (input, (wheel, ..)) = (&latest.input, latest.wheels.first()?);
-    let turning = match &latest.turning {
-        ShaftAngle::Measured(turning) => Cow::Borrowed(turning),
-        ShaftAngle::Simulated(shafts) => Cow::Owned(shafts.varying_phase(WheelName::Pinion).ok()??),
+    let Turned { train, turning, source, .. } = &latest.turned;
+    let turning = match turning {
+        TrainTurning::Shaft { shaft, phase, .. } => {
+            train.carried(phase, *shaft, train.wheels[0].shaft).ok()?
+        }
+        TrainTurning::SimulatedPair(shafts) => shafts.varying_phase(WheelName::Pinion).ok()??,
     };
     if !turning.is_run_up(input.sampling_rate_hz) {
         return None;
@@ -89,13 +86,13 @@ pub fn of_order_map(series: &Series, latest: &LatestRecords, phase: &PhaseOption
     let highest_order = Some(OrderMapSettings::MESH_ORDERS * f64::from(wheel.teeth));
     let settings = OrderMapSettings { highest_order, ..OrderMapSettings::default() };
     let map = order_map(&input.channel.samples, &turning, input.sampling_rate_hz, &settings).ok()?;
-    let facts = [format!("phase from the {}", phase.source()), MESHTONE.to_owned()];
+    let facts = [format!("phase from the {source}"), MESHTONE.to_owned()];
     let title = title(std::slice::from_ref(&input.source), series);
     Some(order_map_figure::draw(&OrderMapFigure {
         title: &title,
         facts: &facts,
         unit: input.channel.unit.as_deref(),
-        wheel: wheel.name,
+        wheel: &wheel.name,
         teeth: wheel.teeth,
         start_s: input.start_s,
         map: &map,
@@ -103,14 +100,14 @@ pub fn of_order_map(series: &Series, latest: &LatestRecords, phase: &PhaseOption
 }
 
 /// The figure of the indicators over the series.
-pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOptions) -> Figure {
+pub fn of_trend(series: &Series, source: &str, processing: &ProcessingOptions) -> Figure {
     let paths: Vec<PathBuf> =
         series.results.recordings.iter().map(|recording| recording.source.clone()).collect();
     let counted_records = match processing.revolutions {
         None => format!("{} recordings", counted(series)),
         Some(revolutions) => format!("{} segments of {revolutions} revolutions", counted(series)),
     };
-    let facts = [counted_records, format!("phase from the {}", phase.source()), MESHTONE.to_owned()];
+    let facts = [counted_records, format!("phase from the {source}"), MESHTONE.to_owned()];
     let wheels: Vec<String> =
         series.wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
     let (along, places) = places(series, processing.revolutions.is_some());

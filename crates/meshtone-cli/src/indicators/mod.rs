@@ -10,3 +10,4 @@ pub mod reading;
 pub mod refuse;
 pub mod results;
 pub mod table;
+pub mod train;

@@ -55,7 +55,7 @@ impl ReadingOptions {
 }
 
 /// The wheels, and how far their shafts have turned.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Wheels and phase (what `meshtone simulate` wrote needs none of these)")]
 pub struct PhaseOptions {
     /// Teeth of the wheel on the shaft that speed or pulses are of
@@ -94,6 +94,18 @@ pub struct PhaseOptions {
     /// Side of a pulse that counts
     #[arg(long, requires = "tach", default_value = "rising", value_parser = one_of(&EDGES))]
     pub edge: PulseEdge,
+}
+
+/// The part of a scenario that the phase is of.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Shafts of the scenario")]
+pub struct ShaftOptions {
+    /// Shaft that speed or pulses are of, by its name: of a pair, pinion or gear. [default: the input]
+    #[arg(long, value_name = "NAME")]
+    pub shaft: Option<String>,
+    /// Mesh whose tone is followed, such as z3-z4. [default: the first one on the shaft]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["tach", "pulse_times", "speed_channel", "speed_profile"])]
+    pub mesh: Option<String>,
 }
 
 /// Settings by which the channel is processed.

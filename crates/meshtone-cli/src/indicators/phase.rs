@@ -2,29 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{Scenario, ScenarioForm};
 use meshtone::signal::{
     MeshTone, ShaftPhase, SimulatedShafts, StatedFacts, StatedTurning, Tachometer, tachometer_pulses,
 };
 use meshtone_io::indicators::WarningEntry;
+use meshtone_plot::DamagedTooth;
 
 use super::options::PhaseOptions;
 use super::phase_files::{columns, hertz, times_s};
-use super::process::Wheel;
 use super::reading::Input;
 use super::refuse::{RefusedInput, refuse};
 use crate::failure::Failure;
 
 /// Relative deviation of two sampling rates that is rounding.
 const RATE_ROUNDING: f64 = 1e-9;
-
-/// Angles of the shafts.
-pub enum ShaftAngle {
-    /// By measurement: the shaft of the wheel with so many teeth.
-    Measured(ShaftPhase),
-    /// By the scenario.
-    Simulated(SimulatedShafts),
-}
+const SIMULATE_AGAIN: &str = "simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`";
 
 impl PhaseOptions {
     /// Returns whether none is given, so that only a simulation can be processed.
@@ -69,6 +62,9 @@ impl PhaseOptions {
         Ok(())
     }
 
+    /// Source of the phase of a simulation, in words.
+    pub const SIMULATED: &str = "scenario";
+
     /// Source of the phase, in words.
     pub fn source(&self) -> &'static str {
         match self {
@@ -78,7 +74,7 @@ impl PhaseOptions {
             Self { speed_profile: Some(_), .. } => "speed profile",
             Self { from_mesh_tone: true, .. } => "mesh tone",
             Self { shaft_hz: Some(_), .. } => "constant speed",
-            _ => "scenario",
+            _ => Self::SIMULATED,
         }
     }
 
@@ -96,11 +92,15 @@ impl PhaseOptions {
     }
 
     /// Meaning of tooth 1 of a wheel.
-    pub fn first_tooth(&self, wheel: &Wheel) -> String {
+    ///
+    /// # Arguments
+    /// * `is_on_shaft` - whether it is on the shaft that speed or pulses are of
+    /// * `damaged_teeth` - of the wheel, where they are known
+    pub fn first_tooth(&self, is_on_shaft: bool, damaged_teeth: &[DamagedTooth]) -> String {
         let words = match self.source() {
-            "scenario" => {
+            Self::SIMULATED => {
                 let of = |missing: bool| -> Vec<u32> {
-                    let teeth = wheel.damaged_teeth.iter().filter(|tooth| tooth.is_missing == missing);
+                    let teeth = damaged_teeth.iter().filter(|tooth| tooth.is_missing == missing);
                     teeth.map(|tooth| tooth.tooth).collect()
                 };
                 let (missing, damaged) =
@@ -108,7 +108,7 @@ impl PhaseOptions {
                 return format!("each enters contact at the left of its pitch{missing}{damaged}");
             }
             "mesh tone" => "1: chosen by chance",
-            "tachometer" | "pulse times" if wheel.is_on_shaft && self.pulses_per_rev == 1 => {
+            "tachometer" | "pulse times" if is_on_shaft && self.pulses_per_rev == 1 => {
                 "1: in mesh at the pulse"
             }
             "tachometer" | "pulse times" => "1: in mesh at the first pulse",
@@ -181,9 +181,8 @@ fn teeth_that_are(state: &str, teeth: &[u32]) -> String {
     }
 }
 
-/// The shafts of what was simulated.
-pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, SimulatedShafts), Failure> {
-    const HELP: &str = "simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`";
+/// What was simulated.
+pub fn simulated_form(input: &Input, scenario_toml: &str) -> Result<ScenarioForm, Failure> {
     let path = input.source.display();
     if !input.has_own_time {
         let problem =
@@ -191,16 +190,31 @@ pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, Simula
         let help = "leave them out, or state --teeth and the phase too, as of a measured recording";
         return Failure::refuse(problem, help);
     }
-    let scenario = Scenario::from_toml(scenario_toml);
-    let valid = scenario.and_then(|scenario| scenario.validate().map(|_| scenario));
-    let scenario = valid.map_err(|error| {
-        Failure::bad_input(format!("{path}: the scenario in the file is not valid: {error}")).with_help(HELP)
-    })?;
-    let shafts = SimulatedShafts::new(&scenario, input.start_s, input.channel.samples.len());
-    let (rate, expected) = (input.sampling_rate_hz, shafts.sampling_rate_hz());
-    if (rate / expected - 1.0).abs() > RATE_ROUNDING {
-        let problem = format!("{path}: is sampled at {rate} S/s, but its scenario at {expected} S/s");
-        return Failure::refuse(problem, HELP);
+    ScenarioForm::from_toml(scenario_toml).map_err(|error| {
+        Failure::bad_input(format!("{path}: the scenario in the file is not valid: {error}"))
+            .with_help(SIMULATE_AGAIN)
+    })
+}
+
+/// Refuses a recording whose rate is not its scenario's.
+pub fn check_rate(input: &Input, expected_hz: f64) -> Result<(), Failure> {
+    let rate_hz = input.sampling_rate_hz;
+    if (rate_hz / expected_hz - 1.0).abs() > RATE_ROUNDING {
+        let path = input.source.display();
+        let problem = format!("{path}: is sampled at {rate_hz} S/s, but its scenario at {expected_hz} S/s");
+        return Failure::refuse(problem, SIMULATE_AGAIN);
     }
+    Ok(())
+}
+
+/// The shafts of what was simulated of a pair.
+pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, SimulatedShafts), Failure> {
+    let ScenarioForm::Pair(scenario) = simulated_form(input, scenario_toml)? else {
+        let problem =
+            format!("{}: is of a gearbox, and one pair of gears is expected", input.source.display());
+        return Failure::refuse(problem, "state the wheels and the speed, as of a measured recording");
+    };
+    let shafts = SimulatedShafts::new(&scenario, input.start_s, input.channel.samples.len());
+    check_rate(input, shafts.sampling_rate_hz())?;
     Ok((scenario, shafts))
 }

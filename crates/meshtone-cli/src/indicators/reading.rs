@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
@@ -19,8 +19,18 @@ const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
 
 /// The channel of a simulation that is processed unless another is chosen: the first sensor's, or the vertical acceleration.
 fn leading_of(scenario_toml: &str) -> String {
-    // What another version wrote has no sensors, or is looked at without them.
-    let sensors = Scenario::from_toml(scenario_toml).map_or_else(|_| Vec::new(), |scenario| scenario.sensors);
+    let sensors = match ScenarioForm::from_toml(scenario_toml) {
+        Ok(ScenarioForm::Gearbox(gearbox)) => {
+            return gearbox
+                .all_sensors()
+                .first()
+                .map(|sensor| format!("{}_g", sensor.name()))
+                .unwrap_or_default();
+        }
+        Ok(ScenarioForm::Pair(scenario)) => scenario.sensors,
+        // What another version wrote has no sensors, or is looked at without them.
+        Err(_) => Vec::new(),
+    };
     SimulatedChannel::leading(&sensors).name().into_owned()
 }
 

@@ -66,13 +66,13 @@ pub fn unreadable(error: ReadRecordingError, option: &str) -> Failure {
 
 /// The input that is refused, on which the advice to the user depends.
 #[derive(Debug, Clone, Copy)]
-pub enum RefusedInput {
+pub enum RefusedInput<'a> {
     /// The channel of a measurement.
     Measured {
         /// (Hz) Mean speed of the shaft.
         speed_hz: f64,
         /// Source of the phase, in words.
-        by: &'static str,
+        by: &'a str,
     },
     /// The channel of a simulation.
     Simulated {

@@ -1,15 +1,15 @@
 //! The records of a whole series, as they come.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use meshtone::signal::{Record, na4};
 use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry};
 use serde_json::{Map, Value, json};
 
-use super::options::{EDGES, INTERPOLATIONS, PhaseOptions, ProcessingOptions};
-use super::phase::ShaftAngle;
+use super::options::{EDGES, INTERPOLATIONS, PhaseOptions, ProcessingOptions, ShaftOptions};
 use super::process::{Processed, Wheel};
 use super::reading::Input;
+use super::train::Turned;
 use crate::choice::name_of;
 use crate::failure::Failure;
 
@@ -19,8 +19,8 @@ pub struct LatestRecords {
     pub input: Input,
     /// Each wheel with the mean speed of its shaft and its record.
     pub wheels: Vec<(Wheel, f64, Record)>,
-    /// The angles of the shafts in the recording.
-    pub turning: ShaftAngle,
+    /// The machine, and how it turned in the recording.
+    pub turned: Turned,
 }
 
 /// All records so far. Of each but the last only its indicators and its residual are kept.
@@ -43,15 +43,18 @@ impl Series {
     /// Adds the next recording.
     pub fn add(&mut self, input: Input, processed: Processed, in_segments: bool) -> Result<(), Failure> {
         self.check(&input, &processed)?;
+        let Processed { turned, records, warnings } = processed;
         self.results.recordings.push(RecordingEntry {
             source: input.source.clone(),
             sampling_rate_hz: input.sampling_rate_hz,
             samples: input.channel.samples.len(),
             start_s: input.start_s,
+            foreign_lines: records.foreign,
         });
-        self.results.warnings.extend(processed.warnings);
+        self.results.warnings.extend(warnings);
         let mut last = Vec::new();
-        for (place, of_wheel) in processed.wheels.into_iter().enumerate() {
+        for (place, of_wheel) in records.wheels.into_iter().enumerate() {
+            let wheel = &turned.wheels[place];
             let length_s = input.channel.samples.len() as f64 / input.sampling_rate_hz;
             let before = (self.results.recordings.len() - 1) as f64;
             self.middles[place]
@@ -61,8 +64,9 @@ impl Series {
                 self.results.records.push(RecordEntry {
                     recording: self.results.recordings.len(),
                     segment: in_segments.then_some(number + 1),
-                    wheel: of_wheel.wheel.name.to_string(),
-                    teeth: of_wheel.wheel.teeth,
+                    wheel: wheel.name.clone(),
+                    shaft: wheel.shaft.clone(),
+                    teeth: wheel.teeth,
                     revolutions: record.average.revolutions,
                     mean_speed_hz: of_wheel.mean_speed_hz,
                     points_per_revolution: record.average.values.len(),
@@ -72,19 +76,19 @@ impl Series {
                 self.residuals[place].push(std::mem::take(&mut record.parts.residual));
                 latest = Some(record);
             }
-            last.extend(latest.map(|record| (of_wheel.wheel, of_wheel.mean_speed_hz, record)));
+            last.extend(latest.map(|record| (wheel.clone(), of_wheel.mean_speed_hz, record)));
         }
-        self.latest = Some(LatestRecords { input, wheels: last, turning: processed.turning });
+        self.latest = Some(LatestRecords { input, wheels: last, turned });
         Ok(())
     }
 
     /// Refuses a recording that differs from others of its series where it must not.
     fn check(&mut self, input: &Input, processed: &Processed) -> Result<(), Failure> {
-        let wheels: Vec<Wheel> = processed.wheels.iter().map(|of_wheel| of_wheel.wheel.clone()).collect();
+        let wheels = &processed.turned.wheels;
         let Some(first) = self.results.recordings.first() else {
             self.residuals = vec![Vec::new(); wheels.len()];
             self.middles = vec![Vec::new(); wheels.len()];
-            self.wheels = wheels;
+            self.wheels.clone_from(wheels);
             self.results.channel.clone_from(&input.channel.name);
             self.results.unit.clone_from(&input.channel.unit);
             return Ok(());
@@ -97,17 +101,14 @@ impl Series {
         let teeth = |wheels: &[Wheel]| -> Vec<String> {
             wheels.iter().map(|wheel| wheel.teeth.to_string()).collect()
         };
-        if teeth(&wheels) != teeth(&self.wheels) {
+        if teeth(wheels) != teeth(&self.wheels) {
             let words = |wheels: &[Wheel]| format!("has {} teeth", teeth(wheels).join(" and "));
-            return refuse("is of a pair that", words(&wheels), words(&self.wheels));
+            return refuse("is of a machine that", words(wheels), words(&self.wheels));
         }
         if input.channel.unit != self.results.unit {
             let words = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no stated unit".to_string());
             let (here, there) = (words(&input.channel.unit), words(&self.results.unit));
             return refuse("is in", here, format!("in {there}"));
-        }
-        for (wheel, here) in self.wheels.iter_mut().zip(wheels) {
-            wheel.damaged_teeth = here.damaged_teeth;
         }
         Ok(())
     }
@@ -142,12 +143,21 @@ impl Series {
 }
 
 /// Settings of the command line, with its defaults.
-pub fn settings(phase: &PhaseOptions, processing: &ProcessingOptions) -> Map<String, Value> {
+pub fn settings(
+    phase: &PhaseOptions,
+    shafts: &ShaftOptions,
+    scenario: Option<&Path>,
+    source: &str,
+    processing: &ProcessingOptions,
+) -> Map<String, Value> {
     let file = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
     let has_pulses = phase.tach.is_some() || phase.pulse_times.is_some();
     let edge = phase.tach.as_ref().and_then(|_| name_of(&EDGES, phase.edge));
     let settings = [
-        ("phase", json!(phase.source())),
+        ("phase", json!(source)),
+        ("scenario", json!(scenario.map(|path| path.display().to_string()))),
+        ("shaft", json!(shafts.shaft)),
+        ("mesh", json!(shafts.mesh)),
         ("teeth", json!(phase.teeth)),
         ("mate_teeth", json!(phase.mate_teeth)),
         ("shaft_hz", json!(phase.shaft_hz)),

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use meshtone::signal::ShapeIndicators;
-use meshtone_io::indicators::RecordEntry;
+use meshtone_io::indicators::{RecordEntry, RecordingEntry};
 
 use super::process::Wheel;
 use super::results::Series;
@@ -11,12 +11,58 @@ use crate::table::short;
 
 const OF_GEARS: [&str; 7] = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", "sidebands"];
 
+/// Foreign lines that are printed; the others are counted.
+const LINES: usize = 10;
+
 /// The table of one record or of a series.
 pub fn table(series: &Series) -> String {
     let unit = series.results.unit.as_deref().unwrap_or("unit not stated");
     let mut text = format!("  channel {}, {unit}\n", series.results.channel);
-    let of_wheel = if series.is_series() { of_series } else { of_record };
-    series.wheels.iter().for_each(|wheel| text += &of_wheel(series, wheel));
+    if series.is_series() {
+        series.wheels.iter().for_each(|wheel| text += &of_series(series, wheel));
+    } else {
+        for (number, wheel) in series.wheels.iter().enumerate() {
+            let is_on_shaft = |other: &&Wheel| other.shaft.is_some() && other.shaft == wheel.shaft;
+            // Wheels on one shaft have one average.
+            if !series.wheels[..number].iter().any(|other| is_on_shaft(&other)) {
+                let others = series.wheels[number + 1..].iter().filter(is_on_shaft);
+                text += &of_record(series, &std::iter::once(wheel).chain(others).collect::<Vec<_>>());
+            }
+        }
+    }
+    text + &foreign_lines(series, unit)
+}
+
+/// The lines of the last recording that belong to no shaft and no mesh, where they were looked for.
+fn foreign_lines(series: &Series, unit: &str) -> String {
+    let Some(RecordingEntry { source, foreign_lines: Some(lines), .. }) = series.results.recordings.last()
+    else {
+        return String::new();
+    };
+    let of = if series.results.recordings.len() > 1 {
+        format!(" of {}", super::figures::name(source))
+    } else {
+        String::new()
+    };
+    if lines.is_empty() {
+        return format!("\n  every line{of} that stands out belongs to a shaft or a mesh\n");
+    }
+    let on = if series.wheels.len() > 2 { "the input" } else { "the shaft" };
+    let mut text = format!("\n  lines{of} that belong to no shaft and no mesh\n");
+    text += &line("", ["Hz", &format!("order of {on}"), &format!("amplitude, {unit}"), "of energy"], 20);
+    for tone in lines.iter().take(LINES) {
+        let mains = if tone.may_be_mains { "  a harmonic of the mains" } else { "" };
+        let cells = [
+            format!("{:.2}", tone.frequency_hz),
+            format!("{:.4}", tone.order),
+            short(tone.amplitude),
+            format!("{:.2} %", 100.0 * tone.part),
+        ];
+        text += &format!("{}{mains}\n", line("", cells, 20).trim_end());
+    }
+    if let Some(more @ 1..) = lines.len().checked_sub(LINES) {
+        text += &format!("  … and {more} more, in indicators.json\n");
+    }
     text
 }
 
@@ -26,12 +72,16 @@ fn line<T: Display>(label: impl Display, cells: impl IntoIterator<Item = T>, wid
     format!("  {label}{cells}\n")
 }
 
-fn of_record(series: &Series, wheel: &Wheel) -> String {
-    let Some(record) = series.of(wheel).next() else { return String::new() };
+/// The average over the revolutions of a shaft, and the gear metrics of each wheel on it.
+fn of_record(series: &Series, wheels: &[&Wheel]) -> String {
+    let Some(record) = wheels.first().and_then(|wheel| series.of(wheel).next()) else { return String::new() };
+    let names: Vec<String> =
+        wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
+    let shaft = wheels[0].shaft.as_ref().map(|shaft| format!("shaft {shaft} with "));
     let mut text = format!(
-        "\n  {}, {} teeth: average of {} revolutions at {} Hz\n",
-        wheel.name,
-        wheel.teeth,
+        "\n  {}{}: average of {} revolutions at {} Hz\n",
+        shaft.unwrap_or_default(),
+        names.join(", and "),
         record.revolutions,
         short(record.mean_speed_hz)
     );
@@ -44,7 +94,10 @@ fn of_record(series: &Series, wheel: &Wheel) -> String {
     add("difference", &shape(&indicators.difference));
     add("envelope", &shape(&indicators.envelope));
     add("", &OF_GEARS.map(str::to_owned));
-    add("gear metrics", &gear(record));
+    for wheel in wheels {
+        let label = if wheels.len() > 1 { &wheel.name } else { "gear metrics" };
+        series.of(wheel).next().into_iter().for_each(|record| add(label, &gear(record)));
+    }
     text
 }
 

@@ -218,7 +218,6 @@ impl Sampler<'_> {
                 gearbox.seed = record.seed;
                 gearbox.wheels_seed = Some(record.wheels_seed);
             }
-            _ => {}
         }
         // What the plan puts between place and sensor stands instead of the sensor's own.
         for sensor in scenario.sensors_mut() {

@@ -68,7 +68,6 @@ fn refuse_given_wheels(base: &ScenarioForm) -> ReadResult<()> {
             (pair.quality.profile_errors.is_some(), "quality.errors_file".to_owned(), DRAWN),
             (pair.quality.seed.is_some(), "quality.seed".to_owned(), OWN),
         ],
-        _ => Vec::new(),
     };
     match given.into_iter().find(|(is_given, ..)| *is_given) {
         Some((_, key, why)) => {
@@ -125,7 +124,6 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
                 let stages = match &scenario {
                     ScenarioForm::Gearbox(gearbox) => meshtone::gearbox_stages(gearbox).map(drop),
                     ScenarioForm::Pair(pair) => meshtone::stages(pair).map(drop),
-                    _ => Ok(()),
                 };
                 stages.map_err(of_class)
             });

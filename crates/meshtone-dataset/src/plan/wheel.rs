@@ -138,7 +138,6 @@ impl ClassFault {
         match scenario {
             ScenarioForm::Pair(scenario) => scenario.faults.iter().cloned().map(Self::of_pair).collect(),
             ScenarioForm::Gearbox(gearbox) => gearbox.faults.iter().cloned().map(Self::of_gearbox).collect(),
-            _ => Vec::new(),
         }
     }
 
@@ -197,7 +196,6 @@ pub(crate) fn with_faults(base: &ScenarioForm, faults: &[ClassFault]) -> Scenari
         ScenarioForm::Pair(scenario) => {
             scenario.faults = faults.iter().map(|fault| fault.fault.clone()).collect();
         }
-        _ => {}
     }
     damaged
 }

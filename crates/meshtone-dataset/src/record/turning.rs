@@ -56,7 +56,6 @@ impl Turning {
         Ok(match scenario {
             ScenarioForm::Gearbox(gearbox) => Self::of_gearbox(gearbox, &GearboxLayout::new(gearbox)?),
             ScenarioForm::Pair(scenario) => Self::of_pair(scenario),
-            _ => Self { wheels: Vec::new(), marked: 0, turns: 1, period_rev: 1.0, enter_together: true },
         })
     }
 

@@ -1,5 +1,6 @@
 //! From a scenario to everything that the page draws.
 
+mod diagnosis;
 mod gearbox;
 mod healthy;
 mod lines;
@@ -17,6 +18,7 @@ use meshtone::{Simulation, StageTime, Stages};
 use meshtone_plot::DamagedTooth;
 use serde_json::{Map, Value, json};
 
+pub use diagnosis::{DiagnosisQuestion, diagnosis};
 pub use gearbox::{gearbox_answer, gearbox_sections_json};
 pub use healthy::{HealthyIndicators, healthy_indicators, healthy_json};
 pub use mesh_cycle::MeshCycle;

@@ -70,10 +70,7 @@ pub fn recording(
 ) -> Result<Vec<u8>, Refusal> {
     let recording = read(bytes, question)?;
     wanted(is_wanted)?;
-    let simulated = recording.scenario_toml.as_deref().and_then(|toml| Scenario::from_toml(toml).ok());
-    let leading =
-        simulated.as_ref().map(|scenario| SimulatedChannel::leading(&scenario.sensors).name().into_owned());
-    let channel = named(&recording, question.channel.as_deref().or(leading.as_deref()))?;
+    let (simulated, channel) = chosen(&recording, question)?;
     let (turning, wheels, doubts) = match (&simulated, &question.tachometer) {
         (Some(simulated), None) => ("scenario", of_simulation(&recording, channel, simulated), Vec::new()),
         _ => of_measurement(&recording, channel, question, scenario)?,
@@ -101,7 +98,7 @@ pub fn recording(
 }
 
 /// The file as it would be read from a folder, without the name of where it lay meanwhile in what is wrong with it.
-fn read(bytes: &[u8], question: &RecordingQuestion) -> Result<Recording, Refusal> {
+pub(super) fn read(bytes: &[u8], question: &RecordingQuestion) -> Result<Recording, Refusal> {
     let failed =
         |error: std::io::Error| Refusal::unfit(format!("the recording cannot be kept for reading: {error}"));
     let ending = Path::new(&question.name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
@@ -116,6 +113,29 @@ fn read(bytes: &[u8], question: &RecordingQuestion) -> Result<Recording, Refusal
     let kept_at = file.path().display().to_string();
     read_recording(file.path(), &options)
         .map_err(|error| Refusal::unfit(error.to_string().replace(&kept_at, &question.name)))
+}
+
+/// The scenario of a file that `meshtone simulate` wrote, and the channel that is processed: the one that is asked for, or the leading one.
+pub(super) fn chosen<'r>(
+    recording: &'r Recording,
+    question: &RecordingQuestion,
+) -> Result<(Option<Scenario>, &'r Channel), Refusal> {
+    let simulated = recording.scenario_toml.as_deref().and_then(|toml| Scenario::from_toml(toml).ok());
+    let leading =
+        simulated.as_ref().map(|scenario| SimulatedChannel::leading(&scenario.sensors).name().into_owned());
+    let channel = named(recording, question.channel.as_deref().or(leading.as_deref()))?;
+    Ok((simulated, channel))
+}
+
+/// How the pinion's shaft turns by a tachometer's channel, one pulse a revolution.
+pub(super) fn by_tachometer(
+    recording: &Recording,
+    name: &str,
+) -> Result<(StatedTurning, ShaftPhase), Refusal> {
+    let rate_hz = recording.sampling_rate_hz;
+    let times = tachometer_pulses(&named(recording, Some(name))?.samples, rate_hz, &Tachometer::default())?;
+    let phase = ShaftPhase::from_pulses(&times, 1, None, rate_hz, recording.len())?;
+    Ok((StatedTurning::Pulses { per_revolution: 1 }, phase))
 }
 
 /// The channel of a name, or the first.
@@ -150,16 +170,11 @@ fn of_measurement(
     let (rate_hz, samples) = (recording.sampling_rate_hz, recording.len());
     let [pinion_teeth, gear_teeth] = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
     let speed_hz = scenario.operation.pinion_speed_hz;
-    let (name, turning, phase) = match &question.tachometer {
-        Some(name) => {
-            let pulses = &named(recording, Some(name))?.samples;
-            let times = tachometer_pulses(pulses, rate_hz, &Tachometer::default())?;
-            let turning = StatedTurning::Pulses { per_revolution: 1 };
-            ("tachometer", turning, ShaftPhase::from_pulses(&times, 1, None, rate_hz, samples)?)
-        }
+    let (name, (turning, phase)) = match &question.tachometer {
+        Some(name) => ("tachometer", by_tachometer(recording, name)?),
         None => {
             let turning = StatedTurning::ConstantSpeed { speed_hz };
-            ("constant speed", turning, ShaftPhase::constant(speed_hz, rate_hz, samples)?)
+            ("constant speed", (turning, ShaftPhase::constant(speed_hz, rate_hz, samples)?))
         }
     };
     let stated = StatedFacts { teeth: pinion_teeth, mate_teeth: Some(gear_teeth), turning };

@@ -68,22 +68,42 @@ export class Newest {
     this.#abort = abort;
     const text = JSON.stringify({ ...question, page, number: ++numbered });
     try {
-      const response = await post(this.#path, file ? framed(text, file) : text, abort.signal);
+      const response = await post(this.#path, file ? framed(text, [file]) : text, abort.signal);
       const buffer = await response.arrayBuffer();
       return this.#abort === abort ? buffer : null;
     } catch (error) {
       if (abort.signal.aborted || error.details?.kind === "superseded") return null;
-      throw error instanceof Refusal ? error : new Refusal({ kind: "gone", text: "the program no longer answers: was it ended?" });
+      throw error instanceof Refusal ? error : gone();
     }
   }
 }
 
-/** A text and a file behind it, as the program reads them. */
-function framed(text, file) {
+/** What is said of a diagnosis, one thing after another: it goes on until it is at its end, or the signal aborts it. */
+export async function* diagnosis(question, files, signal) {
+  const text = JSON.stringify({ ...question, page, number: ++numbered });
+  try {
+    const response = await post("diagnosis", framed(text, files), signal);
+    const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+    let rest = "";
+    for (let part = await reader.read(); !part.done; part = await reader.read()) {
+      const lines = (rest + part.value).split("\n");
+      rest = lines.pop();
+      for (const line of lines) yield JSON.parse(line);
+    }
+  } catch (error) {
+    if (error instanceof Refusal || signal.aborted) throw error;
+    throw gone();
+  }
+}
+
+const gone = () => new Refusal({ kind: "gone", text: "the program no longer answers: was it ended?" });
+
+/** A text and files behind it, as the program reads them. */
+function framed(text, files) {
   const bytes = new TextEncoder().encode(text);
   const length = new Uint8Array(4);
   new DataView(length.buffer).setUint32(0, bytes.length, true);
-  return new Blob([length, bytes, file]);
+  return new Blob([length, bytes, ...files]);
 }
 
 /** Answers about the scenario, in order. */

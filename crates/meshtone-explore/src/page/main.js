@@ -2,6 +2,7 @@
 
 import { Answers, Newest, Refusal, exported, start, unpacked } from "./ask.js";
 import { Controls } from "./controls.js";
+import { Diagnosis } from "./diagnosis.js";
 import { shown } from "./plots.js";
 import { Views } from "./views.js";
 
@@ -12,6 +13,7 @@ const PAUSE = 150;
 let controls;
 let views;
 let answers;
+let diagnosis;
 let channel = null;
 let recording = null;
 let pause = 0;
@@ -40,6 +42,7 @@ function status(text) {
 function show(answer, asked) {
   controls.show(answer);
   views.show(answer);
+  diagnosis.changed();
   showProblem(null);
   const now = performance.now();
   const isFull = answer.detail === "full";
@@ -164,6 +167,7 @@ async function process() {
     if (!buffer) return;
     const processed = unpacked(buffer);
     views.setRecording(processed);
+    diagnosis.setRecording(recording);
     showRecording(processed);
     showProblem(null);
     status(`${processed.name}: ${processed.warnings.length ? "read, with warnings" : "read"}`);
@@ -196,6 +200,7 @@ function showRecording(processed) {
     box.replaceChildren();
     box.hidden = true;
     views.setRecording(null);
+    diagnosis.setRecording(null);
   });
   const name = Object.assign(document.createElement("span"), { textContent: `Recording ${processed.name}, by ${processed.turning}` });
   const warned = document.createElement("ul");
@@ -279,6 +284,7 @@ try {
   controls = new Controls(byId("controls"), catalogue, change);
   views = new Views(() => views.now && compare(views.now));
   answers = new Answers(show, showProblem);
+  diagnosis = new Diagnosis(() => question("full"), catalogue.records);
   listen(catalogue);
   open(ofAddress() ?? catalogue.scenario);
 } catch (error) {

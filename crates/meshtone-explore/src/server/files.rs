@@ -31,6 +31,7 @@ files! {
     "/icon.svg" "image/svg+xml" "icon.svg";
     "/main.js" "text/javascript; charset=utf-8" "main.js";
     "/ask.js" "text/javascript; charset=utf-8" "ask.js";
+    "/diagnosis.js" "text/javascript; charset=utf-8" "diagnosis.js";
     "/controls.js" "text/javascript; charset=utf-8" "controls.js";
     "/plots.js" "text/javascript; charset=utf-8" "plots.js";
     "/teeth.js" "text/javascript; charset=utf-8" "teeth.js";

@@ -1,5 +1,6 @@
 //! The server: this machine alone, and its own page alone.
 
+mod diagnosis;
 mod files;
 mod guard;
 mod latest;
@@ -8,11 +9,13 @@ mod requests;
 mod tests;
 
 use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use axum::Router;
 use meshtone::scenario::ScenarioForm;
+use meshtone_diagnose::ReferenceStore;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, oneshot};
 
@@ -44,6 +47,8 @@ pub struct ServerSettings {
     pub port: u16,
     /// Whether a notebook may show it.
     pub embedding: Embedding,
+    /// Where the simulations of diagnoses are kept, as [`ReferenceStore::default_folder`]; none where nothing is diagnosed.
+    pub reference: Option<PathBuf>,
 }
 
 /// A page that is served, until it is dropped.
@@ -69,6 +74,10 @@ struct Shared {
     room: Arc<Semaphore>,
     /// The gears without damage that were computed last, and for what.
     healthy: Mutex<Option<(String, HealthyIndicators)>>,
+    /// Room for one diagnosis at a time.
+    room_of_diagnosis: Arc<Semaphore>,
+    /// Where their simulations are kept.
+    reference: Option<ReferenceStore>,
 }
 
 impl Server {
@@ -85,13 +94,15 @@ impl Server {
     /// use meshtone_explore::{Embedding, Server, ServerSettings, presets};
     ///
     /// let scenario = ScenarioForm::Pair(Scenario::from_toml(presets()[0].toml)?);
-    /// let server = Server::start(ServerSettings { scenario: scenario.clone(), port: 0, embedding: Embedding::Refused })?;
+    /// let settings =
+    ///     ServerSettings { scenario: scenario.clone(), port: 0, embedding: Embedding::Refused, reference: None };
+    /// let server = Server::start(settings)?;
     /// assert!(server.url().starts_with("http://127.0.0.1:"));
     /// assert_eq!(server.scenario(), scenario);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn start(settings: ServerSettings) -> std::io::Result<Self> {
-        let ServerSettings { scenario, port, embedding } = settings;
+        let ServerSettings { scenario, port, embedding, reference } = settings;
         let token = random_token()?;
         let listener = std::net::TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
@@ -102,6 +113,8 @@ impl Server {
             latest: NewestRequests::default(),
             room: Arc::new(Semaphore::new(AT_ONCE)),
             healthy: Mutex::new(None),
+            room_of_diagnosis: Arc::new(Semaphore::new(1)),
+            reference: reference.map(ReferenceStore::new),
         });
         let guard = Guard::new(address.port(), &token, embedding);
         let router = guard.protect(requests::router(Arc::clone(&shared)).merge(files::router(&shared.start)));

@@ -9,9 +9,11 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use meshtone::scenario::{Scenario, ScenarioForm};
+use meshtone_diagnose::ReferenceStore;
 use serde_json::{Map, Value, json};
 
 use super::Shared;
+use super::diagnosis::of_diagnosis;
 use super::guard::respond;
 use super::latest::RequestTurn;
 use crate::answer::{
@@ -37,6 +39,9 @@ const LENGTH_BYTES: usize = 4;
 pub(super) fn router(shared: Arc<Shared>) -> Router {
     let about_recordings =
         Router::new().route("/recording", post(of_recording)).layer(DefaultBodyLimit::max(MOST_OF_RECORDING));
+    let diagnoses = Router::new()
+        .route("/diagnosis", post(of_diagnosis))
+        .layer(DefaultBodyLimit::max(MOST_OF_SCENARIO + 2 * MOST_OF_RECORDING));
     Router::new()
         .route("/start", get(start))
         .route("/answer", post(of_answer))
@@ -46,26 +51,27 @@ pub(super) fn router(shared: Arc<Shared>) -> Router {
         .route("/export/{form}", post(of_export))
         .layer(DefaultBodyLimit::max(MOST_OF_SCENARIO))
         .merge(about_recordings)
+        .merge(diagnoses)
         .with_state(shared)
 }
 
 /// A request about a scenario, taken apart.
 #[derive(Debug)]
-struct AskedRequest {
+pub(super) struct AskedRequest {
     /// Identity of the page.
-    page: String,
+    pub(super) page: String,
     /// Number of the request: later ones are higher.
-    number: u64,
+    pub(super) number: u64,
     /// Level of detail, and channel.
     options: AnswerOptions,
     /// Number of the fault whose severity is meant.
     fault: usize,
     /// The request as it came.
-    fields: Value,
+    pub(super) fields: Value,
 }
 
 impl AskedRequest {
-    fn of(body: &[u8]) -> Result<Self, Refusal> {
+    pub(super) fn of(body: &[u8]) -> Result<Self, Refusal> {
         let fields: Value = serde_json::from_slice(body)
             .map_err(|error| Refusal::unfit(format!("the request is not understood: {error}")))?;
         let text = |name: &str| fields.get(name).and_then(Value::as_str);
@@ -148,9 +154,10 @@ async fn start(Shares(shared): Shares<Arc<Shared>>) -> Response {
         ScenarioForm::Pair(pair) => {
             let mut said = controls();
             said["scenario"] = Value::Object(without_defaults(pair));
+            said["records"] =
+                json!([ReferenceStore::BATCH, ReferenceStore::USUAL_RECORDS, ReferenceStore::MOST_RECORDS]);
             said
         }
-        _ => Value::Null,
     };
     respond(StatusCode::OK, JSON, said.to_string())
 }
@@ -228,14 +235,21 @@ async fn of_severity(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result
     Ok(respond(StatusCode::OK, PACKET, bytes.await?))
 }
 
-/// A recording that was dropped on the page: the file stands behind what is said about it, as an answer's numbers do.
-async fn of_recording(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+/// What is said about recordings, and their files, which stand behind it, as an answer's numbers do.
+pub(super) fn framed(body: &Bytes) -> Result<(Bytes, Bytes), Refusal> {
     let cut = || Refusal::unfit("the request is not understood: it ends before the recording begins");
     let (length, rest) = body.split_at_checked(LENGTH_BYTES).ok_or_else(cut)?;
     let length = length.iter().rev().fold(0, |length, &byte| length << 8 | usize::from(byte));
-    let said = rest.get(..length).ok_or_else(cut)?;
-    let file = body.slice(LENGTH_BYTES + length..);
-    let bytes = compute(&shared, "recording", said, move |asked, scenario, turn| {
+    if length > rest.len() {
+        return Err(cut());
+    }
+    Ok((body.slice(LENGTH_BYTES..LENGTH_BYTES + length), body.slice(LENGTH_BYTES + length..)))
+}
+
+/// A recording that was dropped on the page.
+async fn of_recording(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+    let (said, file) = framed(&body)?;
+    let bytes = compute(&shared, "recording", &said, move |asked, scenario, turn| {
         recording(&file, &RecordingQuestion::of(&asked.fields), scenario, &|| turn.is_wanted())
     });
     Ok(respond(StatusCode::OK, PACKET, bytes.await?))

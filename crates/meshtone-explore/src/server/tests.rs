@@ -1,10 +1,12 @@
 //! The server, asked as a browser asks it.
 
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use meshtone::scenario::{GearPair, Scenario};
+use meshtone::damage::damage_kinds;
+use meshtone::scenario::{Fault, GearPair, Model, Scenario};
 use serde_json::{Value, json};
 
 use super::*;
@@ -22,12 +24,17 @@ fn fast() -> Scenario {
 }
 
 fn server() -> Server {
-    Server::start(ServerSettings {
+    server_with(None)
+}
+
+fn server_with(reference: Option<PathBuf>) -> Server {
+    let settings = ServerSettings {
         scenario: ScenarioForm::Pair(fast()),
         port: 0,
         embedding: Embedding::Refused,
-    })
-    .unwrap()
+        reference,
+    };
+    Server::start(settings).unwrap()
 }
 
 struct Answered {
@@ -76,6 +83,11 @@ fn answered(mut stream: TcpStream) -> Answered {
     let head = String::from_utf8(bytes[..end].to_vec()).unwrap();
     let status = head.split(' ').nth(1).unwrap().parse().unwrap();
     Answered { status, head, body: bytes[end + 4..].to_vec() }
+}
+
+/// What is said about recordings, and their files behind it.
+fn framed(said: Vec<u8>, files: &[u8]) -> Vec<u8> {
+    [&(said.len() as u32).to_le_bytes()[..], &said, files].concat()
 }
 
 fn question(scenario: &Scenario, number: u64) -> Value {
@@ -204,7 +216,6 @@ fn a_recording_goes_through_the_same_chain() {
         asked["sampling_rate_hz"] = json!(8000.0);
         asked.to_string().into_bytes()
     };
-    let framed = |said: Vec<u8>, file: &[u8]| [&(said.len() as u32).to_le_bytes()[..], &said, file].concat();
     let answered = server.ask("POST", "recording", &framed(of_file("run.csv"), csv.as_bytes()));
     let (said, _) = answered.packet();
     assert_eq!(
@@ -216,4 +227,123 @@ fn a_recording_goes_through_the_same_chain() {
     let text = refused["error"]["text"].as_str().unwrap().to_owned();
     assert!(text.starts_with("run.wav"), "{text}");
     assert_eq!(server.ask("POST", "recording", &[9, 0]).status, 422);
+}
+
+/// A rig whose simulations take milliseconds, and show enough mesh orders.
+fn rig() -> Scenario {
+    let mut rig = fast();
+    rig.model = Model::Linear;
+    rig.quality.din_grade = 6;
+    rig.solver.sampling_rate_hz = 8000.0;
+    rig
+}
+
+/// A file that `meshtone simulate` would write.
+fn simulated(server: &Server, scenario: &Scenario) -> Vec<u8> {
+    server.post("export/parquet", &question(scenario, 1)).body
+}
+
+/// The request of a diagnosis.
+fn asked(rig: &Scenario, name: &str, now: &[u8], healthy: Option<&[u8]>, records: u64) -> Vec<u8> {
+    let mut said = question(rig, 1);
+    let tachometer = name.ends_with("csv").then_some("tacho");
+    said["recording"] = json!({ "name": name, "bytes": now.len(), "tachometer": tachometer });
+    said["healthy"] = json!(healthy.map(|file| json!({ "name": "sound.parquet", "bytes": file.len() })));
+    said["records"] = json!(records);
+    framed(said.to_string().into_bytes(), &[now, healthy.unwrap_or_default()].concat())
+}
+
+/// The lines of what is said, as they come: between them are the lengths of the parts in which they were sent.
+fn said(stream: TcpStream) -> impl Iterator<Item = Value> {
+    let lines = BufReader::new(stream).lines().map_while(Result::ok);
+    lines.filter(|line| line.starts_with('{')).map(|line| serde_json::from_str(&line).unwrap())
+}
+
+#[test]
+fn a_recording_is_diagnosed_with_progress() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = server_with(Some(folder.path().to_owned()));
+    let ask = |name: &str, now: &[u8], healthy: Option<&[u8]>| {
+        let body = asked(&rig(), name, now, healthy, 512);
+        said(server.request("POST", "diagnosis", &body)).collect::<Vec<Value>>()
+    };
+    let sound = simulated(&server, &rig());
+    let mut broken = rig();
+    broken.faults.push(Fault::at_usual_place(damage_kinds()[0].example.clone()));
+    let broken = simulated(&server, &broken);
+
+    let all = ask("broken.parquet", &broken, Some(&sound));
+    assert_eq!(all[0], json!({ "seen": [] }));
+    let finished: Vec<u64> = all
+        .iter()
+        .filter(|said| said["progress"]["counted"] == "simulations")
+        .filter_map(|said| said["progress"]["finished"].as_u64())
+        .collect();
+    assert!(finished.len() > 2 && finished.is_sorted() && finished.last() == Some(&512), "{finished:?}");
+    let answer = &all.last().unwrap()["answer"];
+    let damaged = answer["damaged"].as_str().unwrap();
+    assert!(damaged.starts_with("damaged with a probability of"), "{damaged}");
+    let likeliest = &answer["kinds"][0];
+    assert!(
+        likeliest[3].as_str().unwrap().contains("gear") && likeliest[3].as_str().unwrap().contains("tooth 1")
+    );
+
+    // What no simulation is like has no probabilities, and is known before they are made.
+    let noise = |i: u64| {
+        let mixed = (i + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        (mixed >> 40) as f64 / (1_u64 << 24) as f64 - 0.5
+    };
+    let rows = (0..16_000).map(|i| {
+        let pulse = u8::from(i % 200 < 20);
+        format!("{:.6},{:.5},{pulse}\n", i as f64 / 8000.0, noise(i))
+    });
+    let file: String = std::iter::once("time_s,bearing [g],tacho\n".to_owned()).chain(rows).collect();
+    let all = ask("noise.csv", file.as_bytes(), None);
+    assert!(all[0]["seen"][0].as_str().unwrap().contains("repeats with its shaft"), "{}", all[0]);
+    let answer = &all.last().unwrap()["answer"];
+    assert!(answer["summary"].as_str().unwrap().starts_with("Nothing can be said"), "{answer}");
+    assert_eq!((&answer["kinds"], &answer["damaged"]), (&json!([]), &Value::Null));
+
+    // What cannot be compared is refused before anything is simulated.
+    let mut other = rig();
+    other.gears.gear_teeth = 60;
+    let refused = ask("other.parquet", &simulated(&server, &other), None);
+    assert_eq!(refused.len(), 1, "{refused:?}");
+    assert!(refused[0]["error"]["text"].as_str().unwrap().contains("teeth"), "{refused:?}");
+    let volts = file.replace("[g]", "[V]");
+    let refused = ask("volts.csv", volts.as_bytes(), None);
+    assert_eq!(
+        refused[0]["error"]["text"], "volts.csv: channel bearing is in V; must be g or m/s²",
+        "{refused:?}"
+    );
+    let body = asked(&rig(), "broken.parquet", &broken, None, 100);
+    let refused = said(server.request("POST", "diagnosis", &body)).next().unwrap();
+    assert!(refused["error"]["text"].as_str().unwrap().contains("from 512 to 20480"), "{refused}");
+}
+
+#[test]
+fn a_diagnosis_ends_with_its_connection_and_others_are_answered_meanwhile() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = server_with(Some(folder.path().to_owned()));
+    let file = simulated(&server, &rig());
+    let body = asked(&rig(), "sound.parquet", &file, None, ReferenceStore::MOST_RECORDS);
+    let stream = server.request("POST", "diagnosis", &body);
+    let is_beyond_a_batch =
+        |said: &Value| said["progress"]["finished"].as_u64() > Some(ReferenceStore::BATCH);
+    assert!(said(stream.try_clone().unwrap()).any(|said| is_beyond_a_batch(&said)));
+    let room = &server.shared.room_of_diagnosis;
+    assert_eq!(room.available_permits(), 0);
+    let start = Instant::now();
+    assert_eq!(server.post("answer", &question(&fast(), 1)).status, 200);
+    assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
+    // Another one waits for it.
+    let waiting = server.request("POST", "diagnosis", &asked(&rig(), "sound.parquet", &file, None, 512));
+    let mut waiting = said(waiting);
+    assert_eq!(waiting.next().unwrap()["progress"]["counted"], "waiting for another diagnosis to end");
+    stream.shutdown(std::net::Shutdown::Both).unwrap();
+    let kept = waiting.find(|said| said["progress"]["finished"].is_u64()).unwrap();
+    assert_eq!(kept["progress"]["finished"], 512);
+    assert!(waiting.last().unwrap()["answer"]["summary"].is_string());
+    assert_eq!(room.available_permits(), 1);
 }

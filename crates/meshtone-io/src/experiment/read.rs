@@ -201,9 +201,10 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
     let orders = count("shaft_orders", teeth as u64 - 1)?;
     let separation = SeparationSettings {
         sidebands: sidebands.map_or(default.sidebands, |count| count as usize),
-        shaft_orders: orders.map_or(default.shaft_orders, |last| (1..=last as usize).collect()),
+        shaft_orders: orders
+            .map_or_else(|| default.shaft_orders.clone(), |last| (1..=last as usize).collect()),
         mean: MeanPart::Removed,
-        teeth,
+        ..default
     };
     Ok(DifferenceChain {
         channel: channel.unwrap_or_else(|| Channel::leading(&base.sensors)),

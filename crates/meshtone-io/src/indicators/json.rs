@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use meshtone::signal::{Indicators, SignalWarning};
-use serde::Serializer;
+use meshtone::signal::{ForeignTone, Indicators, SignalWarning};
+use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 use super::{FORMAT_VERSION, IndicatorResults};
@@ -50,6 +50,21 @@ impl IndicatorResults {
         });
         to.write_all(format!("{all:#}\n").as_bytes())
     }
+}
+
+/// Every tone with its frequency, its order of the input and its amplitude.
+pub(super) fn foreign_lines<S: Serializer>(
+    tones: &Option<Vec<ForeignTone>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let tones = tones.as_ref().map(|tones| {
+        let line = |tone: &ForeignTone| {
+            let ForeignTone { frequency_hz, order, amplitude, part, .. } = tone;
+            json!({ "frequency_hz": frequency_hz, "order": order, "amplitude": amplitude, "part_of_energy": part })
+        };
+        tones.iter().map(line).collect::<Vec<_>>()
+    });
+    tones.serialize(serializer)
 }
 
 /// Every indicator by its name; what is not defined is null.

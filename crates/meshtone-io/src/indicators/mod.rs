@@ -9,7 +9,7 @@ mod parquet_file;
 
 use std::path::{Path, PathBuf};
 
-use meshtone::signal::{Indicators, SignalWarning};
+use meshtone::signal::{ForeignTone, Indicators, SignalWarning};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
@@ -48,6 +48,9 @@ pub struct RecordingEntry {
     pub samples: usize,
     /// (s) Time of its first sample.
     pub start_s: f64,
+    /// Its tones that belong to no shaft and no mesh; none where they were not looked for.
+    #[serde(serialize_with = "json::foreign_lines")]
+    pub foreign_lines: Option<Vec<ForeignTone>>,
 }
 
 /// What one recording, or one segment of it, shows about one wheel.
@@ -59,6 +62,8 @@ pub struct RecordEntry {
     pub segment: Option<usize>,
     /// Name of the wheel.
     pub wheel: String,
+    /// Name of its shaft, in a gearbox.
+    pub shaft: Option<String>,
     /// Its teeth.
     pub teeth: u32,
     /// Revolutions that were averaged.

@@ -58,6 +58,7 @@ impl IndicatorResults {
             column("channel", "", false, text(&|_| Some(self.channel.clone()))),
             column("unit", "", true, text(&|_| self.unit.clone())),
             column("wheel", "", false, text(&|record| Some(record.wheel.clone()))),
+            column("shaft", "", true, text(&|record| record.shaft.clone())),
             column("teeth", "", false, count(&|record| Some(record.teeth as usize))),
             column("revolutions", "", false, count(&|record| Some(record.revolutions))),
             column("mean_speed_hz", "Hz", false, number(&|record| record.mean_speed_hz)),

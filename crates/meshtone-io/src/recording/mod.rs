@@ -41,6 +41,8 @@ pub use options::{
 };
 pub use warning::RecordingWarning;
 
+use meshtone::sensor::GRAVITY_M_PER_S2;
+
 use self::error::Problem;
 use crate::input_file::open_ordinary;
 
@@ -58,6 +60,25 @@ pub struct Channel {
     pub samples: Vec<f64>,
 }
 
+impl Channel {
+    /// Brings the samples to g. Returns false, and leaves them as they are, where their unit is not stated or is no acceleration.
+    #[must_use]
+    pub fn convert_to_g(&mut self) -> bool {
+        let in_g = match self.unit.as_deref().unwrap_or("").trim() {
+            "g" | "gn" | "g0" => 1.0,
+            "m/s²" | "m/s2" | "m/s^2" | "m/s**2" | "m s-2" | "ms-2" | "m·s⁻²" => 1.0 / GRAVITY_M_PER_S2,
+            "mm/s²" | "mm/s2" | "mm/s^2" => 1e-3 / GRAVITY_M_PER_S2,
+            "mg" => 1e-3,
+            _ => return false,
+        };
+        if in_g != 1.0 {
+            self.samples.iter_mut().for_each(|value| *value *= in_g);
+        }
+        self.unit = Some("g".to_owned());
+        true
+    }
+}
+
 /// Channels that were recorded together, at one constant sampling rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
@@ -69,7 +90,7 @@ pub struct Recording {
     pub channels: Vec<Channel>,
     /// The file that was read.
     pub source: PathBuf,
-    /// The scenario as TOML, where the file is one that `meshtone simulate` wrote.
+    /// The scenario of a pair or a gearbox as TOML, where the file is one that `meshtone simulate` wrote.
     pub scenario_toml: Option<String>,
     /// What is doubtful about the file.
     pub warnings: Vec<RecordingWarning>,

@@ -14,7 +14,7 @@ use super::rate::StatedRate;
 use super::selection::select;
 use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
-use crate::signals::SCENARIO_KEY;
+use crate::signals::{GEARBOX_KEY, SCENARIO_KEY};
 use crate::table::{FoundColumn, FoundType, TableReader};
 
 /// Bytes of samples that a byte of a file may well stand for; memory for more is taken only as they come.
@@ -59,7 +59,8 @@ fn decode(mut file: File, options: &RecordingOptions) -> Result<Recording, Probl
     };
     let samples = selection.wanted.iter().map(read).collect::<Result<_, _>>()?;
     let recording = assemble(&labels, &selection, samples, &stated_rates(head), options)?;
-    Ok(Recording { scenario_toml: table.text_of(SCENARIO_KEY).map(str::to_owned), ..recording })
+    let scenario_toml = table.text_of(SCENARIO_KEY).or_else(|| table.text_of(GEARBOX_KEY));
+    Ok(Recording { scenario_toml: scenario_toml.map(str::to_owned), ..recording })
 }
 
 fn label(column: &FoundColumn) -> Label {

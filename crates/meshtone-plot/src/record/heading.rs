@@ -22,9 +22,12 @@ pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, w
     canvas.text((left, baseline + 29.0), &style.fitted(&gear(wheel), width), style);
 }
 
-/// `Gear, 38 teeth`.
+/// `Gear, 38 teeth`, or `z2, 96 teeth, on shaft middle`.
 fn name(wheel: &WheelView) -> String {
-    format!("{}, {} teeth", capitalised(wheel.name), wheel.teeth)
+    match wheel.shaft {
+        None => format!("{}, {} teeth", capitalised(wheel.name), wheel.teeth),
+        Some(shaft) => format!("{}, {} teeth, on shaft {shaft}", wheel.name, wheel.teeth),
+    }
 }
 
 /// The gear's indicators.

@@ -1,6 +1,6 @@
 //! One record: signal, average, order spectrum and difference on one page.
 //!
-//! Above, the recording as it was read; below, for one wheel or in two columns for both wheels of a pair, the average over a
+//! Above, the recording as it was read; below, for one wheel or in two columns for two or more, the average over a
 //! revolution and its difference, both over the teeth, and the order spectrum: all of it, and its low orders with what belongs
 //! to which part.
 
@@ -15,8 +15,10 @@ use crate::{DamagedTooth, Figure};
 
 /// (px) Size of the figure.
 pub const WIDTH: u32 = 1600;
-/// (px) Size of the figure.
+/// (px) Height of the figure of one or two wheels.
 pub const HEIGHT: u32 = 1200;
+/// (px) By how much each further row of two wheels makes it higher.
+const ROW_HEIGHT: u32 = 952;
 
 const LEFT: f64 = 84.0;
 const RIGHT: f64 = 1576.0;
@@ -46,7 +48,7 @@ pub struct RecordFigure<'a> {
     pub facts: &'a [String],
     /// The recording.
     pub signal: SignalView<'a>,
-    /// One wheel, or both of a pair; further ones are left out.
+    /// The wheels, two in a row.
     pub wheels: &'a [WheelView<'a>],
 }
 
@@ -72,6 +74,10 @@ pub struct WheelView<'a> {
     pub name: &'a str,
     /// Its teeth.
     pub teeth: u32,
+    /// Name of its shaft, where that has one of its own.
+    pub shaft: Option<&'a str>,
+    /// Teeth of the other wheels on its shaft, whose mesh orders belong to the regular part too.
+    pub other_teeth: &'a [u32],
     /// (Hz) Mean speed of its shaft.
     pub mean_speed_hz: f64,
     /// Sidebands on each side of a mesh order that belong to the regular part.
@@ -103,6 +109,8 @@ pub struct WheelView<'a> {
 /// let wheel = WheelView {
 ///     name: "wheel",
 ///     teeth: 19,
+///     shaft: None,
+///     other_teeth: &[],
 ///     mean_speed_hz: 20.0,
 ///     sidebands: 2,
 ///     low_orders: 7,
@@ -115,24 +123,27 @@ pub struct WheelView<'a> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn draw(figure: &RecordFigure) -> Figure {
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let wheels = figure.wheels;
+    let rows = wheels.len().div_ceil(2).max(1) as u32;
+    let mut canvas = Canvas::new(WIDTH, HEIGHT + (rows - 1) * ROW_HEIGHT);
     canvas.heading(EDGE, RIGHT - EDGE, (36.0, figure.title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
     let unit = figure.signal.unit.filter(|unit| !unit.is_empty());
     let shortened = |unit: &str| unit.chars().take(LONGEST_UNIT).collect();
     let unit: String = unit.map_or_else(|| "unit not stated".to_owned(), shortened);
-    let wheels = &figure.wheels[..figure.wheels.len().min(2)];
     signal(&mut canvas, &figure.signal, &unit);
-    // Both wheels have the same scales.
+    let columns = wheels.len().min(2);
+    // All wheels have the same scales.
     let averages = wheels.iter().flat_map(|wheel| &wheel.record.average.values);
     let differences =
         wheels.iter().flat_map(|wheel| [&wheel.record.parts.difference, &wheel.record.envelope]);
     let y = axes::range(averages.copied(), MARGIN);
     let around = axes::range(differences.flatten().copied(), MARGIN);
-    let amplitudes = spectrum::Amplitudes::of(wheels, column(0, wheels.len(), [0.0; 2]).width);
+    let amplitudes = spectrum::Amplitudes::of(wheels, column(0, columns, [0.0; 2]).width);
     for (place, wheel) in wheels.iter().enumerate() {
-        let area = |vertical: [f64; 2]| column(place, wheels.len(), vertical);
+        let down = f64::from(ROW_HEIGHT) * (place / 2) as f64;
+        let area = |vertical: [f64; 2]| column(place % 2, columns, vertical.map(|y| y + down));
         let Area { left, width, .. } = area(AVERAGE);
-        heading::column(&mut canvas, (left, HEADING_BASELINE), width, wheel);
+        heading::column(&mut canvas, (left, HEADING_BASELINE + down), width, wheel);
         let record = wheel.record;
         let title = format!("Average over a revolution of the {}", wheel.name);
         let average = [(None, &record.average.values[..], CURVE)];

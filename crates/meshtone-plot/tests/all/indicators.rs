@@ -53,6 +53,8 @@ fn one_wheel_and_both_of_a_pair() {
         let wheel = |name, teeth, sidebands, low_orders, record| WheelView {
             name,
             teeth,
+            shaft: None,
+            other_teeth: &[],
             mean_speed_hz: 380.0 / f64::from(teeth),
             sidebands,
             low_orders,
@@ -109,6 +111,8 @@ fn of_tones(record: &Record, damaged_teeth: &[DamagedTooth]) -> Figure {
     let wheel = WheelView {
         name: "gear",
         teeth: 38,
+        shaft: None,
+        other_teeth: &[],
         mean_speed_hz: 20.0,
         sidebands: 2,
         low_orders: 7,
@@ -181,6 +185,8 @@ fn nothing_but_the_mesh_tone() {
     let wheel = WheelView {
         name: "wheel",
         teeth: 19,
+        shaft: None,
+        other_teeth: &[],
         mean_speed_hz: 20.0,
         sidebands: 2,
         low_orders: 7,

@@ -1,6 +1,9 @@
 //! All that may be doubtful about a recording and what is stated about it.
 
-use super::{AngularSignal, ShaftPhase, SignalWarning, StatedFacts, find_mismatch, lines_off_shafts};
+use super::{
+    AngularSignal, ForeignTone, ForeignTones, GearTrain, ShaftPhase, SignalWarning, StatedFacts,
+    StatedTurning, find_mismatch, foreign_tones,
+};
 
 /// Looks for a sign that a recording does not fit the stated facts, and for tones that belong to neither shaft.
 ///
@@ -33,15 +36,56 @@ pub fn check_recording(
     phase: &ShaftPhase,
     sampling_rate_hz: f64,
 ) -> Vec<SignalWarning> {
-    if let Some(mismatch) = find_mismatch(angular, stated) {
-        return vec![SignalWarning::DoesNotFit(mismatch)];
+    let wheel = ("wheel", stated.teeth);
+    let train = match stated.mate_teeth {
+        None => GearTrain::of_wheels([wheel]),
+        Some(teeth) => GearTrain::of_wheels([wheel, ("mate", teeth)]),
+    };
+    let checked = RecordingCheck::new(angular, &train, 0, stated.turning, phase, sampling_rate_hz);
+    checked.warnings
+}
+
+/// What a check of a recording against a train finds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct RecordingCheck {
+    /// What is doubtful.
+    pub warnings: Vec<SignalWarning>,
+    /// Tones that belong to no shaft and no mesh, where they were looked for.
+    pub foreign: Option<Vec<ForeignTone>>,
+}
+
+impl RecordingCheck {
+    /// Checks a recording against the tooth counts of a train, and how one of its shafts turns.
+    ///
+    /// Of a train of several meshes only the speed is doubted: lines of another mesh would look like another tooth count.
+    ///
+    /// # Arguments
+    /// * `angular` - the recording over the angle of a shaft
+    /// * `train` - the tooth counts
+    /// * `shaft` - number of the shaft
+    /// * `turning` - the source from which its angle is known
+    /// * `phase` - of the shaft
+    /// * `sampling_rate_hz` - (S/s) of the recording
+    pub(super) fn new(
+        angular: &AngularSignal,
+        train: &GearTrain,
+        shaft: usize,
+        turning: StatedTurning,
+        phase: &ShaftPhase,
+        sampling_rate_hz: f64,
+    ) -> Self {
+        let mismatch = StatedFacts::of_shaft(train, shaft, turning)
+            .and_then(|stated| find_mismatch(angular, &stated))
+            .filter(|mismatch| train.meshes.len() < 2 || mismatch.alternative.is_speed());
+        if let Some(mismatch) = mismatch {
+            return Self { warnings: vec![SignalWarning::DoesNotFit(mismatch)], foreign: None };
+        }
+        // Over a run-up, what rings at a resonance looks like a foreign tone, and a tone of a constant frequency has no order.
+        if train.meshes.is_empty() || phase.is_run_up(sampling_rate_hz) {
+            return Self::default();
+        }
+        let foreign = foreign_tones(angular, train, shaft, phase.mean_speed_hz(sampling_rate_hz));
+        let warning = foreign.as_deref().and_then(ForeignTones::that_count).map(SignalWarning::ForeignTones);
+        Self { warnings: warning.into_iter().collect(), foreign }
     }
-    // Over a run-up, what rings at a resonance looks like a foreign tone, and a tone of a constant frequency has no order.
-    if phase.is_run_up(sampling_rate_hz) {
-        return Vec::new();
-    }
-    let mean_speed_hz = phase.mean_speed_hz(sampling_rate_hz);
-    let tones =
-        |mate_teeth| lines_off_shafts(angular, stated.teeth, mate_teeth).tones(angular, mean_speed_hz);
-    stated.mate_teeth.and_then(tones).map(SignalWarning::ForeignTones).into_iter().collect()
 }

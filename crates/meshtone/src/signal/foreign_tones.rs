@@ -1,42 +1,61 @@
-//! Tones that belong to neither shaft of a pair.
+//! Tones that belong to no shaft and no mesh of a train.
+
+use std::f64::consts::TAU;
 
 use meshtone_fourier::{Complex64, hann_window, real_spectrum};
 
-use super::AngularSignal;
-use crate::operation::greatest_common_divisor;
+use super::{AngularSignal, GearTrain};
 
 /// (lines) How near a line is to an order, to belong to it: the main lobe of Hann's window, and a little.
 const NEAR_LINES: f64 = 2.5;
 /// (-) A line is a tone where its square is so many times the median of its neighbours'. Of noise, one in 10⁹ is.
 const TONE: f64 = 30.0;
-/// (-) Part of the energy in tones of neither shaft from which on they count: teeth that strike and part make up to a seventh that repeats
-/// with neither shaft, since it depends on which two teeth meet.
+/// (-) Part of the energy in tones of no shaft from which on they are warned of: teeth that strike and part make up to a seventh that repeats
+/// with no shaft, since it depends on which two teeth meet.
 const COUNTS: f64 = 0.2;
 /// Part of the Nyquist order up to which lines are right.
 const PASSED: f64 = 0.8;
-/// Lines of neither shaft that are compared with their median: fewer than a resonance has, whose noise is no tone.
-const BAND: usize = 48;
+/// Lines that are compared with their median.
+const BAND: usize = 96;
 /// Fewest revolutions whose lines are distinguished from the shafts' orders.
 const FEWEST_REVOLUTIONS: usize = 6;
-/// Tones that are named.
+/// Tones that a warning names.
 const NAMED: usize = 3;
 /// (Hz) Mains frequencies, and the highest harmonic that is looked for.
 const MAINS_HZ: ([f64; 2], f64) = ([50.0, 60.0], 12.0);
+/// Terms of the Blackman–Harris window: its side lobes are 92 dB down, so that no side lobe of a mesh order looks like a tone.
+///
+/// Source: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier transform", Proc. IEEE 66 (1978) 51–83,
+/// table 1.
+const WINDOW: [f64; 4] = [0.35875, -0.48829, 0.14128, -0.01168];
+/// (lines) Half the width of its main lobe.
+const LOBE: usize = 4;
+/// (lines) How near the middle of a tone is to an order of a shaft, and to one at which the same teeth meet again, to belong to it.
+const OWN: [f64; 2] = [2.0, 1.0];
+/// (lines) Least distance of the orders at which the same teeth meet again where they are told from each other.
+const APART: f64 = 4.0;
+/// Orders of one shaft by which a mesh has sidebands that are no orders of another one.
+const SIDEBANDS: i32 = 4;
+/// (-) Least square of a tone over that of the strongest line: weaker ones are left out.
+const LEAST: f64 = 1e-6;
 
-/// A tone that belongs to neither shaft.
+/// A tone that belongs to no shaft and no mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ForeignTone {
     /// (Hz) At the mean speed of the recording.
     pub frequency_hz: f64,
-    /// (orders of the shaft) Its order.
+    /// (orders) Its order: of the wheel's shaft, of a gearbox of the input.
     pub order: f64,
+    /// (unit of the signal) Its amplitude.
+    pub amplitude: f64,
     /// (-) Its part of the recording's energy.
     pub part: f64,
     /// Whether it is a harmonic of a mains frequency.
     pub may_be_mains: bool,
 }
 
-/// Tones that belong to neither shaft and make much of a recording.
+/// Tones that belong to no shaft and make much of a recording.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ForeignTones {
@@ -46,106 +65,206 @@ pub struct ForeignTones {
     pub strongest: Vec<ForeignTone>,
 }
 
-/// The spectrum of a recording, and for each line whether it belongs to neither shaft.
+impl ForeignTones {
+    /// The tones where they make a fifth of the energy or more.
+    ///
+    /// # Arguments
+    /// * `tones` - all of a recording, the strongest first
+    pub fn that_count(tones: &[ForeignTone]) -> Option<Self> {
+        let part: f64 = tones.iter().map(|tone| tone.part).sum();
+        (part > COUNTS).then(|| Self { part, strongest: tones.iter().take(NAMED).copied().collect() })
+    }
+}
+
+/// The spectrum of a recording, and for each line whether it belongs to no shaft.
 #[derive(Debug, Clone)]
 pub struct LinesOffShafts {
     /// Of the recording without its mean behind Hann's window: line k is order k/revolutions.
     pub spectrum: Vec<Complex64>,
-    /// Whether each line lies beside the orders of both shafts.
+    /// Whether each line lies beside the orders of all shafts.
     pub is_off: Vec<bool>,
 }
 
-/// Finds the lines of a recording that are beside the orders of both shafts of a pair.
+/// Finds the lines of a recording that are beside the orders of all shafts of a train.
 ///
-/// Multiples of 1/q, where the tooth counts are as p to q in lowest terms, are the pair's own as well, since the same teeth meet again after q
-/// revolutions. They are left out where the recording is long enough to distinguish them.
+/// Orders at which the same teeth meet again are the train's own as well: of a pair multiples of 1/q, where the tooth counts are as p to q in
+/// lowest terms. They are left out where the recording is long enough to distinguish them.
 ///
 /// # Arguments
-/// * `angular` - the recording over whole revolutions of the shaft of a wheel
-/// * `teeth` - of that wheel
-/// * `mate_teeth` - of the wheel that meshes with it
-pub fn lines_off_shafts(angular: &AngularSignal, teeth: u32, mate_teeth: u32) -> LinesOffShafts {
+/// * `angular` - the recording over whole revolutions of a shaft
+/// * `train` - the shafts
+/// * `shaft` - number of the shaft
+pub fn lines_off_shafts(angular: &AngularSignal, train: &GearTrain, shaft: usize) -> LinesOffShafts {
     let revolutions = angular.revolutions();
-    let whole = revolutions * angular.points_per_revolution;
-    let mean = angular.values.iter().take(whole).sum::<f64>() / whole.max(1) as f64;
-    let windowed = angular.values.iter().zip(hann_window(whole));
-    let windowed: Vec<f64> = windowed.map(|(value, window)| window * (value - mean)).collect();
-    let spectrum = real_spectrum(&windowed);
-    let mut spacings = vec![1.0, f64::from(teeth) / f64::from(mate_teeth)];
-    let hunting = f64::from(greatest_common_divisor(teeth, mate_teeth)) / f64::from(mate_teeth);
+    let spectrum = windowed_spectrum(angular, hann_window(revolutions * angular.points_per_revolution));
+    let (mut spacings, hunting) = train.spacings(shaft);
     if hunting * revolutions as f64 > 4.0 * NEAR_LINES {
         spacings.push(hunting);
     }
     let is_off = |line: usize| {
         let order = line as f64 / revolutions.max(1) as f64;
-        let lines_from =
-            |spacing: &f64| (order - (order / spacing).round() * spacing).abs() * revolutions as f64;
-        spacings.iter().all(|spacing| lines_from(spacing) > NEAR_LINES)
+        spacings.iter().all(|spacing| distance(order, *spacing) * revolutions as f64 > NEAR_LINES)
     };
     LinesOffShafts { is_off: (0..spectrum.len()).map(is_off).collect(), spectrum }
 }
 
-impl LinesOffShafts {
-    /// The tones among the lines of neither shaft, where they make a fifth of the energy or more.
-    ///
-    /// # Arguments
-    /// * `angular` - the recording that the lines are of
-    /// * `mean_speed_hz` - (Hz) mean speed of the shaft
-    pub fn tones(&self, angular: &AngularSignal, mean_speed_hz: f64) -> Option<ForeignTones> {
-        let revolutions = angular.revolutions();
-        let passed = ((PASSED * angular.nyquist_order) as usize * revolutions).min(self.spectrum.len());
-        if revolutions < FEWEST_REVOLUTIONS {
-            return None;
-        }
-        let square = |line: usize| self.spectrum[line].norm_sqr();
-        let energy: f64 = (3..passed).map(square).sum();
-        let off: Vec<usize> = (3..passed).filter(|&line| self.is_off[line]).collect();
-        let in_tones: Vec<usize> = off
-            .chunks(BAND)
-            .flat_map(|band| {
-                let mut squares: Vec<f64> = band.iter().map(|&line| square(line)).collect();
-                let middle = squares.len() / 2;
-                let median = *squares.select_nth_unstable_by(middle, f64::total_cmp).1;
-                band.iter().copied().filter(move |&line| square(line) > TONE * median)
-            })
-            .collect();
-        let part = in_tones.iter().copied().map(square).sum::<f64>() / energy;
-        // A signal without energy has no parts.
-        if part.is_nan() || part <= COUNTS {
-            return None;
-        }
-        // Lines beside each other are one tone.
-        let hz_per_line = mean_speed_hz / revolutions as f64;
-        let mut tones: Vec<ForeignTone> = in_tones
-            .chunk_by(|one, next| next - one == 1)
-            .map(|lines| {
-                let squares: f64 = lines.iter().copied().map(square).sum();
-                let centre = lines.iter().map(|&line| line as f64 * square(line)).sum::<f64>() / squares;
-                let frequency_hz = centre * hz_per_line;
-                let ([fifty, sixty], most) = MAINS_HZ;
-                let is_of = |mains_hz: f64| {
-                    let harmonic = (frequency_hz / mains_hz).round().clamp(1.0, most);
-                    (frequency_hz - harmonic * mains_hz).abs() < 2.0 * hz_per_line
-                };
-                ForeignTone {
-                    frequency_hz,
-                    order: centre / revolutions as f64,
-                    part: squares / energy,
-                    may_be_mains: is_of(fifty) || is_of(sixty),
-                }
-            })
-            .collect();
-        tones.sort_by(|a, b| b.part.total_cmp(&a.part));
-        tones.truncate(NAMED);
-        Some(ForeignTones { part, strongest: tones })
+/// Finds the tones of a recording that belong to no shaft and no mesh of a train, the strongest first.
+///
+/// A tone is a line that is larger than its neighbours, stands 15 dB above the median around it and is not 60 dB below the strongest line. It is
+/// the train's own at an order of any shaft, at a sideband of a mesh by up to four orders of any two shafts together, and at an order at which
+/// the same teeth meet again, where the recording distinguishes these.
+///
+/// # Arguments
+/// * `angular` - the recording over whole revolutions of a shaft
+/// * `train` - the shafts
+/// * `shaft` - number of the shaft
+/// * `mean_speed_hz` - (Hz) mean speed of the shaft
+///
+/// # Returns
+/// None of fewer than six revolutions, in which nothing is distinguished.
+///
+/// ```
+/// use meshtone::signal::{AngularSettings, GearTrain, ShaftPhase, angular_resample, foreign_tones};
+///
+/// let wave = |hz: f64, i: usize| (std::f64::consts::TAU * hz * i as f64 / 1e4).cos();
+/// let signal: Vec<f64> = (0..20_000).map(|i| wave(380.0, i) + 0.1 * wave(313.0, i)).collect();
+/// let phase = ShaftPhase::constant(20.0, 1e4, signal.len())?;
+/// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
+/// let train = GearTrain::of_wheels([("pinion", 19), ("gear", 38)]);
+/// let Some([tone]) = foreign_tones(&angular, &train, 0, 20.0).as_deref() else { panic!() };
+/// assert!((tone.frequency_hz - 313.0).abs() < 0.05 && (tone.amplitude - 0.1).abs() < 0.01);
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn foreign_tones(
+    angular: &AngularSignal,
+    train: &GearTrain,
+    shaft: usize,
+    mean_speed_hz: f64,
+) -> Option<Vec<ForeignTone>> {
+    let revolutions = angular.revolutions();
+    if revolutions < FEWEST_REVOLUTIONS {
+        return None;
     }
+    let points = revolutions * angular.points_per_revolution;
+    let spectrum = windowed_spectrum(angular, blackman_harris(points));
+    let squares: Vec<f64> = spectrum.iter().map(|line| line.norm_sqr()).collect();
+    let passed = ((PASSED * angular.nyquist_order) as usize * revolutions).min(squares.len());
+    let lines = LOBE + 1..passed.saturating_sub(LOBE);
+    let energy: f64 = squares[lines.start.min(passed)..passed].iter().sum();
+    let largest = squares[..passed].iter().copied().fold(0.0, f64::max);
+    let medians: Vec<f64> = squares[..passed].chunks(BAND).map(median).collect();
+    let own = OwnOrders::new(train, shaft, revolutions as f64);
+    let to_input = train.speed_ratio(shaft, train.input()).value();
+    let tone = |line: usize| {
+        let square = squares[line];
+        let is_peak = square > squares[line - 1] && square >= squares[line + 1];
+        if !is_peak || square < LEAST * largest || square < TONE * medians[line / BAND] {
+            return None;
+        }
+        // The tip of a parabola through the logarithms of three lines.
+        let [before, at, after] = [-1, 0, 1].map(|by| libm::log(squares[line.saturating_add_signed(by)]));
+        let centre = line as f64 + 0.5 * (before - after) / (before - 2.0 * at + after);
+        let order = centre / revolutions as f64;
+        if !centre.is_finite() || own.contains(order) {
+            return None;
+        }
+        let lobe: f64 = squares[line - LOBE..=line + LOBE].iter().sum();
+        let mean_square_of_window =
+            0.5 * WINDOW.iter().map(|term| term * term).sum::<f64>() + 0.5 * WINDOW[0] * WINDOW[0];
+        Some(ForeignTone {
+            frequency_hz: order * mean_speed_hz,
+            order: order * to_input,
+            amplitude: 2.0 * (lobe / mean_square_of_window).sqrt() / points as f64,
+            part: lobe / energy,
+            may_be_mains: is_of_mains(order * mean_speed_hz, mean_speed_hz / revolutions as f64),
+        })
+    };
+    let mut tones: Vec<ForeignTone> = lines.filter_map(tone).collect();
+    tones.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+    Some(tones)
+}
+
+/// The orders of a train, to which a tone may belong.
+struct OwnOrders {
+    revolutions: f64,
+    shafts: Vec<f64>,
+    hunting: Option<f64>,
+    meshes: Vec<f64>,
+}
+
+impl OwnOrders {
+    fn new(train: &GearTrain, shaft: usize, revolutions: f64) -> Self {
+        let (shafts, hunting) = train.spacings(shaft);
+        let of_input = train.speed_ratio(train.input(), shaft).value();
+        Self {
+            revolutions,
+            hunting: (hunting * revolutions >= APART).then_some(hunting),
+            meshes: (0..train.meshes.len()).map(|mesh| train.mesh_order(mesh) * of_input).collect(),
+            shafts,
+        }
+    }
+
+    /// Returns whether a tone of an order is the train's own.
+    fn contains(&self, order: f64) -> bool {
+        let is_near =
+            |spacing: f64, order: f64, lines: f64| distance(order, spacing) * self.revolutions <= lines;
+        let is_of_shaft = |order: f64| self.shafts.iter().any(|spacing| is_near(*spacing, order, OWN[0]));
+        let is_of_hunting = || self.hunting.is_some_and(|spacing| is_near(spacing, order, OWN[1]));
+        let is_sideband = || {
+            self.meshes.iter().any(|mesh| {
+                let off = order - (order / mesh).round() * mesh;
+                let orders = || (-SIDEBANDS..=SIDEBANDS).map(f64::from);
+                let of_two = |a: f64, b: f64| {
+                    orders()
+                        .any(|k| orders().any(|l| (off - k * a - l * b).abs() * self.revolutions <= OWN[1]))
+                };
+                self.shafts.iter().any(|a| self.shafts.iter().any(|b| of_two(*a, *b)))
+            })
+        };
+        is_of_shaft(order) || is_of_hunting() || is_sideband()
+    }
+}
+
+/// How far an order is from the next multiple of a spacing.
+fn distance(order: f64, spacing: f64) -> f64 {
+    (order - (order / spacing).round() * spacing).abs()
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+fn is_of_mains(frequency_hz: f64, hz_per_line: f64) -> bool {
+    let (mains_hz, most) = MAINS_HZ;
+    mains_hz.into_iter().any(|mains_hz| {
+        let harmonic = (frequency_hz / mains_hz).round().clamp(1.0, most);
+        (frequency_hz - harmonic * mains_hz).abs() < 2.0 * hz_per_line
+    })
+}
+
+fn blackman_harris(points: usize) -> Vec<f64> {
+    let at = |point: usize| {
+        let angle = TAU * point as f64 / points as f64;
+        WINDOW.iter().enumerate().map(|(term, share)| share * libm::cos(term as f64 * angle)).sum()
+    };
+    (0..points).map(at).collect()
+}
+
+fn windowed_spectrum(angular: &AngularSignal, window: Vec<f64>) -> Vec<Complex64> {
+    let values = &angular.values[..window.len().min(angular.values.len())];
+    let mean = values.iter().sum::<f64>() / window.len().max(1) as f64;
+    let windowed: Vec<f64> =
+        values.iter().zip(window).map(|(value, window)| window * (value - mean)).collect();
+    real_spectrum(&windowed)
 }
 
 impl std::fmt::Display for ForeignTones {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "tones at no order of either shaft make {:.0} % of the recording's energy, the strongest at ",
+            "tones at no order of any shaft make {:.0} % of the recording's energy, the strongest at ",
             100.0 * self.part
         )?;
         for (number, tone) in self.strongest.iter().enumerate() {

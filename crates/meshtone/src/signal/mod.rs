@@ -10,6 +10,7 @@
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
 //! | separation | [`separate`] |
 //! | spectra and envelope | [`order_spectrum`], over time [`order_map`], [`envelope`], [`envelope_spectrum`] |
+//! | every shaft of a pair or a gearbox | [`GearTrain`], [`TrainRecording`], [`foreign_tones`] |
 //! | whether it fits what the user stated | [`check_recording`], of [`find_mismatch`] and [`lines_off_shafts`]; [`synchronous_part`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
@@ -24,6 +25,7 @@ mod envelope;
 mod error;
 mod filter_bank;
 mod foreign_tones;
+mod gear_train;
 mod indicators;
 mod interpolate;
 mod kaiser;
@@ -38,6 +40,7 @@ mod simulated;
 mod spectrum;
 mod statistics;
 mod synchronous_part;
+mod train_recording;
 mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
@@ -50,7 +53,8 @@ pub use check_recording::check_recording;
 pub use edge::Edge;
 pub use envelope::{analytic_signal, envelope, envelope_spectrum};
 pub use error::SignalError;
-pub use foreign_tones::{ForeignTone, ForeignTones, LinesOffShafts, lines_off_shafts};
+pub use foreign_tones::{ForeignTone, ForeignTones, LinesOffShafts, foreign_tones, lines_off_shafts};
+pub use gear_train::{GearTrain, TrainShaft, TrainWheel};
 pub use indicators::{
     IndicatorValue, Indicators, ShapeIndicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor,
 };
@@ -76,4 +80,7 @@ pub use statistics::{
     standardised_moment,
 };
 pub use synchronous_part::{SynchronousPart, synchronous_part};
+pub use train_recording::{
+    TrainRecording, TrainRecords, TrainSettings, TrainTurning, WheelError, WheelRecords,
+};
 pub use warning::SignalWarning;

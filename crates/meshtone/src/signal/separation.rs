@@ -10,6 +10,8 @@ use super::check::{check_finite, check_mesh_order};
 pub struct SeparationSettings {
     /// Teeth of the wheel on the shaft: the mesh order.
     pub teeth: usize,
+    /// Teeth of other wheels on the same shaft, whose mesh orders belong to the regular part as well. Default none.
+    pub other_teeth: Vec<usize>,
     /// Sidebands on each side of every mesh harmonic that belong to the regular part. Default 2.
     pub sidebands: usize,
     /// Orders of the shaft that belong to it. Default 1 to 7.
@@ -34,7 +36,18 @@ impl SeparationSettings {
     /// # Arguments
     /// * `teeth` - of the wheel on the shaft
     pub fn new(teeth: usize) -> Self {
-        Self { teeth, sidebands: 2, shaft_orders: (1..=7).collect(), mean: MeanPart::Kept }
+        Self {
+            teeth,
+            other_teeth: Vec::new(),
+            sidebands: 2,
+            shaft_orders: (1..=7).collect(),
+            mean: MeanPart::Kept,
+        }
+    }
+
+    /// Teeth of all wheels on the shaft.
+    fn all_teeth(&self) -> impl Iterator<Item = usize> {
+        std::iter::once(self.teeth).chain(self.other_teeth.iter().copied())
     }
 }
 
@@ -53,7 +66,7 @@ pub struct Separation {
 /// Takes an average apart in the order domain.
 ///
 /// With z teeth, n sidebands and the Nyquist order `N/2` of N values:
-/// * the mesh orders are `z, 2z, …` up to the Nyquist order;
+/// * the mesh orders are `z, 2z, …` up to the Nyquist order, and those of other wheels on the shaft;
 /// * *regular* are the shaft orders and, of every mesh order m, `m − n … m + n`;
 /// * *residual* = average − mesh orders − shaft orders;
 /// * *difference* = average − regular.
@@ -88,7 +101,7 @@ pub fn separate(average: &[f64], settings: &SeparationSettings) -> Result<Separa
     check_settings(average.len(), settings)?;
     let spectrum = real_spectrum(average);
     let last = average.len() / 2;
-    let mesh_orders = || (settings.teeth..=last).step_by(settings.teeth);
+    let mesh_orders = settings.all_teeth().flat_map(|teeth| (teeth..=last).step_by(teeth));
     let mut low = vec![false; last + 1];
     for &order in settings.shaft_orders.iter().filter(|&&order| order <= last) {
         low[order] = true;
@@ -96,7 +109,7 @@ pub fn separate(average: &[f64], settings: &SeparationSettings) -> Result<Separa
     low[0] = settings.mean == MeanPart::Removed;
     let mut meshing = low.clone();
     let mut regular = low;
-    for order in mesh_orders() {
+    for order in mesh_orders {
         meshing[order] = true;
         regular[order - settings.sidebands..=(order + settings.sidebands).min(last)].fill(true);
     }
@@ -112,12 +125,13 @@ pub fn separate(average: &[f64], settings: &SeparationSettings) -> Result<Separa
 }
 
 fn check_settings(points: usize, settings: &SeparationSettings) -> Result<(), SignalError> {
-    let SeparationSettings { teeth, sidebands, .. } = *settings;
-    check_mesh_order(teeth, points as f64 / 2.0)?;
-    // All orders would be regular.
-    if sidebands.saturating_mul(2).saturating_add(1) >= teeth {
-        let allowed = "less than half the teeth minus one";
-        return Err(SignalError::parameter("sidebands", sidebands as f64, allowed));
+    check_mesh_order(settings.teeth, points as f64 / 2.0)?;
+    for teeth in settings.all_teeth() {
+        // All orders would be regular.
+        if settings.sidebands.saturating_mul(2).saturating_add(1) >= teeth {
+            let allowed = "less than half the teeth minus one";
+            return Err(SignalError::parameter("sidebands", settings.sidebands as f64, allowed));
+        }
     }
     Ok(())
 }

@@ -5,7 +5,8 @@ use super::{
     AngleZero, AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError,
     SynchronousAverage, angular_resample, process_angular_segments, process_average, revolution_average,
 };
-use crate::scenario::Scenario;
+use crate::operation::Motion;
+use crate::scenario::{Gearbox, Scenario};
 use crate::sensor::Channels;
 use crate::wheel::WheelName;
 
@@ -266,6 +267,25 @@ impl SimulatedShafts {
             settings.angular.interpolation = Interpolation::BandLimited;
         }
         settings
+    }
+}
+
+impl ShaftPhase {
+    /// The phase of the input of a simulated gearbox at its kept samples.
+    ///
+    /// # Arguments
+    /// * `gearbox` - what was simulated; a valid one
+    /// * `start_s` - (s) time of the first kept sample since the start of the simulation
+    /// * `samples` - how many were kept
+    ///
+    /// # Errors
+    /// Fewer than two samples.
+    pub fn of_simulated_input(gearbox: &Gearbox, start_s: f64, samples: usize) -> Result<Self, SignalError> {
+        let time = gearbox.time_grid();
+        let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
+        let motion = Motion::new(&gearbox.operation.drive, gearbox.seed, &time);
+        let revolutions = motion.skip(start).take(samples).map(|sample| sample.revolutions).collect();
+        Ok(Self::new(0, revolutions)?.with_zero(AngleZero::Simulated))
     }
 }
 

@@ -6,6 +6,7 @@ use crate::record::WheelView;
 
 const MESH: Stroke = Stroke::solid(colour::BLUE, 2.2);
 const SIDEBAND: Stroke = Stroke::solid(colour::PURPLE, 1.8);
+const OTHER_MESH: Stroke = Stroke::solid(colour::ORANGE, 2.0);
 const SHAFT: Stroke = Stroke::solid(colour::GREEN, 1.8);
 /// (px) Least distance of two orders.
 const BETWEEN_ORDERS: f64 = 3.2;
@@ -54,6 +55,7 @@ fn stroke(kind: LineKind) -> Stroke {
     match kind {
         LineKind::Mesh => MESH,
         LineKind::Sideband => SIDEBAND,
+        LineKind::OtherMesh => OTHER_MESH,
         LineKind::Shaft => SHAFT,
         LineKind::Difference => REST,
     }
@@ -68,9 +70,12 @@ fn legend(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
         1 => "shaft order 1".to_owned(),
         last => format!("shaft orders 1–{last}"),
     };
+    let others: Vec<String> = wheel.other_teeth.iter().map(u32::to_string).collect();
+    let other = format!("mesh of {} teeth", others.join(" and "));
     let entries = [
         (LineKind::Mesh, true, "mesh orders"),
         (LineKind::Sideband, wheel.sidebands > 0, &sidebands),
+        (LineKind::OtherMesh, !wheel.other_teeth.is_empty(), &other),
         (LineKind::Shaft, wheel.low_orders > 0, &shaft),
         (LineKind::Difference, true, "difference"),
     ];

@@ -57,20 +57,27 @@ fn last_order(wheel: &WheelView) -> usize {
 enum LineKind {
     Mesh,
     Sideband,
+    /// Of the mesh of another wheel on the shaft, or a sideband of it.
+    OtherMesh,
     Shaft,
     Difference,
 }
 
 impl LineKind {
     fn of(order: usize, wheel: &WheelView) -> Self {
-        let teeth = wheel.teeth.max(1) as usize;
-        let off = order.min(order % teeth).min(teeth - order % teeth);
-        let beyond_first = order + wheel.sidebands >= teeth;
-        match off {
-            0 => Self::Mesh,
-            off if beyond_first && off <= wheel.sidebands => Self::Sideband,
-            _ if order <= wheel.low_orders => Self::Shaft,
-            _ => Self::Difference,
+        // How far from a mesh order, where that is near enough for a sideband.
+        let beside = |teeth: u32| {
+            let teeth = teeth.max(1) as usize;
+            let off = order.min(order % teeth).min(teeth - order % teeth);
+            let beyond_first = order + wheel.sidebands >= teeth;
+            (off == 0 || beyond_first && off <= wheel.sidebands).then_some(off)
+        };
+        match beside(wheel.teeth) {
+            Some(0) => Self::Mesh,
+            Some(_) => Self::Sideband,
+            None if wheel.other_teeth.iter().any(|teeth| beside(*teeth).is_some()) => Self::OtherMesh,
+            None if order <= wheel.low_orders => Self::Shaft,
+            None => Self::Difference,
         }
     }
 }

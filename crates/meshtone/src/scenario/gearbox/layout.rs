@@ -20,21 +20,50 @@ pub struct Ratio {
 }
 
 impl Ratio {
-    const ONE: Self = Self { numerator: 1, denominator: 1 };
+    /// The ratio of something to itself.
+    pub const ONE: Self = Self { numerator: 1, denominator: 1 };
 
-    fn times(self, numerator: i64, denominator: i64) -> Self {
-        let (n, d) = (
-            i128::from(self.numerator) * i128::from(numerator),
-            i128::from(self.denominator) * i128::from(denominator),
-        );
-        let (mut a, mut b) = (n.abs(), d.abs());
-        while b != 0 {
-            (a, b) = (b, a % b);
-        }
+    /// The product with another ratio; one that would not fit is the largest that does.
+    ///
+    /// # Arguments
+    /// * `numerator`, `denominator` - of the other ratio
+    ///
+    /// ```
+    /// use meshtone::scenario::Ratio;
+    ///
+    /// assert_eq!(Ratio::ONE.times(-32, 96), Ratio { numerator: -1, denominator: 3 });
+    /// ```
+    #[must_use]
+    pub fn times(self, numerator: i64, denominator: i64) -> Self {
+        let [n, d] = [(self.numerator, numerator), (self.denominator, denominator)]
+            .map(|(own, other)| i128::from(own) * i128::from(other));
+        Self::reduced(n, d)
+    }
+
+    /// The largest ratio of which this one and another are whole multiples.
+    ///
+    /// # Arguments
+    /// * `other` - the other one
+    ///
+    /// ```
+    /// use meshtone::scenario::Ratio;
+    ///
+    /// let [third, fifth] = [3, 5].map(|q| Ratio::ONE.times(1, q));
+    /// assert_eq!(third.common_measure(fifth), Ratio { numerator: 1, denominator: 15 });
+    /// ```
+    #[must_use]
+    pub fn common_measure(self, other: Self) -> Self {
+        let [(p, q), (r, s)] =
+            [self, other].map(|ratio| (i128::from(ratio.numerator), i128::from(ratio.denominator)));
+        Self::reduced(greatest_common_divisor(p * s, r * q), q * s)
+    }
+
+    fn reduced(n: i128, d: i128) -> Self {
+        let divisor = greatest_common_divisor(n, d).max(1);
         let sign = if d < 0 { -1 } else { 1 };
         // A train of wheels of 10 000 teeth would need five stages to pass the largest number.
         let fits = |value: i128| i64::try_from(value).unwrap_or(i64::MAX);
-        Self { numerator: fits(sign * n / a.max(1)), denominator: fits(d.abs() / a.max(1)) }
+        Self { numerator: fits(sign * n / divisor), denominator: fits(d.abs() / divisor) }
     }
 
     /// As a number.
@@ -47,6 +76,14 @@ impl std::fmt::Display for Ratio {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(formatter, "{}/{}", self.numerator, self.denominator)
     }
+}
+
+fn greatest_common_divisor(a: i128, b: i128) -> i128 {
+    let (mut a, mut b) = (a.abs(), b.abs());
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 /// A gearbox with its names resolved.
@@ -415,10 +452,7 @@ impl GearboxLayout {
 
     /// Revolutions of the input after which all teeth and shafts stand again as at the start.
     pub fn cycle_revolutions(&self) -> i64 {
-        self.ratios.iter().fold(1, |multiple: i64, ratio| {
-            let step = Ratio::ONE.times(multiple, ratio.denominator).denominator;
-            multiple.saturating_mul(step)
-        })
+        self.ratios.iter().copied().fold(Ratio::ONE, Ratio::common_measure).denominator
     }
 
     /// The faults of a mesh's wheels as of a pair, each with its number in the gearbox.

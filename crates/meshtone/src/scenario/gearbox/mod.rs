@@ -111,7 +111,6 @@ const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
 /// A scenario file, as what it is read.
 #[derive(Clone, PartialEq)]
-#[non_exhaustive]
 #[expect(clippy::large_enum_variant, reason = "there is one of a file")]
 pub enum ScenarioForm {
     /// The short form: one pair of gears.
@@ -518,6 +517,21 @@ impl fmt::Debug for ScenarioForm {
 }
 
 impl ScenarioForm {
+    /// Reads and validates either form of a scenario that names no other file.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line; sections of both forms.
+    pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
+        if Gearbox::is_written_in(text)? {
+            return Gearbox::from_toml(text).map(Self::Gearbox);
+        }
+        let scenario = Scenario::from_toml(text)?;
+        scenario.validate().map(|_| Self::Pair(scenario))
+    }
+
     /// Reads either form that is a table of another file, without validating it.
     ///
     /// # Arguments

@@ -7,7 +7,7 @@ mod steadier_speed;
 mod varying_speed;
 mod words;
 
-use super::AngularSignal;
+use super::{AngularSignal, GearTrain};
 use changing_speed::changing_speed;
 use fine_orders::FineOrders;
 use hypotheses::Hypothesis;
@@ -71,6 +71,25 @@ pub struct StatedFacts {
     pub turning: StatedTurning,
 }
 
+impl StatedFacts {
+    /// The facts of a wheel on a shaft of a train, and of its mate; none of a shaft without wheels.
+    ///
+    /// # Arguments
+    /// * `train` - the tooth counts
+    /// * `shaft` - number of the shaft
+    /// * `turning` - the source from which its angle is known
+    pub fn of_shaft(train: &GearTrain, shaft: usize, turning: StatedTurning) -> Option<Self> {
+        let wheel = train.wheels.iter().position(|wheel| wheel.shaft == shaft)?;
+        let mate = train.meshes.iter().find_map(|mesh| match *mesh {
+            [driving, driven] if driving == wheel => Some(driven),
+            [driving, driven] if driven == wheel => Some(driving),
+            _ => None,
+        });
+        let teeth = |number: usize| train.wheels[number].teeth;
+        Some(Self { teeth: teeth(wheel), mate_teeth: mate.map(teeth), turning })
+    }
+}
+
 /// A fact that fits the recording better than the stated one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -116,6 +135,11 @@ pub enum Alternative {
 }
 
 impl Alternative {
+    /// Returns whether it is another speed.
+    pub(super) fn is_speed(&self) -> bool {
+        matches!(self, Self::ShaftSpeed { .. } | Self::VaryingSpeed { .. })
+    }
+
     /// The name of the quantity, for programs to distinguish.
     pub fn code(&self) -> &'static str {
         match self {

@@ -16,6 +16,7 @@ pub use zero::AngleZero;
 
 use super::check::{check_count, check_finite};
 use super::{SignalError, SignalWarning};
+use crate::scenario::Ratio;
 
 /// Parts of a recording whose speeds are compared, and the ratio of the highest to the lowest one of a run-up.
 const PARTS: usize = 16;
@@ -81,12 +82,17 @@ impl ShaftPhase {
                 return Err(SignalError::parameter(name, 0.0, "at least 1"));
             }
         }
-        let ratio = f64::from(teeth) / f64::from(mate_teeth);
+        self.geared(Ratio::ONE.times(i64::from(teeth), i64::from(mate_teeth)))
+    }
+
+    /// The phase of a shaft that turns at a ratio of this one's speed.
+    pub(super) fn geared(&self, speed_ratio: Ratio) -> Result<Self, SignalError> {
+        let ratio = speed_ratio.value();
         let revolutions = self.revolutions.iter().map(|angle| angle * ratio).collect();
-        let mut mate = Self::new(self.first_sample, revolutions)?;
-        mate.warnings.clone_from(&self.warnings);
-        mate.zero = self.zero.of_mate();
-        Ok(mate)
+        let mut other = Self::new(self.first_sample, revolutions)?;
+        other.warnings.clone_from(&self.warnings);
+        other.zero = self.zero.of_mate();
+        Ok(other)
     }
 
     /// (rev) What the shaft turns between the first and the last value.

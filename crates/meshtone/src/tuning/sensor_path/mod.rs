@@ -25,7 +25,7 @@ use crate::error::{Error, ScenarioError};
 use crate::random::{Draws, Purpose};
 use crate::scenario::{Quality, Scenario, Sensor};
 use crate::sensor::{Channel, FrequencyResponse, ResponseInput};
-use crate::signal::{AngularSettings, SignalError, angular_resample, lines_off_shafts};
+use crate::signal::{AngularSettings, GearTrain, SignalError, angular_resample, lines_off_shafts};
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
 
@@ -245,7 +245,7 @@ fn noise_density(
         return Ok(vec![f64::INFINITY; cells.frequency_hz.len()]);
     }
     let gear_hz = of_gear.mean_speed_hz(recording.sampling_rate_hz);
-    let lines = lines_off_shafts(&angular, gear, pinion);
+    let lines = lines_off_shafts(&angular, &GearTrain::of_wheels([("gear", gear), ("pinion", pinion)]), 0);
     let points = (revolutions * angular.points_per_revolution) as f64;
     // The mean square of Hann's window is 3/8.
     let scale = 1.0 / (0.375 * points * angular.points_per_revolution as f64 * gear_hz);

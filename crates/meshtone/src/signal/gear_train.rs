@@ -1,0 +1,201 @@
+//! The shafts of a machine by their tooth counts: what turns how fast, and which lines its wheels make.
+
+use super::{SeparationSettings, ShaftPhase, SignalError};
+use crate::error::ScenarioError;
+use crate::scenario::{Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
+use crate::wheel::WheelName;
+
+/// A shaft of a train.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TrainShaft {
+    /// Its name.
+    pub name: String,
+    /// Its speed over that of the first shaft of a pair, or of the input of a gearbox; positive.
+    pub speed_ratio: Ratio,
+}
+
+/// A wheel of a train.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrainWheel {
+    /// Its name.
+    pub name: String,
+    /// Its teeth.
+    pub teeth: u32,
+    /// Number of its shaft.
+    pub shaft: usize,
+    /// (rev) Angle of the wheel where that of its shaft is 0, counted from where its first tooth enters contact. Only a simulation knows it.
+    pub start_rev: f64,
+}
+
+/// Shafts, wheels and meshes of a machine, as far as a recording shows them: a pair, or a gearbox of any number of shafts.
+///
+/// ```
+/// use meshtone::scenario::{Gearbox, gearbox_template};
+/// use meshtone::signal::GearTrain;
+///
+/// let train = GearTrain::of_gearbox(&Gearbox::from_toml(&gearbox_template(None))?)?;
+/// let ratios: Vec<String> = train.shafts.iter().map(|shaft| shaft.speed_ratio.to_string()).collect();
+/// assert_eq!(ratios, ["1/1", "1/3", "1/5"]);
+/// assert_eq!(train.mesh_order(1), 16.0);
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearTrain {
+    /// The shafts.
+    pub shafts: Vec<TrainShaft>,
+    /// The wheels.
+    pub wheels: Vec<TrainWheel>,
+    /// Numbers of the two wheels of each mesh, the driving one first.
+    pub meshes: Vec<[usize; 2]>,
+}
+
+impl GearTrain {
+    /// One wheel, or two that mesh, each on a shaft of its own.
+    ///
+    /// # Arguments
+    /// * `wheels` - name and tooth count of the wheel on the first shaft, and of its mate where that is known; none without teeth
+    pub fn of_wheels<const N: usize>(wheels: [(&str, u32); N]) -> Self {
+        let first = wheels.first().map_or(1, |(_, teeth)| *teeth);
+        let shaft = |&(name, teeth): &(&str, u32)| TrainShaft {
+            name: name.to_owned(),
+            speed_ratio: Ratio::ONE.times(i64::from(first), i64::from(teeth)),
+        };
+        let wheel = |(shaft, &(name, teeth)): (usize, &(&str, u32))| TrainWheel {
+            name: name.to_owned(),
+            teeth,
+            shaft,
+            start_rev: 0.0,
+        };
+        Self {
+            shafts: wheels.iter().map(shaft).collect(),
+            wheels: wheels.iter().enumerate().map(wheel).collect(),
+            meshes: (1..N).map(|mate| [0, mate]).collect(),
+        }
+    }
+
+    /// The pinion and the gear of a scenario.
+    ///
+    /// # Arguments
+    /// * `scenario` - of a pair
+    pub fn of_pair(scenario: &Scenario) -> Self {
+        Self::of_wheels(WheelName::BOTH.map(|wheel| (wheel.name(), scenario.gears.teeth(wheel))))
+    }
+
+    /// The shafts of a gearbox, by its names and in its order.
+    ///
+    /// # Arguments
+    /// * `gearbox` - the machine
+    ///
+    /// # Errors
+    /// Those of [`GearboxLayout::new`].
+    pub fn of_gearbox(gearbox: &Gearbox) -> Result<Self, ScenarioError> {
+        let layout = GearboxLayout::new(gearbox)?;
+        let shafts = gearbox.shafts.iter().zip(&layout.ratios).map(|(shaft, ratio)| TrainShaft {
+            name: shaft.name.clone(),
+            speed_ratio: Ratio { numerator: ratio.numerator.abs(), ..*ratio },
+        });
+        let wheels = gearbox.wheels.iter().enumerate().map(|(number, wheel)| TrainWheel {
+            name: wheel.name.clone(),
+            teeth: wheel.teeth,
+            shaft: layout.shaft_of_wheel[number],
+            start_rev: layout
+                .mesh_of(number)
+                .map_or(0.0, |(mesh, _)| layout.phases[mesh] / f64::from(wheel.teeth)),
+        });
+        Ok(Self { shafts: shafts.collect(), wheels: wheels.collect(), meshes: layout.wheels_of_mesh.clone() })
+    }
+
+    /// The shafts of a scenario of either form.
+    ///
+    /// # Arguments
+    /// * `form` - of a pair or a gearbox
+    ///
+    /// # Errors
+    /// Those of [`Self::of_gearbox`].
+    pub fn of_form(form: &ScenarioForm) -> Result<Self, ScenarioError> {
+        match form {
+            ScenarioForm::Pair(scenario) => Ok(Self::of_pair(scenario)),
+            ScenarioForm::Gearbox(gearbox) => Self::of_gearbox(gearbox),
+        }
+    }
+
+    /// Number of the shaft that the ratios are of: the input.
+    pub fn input(&self) -> usize {
+        self.shafts.iter().position(|shaft| shaft.speed_ratio == Ratio::ONE).unwrap_or(0)
+    }
+
+    /// Name of a mesh: `z1-z2`.
+    ///
+    /// # Arguments
+    /// * `mesh` - its number
+    pub fn mesh_name(&self, mesh: usize) -> String {
+        self.meshes[mesh].map(|wheel| self.wheels[wheel].name.as_str()).join("-")
+    }
+
+    /// (orders of the input) Frequency of a mesh.
+    ///
+    /// # Arguments
+    /// * `mesh` - its number
+    pub fn mesh_order(&self, mesh: usize) -> f64 {
+        let wheel = &self.wheels[self.meshes[mesh][0]];
+        f64::from(wheel.teeth) * self.shafts[wheel.shaft].speed_ratio.value()
+    }
+
+    /// Speed of a shaft over that of another.
+    ///
+    /// # Arguments
+    /// * `shaft`, `other` - their numbers
+    pub fn speed_ratio(&self, shaft: usize, other: usize) -> Ratio {
+        let Ratio { numerator, denominator } = self.shafts[other].speed_ratio;
+        self.shafts[shaft].speed_ratio.times(denominator, numerator)
+    }
+
+    /// Tooth counts of all wheels on a shaft: its mesh orders.
+    ///
+    /// # Arguments
+    /// * `shaft` - its number
+    pub fn teeth_on(&self, shaft: usize) -> impl Iterator<Item = u32> {
+        self.wheels.iter().filter(move |wheel| wheel.shaft == shaft).map(|wheel| wheel.teeth)
+    }
+
+    /// The phase of a shaft, carried through the tooth counts from that of another.
+    ///
+    /// # Arguments
+    /// * `known` - phase of the other shaft
+    /// * `of` - number of the other shaft
+    /// * `shaft` - number of the shaft that is asked for
+    ///
+    /// # Errors
+    /// Angles that do not rise.
+    pub fn carried(&self, known: &ShaftPhase, of: usize, shaft: usize) -> Result<ShaftPhase, SignalError> {
+        if of == shaft { Ok(known.clone()) } else { known.geared(self.speed_ratio(shaft, of)) }
+    }
+
+    /// The orders of a shaft that belong to the regular part of a wheel's average: the mesh orders of all wheels on its shaft.
+    ///
+    /// # Arguments
+    /// * `wheel` - number of the wheel
+    /// * `settings` - sidebands, shaft orders and mean
+    pub fn separation(&self, wheel: usize, settings: &SeparationSettings) -> SeparationSettings {
+        let TrainWheel { teeth, shaft, .. } = self.wheels[wheel];
+        let others =
+            self.wheels.iter().enumerate().filter(|(other, of)| *other != wheel && of.shaft == shaft);
+        SeparationSettings {
+            teeth: teeth as usize,
+            other_teeth: others.map(|(_, other)| other.teeth as usize).collect(),
+            ..settings.clone()
+        }
+    }
+
+    /// (orders of a shaft) Distances of the orders of each shaft, and of those at which the same teeth meet again: all that is periodic in
+    /// the train is a multiple of the last one.
+    ///
+    /// # Arguments
+    /// * `of` - number of the shaft whose orders they are
+    pub(super) fn spacings(&self, of: usize) -> (Vec<f64>, f64) {
+        let ratios: Vec<Ratio> = (0..self.shafts.len()).map(|shaft| self.speed_ratio(shaft, of)).collect();
+        let hunting = ratios.iter().copied().fold(ratios[of], Ratio::common_measure);
+        (ratios.iter().map(|ratio| ratio.value()).collect(), hunting.value())
+    }
+}

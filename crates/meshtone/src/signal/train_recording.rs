@@ -1,0 +1,281 @@
+//! A recording of a train: from the phase of one shaft to the averages, indicators and foreign tones of all.
+
+use thiserror::Error;
+
+use super::check_recording::RecordingCheck;
+use super::record::{process_angular, process_angular_segments};
+use super::{
+    AngleZero, AngularSettings, AngularSignal, ChainSettings, ForeignTone, GearTrain, Interpolation, Record,
+    SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
+    angular_resample, check_channel,
+};
+use crate::scenario::{Coupled, GearboxShaft, ScenarioForm};
+use crate::wheel::WheelName;
+
+/// How the shafts of a train turn over a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrainTurning {
+    /// The phase of one shaft is known, from which those of the others follow through the tooth counts.
+    Shaft {
+        /// Number of the shaft.
+        shaft: usize,
+        /// Its phase.
+        phase: ShaftPhase,
+        /// The source of that phase, whose mistakes are looked for.
+        stated: StatedTurning,
+    },
+    /// A simulated pair, whose shafts both have whole numbers of samples in a revolution where the speed is constant.
+    SimulatedPair(SimulatedShafts),
+}
+
+impl TrainTurning {
+    /// How the shafts of what was simulated turned.
+    ///
+    /// # Arguments
+    /// * `form` - what was simulated; a valid one
+    /// * `start_s` - (s) time of the first kept sample since the start of the simulation
+    /// * `samples` - how many were kept
+    ///
+    /// # Errors
+    /// Fewer than two samples.
+    pub fn of_simulated(form: &ScenarioForm, start_s: f64, samples: usize) -> Result<Self, SignalError> {
+        match form {
+            ScenarioForm::Pair(scenario) => {
+                Ok(Self::SimulatedPair(SimulatedShafts::new(scenario, start_s, samples)))
+            }
+            ScenarioForm::Gearbox(gearbox) => {
+                let motor = |shaft: &GearboxShaft| shaft.couples_to == Coupled::Motor;
+                Ok(Self::Shaft {
+                    shaft: gearbox.shafts.iter().position(motor).unwrap_or(0),
+                    phase: ShaftPhase::of_simulated_input(gearbox, start_s, samples)?,
+                    stated: StatedTurning::Other,
+                })
+            }
+        }
+    }
+}
+
+/// A channel of a recording of a pair or a gearbox, with the angles of its shafts.
+///
+/// ```
+/// use meshtone::scenario::{Gearbox, gearbox_template};
+/// use meshtone::signal::{GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainSettings, TrainTurning};
+///
+/// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
+/// gearbox.solver.settings.duration_s = Some(1.0);
+/// let channels = meshtone::simulate_gearbox(&gearbox)?.channels;
+/// let train = GearTrain::of_gearbox(&gearbox)?;
+/// let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len())?;
+/// let turning = TrainTurning::Shaft { shaft: train.input(), phase, stated: StatedTurning::Other };
+/// let signal = channels.signal("middle_1_vertical_g").ok_or("no such channel")?;
+/// let recording =
+///     TrainRecording { signal, sampling_rate_hz: channels.sampling_rate_hz, train: &train, turning: &turning };
+/// let records = recording.process(&TrainSettings::default())?;
+/// let revolutions: Vec<usize> = records.wheels.iter().map(|of| of.records[0].average.revolutions).collect();
+/// assert_eq!(revolutions, [29, 9, 9, 5]);
+/// // A tooth of z3 is broken.
+/// let kurtosis = |wheel: usize| records.wheels[wheel].records[0].indicators.difference.kurtosis;
+/// assert!(kurtosis(2) > kurtosis(0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct TrainRecording<'a> {
+    /// The channel.
+    pub signal: &'a [f64],
+    /// (S/s) Its sampling rate.
+    pub sampling_rate_hz: f64,
+    /// The machine.
+    pub train: &'a GearTrain,
+    /// How it turned.
+    pub turning: &'a TrainTurning,
+}
+
+/// Settings by which a recording of a train is processed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrainSettings {
+    /// Settings of the resampling over the angle.
+    pub angular: AngularSettings,
+    /// Sidebands, shaft orders and mean of the regular part of every wheel; its tooth counts are those of the train.
+    pub separation: SeparationSettings,
+    /// (rev) At least 2: length of the segments into which the recording is cut, of each shaft; none for one record of all.
+    pub revolutions: Option<usize>,
+}
+
+impl Default for TrainSettings {
+    fn default() -> Self {
+        Self {
+            angular: AngularSettings::default(),
+            separation: SeparationSettings::new(1),
+            revolutions: None,
+        }
+    }
+}
+
+/// What a recording shows about one wheel.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct WheelRecords {
+    /// Number of the wheel in the train.
+    pub wheel: usize,
+    /// (Hz) Mean speed of its shaft.
+    pub mean_speed_hz: f64,
+    /// One record, or one of each segment. Those of wheels on one shaft have the same average and difference.
+    pub records: Vec<Record>,
+    /// (s) Middle of each, since the first sample.
+    pub middles_s: Vec<f64>,
+}
+
+/// What a recording shows about a train.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct TrainRecords {
+    /// The wheels, in the order of the train.
+    pub wheels: Vec<WheelRecords>,
+    /// All tones that belong to no shaft and no mesh, the strongest first. They are not looked for where the mate of a single wheel is not known,
+    /// where a stated value does not fit, over a run-up, in fewer than six revolutions, and in a simulated pair.
+    pub foreign: Option<Vec<ForeignTone>>,
+    /// What is doubtful, each once.
+    pub warnings: Vec<SignalWarning>,
+}
+
+/// A wheel for which a recording gives no result.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{wheel} of {teeth} teeth: {error}")]
+pub struct WheelError {
+    /// Name of the wheel.
+    pub wheel: String,
+    /// Its teeth.
+    pub teeth: u32,
+    /// What is wrong.
+    pub error: SignalError,
+}
+
+impl TrainRecording<'_> {
+    /// The phase of a shaft.
+    ///
+    /// # Arguments
+    /// * `shaft` - its number
+    ///
+    /// # Errors
+    /// Angles that do not rise; fewer than two samples.
+    pub fn phase(&self, shaft: usize) -> Result<ShaftPhase, SignalError> {
+        match self.turning {
+            TrainTurning::Shaft { shaft: of, phase, .. } => self.train.carried(phase, *of, shaft),
+            TrainTurning::SimulatedPair(shafts) => shafts.phase(WheelName::BOTH[shaft.min(1)]),
+        }
+    }
+
+    /// The signal over whole revolutions of a wheel: in a simulation from an angle on at which its first tooth enters contact, else from one at which
+    /// its shaft has angle 0.
+    ///
+    /// # Arguments
+    /// * `wheel` - its number
+    /// * `settings` - how it is resampled
+    ///
+    /// # Errors
+    /// Those of [`angular_resample`].
+    pub fn angular(&self, wheel: usize, settings: &AngularSettings) -> Result<AngularSignal, SignalError> {
+        match self.turning {
+            TrainTurning::SimulatedPair(shafts) => {
+                let settings = ChainSettings { angular: *settings, separation: None };
+                shafts.angular(self.signal, WheelName::BOTH[wheel.min(1)], &settings)
+            }
+            TrainTurning::Shaft { .. } => angular_resample(self.signal, &self.wheel_phase(wheel)?, settings),
+        }
+    }
+
+    /// The phase of a wheel, whose first tooth enters contact at angle 0 where that is known.
+    fn wheel_phase(&self, wheel: usize) -> Result<ShaftPhase, SignalError> {
+        let of = &self.train.wheels[wheel];
+        let mut phase = self.phase(of.shaft)?;
+        if phase.zero == AngleZero::Simulated {
+            phase.revolutions.iter_mut().for_each(|angle| *angle += of.start_rev);
+        }
+        Ok(phase)
+    }
+
+    /// Processes the channel for every wheel, and looks for what does not fit and for foreign tones.
+    ///
+    /// # Arguments
+    /// * `settings` - how
+    ///
+    /// # Errors
+    /// Those of [`super::process_channel`] and [`super::process_segments`], with the first wheel that has one.
+    pub fn process(&self, settings: &TrainSettings) -> Result<TrainRecords, WheelError> {
+        let all = || self.train.wheels.iter().enumerate();
+        let wheels: Vec<(WheelRecords, RecordingCheck)> = all()
+            .map(|(number, wheel)| {
+                self.process_wheel(number, settings).map_err(|error| WheelError {
+                    wheel: wheel.name.clone(),
+                    teeth: wheel.teeth,
+                    error,
+                })
+            })
+            .collect::<Result<_, _>>()?;
+        let mut found = TrainRecords { wheels: Vec::new(), foreign: None, warnings: Vec::new() };
+        if let TrainTurning::Shaft { phase, .. } = self.turning {
+            found.warnings.clone_from(&phase.warnings);
+        }
+        for (wheel, check) in wheels {
+            let of_records = wheel.records.iter().flat_map(|record| &record.warnings).cloned();
+            for warning in check.warnings.into_iter().chain(of_records) {
+                if !found.warnings.contains(&warning) {
+                    found.warnings.push(warning);
+                }
+            }
+            found.foreign = found.foreign.or(check.foreign);
+            found.wheels.push(wheel);
+        }
+        Ok(found)
+    }
+
+    /// The records of a wheel. The first wheel on the shaft whose phase is known is checked against what is stated, since the angles of the other
+    /// shafts follow from the tooth counts.
+    fn process_wheel(
+        &self,
+        wheel: usize,
+        settings: &TrainSettings,
+    ) -> Result<(WheelRecords, RecordingCheck), SignalError> {
+        check_channel(self.signal)?;
+        let of = &self.train.wheels[wheel];
+        let angular = self.angular(wheel, &settings.angular)?;
+        let mut chain = ChainSettings {
+            angular: settings.angular,
+            separation: Some(self.train.separation(wheel, &settings.separation)),
+        };
+        let is_first = self.train.wheels.iter().position(|other| other.shaft == of.shaft) == Some(wheel);
+        let mut check = RecordingCheck::default();
+        let (mean_speed_hz, phase) = match self.turning {
+            TrainTurning::Shaft { shaft, stated, .. } => {
+                let phase = self.wheel_phase(wheel)?;
+                if *shaft == of.shaft && is_first {
+                    let rate_hz = self.sampling_rate_hz;
+                    check = RecordingCheck::new(&angular, self.train, *shaft, *stated, &phase, rate_hz);
+                }
+                (phase.mean_speed_hz(self.sampling_rate_hz), Some(phase))
+            }
+            TrainTurning::SimulatedPair(shafts) => {
+                // Nothing is interpolated at constant speed, so that nothing is weakened.
+                if shafts.is_steady() {
+                    chain.angular.interpolation = Interpolation::BandLimited;
+                }
+                (shafts.mean_speed_hz(WheelName::BOTH[wheel.min(1)]), None)
+            }
+        };
+        let records = match settings.revolutions {
+            None => vec![process_angular(&angular, of.teeth, &chain)?],
+            Some(count) => process_angular_segments(&angular, of.teeth, &chain, count)?,
+        };
+        let second = |turned_rev: f64| match &phase {
+            Some(phase) => phase.sample_at(angular.start_rev + turned_rev) / self.sampling_rate_hz,
+            None => turned_rev / mean_speed_hz,
+        };
+        let middles = records.iter().scan(0.0, |from_rev, record| {
+            let count = record.average.revolutions as f64;
+            *from_rev += count;
+            Some(second(*from_rev - 0.5 * count))
+        });
+        let middles_s = middles.collect();
+        Ok((WheelRecords { wheel, mean_speed_hz, records, middles_s }, check))
+    }
+}
