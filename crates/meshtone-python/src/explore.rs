@@ -23,15 +23,6 @@ enum Served {
     Before(Box<ScenarioForm>),
 }
 
-/// A scenario of either form.
-#[derive(IntoPyObject)]
-enum Form {
-    /// One pair of gears.
-    Pair(Scenario),
-    /// A gearbox.
-    Gearbox(Gearbox),
-}
-
 #[pymethods]
 impl ExploreServer {
     /// Serves a page; port 0 is any that is free.
@@ -61,14 +52,14 @@ impl ExploreServer {
 
     /// The scenario on the page, or the last one.
     #[getter]
-    fn scenario(&self) -> Form {
+    fn scenario(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let form = match &*self.served.lock().unwrap_or_else(PoisonError::into_inner) {
             Served::Now(server) => server.scenario(),
             Served::Before(scenario) => (**scenario).clone(),
         };
         match form {
-            ScenarioForm::Pair(scenario) => Form::Pair(Scenario(scenario)),
-            ScenarioForm::Gearbox(gearbox) => Form::Gearbox(Gearbox(gearbox)),
+            ScenarioForm::Pair(scenario) => Ok(Py::new(py, Scenario(scenario))?.into_any()),
+            ScenarioForm::Gearbox(gearbox) => Ok(Py::new(py, Gearbox(gearbox))?.into_any()),
         }
     }
 
