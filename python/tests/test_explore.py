@@ -494,3 +494,98 @@ def test_what_is_seen_has_names(page: Page) -> None:
     page.browser.set_window_size(1400, 1000)
 
 
+
+
+# A gearbox, in a browser.
+
+
+@pytest.fixture
+def train() -> Iterator[mt.Explorer]:
+    """The page of a gearbox."""
+    text = mt.gearbox_template().replace("sampling_rate_hz = 100000.0", "sampling_rate_hz = 20000.0")
+    with mt.explore(mt.Gearbox.from_toml(text), open_browser=False) as explorer:
+        yield explorer
+
+
+@pytest.fixture
+def train_page(browser: Chrome, train: mt.Explorer) -> Iterator[Page]:
+    """The page of a gearbox in the browser, at whose end the console holds no error."""
+    assert train.url is not None
+    page = Page(browser, train.url)
+    yield page
+    errors = page.errors()
+    browser.get("about:blank")
+    assert errors == []
+
+
+def test_a_wheel_and_a_mesh_are_chosen_in_the_train(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+    named = "return [...document.querySelectorAll('#front g[role=button]')].map((group) => group.getAttribute('aria-label'))"
+    assert set(page.run(named)) == {
+        "wheel z1, 32 teeth", "wheel z2, 96 teeth", "wheel z3, 48 teeth", "wheel z4, 80 teeth", "mesh z1-z2, 960 Hz", "mesh z3-z4, 480 Hz"
+    }
+    click = "document.querySelector(`#front [aria-label^='${arguments[0]}']`).dispatchEvent(new MouseEvent('click', { bubbles: true }))"
+    page.settled(lambda: page.run(click, "wheel z4"), "a wheel")
+    assert page.run("return document.getElementById('wheel-title').textContent") == "Over a revolution of z4, 80 teeth"
+    assert page.run("return document.querySelector('#above .chosen').getAttribute('aria-label')") == "wheel z4 from above, 80 teeth"
+    page.settled(lambda: page.run(click, "mesh z3"), "a mesh")
+    assert page.run("return document.getElementById('mesh-title').textContent") == "Force of mesh z3-z4"
+    key = "document.querySelector('#above [aria-label^=\"wheel z1\"]').dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }))"
+    page.settled(lambda: page.run(key), "a wheel by the keyboard")
+    assert page.run("return document.getElementById('wheel').value") == "z1"
+    assert "z3-z4" in page.described("force") or page.described("force") == ""
+    with pytest.raises(TypeError, match="gearbox"):
+        _ = train.scenario
+
+
+def test_any_number_of_a_gearbox_is_changed(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+    assert page.enter("operation.input_speed_hz", "33") == ""
+    assert page.enter("wheel[2].face_width_mm", "15") == ""
+    assert page.enter("bearing[0].damping_ratio", "0.03") == ""
+    assert page.enter("housing.mass_kg", "25") == ""
+    text = train.gearbox.to_toml()
+    assert all(words in text for words in ("input_speed_hz = 33", "face_width_mm = 15", "damping_ratio = 0.03", "mass_kg = 25"))
+    assert page.run("return document.querySelectorAll('#controls .control').length") > 120
+    assert page.enter("mesh[1].module_mm", "-1") == "mesh[1].module_mm = -1 (the 2nd mesh): must be more than 0 mm"
+    assert page.run("return document.getElementById('key-mesh[1].module_mm').getAttribute('aria-invalid')") == "true"
+    assert train.gearbox.to_toml() == text
+    assert page.enter("mesh[1].module_mm", "1.5875") == ""
+    assert not page.run("return document.querySelector('#controls [aria-invalid]')")
+
+
+def test_every_line_of_a_gearboxs_spectrum_has_a_name(train_page: Page) -> None:
+    page = train_page
+    rows = page.run("return [...document.querySelectorAll('#lines tbody tr')].map((row) => [...row.children].map((cell) => cell.textContent))")
+    assert len(rows) == 24
+    speeds = {"input": 30.0, "middle": 10.0, "output": 6.0}
+    meshes = {"z1-z2": 960.0, "z3-z4": 480.0}
+    for name, frequency, _ in rows:
+        for one in name.split(", "):
+            if not one[0].isdigit():
+                continue
+            # What the words say is the line's frequency.
+            signs = one.replace("−", "+ -").split(" + ")
+            said = 0.0
+            for term in signs:
+                count, what = term.replace("- ", "-").split(" × ")
+                kind, of = what.strip().split(" ")
+                said += float(count) * (meshes if kind == "mesh" else speeds)[of]
+            assert abs(said - float(frequency)) <= 1.0, (name, frequency)
+    assert any("mesh z1-z2" in name for name, *_ in rows)
+
+
+def test_damage_is_added_to_a_wheel_and_a_file_opened(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+    start = train.gearbox
+    page.settled(lambda: page.run("const w = document.getElementById('wheel'); w.value = 'z3'; w.dispatchEvent(new Event('change'))"), "z3")
+    add = "const add = document.getElementById('add-fault'); add.previousSibling.value = 'tooth-breakage'; add.click()"
+    assert page.settled(lambda: page.run(add), "damage") == ""
+    assert 'wheel = "z3"' in train.gearbox.to_toml()
+    assert page.run("return document.querySelectorAll('#front .damaged').length") == 1
+    assert page.enter("fault[0].severity", "0.9") == ""
+    assert "severity = 0.9" in train.gearbox.to_toml()
+    page.settled(lambda: page.drop("start.toml", start.to_toml().encode()), "the file")
+    assert train.gearbox == start
+    page.drop("pair.toml", fast().to_toml().encode())
+    page.wait(lambda: "pair.toml" in changes_words(page.browser), "the refusal of a pair")

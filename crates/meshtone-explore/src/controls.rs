@@ -1,21 +1,37 @@
 //! The source of the page's controls: the same rows as the guide's tables, the commented files and Python's signatures.
 
 use meshtone::damage::{DamageKind, damage_kinds};
-use meshtone::scenario::{Fault, KeyDescription, KeyKind, Scenario, SectionDescription, sections};
+use meshtone::scenario::{
+    Fault, KeyDescription, KeyKind, Scenario, SectionDescription, gearbox_sections, sections,
+};
 use serde_json::{Value, json};
 
 use crate::export::without_defaults;
 use crate::presets::{Preset, presets};
 
+fn section_json(SectionDescription { name, keys, .. }: &SectionDescription) -> Value {
+    json!({ "name": name, "keys": keys.iter().map(key_json).collect::<Vec<_>>() })
+}
+
+/// Sections and keys of a gearbox and of a fault on one of its wheels, and the kinds of damage.
+pub fn gearbox_controls() -> Value {
+    let mut listed: Vec<Value> = gearbox_sections().iter().map(section_json).collect();
+    listed.extend(sections().iter().filter(|section| section.name == "fault").map(section_json));
+    json!({
+        "sections": listed,
+        "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
+        "version": env!("CARGO_PKG_VERSION"),
+    })
+}
+
 /// Sections and keys, kinds of damage, and scenarios to start from.
 pub fn controls() -> Value {
-    let section = |SectionDescription { name, keys, .. }: &SectionDescription| json!({ "name": name, "keys": keys.iter().map(key_json).collect::<Vec<_>>() });
     let preset = |Preset { name, title, toml }: Preset| {
         let scenario = Scenario::from_toml(toml).ok()?;
         Some(json!({ "name": name, "title": title, "scenario": Value::Object(without_defaults(&scenario)) }))
     };
     json!({
-        "sections": sections().iter().map(section).collect::<Vec<_>>(),
+        "sections": sections().iter().map(section_json).collect::<Vec<_>>(),
         "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
         "presets": presets().into_iter().filter_map(preset).collect::<Vec<_>>(),
         "version": env!("CARGO_PKG_VERSION"),

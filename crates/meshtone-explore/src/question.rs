@@ -1,7 +1,7 @@
 //! A scenario as the page sends it.
 
 use meshtone::scenario::{
-    FileProblem, MemoryLimit, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles,
+    FileProblem, Gearbox, MemoryLimit, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles,
 };
 use meshtone_io::memory;
 use serde_json::Value;
@@ -24,6 +24,18 @@ pub fn memory_limit() -> MemoryLimit {
 /// # Arguments
 /// * `question` - with `toml`, a scenario file's text, or `scenario`, its sections and keys
 pub fn scenario(question: &Value) -> Result<Scenario, Refusal> {
+    read_with(question, |text| Scenario::from_toml_within(text, &NoFiles, memory_limit()))
+}
+
+/// Reads and checks a gearbox, as [`scenario`] does a pair.
+///
+/// # Arguments
+/// * `question` - with `toml`, a scenario file's text, or `scenario`, its sections and keys
+pub fn gearbox(question: &Value) -> Result<Gearbox, Refusal> {
+    read_with(question, |text| Gearbox::from_toml_within(text, &NoFiles, memory_limit()))
+}
+
+fn read_with<S>(question: &Value, read: impl Fn(&str) -> Result<S, ScenarioError>) -> Result<S, Refusal> {
     match (question.get("toml"), question.get("scenario")) {
         (Some(Value::String(text)), _) => read(text).map_err(Refusal::from),
         (_, Some(sections)) => {
@@ -39,10 +51,6 @@ fn text_of(sections: &Value) -> Result<String, Refusal> {
     let table = toml::Table::try_from(without_nulls(sections));
     let text = table.and_then(|table| toml::to_string(&table));
     text.map_err(|error| Refusal::unfit(format!("the scenario cannot be written as TOML: {error}")))
-}
-
-fn read(text: &str) -> Result<Scenario, ScenarioError> {
-    Scenario::from_toml_within(text, &NoFiles, memory_limit())
 }
 
 /// Keys without a value are left out.

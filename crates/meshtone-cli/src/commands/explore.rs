@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use clap::Args;
-use meshtone::scenario::{Scenario, template};
+use meshtone::scenario::{Scenario, ScenarioForm, template};
 use meshtone_diagnose::ReferenceStore;
 use meshtone_explore::{Embedding, Server, ServerSettings};
 use meshtone_io::scenario_file::ScenarioFile;
@@ -21,7 +21,7 @@ use crate::terminal;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Explore {
-    /// Scenario file to begin with. [default: the healthy pair that `meshtone init healthy` prints]
+    /// Scenario file to begin with, of a pair or of a gearbox. [default: the healthy pair that `meshtone init healthy` prints]
     #[arg(value_name = "SCENARIO.toml")]
     scenario: Option<PathBuf>,
     /// Port of 127.0.0.1 on which the page is served. [default: any that is free]
@@ -36,6 +36,7 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone explore                        a healthy pair to begin with
   meshtone explore broken.toml            begin with this scenario
+  meshtone explore gearbox.toml           a gearbox, on a page of its own
   meshtone explore --port 8080 --no-open  print the address only";
 
 impl Explore {
@@ -58,12 +59,13 @@ impl Explore {
         Ok(())
     }
 
-    fn scenario(&self) -> Result<Scenario, Failure> {
+    fn scenario(&self) -> Result<ScenarioForm, Failure> {
         match &self.scenario {
-            Some(path) => Ok(ScenarioFile::read(path)?.scenario),
+            Some(path) => Ok(ScenarioFile::read_form(path)?.scenario),
             None => {
                 let healthy = template("healthy").unwrap_or_default();
-                Scenario::from_toml(&healthy).map_err(|error| Failure::failed(error.to_string()))
+                let healthy = Scenario::from_toml(&healthy).map(ScenarioForm::Pair);
+                healthy.map_err(|error| Failure::failed(error.to_string()))
             }
         }
     }

@@ -11,6 +11,9 @@ use super::{Turning, path, start};
 use crate::draw::DrawnRecord;
 use crate::plan::{ClassFault, Keep};
 
+/// (samples) How far a whole number of samples may come out beside it.
+const ROUNDING: f64 = 1e-6;
+
 /// The window of its simulation that a record takes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Window {
@@ -46,11 +49,12 @@ pub(crate) fn simulated_scenario(
     let margin = if is_steady { margin(keep, drawn, &scenario, &turning, &time)? } else { 0 };
     let mut first = time.first_kept_sample;
     let counted_from = if is_steady {
-        let begins = (input_rev * per_revolution).round() as usize;
+        // Not after the tooth has come: the averages would lose a revolution.
+        let begins = (input_rev * per_revolution + ROUNDING).floor() as usize;
         let period = (turning.period_rev * per_revolution).round().max(1.0) as usize;
         // So many periods later that the settling comes before it.
         first = begins + (first + margin).saturating_sub(begins).div_ceil(period) * period - margin;
-        start::counted_from(&turning, (first + margin) as f64 / per_revolution, 0.5 / per_revolution)
+        start::counted_from(&turning, (first + margin) as f64 / per_revolution, ROUNDING / per_revolution)
     } else {
         start::counted_from(&turning, input_rev, 0.0)
     };
@@ -91,8 +95,7 @@ fn kept_samples(keep: &Keep, turning: &Turning, is_steady: bool, time: &TimeGrid
             let before = if turning.enter_together { 0.0 } else { 1.0 };
             let pitches = angle.revolutions as f64 * f64::from(wheel.teeth) + before;
             let samples = pitches * time.samples_per_pinion_revolution as f64 / wheel.pitches_per_revolution;
-            // A whole number may come out a rounding error above it.
-            (samples - 1e-6).ceil() as usize
+            (samples - ROUNDING).ceil() as usize
         }
         (None, Some(duration_s)) => {
             let kept = (duration_s * time.sampling_rate_hz).round() as usize;

@@ -117,7 +117,7 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         .replace("uniform = [20.0, 40.0]", "fixed = 200.0")
         .replace("records = 48", "records = 12\nconstraints = [\"latent.load_nm > 20\"]")
         .replace("units = 10", "units = 4")
-        .replace("duration_s = 0.6     ", "duration_s = 0.51    ")
+        .replace("duration_s = 0.6     ", "duration_s = 0.53    ")
         .replace("settle_tolerance = 1e-2", "settle_tolerance = 1e-6");
     let text = text.replace("settle_fraction = 0.81", "settle_fraction = 0.95");
     let text = &text[..text.find("[[split.shift]]").unwrap()];
@@ -135,7 +135,7 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         let teeth = gearbox.wheels[number].teeth;
         // A cycle of the train, 15 revolutions of the input, after what is left of the wheel's first revolution.
         let speed_hz = made.number(&format!("{wheel}_speed_hz"), row);
-        gearbox.solver.settings.duration_s = Some(0.5 + 1.0 / speed_hz);
+        gearbox.solver.settings.duration_s = Some(0.5005 + 1.0 / speed_hz);
         let simulation = meshtone::simulate_gearbox(&gearbox).unwrap();
         let signal = simulation.channels.signal("output_1_vertical_g").unwrap();
         let (expected, _) = simulation.wheel_average(signal, number).unwrap();
@@ -151,7 +151,7 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
             difference += (turned[0] - c).powi(2) + (turned[1] - d).powi(2);
             whole += a * a + b * b;
         }
-        assert!(difference < 4e-3 * whole, "{wheel}, tooth {tooth}: {difference} of {whole}");
+        assert!(difference < 2e-3 * whole, "{wheel}, tooth {tooth}: {difference} of {whole}");
         compared += 1;
     }
     assert!(compared >= 6, "{compared}");
@@ -177,7 +177,7 @@ fn what_a_gearbox_does_not_have_is_refused_at_its_key() {
             vec!["scenario.wheels_seed", "every unit has wheels of its own"],
         ),
         ("#wheel = [\"z1\", \"z2\", \"z3\", \"z4\"]", "wheel = [\"z1\", \"gear\"]", vec!["keep.wheel", "z3"]),
-        ("duration_s = 0.6     ", "duration_s = 0.3     ", vec!["revolutions of the wheel z4"]),
+        ("duration_s = 0.6     ", "duration_s = 0.2     ", vec!["revolutions of the wheel z4"]),
         (
             "#channels = [\"input_0_vertical_g\",",
             "channels = [\"mesh_force_n\",",

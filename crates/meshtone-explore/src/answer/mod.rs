@@ -1,7 +1,9 @@
 //! From a scenario to everything that the page draws.
 
 mod diagnosis;
+mod gearbox;
 mod healthy;
+mod lines;
 mod mesh_cycle;
 mod recording;
 mod severity;
@@ -17,6 +19,7 @@ use meshtone_plot::DamagedTooth;
 use serde_json::{Map, Value, json};
 
 pub use diagnosis::{DiagnosisQuestion, diagnosis};
+pub use gearbox::{gearbox_answer, gearbox_sections_json};
 pub use healthy::{HealthyIndicators, healthy_indicators, healthy_json};
 pub use mesh_cycle::MeshCycle;
 pub use recording::{RecordingQuestion, recording};
@@ -82,6 +85,10 @@ pub struct AnswerOptions {
     /// The channel that is drawn and processed, by its name; where there is none of it, the first sensor's, or the vertical
     /// acceleration.
     pub channel: Option<String>,
+    /// The wheel of a gearbox that is looked at, by its name; where there is none of it, the first.
+    pub wheel: Option<String>,
+    /// The mesh of a gearbox that is looked at, likewise.
+    pub mesh: Option<String>,
 }
 
 /// Everything that the page draws of a scenario.

@@ -108,13 +108,15 @@ function framed(text, files) {
 
 /** Answers about the scenario, in order. */
 export class Answers {
-  #newest = new Newest("answer");
+  #newest;
   #busy = null;
   #waiting = null;
   #show;
   #refuse;
 
-  constructor(show, refuse) {
+  /** @param path whom is asked: of a pair, or of a gearbox */
+  constructor(show, refuse, path = "answer") {
+    this.#newest = new Newest(path);
     this.#show = show;
     this.#refuse = refuse;
   }

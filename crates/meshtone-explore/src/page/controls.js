@@ -18,9 +18,9 @@ const LARGE = 1e3;
 const NOMINAL = { speed_profile_hz: "pinion_speed_hz", torque_profile_nm: "brake_torque_nm" };
 const MOST_ROWS = 60;
 
-const words = (key) => key.replace(UNIT_ENDING, "").replaceAll("_", " ");
+export const words = (key) => key.replace(UNIT_ENDING, "").replaceAll("_", " ");
 
-function element(name, attributes = {}, ...children) {
+export function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
     if (key in made && key !== "list") made[key] = value;
@@ -31,12 +31,12 @@ function element(name, attributes = {}, ...children) {
 }
 
 /** What stands at a path of a tree; undefined where nothing does. */
-function at(tree, path) {
+export function at(tree, path) {
   return path.reduce((part, key) => (part === undefined || part === null ? undefined : part[key]), tree);
 }
 
 /** The key of a path, as the program names it. */
-function keyOf(path) {
+export function keyOf(path) {
   return path.reduce((text, part) => (typeof part === "number" ? `${text}[${part}]` : text ? `${text}.${part}` : part), "");
 }
 
@@ -106,7 +106,7 @@ class Slider {
 }
 
 /** One key. */
-class Control {
+export class Control {
   constructor(controls, path, description) {
     // What is shown first takes the place of what stands in the field, also where that has the focus.
     Object.assign(this, { controls, path, description, isAnew: true });

@@ -5,13 +5,19 @@ use axum::http::StatusCode;
 use axum::routing::get;
 
 use super::guard::respond;
+use meshtone::scenario::ScenarioForm;
 
 /// One row a file: its path, its kind, where it lies.
 macro_rules! files {
     ($($path:literal $media_type:literal $file:literal;)+) => {
-        /// The page and its parts.
-        pub(super) fn router() -> Router {
-            Router::new()$(.route($path, get(|| async {
+        /// The page of a scenario and its parts.
+        pub(super) fn router(start: &ScenarioForm) -> Router {
+            let page = match start {
+                ScenarioForm::Gearbox(_) => &include_bytes!("../page/gearbox.html")[..],
+                _ => &include_bytes!("../page/index.html")[..],
+            };
+            let page = move || async move { respond(StatusCode::OK, "text/html; charset=utf-8", page) };
+            Router::new().route("/", get(page))$(.route($path, get(|| async {
                 respond(StatusCode::OK, $media_type, &include_bytes!(concat!("../page/", $file))[..])
             })))+
         }
@@ -19,8 +25,9 @@ macro_rules! files {
 }
 
 files! {
-    "/" "text/html; charset=utf-8" "index.html";
     "/style.css" "text/css; charset=utf-8" "style.css";
+    "/gearbox.js" "text/javascript; charset=utf-8" "gearbox.js";
+    "/train.js" "text/javascript; charset=utf-8" "train.js";
     "/icon.svg" "image/svg+xml" "icon.svg";
     "/main.js" "text/javascript; charset=utf-8" "main.js";
     "/ask.js" "text/javascript; charset=utf-8" "ask.js";

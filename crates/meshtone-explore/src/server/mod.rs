@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use axum::Router;
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
 use meshtone_diagnose::ReferenceStore;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, oneshot};
@@ -41,8 +41,8 @@ pub enum Embedding {
 /// Settings by which the page is served.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServerSettings {
-    /// The scenario that the page opens with.
-    pub scenario: Scenario,
+    /// The scenario that the page opens with: a pair or a gearbox, which have pages of their own.
+    pub scenario: ScenarioForm,
     /// The port; 0 for any that is free.
     pub port: u16,
     /// Whether a notebook may show it.
@@ -65,9 +65,9 @@ pub struct Server {
 #[derive(Debug)]
 struct Shared {
     /// Scenario with which the page opens.
-    start: Scenario,
+    start: ScenarioForm,
     /// The scenario on the page: the last scenario that was answered in full.
-    current: Mutex<Scenario>,
+    current: Mutex<ScenarioForm>,
     /// The newest request of each page.
     latest: NewestRequests,
     /// Room for computations.
@@ -90,10 +90,10 @@ impl Server {
     /// The port cannot be had; no random numbers for the address; no thread.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{Scenario, ScenarioForm};
     /// use meshtone_explore::{Embedding, Server, ServerSettings, presets};
     ///
-    /// let scenario = Scenario::from_toml(presets()[0].toml)?;
+    /// let scenario = ScenarioForm::Pair(Scenario::from_toml(presets()[0].toml)?);
     /// let settings =
     ///     ServerSettings { scenario: scenario.clone(), port: 0, embedding: Embedding::Refused, reference: None };
     /// let server = Server::start(settings)?;
@@ -117,7 +117,7 @@ impl Server {
             reference: reference.map(ReferenceStore::new),
         });
         let guard = Guard::new(address.port(), &token, embedding);
-        let router = guard.protect(requests::router(Arc::clone(&shared)).merge(files::router()));
+        let router = guard.protect(requests::router(Arc::clone(&shared)).merge(files::router(&shared.start)));
         // What needs the runtime is made before the thread, so that its failure is reported.
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
@@ -143,7 +143,7 @@ impl Server {
     }
 
     /// The scenario on the page: the last scenario that it was answered in full, or the one that it opens with.
-    pub fn scenario(&self) -> Scenario {
+    pub fn scenario(&self) -> ScenarioForm {
         self.shared.current.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 

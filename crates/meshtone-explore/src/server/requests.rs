@@ -8,7 +8,7 @@ use axum::extract::{DefaultBodyLimit, Path, State as Shares};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{Scenario, ScenarioForm};
 use meshtone_diagnose::ReferenceStore;
 use serde_json::{Map, Value, json};
 
@@ -17,10 +17,10 @@ use super::diagnosis::of_diagnosis;
 use super::guard::respond;
 use super::latest::RequestTurn;
 use crate::answer::{
-    AnswerOptions, Detail, HealthyIndicators, RecordingQuestion, State, answer, healthy_indicators,
-    healthy_json, recording, severity_curve,
+    AnswerOptions, Detail, HealthyIndicators, RecordingQuestion, State, answer, gearbox_answer,
+    gearbox_sections_json, healthy_indicators, healthy_json, recording, severity_curve,
 };
-use crate::controls::controls;
+use crate::controls::{controls, gearbox_controls};
 use crate::export::{export, without_defaults};
 use crate::question;
 use crate::refusal::Refusal;
@@ -45,6 +45,7 @@ pub(super) fn router(shared: Arc<Shared>) -> Router {
     Router::new()
         .route("/start", get(start))
         .route("/answer", post(of_answer))
+        .route("/gearbox", post(of_gearbox))
         .route("/healthy", post(of_healthy))
         .route("/severity", post(of_severity))
         .route("/export/{form}", post(of_export))
@@ -75,11 +76,17 @@ impl AskedRequest {
             .map_err(|error| Refusal::unfit(format!("the request is not understood: {error}")))?;
         let text = |name: &str| fields.get(name).and_then(Value::as_str);
         let number = |name: &str| fields.get(name).and_then(Value::as_u64).unwrap_or(0);
+        let named = |name: &str| text(name).map(str::to_owned);
         let detail = if text("detail") == Some("coarse") { Detail::Coarse } else { Detail::Full };
         Ok(Self {
             page: text("page").unwrap_or_default().to_owned(),
             number: number("number"),
-            options: AnswerOptions { detail, channel: text("channel").map(str::to_owned) },
+            options: AnswerOptions {
+                detail,
+                channel: named("channel"),
+                wheel: named("wheel"),
+                mesh: named("mesh"),
+            },
             fault: usize::try_from(number("fault")).unwrap_or(usize::MAX),
             fields,
         })
@@ -98,6 +105,20 @@ async fn compute<T: Send + 'static>(
     body: &[u8],
     work: impl FnOnce(&AskedRequest, &Scenario, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
+    compute_of(shared, purpose, body, question::scenario, work).await
+}
+
+/// Does what [`compute`] does, of a scenario of any form.
+///
+/// # Arguments
+/// * `read` - reads the scenario of a request
+async fn compute_of<S: 'static, T: Send + 'static>(
+    shared: &Arc<Shared>,
+    purpose: &str,
+    body: &[u8],
+    read: impl FnOnce(&Value) -> Result<S, Refusal> + Send + 'static,
+    work: impl FnOnce(&AskedRequest, &S, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
+) -> Result<T, Refusal> {
     let asked = AskedRequest::of(body)?;
     let turn = shared.latest.note(&format!("{purpose} {}", asked.page), asked.number);
     let _abandoned = turn.abandoned_on_drop();
@@ -110,7 +131,7 @@ async fn compute<T: Send + 'static>(
     }
     let worked = tokio::task::spawn_blocking(move || {
         let _permit = permit;
-        let worked = question::scenario(&asked.fields).and_then(|scenario| work(&asked, &scenario, &turn));
+        let worked = read(&asked.fields).and_then(|scenario| work(&asked, &scenario, &turn));
         worked.map_err(|refusal| if turn.is_late() { too_long() } else { refusal })
     });
     worked.await.map_err(|_| failed("broke off"))?
@@ -124,10 +145,20 @@ fn too_long() -> Refusal {
 
 /// Answers with what the page is made from, and the scenario with which it opens.
 async fn start(Shares(shared): Shares<Arc<Shared>>) -> Response {
-    let mut said = controls();
-    said["scenario"] = Value::Object(without_defaults(&shared.start));
-    said["records"] =
-        json!([ReferenceStore::BATCH, ReferenceStore::USUAL_RECORDS, ReferenceStore::MOST_RECORDS]);
+    let said = match &shared.start {
+        ScenarioForm::Gearbox(gearbox) => {
+            let mut said = gearbox_controls();
+            said["scenario"] = gearbox_sections_json(gearbox);
+            said
+        }
+        ScenarioForm::Pair(pair) => {
+            let mut said = controls();
+            said["scenario"] = Value::Object(without_defaults(pair));
+            said["records"] =
+                json!([ReferenceStore::BATCH, ReferenceStore::USUAL_RECORDS, ReferenceStore::MOST_RECORDS]);
+            said
+        }
+    };
     respond(StatusCode::OK, JSON, said.to_string())
 }
 
@@ -137,7 +168,8 @@ async fn of_answer(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<R
     let bytes = compute(&shared, "answer", &body, move |asked, scenario, turn| {
         let state = answer(scenario, &asked.options, &|| turn.is_wanted())?;
         if asked.options.detail == Detail::Full {
-            sharing.current.lock().unwrap_or_else(PoisonError::into_inner).clone_from(scenario);
+            *sharing.current.lock().unwrap_or_else(PoisonError::into_inner) =
+                ScenarioForm::Pair(scenario.clone());
         }
         let mut more = Map::from_iter([
             ("number".to_owned(), asked.number.into()),
@@ -147,6 +179,20 @@ async fn of_answer(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<R
             more.insert("healthy".to_owned(), healthy_json(&healthy));
         }
         Ok(state.packet(more))
+    });
+    Ok(respond(StatusCode::OK, PACKET, bytes.await?))
+}
+
+/// Everything that is drawn of a gearbox.
+async fn of_gearbox(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+    let sharing = Arc::clone(&shared);
+    let bytes = compute_of(&shared, "answer", &body, question::gearbox, move |asked, gearbox, turn| {
+        let state = gearbox_answer(gearbox, &asked.options, &|| turn.is_wanted())?;
+        if asked.options.detail == Detail::Full {
+            let form = ScenarioForm::Gearbox(gearbox.clone());
+            *sharing.current.lock().unwrap_or_else(PoisonError::into_inner) = form;
+        }
+        Ok(state.packet(Map::from_iter([("number".to_owned(), asked.number.into())])))
     });
     Ok(respond(StatusCode::OK, PACKET, bytes.await?))
 }

@@ -28,7 +28,12 @@ fn server() -> Server {
 }
 
 fn server_with(reference: Option<PathBuf>) -> Server {
-    let settings = ServerSettings { scenario: fast(), port: 0, embedding: Embedding::Refused, reference };
+    let settings = ServerSettings {
+        scenario: ScenarioForm::Pair(fast()),
+        port: 0,
+        embedding: Embedding::Refused,
+        reference,
+    };
     Server::start(settings).unwrap()
 }
 
@@ -120,11 +125,11 @@ fn an_answer_has_all_that_is_drawn() {
     assert!(numbers > 1000);
     // It is its own healthy gear.
     assert_eq!(said["healthy"][1], said["wheels"][1]["indicators"]);
-    assert_eq!(server.scenario(), scenario);
+    assert_eq!(server.scenario(), ScenarioForm::Pair(scenario.clone()));
     let coarse = json!({ "page": "one", "number": 2, "detail": "coarse", "scenario": fast() });
     let (said, _) = server.post("answer", &coarse).packet();
     assert!(said["wheels"][1]["revolutions"].as_u64() <= Some(3));
-    assert_eq!(server.scenario(), scenario);
+    assert_eq!(server.scenario(), ScenarioForm::Pair(scenario.clone()));
 }
 
 #[test]

@@ -166,8 +166,8 @@ impl Gearbox {
     pub(crate) fn refused_as_pair() -> ScenarioError {
         let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
         ScenarioError::new("mesh", "", problem).with_help(
-            "`meshtone simulate`, `indicators`, `path`, `diagnose` and data sets take gearboxes; the models published and linear, tuning \
-             and the page know one pair",
+            "`meshtone simulate`, `indicators`, `path`, `diagnose`, `explore` and data sets take gearboxes; the models published and linear, \
+             and tuning, know one pair",
         )
     }
 

@@ -1,0 +1,225 @@
+//! From a gearbox to everything that its page draws.
+
+use meshtone::scenario::{Gearbox, ScenarioForm, ScenarioWarning};
+use meshtone::signal::{AngularSettings, GearTrain, TrainRecording, TrainTurning, revolution_average};
+use meshtone::{GearboxSimulation, StepJudgement};
+use serde_json::{Map, Value, json};
+
+use super::lines::{Spectrum, SpectrumLine, Tones};
+use super::{AnswerOptions, Detail, wanted};
+use crate::packet::Packet;
+use crate::question::memory_limit;
+use crate::refusal::Refusal;
+
+/// (s) What is kept while a control moves.
+const SHORT_S: f64 = 0.25;
+/// (-) What may be left of the transient then.
+const SHORT_TOLERANCE: f64 = 1e-2;
+/// Mesh harmonics of the fastest mesh up to which the spectrum is sent.
+const SENT_HARMONICS: f64 = 8.0;
+
+/// Everything that the page draws of a gearbox.
+pub struct GearboxState {
+    gearbox: Gearbox,
+    options: AnswerOptions,
+    warnings: Vec<ScenarioWarning>,
+    simulation: GearboxSimulation,
+    /// Number of the signal that is drawn.
+    signal: usize,
+    /// Number of the wheel that is looked at.
+    wheel: usize,
+    /// Number of the mesh that is looked at.
+    mesh: usize,
+}
+
+/// Simulates a gearbox and prepares all that the page draws.
+///
+/// # Arguments
+/// * `gearbox` - what is asked for
+/// * `options` - what of it
+/// * `is_wanted` - whether the answer still is, asked between the stages
+///
+/// # Errors
+/// As [`meshtone::simulate_gearbox`]; a simulation that needs more memory than one for the page may; no longer wanted.
+pub fn gearbox_answer(
+    gearbox: &Gearbox,
+    options: &AnswerOptions,
+    is_wanted: &dyn Fn() -> bool,
+) -> Result<GearboxState, Refusal> {
+    let mut simulated = gearbox.clone();
+    let kept_s = simulated.time_grid().kept_samples() as f64 * simulated.time_grid().step_s();
+    if options.detail == Detail::Coarse && gearbox.operation.is_steady() && kept_s > SHORT_S {
+        let settings = &mut simulated.solver.settings;
+        settings.discard_and_keep(gearbox.time_grid().kept_from_s(), SHORT_S);
+        settings.settle_tolerance = settings.settle_tolerance.max(SHORT_TOLERANCE);
+    }
+    let stages = meshtone::gearbox_stages_within(&simulated, memory_limit())?;
+    wanted(is_wanted)?;
+    let simulation = stages.simulate()?;
+    wanted(is_wanted)?;
+    let mut warnings = simulation.stages.warnings();
+    if options.detail == Detail::Full {
+        warnings.extend(simulation.warnings_of_signals(StepJudgement::Estimated));
+    }
+    let number = |name: Option<&str>, names: Vec<String>| {
+        names.iter().position(|known| Some(known.as_str()) == name).unwrap_or(0)
+    };
+    // At first a damaged wheel.
+    let damaged = gearbox.faults.first().map(|fault| fault.wheel.as_str());
+    let wheel = options.wheel.as_deref().or(damaged);
+    let wheel = number(wheel, gearbox.wheels.iter().map(|wheel| wheel.name.clone()).collect());
+    let of_wheel = simulation.stages.layout.mesh_of(wheel).map(|(mesh, _)| gearbox.meshes[mesh].name());
+    let mesh = options.mesh.as_deref().or(of_wheel.as_deref());
+    let signals = &simulation.channels.signals;
+    Ok(GearboxState {
+        signal: number(
+            options.channel.as_deref(),
+            signals.iter().map(|signal| signal.name.clone()).collect(),
+        ),
+        wheel,
+        mesh: number(mesh, gearbox.meshes.iter().map(|mesh| mesh.name()).collect()),
+        gearbox: gearbox.clone(),
+        options: options.clone(),
+        warnings,
+        simulation,
+    })
+}
+
+/// The sections of a gearbox, as the page sets them.
+///
+/// # Arguments
+/// * `gearbox` - the whole
+pub fn gearbox_sections_json(gearbox: &Gearbox) -> Value {
+    let table: Result<toml::Table, _> = gearbox.to_toml().parse();
+    table.ok().and_then(|table| serde_json::to_value(table).ok()).unwrap_or_default()
+}
+
+impl GearboxState {
+    /// The answer's bytes.
+    ///
+    /// # Arguments
+    /// * `more` - what else is said beside it
+    pub fn packet(&self, more: Map<String, Value>) -> Vec<u8> {
+        let mut packet = Packet::default();
+        let GearboxSimulation { stages, channels, .. } = &self.simulation;
+        let signal = &channels.signals[self.signal];
+        let tones = Tones::of(stages);
+        let spectrum = Spectrum::of(&signal.values, channels.sampling_rate_hz);
+        let lines = if stages.is_steady() { spectrum.lines(&tones) } else { Vec::new() };
+        let highest_hz = tones.meshes.iter().map(|mesh| mesh.frequency_hz).fold(0.0, f64::max);
+        let sent = (SENT_HARMONICS * highest_hz / spectrum.step_hz) as usize;
+        let line = |line: &SpectrumLine| json!([line.frequency_hz, line.amplitude, line.name]);
+        let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
+        let force_name = format!("force_n.{}", self.gearbox.meshes[self.mesh].name());
+        let force = channels.signal(&force_name).unwrap_or_default();
+        let average = self.average(&signal.values);
+        let wheel = &self.gearbox.wheels[self.wheel];
+        let average = average.map(
+            |(values, revolutions)| json!({ "values": packet.array(values), "revolutions": revolutions }),
+        );
+        let mut said = json!({
+            "detail": if self.options.detail == Detail::Full { "full" } else { "coarse" },
+            "toml": self.gearbox.to_toml(),
+            "scenario": gearbox_sections_json(&self.gearbox),
+            "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
+            "figures": self.figures(force, &tones),
+            "train": self.train(&tones),
+            "channels": channels.signals.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
+            "signal": {
+                "name": signal.name,
+                "unit": signal.unit,
+                "sampling_rate_hz": channels.sampling_rate_hz,
+                "start_s": channels.start_s,
+                "values": packet.array(signal.values.iter().copied()),
+            },
+            "spectrum": {
+                "step_hz": spectrum.step_hz,
+                "values": packet.array(spectrum.amplitudes.iter().copied().take(sent.max(2))),
+            },
+            "lines": lines.iter().map(line).collect::<Vec<_>>(),
+            "wheel": { "name": wheel.name, "teeth": wheel.teeth, "average": average },
+            "mesh": { "name": self.gearbox.meshes[self.mesh].name(), "force": packet.array(force.iter().copied()) },
+        });
+        if let Value::Object(entries) = &mut said {
+            entries.extend(more);
+        }
+        packet.bytes(&said)
+    }
+
+    /// The average of a signal over the revolutions of the wheel that is looked at, and the number of revolutions; none where there is not
+    /// one.
+    fn average(&self, signal: &[f64]) -> Option<(Vec<f64>, usize)> {
+        let GearboxSimulation { stages, channels, .. } = &self.simulation;
+        let train = GearTrain::of_layout(&self.gearbox, &stages.layout);
+        let form = ScenarioForm::Gearbox(self.gearbox.clone());
+        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len()).ok()?;
+        let sampling_rate_hz = channels.sampling_rate_hz;
+        let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+        let angular = recording.angular(self.wheel, &AngularSettings::default()).ok()?;
+        let revolutions = angular.revolutions();
+        let average = revolution_average(&angular.values, angular.points_per_revolution);
+        (revolutions > 0).then_some((average, revolutions))
+    }
+
+    /// Key figures of the train and of the mesh that is looked at: what, value, unit.
+    fn figures(&self, force_n: &[f64], tones: &Tones) -> Vec<(String, f64, &'static str)> {
+        let stages = &self.simulation.stages;
+        let (pair, mesh) = (&stages.pairs[self.mesh], &stages.meshes[self.mesh]);
+        let name = &tones.meshes[self.mesh].name;
+        let largest_n = force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let apart =
+            force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64;
+        let of_mesh = |what: &str| format!("{what} of {name}");
+        vec![
+            (of_mesh("mesh frequency"), tones.meshes[self.mesh].frequency_hz, "Hz"),
+            (of_mesh("contact ratio"), pair.teeth.path.contact_ratio, ""),
+            (of_mesh("mean stiffness"), mesh.mean_stiffness_n_per_m * 1e-3, "N/mm"),
+            (of_mesh("static force"), pair.static_force_n, "N"),
+            (of_mesh("largest force"), largest_n, "N"),
+            (of_mesh("teeth apart"), 100.0 * apart, "% of the time"),
+            (
+                "the train repeats after".to_owned(),
+                stages.layout.cycle_revolutions() as f64,
+                "revolutions of the input",
+            ),
+            ("sampling rate".to_owned(), self.simulation.channels.sampling_rate_hz, "S/s"),
+        ]
+    }
+
+    /// The train, as it stands: axes, circles, faces.
+    fn train(&self, tones: &Tones) -> Value {
+        let (gearbox, layout) = (&self.gearbox, &self.simulation.stages.layout);
+        let shaft = |(number, shaft): (usize, &meshtone::scenario::GearboxShaft)| {
+            json!({
+                "name": shaft.name,
+                "x_mm": layout.positions_m[number][0] * 1e3,
+                "y_mm": layout.positions_m[number][1] * 1e3,
+                "length_mm": shaft.length_mm,
+                "radius_mm": shaft.radius_at_mm(0.5),
+                "speed_hz": tones.shafts[number].1,
+                "sense": layout.ratios[number].value().signum(),
+            })
+        };
+        let wheel = |(number, wheel): (usize, &meshtone::scenario::GearboxWheel)| {
+            let of = layout.shaft_of_wheel[number];
+            let module_mm = layout.mesh_of(number).map_or(f64::NAN, |(mesh, _)| layout.gears[mesh].module_mm);
+            json!({
+                "name": wheel.name,
+                "shaft": of,
+                "z_mm": wheel.at * gearbox.shafts[of].length_mm,
+                "pitch_radius_mm": module_mm * f64::from(wheel.teeth) / 2.0,
+                "face_width_mm": wheel.face_width_mm,
+                "teeth": wheel.teeth,
+                "damaged": gearbox.faults.iter().any(|fault| fault.wheel == wheel.name),
+            })
+        };
+        let mesh = |(number, mesh): (usize, &super::lines::MeshTone)| json!({ "name": mesh.name, "wheels": layout.wheels_of_mesh[number], "frequency_hz": mesh.frequency_hz });
+        let bearing = |(bearing, &shaft): (&meshtone::scenario::Bearing, &usize)| json!({ "shaft": shaft, "z_mm": bearing.at * gearbox.shafts[shaft].length_mm });
+        json!({
+            "shafts": gearbox.shafts.iter().enumerate().map(shaft).collect::<Vec<_>>(),
+            "wheels": gearbox.wheels.iter().enumerate().map(wheel).collect::<Vec<_>>(),
+            "meshes": tones.meshes.iter().enumerate().map(mesh).collect::<Vec<_>>(),
+            "bearings": gearbox.bearings.iter().zip(&layout.shaft_of_bearing).map(bearing).collect::<Vec<_>>(),
+        })
+    }
+}

@@ -1,0 +1,211 @@
+//! What the lines of a gearbox's spectrum are: harmonics of which mesh, sidebands of which shaft.
+
+use std::f64::consts::TAU;
+
+use meshtone::GearboxStages;
+use meshtone_fourier::real_spectrum;
+
+/// Lines of a spectrum that are named: the strongest.
+const MOST_LINES: usize = 24;
+/// Multiples of a shaft's rotation by which a line is named instead of a mesh.
+const MOST_TURNS: f64 = 5.0;
+/// (lines of the spectrum) How far a line may be from what it is named after.
+const TOLERANCE: f64 = 1.0;
+
+/// The spectrum of a signal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// (Hz) From one value to the next.
+    pub step_hz: f64,
+    /// Amplitudes, in the signal's unit.
+    pub amplitudes: Vec<f64>,
+}
+
+/// A line of a spectrum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectrumLine {
+    /// (Hz) Its frequency.
+    pub frequency_hz: f64,
+    /// Its amplitude, in the signal's unit.
+    pub amplitude: f64,
+    /// What it is, such as `2 × mesh z1-z2 − 1 × shaft middle`.
+    pub name: String,
+}
+
+/// A mesh as far as the lines depend on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshTone {
+    /// Its name.
+    pub name: String,
+    /// (Hz) Its frequency.
+    pub frequency_hz: f64,
+    /// Numbers of the shafts of its wheels.
+    pub shafts: [usize; 2],
+}
+
+/// The tones of a train: of its meshes, and names and (Hz) rotations of its shafts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tones {
+    /// The meshes.
+    pub meshes: Vec<MeshTone>,
+    /// The shafts.
+    pub shafts: Vec<(String, f64)>,
+}
+
+impl Spectrum {
+    /// The amplitudes of a signal, through a Hann window.
+    ///
+    /// # Arguments
+    /// * `signal` - its samples
+    /// * `sampling_rate_hz` - (S/s) their rate
+    pub fn of(signal: &[f64], sampling_rate_hz: f64) -> Self {
+        let count = signal.len().max(1) as f64;
+        let mean = signal.iter().sum::<f64>() / count;
+        let window = |i: usize| 1.0 - (TAU * i as f64 / count).cos();
+        let windowed: Vec<f64> =
+            signal.iter().enumerate().map(|(i, value)| (value - mean) * window(i)).collect();
+        let amplitudes = real_spectrum(&windowed).iter().map(|line| 2.0 * line.norm() / count).collect();
+        Self { step_hz: sampling_rate_hz / count, amplitudes }
+    }
+
+    /// The strongest lines by their frequencies, each with its name.
+    ///
+    /// # Arguments
+    /// * `tones` - of the train
+    pub fn lines(&self, tones: &Tones) -> Vec<SpectrumLine> {
+        let values = &self.amplitudes;
+        // A window's own line is as wide as four values.
+        let is_peak = |&i: &usize| {
+            let around = &values[i.saturating_sub(2)..(i + 3).min(values.len())];
+            around.iter().all(|value| *value <= values[i]) && values[i] > 0.0
+        };
+        let mut peaks: Vec<usize> = (2..values.len()).filter(is_peak).collect();
+        peaks.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
+        peaks.truncate(MOST_LINES);
+        peaks.sort_unstable();
+        let line = |i: usize| {
+            let frequency_hz = i as f64 * self.step_hz;
+            let name = tones.name(frequency_hz, TOLERANCE * self.step_hz);
+            SpectrumLine { frequency_hz, amplitude: values[i], name }
+        };
+        peaks.into_iter().map(line).collect()
+    }
+}
+
+impl Tones {
+    /// The tones of a gearbox at its nominal speed.
+    pub fn of(stages: &GearboxStages) -> Self {
+        let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+        let input_hz = gearbox.operation.drive.pinion_speed_hz;
+        let speed_hz = |shaft: usize| layout.ratios[shaft].value().abs() * input_hz;
+        let mesh = |(number, mesh): (usize, &meshtone::scenario::GearboxMesh)| {
+            let [driving, driven] = layout.wheels_of_mesh[number];
+            let shafts = [driving, driven].map(|wheel| layout.shaft_of_wheel[wheel]);
+            let frequency_hz = f64::from(gearbox.wheels[driving].teeth) * speed_hz(shafts[0]);
+            MeshTone { name: mesh.name(), frequency_hz, shafts }
+        };
+        let shafts = gearbox.shafts.iter().enumerate();
+        Self {
+            meshes: gearbox.meshes.iter().enumerate().map(mesh).collect(),
+            shafts: shafts.map(|(number, shaft)| (shaft.name.clone(), speed_hz(number))).collect(),
+        }
+    }
+
+    /// What a frequency is: the mesh harmonics that it is nearest to, counted in sidebands of their wheels' shafts; else a multiple of a
+    /// shaft's rotation; else neither.
+    ///
+    /// # Arguments
+    /// * `frequency_hz` - (Hz) of a line
+    /// * `tolerance_hz` - (Hz) how far it may be beside what it is named after
+    pub fn name(&self, frequency_hz: f64, tolerance_hz: f64) -> String {
+        let mut found: Vec<(i64, String)> = Vec::new();
+        for mesh in &self.meshes {
+            let nearest = (frequency_hz / mesh.frequency_hz).round().max(1.0);
+            let beside = frequency_hz - nearest * mesh.frequency_hz;
+            let harmonic = format!("{nearest} × mesh {}", mesh.name);
+            if beside.abs() <= tolerance_hz {
+                found.push((0, harmonic));
+                continue;
+            }
+            for shaft in mesh.shafts {
+                let (name, speed_hz) = &self.shafts[shaft];
+                let count = (beside / speed_hz).round();
+                let is_near = (beside - count * speed_hz).abs() <= tolerance_hz;
+                if count != 0.0 && is_near {
+                    let sign = if count > 0.0 { '+' } else { '−' };
+                    found.push((
+                        count.abs() as i64,
+                        format!("{harmonic} {sign} {} × shaft {name}", count.abs()),
+                    ));
+                }
+            }
+        }
+        for (name, speed_hz) in &self.shafts {
+            let count = (frequency_hz / speed_hz).round();
+            let is_near = (frequency_hz - count * speed_hz).abs() <= tolerance_hz;
+            if count >= 1.0 && is_near && count <= MOST_TURNS {
+                found.push((count as i64, format!("{count} × shaft {name}")));
+            }
+        }
+        let Some(fewest) = found.iter().map(|(count, _)| *count).min() else {
+            return "no sideband of a shaft: a mode that rings, or two teeth that meet again only later"
+                .to_owned();
+        };
+        let mut names: Vec<String> =
+            found.into_iter().filter(|(count, _)| *count == fewest).map(|(_, name)| name).collect();
+        names.dedup();
+        names.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tones() -> Tones {
+        let mesh =
+            |name: &str, frequency_hz, shafts| MeshTone { name: name.to_owned(), frequency_hz, shafts };
+        let shafts = [("input", 30.0), ("middle", 10.0), ("output", 6.0)];
+        Tones {
+            meshes: vec![mesh("z1-z2", 960.0, [0, 1]), mesh("z3-z4", 480.0, [1, 2])],
+            shafts: shafts.map(|(name, speed_hz)| (name.to_owned(), speed_hz)).to_vec(),
+        }
+    }
+
+    #[test]
+    fn every_kind_of_line_has_its_name() {
+        for (frequency_hz, name) in [
+            (480.0, "1 × mesh z3-z4"),
+            (960.0, "1 × mesh z1-z2, 2 × mesh z3-z4"),
+            (990.0, "1 × mesh z1-z2 + 1 × shaft input"),
+            (950.0, "1 × mesh z1-z2 − 1 × shaft middle, 2 × mesh z3-z4 − 1 × shaft middle"),
+            (486.3, "1 × mesh z3-z4 + 1 × shaft output"),
+            (1434.0, "3 × mesh z3-z4 − 1 × shaft output"),
+            (30.0, "1 × shaft input"),
+        ] {
+            assert_eq!(tones().name(frequency_hz, 0.5), name, "{frequency_hz}");
+        }
+        // Sidebands reach as far as half way to the next harmonic.
+        assert_eq!(tones().name(700.0, 0.5), "1 × mesh z3-z4 + 22 × shaft middle");
+        assert!(tones().name(703.0, 0.5).starts_with("no sideband"));
+    }
+
+    /// A tone's amplitude is its own, and the lines are those of the tones.
+    #[test]
+    fn lines_are_found_with_their_amplitudes() {
+        let rate_hz = 10_000.0;
+        let tone = |i: usize, hz: f64| (TAU * hz * i as f64 / rate_hz).sin();
+        let signal: Vec<f64> =
+            (0..10_000).map(|i| 2.0 * tone(i, 960.0) + 0.5 * tone(i, 990.0) + 0.25 * tone(i, 6.0)).collect();
+        let lines = Spectrum::of(&signal, rate_hz).lines(&tones());
+        let strong: Vec<_> = lines.iter().filter(|line| line.amplitude > 0.01).collect();
+        assert_eq!(strong.len(), 3);
+        for (line, (hz, amplitude)) in strong.iter().zip([(6.0, 0.25), (960.0, 2.0), (990.0, 0.5)]) {
+            assert!(
+                (line.frequency_hz - hz).abs() < 1e-9 && (line.amplitude - amplitude).abs() < 1e-3,
+                "{line:?}"
+            );
+        }
+        assert_eq!(strong[0].name, "1 × shaft output");
+    }
+}

@@ -1,0 +1,304 @@
+// The page of a gearbox: controls ask, the program answers, train, signal and spectrum show.
+
+import { Answers, Newest, Refusal, start, unpacked } from "./ask.js";
+import { Control, at, element, keyOf, words } from "./controls.js";
+import { Plot, forgetColours, line, shown } from "./plots.js";
+import { Train } from "./train.js";
+
+const byId = (id) => document.getElementById(id);
+/** Sections in the order in which they are shown. */
+const SECTIONS = [["operation", "Operation", true], ["fault", "Damage", true], ["wheel", "Wheels"], ["mesh", "Meshes"], ["shaft", "Shafts"],
+  ["bearing", "Bearings"], ["housing", "Housing"], ["sensor", "Sensors"], ["solver", "Solver"], ["", "Seed and material"]];
+const LISTS = ["shaft", "wheel", "mesh", "bearing", "fault", "sensor"];
+/** Kinds of keys that have a control; the rest is in the scenario as text. */
+const SHOWN_KINDS = ["number", "whole", "name", "text", "teeth"];
+/** Revolutions of the input that are seen of a signal at first. */
+const SEEN_REVOLUTIONS = 3;
+
+/** For tests and measurements: how many pictures were drawn. */
+window.meshtone = { drawn: 0, coarse: 0, last: null };
+
+let chosen = { channel: null, wheel: null, mesh: null };
+let now = null;
+
+class GearboxControls {
+  #form;
+  #catalogue;
+  #changed;
+  #controls = new Map();
+  #open = new Map();
+  #shape = "";
+  #refused = null;
+  tree = {};
+
+  constructor(form, catalogue, changed) {
+    [this.#form, this.#catalogue, this.#changed] = [form, catalogue, changed];
+    form.addEventListener("submit", (event) => event.preventDefault());
+  }
+
+  open(tree) {
+    this.tree = structuredClone(tree);
+    LISTS.forEach((list) => { this.tree[list] = [this.tree[list] ?? []].flat(); });
+    this.#shape = "";
+  }
+
+  /** What is sent: lists that are empty are left out. */
+  get scenario() {
+    return Object.fromEntries(Object.entries(this.tree).filter(([, value]) => !Array.isArray(value) || value.length));
+  }
+
+  set(path, value, detail) {
+    if (typeof path[1] === "number" && !this.tree[path[0]][path[1]]) return;
+    let part = this.tree;
+    for (const key of path.slice(0, -1)) part = part[key] ??= {};
+    const last = path.at(-1);
+    if (value === undefined) delete part[last];
+    else part[last] = value;
+    this.#changed(detail);
+  }
+
+  show(full) {
+    const entries = (list) => [full[list] ?? []].flat();
+    const shape = JSON.stringify(LISTS.map((list) => entries(list).map(({ name, kind, wheels, severity }) => [name, kind, wheels, severity === undefined])));
+    const listed = { ...full, ...Object.fromEntries(LISTS.map((list) => [list, entries(list)])) };
+    if (shape !== this.#shape) this.#build(listed);
+    this.#shape = shape;
+    for (const control of this.#controls.values()) control.show(at(listed, control.path), "contact");
+    this.refuse(null);
+  }
+
+  refuse(details) {
+    this.#refused?.refuse(null);
+    this.#refused = null;
+    if (!details?.key) return;
+    const [list] = details.key.split(/[.[]/);
+    const key = LISTS.includes(list) && !details.key.startsWith(`${list}[`) ? details.key.replace(list, `${list}[0]`) : details.key;
+    this.#refused = this.#controls.get(key);
+    this.#refused?.refuse([details.problem, details.help].filter(Boolean).join("; "));
+    for (let around = this.#refused?.row.closest("details"); around; around = around.parentElement.closest("details")) around.open = true;
+  }
+
+  #build(full) {
+    const focused = document.activeElement?.id;
+    this.#controls.clear();
+    this.#form.replaceChildren(...SECTIONS.map(([name, title, isOpen]) => {
+      const keys = this.#catalogue.sections.find((section) => section.name === name).keys;
+      const group = this.#group(name, title, isOpen);
+      if (name === "fault") group.append(...this.#faults(full, keys));
+      else if (LISTS.includes(name)) group.append(...full[name].map((entry, index) => this.#entry(name, index, entry, keys)));
+      else if (name === "housing" && !full.housing) group.append(element("p", { className: "note" }, "none: the bearings' seats stand on the ground"));
+      else group.append(...this.#fields(name ? [name] : [], keys));
+      return group;
+    }));
+    if (focused) byId(focused)?.focus();
+  }
+
+  /** A group that stays open or closed when it is built anew. */
+  #group(name, title, isOpen = false) {
+    const group = element("details", { className: "group", open: this.#open.get(name) ?? isOpen }, element("summary", {}, title));
+    group.addEventListener("toggle", () => this.#open.set(name, group.open));
+    return group;
+  }
+
+  #entry(list, index, entry, keys) {
+    const title = entry.name ?? entry.wheels?.join("–") ?? (entry.shaft ? `${entry.shaft} at ${entry.at}` : entry.at);
+    const group = this.#group(`${list}[${index}]`, title);
+    group.append(...this.#fields([list, index], keys));
+    return group;
+  }
+
+  #fields(base, keys) {
+    const tables = new Map();
+    const fields = [];
+    for (const description of keys) {
+      const [table, ...inside] = description.key.split(".");
+      if (description.kind === "table") tables.set(table, element("fieldset", { title: description.meaning }, element("legend", {}, words(table))));
+      // What is inside a list of tables is in the scenario as text.
+      if (!SHOWN_KINDS.includes(description.kind) || (inside.length && !tables.has(table))) continue;
+      const control = new Control(this, [...base, ...description.key.split(".")], description);
+      this.#controls.set(keyOf(control.path), control);
+      if (!inside.length) fields.push(control.row);
+      else if (tables.get(table).append(control.row), !fields.includes(tables.get(table))) fields.push(tables.get(table));
+    }
+    return fields;
+  }
+
+  #faults(full, places) {
+    const choice = (label, names, value, set) => {
+      const select = element("select", { "aria-label": label }, ...names.map((name) => element("option", { value: name, selected: name === value }, name)));
+      select.addEventListener("change", () => set(select.value));
+      return select;
+    };
+    const wheels = full.wheel.map(({ name }) => name);
+    const kinds = this.#catalogue.kinds.map(({ name }) => name);
+    const kindOf = (name) => this.#catalogue.kinds.find((kind) => kind.name === name);
+    const example = (wheel, kind) => ({ wheel, kind, tooth: kindOf(kind).example.tooth ?? 1, ...(kindOf(kind).sizes.length ? { severity: 0.5 } : {}) });
+    const put = (index, fault) => {
+      this.tree.fault.splice(index, 1, ...(fault ? [fault] : []));
+      this.#changed("full");
+    };
+    const sets = full.fault.map((fault, index) => {
+      const kind = kindOf(fault.kind);
+      const remove = element("button", { type: "button", "aria-label": `Remove damage ${index + 1}` }, "Remove");
+      remove.addEventListener("click", () => put(index, null));
+      const ofKind = fault.severity === undefined ? kind.keys : [];
+      const keys = [...places.filter(({ key }) => key === "tooth" || (key === "severity" && fault.severity !== undefined)), ...ofKind];
+      return element("fieldset", {}, element("legend", {}, `Damage ${index + 1}`), element("div", { className: "row" },
+        choice(`Wheel of damage ${index + 1}`, wheels, fault.wheel, (wheel) => this.set(["fault", index, "wheel"], wheel, "full")),
+        choice(`Kind of damage ${index + 1}`, kinds, fault.kind, (name) => put(index, example(fault.wheel, name))), remove),
+        element("p", { className: "note" }, kind.summary), ...this.#fields(["fault", index], keys));
+    });
+    const added = choice("Kind of damage to add", kinds, kinds[0], () => {});
+    const add = element("button", { type: "button", id: "add-fault" }, "Add damage");
+    add.addEventListener("click", () => {
+      this.tree.fault.push(example(chosen.wheel ?? wheels[0], added.value));
+      this.#changed("full");
+    });
+    return [...sets, element("div", { className: "row" }, added, add)];
+  }
+}
+
+function status(text) {
+  byId("status").textContent = text;
+}
+
+function showProblem(error) {
+  byId("problem").hidden = !error;
+  byId("views").classList.toggle("stale", Boolean(error));
+  if (!error) return;
+  if (!(error instanceof Refusal)) throw error;
+  controls.refuse(error.details);
+  byId("problem").textContent = [error.details.text, error.details.help].filter(Boolean).join("; ");
+  status("not computed");
+}
+
+const plot = (id, options) => new Plot(byId(id), options);
+const plots = {
+  waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "g" }),
+  spectrum: plot("spectrum", { title: "Spectrum: harmonics of the mesh that is looked at dashed", x: "frequency (Hz)", y: "g" }),
+  average: plot("average", { title: "Average of the signal", x: "angle (°)", y: "g" }),
+  force: plot("force", { title: "Force", x: "time (s)", y: "N" }),
+};
+const train = new Train(byId("front"), byId("above"), (wheel) => look({ wheel }), (mesh) => look({ mesh }));
+
+/** Looks at another channel, wheel or mesh. */
+function look(other) {
+  chosen = { ...chosen, ...other };
+  change("full");
+}
+
+function select(id, names, value) {
+  const box = byId(id);
+  if ([...box.options].map(({ value: name }) => name).join() !== names.join()) box.replaceChildren(...names.map((name) => new Option(name, name)));
+  box.value = value;
+}
+
+function drawSpectrum({ signal, spectrum, lines, train: { meshes }, mesh }) {
+  const { frequency_hz: hz } = meshes.find(({ name }) => name === mesh.name);
+  const most = spectrum.step_hz * (spectrum.values.length - 1);
+  const marks = Array.from({ length: Math.floor(most / hz) }, (_, index) => (index + 1) * hz);
+  plots.spectrum.set([line(signal.name, spectrum.values, 0, spectrum.step_hz)], { y: signal.unit, marks, isLog: byId("logarithmic").checked });
+  const head = element("thead", {}, element("tr", {}, ...["line", "frequency, Hz", `amplitude, ${signal.unit}`].map((title) => element("th", { scope: "col" }, title))));
+  const rows = lines.map(([frequency, amplitude, name]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, shown(frequency, 5)), element("td", {}, shown(amplitude, 3))));
+  rows.forEach((row, index) => row.addEventListener("click", () => plots.spectrum.zoom([Math.max(lines[index][0] - 0.3 * hz, 0), lines[index][0] + 0.3 * hz])));
+  byId("lines").replaceChildren(...(rows.length ? [head, element("tbody", {}, ...rows)] : []));
+  byId("lines-note").textContent = rows.length ? `The strongest ${rows.length} lines, each within ${shown(spectrum.step_hz, 3)} Hz of what it is named after. Choose one to see it.`
+    : "Lines have names where speed and load are steady.";
+}
+
+function show(answer, asked) {
+  now = answer;
+  const { signal, wheel, mesh, train: parts } = answer;
+  chosen = { channel: signal.name, wheel: wheel.name, mesh: mesh.name };
+  controls.show(answer.scenario);
+  select("channel", answer.channels, signal.name);
+  select("wheel", parts.wheels.map(({ name }) => name), wheel.name);
+  select("mesh", parts.meshes.map(({ name }) => name), mesh.name);
+  byId("figures").replaceChildren(...answer.figures.map(([name, value, unit]) => element("div", {}, element("dt", {}, name), element("dd", {}, `${shown(value)} ${unit}`))));
+  byId("warnings").replaceChildren(...answer.warnings.map(({ key, message }) => element("li", {}, `${key}: ${message}`)));
+  train.show(parts, wheel.name, mesh.name);
+  const step = 1 / signal.sampling_rate_hz;
+  const seen = [signal.start_s, signal.start_s + Math.min(SEEN_REVOLUTIONS / parts.shafts[0].speed_hz, signal.values.length * step)];
+  plots.waveform.set([line(signal.name, signal.values, signal.start_s, step)], { y: signal.unit, range: seen });
+  drawSpectrum(answer);
+  const { average } = wheel;
+  byId("wheel-title").textContent = `Over a revolution of ${wheel.name}, ${wheel.teeth} teeth`;
+  plots.average.set(average ? [line(signal.name, average.values, 0, 360 / average.values.length)] : [],
+    { y: signal.unit, title: average ? `Average over ${average.revolutions} revolutions` : "Average", empty: "needs a steady speed and a whole revolution" });
+  byId("mesh-title").textContent = `Force of mesh ${mesh.name}`;
+  plots.force.set([line(mesh.name, mesh.force, signal.start_s, step, "second")], { range: seen });
+  if (document.activeElement !== byId("toml")) byId("toml").value = answer.toml;
+  const isFull = answer.detail === "full";
+  status(`${shown(performance.now() - asked, 3)} ms${isFull ? "" : ", a quarter of a second"}`);
+  showProblem(null);
+  window.meshtone.drawn += isFull ? 1 : 0;
+  window.meshtone.coarse += isFull ? 0 : 1;
+  window.meshtone.last = { asked, detail: answer.detail };
+  document.dispatchEvent(new CustomEvent("drawn", { detail: answer.detail }));
+}
+
+function change(detail) {
+  status(detail === "coarse" ? "…" : "computing…");
+  answers.ask({ scenario: controls.scenario, detail, ...chosen });
+}
+
+/** Opens a scenario by its file's text. @returns the refusal, where there is one */
+async function openText(toml) {
+  const asked = performance.now();
+  try {
+    const buffer = await new Newest("gearbox").ask({ toml, detail: "full", ...chosen });
+    if (!buffer) return null;
+    const answer = unpacked(buffer);
+    answers.forget();
+    controls.open(answer.scenario);
+    show(answer, asked);
+    return null;
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return error.details;
+  }
+}
+
+async function take(file) {
+  if (!file) return;
+  const refused = await openText(await file.text());
+  if (refused) showProblem(new Refusal({ ...refused, text: `${file.name}: ${refused.text}`, key: null }));
+}
+
+function setTheme(theme) {
+  document.documentElement.dataset.theme = theme;
+  forgetColours();
+  Object.values(plots).forEach((drawn) => drawn.repaint());
+}
+
+function listen() {
+  for (const name of ["channel", "wheel", "mesh"]) byId(name).addEventListener("change", ({ target }) => look({ [name]: target.value }));
+  byId("logarithmic").addEventListener("change", () => now && drawSpectrum(now));
+  byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+  byId("file").addEventListener("change", ({ target }) => take(target.files[0]));
+  byId("file").parentElement.addEventListener("keydown", ({ key }) => ["Enter", " "].includes(key) && byId("file").click());
+  byId("toml-export").addEventListener("click", () => {
+    const url = URL.createObjectURL(new Blob([now?.toml ?? ""], { type: "application/toml" }));
+    Object.assign(document.createElement("a"), { href: url, download: "gearbox.toml" }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+  });
+  byId("apply").addEventListener("click", async () => {
+    const refused = await openText(byId("toml").value);
+    byId("toml-problem").textContent = refused ? [refused.text, refused.help].filter(Boolean).join("; ") : "";
+  });
+  for (const [name, isOver] of [["dragover", true], ["dragleave", false], ["drop", false]]) {
+    document.addEventListener(name, (event) => {
+      event.preventDefault();
+      document.body.classList.toggle("dropping", isOver);
+      if (name === "drop") take(event.dataTransfer.files[0]);
+    });
+  }
+}
+
+setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+const catalogue = await start();
+const controls = new GearboxControls(byId("controls"), catalogue, change);
+const answers = new Answers(show, showProblem, "gearbox");
+listen();
+controls.open(catalogue.scenario);
+change("full");

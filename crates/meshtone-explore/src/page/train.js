@@ -1,0 +1,108 @@
+// The train of a gearbox from the front and from above, in which a wheel or a mesh is chosen.
+
+const SVG = "http://www.w3.org/2000/svg";
+/** Free room around the train, as a part of its size. */
+const ROOM = 0.06;
+
+function made(name, attributes, ...children) {
+  const node = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  node.append(...children);
+  return node;
+}
+
+/** What can be chosen, with pointer and keyboard. */
+function choosable(name, isChosen, label, choose, ...children) {
+  const group = made("g", { class: `${name}${isChosen ? " chosen" : ""}`, role: "button", tabindex: 0, "aria-pressed": isChosen, "aria-label": label }, ...children);
+  group.addEventListener("click", choose);
+  group.addEventListener("keydown", (event) => {
+    if (!["Enter", " "].includes(event.key)) return;
+    event.preventDefault();
+    choose();
+  });
+  return group;
+}
+
+/** Shows shapes as large as they fit. @param corners [x, y] that must be seen */
+function fit(svg, corners, children) {
+  const [xs, ys] = [0, 1].map((axis) => corners.map((corner) => corner[axis]));
+  const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const room = ROOM * Math.max(right - left, bottom - top);
+  svg.setAttribute("viewBox", [left - room, top - room, right - left + 2 * room, bottom - top + 2 * room].join(" "));
+  svg.replaceChildren(...children);
+}
+
+const textAt = (x, y, size, text) => made("text", { x, y, "font-size": size, "text-anchor": "middle", "dominant-baseline": "central" }, text);
+
+export class Train {
+  #front;
+  #above;
+  #chooseWheel;
+  #chooseMesh;
+
+  /** @param chooseWheel, chooseMesh called with a name */
+  constructor(front, above, chooseWheel, chooseMesh) {
+    [this.#front, this.#above, this.#chooseWheel, this.#chooseMesh] = [front, above, chooseWheel, chooseMesh];
+  }
+
+  /** @param train as the program says it; names of the wheel and of the mesh that are looked at */
+  show(train, wheel, mesh) {
+    // What has the focus keeps it: its place is drawn anew.
+    const focused = document.activeElement?.closest?.(".train g")?.getAttribute("aria-label");
+    this.#fromTheFront(train, wheel, mesh);
+    this.#fromAbove(train, wheel);
+    if (focused) [...document.querySelectorAll(".train g")].find((group) => group.getAttribute("aria-label") === focused)?.focus();
+  }
+
+  #fromTheFront({ shafts, wheels, meshes }, chosen, chosenMesh) {
+    const centre = ({ shaft }) => [shafts[shaft].x_mm, -shafts[shaft].y_mm];
+    const size = Math.max(...wheels.map(({ pitch_radius_mm: radius }) => radius));
+    const circles = wheels.map((wheel) => {
+      const { name, teeth, damaged, pitch_radius_mm: radius } = wheel;
+      const [x, y] = centre(wheel);
+      // A dash a tooth.
+      const dash = (Math.PI * radius) / teeth;
+      return choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name}, ${teeth} teeth${damaged ? ", damaged" : ""}`, () => this.#chooseWheel(name),
+        made("circle", { cx: x, cy: y, r: radius, class: "body" }),
+        made("circle", { cx: x, cy: y, r: radius, class: "teeth", "stroke-dasharray": dash, "stroke-width": size * 0.04 }),
+        // Beside a small wheel there is more room than in it.
+        textAt(x, y - (radius < 0.5 * size ? radius + size * 0.1 : radius * 0.72), size * 0.11, `${name} · ${teeth}`));
+    });
+    // Of two wheels on one shaft the smaller is seen before the larger.
+    const order = wheels.map((_, index) => index).sort((a, b) => wheels[b].pitch_radius_mm - wheels[a].pitch_radius_mm);
+    const below = shafts.map((_, number) => Math.max(0, ...wheels.filter(({ shaft }) => shaft === number).map(({ pitch_radius_mm: radius }) => radius)));
+    const axes = shafts.map(({ name, x_mm: x, y_mm: y, radius_mm: radius, speed_hz: speed, sense }, number) => {
+      const arc = radius * 2;
+      const arrow = sense > 0 ? `M ${x + arc} ${-y} A ${arc} ${arc} 0 0 0 ${x} ${-y - arc} l ${arc * 0.35} ${-arc * 0.3} m ${-arc * 0.35} ${arc * 0.3} l ${arc * 0.35} ${arc * 0.3}`
+        : `M ${x - arc} ${-y} A ${arc} ${arc} 0 0 1 ${x} ${-y - arc} l ${-arc * 0.35} ${-arc * 0.3} m ${arc * 0.35} ${arc * 0.3} l ${-arc * 0.35} ${arc * 0.3}`;
+      return made("g", { class: "shaft" }, made("circle", { cx: x, cy: -y, r: radius }), made("path", { d: arrow, class: "turn" }),
+        textAt(x, -y + below[number] + size * 0.13, size * 0.1, `${name} ${Number(speed.toPrecision(4))} Hz`));
+    });
+    const points = meshes.map(({ name, wheels: [a, b], frequency_hz: hz }) => {
+      const [from, to] = [centre(wheels[a]), centre(wheels[b])];
+      const part = wheels[a].pitch_radius_mm / (wheels[a].pitch_radius_mm + wheels[b].pitch_radius_mm);
+      const [x, y] = [0, 1].map((axis) => from[axis] + part * (to[axis] - from[axis]));
+      return choosable("mesh", name === chosenMesh, `mesh ${name}, ${Number(hz.toPrecision(4))} Hz`, () => this.#chooseMesh(name),
+        made("circle", { cx: x, cy: y, r: size * 0.08 }));
+    });
+    const corners = wheels.flatMap((wheel) => [-1, 1].map((sign) => centre(wheel).map((place) => place + sign * (wheel.pitch_radius_mm + size * 0.15))));
+    fit(this.#front, corners, [...order.map((index) => circles[index]), ...axes, ...points]);
+  }
+
+  #fromAbove({ shafts, wheels, bearings }, chosen) {
+    const size = Math.max(...shafts.map(({ length_mm: length }) => length));
+    const lines = shafts.map(({ name, x_mm: x, radius_mm: radius, length_mm: length }) =>
+      made("g", { class: "shaft" }, made("rect", { x: 0, y: x - radius, width: length, height: 2 * radius }), textAt(length / 2, x, size * 0.035, name)));
+    const supports = bearings.map(({ shaft, z_mm: z }) => {
+      const { x_mm: x, radius_mm: radius } = shafts[shaft];
+      return made("rect", { class: "bearing", x: z - radius * 0.5, y: x - radius * 1.6, width: radius, height: radius * 3.2 });
+    });
+    const faces = wheels.map(({ name, shaft, damaged, teeth, z_mm: z, face_width_mm: width, pitch_radius_mm: radius }) => {
+      const x = shafts[shaft].x_mm;
+      return choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name} from above, ${teeth} teeth`, () => this.#chooseWheel(name),
+        made("rect", { class: "body", x: z - width / 2, y: x - radius, width, height: 2 * radius }), textAt(z, x - radius * 0.6, size * 0.045, name));
+    });
+    const corners = [[0, 0], [size, 0], ...wheels.flatMap(({ shaft, pitch_radius_mm: radius }) => [-1, 1].map((sign) => [0, shafts[shaft].x_mm + sign * radius]))];
+    fit(this.#above, corners, [...lines, ...faces, ...supports]);
+  }
+}
