@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{
-    Fault, FrequencyResponse, GearPair, Gearbox, MissingTooth, Profile, Scenario, ScenarioForm, Sensor,
-    ToothBreakage, gearbox_template,
+    Fault, FrequencyResponse, GearPair, Gearbox, GearboxRig, MissingTooth, Profile, Scenario, ScenarioForm,
+    Sensor, ToothBreakage, gearbox_template,
 };
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, SimulatedShafts, resample_to};
 use meshtone::tuning::{
@@ -120,11 +120,13 @@ fn a_hidden_path_is_found_again() {
     }
 }
 
-/// Two stages, as their user knows them; the sensor sits on the intermediate shaft's bearing.
+/// Two stages of 29/100 and 36/90 teeth, as their user knows them; the sensor sits on the input's bearing.
 fn gearbox() -> Gearbox {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(Some(GearboxRig::Tecnalia))).unwrap();
     gearbox.faults.clear();
     gearbox.sensors.truncate(1);
+    gearbox.wheels.iter_mut().for_each(|wheel| (wheel.iso_class, wheel.din_grade) = (6, 0));
+    gearbox.solver.settings.sampling_rate_hz = 1e5;
     gearbox
 }
 
@@ -149,18 +151,20 @@ fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) ->
 fn a_hidden_path_of_a_gearbox_is_found_again() {
     let control = ExperimentControl { progress: &|_, _| {}, cancelled: &AtomicBool::new(false) };
     let (mut held, mut points, mut largest) = (0, 0, Vec::new());
-    for seed in 500..504 {
+    for seed in 500..503 {
         let healthy = recording_of_gearbox(seed, [20.0, 60.0], 10.0);
         let machine = ScenarioForm::Gearbox(gearbox());
         let path = estimate_path(&machine, &[healthy], &PathSettings::default(), &control).unwrap();
-        let (errors, inside) = errors_db(&path, 320.0);
+        let (errors, inside) = errors_db(&path, 209.0);
         let most = errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
         let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
         let level = errors.iter().sum::<f64>() / errors.len() as f64;
         println!("gearbox {seed}: largest {most:.2} dB, rms {rms:.2} dB, level {level:.2} dB");
-        for (at, hz) in path.frequency_hz.iter().enumerate().filter(|(_, hz)| (320.0..1e4).contains(*hz)) {
+        for (at, hz) in path.frequency_hz.iter().enumerate().filter(|(_, hz)| (209.0..1e4).contains(*hz)) {
             let error = path.magnitude_db[at] - 20.0 * hidden(*hz).norm().log10();
-            if (error - level).abs() > 1.5 { print!(" {hz:.0}:{error:.1}"); }
+            if (error - level).abs() > 1.5 {
+                print!(" {hz:.0}:{error:.1}");
+            }
         }
         println!();
         largest.push(most);
