@@ -104,7 +104,7 @@ impl Turning {
         let is_on_input = |shaft: &usize| layout.ratios[*shaft].value().abs() == 1.0;
         Self {
             wheels: (0..gearbox.wheels.len()).map(wheel).collect(),
-            marked: layout.shaft_of_wheel.iter().position(|shaft| is_on_input(shaft)).unwrap_or(0),
+            marked: layout.shaft_of_wheel.iter().position(is_on_input).unwrap_or(0),
             turns: layout.cycle_revolutions().clamp(1, MOST_TURNS) as u32,
             period_rev: 1.0,
             enter_together: false,
