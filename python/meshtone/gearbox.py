@@ -209,7 +209,7 @@ class GearboxSimulation:
         >>> record.shafts
         {'z1': 'input', 'z2': 'middle', 'z3': 'middle', 'z4': 'output'}
         >>> record["z3"].revolutions
-        29
+        9
         """
         # They need a gearbox themselves.
         from .signal.train import train_record

@@ -135,7 +135,7 @@ def test_a_recording_shows_every_shaft() -> None:
     assert own.foreign_lines == []
 
     # A tachometer on the output, and the tone of something else.
-    values, rate_hz = simulation["middle_1_vertical_g"], simulation.sampling_rate_hz
+    values, rate_hz = simulation["output_1_vertical_g"], simulation.sampling_rate_hz
     time_s = np.arange(values.size) / rate_hz
     phase = mt.ShaftPhase.from_pulses(np.arange(0.01, 2.0, 1 / 6), 1, rate_hz, values.size)
     tone = np.std(values) * np.cos(2 * np.pi * 91.57 * time_s)

@@ -45,9 +45,13 @@ pub fn of_record(series: &Series, latest: &LatestRecords, processing: &Processin
     }
     facts.push(format!("difference without {}", removed.join(", ")));
     let foreign = series.results.recordings.last().and_then(|recording| recording.foreign_lines.as_deref());
-    if let Some(lines @ [strongest, ..]) = foreign {
-        let (count, hz) = (lines.len(), strongest.frequency_hz);
-        facts.push(format!("{count} foreign lines, the strongest at {hz:.2} Hz"));
+    match foreign {
+        None | Some([]) => {}
+        Some([only]) => facts.push(format!("one foreign line, at {:.2} Hz", only.frequency_hz)),
+        Some(lines @ [strongest, ..]) => {
+            let (count, hz) = (lines.len(), strongest.frequency_hz);
+            facts.push(format!("{count} foreign lines, the strongest at {hz:.2} Hz"));
+        }
     }
     facts.push(MESHTONE.to_owned());
     let wheels: Vec<WheelView> = latest

@@ -72,7 +72,7 @@ impl LineKind {
             let beyond_first = order + wheel.sidebands >= teeth;
             (off == 0 || beyond_first && off <= wheel.sidebands).then_some(off)
         };
-        let is_other = |orders: &usize| order % (*orders).max(1) == 0;
+        let is_other = |orders: &usize| order.is_multiple_of((*orders).max(1));
         match beside(wheel.teeth as usize) {
             Some(0) => Self::Mesh,
             Some(_) => Self::Sideband,
