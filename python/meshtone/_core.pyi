@@ -311,19 +311,19 @@ def enhance(scenario: Scenario, tuned: _Path, draws: int, seed: int) -> tuple[_A
 @final
 class Observation:
     @staticmethod
-    def of_simulated(scenario: Scenario, signal: _Array, start_s: float) -> Observation: ...
+    def of_simulated(machine: Scenario | Gearbox, signal: _Array, start_s: float) -> Observation: ...
     @staticmethod
     def of_measured(
-        signal: _Array, sampling_rate_hz: float, phase: ShaftPhase, scenario: Scenario
+        signal: _Array, sampling_rate_hz: float, phase: ShaftPhase, machine: Scenario | Gearbox
     ) -> Observation: ...
     @staticmethod
     def of_revolution(values: _Array, gear_teeth: int, signal: str) -> Observation: ...
 
 def check_diagnosis(
-    scenario: Scenario, now: Sequence[Observation], healthy: Sequence[Observation]
+    machine: Scenario | Gearbox, now: Sequence[Observation], healthy: Sequence[Observation]
 ) -> list[tuple[str, str]]: ...
 def diagnose(
-    scenario: Scenario,
+    machine: Scenario | Gearbox,
     now: Sequence[Observation],
     healthy: Sequence[Observation],
     reference: _Path | None,

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from . import _core, _progress
 from ._warnings import SignalWarning, typed, warn_of_signal
+from .gearbox import Gearbox, GearboxSimulation
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import finite_signal, positive, read_only, whole
@@ -23,7 +24,7 @@ from .simulation import Simulation, chosen_channel
 __all__ = ["Diagnosis", "diagnose"]
 
 Array = npt.NDArray[np.float64]
-Recorded = Union[Simulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase], npt.NDArray[Any]]
+Recorded = Union[Simulation, GearboxSimulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase], npt.NDArray[Any]]
 SignalKind = Literal["recording", "average", "difference"]
 
 SHOWN = 0.005
@@ -105,7 +106,7 @@ def _cells(said: dict[str, Any]) -> str:
 
 def diagnose(
     recordings: Recorded | Sequence[Recorded],
-    scenario: Scenario,
+    scenario: Scenario | Gearbox,
     healthy: Recorded | Sequence[Recorded] | None = None,
     *,
     signal: SignalKind = "recording",
@@ -122,16 +123,17 @@ def diagnose(
     Parameters
     ----------
     recordings : one or several, all of one state of the gear
-        A :class:`Simulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal with its rate and the
-        pinion's phase, ``(signal_g, sampling_rate_hz, phase)``. With another `signal` arrays: one revolution of the gear, in g.
-    scenario : Scenario
+        A :class:`Simulation` or :class:`GearboxSimulation`, of which the first sensor counts; a :class:`Recording` of what ``meshtone
+        simulate`` wrote; or a measured signal with its rate and the phase of the pinion or of a gearbox's input,
+        ``(signal_g, sampling_rate_hz, phase)``. With another `signal` arrays: one revolution of the gear, in g.
+    scenario : Scenario or Gearbox
         The rig; its faults are left out.
     healthy : the same, optional
         The same rig when it was healthy.
     signal : {'recording', 'average', 'difference'}
         What the recordings are.
     tuned : str or path, optional
-        A ``tuned.toml``, whose numbers are put into the scenario.
+        A ``tuned.toml``, whose numbers are put into the scenario of a pair.
     reference : str or path, optional
         Folder in which simulations are kept; by default ``meshtone/reference`` in the user's cache directory.
     records : int
@@ -175,8 +177,10 @@ def diagnose(
     """
     if signal not in ("recording", "average", "difference"):
         raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
-    rig = native_scenario(scenario)
-    if tuned is not None:
+    if isinstance(scenario, Gearbox) and (tuned is not None or signal != "recording"):
+        raise ValueError("tuned and signal: are of a pair; leave them out with a gearbox, and give whole recordings")
+    rig = _native(scenario)
+    if tuned is not None and isinstance(rig, _core.Scenario):
         rig = _core.tuned_rig(rig, tuned)
     now = _observations("recordings", recordings, scenario, signal)
     before = [] if healthy is None else _observations("healthy", healthy, scenario, signal)
@@ -211,7 +215,7 @@ def _records(records: int) -> int:
 
 
 def _observations(
-    name: str, given: Recorded | Sequence[Recorded], scenario: Scenario, signal: str
+    name: str, given: Recorded | Sequence[Recorded], scenario: Scenario | Gearbox, signal: str
 ) -> list[_core.Observation]:
     several: Sequence[Any] = given if isinstance(given, list) else [given]
     if not several:
@@ -219,8 +223,12 @@ def _observations(
     return [_observation(name, one, scenario, signal) for one in several]
 
 
-def _observation(name: str, one: Any, scenario: Scenario, signal: str) -> _core.Observation:
-    if signal != "recording":
+def _native(machine: Scenario | Gearbox) -> _core.Scenario | _core.Gearbox:
+    return machine._native if isinstance(machine, Gearbox) else native_scenario(machine)
+
+
+def _observation(name: str, one: Any, scenario: Scenario | Gearbox, signal: str) -> _core.Observation:
+    if signal != "recording" and isinstance(scenario, Scenario):
         return _core.Observation.of_revolution(finite_signal(one), scenario.gear_teeth, signal)
     if isinstance(one, Simulation):
         values = getattr(one, chosen_channel(one.scenario, None))
@@ -228,11 +236,14 @@ def _observation(name: str, one: Any, scenario: Scenario, signal: str) -> _core.
     if isinstance(one, Recording) and one.scenario is not None:
         values = one[chosen_channel(one.scenario, None)]
         return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
+    gearbox = one.gearbox if isinstance(one, (GearboxSimulation, Recording)) else None
+    if gearbox is not None:
+        values = next(iter(one.channels.values()))
+        return _core.Observation.of_simulated(gearbox._native, values, one.start_s)
     if isinstance(one, tuple) and len(one) == 3:
         values, rate_hz, phase = one
         rate_hz = positive("sampling_rate_hz", rate_hz)
-        rig = native_scenario(scenario)
-        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), rig)
+        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), _native(scenario))
     raise TypeError(
         f"{name}: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
     )

@@ -465,7 +465,7 @@ impl Prior {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::prior;
+    use crate::synthetic::{gearbox_prior, prior};
 
     #[test]
     fn a_record_is_the_same_whatever_else_is_drawn() {
@@ -513,5 +513,30 @@ mod tests {
         }
         let seed = |prior: &Prior| prior.draw(0).unwrap().scenario.number("seed");
         assert_ne!(seed(&narrowed), seed(&prior));
+    }
+
+    // Every kind is drawn on every wheel, the wheels' own numbers are left alone, and the sensor sits on any seat.
+    #[test]
+    fn a_gearbox_is_drawn_with_damage_on_every_wheel() {
+        let prior = gearbox_prior();
+        let classes = prior.train.wheels.len() as u64 * (prior.kinds().len() as u64 + 1);
+        let mut seen = std::collections::BTreeSet::new();
+        let mut seats = std::collections::BTreeSet::new();
+        for number in 0..classes.div_ceil(6) * RECORDS_PER_UNIT {
+            let drawn = prior.draw(number).unwrap();
+            let ScenarioForm::Gearbox(gearbox) = &drawn.scenario else { panic!("{drawn:?}") };
+            seats.insert(gearbox.sensors[0].at.clone());
+            assert_eq!((gearbox.sensors.len(), gearbox.wheels[3].teeth), (1, 48));
+            let Some(fault) = drawn.fault else { continue };
+            let wheels: Vec<usize> = drawn.scenario.faults().iter().map(|(wheel, _)| *wheel).collect();
+            assert!(wheels.contains(&fault.wheel), "{wheels:?} {fault:?}");
+            seen.insert((fault.kind, fault.wheel));
+        }
+        assert_eq!(seen.len() as u64, classes);
+        assert!(seats.len() > 3, "{seats:?}");
+        let keys: Vec<&str> = prior.spreads.iter().map(|spread| spread.key.as_str()).collect();
+        for key in ["bearing[input:0].stiffness_n_per_m", "housing.mass_kg", "mesh[z1-z2].backlash_mm"] {
+            assert!(keys.contains(&key), "{key}: {keys:?}");
+        }
     }
 }

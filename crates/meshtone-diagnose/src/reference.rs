@@ -182,3 +182,45 @@ fn averages(simulation: &GearboxSimulation, train: &GearTrain) -> Averages {
     };
     (0..train.wheels.len()).map(average).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observation::Observation;
+    use crate::synthetic::gearbox_prior;
+
+    // What is kept of one cycle of a gearbox is what a recording of many cycles shows, behind the same path.
+    #[test]
+    fn a_cycle_of_a_gearbox_is_a_long_recording_of_it() {
+        let prior = gearbox_prior();
+        let record = build_reference(&prior, 2..3, &Control::default()).remove(0);
+        let drawn = prior.draw(2).unwrap();
+        let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else { panic!("{drawn:?}") };
+        let solver = &mut gearbox.solver.settings;
+        let cycle = solver.pinion_revolutions.unwrap();
+        let settled = cycle * solver.settle_fraction / (1.0 - solver.settle_fraction);
+        solver.pinion_revolutions = Some(5.0 * cycle);
+        solver.settle_fraction = settled / (settled + 5.0 * cycle);
+        let simulation = meshtone::simulate_gearbox(&gearbox).unwrap();
+        let channels = &simulation.channels;
+        let signal = &channels.signals[0].values;
+        let form = ScenarioForm::Gearbox(gearbox);
+        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len()).unwrap();
+        let (sampling_rate_hz, train) = (channels.sampling_rate_hz, &prior.train);
+        let recording = TrainRecording { signal, sampling_rate_hz, train, turning: &turning };
+        let observed = Observation::of_recording(&recording).unwrap();
+        assert_eq!(observed.mismatch, None);
+        assert!((observed.input_speed_hz.unwrap() / record.input_speed_hz - 1.0).abs() < 1e-6);
+        for (wheel, (kept, seen)) in record.wheels.iter().zip(&observed.wheels).enumerate() {
+            let seen = seen.as_ref().unwrap();
+            let shaft = &train.shafts[train.wheels[wheel].shaft];
+            let shaft_hz = shaft.speed_ratio.value() * record.input_speed_hz;
+            let count = kept.lines.len().min(seen.lines.len());
+            let gains = drawn.path_gains((0..count).map(|order| order as f64 * shaft_hz));
+            let lines = || kept.lines.iter().zip(&seen.lines).zip(gains.iter()).skip(1);
+            let apart: f64 = lines().map(|((kept, seen), gain)| (kept - seen * gain).norm_sqr()).sum();
+            let energy: f64 = lines().map(|((kept, _), _)| kept.norm_sqr()).sum();
+            assert!((apart / energy).sqrt() < 0.02, "wheel {wheel}: {}", (apart / energy).sqrt());
+        }
+    }
+}

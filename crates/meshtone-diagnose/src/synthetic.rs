@@ -1,7 +1,7 @@
 //! Reference sets that need no simulation, for tests.
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{DamageKind, GearPair, Scenario, ScenarioForm};
+use meshtone::scenario::{DamageKind, GearPair, Gearbox, Scenario, ScenarioForm};
 use meshtone::signal::AngleZero;
 use meshtone_fourier::Complex64;
 
@@ -17,6 +17,19 @@ pub fn prior() -> Prior {
     let mut rig = Scenario::new(GearPair { brake_torque_nm: 20.0, ..GearPair::example() });
     rig.quality.din_grade = 7;
     Prior::new(&ScenarioForm::Pair(rig)).unwrap()
+}
+
+/// The prior of a gearbox of two stages, coarsely sampled, whose same teeth meet again after four revolutions of the input.
+pub fn gearbox_prior() -> Prior {
+    let text = meshtone::scenario::gearbox_template(None);
+    let mut gearbox = Gearbox::from_toml(&text).unwrap();
+    for (wheel, teeth) in gearbox.wheels.iter_mut().zip([24, 48, 24, 48]) {
+        wheel.teeth = teeth;
+    }
+    gearbox.faults.clear();
+    let solver = &mut gearbox.solver.settings;
+    (solver.sampling_rate_hz, solver.duration_s, solver.settle_fraction) = (2.5e4, Some(0.4), 0.5);
+    Prior::new(&ScenarioForm::Gearbox(gearbox)).unwrap()
 }
 
 /// Records of a prior: deviations of the wheels' own, and of a damage a ringing on its tooth as large as it is severe, whose order

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::fs;
 use std::process::Stdio;
 
+use meshtone::scenario::{Gearbox, gearbox_template};
 use meshtone_io::signals::read_signals;
 use serde_json::Value;
 
@@ -207,4 +208,44 @@ fn what_is_refused() {
         workplace.fails(2, &all, words);
     }
     workplace.fails(2, &["diagnose", "gone"], &["--scenario"]);
+}
+
+/// A gearbox of two stages that is quick to simulate, with more lines.
+fn small_gearbox(more: &str) -> String {
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    for (wheel, teeth) in gearbox.wheels.iter_mut().zip([24, 48, 20, 60]) {
+        wheel.teeth = teeth;
+    }
+    gearbox.faults.clear();
+    gearbox.sensors.truncate(1);
+    let solver = &mut gearbox.solver.settings;
+    (solver.sampling_rate_hz, solver.duration_s, solver.settle_fraction) = (1.2e4, Some(1.6), 0.3);
+    format!("{}{more}", gearbox.to_toml())
+}
+
+// The wheel that lacks a tooth is named, of what was simulated and by a tachometer on the input alone. One pair's scenario does not
+// explain the recording.
+#[test]
+fn the_damaged_wheel_of_a_gearbox_is_named() {
+    let workplace = Workplace::new();
+    workplace.write("box.toml", small_gearbox(""));
+    let gone = "\n[[fault]]\nwheel = \"z3\"\nkind = \"missing-tooth\"\ntooth = 8\n";
+    workplace.write("gone.toml", small_gearbox(gone));
+    for scenario in ["box", "gone"] {
+        let toml = format!("{scenario}.toml");
+        workplace.succeeds(&["simulate", &toml, "-o", scenario, "--no-panel", "-q"]);
+    }
+    let asked = ["--records", FEW, "--reference", "kept", "-q"];
+    let of_box = ["--scenario", "box.toml", "--healthy", "box", "-o", "found"];
+    workplace.succeeds(&[&["diagnose", "gone"][..], &of_box, &asked].concat());
+    let found = answer(&workplace, "found");
+    let any = &found["any_damage"];
+    assert_eq!((&any["wheel"], &any["tooth"]), (&"z3".into(), &8.into()), "{found:#}");
+    assert!(found["damaged"].as_f64().unwrap() > 0.9, "{found:#}");
+    assert_eq!(found["shown_wheel"], "z3");
+
+    let pair = fast_with("pinion_teeth", "pinion_teeth = 24").replace("gear_teeth = 38", "gear_teeth = 48");
+    workplace.write("pair.toml", pair);
+    let asked = [&["diagnose", "gone", "--scenario", "pair.toml"][..], &asked].concat();
+    workplace.fails(2, &asked, &["24/48, 20/60 teeth, but the scenario has 24/48"]);
 }
