@@ -131,9 +131,10 @@ pub fn lines_off_shafts(angular: &AngularSignal, train: &GearTrain, shaft: usize
 /// let phase = ShaftPhase::constant(20.0, 1e4, signal.len())?;
 /// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
 /// let train = GearTrain::of_wheels([("pinion", 19), ("gear", 38)]);
-/// let Some([tone]) = foreign_tones(&angular, &train, 0, 20.0).as_deref() else { panic!() };
+/// let tones = foreign_tones(&angular, &train, 0, 20.0).ok_or("too short")?;
+/// let [tone] = tones[..] else { panic!() };
 /// assert!((tone.frequency_hz - 313.0).abs() < 0.05 && (tone.amplitude - 0.1).abs() < 0.01);
-/// # Ok::<(), meshtone::signal::SignalError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn foreign_tones(
     angular: &AngularSignal,
