@@ -178,7 +178,8 @@ def diagnose(
     if signal not in ("recording", "average", "difference"):
         raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
     if isinstance(scenario, Gearbox) and (tuned is not None or signal != "recording"):
-        raise ValueError("tuned and signal: are of a pair; leave them out with a gearbox, and give whole recordings")
+        given = f"tuned = {tuned!r}" if tuned is not None else f"signal = '{signal}'"
+        raise ValueError(f"{given}: needs the scenario of a pair; leave it out with a gearbox, and give whole recordings")
     rig = _native(scenario)
     if tuned is not None and isinstance(rig, _core.Scenario):
         rig = _core.tuned_rig(rig, tuned)
@@ -238,7 +239,7 @@ def _observation(name: str, one: Any, scenario: Scenario | Gearbox, signal: str)
         return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
     gearbox = one.gearbox if isinstance(one, (GearboxSimulation, Recording)) else None
     if gearbox is not None:
-        values = next(iter(one.channels.values()))
+        values = one[gearbox._native.leading_channel()]
         return _core.Observation.of_simulated(gearbox._native, values, one.start_s)
     if isinstance(one, tuple) and len(one) == 3:
         values, rate_hz, phase = one

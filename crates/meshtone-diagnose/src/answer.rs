@@ -105,6 +105,8 @@ pub struct Answer {
     pub recordings: usize,
     /// Names of the rig's wheels.
     pub wheels: Vec<String>,
+    /// (-) Probability that each of them is the damaged one, given that one is.
+    pub wheel_probabilities: Vec<f64>,
     /// Meaning of tooth 1 of each wheel; none where teeth cannot be counted: after a mesh tone, or in several
     /// recordings without a mark in common.
     pub counted_from: Vec<Option<AngleZero>>,

@@ -81,11 +81,11 @@ impl AnyDamage {
         format!("{degree} ({:.1} of 1, 90 %: {from:.1} to {to:.1})", severity.median)
     }
 
-    fn where_to_look(&self, wheels: &[String]) -> String {
+    fn where_to_look(&self, answer: &Answer) -> String {
         if self.wheel_probability < NAMED {
-            return format!("look at {} wheels", if wheels.len() == 2 { "both" } else { "all" });
+            return format!("look at {}", likely_wheels(answer));
         }
-        let wheel = &wheels[self.wheel];
+        let wheel = &answer.wheels[self.wheel];
         // All teeth may be likelier than one.
         match self.tooth.filter(|_| self.one_tooth_probability >= 0.5) {
             Some(ToothAnswer { number, probability, .. }) if probability >= NAMED => {
@@ -98,6 +98,24 @@ impl AnyDamage {
             None => format!("look at every tooth of the {wheel}"),
         }
     }
+}
+
+/// The wheels of which one is the damaged one as surely as a wheel is named, the likeliest first.
+fn likely_wheels(answer: &Answer) -> String {
+    let mut order: Vec<usize> = (0..answer.wheels.len()).collect();
+    order.sort_by(|&a, &b| answer.wheel_probabilities[b].total_cmp(&answer.wheel_probabilities[a]));
+    let mut sum = 0.0;
+    let is_needed = |wheel: &usize| {
+        let is_needed = sum < NAMED;
+        sum += answer.wheel_probabilities[*wheel];
+        is_needed
+    };
+    let likely: Vec<&str> =
+        order.into_iter().take_while(is_needed).map(|wheel| &*answer.wheels[wheel]).collect();
+    if likely.len() == answer.wheels.len() {
+        return format!("{} wheels", if likely.len() == 2 { "both" } else { "all" });
+    }
+    format!("the wheels {}", likely.join(" and "))
 }
 
 /// Summary of an answer, in a sentence.
@@ -121,10 +139,10 @@ pub(crate) fn sentence(answer: &Answer) -> String {
             } else {
                 ""
             };
-            format!("{what} is damaged, {}; {}.{several}", any.in_words(), any.where_to_look(wheels))
+            format!("{what} is damaged, {}; {}.{several}", any.in_words(), any.where_to_look(answer))
         }
         Some(any) if damaged >= 0.5 => {
-            let (how, place) = (any.in_words(), any.where_to_look(wheels));
+            let (how, place) = (any.in_words(), any.where_to_look(answer));
             format!("Damage is likely, but not sure; if so, {how}; {place}.")
         }
         Some(_) if damaged > unseen => "Damage is not likely, but not excluded.".to_owned(),
@@ -156,6 +174,7 @@ mod tests {
             has_healthy: false,
             recordings: 1,
             wheels: ["pinion", "gear"].map(str::to_owned).into(),
+            wheel_probabilities: vec![0.0, 1.0],
             counted_from: vec![None; 2],
             summary: String::new(),
             any_damage,
@@ -215,5 +234,16 @@ mod tests {
         assert!(
             said_of(SEVERAL, None, 1.0, 1.0).ends_with("Two damages at once are likelier than a single one.")
         );
+    }
+
+    #[test]
+    fn the_wheels_that_may_be_damaged_are_named() {
+        let of = |probabilities: [f64; 4]| {
+            let wheels = ["z1", "z2", "z3", "z4"].map(str::to_owned).into();
+            let wheel_probabilities = probabilities.into();
+            likely_wheels(&Answer { wheels, wheel_probabilities, ..answer(Vec::new(), None, 1.0) })
+        };
+        assert_eq!(of([0.02, 0.5, 0.45, 0.03]), "the wheels z2 and z3");
+        assert_eq!(of([0.25; 4]), "all wheels");
     }
 }

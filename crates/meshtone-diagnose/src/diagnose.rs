@@ -88,6 +88,7 @@ pub fn diagnose(
     };
     let of_wheels: Vec<f64> = (0..wheels.len()).map(of_wheel).collect();
     let any_damage = AnyDamage::over(&kinds, &draws_of, &of_wheels);
+    let of_any = of_wheels.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     let is_seen = |wheel: &usize| question.now[0].wheels[*wheel].is_some();
     let shown_wheel = any_damage.as_ref().map(|any| any.wheel).filter(is_seen).unwrap_or(wheels.len() - 1);
     let likeliest = kinds.iter().find(|kind| kind.label != HEALTHY).map(|kind| kind.label);
@@ -99,6 +100,7 @@ pub fn diagnose(
         recordings: question.now.len(),
         counted_from: (0..wheels.len()).map(|wheel| counted_from(question, wheel)).collect(),
         wheels: wheels.iter().map(|wheel| wheel.name.clone()).collect(),
+        wheel_probabilities: of_wheels.iter().map(|of| of / of_any).collect(),
         shown_wheel,
         summary: String::new(),
         any_damage,

@@ -6,14 +6,19 @@
 pub enum DiagnoseError {
     /// Too few simulations to learn from.
     #[error(
-        "too few records of the reference set could be simulated to learn from; look at what `meshtone simulate` says of the scenario"
+        "there are too few simulations of some kind of damage to learn from: make more of them, or look at what `meshtone simulate` says of the \
+         scenario, where few could be simulated"
     )]
     NoReference,
     /// Features that are not numbers, or a search for probabilities that found none.
     #[error("the regression on the reference set has no solution")]
     NotSolved,
     /// The wheels of the recording are not those of the scenario.
-    #[error("the recording is of wheels with {given:?} teeth, the scenario has {expected:?}, in its order")]
+    #[error(
+        "the recording is of wheels with {} teeth, the scenario has {}, in its order",
+        listed(given),
+        listed(expected)
+    )]
     OtherWheels {
         /// Of the recording, wheel by wheel.
         given: Vec<u32>,
@@ -54,9 +59,11 @@ pub enum DiagnoseError {
     OtherQuestion,
     /// A speed far from those of the simulations.
     #[error(
-        "the pinion turns at {speed_hz:.4} Hz by the recording, at {nominal_hz:.4} Hz by the scenario: {reason}"
+        "{shaft} turns at {speed_hz:.4} Hz by the recording, at {nominal_hz:.4} Hz by the scenario: {reason}"
     )]
     OtherSpeed {
+        /// Name of the shaft that drives, in words.
+        shaft: &'static str,
         /// (Hz) Of the recording.
         speed_hz: f64,
         /// (Hz) Of the scenario.
@@ -74,4 +81,9 @@ pub enum DiagnoseError {
         /// A second requirement.
         beside: &'static str,
     },
+}
+
+/// `24, 48`
+fn listed(teeth: &[u32]) -> String {
+    teeth.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
 }

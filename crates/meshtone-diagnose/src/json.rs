@@ -15,6 +15,8 @@ impl Answer {
         let wheels = &self.wheels;
         let kinds: Map<String, Value> =
             self.kinds.iter().map(|kind| (kind.label.to_owned(), kind_json(kind, wheels))).collect();
+        let of_wheels = wheels.iter().zip(&self.wheel_probabilities);
+        let of_wheels: Map<String, Value> = of_wheels.map(|(wheel, of)| (wheel.clone(), json!(of))).collect();
         let zeros = wheels.iter().zip(&self.counted_from);
         let counted_from: Map<String, Value> =
             zeros.map(|(wheel, zero)| (wheel.clone(), json!(zero.map(AngleZero::name)))).collect();
@@ -31,6 +33,7 @@ impl Answer {
             "outside_model": self.outside_model,
             "is_outside": self.is_outside(),
             "healthy_outside_model": self.healthy_outside_model,
+            "wheel_probabilities": of_wheels,
             "shown_wheel": wheels[self.shown_wheel],
             "explanations": self.explanations.iter().map(|one| explanation(one, wheels)).collect::<Vec<_>>(),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),

@@ -117,11 +117,13 @@ impl Layout {
         let rig = &reference.prior.train.wheels;
         let expected: Vec<u32> = rig.iter().map(|wheel| wheel.teeth).collect();
         for asked in question.all() {
-            let teeth = |(seen, expected): (&Option<WheelLines>, &u32)| {
-                seen.as_ref().map_or(*expected, |wheel| wheel.teeth() as u32)
+            // A wheel that is not seen may be the expected one.
+            let teeth = |(place, seen): (usize, &Option<WheelLines>)| {
+                let unseen = || expected.get(place).copied().unwrap_or(0);
+                seen.as_ref().map_or_else(unseen, |wheel| wheel.teeth() as u32)
             };
-            let given: Vec<u32> = asked.wheels.iter().zip(&expected).map(teeth).collect();
-            if given != expected || asked.wheels.len() != expected.len() {
+            let given: Vec<u32> = asked.wheels.iter().enumerate().map(teeth).collect();
+            if given != expected {
                 return Err(DiagnoseError::OtherWheels { given, expected });
             }
             if let Some(value) = asked.input_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
@@ -428,9 +430,15 @@ impl<'a> Learned<'a> {
     }
 }
 
-/// Part of the simulations to which a record belongs: pairs of wheels are not divided.
+/// Part of the simulations to which a record belongs: units are not divided. It is drawn, since classes come in turn, so that a class would
+/// be in some parts alone.
 fn fold_of(record: &ReferenceRecord) -> usize {
-    (record.unit() % FOLDS as u64) as usize
+    (shuffled(record.unit()) % FOLDS as u64) as usize
+}
+
+/// A number of a unit that does not follow the turn of the classes.
+pub(crate) fn shuffled(unit: u64) -> u64 {
+    Draws::new(0, Purpose::DiagnosisUnit, unit).bits()
 }
 
 fn class_of(record: &ReferenceRecord) -> Class {

@@ -8,6 +8,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
+use crate::learn::shuffled;
 use crate::matrix::Standardisation;
 use crate::quantile::quantiles;
 
@@ -33,7 +34,7 @@ pub(crate) struct OutlierTest {
     units: Vec<u64>,
     /// Whether a simulation is to be expected at all.
     counts: Vec<bool>,
-    /// Range of each feature in nearly all simulations of the units with an even and with an odd number: a simulation is held against the
+    /// Range of each feature in nearly all simulations of either half of the units, which are drawn: a simulation is held against the
     /// half in which its unit is not.
     ranges: [Vec<[f64; 2]>; 2],
     /// Distances of the simulations from those of other units; how far they are beyond the ranges; the rarer of the two.
@@ -92,7 +93,8 @@ impl OutlierTest {
         let left = order.iter().map(|&at| eigen.eigenvalues[at]).sum::<f64>();
         let left = (eigen.eigenvalues.sum() - left).max(1e-9).sqrt();
         let range = |half: u64, feature: usize| {
-            let inside = rows.iter().zip(weights).zip(&units).filter(|(_, unit)| *unit % 2 == half);
+            let inside =
+                rows.iter().zip(weights).zip(&units).filter(|(_, unit)| shuffled(**unit) % 2 == half);
             quantiles(inside.map(|((row, weight), _)| (row[feature], *weight)).collect(), NEARLY_ALL)
         };
         let ranges =
@@ -114,7 +116,7 @@ impl OutlierTest {
         let distances: Vec<f64> =
             places().map(|row| of.distance(&of.points[row], Some(of.units[row]))).collect();
         let beyond: Vec<f64> =
-            places().map(|row| of.beyond(&rows[row], 1 - (of.units[row] % 2) as usize)).collect();
+            places().map(|row| of.beyond(&rows[row], 1 - (shuffled(of.units[row]) % 2) as usize)).collect();
         of.by_distance = Ranking::new(&distances, weights);
         of.by_feature = Ranking::new(&beyond, weights);
         let rarer: Vec<f64> = places().map(|row| -of.rarer(distances[row], beyond[row])).collect();

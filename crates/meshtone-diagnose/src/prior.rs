@@ -21,7 +21,7 @@ const PLATE_SPREAD: f64 = 0.5;
 const HOUSING_STRENGTH: [f64; 2] = [0.1, 0.4];
 /// (-) How far the sizes of a damage lie from those of its severity: the largest logarithm of the ratio.
 const SIZE_SPREAD: f64 = 0.3;
-/// Draws of two damages before the record is given up: every second has the more severe one on the other wheel.
+/// Draws of two damages before the record is given up: in every second the second one is the more severe.
 const MOST_PAIRS: usize = 60;
 /// Draws of a damage before the record goes without other sizes than those of its severity.
 const MOST_ATTEMPTS: usize = 4;
@@ -182,7 +182,9 @@ impl Prior {
     pub fn kinds(&self) -> Vec<DamageKind> {
         let of_kind = |kind: &DamageKind| {
             let fault = Fault::at_usual_place(kind.example.clone()).with_severity(1.0);
-            self.base.clone().with_faults(vec![(self.train.wheels.len() - 1, fault)]).validate().is_ok()
+            let is_possible =
+                |wheel: usize| self.base.clone().with_faults(vec![(wheel, fault.clone())]).validate().is_ok();
+            (0..self.train.wheels.len()).rev().any(is_possible)
         };
         damage_kinds().into_iter().filter(of_kind).collect()
     }
@@ -355,18 +357,25 @@ fn own_name(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }
 
-/// Keeps no more than until the same teeth meet again on all shafts, where it was longer and steady: what follows repeats it. It settles as
-/// long as before.
+/// Revolutions of the slowest shaft of a gearbox that an average needs at least.
+const FEWEST_TURNS: f64 = 8.0;
+
+/// Changes how long a steady gearbox is simulated: until the same teeth meet again on all shafts, since what follows repeats it; where that
+/// takes longer than the scenario's own time, that time, but [`FEWEST_TURNS`] of the slowest shaft at least. It settles as long as before.
 fn once(gearbox: &mut Gearbox) -> Result<(), ScenarioError> {
-    let cycle = GearboxLayout::new(gearbox)?.cycle_revolutions() as f64;
+    let layout = GearboxLayout::new(gearbox)?;
+    let cycle = layout.cycle_revolutions() as f64;
+    let slowest = layout.ratios.iter().map(|ratio| ratio.value().abs()).fold(1.0, f64::min);
     let time = gearbox.time_grid();
     let revolutions = |samples: usize| samples as f64 / time.samples_per_pinion_revolution as f64;
-    if gearbox.operation.is_steady() && cycle < revolutions(time.kept_samples()) {
+    let kept = revolutions(time.kept_samples());
+    let needed = cycle.min(kept.max(FEWEST_TURNS / slowest));
+    if gearbox.operation.is_steady() && needed != kept {
         let settled = revolutions(time.first_kept_sample);
         let solver = &mut gearbox.solver.settings;
         solver.duration_s = None;
-        solver.pinion_revolutions = Some(cycle);
-        solver.settle_fraction = settled / (settled + cycle);
+        solver.pinion_revolutions = Some(needed);
+        solver.settle_fraction = settled / (settled + needed);
     }
     Ok(())
 }
@@ -382,9 +391,9 @@ impl Prior {
     ) -> Result<(ScenarioForm, DrawnFault), ScenarioError> {
         let mut problem = None;
         for _ in 0..MOST_PAIRS {
-            let drawn = [0, 1].map(|_| {
+            let other = (own.bits() % self.train.wheels.len() as u64) as usize;
+            let drawn = [wheel, other].map(|wheel| {
                 let kind = (own.bits() % kinds.len() as u64) as usize;
-                let wheel = (own.bits() % self.train.wheels.len() as u64) as usize;
                 self.damaged(&kinds[kind], (kind, wheel), None, healthy, own)
             });
             let [(one, first), (other, second)] = match drawn {
@@ -394,13 +403,13 @@ impl Prior {
                     continue;
                 }
             };
-            let of = if first.severity >= second.severity { first } else { second };
             let faults = [&one, &other].map(ScenarioForm::faults).concat();
             let faults = faults.into_iter().map(|(wheel, fault)| (wheel, fault.clone())).collect();
             let both = healthy.clone().with_faults(faults);
             // Two damages of one tooth may not go together.
-            if of.wheel == wheel && both.validate().is_ok() {
-                let fault = DrawnFault { kind: kinds.len(), is_on_one_tooth: false, sizes: Vec::new(), ..of };
+            if first.severity >= second.severity && both.validate().is_ok() {
+                let (kind, sizes) = (kinds.len(), Vec::new());
+                let fault = DrawnFault { kind, is_on_one_tooth: false, sizes, ..first };
                 return Ok((both, fault));
             }
         }

@@ -59,17 +59,17 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 ///
 /// # Arguments
 /// * `angular`, `averages` - the recording over the angle of each wheel's shaft, and its average
-/// * `teeth` - of the wheel on the slowest shaft
+/// * `slowest`, `teeth` - number of the wheel on the slowest shaft, and its teeth
 fn nothing_synchronous(
     angular: &[AngularSignal],
     averages: &[SynchronousAverage],
-    teeth: u32,
+    (slowest, teeth): (usize, u32),
 ) -> Option<String> {
     let views = angular.iter().zip(averages);
     let parts = views.map(|(view, average)| synchronous_part(&view.values, &average.values));
     let parts = parts.collect::<Option<Vec<_>>>()?;
     let is_known = parts.iter().all(|part| part.revolutions >= FEWEST_REVOLUTIONS);
-    let part = *parts.last().filter(|_| is_known && parts.iter().all(|part| part.is_noise()))?;
+    let part = *parts.get(slowest).filter(|_| is_known && parts.iter().all(|part| part.is_noise()))?;
     Some(SignalWarning::NothingSynchronous { part, teeth }.to_string())
 }
 
@@ -149,7 +149,7 @@ impl Observation {
         let wheel = &train.wheels[slowest];
         let shaft =
             SlowestShaft { angular: &angular[slowest], train, wheel, speed_hz: shaft_hz(wheel.shaft) };
-        let mismatch = nothing_synchronous(angular, &averages, wheel.teeth)
+        let mismatch = nothing_synchronous(angular, &averages, (slowest, wheel.teeth))
             .or_else(|| shaft.silent_part())
             .or_else(|| shaft.energy_off_all_shafts());
         let separations = separations(train);

@@ -83,22 +83,20 @@ pub fn build_reference(
             records.push(record(prior, *number, drawn, &averages));
         }
     };
+    let (mut pairs, mut gearboxes): (Vec<Scenario>, Vec<Gearbox>) = (Vec::new(), Vec::new());
+    for (_, drawn) in &drawn {
+        match &drawn.scenario {
+            ScenarioForm::Pair(pair) => pairs.push(pair.clone()),
+            ScenarioForm::Gearbox(gearbox) => gearboxes.push(gearbox.clone()),
+        }
+    }
+    // All are of the form of the rig.
     match &prior.base {
         ScenarioForm::Pair(pair) => {
-            let pair_of = |(_, drawn): &(u64, Drawn)| match &drawn.scenario {
-                ScenarioForm::Pair(pair) => pair.clone(),
-                ScenarioForm::Gearbox(_) => pair.clone(),
-            };
-            let scenarios: Vec<Scenario> = drawn.iter().map(pair_of).collect();
             let keep = KeepAverages { channel: KeepChannels::new([Channel::leading(&pair.sensors)]) };
-            simulate_many(scenarios, &keep, control, take);
+            simulate_many(pairs, &keep, control, take);
         }
         ScenarioForm::Gearbox(_) => {
-            let gearbox_of = |(_, drawn): &(u64, Drawn)| match &drawn.scenario {
-                ScenarioForm::Gearbox(gearbox) => Some(gearbox.clone()),
-                ScenarioForm::Pair(_) => None,
-            };
-            let gearboxes: Vec<Gearbox> = drawn.iter().filter_map(gearbox_of).collect();
             let keep = |_: usize, simulation: GearboxSimulation| averages(&simulation, &prior.train);
             simulate_many_gearboxes(gearboxes, &keep, control, take);
         }

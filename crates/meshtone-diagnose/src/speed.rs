@@ -28,11 +28,13 @@ impl Question<'_> {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 let reason = reason(speed_hz / nominal_hz, prior).unwrap_or_else(|| {
-                    "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed \
-                     (operation.pinion_speed_hz)?"
-                        .to_owned()
+                    let (_, key) = driving(prior);
+                    format!(
+                        "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed ({key})?"
+                    )
                 });
-                return Err(DiagnoseError::OtherSpeed { speed_hz, nominal_hz, reason });
+                let (shaft, _) = driving(prior);
+                return Err(DiagnoseError::OtherSpeed { shaft, speed_hz, nominal_hz, reason });
             }
         }
         // A wrong speed moves the orders too, so it is reported before them.
@@ -40,7 +42,15 @@ impl Question<'_> {
     }
 }
 
-/// (Hz) Least and largest speed of the pinion in the simulations.
+/// The shaft that drives in words, and the key of its speed.
+fn driving(prior: &Prior) -> (&'static str, &'static str) {
+    match prior.base {
+        ScenarioForm::Pair(_) => ("the pinion", "operation.pinion_speed_hz"),
+        ScenarioForm::Gearbox(_) => ("the input", "operation.input_speed_hz"),
+    }
+}
+
+/// (Hz) Least and largest speed of the shaft that drives in the simulations.
 fn simulated_hz(prior: &Prior) -> [f64; 2] {
     let nominal_hz = prior.base.operation().pinion_speed_hz;
     [-1.0, 1.0].map(|sign: f64| nominal_hz * (sign * prior.speed_spread).exp())
@@ -55,12 +65,7 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
         ScenarioForm::Gearbox(_) => format!("shaft {}", train.shafts[shaft].name),
     };
     let of_shaft = |shaft: usize, other: usize| {
-        format!(
-            "that is their ratio of speeds: the speed may be of {}, not of {}: say so with --shaft {}, or its wheel's teeth",
-            name(shaft),
-            name(other),
-            train.shafts[shaft].name
-        )
+        format!("that is their ratio of speeds: the speed may be of {}, not of {}", name(shaft), name(other))
     };
     let input = train.input();
     let others = (0..train.shafts.len()).filter(|shaft| *shaft != input);
@@ -87,14 +92,14 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
 pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let [least, most] = simulated_hz(prior);
     let nominal_hz = prior.base.operation().pinion_speed_hz;
-    let mut doubts = Vec::new();
+    let ((shaft, key), mut doubts) = (driving(prior), Vec::new());
     let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
     for speed_hz in question.all().filter_map(|asked| asked.input_speed_hz).filter(beside) {
         let reason = reason(speed_hz / nominal_hz, prior);
         let reason = reason.map_or_else(String::new, |reason| format!("; {reason}"));
         let doubt = format!(
-            "the pinion turns at {speed_hz:.3} Hz, the simulations at {least:.3} to {most:.3} Hz: write the recording's speed into the \
-             scenario (operation.pinion_speed_hz){reason}"
+            "{shaft} turns at {speed_hz:.3} Hz, the simulations at {least:.3} to {most:.3} Hz: write the recording's speed into the \
+             scenario ({key}){reason}"
         );
         if !doubts.contains(&doubt) {
             doubts.push(doubt);

@@ -58,7 +58,8 @@ fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
     });
     let wheels = separations(&prior.train).into_iter().enumerate().map(|(wheel, separation)| {
         let teeth = rig[wheel].teeth;
-        let mut of_unit = Draws::new(prior.seed, Purpose::DiagnosisUnit, 2 * unit + wheel as u64);
+        let mut of_unit =
+            Draws::new(prior.seed, Purpose::DiagnosisUnit, rig.len() as u64 * unit + wheel as u64);
         let mut lines: Vec<Complex64> = (0..=LAST_MESH * teeth)
             .map(|order| {
                 let [re, im] = of_unit.normals();
@@ -102,9 +103,9 @@ pub fn observed(record: &ReferenceRecord) -> Observation {
     Observation {
         signal: SignalKind::Recording,
         input_speed_hz: Some(record.input_speed_hz),
-        zero: vec![AngleZero::Simulated; 2],
+        zero: vec![AngleZero::Simulated; record.wheels.len()],
         wheels: record.wheels.iter().map(|wheel| Some(noisy(wheel))).collect(),
-        noise: vec![vec![NOISE_G]; 2],
+        noise: vec![vec![NOISE_G]; record.wheels.len()],
         mismatch: None,
         doubts: Vec::new(),
     }

@@ -106,8 +106,8 @@ impl Question<'_> {
         if has_ideal_wheels(&prior.base) {
             warn(
                 IdealWheels,
-                "the scenario's wheels have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; \
-                 write the grade of the rig's wheels"
+                "wheels of the scenario have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; \
+                 write the grade of each wheel"
                     .to_owned(),
             );
         }
@@ -127,7 +127,7 @@ impl Question<'_> {
     }
 }
 
-/// Whether no wheel of a rig has deviations.
+/// Whether a wheel of a rig has no deviations.
 fn has_ideal_wheels(rig: &ScenarioForm) -> bool {
     match rig {
         ScenarioForm::Pair(Scenario { quality, .. }) => {
@@ -136,7 +136,7 @@ fn has_ideal_wheels(rig: &ScenarioForm) -> bool {
         ScenarioForm::Gearbox(gearbox) => gearbox
             .wheels
             .iter()
-            .all(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0 && wheel.profile_errors_mm.is_none()),
+            .any(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0 && wheel.profile_errors_mm.is_none()),
     }
 }
 
@@ -171,7 +171,7 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
 /// Says why the healthy recording is unlike simulations of healthy pairs: the scenario, or it is of a damaged pair.
 fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
     let scenario = "check the scenario's speed, load, wheels and the sensor, or tune it (`meshtone tune`)";
-    let given = format!("the healthy recording is unlike a healthy pair of the scenario ({})", p_in_words(p));
+    let given = format!("the healthy recording is unlike a healthy rig of the scenario ({})", p_in_words(p));
     let alone = Question { now: question.healthy, healthy: &[] };
     let is_mismatch = question.healthy.iter().any(|asked| asked.mismatch.is_some());
     // No simulation has what speaks against it: nothing is to be learnt.
@@ -245,7 +245,7 @@ mod tests {
         let any = answer.any_damage.unwrap();
         assert_eq!((any.wheel, number(any.tooth)), (1, tooth), "{answer:#?}");
         assert!(answer.summary.contains("damaged"), "{}", answer.summary);
-        for words in ["one state", "times as loud", "turns at", "unlike a healthy pair"] {
+        for words in ["one state", "times as loud", "turns at", "unlike a healthy rig"] {
             assert!(!has(&answer, words), "{:?}", answer.warnings);
         }
 
@@ -267,7 +267,7 @@ mod tests {
         assert!(has(&said(&learned, broken_alone, &[loud]), "unit"));
         let blamed = said(&learned, sound_alone, broken_alone);
         assert!(
-            has(&blamed, "unlike a healthy pair") && has(&blamed, "was it healthy?"),
+            has(&blamed, "unlike a healthy rig") && has(&blamed, "was it healthy?"),
             "{:?}",
             blamed.warnings
         );

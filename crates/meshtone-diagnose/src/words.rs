@@ -82,7 +82,7 @@ fn likeness(answer: &Answer) -> String {
     let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
     let (means, p) = match (answer.is_recording_outside(), healthy) {
         (true, _) => ("the recording is unlike all that was simulated", answer.outside_model),
-        (false, Some(p)) => ("the healthy recording is unlike the healthy pairs that were simulated", p),
+        (false, Some(p)) => ("the healthy recording is unlike the healthy rigs that were simulated", p),
         (false, None) => ("the recording is like what was simulated", answer.outside_model),
     };
     format!("{means} ({})", p_in_words(p))

@@ -117,6 +117,8 @@ impl Turned {
         let mut shaft = shafts.shaft(&train, [stated.teeth, stated.mate_teeth])?;
         let ratio = |shaft: usize| train.speed_ratio(shaft, train.input()).value();
         let mut phase = stated.clone();
+        // The tone of a mesh that is named is followed, also where a speed is stated.
+        phase.from_mesh_tone |= shafts.mesh.is_some();
         if !stated.states_shaft_angle() {
             phase.shaft_hz = Some(form.operation().pinion_speed_hz * ratio(shaft));
             phase.from_mesh_tone = true;

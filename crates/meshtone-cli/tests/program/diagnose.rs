@@ -13,8 +13,8 @@ use crate::support::{Workplace, fast_with, names, program, stderr, stdout};
 
 const DATA: &str = "diagnosis.json";
 const FIGURES: [&str; 2] = ["diagnosis.png", "diagnosis.svg"];
-/// The fewest simulations that can be learnt from.
-const FEW: &str = "512";
+/// About the fewest simulations that can be learnt from.
+const FEW: &str = "1024";
 
 fn workplace() -> Workplace {
     let workplace = Workplace::new();
@@ -223,8 +223,7 @@ fn small_gearbox(more: &str) -> String {
     format!("{}{more}", gearbox.to_toml())
 }
 
-// The wheel that lacks a tooth is named, of what was simulated and by a tachometer on the input alone. One pair's scenario does not
-// explain the recording.
+// The wheel that lacks a tooth is named. The scenario of one of its pairs is another machine.
 #[test]
 fn the_damaged_wheel_of_a_gearbox_is_named() {
     let workplace = Workplace::new();

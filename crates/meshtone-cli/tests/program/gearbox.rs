@@ -196,7 +196,6 @@ fn what_knows_one_pair_says_so() {
         &["simulate", "gearbox.toml", "--model", "published"][..],
         &["simulate", "gearbox.toml", "--model", "linear"],
         &["wheels", "gearbox.toml", "-o", "wheels.npz"],
-        &["diagnose", "recording.csv", "--scenario", "gearbox.toml"],
     ] {
         workplace.fails(2, arguments, &["of a gearbox"]);
     }

@@ -11,6 +11,8 @@ const MOST_LINES: usize = 24;
 const MOST_TURNS: f64 = 5.0;
 /// (lines of the spectrum) How far a line may be from what it is named after.
 const TOLERANCE: f64 = 1.0;
+/// (-) Tolerance over a shaft's speed, from which on its sidebands cannot be distinguished from what lies between them.
+const LEAST_RESOLVED: f64 = 0.25;
 
 /// The spectrum of a signal.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,7 +132,9 @@ impl Tones {
             for shaft in mesh.shafts {
                 let (name, speed_hz) = &self.shafts[shaft];
                 let count = (beside / speed_hz).round();
-                let is_near = (beside - count * speed_hz).abs() <= tolerance_hz;
+                // Lines that are hardly farther apart than the spectrum's own would be named whatever they are.
+                let is_resolved = tolerance_hz < LEAST_RESOLVED * speed_hz;
+                let is_near = is_resolved && (beside - count * speed_hz).abs() <= tolerance_hz;
                 if count != 0.0 && is_near {
                     let sign = if count > 0.0 { '+' } else { '−' };
                     found.push((
@@ -148,6 +152,9 @@ impl Tones {
             }
         }
         let Some(fewest) = found.iter().map(|(count, _)| *count).min() else {
+            if self.shafts.iter().any(|(_, speed_hz)| tolerance_hz >= LEAST_RESOLVED * speed_hz) {
+                return "beside a mesh harmonic; of which shaft, a longer signal would show".to_owned();
+            }
             return "no sideband of a shaft: a mode that rings, or two teeth that meet again only later"
                 .to_owned();
         };
@@ -188,6 +195,8 @@ mod tests {
         // Sidebands reach as far as half way to the next harmonic.
         assert_eq!(tones().name(700.0, 0.5), "1 × mesh z3-z4 + 22 × shaft middle");
         assert!(tones().name(703.0, 0.5).starts_with("no sideband"));
+        // Lines 4 Hz apart distinguish no sidebands of 6 and 10 Hz.
+        assert!(tones().name(486.0, 4.0).starts_with("beside a mesh harmonic"));
     }
 
     /// A tone's amplitude is its own, and the lines are those of the tones.

@@ -2,7 +2,7 @@
 
 use super::{SeparationSettings, ShaftPhase, SignalError};
 use crate::error::ScenarioError;
-use crate::scenario::{Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
+use crate::scenario::{Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
 use crate::wheel::WheelName;
 
 /// A shaft of a train.
@@ -48,6 +48,8 @@ pub struct GearTrain {
     pub wheels: Vec<TrainWheel>,
     /// Numbers of the two wheels of each mesh, the driving one first.
     pub meshes: Vec<[usize; 2]>,
+    /// Number of the shaft that the ratios are of: the pinion's, or the one that the motor turns.
+    input: usize,
 }
 
 impl GearTrain {
@@ -71,6 +73,7 @@ impl GearTrain {
             shafts: wheels.iter().map(shaft).collect(),
             wheels: wheels.iter().enumerate().map(wheel).collect(),
             meshes: (1..N).map(|mate| [0, mate]).collect(),
+            input: 0,
         }
     }
 
@@ -111,7 +114,12 @@ impl GearTrain {
                 .mesh_of(number)
                 .map_or(0.0, |(mesh, _)| layout.phases[mesh] / f64::from(wheel.teeth)),
         });
-        Self { shafts: shafts.collect(), wheels: wheels.collect(), meshes: layout.wheels_of_mesh.clone() }
+        Self {
+            input: gearbox.shafts.iter().position(|of| of.couples_to == Coupled::Motor).unwrap_or(0),
+            shafts: shafts.collect(),
+            wheels: wheels.collect(),
+            meshes: layout.wheels_of_mesh.clone(),
+        }
     }
 
     /// The shafts of a scenario of either form.
@@ -128,9 +136,9 @@ impl GearTrain {
         }
     }
 
-    /// Number of the shaft that the ratios are of: the input.
+    /// Number of the shaft that the ratios are of: the input, which the motor turns.
     pub fn input(&self) -> usize {
-        self.shafts.iter().position(|shaft| shaft.speed_ratio == Ratio::ONE).unwrap_or(0)
+        self.input
     }
 
     /// Name of a mesh: `z1-z2`.

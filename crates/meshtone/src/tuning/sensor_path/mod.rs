@@ -343,6 +343,8 @@ fn simulated_gearboxes(
 fn gearbox_at_speed_of(gearbox: &Gearbox, piece: &Piece) -> Gearbox {
     let mut healthy = gearbox.clone();
     healthy.faults.clear();
+    // Each draw has wheels of its own.
+    healthy.wheels_seed = None;
     healthy.sensors = gearbox.all_sensors().into_iter().take(1).collect();
     healthy.sensors.iter_mut().for_each(|of| of.sensor = without_path(of.sensor.clone()));
     let drive = &mut healthy.operation.drive;
