@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use meshtone::scenario::ScenarioForm;
+use meshtone::signal::{AngularSettings, GearTrain, TrainRecording, TrainTurning, revolution_average};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
 use meshtone_dataset::merge::merge;
@@ -137,8 +138,15 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         let speed_hz = made.number(&format!("{wheel}_speed_hz"), row);
         gearbox.solver.settings.duration_s = Some(0.5005 + 1.0 / speed_hz);
         let simulation = meshtone::simulate_gearbox(&gearbox).unwrap();
-        let signal = simulation.channels.signal("output_1_vertical_g").unwrap();
-        let (expected, _) = simulation.wheel_average(signal, number).unwrap();
+        let channels = &simulation.channels;
+        let signal = channels.signal("output_1_vertical_g").unwrap();
+        let train = GearTrain::of_layout(&gearbox, &simulation.stages.layout);
+        let form = ScenarioForm::Gearbox(gearbox);
+        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len()).unwrap();
+        let sampling_rate_hz = channels.sampling_rate_hz;
+        let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+        let angular = recording.angular(number, &AngularSettings::default()).unwrap();
+        let expected = revolution_average(&angular.values, angular.points_per_revolution);
         let found = made.signal(&format!("{wheel}_average_g"), row);
         // Tooth `tooth` of the record is tooth `of_scenario` of the scenario.
         let turn = (f64::from(of_scenario) - f64::from(tooth)) / f64::from(teeth);
