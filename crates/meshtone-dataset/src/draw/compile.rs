@@ -104,12 +104,12 @@ fn is_of_fault(key: &str) -> bool {
     key.starts_with("fault.") || key.starts_with("fault[")
 }
 
-/// Returns whether a key is one of the teeth, which make a unit what it is.
+/// Returns whether a key is one of the teeth or of their material, which make a unit what it is.
 fn is_of_wheels(key: &str) -> bool {
     const OF_TEETH: [&str; 2] = ["module_mm", "pressure_angle_deg"];
     let (section, rest) = split_key(key);
     match list_and_entry(section).0 {
-        "gears" | "quality" | "wheel" => true,
+        "gears" | "quality" | "material" | "wheel" => true,
         "mesh" => rest.is_some_and(|rest| OF_TEETH.contains(&rest)),
         _ => false,
     }

@@ -11,8 +11,8 @@ use meshtone::operation::TimeGrid;
 use meshtone::scenario::{ScenarioWarning, Sensor};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
-    AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
-    ShaftPhase, SignalError, angular_resample, octave_bands, process_channel,
+    AngularSettings, AntiAliasing, ChainSettings, Edge, GearTrain, MeanPart, Record as Analysis,
+    SeparationSettings, ShaftPhase, SignalError, angular_resample, octave_bands, process_channel,
 };
 use meshtone::tuning::DifferenceChain;
 use meshtone::{GearboxSimulation, GearboxStages, Stages, StepJudgement};
@@ -49,16 +49,18 @@ pub(super) fn gearbox_record(
     let of_signals = simulation.warnings_of_signals(StepJudgement::Estimated);
     let warnings = [simulation.stages.warnings(), of_signals].concat();
     let GearboxSimulation { stages, channels, .. } = &simulation;
-    let single = |channel: &Channel| {
-        let signal = channels.signal(&channel.name()).unwrap_or_default();
-        signal.iter().map(|&value| value as f32).collect()
+    let signal = |name: &str| {
+        channels.signal(name).ok_or_else(|| format!("the simulation of the gearbox has no signal `{name}`"))
     };
-    let samples: Vec<Vec<f32>> = content.keep.simulated().iter().map(single).collect();
+    let single = |channel: &Channel| {
+        signal(&channel.name()).map(|signal| signal.iter().map(|&value| value as f32).collect())
+    };
+    let samples: Vec<Vec<f32>> = content.keep.simulated().iter().map(single).collect::<Result<_, _>>()?;
     let apart = stages.gearbox.meshes.iter().map(|mesh| {
-        let force_n = channels.signal(&format!("force_n.{}", mesh.name())).unwrap_or_default();
-        force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64
+        let force_n = signal(&format!("force_n.{}", mesh.name()))?;
+        Ok(force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64)
     });
-    let apart = apart.collect();
+    let apart = apart.collect::<Result<_, String>>()?;
     View::new(content, window, Simulated::Gearbox(stages)).record(content, drawn, &samples, &warnings, apart)
 }
 
@@ -90,7 +92,11 @@ const END: usize = 10;
 const MOST_GROWTH: f64 = 10.0;
 
 /// Refuses a motion that should be steady but grows throughout the record.
-fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>]) -> Result<(), String> {
+///
+/// # Arguments
+/// * `channels`, `samples` - what was simulated
+/// * `damping_key` - key of the scenario by which the damping is raised
+fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) -> Result<(), String> {
     let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
     let (mut first, mut last) = (0.0, 0.0);
     for (_, samples) in channels.iter().zip(samples).filter(|(channel, _)| channel.is_acceleration()) {
@@ -102,7 +108,7 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>]) -> Result<(), Strin
         let growth = (last / first).sqrt();
         return Err(format!(
             "the motion grows from the record's start to its end, by a factor of {growth:.0}: damping does not take what \
-             the varying mesh stiffness puts into a mode; raise rig.damping_ratio or use other teeth or another speed"
+             the varying mesh stiffness puts into a mode; raise {damping_key} or use other teeth or another speed"
         ));
     }
     Ok(())
@@ -141,6 +147,14 @@ impl<'a> Simulated<'a> {
         match self {
             Self::Pair(stages) => stages.is_steady(),
             Self::Gearbox(stages) => stages.is_steady(),
+        }
+    }
+
+    /// The machine by its tooth counts, with the wheels in the order of [`super::Turning`].
+    fn train(self) -> GearTrain {
+        match self {
+            Self::Pair(stages) => GearTrain::of_pair(&stages.scenario),
+            Self::Gearbox(stages) => GearTrain::of_layout(&stages.gearbox, &stages.layout),
         }
     }
 
@@ -206,7 +220,11 @@ impl<'a> View<'a> {
         let keep = self.keep;
         let simulated = keep.simulated();
         if self.is_steady() {
-            refuse_growth(&simulated, samples)?;
+            let damping_key = match self.simulated {
+                Simulated::Pair(_) => "rig.damping_ratio",
+                Simulated::Gearbox(_) => "damping_ratio of meshes, shafts and bearings",
+            };
+            refuse_growth(&simulated, samples, damping_key)?;
         }
         let mut channels = self.passed(&drawn, &simulated, samples)?;
         let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
@@ -408,19 +426,14 @@ impl<'a> View<'a> {
         angular: AngularSettings,
         mean: MeanPart,
     ) -> Result<Analysis, SignalError> {
-        let turning = self.wheel(wheel);
-        let (teeth, sidebands) = (turning.teeth, self.keep.sidebands);
-        // The meshes of the other wheels on the shaft are as regular as its own.
-        let of_others = (turning.others_on_shaft.iter()).flat_map(|&other| {
-            let orders = (other as usize..=signal.len()).step_by(other as usize);
-            orders.flat_map(|order| order.saturating_sub(sidebands)..=order + sidebands)
-        });
+        let teeth = self.wheel(wheel).teeth;
         let separation = SeparationSettings {
-            sidebands,
-            shaft_orders: (1..=self.keep.shaft_orders).chain(of_others).collect(),
+            sidebands: self.keep.sidebands,
+            shaft_orders: (1..=self.keep.shaft_orders).collect(),
             mean,
             ..SeparationSettings::new(teeth as usize)
         };
+        let separation = self.simulated.train().separation(self.window.turning.number(wheel), &separation);
         let settings = ChainSettings { angular, separation: Some(separation) };
         let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
         process_channel(&double, &self.phase(wheel, signal.len())?, teeth, &settings)

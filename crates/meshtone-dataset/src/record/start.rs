@@ -6,8 +6,16 @@ use super::Turning;
 use crate::draw::DrawnRecord;
 use crate::plan::{ClassFault, Keep};
 
-/// (rev) Angle of the input at which a record begins, from the start of the simulation: at the mark on its unit's marked wheel, in some
-/// revolution.
+/// Where a record begins, in revolutions of the input.
+pub(super) struct Start {
+    /// (rev) Angle from the start of the simulation. It is negative where the tooth of a gearbox's wheel enters contact before that.
+    pub input_rev: f64,
+    /// (rev) Angle by which the start of a steady record may be put off: a pair begins with the same teeth again, and a gearbox with the same tooth
+    /// of the wheel at whose tooth it begins.
+    pub period_rev: f64,
+}
+
+/// Where a record begins: at the mark on its unit's marked wheel, in some revolution.
 ///
 /// A rig's tachometer does not know the damaged tooth, so the mark is at any tooth, the same for all records of a unit. Where records are
 /// aligned, they begin when a damaged tooth comes into contact: that of the first fault, and of a healthy record the first tooth of the
@@ -19,13 +27,13 @@ use crate::plan::{ClassFault, Keep};
 /// * `faults` - of the record
 /// * `turning` - how its wheels turn
 /// * `is_steady` - whether motor and brake are steady; if not, teeth are counted from the first time that the mark passes
-pub(super) fn input_rev(
+pub(super) fn start(
     keep: &Keep,
     drawn: &DrawnRecord,
     faults: &[ClassFault],
     turning: &Turning,
     is_steady: bool,
-) -> f64 {
+) -> Start {
     let marked = &turning.wheels[turning.marked];
     let (wheel, passed, turn) = if keep.aligned {
         let (number, tooth) = faults.first().map_or((turning.marked, 0), |fault| turning.place_of(fault));
@@ -45,7 +53,11 @@ pub(super) fn input_rev(
         pitches if turning.enter_together => pitches % u64::from(marked.teeth.max(1)),
         _ => passed,
     };
-    wheel.input_rev(pitches as f64)
+    let revolution = f64::from(wheel.teeth) / wheel.pitches_per_revolution;
+    Start {
+        input_rev: wheel.input_rev(pitches as f64),
+        period_rev: if turning.enter_together { turning.cycle_rev() } else { revolution },
+    }
 }
 
 /// The pitches that have passed each wheel where teeth begin to be counted: the next tooth to enter contact is the first.

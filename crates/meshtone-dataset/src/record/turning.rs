@@ -17,9 +17,6 @@ pub(crate) struct Turning {
     pub marked: usize,
     /// Turns of the marked wheel after which the same teeth meet again, as far as records begin in any of them.
     pub turns: u32,
-    /// Revolutions of the input by which the start of a record may be put off: a pair begins with the same teeth again, and the teeth of a
-    /// gearbox are counted from where it begins.
-    pub period_rev: f64,
     /// Whether a tooth of every wheel enters contact where a record begins, and not of the marked wheel alone.
     pub enter_together: bool,
 }
@@ -37,8 +34,6 @@ pub(crate) struct TurningWheel {
     pub pitches_per_revolution: f64,
     /// (pitches) What has passed at the start of the simulation.
     pub first_pitch: f64,
-    /// Teeth of the other wheels on its shaft, whose meshes the average over its revolutions holds too.
-    pub others_on_shaft: Vec<u32>,
 }
 
 /// Most turns of the marked wheel in which a record of a gearbox begins: some gearboxes repeat after millions only.
@@ -72,14 +67,12 @@ impl Turning {
             },
             pitches_per_revolution: f64::from(pinion),
             first_pitch: 0.0,
-            others_on_shaft: Vec::new(),
         };
         let common = greatest_common_divisor(pinion, gear);
         Self {
             wheels: WheelName::BOTH.map(wheel).to_vec(),
             marked: WheelName::Gear as usize,
             turns: pinion / common,
-            period_rev: f64::from(gear / common),
             enter_together: true,
         }
     }
@@ -90,15 +83,12 @@ impl Turning {
         let wheel = |number: usize| {
             let (of, shaft) = (&gearbox.wheels[number], layout.shaft_of_wheel[number]);
             let ratio = layout.ratios[shaft].value().abs();
-            let others = (0..gearbox.wheels.len())
-                .filter(|&other| other != number && layout.shaft_of_wheel[other] == shaft);
             TurningWheel {
                 name: of.name.clone(),
                 teeth: of.teeth,
                 speed_hz: input_hz * ratio,
                 pitches_per_revolution: f64::from(of.teeth) * ratio,
                 first_pitch: layout.mesh_of(number).map_or(0.0, |(mesh, _)| layout.phases[mesh]),
-                others_on_shaft: others.map(|other| gearbox.wheels[other].teeth).collect(),
             }
         };
         let is_on_input = |shaft: &usize| layout.ratios[*shaft].value().abs() == 1.0;
@@ -106,7 +96,6 @@ impl Turning {
             wheels: (0..gearbox.wheels.len()).map(wheel).collect(),
             marked: layout.shaft_of_wheel.iter().position(is_on_input).unwrap_or(0),
             turns: layout.cycle_revolutions().clamp(1, MOST_TURNS) as u32,
-            period_rev: 1.0,
             enter_together: false,
         }
     }

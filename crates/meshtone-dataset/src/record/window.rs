@@ -45,18 +45,19 @@ pub(crate) fn simulated_scenario(
     let (time, is_steady) = (scenario.time_grid(), scenario.is_steady());
     let turning = Turning::of(&scenario)?;
     let per_revolution = time.samples_per_pinion_revolution as f64;
-    let input_rev = start::input_rev(keep, drawn, &ClassFault::all_of(&scenario), &turning, is_steady);
+    let start = start::start(keep, drawn, &ClassFault::all_of(&scenario), &turning, is_steady);
     let margin = if is_steady { margin(keep, drawn, &scenario, &turning, &time)? } else { 0 };
     let mut first = time.first_kept_sample;
     let counted_from = if is_steady {
         // Not after the tooth has come: the averages would lose a revolution.
-        let begins = (input_rev * per_revolution + ROUNDING).floor() as usize;
-        let period = (turning.period_rev * per_revolution).round().max(1.0) as usize;
-        // So many periods later that the settling comes before it.
-        first = begins + (first + margin).saturating_sub(begins).div_ceil(period) * period - margin;
+        let begins = start.input_rev * per_revolution + ROUNDING;
+        let (settled, period) = ((first + margin) as f64, start.period_rev * per_revolution);
+        // So many periods later that the settling comes before it. The period of a gearbox need not be a whole number of samples.
+        let periods = ((settled - begins.floor()) / period).ceil().max(0.0);
+        first = (begins + periods * period).floor().max(settled) as usize - margin;
         start::counted_from(&turning, (first + margin) as f64 / per_revolution, ROUNDING / per_revolution)
     } else {
-        start::counted_from(&turning, input_rev, 0.0)
+        start::counted_from(&turning, start.input_rev, 0.0)
     };
     let kept = kept_samples(keep, &turning, is_steady, &time);
     let seconds = |samples: usize| samples as f64 * time.step_s();

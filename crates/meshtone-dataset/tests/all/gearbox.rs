@@ -5,6 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use meshtone::scenario::ScenarioForm;
+use meshtone::signal::{
+    AngleZero, AngularSettings, GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainSettings,
+    TrainTurning, revolution_average,
+};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
 use meshtone_dataset::merge::merge;
@@ -98,6 +102,118 @@ fn a_data_set_of_a_gearbox_is_resumed_merged_and_verified_as_one_of_a_pair() {
     assert!(card.contains("10 units (gearboxes)") && card.contains("missing-tooth of z3"), "{card}");
 }
 
+/// The same plan with a material whose density varies, as wheels do, by unit.
+fn of_varied_material(per: &str) -> String {
+    let material =
+        "[scenario.material]\nyoungs_modulus_gpa = 210.0\npoisson_ratio = 0.3\ndensity_kg_per_m3 = 7850.0";
+    let vary = format!(
+        "[[vary]]\nkey = \"material.density_kg_per_m3\"\n{per}uniform = [7700.0, 7900.0]\n{material}\n"
+    );
+    fast().replacen("[[scenario.shaft]]", &(vary + "[[scenario.shaft]]"), 1)
+}
+
+/// What is wrong with the wheels' teeth depends on the unit alone, and is another one in every unit.
+#[test]
+fn the_wheels_are_those_of_the_unit() {
+    let plan = plan(&of_varied_material(""));
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let mut units = BTreeMap::new();
+    let mut again = 0;
+    for index in 0..plan.records() {
+        let drawn = sampler.record(index).unwrap();
+        let ScenarioForm::Gearbox(mut gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
+        gearbox.faults.clear();
+        let stages = meshtone::gearbox_stages(&gearbox).unwrap();
+        let deviations: Vec<_> = (stages.pairs.into_iter())
+            .map(|pair| (pair.profile_errors.unwrap(), pair.run_out, pair.helix_slope_um))
+            .collect();
+        let of_record = (gearbox.material, deviations);
+        if let Some(of_unit) = units.insert(drawn.unit, of_record.clone()) {
+            assert!(of_unit == of_record, "unit {}", drawn.unit);
+            again += 1;
+        }
+    }
+    assert_eq!((units.len(), again), (10, 38));
+    let units: Vec<_> = units.into_values().collect();
+    for (number, (material, deviations)) in units.iter().enumerate() {
+        for (other_material, other) in &units[..number] {
+            assert_ne!(material, other_material);
+            assert!(deviations.iter().zip(other).all(|(one, other)| one.0 != other.0));
+        }
+    }
+}
+
+/// What a record says of each wheel is what the chain for recordings of trains finds in its kept channel, which only knows the wheels' angles.
+#[test]
+fn indicators_are_those_of_a_recording_of_the_channel() {
+    // The kept channel is all that is analysed only where it is not cut to a duration of its own.
+    let text = fast()
+        .replace("records = 48", "records = 10")
+        .replace("units = 10", "units = 4")
+        .replace("duration_s = 1.0\n", "duration_s = 0.6\n")
+        .replace("duration_s = 0.6     ", "#");
+    let plan = plan(&text);
+    let made = made(&plan);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let mut largest: f64 = 0.0;
+    for row in 0..made.rows.len() {
+        let drawn = sampler.record(made.integer("record", row) as u64).unwrap();
+        let ScenarioForm::Gearbox(gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
+        let mut train = GearTrain::of_gearbox(&gearbox).unwrap();
+        for wheel in &mut train.wheels {
+            wheel.start_rev = made.number(&format!("{}_angle_rev", wheel.name), row);
+        }
+        let signal = made.signal("output_1_vertical_g", row);
+        let sampling_rate_hz = made.number("sampling_rate_hz", row);
+        let phase = ShaftPhase::constant(made.number("input_speed_hz", row), sampling_rate_hz, signal.len());
+        let phase = phase.unwrap().with_zero(AngleZero::Simulated);
+        let turning = TrainTurning::Shaft { shaft: train.input(), phase, stated: StatedTurning::Other };
+        let recording =
+            TrainRecording { signal: &signal, sampling_rate_hz, train: &train, turning: &turning };
+        let records = recording.process(&TrainSettings::default()).unwrap();
+        for of_wheel in &records.wheels {
+            let name = &train.wheels[of_wheel.wheel].name;
+            for indicator in of_wheel.records[0].indicators.table("g") {
+                let unit = if indicator.unit == "g" { "_g" } else { "" };
+                let column = format!("{name}_{}{unit}", indicator.name);
+                let Some(expected) = indicator.value else {
+                    assert_eq!(made.field(&column, row), &Field::Null, "{column}");
+                    continue;
+                };
+                // A skewness may be almost 0: what is left of it is rounding.
+                let off = (made.number(&column, row) - expected).abs() / expected.abs().max(1e-2);
+                largest = largest.max(off);
+                assert!(off < 1e-9, "row {row}, {column}: {expected}, off by {off}");
+            }
+        }
+    }
+    println!("largest relative deviation {largest}");
+}
+
+/// Also where a revolution of the damaged wheel is not a whole number of samples.
+#[test]
+fn an_aligned_record_begins_at_the_damaged_tooth_of_any_wheel() {
+    let aligned = fast()
+        .replace("records = 48", "records = 24")
+        .replace("duration_s = 0.6     ", "aligned = true\nduration_s = 0.6     ");
+    let odd = aligned.replacen("teeth = 32", "teeth = 31", 1);
+    assert_ne!(odd, aligned);
+    for text in [aligned, odd] {
+        let made = made(&plan(&text));
+        let mut wheels = BTreeSet::new();
+        for row in (0..made.rows.len()).filter(|&row| made.tooth(row).is_some()) {
+            let wheel = made.text("fault_wheel", row);
+            assert_eq!(made.tooth(row), Some(1), "{wheel}");
+            // Its tooth comes within a sample of the simulation, of which there are about 20 000 in a second.
+            let angle_rev = made.number(&format!("{wheel}_angle_rev"), row);
+            let sample_rev = made.number(&format!("{wheel}_speed_hz"), row) / 2e4;
+            assert!(angle_rev <= 1e-9 && angle_rev > -1.1 * sample_rev, "{wheel}: {angle_rev}");
+            wheels.insert(wheel);
+        }
+        assert_eq!(wheels, ["z1", "z3", "z4"].map(str::to_owned).into());
+    }
+}
+
 /// (g) Order of an average, of which one value a point is given.
 fn order(values: &[f64], order: usize) -> [f64; 2] {
     let phase = |point: usize| TAU * order as f64 * point as f64 / values.len() as f64;
@@ -137,8 +253,15 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         let speed_hz = made.number(&format!("{wheel}_speed_hz"), row);
         gearbox.solver.settings.duration_s = Some(0.5005 + 1.0 / speed_hz);
         let simulation = meshtone::simulate_gearbox(&gearbox).unwrap();
-        let signal = simulation.channels.signal("output_1_vertical_g").unwrap();
-        let (expected, _) = simulation.wheel_average(signal, number).unwrap();
+        let channels = &simulation.channels;
+        let signal = channels.signal("output_1_vertical_g").unwrap();
+        let train = GearTrain::of_layout(&gearbox, &simulation.stages.layout);
+        let form = ScenarioForm::Gearbox(gearbox);
+        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len()).unwrap();
+        let sampling_rate_hz = channels.sampling_rate_hz;
+        let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+        let angular = recording.angular(number, &AngularSettings::default()).unwrap();
+        let expected = revolution_average(&angular.values, angular.points_per_revolution);
         let found = made.signal(&format!("{wheel}_average_g"), row);
         // Tooth `tooth` of the record is tooth `of_scenario` of the scenario.
         let turn = (f64::from(of_scenario) - f64::from(tooth)) / f64::from(teeth);
@@ -178,6 +301,8 @@ fn what_a_gearbox_does_not_have_is_refused_at_its_key() {
         ),
         ("#wheel = [\"z1\", \"z2\", \"z3\", \"z4\"]", "wheel = [\"z1\", \"gear\"]", vec!["keep.wheel", "z3"]),
         ("duration_s = 0.6     ", "duration_s = 0.2     ", vec!["revolutions of the wheel z4"]),
+        // The wheel z3 of 48 teeth is on the same shaft.
+        ("#wheel = [", "wheel = \"z2\"\nsidebands = 24\n#wheel = [", vec!["keep.sidebands", "from 0 to 23"]),
         (
             "#channels = [\"input_0_vertical_g\",",
             "channels = [\"mesh_force_n\",",
@@ -193,4 +318,8 @@ fn what_a_gearbox_does_not_have_is_refused_at_its_key() {
         assert!(text.contains(written), "{written}");
         refused(&text.replacen(written, other, 1), &words);
     }
+    refused(
+        &of_varied_material("per = \"record\"\n"),
+        &["material.density_kg_per_m3", "would differ between records of one unit"],
+    );
 }

@@ -2,13 +2,13 @@
 
 use meshtone::scenario::{ScenarioForm, Sensor};
 use meshtone::sensor::{Channel, ChannelKind};
+use meshtone::signal::GearTrain;
 use meshtone_io::channel_name::{accelerations, read_channel};
 use meshtone_io::experiment::Tuned;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{AveragedWheels, Keep, MOST_SHARD_RECORDS, OverAngle, Wheel};
 use super::{number_where, over_zero};
-use crate::record::Turning;
 
 const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
@@ -49,8 +49,11 @@ pub(super) fn read(table: &TomlTable<'_>, base: &ScenarioForm, tuned: Option<&Tu
     let of_tuned = || tuned.map(|tuned| AveragedWheels::One(Wheel::OfPair(tuned.wheel)));
     let wheel = table.read_optional("wheel", |value| wheels(value, base))?.or_else(of_tuned);
     let wheel = wheel.unwrap_or_else(|| default_wheels(base));
-    let turning = Turning::of(base)?;
-    let fewest = wheel.all().iter().map(|wheel| turning.wheels[turning.number(wheel)].teeth).min();
+    // The meshes of all wheels on a shaft are taken away from the average over its revolutions.
+    let train = GearTrain::of_form(base)?;
+    let is_averaged = |name: &str| wheel.all().iter().any(|wheel| wheel.name() == name);
+    let averaged = train.wheels.iter().filter(|wheel| is_averaged(&wheel.name));
+    let fewest = averaged.flat_map(|wheel| train.teeth_on(wheel.shaft)).min();
     let teeth = u64::from(fewest.unwrap_or(1));
     let analysed = table.read_optional("analysed", |value| read_channel(value, &known.accelerations))?;
     let integer = |key, allowed| table.read_optional(key, |value| value.integer(allowed));

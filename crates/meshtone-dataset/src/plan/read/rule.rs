@@ -10,7 +10,8 @@ use crate::expression::Expression;
 /// The keys that say how a value is drawn, of which a rule has one.
 const DISTRIBUTIONS: [&str; 6] = ["fixed", "grid", "choice", "uniform", "log_uniform", "normal"];
 /// Sections whose keys make the wheels and the rig, which a unit's records share unless said otherwise.
-const OF_A_UNIT: [&str; 8] = ["gears", "quality", "rig", "shaft", "wheel", "mesh", "bearing", "housing"];
+const OF_A_UNIT: [&str; 9] =
+    ["gears", "quality", "rig", "material", "shaft", "wheel", "mesh", "bearing", "housing"];
 const MOST_STEPS: u64 = 100_000;
 /// The other keys of a rule.
 const OTHER_KEYS: [&str; 5] = ["weights", "times", "plus", "fraction_of", "per"];
