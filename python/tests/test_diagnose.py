@@ -74,7 +74,7 @@ def test_from_signals_to_an_answer(reference: Path) -> None:
         (gone, "spectrum", "must be 'recording', 'average' or 'difference'"),
         (other_teeth, "recording", "teeth"),
         ((gone.vertical_g, 8000.0, short), "recording", "phase"),
-        ((gone.vertical_g, 8000.0, quick), "recording", "not the gear's"),
+        ((gone.vertical_g, 8000.0, quick), "recording", "not of the gear's"),
     ]:
         with pytest.raises(ValueError, match=message):
             ask(recording, signal=signal)
@@ -100,7 +100,7 @@ def test_what_is_seen_is_warned_of_before_anything_is_simulated(reference: Path,
     assert caught[0].filename == __file__
 
     # A refusal makes no simulations, nor does a warning that is an error.
-    with pytest.raises(ValueError, match=r"wheels with \[20, 60\] teeth"):
+    with pytest.raises(ValueError, match="wheels with 20, 60 teeth"):
         mt.diagnose(mt.simulate(RIG.copy(gear_teeth=60)), RIG, reference=tmp_path)
     with warnings.catch_warnings():
         warnings.simplefilter("error", mt.MeshtoneWarning)

@@ -10,6 +10,9 @@ use crate::observation::{WheelLines, revolution, separation};
 
 /// (-) Least amplitude, as a part of the largest, whose logarithm is taken.
 const FLOOR: f64 = 1e-6;
+/// (-) Least energy over one tooth, as a part of the mean or of the burst: what a recording has everywhere, since loads differ and sensors have
+/// noise. Without it, two simulations of one load would be unlike all others.
+const LEAST_SHARE: f64 = 0.02;
 /// Mesh harmonics whose levels are looked at.
 const HARMONICS: usize = 8;
 /// Mesh orders beyond which the local waveform is not looked at.
@@ -143,17 +146,17 @@ impl Difference {
         let (points, pitch) = (self.points(), self.pitch());
         let total = energy.iter().sum::<f64>().max(f64::MIN_POSITIVE) / points as f64;
         let around = |teeth_on: f64| energy[wrapped(at as f64 + teeth_on * pitch, points)] / total;
-        let mut shapes: Vec<f64> = WINDOWS.iter().map(|&on| around(on).max(1e-4).ln()).collect();
+        let mut shapes: Vec<f64> = WINDOWS.iter().map(|&on| around(on).max(LEAST_SHARE).ln()).collect();
         let elsewhere = (0..points).filter(|&point| distance(point, at, points) > 3.0 * pitch);
         let second = elsewhere.map(|point| energy[point]).fold(0.0, f64::max);
-        shapes.push((second / energy[at].max(f64::MIN_POSITIVE)).max(1e-4).ln());
+        shapes.push((second / energy[at].max(f64::MIN_POSITIVE)).max(LEAST_SHARE).ln());
         let half = energy.iter().filter(|&&value| value > 0.25 * energy[at]).count();
         shapes.push((half as f64 / points as f64).ln());
         let of_tooth = |tooth: usize| energy[wrapped(tooth as f64 * pitch, points)] / total;
         let mut of_teeth: Vec<f64> = (0..self.teeth).map(of_tooth).collect();
         of_teeth.sort_by(f64::total_cmp);
         let ranked = |part: f64| of_teeth[(part * (self.teeth - 1) as f64) as usize];
-        shapes.extend([0.1, 0.5, 0.9].map(|part| ranked(part).max(1e-4).ln()));
+        shapes.extend([0.1, 0.5, 0.9].map(|part| ranked(part).max(LEAST_SHARE).ln()));
         shapes
     }
 

@@ -28,6 +28,9 @@ const PENALTY: f64 = 30.0;
 const PRIOR_HEALTHY: f64 = 0.5;
 /// (-) Noise in an average of unknown noise, as a part of its difference signal's rms: least and largest.
 const UNKNOWN_NOISE: [f64; 2] = [0.003, 0.2];
+/// (log10) Change of a wheel over its healthy level, below which it has not changed: two simulations of one load are equal but for their damage,
+/// as no recordings are.
+const LEAST_CHANGE: f64 = -1.5;
 /// Fewest records that can be learnt from.
 const FEWEST_RECORDS: usize = 200;
 /// Fewest mesh orders that a signal must show.
@@ -211,7 +214,8 @@ impl Layout {
                 row.values.push(quantiles(louder.iter().map(|level| (*level, 1.0)).collect(), [0.5])[0]);
                 row.values.extend(louder);
                 row.values.extend(less(&plain.shapes, &before.shapes));
-                row.values.extend(less(&beyond.levels, &before.levels));
+                let changed = less(&beyond.levels, &before.levels);
+                row.values.extend(changed.into_iter().map(|level| level.max(LEAST_CHANGE)));
                 row.values.extend(beyond.shapes);
             }
         }
