@@ -1,6 +1,7 @@
 //! The answer of a diagnosis.
 
 use meshtone::signal::AngleZero;
+use meshtone::wheel::WheelName;
 
 use crate::diagnose::OUTSIDE;
 use crate::observation::SignalKind;
@@ -160,6 +161,16 @@ impl Answer {
     /// Returns whether the healthy recording is unlike the healthy pairs that were simulated.
     pub fn is_healthy_outside(&self) -> bool {
         self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
+    }
+
+    /// A wheel in words, after `the`: gear, or wheel z3 of a gearbox.
+    ///
+    /// # Arguments
+    /// * `wheel` - its place in [`Self::wheels`]
+    pub fn wheel_in_words(&self, wheel: usize) -> String {
+        let name = &self.wheels[wheel];
+        let is_of_pair = WheelName::BOTH.iter().any(|of| of.name() == name);
+        if is_of_pair { name.clone() } else { format!("wheel {name}") }
     }
 
     /// Returns whether several damages at once are likelier than any single one.

@@ -85,7 +85,7 @@ impl AnyDamage {
         if self.wheel_probability < NAMED {
             return format!("look at {}", likely_wheels(answer));
         }
-        let wheel = &answer.wheels[self.wheel];
+        let wheel = answer.wheel_in_words(self.wheel);
         // All teeth may be likelier than one.
         match self.tooth.filter(|_| self.one_tooth_probability >= 0.5) {
             Some(ToothAnswer { number, probability, .. }) if probability >= NAMED => {
@@ -126,13 +126,13 @@ pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
         return "Nothing can be said: the recordings are unlike what was simulated.".to_owned();
     }
-    let ([unseen, seen], damaged, wheels) = (DECIDED, answer.damaged(), &answer.wheels);
+    let ([unseen, seen], damaged) = (DECIDED, answer.damaged());
     match &answer.any_damage {
         Some(any) if damaged >= seen => {
             let what = if any.wheel_probability < NAMED {
                 "One of the wheels".to_owned()
             } else {
-                format!("The {}", wheels[any.wheel])
+                format!("The {}", answer.wheel_in_words(any.wheel))
             };
             let several = if answer.has_likely_several() {
                 " Two damages at once are likelier than a single one."

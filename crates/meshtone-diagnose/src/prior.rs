@@ -544,7 +544,7 @@ mod tests {
         assert_eq!(seen.len() as u64, classes);
         assert!(seats.len() > 3, "{seats:?}");
         let keys: Vec<&str> = prior.spreads.iter().map(|spread| spread.key.as_str()).collect();
-        for key in ["bearing[input:0].stiffness_n_per_m", "housing.mass_kg", "mesh[z1-z2].backlash_mm"] {
+        for key in ["bearing[input:0].stiffness_n_per_m", "housing.mass_kg", "mesh[z1-z2].damping_ratio"] {
             assert!(keys.contains(&key), "{key}: {keys:?}");
         }
     }

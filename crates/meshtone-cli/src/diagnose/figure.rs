@@ -46,7 +46,7 @@ pub fn draw(answer: &Answer, title: &str, rig: &[TrainWheel]) -> Figure {
         .iter()
         .map(|explanation| {
             let wheel = explanation.wheel.map(|wheel| {
-                format!(" of the {}, severity {:.2}", answer.wheels[wheel], explanation.severity)
+                format!(" of the {}, severity {:.2}", answer.wheel_in_words(wheel), explanation.severity)
             });
             let words = format!("{}{}", explanation.label, wheel.unwrap_or_default());
             (words, &explanation.difference_g[..])
@@ -55,7 +55,7 @@ pub fn draw(answer: &Answer, title: &str, rig: &[TrainWheel]) -> Figure {
     diagnosis::draw(&DiagnosisFigure {
         title,
         facts: &facts,
-        wheel: &shown.name,
+        wheel: &answer.wheel_in_words(answer.shown_wheel),
         teeth: shown.teeth,
         damaged_tooth: on_shown.and_then(|place| place.tooth).map(|tooth| tooth.number),
         difference_g: &answer.difference_g,
