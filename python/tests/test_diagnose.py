@@ -107,3 +107,17 @@ def test_what_is_seen_is_warned_of_before_anything_is_simulated(reference: Path,
         with pytest.raises(mt.MeshtoneWarning, match="when it was healthy"):
             mt.diagnose(gone, RIG, reference=tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_gearbox_is_asked_about_before_anything_is_simulated() -> None:
+    """Its simulation is observed wheel by wheel; a pair's scenario and a pair's options are refused."""
+    gearbox = mt.Gearbox.from_toml(mt.gearbox_template())
+    recording = mt.simulate_gearbox(gearbox)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", mt.MeshtoneWarning)
+        with pytest.raises(mt.MeshtoneWarning, match="the recording is short"):
+            mt.diagnose(recording, gearbox)
+    with pytest.raises(ValueError, match="wheels with 32, 96, 48, 80 teeth, the scenario has 20, 40"):
+        mt.diagnose(recording, RIG)
+    with pytest.raises(ValueError, match="signal = 'average'"):
+        mt.diagnose(recording, gearbox, signal="average")
