@@ -267,7 +267,7 @@ impl SlowestShaft<'_> {
 /// * `stated` - teeth of the wheel on that shaft and of its mate, and how it turns
 ///
 /// # Errors
-/// Those of [`angular_resample`].
+/// Those of [`meshtone::signal::angular_resample`].
 pub fn other_tone(
     signal: &[f64],
     sampling_rate_hz: f64,
