@@ -19,6 +19,7 @@ from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import finite_signal, positive, read_only, whole
 from .signal.phase import ShaftPhase, native_phase
+from .signal.train import native_machine
 from .simulation import Simulation, chosen_channel
 
 __all__ = ["Diagnosis", "diagnose"]
@@ -180,7 +181,7 @@ def diagnose(
     if isinstance(scenario, Gearbox) and (tuned is not None or signal != "recording"):
         given = f"tuned = {tuned!r}" if tuned is not None else f"signal = '{signal}'"
         raise ValueError(f"{given}: needs the scenario of a pair; leave it out with a gearbox, and give whole recordings")
-    rig = _native(scenario)
+    rig = native_machine(scenario)
     if tuned is not None and isinstance(rig, _core.Scenario):
         rig = _core.tuned_rig(rig, tuned)
     now = _observations("recordings", recordings, scenario, signal)
@@ -224,10 +225,6 @@ def _observations(
     return [_observation(name, one, scenario, signal) for one in several]
 
 
-def _native(machine: Scenario | Gearbox) -> _core.Scenario | _core.Gearbox:
-    return machine._native if isinstance(machine, Gearbox) else native_scenario(machine)
-
-
 def _observation(name: str, one: Any, scenario: Scenario | Gearbox, signal: str) -> _core.Observation:
     if signal != "recording" and isinstance(scenario, Scenario):
         return _core.Observation.of_revolution(finite_signal(one), scenario.gear_teeth, signal)
@@ -244,7 +241,7 @@ def _observation(name: str, one: Any, scenario: Scenario | Gearbox, signal: str)
     if isinstance(one, tuple) and len(one) == 3:
         values, rate_hz, phase = one
         rate_hz = positive("sampling_rate_hz", rate_hz)
-        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), _native(scenario))
+        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), native_machine(scenario))
     raise TypeError(
         f"{name}: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
     )

@@ -9,7 +9,8 @@ from types import TracebackType
 
 from . import _core
 from .gearbox import Gearbox
-from .scenario import Scenario, native_scenario, template
+from .scenario import Scenario, template
+from .signal.train import native_machine
 
 __all__ = ["Explorer", "explore"]
 
@@ -21,8 +22,7 @@ class Explorer:
     """
 
     def __init__(self, scenario: Scenario | Gearbox, port: int, in_notebook: bool) -> None:
-        native = scenario._native if isinstance(scenario, Gearbox) else native_scenario(scenario)
-        self._server = _core.ExploreServer(native, port, in_notebook)
+        self._server = _core.ExploreServer(native_machine(scenario), port, in_notebook)
 
     @property
     def url(self) -> str | None:

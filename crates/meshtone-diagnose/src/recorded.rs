@@ -85,7 +85,7 @@ impl Observation {
     /// # Errors
     /// Fewer than two whole revolutions of a shaft; those of [`meshtone::signal::angular_resample`].
     pub fn of_recording(recording: &TrainRecording) -> Result<Self, SignalError> {
-        let TrainRecording { train, signal, sampling_rate_hz, turning } = *recording;
+        let TrainRecording { train, sampling_rate_hz, turning, .. } = *recording;
         let settings = AngularSettings::default();
         let angular = (0..train.wheels.len()).map(|wheel| recording.angular(wheel, &settings));
         let angular = angular.collect::<Result<Vec<_>, _>>()?;
@@ -96,27 +96,7 @@ impl Observation {
             TrainTurning::SimulatedPair(shafts) => shafts.mean_speed_hz(WheelName::Pinion),
             TrainTurning::Shaft { .. } => phase(train.input())?.mean_speed_hz(sampling_rate_hz),
         };
-        let against = match turning {
-            TrainTurning::SimulatedPair(_) => None,
-            TrainTurning::Shaft { shaft, phase, stated } => {
-                let wheel = train.wheels.iter().position(|wheel| wheel.shaft == *shaft);
-                let stated = StatedFacts::of_shaft(train, *shaft, *stated);
-                match wheel.zip(stated) {
-                    Some((wheel, stated)) => {
-                        // Lines of another mesh would look like another tooth count.
-                        let is_known =
-                            |found: &Mismatch| train.meshes.len() < 2 || found.alternative.is_speed();
-                        match find_mismatch(&angular[wheel], &stated).filter(is_known) {
-                            None if train.meshes.len() < 2 => {
-                                other_tone(signal, sampling_rate_hz, phase, &stated)?
-                            }
-                            against => against,
-                        }
-                    }
-                    None => None,
-                }
-            }
-        };
+        let against = mismatch(recording, &angular)?;
         let observed = Self::of_angles(train, &angular, input_speed_hz)?;
         let observed = Self { zero, ..observed };
         Ok(match against {
@@ -165,6 +145,27 @@ impl Observation {
             mismatch,
             doubts: shaft.too_short().into_iter().collect(),
         })
+    }
+}
+
+/// Finds what fits a recording better than what is stated about the shaft whose phase is known.
+///
+/// # Arguments
+/// * `recording` - the channel with its shafts
+/// * `angular` - of each wheel the channel over the angle of its shaft
+fn mismatch(recording: &TrainRecording, angular: &[AngularSignal]) -> Result<Option<Mismatch>, SignalError> {
+    let TrainRecording { train, signal, sampling_rate_hz, turning } = *recording;
+    let TrainTurning::Shaft { shaft, phase, stated } = turning else { return Ok(None) };
+    let wheel = train.wheels.iter().position(|wheel| wheel.shaft == *shaft);
+    let Some((wheel, stated)) = wheel.zip(StatedFacts::of_shaft(train, *shaft, *stated)) else {
+        return Ok(None);
+    };
+    let is_pair = train.meshes.len() < 2;
+    // Lines of another mesh would look like another tooth count.
+    let found = find_mismatch(&angular[wheel], &stated).filter(|of| is_pair || of.alternative.is_speed());
+    match found {
+        None if is_pair => other_tone(signal, sampling_rate_hz, phase, &stated),
+        found => Ok(found),
     }
 }
 

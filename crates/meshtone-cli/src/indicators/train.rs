@@ -16,13 +16,13 @@ use crate::failure::Failure;
 pub struct Turned {
     /// Shafts, wheels, meshes.
     pub train: GearTrain,
-    /// How they turned.
+    /// How its shafts turned.
     pub turning: TrainTurning,
     /// The wheels in words, in the order of the train.
     pub wheels: Vec<Wheel>,
     /// The source of the phase, in words.
     pub source: String,
-    /// What is doubtful about the files that say so.
+    /// Doubts about the recording and the files that state its phase.
     pub warnings: Vec<WarningEntry>,
 }
 
@@ -76,7 +76,7 @@ impl Turned {
         }
     }
 
-    /// Of what was simulated.
+    /// Takes shafts and angles from the scenario of what was simulated.
     fn simulated(input: &Input, scenario_toml: &str) -> Result<Self, Failure> {
         let form = simulated_form(input, scenario_toml)?;
         let train = train_of(&form)?;

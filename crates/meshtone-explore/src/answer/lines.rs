@@ -1,9 +1,7 @@
 //! What the lines of a gearbox's spectrum are: harmonics of which mesh, sidebands of which shaft.
 
-use std::f64::consts::TAU;
-
 use meshtone::GearboxStages;
-use meshtone_fourier::real_spectrum;
+use meshtone_fourier::{hann_window, real_spectrum};
 
 /// Lines of a spectrum that are named: the strongest.
 const MOST_LINES: usize = 24;
@@ -63,10 +61,11 @@ impl Spectrum {
     pub fn of(signal: &[f64], sampling_rate_hz: f64) -> Self {
         let count = signal.len().max(1) as f64;
         let mean = signal.iter().sum::<f64>() / count;
-        let window = |i: usize| 1.0 - (TAU * i as f64 / count).cos();
+        let window = hann_window(signal.len());
         let windowed: Vec<f64> =
-            signal.iter().enumerate().map(|(i, value)| (value - mean) * window(i)).collect();
-        let amplitudes = real_spectrum(&windowed).iter().map(|line| 2.0 * line.norm() / count).collect();
+            signal.iter().zip(window).map(|(value, window)| (value - mean) * window).collect();
+        // The mean of the window is 1/2.
+        let amplitudes = real_spectrum(&windowed).iter().map(|line| 4.0 * line.norm() / count).collect();
         Self { step_hz: sampling_rate_hz / count, amplitudes }
     }
 
@@ -167,6 +166,8 @@ impl Tones {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     fn tones() -> Tones {
