@@ -267,6 +267,7 @@ warning_kinds! {
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
     Gyroscopic "gyroscopic" "a shaft is so fast that gyroscopic moments, which are left out, shift natural frequencies";
+    AddedThrust "added-thrust" "the axial forces of two helical wheels add up on their shaft";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
     ProfileEnded "profile-ended" "a speed or torque profile ends before the kept signal starts";

@@ -55,6 +55,8 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
         &[
             "gears.active_profile_shortening",
             "gears.backlash_mm",
+            "gears.lead_crowning_um",
+            "gears.end_relief",
             "quality.helix_share",
             "quality.pinion_helix_slope_um",
             "quality.gear_helix_slope_um",
@@ -67,6 +69,8 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
     (
         &["published"],
         &[
+            "gears.hand",
+            "gears.slices",
             "gears.flank_relief",
             "gears.tip_chamfer_mm",
             "gears.foundation",

@@ -101,7 +101,7 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
 #[test]
 fn published_rigs_are_printed_and_simulate() {
     let workplace = Workplace::new();
-    for rig in ["phm2009-spur", "uconn", "tecnalia"] {
+    for rig in ["phm2009-spur", "phm2009-helical", "uconn", "tecnalia"] {
         let output = workplace.succeeds(&["init", "gearbox", "--rig", rig]);
         let text = stdout(&output);
         assert!(text.contains("# assumed") && text.contains("# Published:"), "{text}");

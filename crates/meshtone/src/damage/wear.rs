@@ -105,14 +105,13 @@ impl Wear {
 
     /// (mm) Depth at the profile's points, along the flank's normal.
     fn depths_mm(&self, healthy: &HealthyTooth) -> Vec<f64> {
-        let (flank, path) = (healthy.flank(), &healthy.teeth.path);
+        let path = &healthy.teeth.path;
         // The point before the first one in contact, too: what lies between is interpolated.
         let first = healthy.first_contact().saturating_sub(1);
         let begin_mm = involutes_begin_mm(healthy.teeth);
         let shape: Vec<f64> = (0..healthy.profile().len())
             .map(|i| {
-                let position =
-                    path.position(healthy.name, flank.curvature_mm(i)).clamp(0.0, path.contact_ratio);
+                let position = healthy.position(i).clamp(0.0, path.contact_ratio);
                 if i < first { 0.0 } else { wear_rate(healthy.teeth, begin_mm, healthy.name, position) }
             })
             .collect();

@@ -151,7 +151,8 @@ impl Rig {
         below("rig.eccentricity_mm", self.eccentricity_mm, gears.module_mm, "the module")?;
         for (wheel, shaft) in [(WheelName::Pinion, &self.pinion_shaft), (WheelName::Gear, &self.gear_shaft)] {
             let below_pitch_circle = gears.dedendum(wheel) - gears.profile_shift(wheel);
-            let root_radius_mm = gears.module_mm * (f64::from(gears.teeth(wheel)) / 2.0 - below_pitch_circle);
+            let root_radius_mm = gears.transverse_module_mm() * f64::from(gears.teeth(wheel)) / 2.0
+                - gears.module_mm * below_pitch_circle;
             let limit_is = format!("the root radius of the {}, whose bore it fills", wheel.name());
             below(
                 &format!("rig.{}_shaft.radius_mm", wheel.name()),

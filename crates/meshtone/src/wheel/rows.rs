@@ -1,10 +1,11 @@
 //! Keys that the wheels of a pair have, and those of a gearbox.
 
+use super::{EndRelief, Hand};
 use crate::keys::{Field, KeyRow, Range, row};
 
 /// The row of the module.
 pub(crate) fn module_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    row("module_mm", "mm", "the module of both wheels", field)
+    row("module_mm", "mm", "the module of both wheels, of helical ones in the normal section", field)
         .required()
         .range(Range::positive().implausible_above(100.0))
 }
@@ -24,9 +25,44 @@ pub(crate) fn face_width_row<S: 'static>(meaning: &'static str, field: Field<S, 
 
 /// The row of the pressure angle.
 pub(crate) fn pressure_angle_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field)
-        .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
-        .rule("no teeth pointed below full height")
+    row(
+        "pressure_angle_deg",
+        "°",
+        "the pressure angle at the pitch circle, of helical wheels in the normal section",
+        field,
+    )
+    .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
+    .rule("no teeth pointed below full height")
+}
+
+/// The row of the helix angle.
+pub(crate) fn helix_angle_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    row("helix_angle_deg", "°", "the helix angle at the pitch circle; 0: spur wheels", field).range(
+        Range::from_to(0.0, 45.0)
+            .help("usual helix angles are 8° to 30°; hand says to which side the teeth lean"),
+    )
+}
+
+/// The row of the helix's hand.
+pub(crate) fn hand_row<S: 'static>(meaning: &'static str, field: Field<S, Hand>) -> KeyRow<S> {
+    row("hand", "", meaning, field)
+}
+
+/// The row of the lead crowning.
+pub(crate) fn lead_crowning_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    let meaning = "the lead crowning of both wheels together: how much farther apart the flanks are at the ends of the face than at its middle";
+    row("lead_crowning_um", "µm", meaning, field).range(Range::not_negative().implausible_above(1000.0))
+}
+
+/// The row of the end relief.
+pub(crate) fn end_relief_row<S: 'static>(field: Field<S, EndRelief>) -> KeyRow<S> {
+    row("end_relief", "", "the relief of the flanks towards both ends of the face, as a gap in µm", field)
+}
+
+/// The row of the number of slices.
+pub(crate) fn slices_row<S: 'static>(field: Field<S, u32>) -> KeyRow<S> {
+    let meaning = "the number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it";
+    row("slices", "", meaning, field).range(Range::from_to(1.0, 41.0))
 }
 
 /// The row of a profile shift.

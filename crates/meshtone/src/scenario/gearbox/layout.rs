@@ -330,6 +330,9 @@ impl GearboxLayout {
             pinion.face_width_mm.min(gear.face_width_mm),
         );
         gears.pressure_angle_deg = mesh.pressure_angle_deg;
+        (gears.helix_angle_deg, gears.hand) = (mesh.helix_angle_deg, mesh.hand);
+        (gears.lead_crowning_um, gears.end_relief, gears.slices) =
+            (mesh.lead_crowning_um, mesh.end_relief, mesh.slices);
         (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion.profile_shift, gear.profile_shift);
         (gears.pinion_addendum, gears.gear_addendum) = (pinion.addendum, gear.addendum);
         (gears.pinion_dedendum, gears.gear_dedendum) = (pinion.dedendum, gear.dedendum);

@@ -456,13 +456,14 @@ impl Gearbox {
         let of_shares = (0..wheels).flat_map(of_wheel);
         let ended = self.operation.drive.ended_profiles(time.kept_from_s());
         let of_speed = self.driven_speed(layout).warnings();
-        of_teeth.into_iter().chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()
+        let of_teeth = of_teeth.into_iter().chain(layout.added_thrusts(self));
+        of_teeth.chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()
     }
 
     fn driven_speed(&self, layout: &GearboxLayout) -> DrivenSpeed<'_> {
         let pitch_lines_mm = layout.gears.iter().zip(&layout.wheels_of_mesh).map(|(gears, [driving, _])| {
             let ratio = layout.ratios[layout.shaft_of_wheel[*driving]].value().abs();
-            pitch_line_mm(gears.module_mm, gears.pinion_teeth) * ratio
+            pitch_line_mm(gears.transverse_module_mm(), gears.pinion_teeth) * ratio
         });
         DrivenSpeed {
             operation: &self.operation.drive,

@@ -14,7 +14,7 @@ use crate::operation::{Operation, Solver};
 use crate::sensor::{Sensor, SensorDirection, SensorPath};
 use crate::wheel::quality::{file_deviations, ignored_shares};
 use crate::wheel::rows::*;
-use crate::wheel::{ErrorTable, FlankRelief, Material, WheelDeviations, WheelName};
+use crate::wheel::{EndRelief, ErrorTable, FlankRelief, Hand, Material, WheelDeviations, WheelName};
 
 /// A wheel on a shaft of a gearbox.
 #[derive(Debug, Clone, PartialEq)]
@@ -247,10 +247,20 @@ impl Keys for GearboxWheel {
 pub struct GearboxMesh {
     /// Names of the driving and of the driven wheel.
     pub wheels: [String; 2],
-    /// (mm) Module.
+    /// (mm) Module, of helical wheels in the normal section.
     pub module_mm: f64,
-    /// (°) Pressure angle at the pitch circle. Default 20.
+    /// (°) Pressure angle at the pitch circle, of helical wheels in the normal section. Default 20.
     pub pressure_angle_deg: f64,
+    /// (°) Helix angle at the pitch circle. Default 0: spur wheels.
+    pub helix_angle_deg: f64,
+    /// Hand of the driving wheel's helix; the driven one's is the other one. Default right.
+    pub hand: Hand,
+    /// (µm) Lead crowning of both wheels together. Default 0.
+    pub lead_crowning_um: f64,
+    /// Relief of the flanks towards both ends of the face. Default none.
+    pub end_relief: EndRelief,
+    /// Number of slices of the face where the gap varies along it. Default 11.
+    pub slices: u32,
     /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
     pub centre_distance_mm: Option<f64>,
     /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`.
@@ -284,6 +294,11 @@ impl Keys for GearboxMesh {
             wheels: [String::new(), String::new()],
             module_mm: f64::NAN,
             pressure_angle_deg: 20.0,
+            helix_angle_deg: 0.0,
+            hand: Hand::Right,
+            lead_crowning_um: 0.0,
+            end_relief: EndRelief::default(),
+            slices: 11,
             centre_distance_mm: None,
             backlash_mm: None,
             phase: None,
@@ -296,6 +311,11 @@ impl Keys for GearboxMesh {
             row("wheels", "", "the names of the driving and of the driven wheel", field!(wheels)).required(),
             module_row(field!(module_mm)),
             pressure_angle_row(field!(pressure_angle_deg)),
+            helix_angle_row(field!(helix_angle_deg)),
+            hand_row("the hand of the driving wheel's helix; the driven one's is the other one", field!(hand)),
+            lead_crowning_row(field!(lead_crowning_um)),
+            end_relief_row(field!(end_relief)),
+            slices_row(field!(slices)),
             centre_distance_row(field!(centre_distance_mm)),
             backlash_row(field!(backlash_mm)),
             row(
