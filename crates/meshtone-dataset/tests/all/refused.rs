@@ -144,7 +144,7 @@ fn keys_that_are_none() {
     refused_with(
         "when = \"operation.pinion_speed_hz > 50\"",
         "when = \"gears.module_mm > 2\"",
-        &["about nothing that varies"],
+        &["concerns nothing that varies"],
     );
     let teeth = "[[vary]]\nkey = \"gears.gear_teeth\"\nuniform = [30, 50]\n[keep]";
     refused_with("[keep]", teeth, &["is a whole number", "choice or grid"]);

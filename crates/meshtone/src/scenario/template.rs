@@ -103,7 +103,7 @@ impl Style for Commented {
 
     fn without_faults(&self) -> Option<String> {
         let kinds: Vec<_> = damage_kinds().iter().map(|kind| format!("\"{}\"", kind.name)).collect();
-        let kinds = comment(&format!("What is wrong: one of {}.", kinds.join(", ")));
+        let kinds = comment(&format!("The kind of damage: one of {}.", kinds.join(", ")));
         Some(format!("{WITHOUT_FAULTS}{kinds}# kind = \"root-crack\"\n# severity = 0.4\n"))
     }
 

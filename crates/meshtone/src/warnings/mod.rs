@@ -77,8 +77,9 @@ impl Stages {
         let bare = stiffness.iter().filter(|&&stiffness| stiffness <= 0.0).count();
         (bare > 0).then(|| {
             let message = format!(
-                "no pair of teeth meets for {:.2} % of a revolution: a linear mesh holds nothing there, and the teeth strike where the \
-                 next pair begins; model = \"contact\" has tips that touch beside their path, less damage leaves a pair",
+                "no pair of teeth meets for {:.2} % of a revolution: a linear mesh has no stiffness there, \
+                 and the teeth strike where the next pair begins; with model = \"contact\" tip corners touch \
+                 there, and with less damage a pair remains",
                 100.0 * bare as f64 / stiffness.len() as f64
             );
             ScenarioWarning::new(WarningKind::NoContact, "fault", message)

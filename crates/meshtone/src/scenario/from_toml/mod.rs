@@ -151,7 +151,7 @@ const NOT_MODELLED: [(&str, &str, &str); 9] = [
     (
         "gears",
         "crowning_mm",
-        "is now called uniform_flank_reduction_mm: it takes back the whole flank alike, which is no crowning, and crowning is not modelled",
+        "is now called uniform_flank_reduction_mm: it is a constant reduction of the whole flank and no crowning, which is not modelled",
     ),
     ("gears", "lead_crowning_um", CROWNING),
     ("gears", "profile_crowning_um", CROWNING),
@@ -159,8 +159,8 @@ const NOT_MODELLED: [(&str, &str, &str); 9] = [
     ("gears", "internal", "is not modelled: both wheels are external gears"),
     ("gears", "shaft_angle_deg", "is not modelled: the shafts are parallel"),
     ("gears", "rim_thickness_mm", "is not modelled: the wheels' bodies are solid"),
-    ("operation", "temperature_c", "is not modelled: the simulation knows neither heat nor oil"),
-    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: the simulation knows neither heat nor oil"),
+    ("operation", "temperature_c", "is not modelled: heat and oil are not simulated"),
+    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: heat and oil are not simulated"),
 ];
 const CROWNING: &str =
     "is not modelled: flanks are straight along the face; flank_relief relieves the profile's ends";

@@ -212,12 +212,12 @@ impl GearboxLayout {
                     let other = ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth));
                     if other != known {
                         let problem = format!(
-                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast as the input, by the other \
-                             way it turns {known} times",
+                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast \
+                             as the input, by the other path it turns {known} times",
                             name(driven)
                         );
                         return Err(ScenarioError::new(key, written, problem).with_help(
-                            "change the tooth counts so that both ways have the same ratio, or remove a mesh",
+                            "change the tooth counts so that both paths have the same ratio, or remove a mesh",
                         ));
                     }
                 }
