@@ -207,7 +207,7 @@ class GearboxBearing(TypedDict, total=False):
     at : float
         (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1.
     kind : {'linear'}
-        What it is.
+        The kind of bearing.
     stiffness_n_per_m : float
         (N/m) The radial stiffness. Allowed: > 0, ≤ 1e15.
     axial_stiffness_n_per_m : float

@@ -430,7 +430,7 @@ class ScenarioKeys:
             (mm) The module of both wheels. Allowed: > 0, ≤ 100.
         pinion_teeth, gear_teeth : int
             The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is
-            left out, with a warning.
+            not simulated, with a warning.
         face_width_mm : float
             (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
         pinion_speed_hz : float
@@ -457,10 +457,10 @@ class ScenarioKeys:
             (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip. Default: 0.0.
         pinion_addendum, gear_addendum : float, optional
             (-) The addendum coefficient of the basic rack, in modules. Allowed: 0.3…2; tips not pointed, clear of the
-            mate's fillets. Default: 1.0.
+            mating gear's fillets. Default: 1.0.
         pinion_dedendum, gear_dedendum : float, optional
-            (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mate's
-            tips. Default: 1.25.
+            (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mating
+            gear's tips. Default: 1.25.
         centre_distance_mm : float, optional
             (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1. Default:
             that without backlash.
@@ -524,11 +524,11 @@ class ScenarioKeys:
             the module. Default: none.
         pinion_cumulative_pitch_um, gear_cumulative_pitch_um : sequence of floats, optional
             (µm) The working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added;
-            given profile errors are added to. Allowed: one a tooth, each below the module. Default: drawn, or none
+            they are added to given profile errors. Allowed: one a tooth, each below the module. Default: drawn, or none
             beside given profile errors.
         pinion_run_out_um, gear_run_out_um : float, optional
             (µm) The run-out F_r, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000. Default: drawn, or
-            none beside given profile errors or pitches, which have it in them. Ignored by published.
+            none beside given profile errors or pitches, which contain it. Ignored by published.
         pinion_run_out_phase_rad, gear_run_out_phase_rad : float, optional
             (rad) Its phase φ; θ counts from where the wheel's first tooth enters contact. Default: drawn, or 0 beside
             given profile errors. Ignored by published.

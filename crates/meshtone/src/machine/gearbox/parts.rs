@@ -167,7 +167,7 @@ pub struct Bearing {
     pub shaft: String,
     /// (-) Where along the shaft, as a part of its length.
     pub at: f64,
-    /// What it is.
+    /// The kind of bearing.
     pub kind: BearingKind,
     /// (N/m) Stiffness across the shaft, in every direction. Default 1.5e8.
     pub stiffness_n_per_m: f64,
@@ -224,7 +224,7 @@ impl Keys for Bearing {
             row("at", "-", "the position along the shaft, as a fraction of its length from z = 0", field!(at))
                 .required()
                 .range(ALONG),
-            row("kind", "", "what it is", field!(kind)),
+            row("kind", "", "the kind of bearing", field!(kind)),
             row("stiffness_n_per_m", "N/m", "the radial stiffness", field!(stiffness_n_per_m))
                 .range(STIFFNESS),
             row(
