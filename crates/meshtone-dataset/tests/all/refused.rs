@@ -77,7 +77,7 @@ fn contradictory() {
         "uniform = [30.0, 60.0]\nfixed = 3",
         &["uniform", "given beside fixed"],
     );
-    refused_with("uniform = [30.0, 60.0]", "per = \"record\"", &["says not how it varies"]);
+    refused_with("uniform = [30.0, 60.0]", "per = \"record\"", &["does not state how it varies"]);
     refused_with("label = \"missing\"", "label = \"breakage\"", &["label \"breakage\" of another class"]);
     refused_with(
         "label = \"healthy\"",

@@ -79,7 +79,7 @@ impl Tuned {
     pub fn warning_for(&self, scenario: &Scenario) -> Option<String> {
         (scenario.model != self.model).then(|| {
             format!(
-                "was tuned with model = \"{}\", but the scenario has \"{}\": the same numbers mean something else there",
+                "was tuned with model = \"{}\", but the scenario has \"{}\": the same numbers have another meaning there",
                 self.model.name(),
                 scenario.model.name()
             )

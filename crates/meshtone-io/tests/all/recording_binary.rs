@@ -328,7 +328,7 @@ fn files_that_are_empty_cut_or_unknown_are_refused() {
         }
     }
     let message = refused("a.xyz", b"hello", &defaults());
-    assert!(message.contains("is of no format that is known here (it ends in .xyz"), "{message}");
+    assert!(message.contains("has no known format (it ends in .xyz"), "{message}");
     let missing = read_recording("no/such/file.csv".as_ref(), &defaults()).unwrap_err().to_string();
     assert!(missing.starts_with("cannot read no/such/file.csv: "), "{missing}");
 }

@@ -43,7 +43,7 @@ impl ToothPart {
             (Self::FlankLength | Self::FlankSpots, _) => None,
             (Self::Tip, _) => Some("a tooth can have one breakage only"),
             (Self::Root, _) => Some("a tooth can have one root crack only"),
-            (Self::FlankSurface, _) => Some("a flank can have one wear only"),
+            (Self::FlankSurface, _) => Some("a flank can have one wear fault only"),
         }
     }
 }

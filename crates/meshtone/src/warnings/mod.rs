@@ -184,8 +184,9 @@ fn overload(
     (deflection_mm > most_mm).then(|| {
         let most_nm = torque_nm * most_mm / deflection_mm;
         let message = format!(
-            "{torque_nm:?} N m presses {teeth} {deflection_mm:.3} mm together, {:.2} modules, with {force_n:.0} N on {width_mm} mm \
-             of face: they would break; at most {most_nm:.0} N m stays below a tenth of the module",
+            "{torque_nm:?} N m deflects {teeth} by {deflection_mm:.3} mm, {:.2} modules, with {force_n:.0} N \
+             on {width_mm} mm of face: they would break; at most {most_nm:.0} N m stays below a tenth of the \
+             module",
             deflection_mm / module_mm
         );
         ScenarioWarning::new(WarningKind::Overload, key, message)

@@ -506,7 +506,7 @@ fn mistakes_are_named_with_their_key_and_line() {
     assert!(
         error
             .problem
-            .contains("is 90.0000 mm from its mate's axis, but the wheels of mesh z1-z2 mesh at 101.6000 mm"),
+            .contains("is 90.0000 mm from the axis of its mating shaft, but the wheels of mesh z1-z2 mesh at 101.6000 mm"),
         "{error}"
     );
     // The number of a fault is that in the file, whichever mesh its wheel is in.

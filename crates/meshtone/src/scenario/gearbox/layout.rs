@@ -280,8 +280,8 @@ impl GearboxLayout {
                 let [x, y] = places[shaft];
                 let mesh = gearbox.meshes[mesh].name();
                 let problem = format!(
-                    "is {apart_mm:.4} mm from its mate's axis, but the wheels of mesh {mesh} mesh at {distance_mm:.4} mm; must be the \
-                     same within {CENTRE_TOLERANCE_MM} mm"
+                    "is {apart_mm:.4} mm from the axis of its mating shaft, but the wheels of mesh {mesh} \
+                     mesh at {distance_mm:.4} mm; must be the same within {CENTRE_TOLERANCE_MM} mm"
                 );
                 return Err(ScenarioError::new(key, format!("[{x:?}, {y:?}]"), problem).with_help(
                     "move the shaft, or give the mesh that centre_distance_mm or its wheels profile shifts",

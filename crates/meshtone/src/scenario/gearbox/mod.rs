@@ -111,7 +111,7 @@ const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
 /// A scenario file, as what it is read.
 #[derive(Clone, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is one of a file")]
+#[expect(clippy::large_enum_variant, reason = "a file has only one")]
 pub enum ScenarioForm {
     /// The short form: one pair of gears.
     Pair(Scenario),
