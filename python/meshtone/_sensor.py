@@ -75,8 +75,8 @@ class Sensor:
         phase unwrapped; zero outside them. Or { file = "….csv" } with the columns frequency_hz, magnitude, phase_deg.
         Allowed: at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0. Default: none.
     response_input : {'acceleration', 'force'}, optional
-        What goes through the frequency response: the place's acceleration, magnitudes without unit; or, whatever ``at``
-        and ``direction`` say, the force along the line of action, magnitudes in (m/s²)/N. Default: "acceleration".
+        The input of the frequency response: the place's acceleration, magnitudes without unit; or, regardless of ``at``
+        and ``direction``, the force along the line of action, magnitudes in (m/s²)/N. Default: "acceleration".
 
     Notes
     -----
