@@ -179,7 +179,7 @@ class Simulation:
 
     @property
     def tension_fraction(self) -> float:
-        """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would part."""
+        """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would separate."""
         return self._native.tension_fraction
 
     @property
