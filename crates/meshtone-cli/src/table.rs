@@ -141,10 +141,10 @@ fn touching(force: &MeshForce) -> String {
     };
     let hits = match contact.back_flank_hits {
         0 => "no back flank hits".to_string(),
-        1 => format!("1 hit of back flanks, {} of the time", percent(contact.back_flank_fraction)),
-        hits => format!("{hits} hits of back flanks, {} of the time", percent(contact.back_flank_fraction)),
+        1 => format!("1 hit of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
+        hits => format!("{hits} hits of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
     };
-    format!("; apart {} of the time, {hits}", percent(contact.apart_fraction))
+    format!("; contact loss {} of the time, {hits}", percent(contact.apart_fraction))
 }
 
 /// `root-crack (severity 0.400) on tooth 1 of the gear`, one after the other.

@@ -226,7 +226,7 @@ impl ShaftOptions {
                 let what =
                     if found.is_none() { "is no wheel of the scenario" } else { "is more than one wheel" };
                 let problem = format!("--teeth {teeth}: {what}; there are {}", all());
-                Failure::refuse(problem, "--shaft NAME names the shaft that speed or pulses are of")
+                Failure::refuse(problem, "--shaft NAME names the shaft to which speed or pulses belong")
             }
         }
     }

@@ -205,6 +205,6 @@ fn what_knows_one_pair_says_so() {
     workplace.fails(
         2,
         &["tune", "experiment.toml", "-o", "tuned"],
-        &["of a gearbox", "tuning", "know one pair"],
+        &["of a gearbox", "tuning", "accept one pair only"],
     );
 }

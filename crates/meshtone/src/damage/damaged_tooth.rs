@@ -179,7 +179,7 @@ impl DamagedTooth {
                 beside(self.descriptions.split_last().map_or(&[], |(_, earlier)| earlier))
             );
             return Err(ScenarioError::new("fault", "", problem)
-                .with_help("move the pit towards the root, or lessen the breakage's tip_loss_mm"));
+                .with_help("move the pit towards the root, or reduce the breakage's tip_loss_mm"));
         }
         let is_cut = |damage: &&DamageDescription| damage.part == ToothPart::FlankLength;
         let Some((last, earlier)) = self.descriptions.split_last() else { return Ok(()) };
@@ -190,7 +190,7 @@ impl DamagedTooth {
             None => Ok(()),
             Some(other) => {
                 let problem = format!(
-                    "cuts the flank of {place} where {} has cut it; must leave a piece of sound flank between them",
+                    "cuts the flank of {place} where {} has cut it; must leave a piece of undamaged flank between them",
                     named(other)
                 );
                 Err(ScenarioError::new("fault", "", problem)

@@ -33,8 +33,8 @@ impl Keys for Wear {
             row("depth_um", "µm", "the largest depth of wear, along the flank's normal", field!(depth_um))
                 .required_unless(&["severity"])
                 .range(Range::from_to(0.0, MOST_UM).help(
-                    "what has worn deeper bears where it was not worn before; for a flank that is gone, use kind = \
-                     \"tooth-destruction\"",
+                    "a flank that is worn deeper touches where it was not worn before; for a flank that is \
+                     destroyed, use kind = \"tooth-destruction\"",
                 )),
         ]
     }

@@ -31,7 +31,7 @@ pub struct Mesh {
     pub mean_stiffness_n_per_m: f64,
     /// (s) Damping of a contact over its stiffness, `2 ζ √(m/k̄)`.
     pub damping_time_s: f64,
-    /// (m) Normal backlash; none where the mesh may pull, so that back flanks never touch.
+    /// (m) Normal backlash; none where the mesh may pull, so that coast flanks never touch.
     pub backlash_m: Option<f64>,
     /// (-) Contact ratio of sound teeth: the length of their path between the chamfers, in base pitches of the transverse section.
     pub contact_ratio: f64,
@@ -113,7 +113,7 @@ impl Mesh {
     /// * `shape` - of all tips
     /// * `sequence` - which of them meet
     /// * `points_per_pitch` - number of points from one pair to the next
-    /// * `parameters` - contact, damping, back flanks, load along the face
+    /// * `parameters` - contact, damping, coast flanks, load along the face
     pub(crate) fn new(
         faces: &[Pairs],
         shape: TipShape,

@@ -2,7 +2,7 @@
 //! pairs of teeth, or the slices of each pair where its gap varies along the face.
 //!
 //! Flanks push and never pull. Where they may pull, as in a linear mesh, every pair on its path carries `k_n (x_n + τ ẋ_n)` of either
-//! sign, and back flanks are out of reach.
+//! sign, and coast flanks are out of reach.
 //!
 //! Stiffness, deviation and separation of every pair are known functions of the rotation, so a mesh has one unknown in a step, the
 //! deflection with its damping's lead, `D = δ + τ δ̇`. At the step's end `D = D₀ − Γ f(D)`, where D₀ is what it would be without
@@ -163,9 +163,9 @@ pub struct MeshLaw {
     pub contact: Contact,
     /// (s) τ, the contact's damping over its stiffness.
     pub damping_time_s: f64,
-    /// (N/m) Stiffness of back flanks in contact.
+    /// (N/m) Stiffness of coast flanks in contact.
     pub back_stiffness_n_per_m: f64,
-    /// (m) Normal backlash; none where back flanks are out of reach.
+    /// (m) Normal backlash; none where coast flanks are out of reach.
     pub backlash_m: Option<f64>,
 }
 
@@ -173,7 +173,7 @@ pub struct MeshLaw {
 const OUT_OF_REACH_M: f64 = 1e9;
 
 impl MeshLaw {
-    /// (m) Deflection at which the back flanks touch, `−j`.
+    /// (m) Deflection at which the coast flanks touch, `−j`.
     fn back_touches_at_m(&self) -> f64 {
         -self.backlash_m.unwrap_or(OUT_OF_REACH_M)
     }
@@ -249,7 +249,7 @@ impl<const L: usize> LawLanes<L> {
     /// about the middle of the face.
     ///
     /// The load acts in the one direction `g(z̄) = g₀ + z̄ g₁`, so that deflections and compliances in g₀ and g₁ come down to one
-    /// equation in D. It is solved for the drive flanks first; only where D would reach the back flanks, which is rare, they are added
+    /// equation in D. It is solved for the drive flanks first; only where D would reach the coast flanks, which is rare, they are added
     /// and the equation is solved again.
     ///
     /// # Arguments
@@ -291,7 +291,7 @@ impl<const L: usize> LawLanes<L> {
             let pushed = compliance.mul(simd, stiffness);
             let own = one.add(simd, pushed);
             let loaded = pushed.mul_add(simd, self.back_touches, load);
-            // Where no back flank touches the solution is found again, from the same pairs on.
+            // Where no coast flank touches the solution is found again, from the same pairs on.
             *touching = before;
             (deflection, sums) = self.solve(simd, sample, [compliance, own, loaded], touching);
             back = stiffness.mul(simd, self.back_touches.sub(simd, deflection));
@@ -421,7 +421,7 @@ mod tests {
     use super::*;
     use crate::simd::{InstructionSet, Task};
 
-    /// Flanks that push, without damping and with back flanks out of reach.
+    /// Flanks that push, without damping and with coast flanks out of reach.
     const UNDAMPED: MeshLaw = MeshLaw {
         contact: Contact::Unilateral,
         damping_time_s: 0.0,
@@ -557,7 +557,7 @@ mod tests {
         }
     }
 
-    /// Against bisection, over drawn pairs, compliances and free deflections: back flanks and jammed teeth too.
+    /// Against bisection, over drawn pairs, compliances and free deflections: coast flanks and jammed teeth too.
     #[test]
     fn a_step_is_solved_exactly() {
         use crate::random::{Draws, Purpose};

@@ -643,7 +643,7 @@ mod tests {
         }
     }
 
-    /// Springs that push from given deflections on, and back flanks: 2 000 drawn problems of one to eight meshes, also of such as are
+    /// Springs that push from given deflections on, and coast flanks: 2 000 drawn problems of one to eight meshes, also of such as are
     /// coupled far more strongly than those of a machine. The solution obeys the equations, from wherever the search begins.
     #[test]
     fn drawn_equations_are_solved_exactly() {

@@ -15,7 +15,7 @@ pub(crate) fn teeth_row<S: 'static>(name: &'static str, field: Field<S, u32>) ->
     row(name, "", "the tooth count", field)
         .required()
         .range(Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth"))
-        .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning")
+        .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is not simulated, with a warning")
 }
 
 /// The row of a face width.
@@ -77,14 +77,14 @@ pub(crate) fn profile_shift_row<S: 'static>(name: &'static str, field: Field<S, 
 pub(crate) fn addendum_row<S: 'static>(name: &'static str, field: Field<S, f64>) -> KeyRow<S> {
     row(name, "-", "the addendum coefficient of the basic rack, in modules", field)
         .range(Range::from_to(0.3, 2.0).help("the standard basic rack has 1"))
-        .rule("tips not pointed, clear of the mate's fillets")
+        .rule("tips not pointed, clear of the mating gear's fillets")
 }
 
 /// The row of a dedendum.
 pub(crate) fn dedendum_row<S: 'static>(name: &'static str, field: Field<S, f64>) -> KeyRow<S> {
     row(name, "-", "the dedendum coefficient of the basic rack, in modules", field)
         .range(Range::from_to(0.5, 2.5).help("the standard basic rack has 1.25"))
-        .rule("roots clear of the mate's tips")
+        .rule("roots clear of the mating gear's tips")
 }
 
 /// The row of the centre distance.
@@ -107,16 +107,16 @@ pub(crate) fn chamfer_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S>
 
 /// The row of the active profile's shortening.
 pub(crate) fn shortening_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    let meaning = "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either end";
+    let meaning = "the shortening of the path of contact against that between the chamfers, in base pitches, half at either end";
     row("active_profile_shortening", "-", meaning, field).range(Range::from_to(0.0, 0.5))
 }
 
 /// The row of the backlash.
 pub(crate) fn backlash_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S> {
     row("backlash_mm", "mm", "the backlash along the line of action", field)
-        .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
+        .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, plus the backlash of a given one")
         .range(Range::not_negative())
-        .rule("less than 1 module; at least what a given centre distance opens")
+        .rule("less than 1 module; at least that of a given centre distance")
         .alternative("0.1275")
 }
 

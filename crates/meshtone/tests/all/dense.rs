@@ -71,7 +71,7 @@ struct Load {
     contact: Contact,
     /// (N/m, m) Stiffness of each pair, or of each slice of it, and what it adds to the deflection, with the damping's lead.
     pairs: Vec<[f64; 2]>,
-    /// (N/m, m) The same of the back flanks.
+    /// (N/m, m) The same of the coast flanks.
     back: Option<[f64; 2]>,
     /// (m) Where along the face the load acts.
     face_centre_m: f64,

@@ -151,14 +151,14 @@ const NOT_MODELLED: [(&str, &str, &str); 7] = [
     (
         "gears",
         "crowning_mm",
-        "is now called uniform_flank_reduction_mm: it takes back the whole flank alike, which is no crowning; lead crowning is lead_crowning_um",
+        "is now called uniform_flank_reduction_mm: it is a constant reduction of the whole flank; lead crowning is lead_crowning_um",
     ),
     ("gears", "profile_crowning_um", "is not modelled: flank_relief relieves the profile's ends"),
     ("gears", "internal", "is not modelled: both wheels are external gears"),
     ("gears", "shaft_angle_deg", "is not modelled: the shafts are parallel"),
     ("gears", "rim_thickness_mm", "is not modelled: the wheels' bodies are solid"),
-    ("operation", "temperature_c", "is not modelled: the simulation knows neither heat nor oil"),
-    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: the simulation knows neither heat nor oil"),
+    ("operation", "temperature_c", "is not modelled: heat and oil are not simulated"),
+    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: heat and oil are not simulated"),
 ];
 
 fn refuse_not_modelled(section: &str, table: &TomlTable<'_>) -> ReadResult<()> {

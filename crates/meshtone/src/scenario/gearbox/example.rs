@@ -133,8 +133,8 @@ const CHALLENGE_FAULT: &str = "\
 
 const EXAMPLE_HEAD: &str = "\
 # A Meshtone gearbox: two stages of spur gears on three shafts, in a housing on four feet.
-# What stands behind \"# \" is a comment. Every key is in the guide's chapter on gearboxes; what is left
-# out here is at its default.
+# Text after \"# \" is a comment. The guide's chapter on gearboxes has every key; keys that are left
+# out here have their defaults.
 ";
 
 const EXAMPLE_FAULT: &str = "\
