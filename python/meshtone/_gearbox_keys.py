@@ -144,6 +144,21 @@ class GearboxWheel(TypedDict, total=False):
     helix_slope_um: float
 
 
+class EndRelief(TypedDict, total=False):
+    """The table ``end_relief`` of an entry ``[[mesh]]`` of a gearbox.
+
+    Attributes
+    ----------
+    length_mm : float
+        (mm) The length from each end of the face. Allowed: > 0; at most half the face width.
+    amount_um : float
+        (µm) How much farther apart the flanks of both wheels are at the ends of the face. Allowed: ≥ 0, ≤ 1000.
+    """
+
+    length_mm: float
+    amount_um: float
+
+
 class GearboxMesh(TypedDict, total=False):
     """An entry ``[[mesh]]`` of a gearbox.
 
@@ -152,9 +167,22 @@ class GearboxMesh(TypedDict, total=False):
     wheels : sequence of two strs
         The names of the driving and of the driven wheel.
     module_mm : float
-        (mm) The module of both wheels. Allowed: > 0, ≤ 100.
+        (mm) The module of both wheels, of helical ones in the normal section. Allowed: > 0, ≤ 100.
     pressure_angle_deg : float
-        (°) The pressure angle at the pitch circle. Allowed: 10…35; no teeth pointed below full height.
+        (°) The pressure angle at the pitch circle, of helical wheels in the normal section. Allowed: 10…35; no teeth
+        pointed below full height.
+    helix_angle_deg : float
+        (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45.
+    hand : {'right', 'left'}
+        The hand of the driving wheel's helix; the driven one's is the other one.
+    lead_crowning_um : float
+        (µm) The lead crowning of both wheels together: how much farther apart the flanks are at the ends of the face
+        than at its middle. Allowed: ≥ 0, ≤ 1000.
+    end_relief : EndRelief
+        The relief of the flanks towards both ends of the face, as a gap in µm.
+    slices : int
+        The number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it. Allowed:
+        whole number 1…41.
     centre_distance_mm : float
         (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1.
     backlash_mm : float
@@ -170,6 +198,11 @@ class GearboxMesh(TypedDict, total=False):
     wheels: Sequence[str]
     module_mm: float
     pressure_angle_deg: float
+    helix_angle_deg: float
+    hand: Literal["right", "left"]
+    lead_crowning_um: float
+    end_relief: EndRelief
+    slices: int
     centre_distance_mm: float
     backlash_mm: float
     phase: float

@@ -18,6 +18,21 @@ Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]
 """``time_s`` and ``value``: speed or torque against time."""
 
 
+class EndRelief(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    length_mm : float
+        (mm) The length from each end of the face. Allowed: > 0; at most half the face width.
+    amount_um : float
+        (µm) How much farther apart the flanks of both wheels are at the ends of the face. Allowed: ≥ 0, ≤ 1000.
+    """
+
+    length_mm: float
+    amount_um: float
+
+
 class FlankRelief(TypedDict, total=False):
     """A table of a scenario.
 
@@ -140,6 +155,11 @@ SECTION_OF_KEY: dict[str, str] = {
     "model": "",
     "seed": "",
     "pressure_angle_deg": "gears",
+    "helix_angle_deg": "gears",
+    "hand": "gears",
+    "lead_crowning_um": "gears",
+    "end_relief": "gears",
+    "slices": "gears",
     "pinion_profile_shift": "gears",
     "gear_profile_shift": "gears",
     "pinion_addendum": "gears",
@@ -225,6 +245,11 @@ class ScenarioChanges(TypedDict, total=False):
     model: Any
     seed: Any
     pressure_angle_deg: Any
+    helix_angle_deg: Any
+    hand: Any
+    lead_crowning_um: Any
+    end_relief: Any
+    slices: Any
     pinion_profile_shift: Any
     gear_profile_shift: Any
     pinion_addendum: Any
@@ -296,6 +321,11 @@ class ScenarioKeys:
     model: Literal["contact", "linear", "published"]
     seed: int
     pressure_angle_deg: float
+    helix_angle_deg: float
+    hand: Literal["right", "left"]
+    lead_crowning_um: float
+    end_relief: EndRelief
+    slices: int
     pinion_profile_shift: float
     gear_profile_shift: float
     pinion_addendum: float
@@ -365,6 +395,11 @@ class ScenarioKeys:
         model: Literal["contact", "linear", "published"] | None = None,
         seed: int | None = None,
         pressure_angle_deg: float | None = None,
+        helix_angle_deg: float | None = None,
+        hand: Literal["right", "left"] | None = None,
+        lead_crowning_um: float | None = None,
+        end_relief: EndRelief | None = None,
+        slices: int | None = None,
         pinion_profile_shift: float | None = None,
         gear_profile_shift: float | None = None,
         pinion_addendum: float | None = None,
@@ -427,7 +462,7 @@ class ScenarioKeys:
         Parameters
         ----------
         module_mm : float
-            (mm) The module of both wheels. Allowed: > 0, ≤ 100.
+            (mm) The module of both wheels, of helical ones in the normal section. Allowed: > 0, ≤ 100.
         pinion_teeth, gear_teeth : int
             The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is
             not simulated, with a warning.
@@ -451,8 +486,21 @@ class ScenarioKeys:
             The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise.
             Allowed: whole number. Default: 1.
         pressure_angle_deg : float, optional
-            (°) The pressure angle at the pitch circle. Allowed: 10…35; no teeth pointed below full height. Default:
-            20.0.
+            (°) The pressure angle at the pitch circle, of helical wheels in the normal section. Allowed: 10…35; no
+            teeth pointed below full height. Default: 20.0.
+        helix_angle_deg : float, optional
+            (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45. Default: 0.0.
+        hand : {'right', 'left'}, optional
+            The hand of the pinion's helix; the gear's is the other one. Default: "right". Ignored by published.
+        lead_crowning_um : float, optional
+            (µm) The lead crowning of both wheels together: how much farther apart the flanks are at the ends of the
+            face than at its middle. Allowed: ≥ 0, ≤ 1000. Default: 0.0. Ignored by linear, published.
+        end_relief : EndRelief, optional
+            The relief of the flanks towards both ends of the face, as a gap in µm. Default: { length_mm = 1.0,
+            amount_um = 0.0 }. Ignored by linear, published.
+        slices : int, optional
+            The number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it.
+            Allowed: whole number 1…41. Default: 11. Ignored by published.
         pinion_profile_shift, gear_profile_shift : float, optional
             (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip. Default: 0.0.
         pinion_addendum, gear_addendum : float, optional
