@@ -30,11 +30,7 @@ const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
 /// Draws the face; `along` is the tooth's own range.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
     let half = side.wheel.face_width_mm / 2.0;
-    let title = if side.contact_lines_mm.is_empty() {
-        "Tooth face"
-    } else {
-        "Tooth face, contact lines every half pitch"
-    };
+    let title = if side.contact_lines_mm.is_empty() { "Tooth face" } else { "Face, contact lines" };
     let axes = Axes::titled(canvas, area, [-1.12 * half, 1.12 * half], along, title);
     axes.x_axis(canvas, &Ticks::about_zero(half), "Face width, z (mm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));

@@ -59,6 +59,12 @@ impl Gears {
         self.contact_ratio() + self.overlap_ratio()
     }
 
+    /// (pitches) From where to where the wheels turn while a pair is in contact anywhere on its face, since its middle could enter contact.
+    pub fn contact_span_pitches(&self) -> [f64; 2] {
+        let ahead = self.overlap_ratio() / 2.0;
+        [-ahead, self.contact_ratio() + ahead]
+    }
+
     /// (mm) How much farther apart the flanks are at a place of the face than at its middle: lead crowning `4 C_β ζ²` and end relief.
     ///
     /// # Arguments

@@ -131,6 +131,13 @@ impl Teeth {
         [x_mm - self.outwards_mm(wheel), y_mm / self.wheel(wheel).helix_angle_rad.cos()]
     }
 
+    /// (pitches) The same as [`Gears::contact_span_pitches`].
+    pub fn contact_span_pitches(&self) -> [f64; 2] {
+        let overlap =
+            self.gear.face_width_mm * self.gear.base_helix_angle_rad().tan() / self.path.base_pitch_mm;
+        [-overlap / 2.0, self.contact.contact_ratio + overlap / 2.0]
+    }
+
     /// (mm) The contact line on a tooth of helical wheels at an instant: z from the middle of the face, and x along the tooth's centre line
     /// in the normal section. Empty where no place of the face is on the path.
     ///
