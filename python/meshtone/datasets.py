@@ -32,6 +32,10 @@ Examples
 ['healthy', 'missing-tooth']
 >>> train.signals("vertical_g")[0].dtype
 dtype('float32')
+>>> gears.condition_columns
+['pinion_teeth', 'gear_teeth', 'pinion_speed_hz', 'brake_torque_nm']
+>>> any(train.to_pandas()[name].isna().all() for name in gears.condition_columns), "difference_octave_32_rms_g" in gears.empty_columns
+(False, True)
 >>> folder.cleanup()
 """
 
