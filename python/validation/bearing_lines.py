@@ -1,4 +1,4 @@
-"""How far the lines of a bearing's defect stand out of recordings, by size of the bursts and by what is taken off first.
+"""How far the lines of a bearing's defect stand out of recordings, by size of the bursts and by what is removed first.
 
 Recordings of 10 s at 20 kS/s of a 6205 on a shaft at 30 Hz: white noise, a mesh of 17 teeth with sidebands, 20 times as strong as the noise, and bursts of a
 resonance at 4.3 kHz of a given size whenever a ball passes a place of the outer race, each later than the one before by a distance that varies by 1 %.
@@ -33,10 +33,10 @@ def recording(size: float, seed: int, phase: ShaftPhase) -> npt.NDArray[np.float
     return ringing + mesh + random.standard_normal(angle.size)
 
 
-def over_median(cleared: npt.NDArray[np.float64], phase: ShaftPhase) -> list[float]:
+def over_median(remaining: npt.NDArray[np.float64], phase: ShaftPhase) -> list[float]:
     """The first lines of BPFO, BPFI and 2 BSF in the band that the kurtogram chooses."""
-    band_hz = signal.kurtogram(cleared, RATE_HZ).best(3 * SHAFT_HZ * BEARING.defect_orders.inner_race).band_hz
-    spectrum = signal.squared_envelope_order_spectrum(cleared, RATE_HZ, phase, band_hz)
+    band_hz = signal.kurtogram(remaining, RATE_HZ).best(3 * SHAFT_HZ * BEARING.defect_orders.inner_race).band_hz
+    spectrum = signal.squared_envelope_order_spectrum(remaining, RATE_HZ, phase, band_hz)
     lines = {line.line: line.over_median for line in signal.defect_lines(spectrum, BEARING)}
     return [lines[name] for name in FIRST]
 

@@ -126,7 +126,7 @@ pub fn spectral_kurtosis<'py>(
     Ok(array(py, kurtosis))
 }
 
-/// The signal with all lines of its spectrum equally strong.
+/// The signal with all lines of its spectrum at the same amplitude.
 #[pyfunction]
 pub fn cepstral_prewhitening<'py>(py: Python<'py>, signal: Signal<'py>) -> PyResult<Array<'py>> {
     let signal = samples(&signal)?;

@@ -111,7 +111,7 @@ NAMED_BEARINGS: dict[str, Bearing] = {name: Bearing(*of, source) for name, of, s
 
 @dataclass(frozen=True, eq=False)
 class SquaredEnvelopeSpectrum:
-    """Spectrum of a squared envelope, behind Hann's window and without its mean.
+    """Spectrum of a squared envelope, with a Hann window and without its mean.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class DefectLine:
     over_median : float
         (-) That amplitude over the median of those beside it; noise alone has 2 to 4.
     is_beside_shaft_order : bool
-        Whether the spectrum is too coarse to tell the line from a whole order of the shaft.
+        Whether the spectrum is too coarse to separate the line from a whole order of the shaft.
     """
 
     line: str

@@ -99,10 +99,10 @@ def kurtogram(signal: npt.ArrayLike, sampling_rate_hz: float, *, most_levels: in
 
 
 def spectral_kurtosis(signal: npt.ArrayLike, block_samples: int) -> Array:
-    """For each frequency how much the power varies from block to block: ⟨|X|⁴⟩/⟨|X|²⟩² − 2 of the spectra X of blocks behind Hann's window.
+    """For each frequency how much the power varies from block to block: ⟨|X|⁴⟩/⟨|X|²⟩² − 2 of the spectra X of blocks with a Hann window.
 
     It is 0 in stationary Gaussian noise, −1 at a steady tone, and large where bursts stand out. At frequency 0 and at half the sampling
-    rate, where the spectrum is real, 3 is taken off instead of 2.
+    rate, where the spectrum is real, 3 is subtracted instead of 2.
 
     Parameters
     ----------

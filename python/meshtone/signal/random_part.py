@@ -1,4 +1,4 @@
-"""What of a recording is not periodic, and its velocity."""
+"""The part of a recording that is not periodic, and its velocity."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class DiscreteRandomParts:
 
 
 def synchronous_residual(signal: npt.ArrayLike, phases: Sequence[ShaftPhase]) -> SynchronousResidual:
-    """Take the averages over the revolutions of all shafts off a recording, one after the other.
+    """Remove the averages over the revolutions of all shafts from a recording, one after the other.
 
     Bearings, which slip, and noise stay; of R revolutions the average takes 1/R of their power.
 
@@ -81,7 +81,7 @@ def synchronous_residual(signal: npt.ArrayLike, phases: Sequence[ShaftPhase]) ->
 def discrete_random_separation(
     signal: npt.ArrayLike, block_samples: int, delay_samples: int | None = None
 ) -> DiscreteRandomParts:
-    """Take a signal of constant speed apart into its tones and the rest, without knowing the speed.
+    """Separate a signal of constant speed into its tones and the rest; the speed need not be known.
 
     The size of the transfer function from the signal a delay earlier to the signal is near 1 at tones and near 0 elsewhere; it is the filter,
     without phase. Within half a block of the ends the discrete part is too small.
@@ -91,8 +91,8 @@ def discrete_random_separation(
     signal : array_like, shape (samples,)
         (any unit) The signal, at least eight blocks and the delay long.
     block_samples : int
-        Length of a block, at least 16: two tones are told from what lies between them if they are apart by about four times the sampling rate
-        over it.
+        Length of a block, at least 16: it resolves tones whose distance is more than about four times the sampling rate over
+        it.
     delay_samples : int, optional
         Longer than a burst rings and slip leaves the next ones in step; by default a block.
 
@@ -124,7 +124,7 @@ def discrete_random_separation(
 
 
 def cepstral_prewhitening(signal: npt.ArrayLike) -> Array:
-    """The signal with all lines of its spectrum made equally strong, their phases kept: its real cepstrum is 0 but for the first value.
+    """The signal with all lines of its spectrum at the same amplitude and with their own phases: its real cepstrum is 0 but for the first value.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def cepstral_prewhitening(signal: npt.ArrayLike) -> Array:
 def velocity_rms(acceleration_m_per_s2: npt.ArrayLike, sampling_rate_hz: float) -> float:
     """Rms of the vibration velocity from 10 to 1000 Hz, as ISO 20816-1:2016 defines it.
 
-    The power spectrum of blocks of 4 s behind Hann's window, divided by (2πf)² and summed.
+    The power spectrum of blocks of 4 s with a Hann window, divided by (2πf)² and summed.
 
     Parameters
     ----------

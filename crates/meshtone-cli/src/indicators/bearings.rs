@@ -23,7 +23,7 @@ pub struct BearingOptions {
     /// (Hz) Band of the squared envelope. [default: that of the largest kurtosis, at least three times as wide as the largest BPFI]
     #[arg(long, value_name = "FROM,TO", requires = "bearings", value_parser = band)]
     pub band_hz: Option<FrequencyBand>,
-    /// What is taken off the recording first
+    /// What is removed from the recording first
     #[arg(long, requires = "bearings", default_value = "averages", value_parser = one_of(&SEPARATIONS))]
     pub bearing_separation: BearingSeparation,
 }
@@ -48,7 +48,7 @@ const SEPARATIONS: [Choice<BearingSeparation>; 4] = [
         "Tones of a constant speed, which are predictable",
         BearingSeparation::DiscreteRandom,
     ),
-    ("prewhitening", "The strength of every line of the spectrum", BearingSeparation::Prewhitening),
+    ("prewhitening", "The amplitude of every line of the spectrum", BearingSeparation::Prewhitening),
     ("none", "Nothing", BearingSeparation::None),
 ];
 

@@ -119,7 +119,7 @@ pub fn of_order_map(series: &Series, latest: &LatestRecords) -> Option<Figure> {
 /// The figure of the last recording's bearings, where any are named.
 ///
 /// # Arguments
-/// * `separation` - what was taken off the recording, as the option names it
+/// * `separation` - what was removed from the recording, as the option names it
 pub fn of_bearings(series: &Series, latest: &LatestRecords, separation: Option<&str>) -> Option<Figure> {
     let records = latest.bearings.as_ref()?;
     let recording = series.results.recordings.len();

@@ -386,7 +386,7 @@ fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
             key == SEVERITY || is_varied(key) || classes.iter().any(|class| class.computes_severity(key))
         };
         if !keys.iter().any(|key| varies(key)) {
-            let problem = format!("`{condition}` is about nothing that varies");
+            let problem = format!("`{condition}` concerns nothing that varies");
             return Err(refused(place, problem, "vary one of its keys, or remove it"));
         }
     }

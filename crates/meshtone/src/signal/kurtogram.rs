@@ -132,11 +132,11 @@ fn kurtosis_in_bands(spectrum: &[Complex64], bands: usize) -> Vec<f64> {
     (0..bands).map(in_band).collect()
 }
 
-/// Spectral kurtosis: for each frequency how much the power there varies from block to block, `⟨|X|⁴⟩/⟨|X|²⟩² − 2` of the spectra X of blocks behind
-/// Hann's window, each beginning a quarter of a block after the one before.
+/// Spectral kurtosis: for each frequency how much the power there varies from block to block, `⟨|X|⁴⟩/⟨|X|²⟩² − 2` of the spectra X of blocks with
+/// a Hann window, each beginning a quarter of a block after the one before.
 ///
 /// It is 0 in stationary Gaussian noise, −1 at a steady tone, and large where bursts that are shorter than their distance stand out. The
-/// spectrum at frequency 0 and at half the sampling rate is real, so that 3 is taken off there instead of 2.
+/// spectrum at frequency 0 and at half the sampling rate is real, so that 3 is subtracted there instead of 2.
 ///
 /// # Arguments
 /// * `signal` - (any unit) the signal, at least two blocks long

@@ -8,10 +8,10 @@ use super::check::check_channel;
 /// (-) Lines of the spectrum below this part of the largest are rounding and are left out.
 const ROUNDING: f64 = 1e-13;
 
-/// Cepstral prewhitening: the signal with all lines of its spectrum made equally strong, their phases kept.
+/// Cepstral prewhitening: the signal with all lines of its spectrum at the same amplitude and with their own phases.
 ///
-/// That is the signal whose real cepstrum is 0 but for its first value: tones and resonances of the path go, and what is impulsive stands out of the
-/// noise. It does not need the speed.
+/// That is the signal whose real cepstrum is 0 but for its first value: tones and resonances of the path disappear, and impulses stand out of the
+/// noise. The speed is not needed.
 ///
 /// # Arguments
 /// * `signal` - (any unit) the signal

@@ -15,14 +15,14 @@ pub struct SynchronousResidual {
     pub values: Vec<f64>,
 }
 
-/// Takes the averages over the revolutions of all shafts off a recording, one after the other.
+/// Removes the averages over the revolutions of all shafts from a recording, one after the other.
 ///
-/// Each average is read at the angle of each sample. What stays are bearings, which slip, and noise. Of R revolutions the average takes 1/R of
-/// these with it.
+/// Each average is interpolated at the angle of each sample and subtracted. Bearings, which slip, and noise stay; an average of R revolutions
+/// contains 1/R of their power.
 ///
 /// # Arguments
 /// * `signal` - the recording
-/// * `phases` - of the shafts, in the order in which their averages are taken off; the first sample and the number of all are the same
+/// * `phases` - of the shafts, in the order in which their averages are removed; the first sample and the number of all are the same
 ///
 /// # Errors
 /// No phase; phases of other samples; those of [`angular_resample`] and [`synchronous_average`].
@@ -77,17 +77,17 @@ pub struct DiscreteRandomParts {
     pub random: Vec<f64>,
 }
 
-/// Discrete-random separation: takes a signal apart into its tones and the rest, without its speed, which must be constant.
+/// Discrete-random separation: separates a signal of constant speed into its tones and the rest; the speed need not be known.
 ///
-/// The transfer function from the signal a delay earlier to the signal, `H = Σ X Y* / Σ |Y|²` over blocks X behind Hann's window, half of
-/// one over the next, and the blocks Y a delay before them, is near 1 in size at tones and near 0 elsewhere, where the delay exceeds the memory of what
-/// is random. Its size is the filter, without phase, so that nothing is delayed. From B blocks' length of noise it lets about
-/// \\(0.9/\sqrt B\\) through.
+/// The transfer function from the signal a delay earlier to the signal, `H = Σ X Y* / Σ |Y|²` over blocks X with a Hann window, overlapping by
+/// half, and the blocks Y a delay before them, is near 1 in size at tones and near 0 elsewhere, where the delay exceeds the memory of what
+/// is random. Its size is the filter, without phase, so that nothing is delayed. From B blocks' length of noise it passes about
+/// \\(0.9/\sqrt B\\) of the amplitude.
 ///
 /// # Arguments
 /// * `signal` - (any unit) the signal; beyond its ends it is taken as 0, so that the discrete part is too small within half a block of them
-/// * `block_samples` - (at least 16) length of a block; two tones are told from what lies between them if they are apart by more than about four
-///   times the sampling rate over it
+/// * `block_samples` - (at least 16) length of a block; it resolves tones whose distance is more than about four times the sampling rate
+///   over it
 /// * `delay_samples` - (at least 1) longer than a burst rings, and than slip leaves the next bursts in step: several revolutions
 ///
 /// # Errors

@@ -19,7 +19,7 @@ pub struct FrequencyBand {
 pub struct SquaredEnvelopeSpectrum {
     /// (Hz, or orders of the shaft) Distance of two lines; the first is at 0.
     pub step: f64,
-    /// (unit of the signal, squared) Amplitudes: of a cosine its own, at least 0.85 of it between two lines. The mean is taken off.
+    /// (unit of the signal, squared) Amplitudes: of a cosine its own, at least 0.85 of it between two lines. The mean is removed.
     pub amplitudes: Vec<f64>,
 }
 
@@ -133,11 +133,11 @@ pub fn squared_envelope_order_spectrum(
     })
 }
 
-/// Single-sided amplitudes behind Hann's window, without the mean.
+/// Single-sided amplitudes with a Hann window, without the mean.
 fn amplitudes(mut values: Vec<f64>) -> Vec<f64> {
     let len = values.len();
     let mean = values.iter().sum::<f64>() / len as f64;
     values.iter_mut().zip(hann_window(len)).for_each(|(value, window)| *value = window * (*value - mean));
-    // Hann's window halves the amplitude, and each line has a mirror image.
+    // A Hann window halves the amplitude, and each line has a mirror image.
     real_spectrum(&values).iter().map(|line| 4.0 * line.norm() / len as f64).collect()
 }

@@ -16,8 +16,8 @@ const SHORTEST_S: f64 = 1.0;
 
 /// Rms of the vibration velocity from 10 to 1000 Hz, from an acceleration.
 ///
-/// The power spectrum of the acceleration, the mean of blocks of 4 s or of the whole of a shorter signal behind Hann's window, half of one over the
-/// next and each without its mean, is divided by \\((2\pi f)^2\\) and summed over the lines in the band.
+/// The power spectrum of the acceleration, the mean of blocks of 4 s or of the whole of a shorter signal with a Hann window, overlapping by half
+/// and each without its mean, is divided by \\((2\pi f)^2\\) and summed over the lines in the band.
 ///
 /// # Arguments
 /// * `acceleration_m_per_s2` - (m/s²) the acceleration

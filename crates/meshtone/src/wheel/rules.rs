@@ -79,6 +79,11 @@ impl NamedGears<'_> {
             let key = self.key("flank_relief.length_mm");
             below(&key, relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
         }
+        if self.end_relief.amount_um > 0.0 {
+            let (length_mm, half_mm) = (self.end_relief.length_mm, self.face_width_mm / 2.0);
+            let problem = format!("must be at most {half_mm} mm, half the face width");
+            require(&self.key("end_relief.length_mm"), length_mm, length_mm <= half_mm, problem)?;
+        }
         below(&self.key("tip_chamfer_mm"), self.chamfer_mm(), self.module_mm, "the module")?;
         // The default grows with the centre distance: it is no typing error of the user.
         if let Some(backlash_mm) = self.backlash_mm {
@@ -136,7 +141,7 @@ fn pressure_angle(gears: &NamedGears) -> Check {
 }
 
 fn contact_ratio(gears: &NamedGears) -> Check {
-    let ratio = gears.contact_ratio();
+    let ratio = gears.total_contact_ratio();
     if ratio >= 1.0 {
         return Ok(());
     }

@@ -212,12 +212,12 @@ impl GearboxLayout {
                     let other = ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth));
                     if other != known {
                         let problem = format!(
-                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast as the input, by the other \
-                             way it turns {known} times",
+                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast \
+                             as the input, by the other path it turns {known} times",
                             name(driven)
                         );
                         return Err(ScenarioError::new(key, written, problem).with_help(
-                            "change the tooth counts so that both ways have the same ratio, or remove a mesh",
+                            "change the tooth counts so that both paths have the same ratio, or remove a mesh",
                         ));
                     }
                 }
@@ -280,8 +280,8 @@ impl GearboxLayout {
                 let [x, y] = places[shaft];
                 let mesh = gearbox.meshes[mesh].name();
                 let problem = format!(
-                    "is {apart_mm:.4} mm from its mate's axis, but the wheels of mesh {mesh} mesh at {distance_mm:.4} mm; must be the \
-                     same within {CENTRE_TOLERANCE_MM} mm"
+                    "is {apart_mm:.4} mm from the axis of its mating shaft, but the wheels of mesh {mesh} \
+                     mesh at {distance_mm:.4} mm; must be the same within {CENTRE_TOLERANCE_MM} mm"
                 );
                 return Err(ScenarioError::new(key, format!("[{x:?}, {y:?}]"), problem).with_help(
                     "move the shaft, or give the mesh that centre_distance_mm or its wheels profile shifts",
@@ -330,6 +330,9 @@ impl GearboxLayout {
             pinion.face_width_mm.min(gear.face_width_mm),
         );
         gears.pressure_angle_deg = mesh.pressure_angle_deg;
+        (gears.helix_angle_deg, gears.hand) = (mesh.helix_angle_deg, mesh.hand);
+        (gears.lead_crowning_um, gears.end_relief, gears.slices) =
+            (mesh.lead_crowning_um, mesh.end_relief, mesh.slices);
         (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion.profile_shift, gear.profile_shift);
         (gears.pinion_addendum, gears.gear_addendum) = (pinion.addendum, gear.addendum);
         (gears.pinion_dedendum, gears.gear_dedendum) = (pinion.dedendum, gear.dedendum);

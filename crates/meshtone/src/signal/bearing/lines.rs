@@ -5,7 +5,7 @@ use crate::signal::SquaredEnvelopeSpectrum;
 
 /// (-) How far slip moves a line, on either side.
 const SLIP: f64 = 0.015;
-/// (lines) A line of the spectrum behind Hann's window is so wide on either side.
+/// (lines) A line of the spectrum with a Hann window is so wide on either side.
 const WIDTH: f64 = 2.0;
 /// Lines on either side, and shaft orders if these are more lines, whose median a line is compared with.
 const BESIDE: (f64, f64) = (24.0, 0.5);
@@ -85,7 +85,7 @@ pub struct DefectLine {
     pub amplitude: f64,
     /// (-) That amplitude over the median of those beside it. Noise alone has 2 to 4.
     pub over_median: f64,
-    /// Whether the spectrum is too coarse to tell the line from a whole order of the shaft.
+    /// Whether the spectrum is too coarse to separate the line from a whole order of the shaft.
     pub is_beside_shaft_order: bool,
 }
 
@@ -204,7 +204,7 @@ mod tests {
         let inner = line("BPFI");
         assert!((inner.found_order - 4.90).abs() < 1e-9 && !inner.is_beside_shaft_order);
         assert_eq!((inner.amplitude, inner.over_median), (7.0, 7.0));
-        // 2 BSF of 3.984 cannot be told from order 4 with lines of 0.02.
+        // 2 BSF of 3.984 cannot be separated from order 4 with lines of 0.02.
         let element = line("2 BSF");
         assert!(element.is_beside_shaft_order && element.over_median == 3.0);
         assert_eq!(line("BPFO").over_median, 1.0);

@@ -7,7 +7,7 @@ use crate::signal::{
     squared_envelope_order_spectrum, synchronous_residual,
 };
 
-/// Fewest revolutions, or cycles, whose average is taken off: with it goes one part in so many of all else.
+/// Fewest revolutions, or cycles, whose average is removed: it contains one part in so many of the power of all else.
 const FEWEST_REVOLUTIONS: f64 = 8.0;
 /// (frequencies of the inner race) Least width of a band that is chosen: two harmonics and sidebands of the envelope have room in it.
 const LEAST_WIDTH: f64 = 3.0;
@@ -16,16 +16,16 @@ const BLOCK: (f64, usize) = (4.0, 16);
 /// Levels of the kurtogram.
 const LEVELS: u32 = 7;
 
-/// How a recording is cleared of what is not a bearing's.
+/// What is removed from a recording because it comes from the gears.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum BearingSeparation {
-    /// The average over the cycle after which the same teeth meet again is taken off, which all shafts share; where the recording has less than
+    /// The average over the cycle after which the same teeth meet again, which is a cycle of all shafts; where the recording has less than
     /// eight cycles those over the revolutions of all shafts with at least eight revolutions: [`synchronous_residual`].
     #[default]
     Averages,
-    /// Tones are taken off, of a constant speed: [`discrete_random_separation`] with blocks of four revolutions of the slowest shaft.
+    /// The tones of a constant speed: [`discrete_random_separation`] with blocks of four revolutions of the slowest shaft.
     DiscreteRandom,
-    /// All lines of the spectrum are made equally strong: [`cepstral_prewhitening`].
+    /// All lines of the spectrum get the same amplitude: [`cepstral_prewhitening`].
     Prewhitening,
     /// Nothing.
     None,
@@ -43,7 +43,7 @@ pub struct TrainBearing {
 /// How bearings are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingSettings {
-    /// What is taken off first.
+    /// What is removed first.
     pub separation: BearingSeparation,
     /// The band of the squared envelope; none for that of the largest kurtosis among those at least three times as wide as the largest BPFI.
     pub band: Option<FrequencyBand>,
@@ -64,7 +64,7 @@ pub struct BearingRecords {
 }
 
 impl TrainRecording<'_> {
-    /// Looks for defects of bearings: clears the recording of what is not theirs, chooses the band in which it is most impulsive, and finds the
+    /// Looks for defects of bearings: removes what comes from the gears, chooses the band in which it is most impulsive, and finds the
     /// defect lines in the spectrum of the squared envelope over the orders of each bearing's shaft.
     ///
     /// # Arguments
@@ -104,7 +104,7 @@ impl TrainRecording<'_> {
         check_channel(self.signal)?;
         let phases: Vec<ShaftPhase> =
             (0..self.train.shafts.len()).map(|shaft| self.phase(shaft)).collect::<Result<_, _>>()?;
-        let (first_sample, signal) = self.cleared(&phases, settings.separation)?;
+        let (first_sample, signal) = self.separated(&phases, settings.separation)?;
         let speed_hz = |shaft: usize| phases[shaft].mean_speed_hz(self.sampling_rate_hz);
         let pass_hz = bearings.iter().map(|of| of.geometry.defect_orders().inner_race * speed_hz(of.shaft));
         let kurtogram = kurtogram(&signal, self.sampling_rate_hz, LEVELS)?;
@@ -123,8 +123,8 @@ impl TrainRecording<'_> {
         Ok(BearingRecords { kurtogram, band, kurtosis: chosen.map(|of| of.kurtosis), bearings })
     }
 
-    /// The recording without what is not a bearing's, and the sample that it begins at.
-    fn cleared(
+    /// The recording after the separation, and the sample that it begins at.
+    fn separated(
         &self,
         phases: &[ShaftPhase],
         separation: BearingSeparation,
