@@ -47,7 +47,7 @@ fn head(set: &Finished) -> String {
     };
     let ([plan, scenario, _], version) = (PlanFile::NAMES, env!("CARGO_PKG_VERSION"));
     format!(
-        "{title}{description}{records} of spur gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
+        "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
          Meshtone {version} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\
          **Licence of the data: {}.**\n\n\
          ![Examples of each class, distributions of the keys, indicators by class]({})\n\n",

@@ -266,7 +266,7 @@ warning_kinds! {
     ThinTips "thin-tips" "tips are so thin that they could break off";
     IgnoredKey "ignored-key" "a key has no effect";
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
-    FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
+    FastTeeth "fast-teeth" "the pitch line is faster than gears usually run";
     Gyroscopic "gyroscopic" "a shaft is so fast that gyroscopic moments, which are neglected, shift natural frequencies";
     AddedThrust "added-thrust" "the axial forces of two helical wheels add up on their shaft";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";

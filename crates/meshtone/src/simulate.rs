@@ -253,6 +253,12 @@ fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
     if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
         return Err(ScenarioError::not_stiff(gears.foundation()));
     }
+    if mesh.contact_ratio <= 0.0 {
+        let problem = "the tips' chamfers and the active profile's shortening leave no path of contact";
+        let help =
+            format!("lower {} or {}", gears.key("tip_chamfer_mm"), gears.key("active_profile_shortening"));
+        return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
+    }
     if mesh.overlap == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
         let keys = [gears.whole(), gears.key("pressure_angle_deg")];
         return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
@@ -321,7 +327,8 @@ impl MeshOf<'_> {
             overlap: self.sense * gears.hand.sign() * gears.overlap_ratio(),
             face_width_m: width_m,
             gaps_m: (0..slices)
-                .map(|slice| gears.gap_at_mm((slice as f64 + 0.5) / slices as f64 - 0.5) * 1e-3)
+                .map(|slice| [slice, slice + 1].map(|edge| edge as f64 / slices as f64 - 0.5))
+                .map(|ends| gears.mean_gap_mm(ends) * 1e-3)
                 .collect(),
         };
         let shape = TipShape {

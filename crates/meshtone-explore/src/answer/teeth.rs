@@ -25,6 +25,8 @@ pub struct TeethInPlane {
     pub path_per_pitch_mm: [f64; 2],
     /// (pitches) How long it is in contact.
     pub contact_ratio: f64,
+    /// (pitches) From where to where a pair is in contact anywhere on its face, since its middle could enter contact.
+    pub contact_span_pitches: [f64; 2],
     /// Pinion and gear.
     pub wheels: [WheelInPlane; 2],
 }
@@ -95,6 +97,7 @@ impl TeethInPlane {
             path_start_mm,
             path_per_pitch_mm: along.map(|part| part * path.base_pitch_mm),
             contact_ratio: path.contact_ratio,
+            contact_span_pitches: teeth.contact_span_pitches(),
             wheels: WheelName::BOTH.map(wheel),
         }
     }
@@ -106,6 +109,7 @@ impl TeethInPlane {
             "path_start_mm": self.path_start_mm,
             "path_per_pitch_mm": self.path_per_pitch_mm,
             "contact_ratio": self.contact_ratio,
+            "contact_span_pitches": self.contact_span_pitches,
             "wheels": self.wheels.each_ref().map(|wheel| wheel.json(packet)),
         })
     }

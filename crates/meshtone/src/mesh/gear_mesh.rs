@@ -29,6 +29,9 @@ pub struct Mesh {
     pub points_before: usize,
     /// (N/m) Mean over the cycle of the stiffness of all pairs on their path, of sound teeth.
     pub mean_stiffness_n_per_m: f64,
+    /// (N/m) The same if the whole face of all pairs touched: of coast flanks that hit, and a bound of what the drive flanks reach. It differs
+    /// where slices of the face are apart under the nominal load.
+    pub closed_stiffness_n_per_m: f64,
     /// (s) Damping of a contact over its stiffness, `2 ζ √(m/k̄)`.
     pub damping_time_s: f64,
     /// (m) Normal backlash; none where the mesh may pull, so that coast flanks never touch.
@@ -146,12 +149,19 @@ impl Mesh {
         let positions: Vec<f64> =
             (0..points).map(|point| (point as f64 - points_before as f64) / per_pitch).collect();
         let middle = |slice: usize| (slice as f64 + 0.5) / slices as f64 - 0.5;
+        let sound = sequence.classes()[0];
+        // Slices of sound pairs are alike.
+        let along_path = (overlap != 0.0).then(|| tables[0].along_path(&sound));
         let of_slice = |kind: &PairKind, slice: usize| -> Vec<PairState> {
             let window = Window { overlap, middle: middle(slice), width: 1.0 / slices as f64 };
-            let mut states = if overlap == 0.0 {
-                tables[slice].tabulate(kind, &positions, step)
-            } else {
-                tables[slice].tabulate_along_face(kind, &positions, window, parameters.face_width_m)
+            let mut states = match &along_path {
+                None => tables[slice].tabulate(kind, &positions, step),
+                Some(sound) if kind.is_sound() => {
+                    sound.over_face(&positions, window, parameters.face_width_m)
+                }
+                Some(_) => {
+                    tables[slice].along_path(kind).over_face(&positions, window, parameters.face_width_m)
+                }
             };
             for state in states.iter_mut().filter(|_| slices > 1) {
                 state.separation_m += parameters.gaps_m[slice];
@@ -168,8 +178,7 @@ impl Mesh {
         let of_path_n_per_m = if overlap == 0.0 {
             Vec::new()
         } else {
-            let sound = tables[0].tabulate(&sequence.classes()[0], &positions, step);
-            sound.iter().map(|state| state.stiffness_n_per_m).collect()
+            tables[0].tabulate(&sound, &positions, step).iter().map(|state| state.stiffness_n_per_m).collect()
         };
         let mut mesh = Self {
             points_per_pitch,
@@ -177,6 +186,7 @@ impl Mesh {
             classes,
             points_before,
             mean_stiffness_n_per_m: 0.0,
+            closed_stiffness_n_per_m: 0.0,
             damping_time_s: 0.0,
             backlash_m: (contact == Contact::Unilateral).then_some(backlash_m),
             contact_ratio: ends - begins,
@@ -195,11 +205,13 @@ impl Mesh {
             states.map(|(state, at)| share(*at) * state.stiffness_n_per_m).sum::<f64>() / per_pitch
         };
         mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
+        mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
         match parameters.face {
             Some(face) if slices == 1 => {
                 let of_mean = FaceLoad::new(face, static_force_n / mesh.mean_stiffness_n_per_m);
                 mesh.lean(face, &of_mean, static_force_n);
                 mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
+                mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
                 mesh.face_load_factor = of_mean.factor();
             }
             face => {
@@ -246,15 +258,15 @@ impl Mesh {
         let mut pressed_m = Vec::with_capacity(per_pitch);
         for from in 0..per_pitch {
             let together = || {
-                let at = states.iter().enumerate().skip(from);
-                at.filter(|(n, _)| (n % points) % per_pitch == from)
-                    .filter(|(_, state)| state.stiffness_n_per_m > 0.0)
+                states.chunks(points).enumerate().flat_map(move |(slice, states)| {
+                    states.iter().skip(from).step_by(per_pitch).map(move |state| (slice, state))
+                })
             };
-            let springs = together().map(|(_, state)| [state.stiffness_n_per_m, -state.separation_m]);
+            let springs = springs_of(together().map(|(_, state)| state));
             let deflection_m = deflection_at_rest(self.contact, springs, static_force_n);
-            for (n, state) in together().filter(|(_, state)| state.separation_m < deflection_m) {
+            for (slice, state) in together().filter(|(_, state)| state.separation_m < deflection_m) {
                 stiffness_n_per_m += state.stiffness_n_per_m;
-                load_n[n / points] += state.stiffness_n_per_m * (deflection_m - state.separation_m);
+                load_n[slice] += state.stiffness_n_per_m * (deflection_m - state.separation_m);
             }
             pressed_m.push(deflection_m);
         }
@@ -372,7 +384,7 @@ impl Mesh {
         MeshLaw {
             contact: self.contact,
             damping_time_s: self.damping_time_s,
-            back_stiffness_n_per_m: self.mean_stiffness_n_per_m,
+            back_stiffness_n_per_m: self.closed_stiffness_n_per_m,
             backlash_m: self.backlash_m,
         }
     }

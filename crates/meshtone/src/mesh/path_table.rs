@@ -153,52 +153,25 @@ impl<'a> PairTables<'a> {
             .collect()
     }
 
-    /// A class of pairs of helical teeth at uniform positions of the middle of the face: means along a slice's contact line.
-    ///
-    /// A spring that stands for a slice has the stiffness of all its places together and their mean separation, weighted by stiffness, and
-    /// acts where their stiffnesses have their centre. While all of them touch that is exact.
+    /// A class of pairs of helical teeth along its path, to be averaged over contact lines.
     ///
     /// # Arguments
     /// * `kind` - the class
-    /// * `positions` - (base pitches) since the start of the path of whole teeth
-    /// * `window` - the slice
-    /// * `face_width_m` - (m) of the whole face
-    pub(crate) fn tabulate_along_face(
-        &self,
-        kind: &PairKind,
-        positions: &[f64],
-        window: Window,
-        face_width_m: f64,
-    ) -> Vec<PairState> {
+    pub(crate) fn along_path(&self, kind: &PairKind) -> AlongPath {
         let step = 1.0 / PER_PITCH;
         let points = (self.pairs.teeth().path.contact_ratio * PER_PITCH).ceil() as i64 + 2;
         let path: Vec<f64> = (-2..points).map(|point| point as f64 * step).collect();
         let states = self.tabulate(kind, &path, step);
         let integral = |of: &dyn Fn(&PairState, f64) -> f64| {
-            Integral::new(
-                path[0],
-                step,
-                states.iter().zip(&path).map(|(state, at)| state.stiffness_n_per_m * of(state, *at)),
-            )
+            let weighted =
+                states.iter().zip(&path).map(|(state, at)| state.stiffness_n_per_m * of(state, *at));
+            Integral::new(path[0], step, weighted)
         };
-        let [stiffness, separation, place] =
-            [integral(&|_, _| 1.0), integral(&|state, _| state.separation_m), integral(&|_, at| at)];
-        positions
-            .iter()
-            .map(|&position| {
-                let [from, until] = window.around(position);
-                let whole = stiffness.between(from, until);
-                if whole <= 0.0 {
-                    return PairState::APART;
-                }
-                let beyond_middle = place.between(from, until) / whole - (from + until) / 2.0;
-                PairState {
-                    stiffness_n_per_m: whole / (until - from),
-                    separation_m: separation.between(from, until) / whole,
-                    face_centre_m: beyond_middle / window.overlap * face_width_m,
-                }
-            })
-            .collect()
+        AlongPath {
+            stiffness: integral(&|_, _| 1.0),
+            separation: integral(&|state, _| state.separation_m),
+            place: integral(&|_, at| at),
+        }
     }
 
     /// (mm) How far one flank's damage and relief keep the mate off at each position, and the number of the position whose
@@ -232,6 +205,41 @@ impl<'a> PairTables<'a> {
         let relative: Vec<f64> =
             curvature.iter().map(|rho| rho * (path.line_mm - rho) / path.line_mm).collect();
         bridged(&depth, &along, &relative)
+    }
+}
+
+/// Integrals along the path of contact of a class of pairs, each weighted by the pair's stiffness.
+pub(crate) struct AlongPath {
+    stiffness: Integral,
+    separation: Integral,
+    place: Integral,
+}
+
+impl AlongPath {
+    /// The pairs at positions of the middle of the face: means along a slice's contact line.
+    ///
+    /// A spring that stands for a slice has the stiffness of all its places together and their mean separation, weighted by stiffness, and
+    /// acts where their stiffnesses have their centre. While all of them touch that is exact.
+    ///
+    /// # Arguments
+    /// * `positions` - (base pitches) since the start of the path of whole teeth
+    /// * `window` - the slice
+    /// * `face_width_m` - (m) of the whole face
+    pub(crate) fn over_face(&self, positions: &[f64], window: Window, face_width_m: f64) -> Vec<PairState> {
+        let state = |&position: &f64| {
+            let [from, until] = window.around(position);
+            let whole = self.stiffness.between(from, until);
+            if whole <= 0.0 {
+                return PairState::APART;
+            }
+            let beyond_middle = self.place.between(from, until) / whole - (from + until) / 2.0;
+            PairState {
+                stiffness_n_per_m: whole / (until - from),
+                separation_m: self.separation.between(from, until) / whole,
+                face_centre_m: beyond_middle / window.overlap * face_width_m,
+            }
+        };
+        positions.iter().map(state).collect()
     }
 }
 

@@ -10,8 +10,10 @@ use crate::signal::{Edge, interpolate_band_limited, rms};
 /// the reciprocal of the ratio. A ratio above 1 pads the cycle with zeros on both sides and shrinks it: the response
 /// becomes shorter. The number of values stays.
 ///
-/// # Arguments * `signal` - one cycle at equal angles * `width_ratio` - (-) the fraction of the cycle that is stretched to
-/// the cycle, above 0 * `centre_rev` - (rev) where the fault's response is; it comes to lie in the middle
+/// # Arguments
+/// * `signal` - one cycle at equal angles
+/// * `width_ratio` - (-) the fraction of the cycle that is stretched to the cycle, above 0
+/// * `centre_rev` - (rev) where the fault's response is; it comes to lie in the middle
 ///
 /// # Errors
 /// NaN, fewer than 4 values, a ratio that is not above 0 and finite, a centre that is not finite.

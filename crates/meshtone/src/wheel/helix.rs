@@ -65,13 +65,20 @@ impl Gears {
         [-ahead, self.contact_ratio() + ahead]
     }
 
-    /// (mm) How much farther apart the flanks are at a place of the face than at its middle: lead crowning `4 C_β ζ²` and end relief.
+    /// (mm) How much farther apart the flanks are over a part of the face than at its middle, on average: lead crowning `4 C_β ζ²` and end
+    /// relief.
     ///
     /// # Arguments
-    /// * `place` - (-) ζ, from −½ to ½
-    pub(crate) fn gap_at_mm(&self, place: f64) -> f64 {
-        let from_end_mm = self.face_width_mm * (0.5 - place.abs());
-        4.0 * self.lead_crowning_um * 1e-3 * place * place + self.end_relief.gap_mm(from_end_mm)
+    /// * `from`, `until` - (-) the part, ζ from −½ to ½
+    pub(crate) fn mean_gap_mm(&self, [from, until]: [f64; 2]) -> f64 {
+        let crowned = |place: f64| 4.0 * self.lead_crowning_um * 1e-3 * place.powi(3) / 3.0;
+        let relieved = |place: f64| {
+            let width_mm = self.face_width_mm;
+            let [left, right] =
+                [0.5 + place, 0.5 - place].map(|part| self.end_relief.gap_until_mm2(part * width_mm));
+            (left - right) / width_mm
+        };
+        (crowned(until) - crowned(from) + relieved(until) - relieved(from)) / (until - from)
     }
 
     /// (mm) Length of all contact lines together while the wheels are at a position.
@@ -176,6 +183,14 @@ mod tests {
         }
     }
 
+    /// (mm) Least and largest length: straight between the positions at which an end of the face enters or leaves the path.
+    fn extremes(gears: &Gears) -> [f64; 2] {
+        let ahead = gears.overlap_ratio() / 2.0;
+        let bends = [-ahead, ahead, gears.contact_ratio() - ahead, gears.contact_ratio() + ahead];
+        let lengths = bends.map(|position| gears.contact_line_length_mm(position.rem_euclid(1.0)));
+        [f64::min, f64::max].map(|of| lengths.into_iter().reduce(of).unwrap())
+    }
+
     /// In closed form, with the fractional parts n_α and n_β: `L cos β_b ε_β/b = ε_α ε_β − n_α n_β + o`, o between
     /// `max(0, n_α + n_β − 1)` and `min(n_α, n_β)`.
     #[test]
@@ -187,11 +202,11 @@ mod tests {
             let (n_a, n_b) = (path.fract(), overlap.fract());
             let whole = face_width_mm / (overlap * gears.base_helix_angle_rad().cos());
             let at = |o: f64| whole * (path * overlap - n_a * n_b + o);
+            let [least, most] = extremes(&gears);
+            assert!((least / at((n_a + n_b - 1.0).max(0.0)) - 1.0).abs() < 1e-9, "{face_width_mm}");
+            assert!((most / at(n_a.min(n_b)) - 1.0).abs() < 1e-9, "{face_width_mm}");
             let lengths: Vec<f64> =
                 (0..40_000).map(|point| gears.contact_line_length_mm(f64::from(point) / 4e4)).collect();
-            let [least, most] = [f64::min, f64::max].map(|of| lengths.iter().copied().reduce(of).unwrap());
-            assert!((least / at((n_a + n_b - 1.0).max(0.0)) - 1.0).abs() < 1e-4, "{face_width_mm}");
-            assert!((most / at(n_a.min(n_b)) - 1.0).abs() < 1e-4, "{face_width_mm}");
             let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
             let expected = path * face_width_mm / gears.base_helix_angle_rad().cos();
             assert!((mean / expected - 1.0).abs() < 1e-6, "{mean} {expected}");
@@ -199,12 +214,9 @@ mod tests {
         // Numbers from an independent program.
         let mut gears = Gears::new(3.0, 20, 60, 13.7781);
         gears.helix_angle_deg = 20.0;
-        let lengths = (0..100_000).map(|point| gears.contact_line_length_mm(f64::from(point) / 1e5));
-        let [least, most] = lengths.fold([f64::INFINITY, 0.0], |[least, most], length| {
-            [f64::min(least, length), f64::max(most, length)]
-        });
+        let [least, most] = extremes(&gears);
         assert!(
-            (least / 15.494_772 - 1.0).abs() < 1e-4 && (most / 29.100_095 - 1.0).abs() < 1e-4,
+            (least / 15.494_772 - 1.0).abs() < 1e-6 && (most / 29.100_095 - 1.0).abs() < 1e-6,
             "{least} {most}"
         );
     }

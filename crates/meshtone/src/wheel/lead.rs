@@ -40,12 +40,14 @@ impl Default for EndRelief {
 }
 
 impl EndRelief {
-    /// (mm) How much farther apart the flanks are at a place of the face: a parabola that leaves the flank smoothly.
+    /// (mm²) Integral, from the end of the face to a distance from it, of how much farther apart the flanks are: a parabola that leaves
+    /// the flank smoothly.
     ///
     /// # Arguments
-    /// * `from_end_mm` - (mm) distance of the place from the nearer end of the face
-    pub fn gap_mm(&self, from_end_mm: f64) -> f64 {
-        self.amount_um * 1e-3 * (1.0 - from_end_mm / self.length_mm).clamp(0.0, 1.0).powi(2)
+    /// * `from_end_mm` - (mm) the distance
+    pub(super) fn gap_until_mm2(&self, from_end_mm: f64) -> f64 {
+        let left = (1.0 - from_end_mm / self.length_mm).clamp(0.0, 1.0);
+        self.amount_um * 1e-3 * self.length_mm / 3.0 * (1.0 - left.powi(3))
     }
 }
 

@@ -62,7 +62,7 @@ pub(crate) fn end_relief_row<S: 'static>(field: Field<S, EndRelief>) -> KeyRow<S
 /// The row of the number of slices.
 pub(crate) fn slices_row<S: 'static>(field: Field<S, u32>) -> KeyRow<S> {
     let meaning = "the number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it";
-    row("slices", "", meaning, field).range(Range::from_to(1.0, 41.0))
+    row("slices", "", meaning, field).range(Range::from_to(5.0, 41.0))
 }
 
 /// The row of a profile shift.

@@ -193,7 +193,7 @@ impl<'a> DenseMesh<'a> {
                 .flat_map(|pair| (0..mesh.slices()).map(move |slice| (pair, slice)))
                 .filter_map(of_slice)
                 .collect(),
-            back: mesh.backlash_m.map(|backlash_m| [mesh.mean_stiffness_n_per_m, backlash_m]),
+            back: mesh.backlash_m.map(|backlash_m| [mesh.closed_stiffness_n_per_m, backlash_m]),
             face_centre_m: self.face_centre_m((pitches(sample) * per_pitch).round()),
         }
     }
@@ -452,7 +452,7 @@ impl<'a> Dense<'a> {
                     let k = omega[mode] * omega[mode] * dt * dt;
                     let stepped_k = of(mode, betas[mode])[0];
                     let factor = if k > 0.0 { stepped_k / k } else { 1.0 };
-                    let mesh_n_per_m = 2.0 * mesh.mesh.mean_stiffness_n_per_m;
+                    let mesh_n_per_m = 2.0 * mesh.mesh.closed_stiffness_n_per_m;
                     mesh_n_per_m * dt * dt * factor * line[mode].powi(2) / (6.0 - stepped_k)
                 };
                 stepped.map(term).sum()

@@ -224,8 +224,9 @@ fn crowned_and_sloped_faces_are_those_of_an_independent_program() {
                 assert!((0..3).all(|n| apart(n) < 1e-3));
             } else {
                 // Slices that begin to touch one after the other are the mesh's tangent stiffness at its extremes.
-                assert!(apart(1) < if slices == 31 { 0.01 } else { 0.03 }, "{found:?} {expected:?}");
-                assert!(apart(0) < 0.1 && apart(2) < 0.2, "{found:?} {expected:?}");
+                let [of_mean, of_extremes] = if slices == 31 { [0.01, 0.055] } else { [0.03, 0.2] };
+                assert!(apart(1) < of_mean, "{found:?} {expected:?}");
+                assert!(apart(0) < of_extremes && apart(2) < of_extremes, "{found:?} {expected:?}");
             }
             if error_um > 0.0 {
                 assert!(
@@ -252,10 +253,29 @@ fn thrust_is_the_transverse_force_times_the_tangent_of_the_base_helix_angle() {
         })
         .collect();
     println!("thrust {thrust:.2?} N");
-    let between = |hands: [f64; 2]| (hands[0] * thrust[0].abs() + hands[1] * thrust[1].abs()).abs();
-    // Equal hands on the shaft: the thrusts are opposite.
     assert!((thrust[0].abs() - 57.32).abs() < 0.01 && (thrust[1].abs() - 114.64).abs() < 0.01);
-    assert!((between([1.0, -1.0]) - 57.32).abs() < 0.01 && (between([1.0, 1.0]) - 171.95).abs() < 0.01);
+    // What the machine's lines of action push the middle shaft along its axis with.
+    let on_middle_n = |gearbox: &Gearbox| {
+        let stages = gearbox_stages(gearbox).unwrap();
+        let machine = stages.machine_and_modes().0;
+        let axial = machine.names.iter().enumerate().filter(|(_, name)| name.starts_with("z_middle_"));
+        let pushed = axial.flat_map(|(n, _)| {
+            machine
+                .lines
+                .iter()
+                .zip(&stages.pairs)
+                .map(move |(line, pair)| line.at_middle[n] * pair.static_force_n)
+        });
+        pushed.sum::<f64>().abs()
+    };
+    assert!((on_middle_n(&gearbox) - 57.32).abs() < 0.01, "{}", on_middle_n(&gearbox));
+    assert!(gearbox.validate().unwrap().iter().all(|warning| warning.kind != WarningKind::AddedThrust));
+    let mut opposite = gearbox.clone();
+    opposite.meshes[1].hand = Hand::Right;
+    assert!((on_middle_n(&opposite) - 171.95).abs() < 0.01, "{}", on_middle_n(&opposite));
+    let warnings = opposite.validate().unwrap();
+    let added = warnings.iter().find(|warning| warning.kind == WarningKind::AddedThrust).unwrap();
+    assert_eq!(added.key, "mesh[1].hand");
     assert_eq!(gearbox.meshes.iter().map(|mesh| mesh.hand).collect::<Vec<_>>(), [Hand::Right, Hand::Left]);
 }
 
@@ -346,4 +366,87 @@ fn a_published_pair_is_stiffer_than_by_the_standard() {
         println!("root over bore {bore_part}: {mean:.3}, {:.3} of the standard's", mean / 18.632);
         assert!((expected[0]..expected[1]).contains(&(mean / 18.632)), "{mean}");
     }
+}
+
+/// A chip at the end of the face at positive z, of a gear that a right-hand pinion drives: that end enters contact first, and what the chip
+/// takes is missing early. With the other hand it enters last.
+#[test]
+fn the_end_that_enters_first_depends_on_the_hand() {
+    let missing_at = |hand: Hand| {
+        let mut scenario = pair([20, 60], 3.0, 30.0, 20.0);
+        scenario.gears.hand = hand;
+        let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 12.0, tip_loss_mm: 0.0 };
+        scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
+        let mesh = mesh(&scenario, 200);
+        let points = mesh.points();
+        let whole = |class: usize, point: usize| -> f64 {
+            mesh.classes[class].states.chunks(points).map(|slice| slice[point].stiffness_n_per_m).sum()
+        };
+        let (mut loss, mut moment) = (0.0, 0.0);
+        for point in 0..points {
+            let lost = whole(0, point) - whole(1, point);
+            loss += lost;
+            moment += lost * mesh.position(point);
+        }
+        (loss, moment / loss)
+    };
+    let ((loss, right), (same, left)) = (missing_at(Hand::Right), missing_at(Hand::Left));
+    println!("right {right:.3}, left {left:.3}");
+    // The chipped part of the tip is at the start of the path, half the overlap ahead of the middle, or behind it.
+    assert!((loss / same - 1.0).abs() < 1e-3, "{loss} {same}");
+    assert!(
+        right < -0.2 && left > 0.5 && (left - right - 1.0887 * 2.0 * (0.5 - 12.0 / 30.0 / 3.0)).abs() < 0.15
+    );
+}
+
+/// A relief that is shorter than a slice takes its part of it.
+#[test]
+fn short_end_relief_is_felt() {
+    let factor = |amount_um: f64| {
+        let mut scenario = pair([20, 60], 3.0, 30.0, 20.0);
+        scenario.gears.lead_crowning_um = 0.1;
+        scenario.gears.end_relief = EndRelief { length_mm: 1.0, amount_um };
+        mesh(&scenario, 200).face_load_factor
+    };
+    assert!(factor(20.0) > factor(0.0) + 0.01, "{} {}", factor(20.0), factor(0.0));
+}
+
+/// Errors of what can only be a mistake: each names its key.
+#[test]
+fn impossible_helices_are_refused() {
+    let refused = |change: &dyn Fn(&mut Gears), key: &str, words: &str| {
+        let mut scenario = pair([20, 60], 3.0, 30.0, 20.0);
+        change(&mut scenario.gears);
+        let error = scenario.validate().unwrap_err();
+        assert!(error.key == key && error.to_string().contains(words), "{error}");
+    };
+    refused(&|gears| gears.helix_angle_deg = 1e-5, "gears.helix_angle_deg", "at least 0.01");
+    refused(&|gears| gears.face_width_mm = 900.0, "gears.helix_angle_deg", "must be at most 12");
+    refused(&|gears| gears.slices = 1, "gears.slices", "5");
+    refused(&|gears| gears.centre_distance_mm = Some(136.5), "gears", "more than 0");
+    let refused = |change: &dyn Fn(&mut Gearbox), key: &str, words: &str| {
+        let mut gearbox = ideal_gearbox();
+        change(&mut gearbox);
+        let error = gearbox.validate().unwrap_err();
+        assert!(error.key == key && error.to_string().contains(words), "{error}");
+    };
+    let sliding = |gearbox: &mut Gearbox| {
+        let middle = gearbox.bearings.iter_mut().filter(|bearing| bearing.shaft == "middle");
+        middle.for_each(|bearing| bearing.axial_stiffness_n_per_m = 0.0);
+    };
+    refused(&sliding, "wheel[1].shaft", "no bearing holds the shaft along its axis");
+    // An idler between two wheels: driven in the first mesh it is left-handed, and has to drive in the second one as such.
+    let idler = |hand: Hand| {
+        move |gearbox: &mut Gearbox| {
+            gearbox.meshes[1].wheels = ["z2".to_owned(), "z4".to_owned()];
+            gearbox.meshes[1].hand = hand;
+            gearbox.wheels.retain(|wheel| wheel.name != "z3");
+            gearbox.wheels[2].at = 0.25;
+        }
+    };
+    refused(&idler(Hand::Right), "mesh[1].hand", "would have another helix");
+    let mut gearbox = ideal_gearbox();
+    idler(Hand::Left)(&mut gearbox);
+    // The thrusts on an idler oppose.
+    assert!(gearbox.validate().unwrap().iter().all(|warning| warning.kind != WarningKind::AddedThrust));
 }

@@ -7,7 +7,7 @@ use crate::damage::Fault;
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::Coupled;
 use crate::wheel::{
-    ERROR_POINTS, ErrorTable, Gears, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
+    ERROR_POINTS, ErrorTable, Gears, Hand, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
 };
 
 /// A ratio of two whole numbers, reduced; its sign is the numerator's.
@@ -156,11 +156,46 @@ impl GearboxLayout {
             this.named(&gears, gearbox, index).check()?;
             this.gears.push(gears);
         }
+        this.check_helices(gearbox)?;
         this.ratios = this.turn(gearbox)?;
         this.positions_m = this.place(gearbox)?;
         this.check_room(gearbox)?;
         this.phases = this.find_phases(gearbox);
         Ok(this)
+    }
+
+    /// A wheel in several meshes has one helix.
+    fn check_helices(&self, gearbox: &Gearbox) -> Result<(), ScenarioError> {
+        // (°) Positive of a right-hand helix.
+        let helix = |(mesh, side): (usize, WheelName)| {
+            let gears = &self.gears[mesh];
+            side.choose(1.0, -1.0) * gears.hand.sign() * gears.helix_angle_deg
+        };
+        for (wheel, of_file) in gearbox.wheels.iter().enumerate() {
+            let mut meshes = self.meshes_of(wheel);
+            let Some(first) = meshes.next() else { continue };
+            let Some(other) = meshes.find(|mesh| helix(*mesh) != helix(first)) else { continue };
+            let of_mesh = &gearbox.meshes[other.0];
+            let (key, value) = if helix(first).abs() == helix(other).abs() {
+                ("hand", if of_mesh.hand == Hand::Right { "\"right\"" } else { "\"left\"" }.to_owned())
+            } else {
+                ("helix_angle_deg", format!("{:?}", of_mesh.helix_angle_deg))
+            };
+            let problem = format!(
+                "wheel {:?} would have another helix than in mesh {}; hand is that of the driving wheel, and its mate has the opposite one",
+                of_file.name,
+                gearbox.meshes[first.0].name()
+            );
+            return Err(ScenarioError::new(
+                entry_key("mesh", other.0, gearbox.meshes.len(), key),
+                value,
+                problem,
+            )
+            .with_help(
+                "give both meshes the same helix_angle_deg, and the hands by which the wheel has one",
+            ));
+        }
+        Ok(())
     }
 
     /// The shaft of the motor, and the one of the brake.

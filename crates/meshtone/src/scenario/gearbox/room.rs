@@ -95,15 +95,17 @@ impl GearboxLayout {
                 })
                 .filter(|(.., thrust)| *thrust != 0.0)
                 .collect();
-            let [first, second, ..] = pushed[..] else { return None };
-            let [one, other] = [first, second].map(|(wheel, ..)| &gearbox.wheels[wheel].name);
+            let (last, others) = pushed.split_last()?;
+            let adds_up = !others.is_empty() && others.iter().all(|other| other.2 * last.2 > 0.0);
+            let names: Vec<&str> =
+                pushed.iter().map(|(wheel, ..)| gearbox.wheels[*wheel].name.as_str()).collect();
             let message = format!(
-                "the axial forces of {one} and {other} add up on shaft {:?}; give both wheels the same hand by changing this one, so that \
-                 their forces oppose",
+                "the axial forces of {} add up on shaft {:?}; with the other hand in this mesh they would oppose",
+                names.join(" and "),
                 gearbox.shafts[shaft].name
             );
-            let key = entry_key("mesh", second.1, gearbox.meshes.len(), "hand");
-            (first.2 * second.2 > 0.0).then(|| ScenarioWarning::new(WarningKind::AddedThrust, key, message))
+            let key = entry_key("mesh", last.1, gearbox.meshes.len(), "hand");
+            adds_up.then(|| ScenarioWarning::new(WarningKind::AddedThrust, key, message))
         })
     }
 
