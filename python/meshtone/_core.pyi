@@ -10,6 +10,7 @@ import numpy.typing as npt
 _Array = npt.NDArray[np.float64]
 _Path = str | PathLike[str]
 _Column = int | str
+_Bearing = tuple[int, float, float, float]
 
 __all__ = [
     "ExploreServer",
@@ -23,13 +24,18 @@ __all__ = [
     "__version__",
     "add_noise",
     "angular_resample",
+    "best_band",
+    "cepstral_prewhitening",
     "change_duration",
     "change_fault_to_harmonics_ratio",
     "check_diagnosis",
     "check_plan",
     "check_recording",
     "dataset_template",
+    "defect_lines",
+    "defect_orders",
     "diagnose",
+    "discrete_random_separation",
     "energy_ratio",
     "enhance",
     "envelope",
@@ -40,10 +46,12 @@ __all__ = [
     "fm4",
     "gearbox_template",
     "generate_dataset",
+    "kurtogram",
     "m6a",
     "m8a",
     "merge_datasets",
     "na4",
+    "named_bearings",
     "order_map",
     "order_spectrum",
     "process_channel",
@@ -60,13 +68,18 @@ __all__ = [
     "simulate_gearbox",
     "simulate_gearboxes",
     "simulate_many",
+    "spectral_kurtosis",
+    "squared_envelope",
+    "squared_envelope_spectrum",
     "statistics",
     "synchronous_average",
+    "synchronous_residual",
     "tachometer_pulses",
     "template",
     "trace",
     "tune",
     "tuned_rig",
+    "velocity_rms",
     "verify_dataset",
 ]
 
@@ -277,6 +290,22 @@ def angular_resample(
 def order_map(
     signal: _Array, phase: ShaftPhase, sampling_rate_hz: float, revolutions: int | None, highest_order: float | None
 ) -> tuple[int, _Array, _Array, npt.NDArray[np.float64]]: ...
+def named_bearings() -> list[tuple[str, _Bearing, str]]: ...
+def defect_orders(bearing: _Bearing) -> tuple[float, float, float, float]: ...
+def defect_lines(
+    step: float, amplitudes: _Array, bearing: _Bearing, shaft: float
+) -> list[tuple[str, str, float, float, float, float, bool]]: ...
+def squared_envelope(signal: _Array, sampling_rate_hz: float, band_hz: tuple[float, float] | None) -> _Array: ...
+def squared_envelope_spectrum(
+    signal: _Array, sampling_rate_hz: float, band_hz: tuple[float, float] | None, phase: ShaftPhase | None
+) -> tuple[float, _Array]: ...
+def kurtogram(signal: _Array, sampling_rate_hz: float, most_levels: int) -> list[_Array]: ...
+def best_band(levels: Sequence[_Array], sampling_rate_hz: float, least_width_hz: float) -> tuple[float, float, float] | None: ...
+def spectral_kurtosis(signal: _Array, block_samples: int) -> _Array: ...
+def cepstral_prewhitening(signal: _Array) -> _Array: ...
+def discrete_random_separation(signal: _Array, block_samples: int, delay_samples: int) -> tuple[_Array, _Array]: ...
+def synchronous_residual(signal: _Array, phases: Sequence[ShaftPhase]) -> tuple[int, _Array]: ...
+def velocity_rms(acceleration_m_per_s2: _Array, sampling_rate_hz: float) -> float: ...
 def synchronous_average(values: _Array, points_per_revolution: int) -> _Array: ...
 def separate(
     average: _Array, teeth: int, sidebands: int | None, shaft_orders: Sequence[int] | None

@@ -270,3 +270,66 @@ def test_every_indicator_is_documented() -> None:
     for function in functions:
         documented = function.__doc__ or ""
         assert all(heading in documented for heading in ("unit", "shape", "Returns", "Raises", "Notes", "Examples")), function.__name__
+
+
+def ringing(bearing: signal.Bearing, phase: ShaftPhase, rate_hz: float) -> Array:
+    """A resonance at 4.3 kHz that rings whenever a ball passes a place of the outer race, where balls slip."""
+    random = np.random.default_rng(1)
+    count = int(phase.revolutions[-1] * bearing.defect_orders.outer_race)
+    angles = np.cumsum(1 + 0.01 * random.standard_normal(count)) / bearing.defect_orders.outer_race
+    starts_s = np.interp(angles, phase.revolutions, np.arange(phase.revolutions.size) / rate_hz)
+    since_s = np.arange(200) / rate_hz
+    bursts = np.zeros(phase.revolutions.size)
+    np.add.at(bursts, (starts_s * rate_hz).astype(int), 1.0)
+    return np.convolve(bursts, np.exp(-900 * since_s) * np.sin(2 * np.pi * 4300 * since_s))[: bursts.size]
+
+
+def test_a_bearing_behind_a_mesh() -> None:
+    rate_hz, bearing = 20_000.0, signal.Bearing(9, 7.94, 39.04)
+    assert bearing == signal.NAMED_BEARINGS["6205"] and "Case Western" in str(signal.NAMED_BEARINGS["6205"].source)
+    assert bearing.defect_orders.element_spin == pytest.approx(2.35675, abs=1e-5)
+    phase = ShaftPhase.from_speed_profile([0, 5], [28, 32], rate_hz, 100_000)
+    noise = np.random.default_rng(2).standard_normal(phase.revolutions.size)
+    vibration = ringing(bearing, phase, rate_hz) + 5 * np.cos(2 * np.pi * 17 * phase.revolutions) + 0.1 * noise
+    residual = signal.synchronous_residual(vibration, [phase])
+    assert residual.first_sample == 0 and residual.values.std() < 0.1 * vibration.std()
+    kurtogram = signal.kurtogram(residual.values, rate_hz)
+    assert [level.size for level in kurtogram.levels[:6]] == [1, 2, 3, 4, 6, 8]
+    best = kurtogram.best(500)
+    assert best.band_hz[0] < 4300 < best.band_hz[1] and best.kurtosis > 1
+    assert kurtogram.best(1e9).band_hz == (0, 10_000)
+    spectrum = signal.squared_envelope_order_spectrum(residual.values, rate_hz, phase, best.band_hz)
+    lines = {line.line: line for line in signal.defect_lines(spectrum, bearing)}
+    assert lines["BPFO"].over_median > 30 > 6 > lines["BPFI"].over_median
+    assert lines["BPFO"].found_order == pytest.approx(3.585, rel=0.01) and lines["BPFO"].part == "outer race"
+    squares = signal.squared_envelope(residual.values, rate_hz, best.band_hz)
+    over_hz = signal.squared_envelope_spectrum(residual.values, rate_hz, best.band_hz)
+    assert squares.min() >= 0 and over_hz.places[-1] == pytest.approx(rate_hz / 2)
+    constant = signal.defect_lines(over_hz, bearing, shaft=30.0)
+    assert [line.line for line in constant] == list(lines)
+
+
+def test_tones_noise_and_velocity() -> None:
+    noise = np.random.default_rng(3).standard_normal(100_000)
+    tone = 3 * np.cos(0.7 * np.arange(noise.size))
+    parts = signal.discrete_random_separation(tone + noise, 512)
+    assert parts.discrete + parts.random == pytest.approx(tone + noise)
+    assert np.std(parts.discrete[600:-600] - tone[600:-600]) < 0.2
+    assert np.sqrt(np.mean(signal.cepstral_prewhitening(tone + noise) ** 2)) == pytest.approx(1)
+    assert signal.spectral_kurtosis(tone + noise, 64)[1:-1].max() < 0.5
+    assert signal.velocity_rms(tone, 8_000) == pytest.approx(3000 / 5600 / np.sqrt(2), rel=1e-3)
+
+
+def test_wrong_bearings_and_bands_are_refused() -> None:
+    with pytest.raises(ValueError, match="element_mm is 39.04"):
+        signal.Bearing(9, 39.04, 7.94)
+    with pytest.raises(KeyError, match="6203, 6205, ER-10K"):
+        signal.Bearing.named("6206")
+    with pytest.raises(ValueError, match="half the sampling rate"):
+        signal.squared_envelope(vibration(), RATE_HZ, (1000.0, 6000.0))
+    with pytest.raises(ValueError, match="block_samples = 8"):
+        signal.discrete_random_separation(vibration(), 8)
+    with pytest.raises(ValueError, match="phases of shafts"):
+        signal.synchronous_residual(vibration(), [])
+    with pytest.raises(ValueError, match="more than 2000"):
+        signal.velocity_rms(vibration(), 1500.0)

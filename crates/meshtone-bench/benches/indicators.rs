@@ -1,4 +1,4 @@
-//! One channel of a 60 s recording at 50 kS/s, from samples to the indicators of both wheels.
+//! One channel of a 60 s recording at 50 kS/s, from samples to the indicators of both wheels, and its kurtogram.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
@@ -52,6 +52,9 @@ fn indicators(criterion: &mut Criterion) {
     group.bench_function("phase from the mesh tone", |bencher| {
         let tone = MeshTone::new(PINION_TEETH, PINION_HZ);
         bencher.iter(|| ShaftPhase::from_mesh_tone(black_box(&signal), RATE_HZ, &tone).unwrap());
+    });
+    group.bench_function("kurtogram", |bencher| {
+        bencher.iter(|| kurtogram(black_box(&signal), RATE_HZ, 7).unwrap());
     });
     group.finish();
 }

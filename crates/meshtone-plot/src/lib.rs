@@ -7,12 +7,14 @@
 //! * [`panel`]: teeth, damage, profile errors, averages, mesh stiffness and spectrum of one simulation
 //! * [`record`]: a recording, its average, order spectrum and difference signal
 //! * [`order_map`]: the orders of a shaft over the time of a run-up
+//! * [`bearings`]: kurtogram and squared envelope spectra of a recording, with the lines of bearings' defects
 //! * [`trend`]: indicators over a series of recordings
 //! * [`diagnosis`]: what may be wrong with a gear: probabilities, severity, and what explains a recording
 //! * [`dataset::dataset_figure`]: a data set, examples, distributions and indicators by class
 //! * [`tuning_figure`]: an experiment of the hybrid stage, measured, simulated and enhanced
 #![deny(missing_docs)]
 
+pub mod bearings;
 mod damaged_tooth;
 pub mod dataset;
 pub mod diagnosis;

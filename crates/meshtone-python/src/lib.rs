@@ -8,6 +8,7 @@
 
 mod array;
 mod batch;
+mod bearing;
 mod dataset;
 mod diagnose;
 mod error;
@@ -32,6 +33,11 @@ mod _core {
     #[pymodule_export]
     use crate::{
         batch::simulate_many,
+        bearing::{
+            best_band, cepstral_prewhitening, defect_lines, defect_orders, discrete_random_separation,
+            kurtogram, named_bearings, spectral_kurtosis, squared_envelope, squared_envelope_spectrum,
+            synchronous_residual, velocity_rms,
+        },
         dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset},
         diagnose::{Observation, check_diagnosis, diagnose, tuned_rig},
         explore::ExploreServer,

@@ -23,35 +23,68 @@ A rig's recording with a tachometer:
 from .._warnings import SignalWarning
 from .angular import AngularSignal, angular_resample, resample, synchronous_average
 from .at_once import difference, tsa
+from .bearings import (
+    NAMED_BEARINGS,
+    Bearing,
+    DefectLine,
+    DefectOrders,
+    SquaredEnvelopeSpectrum,
+    defect_lines,
+    squared_envelope,
+    squared_envelope_order_spectrum,
+    squared_envelope_spectrum,
+)
 from .indicators import Indicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
+from .kurtosis import Kurtogram, KurtogramBand, kurtogram, spectral_kurtosis
 from .mismatch import Mismatch, check_recording, find_mismatch
 from .orders import OrderMap, order_map
 from .phase import ShaftPhase, repair_pulses, tachometer_pulses
+from .random_part import (
+    DiscreteRandomParts,
+    SynchronousResidual,
+    cepstral_prewhitening,
+    discrete_random_separation,
+    synchronous_residual,
+    velocity_rms,
+)
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
 from .spectra import envelope, envelope_spectrum, order_spectrum
 from .train import ForeignLine, TrainRecord, process_train
 
 __all__ = [
+    "NAMED_BEARINGS",
     "AngularSignal",
+    "Bearing",
+    "DefectLine",
+    "DefectOrders",
+    "DiscreteRandomParts",
     "ForeignLine",
     "Indicators",
+    "Kurtogram",
+    "KurtogramBand",
     "Mismatch",
     "OrderMap",
     "Parts",
     "Record",
     "ShaftPhase",
     "SignalWarning",
+    "SquaredEnvelopeSpectrum",
+    "SynchronousResidual",
     "TrainRecord",
     "angular_resample",
+    "cepstral_prewhitening",
     "check_recording",
+    "defect_lines",
     "difference",
+    "discrete_random_separation",
     "energy_ratio",
     "envelope",
     "envelope_spectrum",
     "find_mismatch",
     "fm0",
     "fm4",
+    "kurtogram",
     "m6a",
     "m8a",
     "na4",
@@ -64,8 +97,14 @@ __all__ = [
     "resample",
     "separate",
     "sideband_level_factor",
+    "spectral_kurtosis",
+    "squared_envelope",
+    "squared_envelope_order_spectrum",
+    "squared_envelope_spectrum",
     "statistics",
     "synchronous_average",
+    "synchronous_residual",
     "tachometer_pulses",
     "tsa",
+    "velocity_rms",
 ]

@@ -7,6 +7,7 @@ use meshtone_io::indicators::WarningEntry;
 use meshtone_io::scenario_file::ScenarioFile;
 
 use crate::failure::Failure;
+use crate::indicators::bearings::BearingOptions;
 use crate::indicators::options::{PhaseOptions, ProcessingOptions, ReadingOptions, ShaftOptions};
 use crate::indicators::process::process;
 use crate::indicators::reading::Input;
@@ -25,8 +26,8 @@ const PRINTED: usize = 5;
 /// Averages a channel over the revolutions of a shaft, separates the average into its parts, and writes indicators.json,
 /// indicators.parquet and a figure of the recording, or of the last one (indicators.svg, .png). Several recordings, or
 /// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png). Of a
-/// run-up the amplitudes over order and time are drawn too (order_map.svg, .png). Nothing is written unless all recordings
-/// are valid.
+/// run-up the amplitudes over order and time are drawn too (order_map.svg, .png), and of bearings that are named the defect
+/// lines (bearings.parquet, .svg, .png). Nothing is written unless all recordings are valid.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Indicators {
@@ -56,6 +57,8 @@ pub struct Indicators {
     shafts: ShaftOptions,
     #[command(flatten)]
     processing: ProcessingOptions,
+    #[command(flatten)]
+    bearings: BearingOptions,
 }
 
 const EXAMPLES: &str = "\
@@ -64,6 +67,7 @@ Examples:
   meshtone indicators run.csv --channel bearing --teeth 38 --shaft-hz 17.9
   meshtone indicators run.csv -c bearing --tach tacho --teeth 17 --mate-teeth 38
   meshtone indicators run.csv -c bearing --scenario gearbox.toml --tach tacho --shaft input     every shaft of a gearbox
+  meshtone indicators run.csv -c bearing --bearing 6205 --tach tacho                a bearing, of a rig without gears too
   meshtone indicators day*.parquet -c bearing --teeth 38 --shaft-hz 17.9 -o trend   a series, in this order";
 
 impl Indicators {
@@ -76,7 +80,8 @@ impl Indicators {
             let of = format!("({} of {})", number + 1, self.recordings.len());
             with_spinner(format!("{} {of}", path.display()), !self.quiet, || {
                 let input = Input::read(path, &self.reading, self.phase.channel())?;
-                let processed = process(&input, &self.phase, &self.shafts, scenario, &self.processing);
+                let processed =
+                    process(&input, &self.phase, &self.shafts, scenario, &self.processing, &self.bearings);
                 let processed = processed.map_err(|failure| Failure {
                     help: self.reading.in_kilohertz().or(failure.help),
                     ..failure
@@ -87,7 +92,8 @@ impl Indicators {
         series.finish()?;
         let source = series.latest.as_ref().map_or("", |latest| &latest.turned.source).to_owned();
         let scenario = self.scenario.as_deref();
-        series.results.settings = settings(&self.phase, &self.shafts, scenario, &source, &self.processing);
+        series.results.settings =
+            settings(&self.phase, &self.shafts, scenario, &source, &self.processing, &self.bearings);
         if let Some(message) = order_of_names(&self.recordings) {
             series.results.warnings.push(WarningEntry { source: None, message, kind: None });
         }
@@ -116,11 +122,12 @@ impl Indicators {
         let figures = match series.latest.as_ref().filter(|_| !self.no_figure) {
             None => files::Figures::default(),
             Some(latest) => files::Figures {
-                record: Some(figures::of_record(series, latest, &self.processing)),
+                record: figures::of_record(series, latest, &self.processing),
                 trend: series
                     .is_series()
                     .then(|| figures::of_trend(series, &latest.turned.source, &self.processing)),
                 order_map: figures::of_order_map(series, latest),
+                bearings: figures::of_bearings(series, latest, self.bearings.separation()),
             },
         };
         files::write(directory, &series.results, &figures)

@@ -6,6 +6,7 @@ use meshtone::scenario::WheelName;
 use meshtone::signal::{OrderMapSettings, TrainTurning, order_map};
 use meshtone_io::indicators::RecordEntry;
 use meshtone_plot::Figure;
+use meshtone_plot::bearings::{self as bearings_figure, BearingsFigure};
 use meshtone_plot::order_map::{self as order_map_figure, OrderMapFigure};
 use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
 use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
@@ -22,11 +23,14 @@ pub fn name(path: &Path) -> String {
     last.unwrap_or_else(|| path.display().to_string())
 }
 
-/// The figure of the last record.
+/// The figure of the last record; none of a machine without wheels.
 ///
 /// The facts below its title say how its signals were made, the source of the phase and what was removed from the average, because the
 /// signals cannot be compared with others without that.
-pub fn of_record(series: &Series, latest: &LatestRecords, processing: &ProcessingOptions) -> Figure {
+pub fn of_record(series: &Series, latest: &LatestRecords, processing: &ProcessingOptions) -> Option<Figure> {
+    if latest.wheels.is_empty() {
+        return None;
+    }
     let channel = &latest.input.channel;
     let mut facts = vec![format!("phase from the {}", latest.turned.source)];
     if series.is_series() {
@@ -79,7 +83,7 @@ pub fn of_record(series: &Series, latest: &LatestRecords, processing: &Processin
         samples: &channel.samples,
     };
     let title = title(std::slice::from_ref(&latest.input.source), series);
-    record::draw(&RecordFigure { title: &title, facts: &facts, signal, wheels: &wheels })
+    Some(record::draw(&RecordFigure { title: &title, facts: &facts, signal, wheels: &wheels }))
 }
 
 /// The figure of the orders of the first wheel's shaft over time, where the last recording is a run-up: where the speed changes so much that
@@ -109,6 +113,33 @@ pub fn of_order_map(series: &Series, latest: &LatestRecords) -> Option<Figure> {
         teeth: wheel.teeth,
         start_s: input.start_s,
         map: &map,
+    }))
+}
+
+/// The figure of the last recording's bearings, where any are named.
+///
+/// # Arguments
+/// * `separation` - what was removed from the recording, as the option names it
+pub fn of_bearings(series: &Series, latest: &LatestRecords, separation: Option<&str>) -> Option<Figure> {
+    let records = latest.bearings.as_ref()?;
+    let recording = series.results.recordings.len();
+    let entries: Vec<_> =
+        series.results.bearings.iter().filter(|entry| entry.recording == recording).collect();
+    let names: Vec<(&str, &str)> =
+        entries.iter().map(|entry| (entry.name.as_str(), entry.shaft.as_str())).collect();
+    let mut facts = vec![format!("phase from the {}", latest.turned.source)];
+    facts.extend(entries.iter().map(|entry| format!("{} at {:.4} Hz", entry.shaft, entry.mean_speed_hz)));
+    facts.dedup();
+    facts.extend(separation.map(|name| format!("separation: {name}")));
+    facts.push("×: over the median beside the line".to_owned());
+    facts.push(MESHTONE.to_owned());
+    let title = title(std::slice::from_ref(&latest.input.source), series);
+    Some(bearings_figure::draw(&BearingsFigure {
+        title: &title,
+        facts: &facts,
+        amplitude_unit: entries.first().and_then(|entry| entry.amplitude_unit.as_deref()),
+        bearings: &names,
+        records,
     }))
 }
 

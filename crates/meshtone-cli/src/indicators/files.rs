@@ -13,12 +13,25 @@ use crate::replacement::{replace, stage_figure};
 
 const JSON: &str = "indicators.json";
 const TABLE: &str = "indicators.parquet";
+const BEARINGS_TABLE: &str = "bearings.parquet";
 const RECORD: [&str; 2] = ["indicators.svg", "indicators.png"];
 const TREND: [&str; 2] = ["trend.svg", "trend.png"];
 const ORDER_MAP: [&str; 2] = ["order_map.svg", "order_map.png"];
+const BEARINGS: [&str; 2] = ["bearings.svg", "bearings.png"];
 /// All files that may stand in the directory.
-pub const FILES: [&str; 8] =
-    [JSON, TABLE, RECORD[0], RECORD[1], TREND[0], TREND[1], ORDER_MAP[0], ORDER_MAP[1]];
+pub const FILES: [&str; 11] = [
+    JSON,
+    TABLE,
+    BEARINGS_TABLE,
+    RECORD[0],
+    RECORD[1],
+    TREND[0],
+    TREND[1],
+    ORDER_MAP[0],
+    ORDER_MAP[1],
+    BEARINGS[0],
+    BEARINGS[1],
+];
 
 /// The figures, as far as there are any.
 #[derive(Default)]
@@ -29,6 +42,8 @@ pub struct Figures {
     pub trend: Option<Figure>,
     /// The figure of the orders over the time of a run-up.
     pub order_map: Option<Figure>,
+    /// The figure of the last recording's bearings.
+    pub bearings: Option<Figure>,
 }
 
 /// Writes all files, each whole or not at all.
@@ -43,6 +58,7 @@ pub fn write(directory: &Path, results: &IndicatorResults, figures: &Figures) ->
         let record = scope.spawn(|| stage(&figures.record, RECORD));
         let others = stage(&figures.trend, TREND).and_then(|mut staged| {
             staged.extend(stage(&figures.order_map, ORDER_MAP)?);
+            staged.extend(stage(&figures.bearings, BEARINGS)?);
             Ok(staged)
         });
         let record = record.join().unwrap_or_else(|_| Err(Failure::failed("cannot draw the figure")));
@@ -51,6 +67,10 @@ pub fn write(directory: &Path, results: &IndicatorResults, figures: &Figures) ->
     let mut staged = record?;
     staged.extend(others?);
     staged.push(StagedFile::write(&directory.join(TABLE), |file| results.write_parquet(file))?);
+    if !results.bearings.is_empty() {
+        let table = directory.join(BEARINGS_TABLE);
+        staged.push(StagedFile::write(&table, |file| results.write_bearings_parquet(file))?);
+    }
     let json = StagedFile::write(&directory.join(JSON), |file| results.write_json(file))?;
     Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)
 }

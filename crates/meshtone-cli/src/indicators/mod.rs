@@ -1,5 +1,6 @@
 //! From recordings to indicators: what `meshtone indicators` is made of.
 
+pub mod bearings;
 pub mod figures;
 pub mod files;
 pub mod options;

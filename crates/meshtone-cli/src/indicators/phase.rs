@@ -39,25 +39,29 @@ impl PhaseOptions {
         self.channel().is_some() || self.files().next().is_some() || self.shaft_hz.is_some()
     }
 
-    /// Refuses a measured recording for which an option is missing on the command line.
-    pub fn check(&self, input: &Input) -> Result<(), Failure> {
-        let path = input.source.display();
-        if self.teeth.is_none() {
-            let problem = format!("{path}: the teeth of the wheel are not stated");
-            let help = "state them with --teeth; only what `meshtone simulate` wrote states them itself";
-            return Failure::refuse(problem, help);
+    /// Refuses a measured recording whose wheel is not known.
+    pub fn check_teeth(&self, input: &Input) -> Result<(), Failure> {
+        if self.teeth.is_some() {
+            return Ok(());
         }
-        if !self.states_shaft_angle() {
-            let help = if input.scenario_toml.is_some() {
-                "leave out --teeth: what `meshtone simulate` wrote needs no options; or state the speed too, with --shaft-hz"
-            } else {
-                "state its speed with --shaft-hz, or --tach, --pulse-times, --speed-channel, --speed-profile or \
-                 --from-mesh-tone"
-            };
-            let problem = format!("{path}: nothing says how far the shaft has turned");
-            return Failure::refuse(problem, help);
+        let problem = format!("{}: the teeth of the wheel are not stated", input.source.display());
+        let help = "state them with --teeth; only what `meshtone simulate` wrote states them itself";
+        Failure::refuse(problem, help)
+    }
+
+    /// Refuses a measured recording for which nothing says how its shaft turned.
+    pub fn check_angle(&self, input: &Input) -> Result<(), Failure> {
+        if self.states_shaft_angle() {
+            return Ok(());
         }
-        Ok(())
+        let help = if input.scenario_toml.is_some() {
+            "leave out --teeth: what `meshtone simulate` wrote needs no options; or state the speed too, with --shaft-hz"
+        } else {
+            "state its speed with --shaft-hz, or --tach, --pulse-times, --speed-channel, --speed-profile or \
+             --from-mesh-tone"
+        };
+        let problem = format!("{}: nothing says how far the shaft has turned", input.source.display());
+        Failure::refuse(problem, help)
     }
 
     /// Source of the phase of a simulation, in words.

@@ -8,6 +8,7 @@ use meshtone::signal::{
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
 
+use super::bearings::{BearingOptions, FoundBearings};
 use super::options::{PhaseOptions, ProcessingOptions, ShaftOptions};
 use super::reading::Input;
 use super::refuse::{RefusedInput, refuse};
@@ -38,6 +39,8 @@ pub struct Processed {
     pub turned: Turned,
     /// What the recording shows.
     pub records: TrainRecords,
+    /// What it shows about bearings, where any are named.
+    pub bearings: Option<FoundBearings>,
     /// Warnings.
     pub warnings: Vec<WarningEntry>,
 }
@@ -49,9 +52,15 @@ pub fn process(
     shafts: &ShaftOptions,
     scenario: Option<&ScenarioForm>,
     processing: &ProcessingOptions,
+    bearings: &BearingOptions,
 ) -> Result<Processed, Failure> {
     let of_channel = format!("channel {}", input.channel.name);
-    let turned = Turned::new(input, phase, shafts, scenario)?;
+    let knows_wheels = phase.teeth.is_some() || scenario.is_some() || input.scenario_toml.is_some();
+    let turned = if knows_wheels || bearings.bearings.is_empty() || !shafts.is_empty() {
+        Turned::new(input, phase, shafts, scenario)?
+    } else {
+        Turned::without_wheels(input, phase)?
+    };
     let Turned { train, turning, source, .. } = &turned;
     let subject = match turning {
         TrainTurning::Shaft { phase, .. } if source != PhaseOptions::SIMULATED => {
@@ -67,9 +76,12 @@ pub fn process(
         let what = if train.wheels.len() > 1 { &of_wheel } else { &of_channel };
         refuse(&input.source, what, subject, &of.error)
     })?;
+    let bearings = bearings.look_for(&recording, input.channel.unit.as_deref(), |error| {
+        refuse(&input.source, &of_channel, subject, error)
+    })?;
     let doubtful = records.warnings.iter().map(|warning| about_signal(&input.source, warning));
     let warnings = turned.warnings.iter().cloned().chain(doubtful).collect();
-    Ok(Processed { turned, records, warnings })
+    Ok(Processed { turned, records, bearings, warnings })
 }
 
 /// The settings that the options state.

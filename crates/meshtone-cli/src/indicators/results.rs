@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::signal::{Record, na4};
+use meshtone::sensor::GRAVITY_M_PER_S2;
+use meshtone::signal::{BearingRecords, Record, na4, velocity_rms};
 use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry};
 use serde_json::{Map, Value, json};
 
+use super::bearings::{BearingOptions, FoundBearings};
 use super::options::{EDGES, INTERPOLATIONS, PhaseOptions, ProcessingOptions, ShaftOptions};
 use super::process::{Processed, Wheel};
 use super::reading::Input;
@@ -21,6 +23,8 @@ pub struct LatestRecords {
     pub wheels: Vec<(Wheel, f64, Record)>,
     /// The machine, and how it turned in the recording.
     pub turned: Turned,
+    /// What the recording shows about bearings, where any are named.
+    pub bearings: Option<BearingRecords>,
 }
 
 /// All records so far. Of each but the last only its indicators and its residual are kept.
@@ -43,12 +47,13 @@ impl Series {
     /// Adds the next recording.
     pub fn add(&mut self, input: Input, processed: Processed, in_segments: bool) -> Result<(), Failure> {
         self.check(&input, &processed)?;
-        let Processed { turned, records, warnings } = processed;
+        let Processed { turned, records, bearings, warnings } = processed;
         self.results.recordings.push(RecordingEntry {
             source: input.source.clone(),
             sampling_rate_hz: input.sampling_rate_hz,
             samples: input.channel.samples.len(),
             start_s: input.start_s,
+            velocity_rms_mm_per_s: velocity_rms_mm_per_s(&input),
             foreign_lines: records.foreign,
         });
         self.results.warnings.extend(warnings);
@@ -78,7 +83,13 @@ impl Series {
             }
             last.extend(latest.map(|record| (wheel.clone(), of_wheel.mean_speed_hz, record)));
         }
-        self.latest = Some(LatestRecords { input, wheels: last, turned });
+        let recording = self.results.recordings.len();
+        let bearings = bearings.map(|FoundBearings { records, mut entries }| {
+            entries.iter_mut().for_each(|entry| entry.recording = recording);
+            self.results.bearings.extend(entries);
+            records
+        });
+        self.latest = Some(LatestRecords { input, wheels: last, turned, bearings });
         Ok(())
     }
 
@@ -142,6 +153,13 @@ impl Series {
     }
 }
 
+/// (mm/s) Rms of the velocity from 10 to 1000 Hz of a channel that is an acceleration.
+fn velocity_rms_mm_per_s(input: &Input) -> Option<f64> {
+    let mut channel = input.channel.clone();
+    let rms = |samples: &[f64]| velocity_rms(samples, input.sampling_rate_hz).ok();
+    channel.convert_to_g().then(|| rms(&channel.samples)).flatten().map(|rms| rms * GRAVITY_M_PER_S2)
+}
+
 /// Settings of the command line, with its defaults.
 pub fn settings(
     phase: &PhaseOptions,
@@ -149,6 +167,7 @@ pub fn settings(
     scenario: Option<&Path>,
     source: &str,
     processing: &ProcessingOptions,
+    bearings: &BearingOptions,
 ) -> Map<String, Value> {
     let file = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
     let has_pulses = phase.tach.is_some() || phase.pulse_times.is_some();
@@ -173,6 +192,9 @@ pub fn settings(
         ("low_orders", json!(processing.low_orders)),
         ("revolutions_of_a_segment", json!(processing.revolutions)),
         ("interpolation", json!(name_of(&INTERPOLATIONS, processing.interpolation))),
+        ("bearings", json!(bearings.names())),
+        ("band_hz", json!(bearings.band_hz.map(|band| [band.from_hz, band.to_hz]))),
+        ("bearing_separation", json!(bearings.separation())),
     ];
     settings.into_iter().map(|(name, setting)| (name.to_owned(), setting)).collect()
 }

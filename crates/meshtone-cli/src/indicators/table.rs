@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use meshtone::signal::ShapeIndicators;
-use meshtone_io::indicators::{RecordEntry, RecordingEntry};
+use meshtone_io::indicators::{BearingEntry, RecordEntry, RecordingEntry};
 
 use super::process::Wheel;
 use super::results::Series;
@@ -30,7 +30,53 @@ pub fn table(series: &Series) -> String {
             }
         }
     }
-    text + &foreign_lines(series, unit)
+    text += &foreign_lines(series, unit);
+    text += &series.results.bearings.iter().map(|entry| bearing(series, entry)).collect::<String>();
+    text + &velocities(series)
+}
+
+/// The defect lines of a bearing in a recording.
+fn bearing(series: &Series, entry: &BearingEntry) -> String {
+    let BearingEntry { name, shaft, mean_speed_hz, band, .. } = entry;
+    let of = match series.results.recordings.get(entry.recording - 1) {
+        Some(recording) if series.results.recordings.len() > 1 => {
+            format!(" in {}", super::figures::name(&recording.source))
+        }
+        _ => String::new(),
+    };
+    let kurtosis =
+        entry.band_kurtosis.map_or_else(String::new, |value| format!(", kurtosis {}", short(value)));
+    let mut text = format!(
+        "\n  bearing {name} on {shaft} at {} Hz{of}: squared envelope of {} to {} Hz{kurtosis}\n",
+        short(*mean_speed_hz),
+        short(band.from_hz),
+        short(band.to_hz)
+    );
+    let heads = ["order", "found at", "amplitude", "over the median"];
+    text += &line(format_args!("{:<12}", ""), heads, 17);
+    for of in &entry.lines {
+        let cells = [
+            format!("{:.4}", of.order),
+            format!("{:.4}", of.found_order),
+            short(of.amplitude),
+            format!("{:.1}", of.over_median),
+        ];
+        let beside = if of.is_beside_shaft_order { "  or a whole order of the shaft" } else { "" };
+        let row = line(format_args!("{:<12}", of.name()), cells, 17);
+        text += &format!("{}{beside}\n", row.trim_end());
+    }
+    text
+}
+
+/// Rms of the velocity of each recording, where the channel is an acceleration.
+fn velocities(series: &Series) -> String {
+    let recordings = series.results.recordings.iter();
+    let values: Vec<String> =
+        recordings.filter_map(|recording| recording.velocity_rms_mm_per_s).map(short).collect();
+    if values.is_empty() {
+        return String::new();
+    }
+    format!("\n  velocity from 10 to 1000 Hz, rms: {} mm/s\n", values.join(", "))
 }
 
 /// The lines of the last recording that belong to no shaft and no mesh, where they were looked for.

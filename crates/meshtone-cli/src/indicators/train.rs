@@ -61,7 +61,8 @@ impl Turned {
                 Self::measured(input, phase, shafts, &simulated_form(input, toml)?)
             }
             (_, None) => {
-                phase.check(input)?;
+                phase.check_teeth(input)?;
+                phase.check_angle(input)?;
                 if !shafts.is_empty() {
                     let problem = "--shaft and --mesh name parts of a scenario, and none is stated";
                     return Failure::refuse(problem, "state it with --scenario, or leave them out");
@@ -139,6 +140,19 @@ impl Turned {
         let own = tone.or_else(|| train.wheels.iter().position(|wheel| wheel.shaft == shaft));
         phase.teeth = own.map(|wheel| train.wheels[wheel].teeth);
         Self::of_phase(input, &phase, train, shaft, source)
+    }
+
+    /// Of a recording of a machine of which only the turning of one shaft is stated.
+    ///
+    /// # Arguments
+    /// * `input` - the recording
+    /// * `phase` - the options
+    pub fn without_wheels(input: &Input, phase: &PhaseOptions) -> Result<Self, Failure> {
+        if phase.from_mesh_tone {
+            phase.check_teeth(input)?;
+        }
+        phase.check_angle(input)?;
+        Self::of_phase(input, phase, GearTrain::of_shaft("shaft"), 0, phase.source().to_owned())
     }
 
     fn of_phase(
@@ -245,10 +259,11 @@ impl ShaftOptions {
     }
 }
 
-fn find(option: &str, name: &str, names: Vec<String>) -> Result<usize, Failure> {
+/// Number of what an option names.
+pub(super) fn find(option: &str, name: &str, names: Vec<String>) -> Result<usize, Failure> {
     names.iter().position(|known| known == name).map_or_else(
         || {
-            let problem = format!("{option} {name}: is none of the scenario's");
+            let problem = format!("{option} {name}: is none of the machine's");
             Failure::refuse(problem, format!("there are {}", names.join(", ")))
         },
         Ok,

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;
+mod bearings;
 mod dataset;
 mod diagnose;
 mod examples;

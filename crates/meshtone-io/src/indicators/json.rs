@@ -46,6 +46,7 @@ impl IndicatorResults {
             "unit": self.unit,
             "recordings": self.recordings,
             "records": self.records,
+            "bearings": self.bearings,
             "warnings": warnings.collect::<Vec<_>>(),
         });
         to.write_all(format!("{all:#}\n").as_bytes())

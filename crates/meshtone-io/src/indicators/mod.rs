@@ -4,11 +4,13 @@
 //! recordings, records, warnings. The Parquet file is a table with one row for each record, for programs that compare
 //! many; what belongs to the whole file stands in its key-value metadata.
 
+mod bearings;
 mod json;
 mod parquet_file;
 
 use std::path::{Path, PathBuf};
 
+pub use bearings::BearingEntry;
 use meshtone::signal::{ForeignTone, Indicators, SignalWarning};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
@@ -32,6 +34,8 @@ pub struct IndicatorResults {
     pub recordings: Vec<RecordingEntry>,
     /// The records, in the order of the series.
     pub records: Vec<RecordEntry>,
+    /// What each recording shows about each bearing.
+    pub bearings: Vec<BearingEntry>,
     /// What is doubtful.
     pub warnings: Vec<WarningEntry>,
 }
@@ -48,6 +52,8 @@ pub struct RecordingEntry {
     pub samples: usize,
     /// (s) Time of its first sample.
     pub start_s: f64,
+    /// (mm/s) Rms of the channel's velocity from 10 to 1000 Hz; none where it is no acceleration, or shorter than 1 s, or sampled too slowly.
+    pub velocity_rms_mm_per_s: Option<f64>,
     /// Its tones that belong to no shaft and no mesh; none where they were not looked for.
     #[serde(serialize_with = "json::foreign_lines")]
     pub foreign_lines: Option<Vec<ForeignTone>>,
@@ -88,6 +94,14 @@ pub struct WarningEntry {
     pub message: String,
     /// Its kind and its numbers, where it is about the signal.
     pub kind: Option<SignalWarning>,
+}
+
+impl IndicatorResults {
+    /// The file of a recording, as messages show it.
+    fn file(&self, recording: usize) -> String {
+        let entry = recording.checked_sub(1).and_then(|index| self.recordings.get(index));
+        entry.map_or_else(String::new, |entry| entry.source.display().to_string())
+    }
 }
 
 /// A path as messages show it.

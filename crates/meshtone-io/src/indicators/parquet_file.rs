@@ -10,9 +10,14 @@ use crate::signals::VERSION_KEY;
 use crate::table::{CellType, Cells, TableColumn, write_compressed};
 
 /// A column and its cells.
-type Column = (TableColumn, Cells<'static>);
+pub(super) type Column = (TableColumn, Cells<'static>);
 
-fn column(name: &str, unit: &str, nullable: bool, (kind, cells): (CellType, Cells<'static>)) -> Column {
+pub(super) fn column(
+    name: &str,
+    unit: &str,
+    nullable: bool,
+    (kind, cells): (CellType, Cells<'static>),
+) -> Column {
     let unit = (!unit.is_empty()).then_some(("unit", unit));
     (TableColumn { nullable, ..TableColumn::new(name, kind).with_metadata(unit) }, cells)
 }
@@ -36,10 +41,6 @@ impl IndicatorResults {
 
     /// What each record is of.
     fn circumstances(&self) -> Vec<Column> {
-        let file = |record: &RecordEntry| {
-            let recording = record.recording.checked_sub(1).and_then(|index| self.recordings.get(index));
-            recording.map_or_else(String::new, |entry| entry.source.display().to_string())
-        };
         let text = |value: &dyn Fn(&RecordEntry) -> Option<String>| {
             (CellType::Text, Cells::Text(self.records.iter().map(value).collect()))
         };
@@ -53,7 +54,7 @@ impl IndicatorResults {
         };
         vec![
             column("recording", "", false, count(&|record| Some(record.recording))),
-            column("file", "", false, text(&|record| Some(file(record)))),
+            column("file", "", false, text(&|record| Some(self.file(record.recording)))),
             column("segment", "", true, count(&|record| record.segment)),
             column("channel", "", false, text(&|_| Some(self.channel.clone()))),
             column("unit", "", true, text(&|_| self.unit.clone())),

@@ -77,6 +77,15 @@ impl GearTrain {
         }
     }
 
+    /// A shaft without wheels.
+    ///
+    /// # Arguments
+    /// * `name` - its name
+    pub fn of_shaft(name: &str) -> Self {
+        let shaft = TrainShaft { name: name.to_owned(), speed_ratio: Ratio::ONE };
+        Self { shafts: vec![shaft], ..Self::of_wheels([]) }
+    }
+
     /// The pinion and the gear of a scenario.
     ///
     /// # Arguments

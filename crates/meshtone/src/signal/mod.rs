@@ -13,11 +13,16 @@
 //! | every shaft of a pair or a gearbox | [`GearTrain`], [`TrainRecording`], [`foreign_tones`] |
 //! | whether it fits what the user stated | [`check_recording`], of [`find_mismatch`] and [`lines_off_shafts`]; [`synchronous_part`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
+//! | bearings | [`TrainRecording::bearings`]; [`BearingGeometry`], [`NAMED_BEARINGS`], [`defect_lines`] of [`squared_envelope_spectrum`] and [`squared_envelope_order_spectrum`] |
+//! | bands that are impulsive | [`kurtogram`], [`spectral_kurtosis`] |
+//! | what is not periodic | [`synchronous_residual`], [`discrete_random_separation`], [`cepstral_prewhitening`] |
+//! | a machine as a whole | [`velocity_rms`] |
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
 
 mod angular;
 mod anti_aliasing;
 mod average;
+mod bearing;
 mod check;
 mod check_recording;
 mod edge;
@@ -29,24 +34,33 @@ mod gear_train;
 mod indicators;
 mod interpolate;
 mod kaiser;
+mod kurtogram;
 mod mismatch;
 mod octaves;
 mod order_map;
 mod phase;
+mod prewhitening;
+mod random_part;
 mod record;
 mod resample;
 mod separation;
 mod simulated;
 mod spectrum;
+mod squared_envelope;
 mod statistics;
 mod synchronous_part;
 mod train_recording;
+mod velocity;
 mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
 pub use anti_aliasing::AntiAliasing;
 pub use average::{
     FEWEST_REVOLUTIONS, SynchronousAverage, revolution_average, segmented_averages, synchronous_average,
+};
+pub use bearing::{
+    BearingGeometry, BearingRecords, BearingSeparation, BearingSettings, DefectKind, DefectLine,
+    DefectOrders, NAMED_BEARINGS, NamedBearing, TrainBearing, defect_lines,
 };
 pub use check::check_channel;
 pub use check_recording::check_recording;
@@ -60,11 +74,16 @@ pub use indicators::{
 };
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
+pub use kurtogram::{Kurtogram, KurtogramBand, kurtogram, spectral_kurtosis};
 pub use mismatch::{Alternative, Evidence, Mismatch, StatedFacts, StatedTurning, find_mismatch};
 pub use octaves::{OCTAVES, OctaveBand, octave_bands};
 pub use order_map::{OrderMap, OrderMapSettings, order_map};
 pub use phase::{
     AngleZero, MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses,
+};
+pub use prewhitening::cepstral_prewhitening;
+pub use random_part::{
+    DiscreteRandomParts, SynchronousResidual, discrete_random_separation, synchronous_residual,
 };
 pub use record::{
     ChainSettings, Record, Recording, process_angular, process_angular_segments, process_average,
@@ -75,6 +94,10 @@ pub use resample::{resample, resample_to, resample_with, resampling_ratio, resam
 pub use separation::{MeanPart, Separation, SeparationSettings, separate};
 pub use simulated::SimulatedShafts;
 pub use spectrum::order_spectrum;
+pub use squared_envelope::{
+    FrequencyBand, SquaredEnvelopeSpectrum, squared_envelope, squared_envelope_order_spectrum,
+    squared_envelope_spectrum,
+};
 pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,
     standardised_moment,
@@ -83,4 +106,5 @@ pub use synchronous_part::{SynchronousPart, synchronous_part};
 pub use train_recording::{
     TrainRecording, TrainRecords, TrainSettings, TrainTurning, WheelError, WheelRecords,
 };
+pub use velocity::{VELOCITY_BAND, velocity_rms};
 pub use warning::SignalWarning;

@@ -46,6 +46,7 @@ mod settling;
 mod several_teeth;
 mod severity;
 mod signal;
+mod signal_bearing;
 mod signal_chain;
 mod signal_indicators;
 mod signal_mismatch;

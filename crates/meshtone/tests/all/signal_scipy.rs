@@ -131,3 +131,31 @@ fn moments() {
     let ours: Vec<f64> = na4(&residuals).unwrap().into_iter().flatten().collect();
     scipy.compare("na4.values", &ours);
 }
+
+#[test]
+fn squared_envelope_and_kurtosis() {
+    let Some(mut scipy) = Reference::open() else { return };
+    for case in ["bearing_1000", "bearing_999"] {
+        let signal = scipy.get(&format!("{case}.signal"));
+        let band = FrequencyBand { from_hz: 100.0, to_hz: 300.0 };
+        let squares = squared_envelope(&signal, 1000.0, Some(band)).unwrap();
+        scipy.compare(&format!("{case}.squares"), &squares);
+        let spectrum = squared_envelope_spectrum(&signal, 1000.0, Some(band)).unwrap();
+        scipy.compare(&format!("{case}.spectrum"), &spectrum.amplitudes);
+        scipy.compare(&format!("{case}.kurtosis"), &spectral_kurtosis(&signal, 64).unwrap());
+        scipy.compare(&format!("{case}.white"), &cepstral_prewhitening(&signal).unwrap());
+    }
+    let bands = kurtogram(&scipy.get("kurtogram.signal"), 2.0, 3).unwrap().levels;
+    let bands: Vec<f64> = bands.concat();
+    scipy.compare("kurtogram.kurtosis", &bands);
+}
+
+#[test]
+fn random_part_and_velocity() {
+    let Some(mut scipy) = Reference::open() else { return };
+    let parts = discrete_random_separation(&scipy.get("random.signal"), 256, 300).unwrap();
+    scipy.compare("random.discrete", &parts.discrete);
+    scipy.compare("random.random", &parts.random);
+    let velocity = velocity_rms(&scipy.get("velocity.signal"), 4000.0).unwrap();
+    scipy.compare("velocity.rms", &[velocity]);
+}

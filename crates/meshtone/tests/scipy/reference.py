@@ -108,10 +108,79 @@ def moments(out, random):
     out["na4/values"] = stats.moment(records, 4, axis=1) / so_far**2
 
 
+def bearings(out, random):
+    """Squared envelope of a band, its spectrum, spectral kurtosis and prewhitening, of an even and an odd number of values."""
+    for n in (1000, 999):
+        x = random.standard_normal(n) + 0.3
+        hz = fft.rfftfreq(n, 1 / 1000.0)
+        squares = np.abs(signal.hilbert(fft.irfft(np.where((hz >= 100) & (hz <= 300), fft.rfft(x), 0), n))) ** 2
+        _, power = signal.periodogram(squares, window="hann", detrend="constant", scaling="spectrum")
+        blocks = signal.spectrogram(x, window="hann", nperseg=64, noverlap=48, detrend=False, mode="complex")[2]
+        # Of a real Gaussian value the fourth moment is 3 times the squared second one, of a complex one 2 times.
+        kurtosis = np.mean(np.abs(blocks) ** 4, axis=1) / np.mean(np.abs(blocks) ** 2, axis=1) ** 2 - 2
+        kurtosis[[0, -1]] -= 1
+        white = fft.irfft(np.exp(1j * np.angle(fft.rfft(x))), n)
+        case = f"bearing_{n}"
+        out[f"{case}/signal"], out[f"{case}/squares"], out[f"{case}/kurtosis"] = x, squares, kurtosis
+        # Power of a sine is half its amplitude squared; frequency 0 and the Nyquist frequency have no mirror image, and count as if they had.
+        images = np.full(len(power), 2.0)
+        images[0] = 4
+        if n % 2 == 0:
+            images[-1] = 4
+        out[f"{case}/spectrum"] = np.sqrt(images * power)
+        out[f"{case}/white"] = white / np.sqrt(np.mean(white**2))
+
+
+def kurtogram(out, random):
+    """Kurtosis of the complex envelope at the rate of its band, in bands with flanks of a cosine."""
+    n = 4800
+    x = random.standard_normal(n) * (1 + 4 * (np.arange(n) % 400 < 40))
+    lines = fft.rfft(x)
+    lines[0] = 0
+    values = []
+    for bands in (1, 2, 3, 4, 6, 8):
+        width = n / 2 / bands
+        length = int(1.25 * width) + 2
+        while length % 2 or fft.next_fast_len(length, real=True) != length:
+            length += 1
+        for band in range(bands):
+            place = np.arange(n // 2 + 1) / width - band
+            gain = np.sin(np.pi / 4 * (1 + np.clip(place / 0.125, -1, 1))) if band > 0 else 1.0
+            gain = gain * (np.sin(np.pi / 4 * (1 + np.clip((1 - place) / 0.125, -1, 1))) if band + 1 < bands else 1.0)
+            inside = (place >= -0.125) & (place <= 1.125)
+            square = np.abs(fft.ifft((lines * gain)[inside], length)) ** 2
+            values.append(np.mean(square**2) / np.mean(square) ** 2 - 2)
+    out["kurtogram/signal"], out["kurtogram/kurtosis"] = x, np.array(values)
+
+
+def random_part(out, random):
+    """Discrete-random separation by cross spectra of a signal and itself a delay earlier."""
+    n, block, delay = 6000, 256, 300
+    x = random.standard_normal(n) + 2 * np.sin(0.3 * np.arange(n)) + np.sin(1.7 * np.arange(n))
+    shared = dict(window="hann", nperseg=block, noverlap=block // 2, detrend=False)
+    _, cross = signal.csd(x[:-delay], x[delay:], **shared)
+    _, power = signal.welch(x[:-delay], **shared)
+    gain = np.minimum(np.abs(cross) / power, 1)
+    response = fft.irfft(gain, block)
+    # Lags from -127 to 128.
+    taps = np.roll(response, block // 2 - 1)
+    discrete = signal.oaconvolve(x, taps)[block // 2 - 1 : block // 2 - 1 + n]
+    out["random/signal"], out["random/discrete"], out["random/random"] = x, discrete, x - discrete
+
+
+def velocity(out, random):
+    """Rms of the velocity from 10 to 1000 Hz, by Welch's method."""
+    x = random.standard_normal(60_000)
+    hz, density = signal.welch(x, 4000.0, window="hann", nperseg=16_000, noverlap=8_000, detrend="constant")
+    inside = (hz >= 10) & (hz <= 1000)
+    square = np.sum(density[inside] / (2 * np.pi * hz[inside]) ** 2) * hz[1]
+    out["velocity/signal"], out["velocity/rms"] = x, np.array([1000 * np.sqrt(square)])
+
+
 def main():
     out = {}
     random = np.random.default_rng(20240501)
-    for case in (resampling, interpolation, speed, spectra, separation, moments):
+    for case in (resampling, interpolation, speed, spectra, separation, moments, bearings, kurtogram, random_part, velocity):
         case(out, random)
     # The names of files in a zip: no folders needed.
     np.savez(sys.argv[1], **{name.replace("/", "."): values for name, values in out.items()})

@@ -1,0 +1,200 @@
+//! Bearings: the options that name them, and the lines of their defects in a recording.
+
+use clap::Args;
+use meshtone::signal::{
+    BearingGeometry, BearingRecords, BearingSeparation, BearingSettings, FrequencyBand, NAMED_BEARINGS,
+    NamedBearing, SignalError, TrainBearing, TrainRecording, TrainTurning,
+};
+use meshtone_io::indicators::BearingEntry;
+
+use super::train::find;
+use crate::choice::{Choice, name_of, one_of};
+use crate::failure::Failure;
+
+/// Bearings, and how the lines of their defects are looked for.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Bearings")]
+pub struct BearingOptions {
+    /// Rolling bearing whose defect lines are looked for, and the shaft in its inner ring: by its name, or by the number of its elements, their
+    /// diameter, the pitch diameter (mm) and the contact angle (°), such as 6205, ER-10K@output or 9,7.94,39.04,0@pinion. May be repeated.
+    /// [default shaft: the one that speed or pulses are of]
+    #[arg(long = "bearing", value_name = "BEARING[@SHAFT]", value_parser = bearing)]
+    pub bearings: Vec<NamedChoice>,
+    /// (Hz) Band of the squared envelope. [default: that of the largest kurtosis, at least three times as wide as the largest BPFI]
+    #[arg(long, value_name = "FROM,TO", requires = "bearings", value_parser = band)]
+    pub band_hz: Option<FrequencyBand>,
+    /// What is removed from the recording first
+    #[arg(long, requires = "bearings", default_value = "averages", value_parser = one_of(&SEPARATIONS))]
+    pub bearing_separation: BearingSeparation,
+}
+
+/// A bearing as the command line names it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedChoice {
+    name: String,
+    geometry: BearingGeometry,
+    shaft: Option<String>,
+}
+
+/// Ways to separate a recording.
+const SEPARATIONS: [Choice<BearingSeparation>; 4] = [
+    (
+        "averages",
+        "What repeats with the shafts, by averages over their revolutions",
+        BearingSeparation::Averages,
+    ),
+    (
+        "discrete-random",
+        "Tones of a constant speed, which are predictable",
+        BearingSeparation::DiscreteRandom,
+    ),
+    ("prewhitening", "The amplitude of every line of the spectrum", BearingSeparation::Prewhitening),
+    ("none", "Nothing", BearingSeparation::None),
+];
+
+fn bearing(text: &str) -> Result<NamedChoice, String> {
+    let (name, shaft) = match text.split_once('@') {
+        Some((name, shaft)) => (name, Some(shaft.to_owned())),
+        None => (text, None),
+    };
+    let known = |named: &NamedBearing| (named.name.to_owned(), named.geometry);
+    let (name, geometry) = match NamedBearing::find(name) {
+        Some(named) => known(named),
+        None => (name.to_owned(), geometry(name)?),
+    };
+    Ok(NamedChoice { name, geometry, shaft })
+}
+
+/// A geometry in numbers.
+fn geometry(text: &str) -> Result<BearingGeometry, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let (elements, element_mm, pitch_mm, angle_deg) = match numbers.as_deref() {
+        Some(&[elements, element_mm, pitch_mm]) => (elements, element_mm, pitch_mm, 0.0),
+        Some(&[elements, element_mm, pitch_mm, angle_deg]) => (elements, element_mm, pitch_mm, angle_deg),
+        _ => {
+            let names = NAMED_BEARINGS.map(|named| named.name).join(", ");
+            return Err(format!(
+                "must be one of {names}, or the number of elements, their diameter and the pitch diameter in mm, as in 9,7.94,39.04"
+            ));
+        }
+    };
+    if elements.fract() != 0.0 {
+        return Err("the first number must be the whole number of elements".to_owned());
+    }
+    BearingGeometry::new(elements as u32, element_mm, pitch_mm, angle_deg).map_err(|error| error.to_string())
+}
+
+fn band(text: &str) -> Result<FrequencyBand, String> {
+    let ends = text.split_once(',').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
+    match ends {
+        Some((from_hz, to_hz)) if 0.0 <= from_hz && from_hz < to_hz => Ok(FrequencyBand { from_hz, to_hz }),
+        _ => Err("must be two frequencies in Hz, the lower one first, as in 2000,5500".to_owned()),
+    }
+}
+
+impl BearingOptions {
+    /// The settings that the options state.
+    fn settings(&self) -> BearingSettings {
+        BearingSettings { separation: self.bearing_separation, band: self.band_hz }
+    }
+
+    /// Name of the separation, where a bearing is looked for.
+    pub fn separation(&self) -> Option<&'static str> {
+        name_of(&SEPARATIONS, self.bearing_separation).filter(|_| !self.bearings.is_empty())
+    }
+
+    /// The bearings as they are named on the command line.
+    pub fn names(&self) -> Vec<String> {
+        let name = |of: &NamedChoice| match &of.shaft {
+            Some(shaft) => format!("{}@{shaft}", of.name),
+            None => of.name.clone(),
+        };
+        self.bearings.iter().map(name).collect()
+    }
+
+    /// Looks for the bearings in a recording; none where none is named.
+    ///
+    /// # Arguments
+    /// * `recording` - the channel and how the shafts turned
+    /// * `unit` - of the channel
+    /// * `refuse` - the words of an error
+    pub fn look_for(
+        &self,
+        recording: &TrainRecording,
+        unit: Option<&str>,
+        refuse: impl Fn(&SignalError) -> Failure,
+    ) -> Result<Option<FoundBearings>, Failure> {
+        if self.bearings.is_empty() {
+            return Ok(None);
+        }
+        let shafts = &recording.train.shafts;
+        let own = match recording.turning {
+            TrainTurning::Shaft { shaft, .. } => *shaft,
+            TrainTurning::SimulatedPair(_) => recording.train.input(),
+        };
+        let place = |of: &NamedChoice| -> Result<TrainBearing, Failure> {
+            let shaft = match &of.shaft {
+                Some(name) => {
+                    let names = shafts.iter().map(|shaft| shaft.name.clone()).collect();
+                    find(&format!("--bearing {}@: shaft", of.name), name, names)?
+                }
+                None => own,
+            };
+            Ok(TrainBearing { geometry: of.geometry, shaft })
+        };
+        let placed = self.bearings.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+        let records = recording.bearings(&placed, &self.settings()).map_err(|error| refuse(&error))?;
+        let is_plain = |unit: &str| unit.chars().all(char::is_alphanumeric);
+        let squared = |unit: &str| if is_plain(unit) { format!("{unit}²") } else { format!("({unit})²") };
+        let unit = unit.filter(|_| self.bearing_separation != BearingSeparation::Prewhitening).map(squared);
+        let mut entries = Vec::new();
+        for ((of, bearing), (_, lines)) in self.bearings.iter().zip(placed).zip(&records.bearings) {
+            let phase = recording.phase(bearing.shaft).map_err(|error| refuse(&error))?;
+            entries.push(BearingEntry {
+                recording: 0,
+                name: of.name.clone(),
+                bearing,
+                shaft: shafts[bearing.shaft].name.clone(),
+                mean_speed_hz: phase.mean_speed_hz(recording.sampling_rate_hz),
+                band: records.band,
+                band_kurtosis: records.kurtosis,
+                amplitude_unit: unit.clone(),
+                lines: lines.clone(),
+            });
+        }
+        Ok(Some(FoundBearings { records, entries }))
+    }
+}
+
+/// What a recording shows about bearings.
+pub struct FoundBearings {
+    /// Kurtogram, band and spectra.
+    pub records: BearingRecords,
+    /// Each bearing with its lines; the number of the recording is not yet known.
+    pub entries: Vec<BearingEntry>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bearings_by_name_and_by_geometry() {
+        let of = bearing("er10k@output").unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(
+            (of.name.as_str(), of.geometry.elements, of.shaft.as_deref()),
+            ("ER-10K", 8, Some("output"))
+        );
+        let of = bearing("16,8.4,71.5,15.17").unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((of.geometry.contact_angle_deg, of.shaft), (15.17, None));
+        for (text, words) in [
+            ("6206", "6203, 6205, ER-10K"),
+            ("7.94,9,39.04", "whole number of elements"),
+            ("9,39.04,7.94", "room on the pitch circle"),
+            ("9,x,7.94", "must be one of"),
+        ] {
+            assert!(bearing(text).is_err_and(|error| error.contains(words)), "{text}");
+        }
+        assert!(band("5500,2000").is_err() && band("2000").is_err() && band("2000,5500").is_ok());
+    }
+}

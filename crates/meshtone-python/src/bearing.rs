@@ -1,0 +1,172 @@
+//! Bearings: their defect orders and lines, and the tools that bring these out of a recording.
+
+use meshtone::signal::{
+    self as steps, BearingGeometry, FrequencyBand, Kurtogram, NAMED_BEARINGS, SquaredEnvelopeSpectrum,
+};
+use pyo3::prelude::*;
+
+use crate::array::{Array, Signal, array, samples};
+use crate::error::value_error;
+use crate::phase::ShaftPhase;
+
+/// Number of elements, their diameter, the pitch diameter, and the contact angle.
+type Geometry = (u32, f64, f64, f64);
+/// Name, part, order, place where it was found, amplitude, amplitude over the median, whether a shaft order is as near.
+type Line = (String, &'static str, f64, f64, f64, f64, bool);
+
+fn geometry((elements, element_mm, pitch_mm, contact_angle_deg): Geometry) -> PyResult<BearingGeometry> {
+    BearingGeometry::new(elements, element_mm, pitch_mm, contact_angle_deg).map_err(value_error)
+}
+
+/// Name, geometry and source of the bearings by name.
+#[pyfunction]
+pub fn named_bearings() -> Vec<(&'static str, Geometry, &'static str)> {
+    let named = NAMED_BEARINGS.iter().map(|named| {
+        let of = named.geometry;
+        (named.name, (of.elements, of.element_mm, of.pitch_mm, of.contact_angle_deg), named.source)
+    });
+    named.collect()
+}
+
+/// FTF, BPFO, BPFI and BSF.
+#[pyfunction]
+pub fn defect_orders(bearing: Geometry) -> PyResult<(f64, f64, f64, f64)> {
+    let of = geometry(bearing)?.defect_orders();
+    Ok((of.cage, of.outer_race, of.inner_race, of.element_spin))
+}
+
+/// The lines of a bearing's defects in a squared envelope spectrum.
+#[pyfunction]
+pub fn defect_lines(
+    py: Python<'_>,
+    step: f64,
+    amplitudes: Signal<'_>,
+    bearing: Geometry,
+    shaft: f64,
+) -> PyResult<Vec<Line>> {
+    let orders = geometry(bearing)?.defect_orders();
+    let spectrum = SquaredEnvelopeSpectrum { step, amplitudes: samples(&amplitudes)?.to_vec() };
+    let lines = py.detach(|| steps::defect_lines(&spectrum, &orders, shaft)).into_iter();
+    let line = |of: steps::DefectLine| {
+        let part = of.kind.name();
+        (of.name(), part, of.order, of.found_order, of.amplitude, of.over_median, of.is_beside_shaft_order)
+    };
+    Ok(lines.map(line).collect())
+}
+
+fn frequencies(band_hz: Option<(f64, f64)>) -> Option<FrequencyBand> {
+    band_hz.map(|(from_hz, to_hz)| FrequencyBand { from_hz, to_hz })
+}
+
+/// Squared envelope of a band.
+#[pyfunction]
+pub fn squared_envelope<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    sampling_rate_hz: f64,
+    band_hz: Option<(f64, f64)>,
+) -> PyResult<Array<'py>> {
+    let signal = samples(&signal)?;
+    let squares = py.detach(|| steps::squared_envelope(signal, sampling_rate_hz, frequencies(band_hz)));
+    Ok(array(py, squares.map_err(value_error)?))
+}
+
+/// Distance of the lines in Hz, or in orders of the shaft where its phase is given, and their amplitudes.
+#[pyfunction]
+pub fn squared_envelope_spectrum<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    sampling_rate_hz: f64,
+    band_hz: Option<(f64, f64)>,
+    phase: Option<&ShaftPhase>,
+) -> PyResult<(f64, Array<'py>)> {
+    let (signal, band) = (samples(&signal)?, frequencies(band_hz));
+    let phase = phase.map(|phase| &phase.0);
+    let spectrum = py.detach(|| match phase {
+        None => steps::squared_envelope_spectrum(signal, sampling_rate_hz, band),
+        Some(phase) => steps::squared_envelope_order_spectrum(signal, sampling_rate_hz, band, phase),
+    });
+    let spectrum = spectrum.map_err(value_error)?;
+    Ok((spectrum.step, array(py, spectrum.amplitudes)))
+}
+
+/// Kurtosis in the bands of each level.
+#[pyfunction]
+pub fn kurtogram<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    sampling_rate_hz: f64,
+    most_levels: u32,
+) -> PyResult<Vec<Array<'py>>> {
+    let signal = samples(&signal)?;
+    let of = py.detach(|| steps::kurtogram(signal, sampling_rate_hz, most_levels)).map_err(value_error)?;
+    Ok(of.levels.into_iter().map(|level| array(py, level)).collect())
+}
+
+/// Ends of the band with the largest kurtosis, and that.
+#[pyfunction]
+pub fn best_band(
+    levels: Vec<Vec<f64>>,
+    sampling_rate_hz: f64,
+    least_width_hz: f64,
+) -> Option<(f64, f64, f64)> {
+    let best = Kurtogram { sampling_rate_hz, levels }.best(least_width_hz)?;
+    Some((best.band.from_hz, best.band.to_hz, best.kurtosis))
+}
+
+/// Spectral kurtosis.
+#[pyfunction]
+pub fn spectral_kurtosis<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    block_samples: usize,
+) -> PyResult<Array<'py>> {
+    let signal = samples(&signal)?;
+    let kurtosis = py.detach(|| steps::spectral_kurtosis(signal, block_samples)).map_err(value_error)?;
+    Ok(array(py, kurtosis))
+}
+
+/// The signal with all lines of its spectrum at the same amplitude.
+#[pyfunction]
+pub fn cepstral_prewhitening<'py>(py: Python<'py>, signal: Signal<'py>) -> PyResult<Array<'py>> {
+    let signal = samples(&signal)?;
+    Ok(array(py, py.detach(|| steps::cepstral_prewhitening(signal)).map_err(value_error)?))
+}
+
+/// Tones and the rest.
+#[pyfunction]
+pub fn discrete_random_separation<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    block_samples: usize,
+    delay_samples: usize,
+) -> PyResult<(Array<'py>, Array<'py>)> {
+    let signal = samples(&signal)?;
+    let parts = py.detach(|| steps::discrete_random_separation(signal, block_samples, delay_samples));
+    let parts = parts.map_err(value_error)?;
+    Ok((array(py, parts.discrete), array(py, parts.random)))
+}
+
+/// First sample and values of the recording without the averages of all shafts.
+#[pyfunction]
+pub fn synchronous_residual<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    phases: Vec<PyRef<'py, ShaftPhase>>,
+) -> PyResult<(usize, Array<'py>)> {
+    let signal = samples(&signal)?;
+    let phases: Vec<steps::ShaftPhase> = phases.iter().map(|phase| phase.0.clone()).collect();
+    let residual = py.detach(|| steps::synchronous_residual(signal, &phases)).map_err(value_error)?;
+    Ok((residual.first_sample, array(py, residual.values)))
+}
+
+/// Rms of the velocity from 10 to 1000 Hz.
+#[pyfunction]
+pub fn velocity_rms(
+    py: Python<'_>,
+    acceleration_m_per_s2: Signal<'_>,
+    sampling_rate_hz: f64,
+) -> PyResult<f64> {
+    let signal = samples(&acceleration_m_per_s2)?;
+    py.detach(|| steps::velocity_rms(signal, sampling_rate_hz)).map_err(value_error)
+}

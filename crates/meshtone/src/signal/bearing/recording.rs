@@ -1,0 +1,167 @@
+//! Bearings in a recording of a train: from the channel to the lines of their defects.
+
+use super::{BearingGeometry, DefectLine, defect_lines};
+use crate::signal::{
+    FrequencyBand, Kurtogram, KurtogramBand, ShaftPhase, SignalError, SquaredEnvelopeSpectrum,
+    TrainRecording, cepstral_prewhitening, check_channel, discrete_random_separation, kurtogram,
+    squared_envelope_order_spectrum, synchronous_residual,
+};
+
+/// Fewest revolutions, or cycles, whose average is removed: it contains one part in so many of the power of all else.
+const FEWEST_REVOLUTIONS: f64 = 8.0;
+/// (frequencies of the inner race) Least width of a band that is chosen: two harmonics and sidebands of the envelope have room in it.
+const LEAST_WIDTH: f64 = 3.0;
+/// (rev) Length of a block of the discrete-random separation, of the slowest shaft, and its largest part of the recording.
+const BLOCK: (f64, usize) = (4.0, 16);
+/// Levels of the kurtogram.
+const LEVELS: u32 = 7;
+
+/// What is removed from a recording because it comes from the gears.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BearingSeparation {
+    /// The average over the cycle after which the same teeth meet again, which is a cycle of all shafts; where the recording has less than
+    /// eight cycles those over the revolutions of all shafts with at least eight revolutions: [`synchronous_residual`].
+    #[default]
+    Averages,
+    /// The tones of a constant speed: [`discrete_random_separation`] with blocks of four revolutions of the slowest shaft.
+    DiscreteRandom,
+    /// All lines of the spectrum get the same amplitude: [`cepstral_prewhitening`].
+    Prewhitening,
+    /// Nothing.
+    None,
+}
+
+/// A bearing of a train.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrainBearing {
+    /// Its geometry.
+    pub geometry: BearingGeometry,
+    /// Number of the shaft in its inner ring.
+    pub shaft: usize,
+}
+
+/// How bearings are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BearingSettings {
+    /// What is removed first.
+    pub separation: BearingSeparation,
+    /// The band of the squared envelope; none for that of the largest kurtosis among those at least three times as wide as the largest BPFI.
+    pub band: Option<FrequencyBand>,
+}
+
+/// What a recording shows about bearings.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct BearingRecords {
+    /// Kurtosis in bands of all widths of what was left.
+    pub kurtogram: Kurtogram,
+    /// The band of the squared envelope.
+    pub band: FrequencyBand,
+    /// (-) Kurtosis in it, where the kurtogram chose it.
+    pub kurtosis: Option<f64>,
+    /// For each bearing its spectrum over the orders of its shaft, and its lines.
+    pub bearings: Vec<(SquaredEnvelopeSpectrum, Vec<DefectLine>)>,
+}
+
+impl TrainRecording<'_> {
+    /// Looks for defects of bearings: removes what comes from the gears, chooses the band in which it is most impulsive, and finds the
+    /// defect lines in the spectrum of the squared envelope over the orders of each bearing's shaft.
+    ///
+    /// # Arguments
+    /// * `bearings` - the bearings
+    /// * `settings` - how
+    ///
+    /// # Errors
+    /// No bearing; those of the functions that [`BearingSeparation`] names, of [`kurtogram`] and of [`squared_envelope_order_spectrum`].
+    ///
+    /// ```
+    /// use meshtone::signal::{
+    ///     BearingSettings, GearTrain, NamedBearing, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning,
+    /// };
+    ///
+    /// // A resonance at 4 kHz that rings whenever a ball passes a place of the outer race, and a mesh of 19 teeth.
+    /// let geometry = NamedBearing::find("6205").ok_or("no such bearing")?.geometry;
+    /// let phase = ShaftPhase::constant(30.0, 20_000.0, 60_000)?;
+    /// let tau = std::f64::consts::TAU;
+    /// let ringing = |angle: f64| {
+    ///     let since_s = (angle * 3.585).fract() / (30.0 * 3.585);
+    ///     (-800.0 * since_s).exp() * (tau * 4000.0 * since_s).sin() + (tau * 19.0 * angle).cos()
+    /// };
+    /// let signal: Vec<f64> = phase.revolutions.iter().map(|angle| ringing(*angle)).collect();
+    /// let train = GearTrain::of_wheels([("wheel", 19)]);
+    /// let turning = TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::Other };
+    /// let recording = TrainRecording { signal: &signal, sampling_rate_hz: 20_000.0, train: &train, turning: &turning };
+    /// let found = recording.bearings(&[TrainBearing { geometry, shaft: 0 }], &BearingSettings::default())?;
+    /// let (_, lines) = &found.bearings[0];
+    /// assert!(lines.iter().any(|line| line.name() == "BPFO" && line.over_median > 50.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn bearings(
+        &self,
+        bearings: &[TrainBearing],
+        settings: &BearingSettings,
+    ) -> Result<BearingRecords, SignalError> {
+        check_channel(self.signal)?;
+        let phases: Vec<ShaftPhase> =
+            (0..self.train.shafts.len()).map(|shaft| self.phase(shaft)).collect::<Result<_, _>>()?;
+        let (first_sample, signal) = self.separated(&phases, settings.separation)?;
+        let speed_hz = |shaft: usize| phases[shaft].mean_speed_hz(self.sampling_rate_hz);
+        let pass_hz = bearings.iter().map(|of| of.geometry.defect_orders().inner_race * speed_hz(of.shaft));
+        let kurtogram = kurtogram(&signal, self.sampling_rate_hz, LEVELS)?;
+        let chosen = kurtogram.best(LEAST_WIDTH * pass_hz.fold(0.0, f64::max));
+        let chosen = chosen.filter(|_| settings.band.is_none());
+        let whole = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * self.sampling_rate_hz };
+        let band = settings.band.or(chosen.map(|KurtogramBand { band, .. }| band)).unwrap_or(whole);
+        let record = |of: &TrainBearing| {
+            let phase = within(&phases[of.shaft], first_sample, signal.len());
+            let spectrum =
+                squared_envelope_order_spectrum(&signal, self.sampling_rate_hz, Some(band), &phase)?;
+            let lines = defect_lines(&spectrum, &of.geometry.defect_orders(), 1.0);
+            Ok((spectrum, lines))
+        };
+        let bearings = bearings.iter().map(record).collect::<Result<_, SignalError>>()?;
+        Ok(BearingRecords { kurtogram, band, kurtosis: chosen.map(|of| of.kurtosis), bearings })
+    }
+
+    /// The recording after the separation, and the sample that it begins at.
+    fn separated(
+        &self,
+        phases: &[ShaftPhase],
+        separation: BearingSeparation,
+    ) -> Result<(usize, Vec<f64>), SignalError> {
+        let whole = |values: Vec<f64>| Ok((0, values));
+        match separation {
+            BearingSeparation::None => whole(self.signal.to_vec()),
+            BearingSeparation::Prewhitening => whole(cepstral_prewhitening(self.signal)?),
+            BearingSeparation::DiscreteRandom => {
+                let slowest_hz = phases.iter().map(|phase| phase.mean_speed_hz(self.sampling_rate_hz));
+                let samples = BLOCK.0 * self.sampling_rate_hz / slowest_hz.fold(f64::INFINITY, f64::min);
+                let block = (samples.ceil() as usize).min(self.signal.len() / BLOCK.1);
+                let random = discrete_random_separation(self.signal, block, block)?.random;
+                // At the ends some of the tones is left.
+                Ok((block / 2, random[block / 2..random.len() - block / 2].to_vec()))
+            }
+            BearingSeparation::Averages => {
+                let (_, cycles_per_revolution) = self.train.spacings(0);
+                let mut cycle = phases[0].clone();
+                cycle.revolutions.iter_mut().for_each(|angle| *angle *= cycles_per_revolution);
+                let are_enough = |phase: &ShaftPhase| phase.span_rev() >= FEWEST_REVOLUTIONS;
+                let mut averaged = if are_enough(&cycle) { vec![cycle] } else { phases.to_vec() };
+                averaged.retain(are_enough);
+                if averaged.is_empty() {
+                    return whole(self.signal.to_vec());
+                }
+                let residual = synchronous_residual(self.signal, &averaged)?;
+                Ok((residual.first_sample, residual.values))
+            }
+        }
+    }
+}
+
+/// The phase over a part of its recording.
+fn within(phase: &ShaftPhase, first_sample: usize, samples: usize) -> ShaftPhase {
+    let from = phase.first_sample.max(first_sample);
+    let end = (phase.first_sample + phase.revolutions.len()).min(first_sample + samples).max(from);
+    let revolutions = phase.revolutions[from - phase.first_sample..end - phase.first_sample].to_vec();
+    ShaftPhase { first_sample: from - first_sample, revolutions, zero: phase.zero, warnings: Vec::new() }
+}
