@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::DiagnoseError;
+use crate::answer::wheel_in_words;
 use crate::features::wheel_features;
 use crate::healthy::beyond_healthy;
 use crate::matrix::{FOLDS, RandomFeatures, Standardisation, ridge};
@@ -152,7 +153,7 @@ impl Layout {
         {
             let needed = FEWEST_MESH_ORDERS * wheel.teeth as usize + wheel.teeth as usize / 2;
             if last < needed {
-                let (of, wheel) = (first.signal.name(), wheel.name.clone());
+                let (of, wheel) = (first.signal.name(), wheel_in_words(&wheel.name));
                 return Err(DiagnoseError::TooFewOrders { of, wheel, last, needed });
             }
         }

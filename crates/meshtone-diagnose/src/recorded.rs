@@ -3,12 +3,13 @@
 use meshtone::signal::{
     AngleZero, AngularSettings, AngularSignal, ForeignTones, GearTrain, LinesOffShafts, Mismatch, ShaftPhase,
     SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage, TrainRecording, TrainTurning,
-    TrainWheel, find_mismatch, foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation,
+    TrainWheel, find_train_mismatch, foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation,
     synchronous_average, synchronous_part,
 };
 use meshtone::wheel::WheelName;
 use meshtone_fourier::{Complex64, from_real_spectrum};
 
+use crate::answer::wheel_in_words;
 use crate::observation::{
     MESH_ORDERS, Observation, PASSED, SignalKind, WheelLines, other_teeth, separations,
 };
@@ -157,14 +158,11 @@ fn mismatch(recording: &TrainRecording, angular: &[AngularSignal]) -> Result<Opt
     let TrainRecording { train, signal, sampling_rate_hz, turning } = *recording;
     let TrainTurning::Shaft { shaft, phase, stated } = turning else { return Ok(None) };
     let wheel = train.wheels.iter().position(|wheel| wheel.shaft == *shaft);
-    let Some((wheel, stated)) = wheel.zip(StatedFacts::of_shaft(train, *shaft, *stated)) else {
+    let Some((wheel, facts)) = wheel.zip(StatedFacts::of_shaft(train, *shaft, *stated)) else {
         return Ok(None);
     };
-    let is_pair = train.meshes.len() < 2;
-    // Lines of another mesh would look like another tooth count.
-    let found = find_mismatch(&angular[wheel], &stated).filter(|of| is_pair || of.alternative.is_speed());
-    match found {
-        None if is_pair => other_tone(signal, sampling_rate_hz, phase, &stated),
+    match find_train_mismatch(&angular[wheel], train, *shaft, *stated) {
+        None if train.meshes.len() < 2 => other_tone(signal, sampling_rate_hz, phase, &facts),
         found => Ok(found),
     }
 }
@@ -182,7 +180,7 @@ impl SlowestShaft<'_> {
     /// Warning about averages over so few revolutions that each wheel's is not free of the others', or that noise is not separated from
     /// what repeats.
     fn too_short(&self) -> Option<String> {
-        let (revolutions, name) = (self.angular.revolutions(), &self.wheel.name);
+        let (revolutions, name) = (self.angular.revolutions(), wheel_in_words(&self.wheel.name));
         let lasts = |revolutions: usize| {
             format!("{revolutions} turns of the {name}, {:.2} s", revolutions as f64 / self.speed_hz)
         };
@@ -217,7 +215,7 @@ impl SlowestShaft<'_> {
                 "{silent} of {} revolutions of the {} have less than 1/{:.0} of the level of the loudest: a sensor that failed, or knocks; \
                  cut the recording to where the machine runs evenly",
                 levels.len(),
-                self.wheel.name,
+                wheel_in_words(&self.wheel.name),
                 1.0 / QUIETEST
             )
         })
