@@ -196,8 +196,10 @@ fn matrix(prior: &Prior, reference: &ReferenceSet, only: &str) -> Result<String,
                 counts[0] += 1;
                 let (now, healthy) = ([now], [healthy]);
                 let question = Question { now: &now, healthy: if with_healthy { &healthy } else { &[] } };
-                if now[0].mismatch.is_some() || question.check(prior).is_err() {
+                let refused = question.check(prior).err().map(|error| error.to_string());
+                if let Some(reason) = now[0].mismatch.clone().or(refused) {
                     counts[1] += 1;
+                    eprintln!("{kind} {number}: {reason}");
                     continue;
                 }
                 let learned = Learned::new(reference, &question)?;
@@ -210,6 +212,12 @@ fn matrix(prior: &Prior, reference: &ReferenceSet, only: &str) -> Result<String,
                     answer.damaged() > SURE
                 };
                 counts[3] += u64::from(!answer.is_outside() && is_wrong);
+                eprintln!(
+                    "{kind} {number}: p {:.3}, of the healthy one {:.3}; damaged {:.3}, in truth {severity:.2}",
+                    answer.outside_model,
+                    answer.healthy_outside_model.unwrap_or(f64::NAN),
+                    answer.damaged()
+                );
             }
             let [asked, before, outside, wrong] = counts;
             writeln!(table, "{kind},{level_g},{with_healthy},{asked},{before},{outside},{wrong}")?;

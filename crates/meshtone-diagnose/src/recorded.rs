@@ -221,20 +221,40 @@ impl SlowestShaft<'_> {
         })
     }
 
+    /// The recording over whole cycles, after which the same teeth meet again, without the mean cycle, and the part of the energy of what does not
+    /// repeat that is left then. Where it is shorter than two cycles it is as it was, since nothing is known to repeat.
+    fn without_cycle(&self) -> (AngularSignal, f64) {
+        let mut angular = self.angular.clone();
+        let revolutions = angular.revolutions();
+        let cycle = self.train.revolutions_of_a_cycle(self.wheel.shaft).clamp(1, revolutions);
+        let cycles = revolutions / cycle;
+        angular.values.truncate(cycles * cycle * angular.points_per_revolution);
+        if cycles < 2 {
+            return (angular, 1.0);
+        }
+        let points = cycle * angular.points_per_revolution;
+        for point in 0..points {
+            let mean = angular.values[point..].iter().step_by(points).sum::<f64>() / cycles as f64;
+            angular.values[point..].iter_mut().step_by(points).for_each(|value| *value -= mean);
+        }
+        (angular, 1.0 - 1.0 / cycles as f64)
+    }
+
     /// Evidence against the recording where the orders of the shafts do not explain it: impulses, or tones, that repeat with none.
     ///
-    /// The lines of all shafts are left out of the spectrum of the whole recording. Of the others, those that stand out of their surroundings are
-    /// tones; and what they make over time is impulsive where something strikes. Impulses are looked for first, since their lines may stand out
-    /// like tones.
+    /// What repeats whenever the same teeth meet again is taken away, and the lines of all shafts are left out of the spectrum of the rest. Of the
+    /// others, those that stand out of their surroundings are tones; and what they make over time is impulsive where something strikes. Impulses are
+    /// looked for first, since their lines may stand out like tones.
     fn energy_off_all_shafts(&self) -> Option<String> {
         let Self { angular, train, wheel, speed_hz } = self;
         if angular.revolutions() < FEWEST_REVOLUTIONS {
             return None;
         }
-        let whole = angular.revolutions() * angular.points_per_revolution;
-        let mut lines = lines_off_shafts(angular, train, wheel.shaft);
+        let (unrepeated, kept) = self.without_cycle();
+        let whole = unrepeated.values.len();
+        let mut lines = lines_off_shafts(&unrepeated, train, wheel.shaft);
         let tones = foreign_tones(angular, train, wheel.shaft, *speed_hz);
-        let passed = (PASSED * angular.nyquist_order) as usize * angular.revolutions();
+        let passed = (PASSED * angular.nyquist_order) as usize * unrepeated.revolutions();
         for (line, value) in lines.spectrum.iter_mut().enumerate() {
             if !lines.is_off[line] || line >= passed {
                 *value = Complex64::default();
@@ -244,7 +264,7 @@ impl SlowestShaft<'_> {
         let rest = from_real_spectrum(lines.spectrum, whole);
         let rest = &rest[whole / 4..3 * whole / 4];
         let level = standard_deviation(&angular.values).max(f64::MIN_POSITIVE);
-        let part = (rms(rest) / level).powi(2) / MIDDLE_SQUARE;
+        let part = (rms(rest) / level).powi(2) / MIDDLE_SQUARE / kept;
         let impulses = kurtosis(rest)?;
         if impulses > IMPULSIVE && part > COUNTS {
             return Some(format!(
