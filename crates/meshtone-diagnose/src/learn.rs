@@ -24,7 +24,7 @@ use crate::softmax::Softmax;
 /// Random features beside the linear ones.
 const RANDOM_FEATURES: usize = 512;
 /// (-) Penalty of the regression on classes, by which the linear features were best on other simulations.
-const PENALTY: f64 = 30.0;
+const PENALTY: f64 = 100.0;
 /// (-) Probability before anything is seen that nothing is damaged; the kinds of damage share the rest evenly.
 const PRIOR_HEALTHY: f64 = 0.5;
 /// (-) Noise in an average of unknown noise, as a part of its difference signal's rms: least and largest.
