@@ -5,8 +5,8 @@ use meshtone_fourier::Complex64;
 use crate::observation::{WheelLines, revolution};
 
 /// (lines) How far around each line its neighbours count for the gain from then to now: the gain of a path changes over orders where the speed
-/// differs, while damage has another phase at each line than the deviations, so that one line in twelve of it is lost.
-const GAIN_LINES: usize = 8;
+/// differs, while damage has another phase at each line than the deviations, so that a sixth of it is lost.
+const GAIN_LINES: usize = 3;
 /// (-) Largest gain: where there was nothing before, nothing is taken away.
 const MOST_GAIN: f64 = 3.0;
 

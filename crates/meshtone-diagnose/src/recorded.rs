@@ -30,22 +30,44 @@ const WINDOW_SQUARE: f64 = 0.375;
 /// (-) The same over its middle half: 3/8 + 1/π.
 const MIDDLE_SQUARE: f64 = 0.375 + std::f64::consts::FRAC_1_PI;
 
+/// The recording over whole cycles, after which the same teeth meet again, without the mean cycle, and the part of the energy of what does not
+/// repeat that is left then. Where it is shorter than two cycles it is as it was, since nothing is known to repeat.
+fn without_cycle(angular: &AngularSignal, train: &GearTrain, shaft: usize) -> (AngularSignal, f64) {
+    let mut angular = angular.clone();
+    let cycle = train.revolutions_of_a_cycle(shaft).max(1);
+    let cycles = angular.revolutions() / cycle;
+    if cycles < 2 {
+        return (angular, 1.0);
+    }
+    let points = cycle * angular.points_per_revolution;
+    angular.values.truncate(cycles * points);
+    for point in 0..points {
+        let mean = angular.values[point..].iter().step_by(points).sum::<f64>() / cycles as f64;
+        angular.values[point..].iter_mut().step_by(points).for_each(|value| *value -= mean);
+    }
+    (angular, 1.0 - 1.0 / cycles as f64)
+}
+
 /// (g) Standard deviation of the noise in the lines of an average, by mesh order: from the median of the lines beside the orders of
-/// all shafts, which tones do not move. Empty where there are too few revolutions.
+/// all shafts, which tones do not move, without what repeats with the cycle. Empty where there are too few revolutions.
 fn noise(angular: &AngularSignal, train: &GearTrain, wheel: &TrainWheel) -> Vec<f64> {
-    let revolutions = angular.revolutions();
-    if revolutions < FEWEST_REVOLUTIONS {
+    if angular.revolutions() < FEWEST_REVOLUTIONS {
         return Vec::new();
     }
-    let LinesOffShafts { spectrum, is_off } = lines_off_shafts(angular, train, wheel.shaft);
+    let (unrepeated, kept) = without_cycle(angular, train, wheel.shaft);
+    let revolutions = unrepeated.revolutions();
+    let LinesOffShafts { spectrum, is_off } = lines_off_shafts(&unrepeated, train, wheel.shaft);
     let per_mesh_order = wheel.teeth as usize * revolutions;
-    let count = (revolutions * angular.points_per_revolution) as f64;
     let last = (PASSED * angular.nyquist_order) as usize * revolutions;
+    // A line's square grows with the number of values, that of a line of the average falls with the number of all.
+    let [values, all] =
+        [revolutions, angular.revolutions()].map(|turns| (turns * angular.points_per_revolution) as f64);
+    let scale = (MEDIAN_OF_SQUARES * WINDOW_SQUARE * kept * values * all).sqrt();
     let band = |mesh: usize| {
         let from = (mesh * per_mesh_order).saturating_sub(per_mesh_order / 2);
         let to = (mesh * per_mesh_order + per_mesh_order / 2).min(last).min(spectrum.len());
         let squares = (from..to).filter(|&line| is_off[line]).map(|line| spectrum[line].norm_sqr());
-        Some((median(squares.collect())? / MEDIAN_OF_SQUARES / WINDOW_SQUARE).sqrt() / count)
+        Some(median(squares.collect())?.sqrt() / scale)
     };
     (0..=MESH_ORDERS).map_while(band).collect()
 }
@@ -221,25 +243,6 @@ impl SlowestShaft<'_> {
         })
     }
 
-    /// The recording over whole cycles, after which the same teeth meet again, without the mean cycle, and the part of the energy of what does not
-    /// repeat that is left then. Where it is shorter than two cycles it is as it was, since nothing is known to repeat.
-    fn without_cycle(&self) -> (AngularSignal, f64) {
-        let mut angular = self.angular.clone();
-        let revolutions = angular.revolutions();
-        let cycle = self.train.revolutions_of_a_cycle(self.wheel.shaft).clamp(1, revolutions);
-        let cycles = revolutions / cycle;
-        angular.values.truncate(cycles * cycle * angular.points_per_revolution);
-        if cycles < 2 {
-            return (angular, 1.0);
-        }
-        let points = cycle * angular.points_per_revolution;
-        for point in 0..points {
-            let mean = angular.values[point..].iter().step_by(points).sum::<f64>() / cycles as f64;
-            angular.values[point..].iter_mut().step_by(points).for_each(|value| *value -= mean);
-        }
-        (angular, 1.0 - 1.0 / cycles as f64)
-    }
-
     /// Evidence against the recording where the orders of the shafts do not explain it: impulses, or tones, that repeat with none.
     ///
     /// What repeats whenever the same teeth meet again is taken away, and the lines of all shafts are left out of the spectrum of the rest. Of the
@@ -250,10 +253,13 @@ impl SlowestShaft<'_> {
         if angular.revolutions() < FEWEST_REVOLUTIONS {
             return None;
         }
-        let (unrepeated, kept) = self.without_cycle();
+        let (unrepeated, kept) = without_cycle(angular, train, wheel.shaft);
         let whole = unrepeated.values.len();
         let mut lines = lines_off_shafts(&unrepeated, train, wheel.shaft);
-        let tones = foreign_tones(angular, train, wheel.shaft, *speed_hz);
+        let level = standard_deviation(&angular.values).max(f64::MIN_POSITIVE);
+        let unrepeated_part = (standard_deviation(&unrepeated.values) / level).powi(2) / kept;
+        let mut tones = foreign_tones(&unrepeated, train, wheel.shaft, *speed_hz).unwrap_or_default();
+        tones.iter_mut().for_each(|tone| tone.part *= unrepeated_part);
         let passed = (PASSED * angular.nyquist_order) as usize * unrepeated.revolutions();
         for (line, value) in lines.spectrum.iter_mut().enumerate() {
             if !lines.is_off[line] || line >= passed {
@@ -263,7 +269,6 @@ impl SlowestShaft<'_> {
         // The middle half, where the window is level enough to leave the shape.
         let rest = from_real_spectrum(lines.spectrum, whole);
         let rest = &rest[whole / 4..3 * whole / 4];
-        let level = standard_deviation(&angular.values).max(f64::MIN_POSITIVE);
         let part = (rms(rest) / level).powi(2) / MIDDLE_SQUARE / kept;
         let impulses = kurtosis(rest)?;
         if impulses > IMPULSIVE && part > COUNTS {
@@ -273,7 +278,7 @@ impl SlowestShaft<'_> {
                 100.0 * part
             ));
         }
-        tones.as_deref().and_then(ForeignTones::that_count).map(|tones| tones.to_string())
+        ForeignTones::that_count(&tones).map(|tones| tones.to_string())
     }
 }
 
