@@ -81,7 +81,7 @@ class MissingTooth:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
@@ -112,7 +112,7 @@ class ToothBreakage:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
@@ -145,7 +145,7 @@ class RootCrack:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
@@ -185,7 +185,7 @@ class PartialFace:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
@@ -224,7 +224,7 @@ class ThroughFace:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
@@ -248,8 +248,8 @@ class Pits:
         (-) The centre of each pit, a fraction of the flank's contact part from its root. Allowed: 0…1. Required, unless
         ``random`` or ``severity`` is given.
     z_mm : sequence of floats, optional
-        (mm) The centre of each along the face, from the face's middle; one number a pit, as of all keys here. Allowed:
-        within half the face width and the radius. Required, unless ``random`` or ``severity`` is given.
+        (mm) The centre of each along the face, from the face's middle; one number per pit, as for all keys here.
+        Allowed: within half the face width and the radius. Required, unless ``random`` or ``severity`` is given.
     radius_mm : sequence of floats, optional
         (mm) The radius of each along the flank. Allowed: > 0. Required, unless ``random`` or ``severity`` is given.
     face_radius_mm : sequence of floats, optional
@@ -265,7 +265,7 @@ class Pits:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
@@ -291,7 +291,7 @@ class ToothDestruction:
         (-) Where the ground line begins, a fraction of the flank's contact part from its root; negative: below it.
         Allowed: > −1, < 1. Required, unless ``severity`` is given.
     end : float, optional
-        (-) The flank point that the line is aimed at, likewise. Allowed: more than ``start``, ≤ 1. Required, unless
+        (-) The flank point to which the line leads, likewise. Allowed: more than ``start``, ≤ 1. Required, unless
         ``slope_deg`` or ``severity`` is given.
     slope_deg : float, optional
         (°) The angle to the tooth's centre line by which the line falls towards the tip, instead of end. Allowed: > 0,
@@ -307,7 +307,7 @@ class ToothDestruction:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
@@ -337,7 +337,7 @@ class Wear:
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: "all".
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 

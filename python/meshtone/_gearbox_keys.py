@@ -31,7 +31,8 @@ class GearboxShaft(TypedDict, total=False):
     bore_radius_mm : float
         (mm) The radius of the shaft's own bore. Allowed: ≥ 0; less than its radius.
     position_mm : sequence of 2 floats
-        (mm) X and y of its axis. Allowed: as far from that of each mate as the mesh's centre distance, within 0.01 mm.
+        (mm) X and y of its axis. Allowed: at the mesh's centre distance from the axis of each mating shaft, within 0.01
+        mm.
     elements : int
         The number of its beam elements. Allowed: whole number 2…60.
     couples_to : {'nothing', 'motor', 'brake'}
@@ -64,24 +65,25 @@ class GearboxWheel(TypedDict, total=False):
     shaft : str
         The name of its shaft.
     at : float
-        (-) Where along the shaft, as a part of its length from z = 0. Allowed: 0…1; within half a face width of its
-        mates.
+        (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1; within half a face width
+        of its mating wheels.
     teeth : int
-        The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is
-        left out, with a warning.
+        The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is not
+        simulated, with a warning.
     face_width_mm : float
         (mm) The face width; a mesh has the narrower one. Allowed: > 0, ≤ 10000; on its shaft, clear of other wheels.
     profile_shift : float
         (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip.
     addendum : float
         (-) The addendum coefficient of the basic rack, in modules. Allowed: 0.3…2; tips not pointed, clear of the
-        mate's fillets.
+        mating gear's fillets.
     dedendum : float
-        (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mate's tips.
+        (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mating gear's
+        tips.
     tip_chamfer_mm : float
         (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; the same of both wheels of a mesh.
     active_profile_shortening : float
-        (-) By how much the path of contact is shorter than that between the chamfers, in base pitches, half at either
+        (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
         end. Allowed: 0…0.5; the same of both wheels of a mesh.
     uniform_flank_reduction_mm : float
         (mm) A constant reduction of the working flank. Allowed: ≥ 0; the same of both wheels of a mesh.
@@ -92,7 +94,7 @@ class GearboxWheel(TypedDict, total=False):
     inertia : WheelInertia
         Its mass and inertias, any of the three.
     din_grade : int
-        The grade of DIN 3962 of its deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
+        The grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
     iso_class : int
         The class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none. Allowed: whole number 0…11; not beside din_grade.
     tooth_share : float
@@ -142,6 +144,21 @@ class GearboxWheel(TypedDict, total=False):
     helix_slope_um: float
 
 
+class EndRelief(TypedDict, total=False):
+    """The table ``end_relief`` of an entry ``[[mesh]]`` of a gearbox.
+
+    Attributes
+    ----------
+    length_mm : float
+        (mm) The length from each end of the face. Allowed: > 0; at most half the face width.
+    amount_um : float
+        (µm) How much farther apart the flanks of both wheels are at the ends of the face. Allowed: ≥ 0, ≤ 1000.
+    """
+
+    length_mm: float
+    amount_um: float
+
+
 class GearboxMesh(TypedDict, total=False):
     """An entry ``[[mesh]]`` of a gearbox.
 
@@ -150,24 +167,42 @@ class GearboxMesh(TypedDict, total=False):
     wheels : sequence of two strs
         The names of the driving and of the driven wheel.
     module_mm : float
-        (mm) The module of both wheels. Allowed: > 0, ≤ 100.
+        (mm) The module of both wheels, of helical ones in the normal section. Allowed: > 0, ≤ 100.
     pressure_angle_deg : float
-        (°) The pressure angle at the pitch circle. Allowed: 10…35; no teeth pointed below full height.
+        (°) The pressure angle at the pitch circle, of helical wheels in the normal section. Allowed: 10…35; no teeth
+        pointed below full height.
+    helix_angle_deg : float
+        (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45.
+    hand : {'right', 'left'}
+        The hand of the driving wheel's helix; the driven one's is the other one.
+    lead_crowning_um : float
+        (µm) The lead crowning of both wheels together: how much farther apart the flanks are at the ends of the face
+        than at its middle. Allowed: ≥ 0, ≤ 1000.
+    end_relief : EndRelief
+        The relief of the flanks towards both ends of the face, as a gap in µm.
+    slices : int
+        The number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it. Allowed:
+        whole number 1…41.
     centre_distance_mm : float
         (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1.
     backlash_mm : float
-        (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
-        distance opens.
+        (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least that of a given centre
+        distance.
     phase : float
         (base pitches) Where on its path of contact the first pair of teeth is at the start.
     damping_ratio : float
-        (-) The damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh stiffness.
-        Allowed: ≥ 0, < 1.
+        (-) The damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh
+        stiffness. Allowed: ≥ 0, < 1.
     """
 
     wheels: Sequence[str]
     module_mm: float
     pressure_angle_deg: float
+    helix_angle_deg: float
+    hand: Literal["right", "left"]
+    lead_crowning_um: float
+    end_relief: EndRelief
+    slices: int
     centre_distance_mm: float
     backlash_mm: float
     phase: float
@@ -186,7 +221,7 @@ class Seat(TypedDict, total=False):
     stiffness_n_per_m : float
         (N/m) Its stiffness to the housing or to the ground, in every direction. Allowed: > 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
-        (N m/rad) Its stiffness against every rotation. Allowed: > 0, ≤ 1e15.
+        (N m/rad) Its rotational stiffness about every axis. Allowed: > 0, ≤ 1e15.
     """
 
     mass_kg: float
@@ -203,17 +238,17 @@ class GearboxBearing(TypedDict, total=False):
     shaft : str
         The name of its shaft.
     at : float
-        (-) Where along the shaft, as a part of its length from z = 0. Allowed: 0…1.
+        (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1.
     kind : {'linear'}
-        What it is.
+        The kind of bearing.
     stiffness_n_per_m : float
-        (N/m) The stiffness across the shaft. Allowed: > 0, ≤ 1e15.
+        (N/m) The radial stiffness. Allowed: > 0, ≤ 1e15.
     axial_stiffness_n_per_m : float
-        (N/m) The stiffness along the shaft; 0 where the shaft may slide. Allowed: ≥ 0, ≤ 1e15.
+        (N/m) The axial stiffness; 0 where the shaft may slide. Allowed: ≥ 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
-        (N m/rad) The stiffness against tilting of the shaft in it. Allowed: ≥ 0, ≤ 1e15.
+        (N m/rad) The tilting stiffness of the shaft in the bearing. Allowed: ≥ 0, ≤ 1e15.
     seat : Seat
-        What it sits in, on the housing or on the ground.
+        The bearing's seat, on the housing or on the ground.
     damping_ratio : float
         (-) The damping ratio of the bearing and its seat. Allowed: ≥ 0, < 1.
     """
@@ -253,7 +288,7 @@ class GearboxHousing(TypedDict, total=False):
     inertia_kgm2 : float
         (kg m²) Its moment of inertia about every axis. Allowed: > 0, ≤ 1e9.
     feet : sequence of Foot
-        What it stands on, foot by foot.
+        The feet on which it stands, one by one.
     damping_ratio : float
         (-) The damping ratio of the feet. Allowed: ≥ 0, < 1.
     """
@@ -270,7 +305,7 @@ class Ripple(TypedDict, total=False):
     Attributes
     ----------
     order : float
-        (-) How often it comes in a revolution of the brake's shaft. Allowed: > 0, ≤ 10000.
+        (-) The number of its periods per revolution of the brake's shaft. Allowed: > 0, ≤ 10000.
     amplitude : float
         (-) Its amplitude as a part of the torque. Allowed: ≥ 0, < 1.
     phase_deg : float
@@ -342,16 +377,16 @@ class GearboxSensor(TypedDict, total=False):
     noise_seed : int
         The seed of the noise alone. Allowed: whole number.
     range_g : float
-        (g) The largest acceleration, of either sign, that it shows. Allowed: > 0, ≤ 1e9.
+        (g) The largest acceleration, of either sign, that it measures. Allowed: > 0, ≤ 1e9.
     bits : int
         The resolution: the range from minus to plus has 2^bits steps. Allowed: whole number 8…32; with range_g.
     path : SensorPath
-        The wall and the modes of a housing between its place and it; rigid under linear and published. Ignored by
-        linear, published.
+        The wall and the modes of a housing between its place and the sensor; rigid under linear and published. Ignored
+        by linear, published.
     frequency_response : dict of frequency_hz, magnitude and phase_deg
         (Hz, -, °) The measured path to the sensor: magnitude and phase over frequency, straight between the points, the
-        phase unwrapped; outside them nothing passes. Or { file = "….csv" } with the columns frequency_hz, magnitude,
-        phase_deg. Allowed: at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0.
+        phase unwrapped; zero outside them. Or { file = "….csv" } with the columns frequency_hz, magnitude, phase_deg.
+        Allowed: at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0.
     """
 
     at: str
@@ -376,19 +411,19 @@ class GearboxSolver(TypedDict, total=False):
         (S/s) The nominal sampling rate; the actual one is the next with a whole number of samples per revolution of the
         input. Allowed: > 0.
     duration_s : float
-        (s) How long the kept signal is; settling comes before it. Allowed: > 0; not beside input_revolutions.
+        (s) The length of the kept signal; settling comes before it. Allowed: > 0; not beside input_revolutions.
     input_revolutions : float
-        (rev) How many revolutions of the input are kept; settling comes before them. Allowed: > 0; not beside
+        (rev) The number of kept revolutions of the input; settling comes before them. Allowed: > 0; not beside
         duration_s, not with a speed profile.
     settle_fraction : float
         (-) The part of the simulated time that is discarded from the start, while the vibration settles. Allowed: ≥ 0,
         < 1.
     settle_tolerance : float
-        (-) What must be left of the slowest mode's transient where the kept signal starts: a steady simulation starts
-        in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as always under
-        published. Allowed: ≥ 0, < 1.
+        (-) The fraction of the slowest mode's transient that may remain where the kept signal starts: a steady
+        simulation starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it,
+        as always under published. Allowed: ≥ 0, < 1.
     highest_mode_hz : float
-        (Hz) The natural frequency up to which modes are stepped; those above deform as at rest. Allowed: > 0, ≤ 1e9.
+        (Hz) The natural frequency up to which modes are integrated; those above deform statically. Allowed: > 0, ≤ 1e9.
     """
 
     sampling_rate_hz: float

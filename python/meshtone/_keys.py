@@ -18,6 +18,21 @@ Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]
 """``time_s`` and ``value``: speed or torque against time."""
 
 
+class EndRelief(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    length_mm : float
+        (mm) The length from each end of the face. Allowed: > 0; at most half the face width.
+    amount_um : float
+        (µm) How much farther apart the flanks of both wheels are at the ends of the face. Allowed: ≥ 0, ≤ 1000.
+    """
+
+    length_mm: float
+    amount_um: float
+
+
 class FlankRelief(TypedDict, total=False):
     """A table of a scenario.
 
@@ -28,7 +43,7 @@ class FlankRelief(TypedDict, total=False):
     length_mm : float
         (mm) The length from the tip along the tooth's centre line. Allowed: > 0; less than 2 modules.
     amount_um : float
-        (µm) How far the flank lies back at the tip, along its normal; usually 10 to 40. Allowed: ≥ 0, ≤ 1000.
+        (µm) The depth of the relief at the tip, along the flank's normal; usually 10 to 40. Allowed: ≥ 0, ≤ 1000.
     """
 
     shape: Literal["parabolic", "linear"]
@@ -69,7 +84,7 @@ class Shaft(TypedDict, total=False):
     bearing_span_mm : float
         (mm) The distance between the shaft's two bearings. Allowed: > 0, ≤ 100000.
     wheel_at : float
-        (-) Where between them the wheel sits. Allowed: > 0, < 1.
+        (-) The position of the wheel between them. Allowed: > 0, < 1.
     bearing_stiffness_n_per_m : float
         (N/m) The stiffness of both bearings together. Allowed: > 0, ≤ 1e15.
     damping_ratio : float
@@ -110,7 +125,7 @@ class Support(TypedDict, total=False):
     mass_kg : float
         (kg) The mass of each support; 1.6 by default where a stiffness is given. Allowed: > 0, ≤ 1e9.
     base_hz : float
-        (Hz) The natural frequency of the bare supports, moving alike. Allowed: > 0, ≤ 1000000.
+        (Hz) The natural frequency of the bare supports, moving in phase. Allowed: > 0, ≤ 1000000.
     differential_hz : float
         (Hz) The natural frequency of the bare supports, moving against each other. Allowed: > 0, ≤ 1000000; more than
         base_hz.
@@ -119,7 +134,7 @@ class Support(TypedDict, total=False):
     coupling_n_per_m : float
         (N/m) Instead of the frequencies, the stiffness between the two supports. Allowed: ≥ 0, ≤ 1e15.
     damping_ratio : float
-        (-) The damping ratio of the supports and of what holds them. Allowed: ≥ 0, < 1.
+        (-) The damping ratio of the supports on their stiffnesses. Allowed: ≥ 0, < 1.
     """
 
     mass_kg: float
@@ -140,6 +155,11 @@ SECTION_OF_KEY: dict[str, str] = {
     "model": "",
     "seed": "",
     "pressure_angle_deg": "gears",
+    "helix_angle_deg": "gears",
+    "hand": "gears",
+    "lead_crowning_um": "gears",
+    "end_relief": "gears",
+    "slices": "gears",
     "pinion_profile_shift": "gears",
     "gear_profile_shift": "gears",
     "pinion_addendum": "gears",
@@ -225,6 +245,11 @@ class ScenarioChanges(TypedDict, total=False):
     model: Any
     seed: Any
     pressure_angle_deg: Any
+    helix_angle_deg: Any
+    hand: Any
+    lead_crowning_um: Any
+    end_relief: Any
+    slices: Any
     pinion_profile_shift: Any
     gear_profile_shift: Any
     pinion_addendum: Any
@@ -296,6 +321,11 @@ class ScenarioKeys:
     model: Literal["contact", "linear", "published"]
     seed: int
     pressure_angle_deg: float
+    helix_angle_deg: float
+    hand: Literal["right", "left"]
+    lead_crowning_um: float
+    end_relief: EndRelief
+    slices: int
     pinion_profile_shift: float
     gear_profile_shift: float
     pinion_addendum: float
@@ -365,6 +395,11 @@ class ScenarioKeys:
         model: Literal["contact", "linear", "published"] | None = None,
         seed: int | None = None,
         pressure_angle_deg: float | None = None,
+        helix_angle_deg: float | None = None,
+        hand: Literal["right", "left"] | None = None,
+        lead_crowning_um: float | None = None,
+        end_relief: EndRelief | None = None,
+        slices: int | None = None,
         pinion_profile_shift: float | None = None,
         gear_profile_shift: float | None = None,
         pinion_addendum: float | None = None,
@@ -427,10 +462,10 @@ class ScenarioKeys:
         Parameters
         ----------
         module_mm : float
-            (mm) The module of both wheels. Allowed: > 0, ≤ 100.
+            (mm) The module of both wheels, of helical ones in the normal section. Allowed: > 0, ≤ 100.
         pinion_teeth, gear_teeth : int
             The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is
-            left out, with a warning.
+            not simulated, with a warning.
         face_width_mm : float
             (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
         pinion_speed_hz : float
@@ -445,22 +480,35 @@ class ScenarioKeys:
         sensors : sequence of Sensor, optional
             Sensors on the rig, whose signals come first; none by default.
         model : {'contact', 'linear', 'published'}, optional
-            The model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its
-            known errors included. Default: "contact".
+            The model: teeth that touch and separate, a linear mesh that is always closed, or the published code with
+            its known errors. Default: "contact".
         seed : int, optional
             The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise.
             Allowed: whole number. Default: 1.
         pressure_angle_deg : float, optional
-            (°) The pressure angle at the pitch circle. Allowed: 10…35; no teeth pointed below full height. Default:
-            20.0.
+            (°) The pressure angle at the pitch circle, of helical wheels in the normal section. Allowed: 10…35; no
+            teeth pointed below full height. Default: 20.0.
+        helix_angle_deg : float, optional
+            (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45. Default: 0.0.
+        hand : {'right', 'left'}, optional
+            The hand of the pinion's helix; the gear's is the other one. Default: "right". Ignored by published.
+        lead_crowning_um : float, optional
+            (µm) The lead crowning of both wheels together: how much farther apart the flanks are at the ends of the
+            face than at its middle. Allowed: ≥ 0, ≤ 1000. Default: 0.0. Ignored by linear, published.
+        end_relief : EndRelief, optional
+            The relief of the flanks towards both ends of the face, as a gap in µm. Default: { length_mm = 1.0,
+            amount_um = 0.0 }. Ignored by linear, published.
+        slices : int, optional
+            The number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it.
+            Allowed: whole number 1…41. Default: 11. Ignored by published.
         pinion_profile_shift, gear_profile_shift : float, optional
             (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip. Default: 0.0.
         pinion_addendum, gear_addendum : float, optional
             (-) The addendum coefficient of the basic rack, in modules. Allowed: 0.3…2; tips not pointed, clear of the
-            mate's fillets. Default: 1.0.
+            mating gear's fillets. Default: 1.0.
         pinion_dedendum, gear_dedendum : float, optional
-            (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mate's
-            tips. Default: 1.25.
+            (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mating
+            gear's tips. Default: 1.25.
         centre_distance_mm : float, optional
             (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1. Default:
             that without backlash.
@@ -473,12 +521,12 @@ class ScenarioKeys:
             (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module. Default: 0.23
             modules. Ignored by published.
         active_profile_shortening : float, optional
-            (-) By how much the path of contact is shorter than that between the chamfers, in base pitches, half at
-            either end. Allowed: 0…0.5. Default: 0.1. Ignored by linear, published.
+            (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
+            end. Allowed: 0…0.5. Default: 0.1. Ignored by linear, published.
         backlash_mm : float, optional
-            (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
-            distance opens. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens.
-            Ignored by linear, published.
+            (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least that of a given
+            centre distance. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, plus the backlash of a given
+            one. Ignored by linear, published.
         uniform_flank_reduction_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's
             thickness. Default: 0.0.
@@ -500,7 +548,7 @@ class ScenarioKeys:
         torque_profile_nm : dict of time_s and value, optional
             (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
         din_grade : int, optional
-            The grade of DIN 3962 of the profile errors, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
+            The grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
             Default: 0.
         wheels_seed : int, optional
             The seed of the wheels alone, for several scenarios of the same wheels. Allowed: whole number. Default: the
@@ -524,11 +572,11 @@ class ScenarioKeys:
             the module. Default: none.
         pinion_cumulative_pitch_um, gear_cumulative_pitch_um : sequence of floats, optional
             (µm) The working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added;
-            given profile errors are added to. Allowed: one a tooth, each below the module. Default: drawn, or none
+            they are added to given profile errors. Allowed: one a tooth, each below the module. Default: drawn, or none
             beside given profile errors.
         pinion_run_out_um, gear_run_out_um : float, optional
             (µm) The run-out F_r, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000. Default: drawn, or
-            none beside given profile errors or pitches, which have it in them. Ignored by published.
+            none beside given profile errors or pitches, which contain it. Ignored by published.
         pinion_run_out_phase_rad, gear_run_out_phase_rad : float, optional
             (rad) Its phase φ; θ counts from where the wheel's first tooth enters contact. Default: drawn, or 0 beside
             given profile errors. Ignored by published.
@@ -539,20 +587,20 @@ class ScenarioKeys:
             (N/m) The stiffness of each wheel's bearings in x, y and z. Allowed: > 0, ≤ 1e15. Default: 1.9e8. Ignored by
             published.
         wheel_rotational_stiffness_nm_per_rad : float, optional
-            (N m/rad) The stiffness of each wheel against tilting, about x and about y. Allowed: > 0, ≤ 1e15. Default:
-            1e8. Ignored by contact. Taken by published alone: linear refuses it.
+            (N m/rad) The tilting stiffness of each wheel, about x and about y. Allowed: > 0, ≤ 1e15. Default: 1e8.
+            Ignored by contact. Accepted by published only; linear refuses it.
         brake_inertia_kgm2 : float, optional
             (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9. Default: 0.0045.
         damping_ratio : float or sequence of 13 floats, optional
             (-) The modal damping ratio: one for all modes, or 13 by rising frequency. Allowed: ≥ 0, < 1. Default: 0.05.
-            Ignored by contact. Several values are taken by published alone: linear refuses them.
+            Ignored by contact. Several values are accepted by published only; linear refuses them.
         eccentricity_mm : float, optional
             (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0. Ignored by
             published.
         misalignment_um : float, optional
-            (µm) How far the shafts, with the slope that the nominal load gives them, are from parallel in the plane of
-            action over the face width; positive where flanks come closer towards positive z. The tilt by an uneven load
-            is computed. Allowed: −1000…1000. Default: 0.0. Ignored by linear, published.
+            (µm) The misalignment of the shafts in the plane of action over the face width, including their slope under
+            the nominal load; positive where flanks come closer towards positive z. The tilt by an uneven load is
+            computed. Allowed: −1000…1000. Default: 0.0. Ignored by linear, published.
         pinion_shaft : Shaft, optional
             The shaft to motor (pinion) or brake (gear). Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm
             = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }.
@@ -562,32 +610,32 @@ class ScenarioKeys:
         pinion_inertia, gear_inertia : WheelInertia, optional
             The wheel's mass and inertias, any of the three. Default: those of a solid disc of pitch radius.
         support : Support, optional
-            What each shaft's bearings sit in. Default: { mass_kg = 2.3, base_hz = 450.0, differential_hz = 2900.0,
+            The supports of the shafts' bearings. Default: { mass_kg = 2.3, base_hz = 450.0, differential_hz = 2900.0,
             damping_ratio = 0.025 }. Ignored by linear, published.
         mesh_damping_ratio : float, optional
-            (-) The damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh
-            stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by published.
+            (-) The damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean
+            mesh stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by published.
         sampling_rate_hz : float, optional
             (S/s) The nominal sampling rate; the actual one is the next at which a whole number of samples passes from
             one pair of teeth to the next. Allowed: > 0. Default: 1e5.
         duration_s : float, optional
-            (s) How long the kept signal is; settling comes before it. Allowed: > 0; not beside pinion_revolutions.
+            (s) The length of the kept signal; settling comes before it. Allowed: > 0; not beside pinion_revolutions.
             Default: see pinion_revolutions.
         pinion_revolutions : float, optional
             (-) The same as a number of revolutions of the pinion; settling comes before them. Allowed: > 0; not beside
-            duration_s, not with a speed profile. Default: what settling leaves of 2 z_g revolutions, or of the time
-            that a speed profile spans.
+            duration_s, not with a speed profile. Default: 2 z_g revolutions, or the time of a speed profile, less
+            settling.
         settle_fraction : float, optional
             (-) The part of the simulated time that is discarded from the start, while the vibration settles. Allowed: ≥
             0, < 1. Default: 0.5.
         settle_tolerance : float, optional
-            (-) What must be left of the slowest mode's transient where the kept signal starts: a steady simulation
-            starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as
-            always under published. Allowed: ≥ 0, < 1. Default: 1e-6.
+            (-) The fraction of the slowest mode's transient that may remain where the kept signal starts: a steady
+            simulation starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of
+            it, as always under published. Allowed: ≥ 0, < 1. Default: 1e-6.
         initial_displacement : sequence of 13 floats, optional
             (m, rad) The displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and
             brake, z of gear and pinion, tilt φ of both, tilt ψ of both. Default: the loaded mesh's equilibrium; zeros
-            under published. Ignored by contact. Taken by published alone: linear refuses it.
+            under published. Ignored by contact. Accepted by published only; linear refuses it.
         initial_velocity : sequence of 13 floats, optional
             (m/s, rad/s) The velocity of the same at the start. Default: rigid rotation at the nominal speed.
 

@@ -23,7 +23,7 @@ class SensorPath(TypedDict, total=False):
     modes_per_khz : float
         (1/kHz) The housing modes in a kilohertz. Allowed: > 0, ≤ 1000.
     band_hz : sequence of 2 floats
-        (Hz) Where the housing has modes. Allowed: > 0, ≤ 10000000; the first less than the second.
+        (Hz) The frequency band of the housing's modes. Allowed: > 0, ≤ 10000000; the first less than the second.
     damping_ratio : float
         (-) The damping ratio of the housing's modes. Allowed: > 0, ≤ 1.
     seed : int
@@ -62,21 +62,21 @@ class Sensor:
     noise_seed : int, optional
         The seed of the noise alone. Allowed: whole number. Default: the scenario's ``seed``.
     range_g : float, optional
-        (g) The largest acceleration, of either sign, that it shows. Allowed: > 0, ≤ 1e9. Default: none.
+        (g) The largest acceleration, of either sign, that it measures. Allowed: > 0, ≤ 1e9. Default: none.
     bits : int, optional
         The resolution: the range from minus to plus has 2^bits steps. Allowed: whole number 8…32; with range_g.
         Default: none.
     path : SensorPath, optional
-        The wall and the modes of a housing between its place and it; rigid under linear and published. Default: {
-        plate_hz = 4000.0, strength = 0.0, modes_per_khz = 1.43, band_hz = [3500.0, 14000.0], damping_ratio = 0.015,
+        The wall and the modes of a housing between its place and the sensor; rigid under linear and published. Default:
+        { plate_hz = 4000.0, strength = 0.0, modes_per_khz = 1.43, band_hz = [3500.0, 14000.0], damping_ratio = 0.015,
         seed = 1 }. Ignored by linear, published.
     frequency_response : dict of frequency_hz, magnitude and phase_deg, optional
         (Hz, -, °) The measured path to the sensor: magnitude and phase over frequency, straight between the points, the
-        phase unwrapped; outside them nothing passes. Or { file = "….csv" } with the columns frequency_hz, magnitude,
-        phase_deg. Allowed: at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0. Default: none.
+        phase unwrapped; zero outside them. Or { file = "….csv" } with the columns frequency_hz, magnitude, phase_deg.
+        Allowed: at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0. Default: none.
     response_input : {'acceleration', 'force'}, optional
-        What goes through the frequency response: the place's acceleration, magnitudes without unit; or, whatever ``at``
-        and ``direction`` say, the force along the line of action, magnitudes in (m/s²)/N. Default: "acceleration".
+        The input of the frequency response: the place's acceleration, magnitudes without unit; or, regardless of ``at``
+        and ``direction``, the force along the line of action, magnitudes in (m/s²)/N. Default: "acceleration".
 
     Notes
     -----

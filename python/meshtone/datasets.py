@@ -169,7 +169,7 @@ def _part(part: tuple[int, int]) -> tuple[int, int]:
 def merge_datasets(
     parts: Sequence[str | PathLike[str]], path: str | PathLike[str], *, verify: bool = False
 ) -> Dataset:
-    """Put the parts of a data set together that were made apart.
+    """Merge the parts of a data set that were made separately.
 
     What is copied is compared with the SHA-256 that was taken while it was made.
 

@@ -329,12 +329,12 @@ def _checked(gearbox: Gearbox, name: str) -> _core.Gearbox:
     return gearbox._native
 
 
-def gearbox_template(rig: Literal["phm2009-spur", "uconn", "tecnalia"] | None = None) -> str:
+def gearbox_template(rig: Literal["phm2009-spur", "phm2009-helical", "uconn", "tecnalia"] | None = None) -> str:
     """A commented gearbox to start from, as a scenario file.
 
     Parameters
     ----------
-    rig : {'phm2009-spur', 'uconn', 'tecnalia'}, optional
+    rig : {'phm2009-spur', 'phm2009-helical', 'uconn', 'tecnalia'}, optional
         A rig of which what is published stands in the file, with what has to be assumed marked so; an example by default.
     """
     return _core.gearbox_template(rig)

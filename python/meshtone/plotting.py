@@ -201,7 +201,9 @@ def _tint(ax: Axes, simulation: Simulation, wheels: Sequence[str], pitches: tupl
     teeth_of = {"pinion": scenario.pinion_teeth, "gear": scenario.gear_teeth}
     damaged = {wheel: _damaged_teeth(simulation, wheel) for wheel in wheels}
     is_damaged = lambda pair: any(pair % teeth_of[wheel] + 1 in damaged[wheel] for wheel in wheels)
-    for start, end in _turns(pitches, float(simulation.contact_ratio), is_damaged):
+    overlap = float(simulation.fields.get("overlap_ratio", 0.0))
+    contact = (-overlap / 2, float(simulation.contact_ratio) + overlap / 2)
+    for start, end in _turns(pitches, contact, is_damaged):
         ax.axvspan(start, end, zorder=0, **TURN)
     if any(damaged.values()):
         label = "in contact: " + " and ".join(f"{wheel} {_numbered(teeth)}" for wheel, teeth in damaged.items() if teeth)
@@ -209,12 +211,12 @@ def _tint(ax: Axes, simulation: Simulation, wheels: Sequence[str], pitches: tupl
 
 
 def _turns(
-    pitches: tuple[float, float], contact: float, is_damaged: Callable[[int], bool]
+    pitches: tuple[float, float], contact: tuple[float, float], is_damaged: Callable[[int], bool]
 ) -> list[tuple[float, float]]:
     """(pitches) The parts of a window in which damaged pairs are in contact; those that overlap are one."""
     turns: list[tuple[float, float]] = []
-    for pair in range(math.floor(pitches[0] - contact), math.ceil(pitches[1])):
-        start, end = max(pair, pitches[0]), min(pair + contact, pitches[1])
+    for pair in range(math.floor(pitches[0] - contact[1]), math.ceil(pitches[1] - contact[0])):
+        start, end = max(pair + contact[0], pitches[0]), min(pair + contact[1], pitches[1])
         if not is_damaged(pair) or start >= end:
             continue
         if turns and turns[-1][1] >= start:

@@ -357,6 +357,6 @@ def template(kind: str) -> str:
     Examples
     --------
     >>> print(template("healthy").splitlines()[0])
-    # A Meshtone scenario: a pair of spur gears, how it is driven, and what is broken.
+    # A Meshtone scenario: a pair of spur gears, its operation, and its damage.
     """
     return _core.template(kind)

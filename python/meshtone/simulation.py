@@ -41,9 +41,9 @@ class ContactFigures:
     apart_fraction : float
         Part of the time in which no teeth touched.
     back_flank_fraction : float
-        Part of the time in which back flanks touched.
+        Part of the time in which coast flanks touched.
     back_flank_hits : int
-        How often back flanks hit.
+        How often coast flanks hit.
     largest_force_n : float
         (N) Largest force, of either sign.
     """
@@ -179,7 +179,7 @@ class Simulation:
 
     @property
     def tension_fraction(self) -> float:
-        """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would part."""
+        """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would separate."""
         return self._native.tension_fraction
 
     @property

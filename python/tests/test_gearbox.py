@@ -104,7 +104,7 @@ def test_mistakes_are_named() -> None:
         mt.simulate(gearbox())  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="is of a gearbox"):
         mt.Scenario.from_toml(mt.gearbox_template())
-    with pytest.raises(ValueError, match="must be one of phm2009-spur, uconn, tecnalia"):
+    with pytest.raises(ValueError, match="must be one of phm2009-spur, phm2009-helical, uconn, tecnalia"):
         mt.gearbox_template("none")  # type: ignore[arg-type]
 
 

@@ -298,7 +298,7 @@ class Mesh:
         )
 
     def force(self, case: Case, time_s: float, deflection: float, velocity: float) -> float:
-        """(N) Force of drive and back flanks."""
+        """(N) Force of drive and coast flanks."""
         turn = 2 * math.pi * SPEED_HZ
         gear_turn = turn * PINION_TEETH / GEAR_TEETH
         phase, gear_phase = turn * time_s + PRESSURE_ANGLE, gear_turn * time_s + PRESSURE_ANGLE

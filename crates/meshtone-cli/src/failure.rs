@@ -165,7 +165,7 @@ impl From<DatasetError> for Failure {
             DatasetError::Refused { problem, help } => Self::bad_input(problem).with_help(help),
             DatasetError::File { doing: "read", source, .. } => Self::of_reading(source.kind(), message),
             DatasetError::File { source, .. } => Self::of_writing(source.kind(), message).with_help(
-                "what is complete is kept: mend it and run the same command again to go on from there",
+                "what is complete is kept: correct the cause and run the same command again to continue",
             ),
             DatasetError::NoRecord { .. } => Self::bad_input(message).with_help(
                 "narrow what the plan varies, or add a constraint, so that records can be simulated",

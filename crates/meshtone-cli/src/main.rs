@@ -31,7 +31,8 @@ use meshtone_io::memory::parse_bytes;
 
 use crate::commands::Command;
 
-/// Simulates the vibration of spur gears, healthy or with damaged teeth, and takes recordings to indicators.
+/// Simulates the vibration of spur gears, healthy or with damaged teeth, and computes indicators of
+/// recordings.
 #[derive(Debug, Parser)]
 #[command(name = "meshtone", version, after_help = examples(), arg_required_else_help = true)]
 struct Arguments {
@@ -46,13 +47,13 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone init tooth-breakage > broken.toml   a commented scenario file to start from
   meshtone simulate broken.toml -o broken      signals, summary and results panel in the folder broken
-  meshtone explore broken.toml                 change it on a page in the browser and see what comes of it
+  meshtone explore broken.toml                 change it on a page in the browser and see the effect
   meshtone indicators broken                   their condition indicators, as of any recording
-  meshtone diagnose run.csv --scenario rig.toml   what may be wrong with the gear, and how probable it is
+  meshtone diagnose run.csv --scenario rig.toml   kinds of damage of the gear, with their probabilities
   meshtone dataset plan.toml -o gears          a labelled data set (a plan: meshtone init dataset)
   meshtone simulate --help                     more on one command
 
-Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong.";
+Exit codes: 0 success, 1 the command could not be carried out, 2 the input is wrong.";
 
 /// The examples, without the page's where this build has no page.
 fn examples() -> String {

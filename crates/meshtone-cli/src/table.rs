@@ -1,7 +1,7 @@
 //! The main numbers of a run, for reading.
 
 use meshtone_io::summary::{
-    ChannelSummary, FaultSummary, GearboxSummary, MeshForce, Summary, SummaryEnd, SummaryHead,
+    ChannelSummary, FaultSummary, GearboxSummary, HelixSummary, MeshForce, Summary, SummaryEnd, SummaryHead,
 };
 
 /// The table of one run.
@@ -54,7 +54,11 @@ pub fn gearbox_table(summary: &GearboxSummary) -> String {
             (String::new(), String::new()),
             (
                 format!("mesh {}", mesh.wheels.join("-")),
-                format!("{} Hz, contact ratio {:.4}", short(mesh.mesh_frequency_hz), mesh.contact_ratio),
+                format!(
+                    "{} Hz, contact ratio {}",
+                    short(mesh.mesh_frequency_hz),
+                    contact_ratio(mesh.contact_ratio, mesh.helix)
+                ),
             ),
             (
                 "mesh stiffness, N/mm".to_owned(),
@@ -69,6 +73,20 @@ pub fn gearbox_table(summary: &GearboxSummary) -> String {
         rows.map(|(name, value)| format!("  {name:<24}{value}\n").replace(&format!("{:26}\n", ""), "\n"));
     let named = |channel: &ChannelSummary| channel.name.clone();
     rows.chain(signals(&summary.channels, named)).collect()
+}
+
+/// `1.5`, of helical wheels with their overlap and the force along the shafts.
+fn contact_ratio(transverse: f64, helix: Option<HelixSummary>) -> String {
+    helix.map_or_else(
+        || format!("{transverse:.4}"),
+        |helix| {
+            let HelixSummary { overlap_ratio, total_contact_ratio, axial_force_n, .. } = helix;
+            format!(
+                "{transverse:.4}, overlap {overlap_ratio:.4}, total {total_contact_ratio:.4}, axial force {} N",
+                short(axial_force_n.abs())
+            )
+        },
+    )
 }
 
 /// `min 1, mean 2, max 3`.
@@ -87,7 +105,7 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
         model,
         ("fault", faults(&summary.faults)),
         sampling,
-        ("contact ratio", format!("{:.4}{}", summary.contact_ratio, along_the_face(summary))),
+        ("contact ratio", contact_ratio(summary.contact_ratio, summary.helix) + &along_the_face(summary)),
         ("mesh stiffness, N/mm", stiffness),
         ("mesh force, N", forces + &touching(force)),
         ("natural frequencies, Hz", frequencies.join(" ")),
@@ -123,10 +141,10 @@ fn touching(force: &MeshForce) -> String {
     };
     let hits = match contact.back_flank_hits {
         0 => "no back flank hits".to_string(),
-        1 => format!("1 hit of back flanks, {} of the time", percent(contact.back_flank_fraction)),
-        hits => format!("{hits} hits of back flanks, {} of the time", percent(contact.back_flank_fraction)),
+        1 => format!("1 hit of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
+        hits => format!("{hits} hits of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
     };
-    format!("; apart {} of the time, {hits}", percent(contact.apart_fraction))
+    format!("; contact loss {} of the time, {hits}", percent(contact.apart_fraction))
 }
 
 /// `root-crack (severity 0.400) on tooth 1 of the gear`, one after the other.

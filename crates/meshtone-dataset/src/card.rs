@@ -47,7 +47,7 @@ fn head(set: &Finished) -> String {
     };
     let ([plan, scenario, _], version) = (PlanFile::NAMES, env!("CARGO_PKG_VERSION"));
     format!(
-        "{title}{description}{records} of spur gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
+        "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
          Meshtone {version} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\
          **Licence of the data: {}.**\n\n\
          ![Examples of each class, distributions of the keys, indicators by class]({})\n\n",
@@ -84,15 +84,16 @@ fn counts(set: &Finished) -> String {
         SplitBy::Unit => (
             "unit",
             format!(
-                "all records of a {kind} are in one split, so that nothing about particular wheels that was learned in training \
-                 helps in the test"
+                "all records of a {kind} are in one split, so that knowledge of particular wheels from the \
+                 training does not help in the test"
             ),
         ),
         SplitBy::Mounting => (
             "mounting",
             format!(
-                "all records of a {kind} as it was put together once are in one split, which may share the wheels with others, \
-                 mounted anew: what was learned in training about particular wheels helps in the test, about a mounting it does not"
+                "all records of one mounting of a {kind} are in one split, which may share the wheels with \
+                 other splits: knowledge of particular wheels from the training helps in the test, knowledge \
+                 of a mounting does not"
             ),
         ),
     };
@@ -128,7 +129,7 @@ fn warnings(set: &Finished) -> String {
         format!("| `{}` | {count} | {} |\n", kind.code(), kind.meaning())
     };
     format!(
-        "## Warnings\n\nWhat is doubtful about the simulations, by its code in the column `{WARNINGS}`, of {}.\n\n\
+        "## Warnings\n\nWarnings of the simulations, by their code in the column `{WARNINGS}`, of {}.\n\n\
          | code | records | meaning |\n|---|---:|---|\n{}\n",
         counted(set.records(), "record"),
         warnings.iter().map(row).collect::<String>()
@@ -182,10 +183,10 @@ fn questions(set: &Finished) -> String {
         format!("| {} | {target} | {score} |\n", question.name())
     });
     format!(
-        "## Questions\n\n| question | target | score |\n|---|---|---|\n{}\n\
-         From the signals, the indicators and what is known of a machine: teeth, module, face width, speed, load. Columns of the \
-         fault, seeds, numbers of records, units and mountings, and all that was drawn besides are not known of a real gear: they are \
-         there to see where an answer fails. Train on `train`, choose on `validation`.\n\n",
+        "## Questions\n\n| question | target | score |\n|---|---|---|\n{}\nAnswer from the signals, the \
+         indicators and what is known of a machine: teeth, module, face width, speed, load. Columns of the \
+         fault, seeds, numbers of records, units and mountings, and all other drawn values are not known of \
+         a real gear: they serve to see where an answer fails. Train on `train`, choose on `validation`.\n\n",
         rows.collect::<String>()
     )
 }
@@ -223,8 +224,8 @@ fn columns(set: &Finished) -> String {
         format!("| `{}` | {} | {}{kind}{value} |\n", column.name, column.unit, column.description)
     };
     let mut text = format!(
-        "## Columns\n\nOne row a record. Units and meanings stand in the files' metadata too.\n\n\
-         | column | unit | meaning |\n|---|---|---|\n{}",
+        "## Columns\n\nOne row per record. Units and meanings are also in the files' metadata.\n\n| column | \
+         unit | meaning |\n|---|---|---|\n{}",
         others.into_iter().map(row).collect::<String>()
     );
     if !indicators.is_empty() {

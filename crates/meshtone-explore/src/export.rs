@@ -51,7 +51,7 @@ pub fn export(form: &str, scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> 
             Ok(Exported { ending: "parquet", media_type: "application/vnd.apache.parquet", bytes })
         }
         other => {
-            Err(Refusal::unfit(format!("`{other}` is no form; there are toml, python, svg and parquet")))
+            Err(Refusal::unfit(format!("`{other}` is not a format; must be toml, python, svg or parquet")))
         }
     }
 }

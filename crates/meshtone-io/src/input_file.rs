@@ -51,7 +51,7 @@ pub(crate) fn open_stream(path: &Path, memory_per_byte: u64) -> io::Result<Limit
     };
     // Opening a pipe with a name would wait until a program writes to it.
     if what == NAMED_PIPE && !OF_THE_SHELL.iter().any(|folder| path.starts_with(folder)) {
-        let problem = "it is a pipe with a name, to which perhaps nobody writes; write its content into an ordinary file first";
+        let problem = "it is a pipe with a name, to which possibly no program writes; write its content into an ordinary file first";
         return Err(io::Error::new(ErrorKind::InvalidInput, problem));
     }
     let left = MOST_STREAMED_BYTES.min(of_memory);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use meshtone::Stages;
 use meshtone::damage::{Fault, ToothPart};
-use meshtone::wheel::{Teeth, WheelName};
+use meshtone::wheel::{Gears, Teeth, WheelName};
 
 use crate::drawing::{Axes, Canvas, Fill, colour};
 
@@ -18,8 +18,9 @@ const MOST_NAMED: usize = 3;
 pub struct DamagedTooth {
     /// Its number, from 1, in the order in which the wheel's teeth enter contact.
     pub tooth: u32,
-    /// (pitches) How far the wheel turns while the tooth is in contact: the contact ratio.
-    pub contact_pitches: f64,
+    /// (pitches) From where to where the wheel turns while the tooth is in contact, since the middle of its face could enter contact: as
+    /// [`Gears::contact_span_pitches`].
+    pub contact_pitches: [f64; 2],
     /// Whether the whole tooth is gone.
     pub is_missing: bool,
 }
@@ -30,19 +31,20 @@ impl DamagedTooth {
     /// # Arguments
     /// * `faults` - what is broken, of both wheels; one of severity 0 is not
     /// * `wheel` - whose teeth
-    /// * `teeth` - how many it has
-    /// * `contact_pitches` - (pitches) the contact ratio
+    /// * `gears` - the pair of wheels
     ///
     /// ```
     /// use meshtone::damage::{Fault, MissingTooth};
-    /// use meshtone::wheel::WheelName;
+    /// use meshtone::wheel::{Gears, WheelName};
     /// use meshtone_plot::DamagedTooth;
     ///
+    /// let gears = Gears::new(3.0, 17, 38, 15.0);
     /// let faults = [Fault::new(WheelName::Pinion, 3, MissingTooth), Fault::on_first_gear_tooth(MissingTooth)];
-    /// let [tooth] = DamagedTooth::of_wheel(&faults, WheelName::Pinion, 17, 1.6)[..] else { panic!() };
+    /// let [tooth] = DamagedTooth::of_wheel(&faults, WheelName::Pinion, &gears)[..] else { panic!() };
     /// assert_eq!((tooth.tooth, tooth.is_missing), (3, true));
     /// ```
-    pub fn of_wheel(faults: &[Fault], wheel: WheelName, teeth: u32, contact_pitches: f64) -> Vec<Self> {
+    pub fn of_wheel(faults: &[Fault], wheel: WheelName, gears: &Gears) -> Vec<Self> {
+        let (teeth, contact_pitches) = (gears.teeth(wheel), gears.contact_span_pitches());
         let is_damage = |fault: &&Fault| fault.wheel == wheel && fault.severity != Some(0.0);
         let faults: Vec<&Fault> = faults.iter().filter(is_damage).collect();
         let mut on_teeth: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
@@ -75,7 +77,7 @@ impl DamagedTooth {
         damaged: &[meshtone::damage::DamagedTooth],
         wheel: WheelName,
     ) -> Vec<Self> {
-        let contact_pitches = teeth.contact.contact_ratio;
+        let contact_pitches = teeth.contact_span_pitches();
         let of_wheel = damaged.iter().filter(|alike| alike.wheel == wheel).enumerate();
         let mut damaged: Vec<(Self, usize)> = of_wheel
             .flat_map(|(group, alike)| {
@@ -114,7 +116,7 @@ fn standing_out<K: Ord>(damaged: Vec<(DamagedTooth, K)>, teeth: u32) -> Vec<Dama
 /// * `teeth` - how many teeth it has
 /// * `pitch` - one pitch in the unit of the horizontal axis
 pub(crate) fn tint(canvas: &mut Canvas, axes: &Axes, damaged: &[DamagedTooth], teeth: u32, pitch: f64) {
-    let contact = damaged.first().map_or(0.0, |tooth| tooth.contact_pitches);
+    let contact = damaged.first().map_or([0.0; 2], |tooth| tooth.contact_pitches);
     let is_of_pair = |pair| is_of_pair(damaged, i64::from(teeth.max(1)), pair);
     for turn in turns([0.0, f64::from(teeth)], contact, is_of_pair) {
         let [from, to] = turn.map(|pitches| pitches * pitch);
@@ -131,12 +133,20 @@ pub(crate) fn is_of_pair(damaged: &[DamagedTooth], teeth: i64, pair: i64) -> boo
 ///
 /// # Arguments
 /// * `window` - (pitches) from and to
-/// * `contact` - (pitches) how long a pair is in contact
+/// * `contact` - (pitches) from where to where a pair is in contact
 /// * `is_damaged` - whether the pair that enters contact at a pitch is damaged
-pub(crate) fn turns([from, to]: [f64; 2], contact: f64, is_damaged: impl Fn(i64) -> bool) -> Vec<[f64; 2]> {
+pub(crate) fn turns(
+    [from, to]: [f64; 2],
+    contact: [f64; 2],
+    is_damaged: impl Fn(i64) -> bool,
+) -> Vec<[f64; 2]> {
     let mut turns: Vec<[f64; 2]> = Vec::new();
-    for pair in ((from - contact).floor() as i64..to.ceil() as i64).filter(|&pair| is_damaged(pair)) {
-        let (start, end) = ((pair as f64).max(from), (pair as f64 + contact).min(to));
+    let pairs = (from - contact[1]).floor() as i64..(to - contact[0]).ceil() as i64;
+    for pair in pairs.filter(|&pair| is_damaged(pair)) {
+        let [start, end] = contact.map(|pitches| (pair as f64 + pitches).clamp(from, to));
+        if start >= end {
+            continue;
+        }
         match turns.last_mut() {
             _ if start >= end => {}
             Some(last) if last[1] >= start => last[1] = end,
@@ -196,13 +206,14 @@ mod tests {
     use super::*;
 
     fn tooth(tooth: u32, is_missing: bool) -> DamagedTooth {
-        DamagedTooth { tooth, contact_pitches: 1.6, is_missing }
+        DamagedTooth { tooth, contact_pitches: [0.0, 1.6], is_missing }
     }
 
     #[test]
     fn turns_go_round_and_join() {
-        let at =
-            |damaged: &'static [i64]| turns([0.0, 10.0], 1.6, |pair| damaged.contains(&pair.rem_euclid(10)));
+        let at = |damaged: &'static [i64]| {
+            turns([0.0, 10.0], [0.0, 1.6], |pair| damaged.contains(&pair.rem_euclid(10)))
+        };
         assert_eq!(at(&[0]), [[0.0, 1.6]]);
         assert_eq!(at(&[3, 4]), [[3.0, 5.6]]);
         assert_eq!(at(&[2, 6]), [[2.0, 3.6], [6.0, 7.6]]);

@@ -40,7 +40,7 @@ pub struct Simulation {
     /// (-) Part of the kept time in which the mesh force is negative.
     #[pyo3(get)]
     tension_fraction: f64,
-    /// Contact of the teeth, under `contact`: (-) part of the time apart, (-) part of it with back flanks in touch, how often
+    /// Contact of the teeth, under `contact`: (-) part of the time apart, (-) part of it with coast flanks in touch, how often
     /// these hit, (N) largest force.
     #[pyo3(get)]
     contact_figures: Option<(f64, f64, usize, f64)>,

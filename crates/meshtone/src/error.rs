@@ -108,7 +108,7 @@ impl ScenarioError {
     /// # Arguments
     /// * `key`, `uneven` - of [`NamedGears::load`](crate::wheel::NamedGears::load)
     pub(crate) fn no_load_along_the_face((key, uneven): (String, String)) -> Self {
-        let problem = "the mesh carries nothing, and its flanks do not close alike along the face; must be loaded: the load decides how                        much of the face bears";
+        let problem = "the mesh is unloaded, but its flanks are misaligned along the face; must be loaded, because the load determines how much of the face is in contact";
         Self::new(key, "", problem)
             .with_help(format!("load the mesh by operation.brake_torque_nm, or set {uneven} to 0"))
     }
@@ -189,8 +189,9 @@ pub enum Error {
     Scenario(#[from] ScenarioError),
     /// The motion grows without bound.
     #[error(
-        "the motion grows without bound within {time_s:.4} s, with {key} = {}; damping must take what the varying \
-         mesh stiffness puts into a mode, and a missing tooth must leave another in contact",
+        "the motion grows without bound within {time_s:.4} s, with {key} = {}; damping must remove the \
+         energy that the varying mesh stiffness adds to a mode, and a missing tooth must leave another in \
+         contact",
         in_short(.damping_ratios)
     )]
     Diverged {
@@ -261,25 +262,26 @@ macro_rules! warning_kinds {
 }
 
 warning_kinds! {
-    Undercut "undercut" "teeth are undercut, which their profile does not show";
+    Undercut "undercut" "teeth are undercut, but their simulated profile is not";
     ThinTips "thin-tips" "tips are so thin that they could break off";
     IgnoredKey "ignored-key" "a key has no effect";
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
-    FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
-    Gyroscopic "gyroscopic" "a shaft is so fast that gyroscopic moments, which are left out, shift natural frequencies";
+    FastTeeth "fast-teeth" "the pitch line is faster than gears usually run";
+    Gyroscopic "gyroscopic" "a shaft is so fast that gyroscopic moments, which are neglected, shift natural frequencies";
+    AddedThrust "added-thrust" "the axial forces of two helical wheels add up on their shaft";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
     ProfileEnded "profile-ended" "a speed or torque profile ends before the kept signal starts";
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
     Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";
     Overload "overload" "the load would break the teeth";
-    NoContact "no-contact" "no pair of teeth meets for a part of a revolution, and the linear mesh holds nothing there";
-    MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would part";
+    NoContact "no-contact" "no pair of teeth is in mesh for a part of a revolution, and the linear mesh has no stiffness there";
+    MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would separate";
     Resonance "resonance" "the mesh force is far beyond what a machine survives";
     MeshResonance "mesh-resonance" "a mesh frequency, or twice or three times it, is within 1 % of a natural frequency";
-    BrakedRotation "braked-rotation" "the published model's damping brakes the whole machine, and the mesh carries another mean force than the load's";
+    BrakedRotation "braked-rotation" "the published model's damping brakes the whole machine, and the mean mesh force differs from the load's";
     OtherSpeed "other-speed" "a shaft does not turn at the speed that it is driven at";
-    StepError "step-error" "the step falsifies the rms by more than 2 %";
+    StepError "step-error" "the step changes the rms by more than 2 %";
 }
 
 /// Something about a scenario that can be simulated but deserves the user's attention.

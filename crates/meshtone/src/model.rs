@@ -13,7 +13,7 @@ pub enum Model {
     /// The theory of a linear mesh: flanks that are conjugate, loads that act at the flank's own angle, one angle for
     /// stiffness and deviations.
     Linear,
-    /// The published code, its known errors included, so that results can be compared number by number.
+    /// The published code with its known errors, so that results can be compared number by number.
     Published,
 }
 
@@ -55,6 +55,8 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
         &[
             "gears.active_profile_shortening",
             "gears.backlash_mm",
+            "gears.lead_crowning_um",
+            "gears.end_relief",
             "quality.helix_share",
             "quality.pinion_helix_slope_um",
             "quality.gear_helix_slope_um",
@@ -67,6 +69,8 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
     (
         &["published"],
         &[
+            "gears.hand",
+            "gears.slices",
             "gears.flank_relief",
             "gears.tip_chamfer_mm",
             "gears.foundation",
@@ -108,17 +112,17 @@ pub(crate) struct PublishedKey {
 pub(crate) static PUBLISHED_KEYS: [PublishedKey; 3] = [
     PublishedKey {
         key: "rig.wheel_rotational_stiffness_nm_per_rad",
-        words: "Taken by published alone: linear refuses it.",
+        words: "Accepted by published only; linear refuses it.",
         why: "the wheels tilt with their shafts, which bend between their bearings",
     },
     PublishedKey {
         key: "rig.damping_ratio",
-        words: "Several values are taken by published alone: linear refuses them.",
+        words: "Several values are accepted by published only; linear refuses them.",
         why: "the damping ratio is one for all modes",
     },
     PublishedKey {
         key: "solver.initial_displacement",
-        words: "Taken by published alone: linear refuses it.",
+        words: "Accepted by published only; linear refuses it.",
         why: "the simulation starts in the static equilibrium of the loaded mesh",
     },
 ];

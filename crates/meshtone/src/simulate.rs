@@ -253,7 +253,13 @@ fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
     if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
         return Err(ScenarioError::not_stiff(gears.foundation()));
     }
-    if mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
+    if mesh.contact_ratio <= 0.0 {
+        let problem = "the tips' chamfers and the active profile's shortening leave no path of contact";
+        let help =
+            format!("lower {} or {}", gears.key("tip_chamfer_mm"), gears.key("active_profile_shortening"));
+        return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
+    }
+    if mesh.overlap == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
         let keys = [gears.whole(), gears.key("pressure_angle_deg")];
         return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
     }
@@ -284,6 +290,8 @@ struct MeshOf<'a> {
     static_force_n: f64,
     contact: Contact,
     turning: Turning,
+    /// 1 where the driving wheel turns about positive z, −1 where it turns the other way.
+    sense: f64,
     damping_ratio: f64,
     /// (kg) That the wheels' rotation has along the line of action.
     mesh_mass_kg: f64,
@@ -306,22 +314,57 @@ impl MeshOf<'_> {
             width_m,
             tilt_rad_per_m: self.modes.tilt_rad_per_nm(self.machine, self.number) * static_force_n,
         };
+        let slices = if self.gap_varies_along_face() { gears.slices as usize } else { 1 };
         let parameters = MeshParameters {
             contact: self.contact,
             turning: self.turning,
             damping_ratio: self.damping_ratio,
             mesh_mass_kg: self.mesh_mass_kg,
-            backlash_m: gears.normal_backlash_mm() * 1e-3,
+            // Across the teeth, as it is measured; in the transverse section it is larger.
+            backlash_m: gears.normal_backlash_mm() * 1e-3 / gears.base_helix_angle_rad().cos(),
             static_force_n,
             face: (closer_um != 0.0).then(face),
+            overlap: self.sense * gears.hand.sign() * gears.overlap_ratio(),
+            face_width_m: width_m,
+            gaps_m: (0..slices)
+                .map(|slice| [slice, slice + 1].map(|edge| edge as f64 / slices as f64 - 0.5))
+                .map(|ends| gears.mean_gap_mm(ends) * 1e-3)
+                .collect(),
         };
         let shape = TipShape {
             chamfer_mm: gears.chamfer_mm(),
-            active_profile_shortening: gears.active_profile_shortening,
+            active_profile_shortening: match self.contact {
+                Contact::Unilateral => gears.active_profile_shortening,
+                Contact::Bilateral => 0.0,
+            },
             relief: gears.flank_relief,
         };
-        let pairs = Pairs::new(teeth, damaged, gears.material, &gears.foundation);
-        checked(Mesh::new(&pairs, shape, sequence, points_per_pitch, parameters), gears)
+        let tabulated =
+            |faces: &[Pairs]| checked(Mesh::new(faces, shape, sequence, points_per_pitch, parameters), gears);
+        if slices == 1 {
+            return tabulated(&[Pairs::new(teeth, damaged, gears.material, &gears.foundation)]);
+        }
+        let width_mm = gears.face_width_mm;
+        let of_slice = teeth.with_face_width(width_mm / slices as f64);
+        let damaged: Vec<Vec<DamagedTooth>> = (0..slices)
+            .map(|slice| [slice, slice + 1].map(|edge| width_mm * (edge as f64 / slices as f64 - 0.5)))
+            .map(|ends_mm| damaged.iter().map(|tooth| tooth.slice(ends_mm, width_mm)).collect())
+            .collect();
+        let sound = Pairs::new(&of_slice, &[], gears.material, &gears.foundation);
+        tabulated(&damaged.iter().map(|damaged| sound.with_damaged(damaged)).collect::<Vec<_>>())
+    }
+
+    /// Whether the gap between two flanks differs along the face, so that its slices touch one after the other. A slope of spur wheels'
+    /// flanks and what is lost of their faces need no slices: see [`FaceSlope`] and [`Pairs`].
+    fn gap_varies_along_face(&self) -> bool {
+        let gears = self.gears;
+        let is_crowned = gears.lead_crowning_um > 0.0 || gears.end_relief.amount_um > 0.0;
+        let varies_along_contact_lines = || {
+            self.closer_um != 0.0
+                || gears.flank_relief.amount_um > 0.0
+                || self.damaged.iter().any(DamagedTooth::varies_over_face)
+        };
+        is_crowned || gears.is_helical() && varies_along_contact_lines()
     }
 }
 
@@ -372,6 +415,7 @@ impl Stages {
             static_force_n: self.static_force_n(),
             contact: options.contact,
             turning: Turning { pitches_per_revolution: f64::from(gears.pinion_teeth), first_pitch: 0.0 },
+            sense: 1.0,
             damping_ratio: rig.mesh_damping_ratio,
             mesh_mass_kg: train.mesh_mass_kg,
         };
@@ -539,7 +583,7 @@ impl Stages {
     /// The same where more neighbours are missing on a wheel than pairs are in contact at once: nothing bears while they pass.
     fn gap(&self, wheel: WheelName, time_s: f64) -> Option<ScenarioError> {
         let missing = most_neighbours(&self.damaged, wheel, self.teeth.wheel(wheel).teeth as usize);
-        let ratio = self.teeth.path.contact_ratio;
+        let ratio = self.scenario.gears.total_contact_ratio();
         if missing as f64 <= ratio {
             return None;
         }

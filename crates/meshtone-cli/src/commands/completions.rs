@@ -9,11 +9,11 @@ use crate::Arguments;
 use crate::failure::Failure;
 use crate::terminal;
 
-/// Print what lets a shell complete commands and options, or the manual page
+/// Print the completion script of a shell, or the manual page
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Completions {
-    /// For which shell; `man`: the manual page
+    /// The shell; `man`: the manual page
     #[arg(value_parser = kinds())]
     kind: String,
 }

@@ -24,10 +24,11 @@ const REPORTED: usize = 3;
 /// Failed records whose numbers are listed.
 const NAMED: usize = 20;
 
-/// Make a labelled data set after a plan
+/// Make a labelled data set from a plan
 ///
-/// Simulates the plan's records and writes them as Parquet files, with a manifest, a data card and a preview. Stopped at any
-/// moment, the same command goes on; the result has the same bytes as an uninterrupted run, with any number of jobs and parts.
+/// Simulates the plan's records and writes them as Parquet files, with a manifest, a data card and a preview. After an
+/// interruption the same command continues; the result has the same bytes as an uninterrupted run, with any number of jobs and
+/// parts.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, arg_required_else_help = true, after_help = EXAMPLES)]
 pub struct Dataset {
@@ -63,16 +64,16 @@ struct Make {
     quiet: bool,
 }
 
-/// Put the parts of a data set together that were made apart
+/// Merge the parts of a data set that were made separately
 #[derive(Debug, Args)]
 struct Merge {
     /// Directories or URLs of the parts
     #[arg(value_name = "PART", required = true)]
     parts: Vec<String>,
-    /// Directory or URL of the whole; may be one of the parts
+    /// Directory or URL of the merged data set; may be one of the parts
     #[arg(short, long, value_name = "DIR")]
     output: String,
-    /// Read also the shards that were made in the whole's own place, instead of only looking at their sizes
+    /// Read also the shards that are already in place, instead of checking only their sizes
     #[arg(long)]
     verify: bool,
     /// Print no summary
@@ -82,14 +83,14 @@ struct Merge {
 
 /// Compare every byte of a data set with what was written
 ///
-/// Names, sizes, counts, SHA-256, rows and columns of all files. Nothing is written. The exit code is 1 where something is
-/// missing or differs; the command that made the data set makes such shards again.
+/// Checks names, sizes, counts, SHA-256, rows and columns of all files. Nothing is written. The exit code is 1 if
+/// something is missing or differs; the command that made the data set makes such shards again.
 #[derive(Debug, Args)]
 struct Verify {
     /// Directory or URL of the data set, or of a part of one
     #[arg(value_name = "DIR")]
     place: String,
-    /// Look only at names, sizes and counts
+    /// Check only names, sizes and counts
     #[arg(long)]
     sizes_only: bool,
     /// Print no summary; what is wrong is still printed
@@ -202,7 +203,7 @@ impl Verify {
         if found.complete {
             return Ok(());
         }
-        let help = "run the command that made the data set again: it goes on with it";
+        let help = "run the command that made the data set again: it continues the set";
         Err(Failure::failed(format!("{place}: the data set is not complete")).with_help(help))
     }
 

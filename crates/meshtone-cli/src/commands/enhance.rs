@@ -18,7 +18,7 @@ const ENHANCED: &str = "enhanced.parquet";
 /// All are held in memory: some 50 kB each.
 const MOST_DRAWS: u64 = 20_000;
 
-/// Make enhanced difference signals of a scenario, with what `tune` found
+/// Make enhanced difference signals of a scenario, with the result of `tune`
 ///
 /// Simulates the scenario and its healthy counterpart, takes the difference signals of the wheel that was tuned to and modifies them: duration,
 /// fault-to-harmonics ratio, noise. Writes enhanced.parquet with one row for each draw of the noise.

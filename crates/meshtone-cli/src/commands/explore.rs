@@ -13,11 +13,11 @@ use meshtone_io::scenario_file::ScenarioFile;
 use crate::failure::Failure;
 use crate::terminal;
 
-/// Change a scenario on a page in the browser and see what comes of it at once
+/// Change a scenario on a page in the browser and see the effect immediately
 ///
-/// Serves the page on this machine alone, until Ctrl-C; it needs no network. Nothing is written but what the page's buttons
-/// hand out (the scenario as TOML or Python, the picture as SVG, the signals as Parquet) and the simulations of a diagnosis, which are
-/// kept where `meshtone diagnose` keeps them.
+/// Serves the page on this machine alone, until Ctrl-C; it needs no network. Nothing is written except what the page's buttons export
+/// (the scenario as TOML or Python, the picture as SVG, the signals as Parquet) and the simulations of a diagnosis, which are kept
+/// where `meshtone diagnose` keeps them.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Explore {

@@ -22,11 +22,11 @@ const PRINTED: usize = 5;
 
 /// Condition indicators of recordings, simulated or measured
 ///
-/// Averages a channel over the revolutions of a shaft, takes the average apart, and writes indicators.json,
+/// Averages a channel over the revolutions of a shaft, separates the average into its parts, and writes indicators.json,
 /// indicators.parquet and a figure of the recording, or of the last one (indicators.svg, .png). Several recordings, or
-/// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png). A run-up
-/// has the amplitudes over order and time too (order_map.svg, .png).
-/// Nothing is written unless all recordings are good.
+/// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png). Of a
+/// run-up the amplitudes over order and time are drawn too (order_map.svg, .png). Nothing is written unless all recordings
+/// are valid.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Indicators {
@@ -46,7 +46,8 @@ pub struct Indicators {
     no_figure: bool,
     #[command(flatten)]
     reading: ReadingOptions,
-    /// The machine, a pair or a gearbox: its tooth counts carry the phase of one shaft to all others, and every wheel is processed
+    /// The machine, a pair or a gearbox: its tooth counts give the phase of all shafts from that of one, and every wheel is
+    /// processed
     #[arg(long, value_name = "SCENARIO.toml", conflicts_with_all = ["teeth", "mate_teeth"])]
     scenario: Option<PathBuf>,
     #[command(flatten)]

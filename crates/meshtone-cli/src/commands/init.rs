@@ -24,10 +24,10 @@ const EXPERIMENT: &str = "experiment";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Init {
-    /// A healthy pair, or what is broken, to begin with on the gear's first tooth; a gearbox; the plan of a data set; or an experiment
+    /// A healthy pair, or a kind of damage, on the gear's first tooth; a gearbox; the plan of a data set; or an experiment
     #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT])))]
     kind: String,
-    /// Print what is published of a rig with a gearbox; what is assumed is marked
+    /// Print the published data of a rig with a gearbox; assumptions are marked
     #[arg(long, value_name = "RIG", value_parser = PossibleValuesParser::new(GearboxRig::ALL.map(GearboxRig::name)))]
     rig: Option<String>,
     /// Print the plan of a data set of a gearbox, instead of one pair

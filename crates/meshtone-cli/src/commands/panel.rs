@@ -23,8 +23,8 @@ const WRITTEN: &str = "a directory that `meshtone simulate` wrote";
 
 /// Draw the panel of a simulation's results again
 ///
-/// Everything is taken from DIR/signals.parquet, which also holds the scenario. DIR/panel.svg and DIR/panel.png
-/// are replaced.
+/// Everything is taken from DIR/signals.parquet, which also contains the scenario. DIR/panel.svg and
+/// DIR/panel.png are replaced.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  meshtone panel broken")]
 pub struct Panel {

@@ -32,10 +32,10 @@ use crate::warnings::{self, about};
 
 /// Estimate the path to a sensor from recordings of the healthy machine
 ///
-/// Simulates the machine at the recordings' speeds with many draws of its wheels and compares: what the recordings show more at a
-/// frequency, in mesh harmonics, sidebands and the broad-band remainder alike, is the path. Recordings at several speeds or of a run-up
-/// say more than one speed. Writes frequency_hz, magnitude, phase_deg (of minimum phase), and in dB the magnitude and the interval that
-/// holds it with 90 %. The sensor of the scenario takes it by frequency_response = { file = "path.csv" }.
+/// Simulates the machine at the recordings' speeds with many draws of its wheels: the path is the ratio of recordings to simulations at
+/// each frequency that mesh harmonics, sidebands and the broad-band remainder have in common. Recordings at several speeds or of a
+/// run-up are better than those of one speed. Writes frequency_hz, magnitude, phase_deg (of minimum phase), and in dB the magnitude and
+/// its 90 % interval. The sensor of the scenario takes it by frequency_response = { file = "path.csv" }.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Path {

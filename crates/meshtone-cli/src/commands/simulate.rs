@@ -29,7 +29,7 @@ use crate::warnings;
 /// Simulate scenarios: signals, summary and results panel
 ///
 /// Writes signals.parquet, summary.json, panel.svg and panel.png. Files of an earlier run are replaced; every file
-/// appears whole or not at all. Nothing is simulated or written unless all scenarios can be.
+/// is written completely or not at all. Nothing is simulated or written unless all scenarios are valid.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Simulate {
@@ -43,8 +43,8 @@ pub struct Simulate {
     /// Model of the mesh, instead of the scenario's own
     #[arg(long, value_parser = one_of(&MODELS))]
     model: Option<Model>,
-    /// Profile errors, as `meshtone wheels` writes them, in place of all that the scenario says of quality; the name is relative to
-    /// the current directory
+    /// Profile errors, as `meshtone wheels` writes them, instead of the scenario's section [quality]; the name is relative to the
+    /// current directory
     #[arg(long, value_name = "WHEELS.npz")]
     errors_file: Option<PathBuf>,
     /// Result of `meshtone tune`: its numbers of the scenario are put into every scenario that has them
@@ -73,11 +73,11 @@ const TRACE_HELP: &str = "name another file with --trace, in a directory that ex
 const MODELS: [Choice<Model>; 3] = [
     (
         "contact",
-        "Teeth that touch and part, on shafts that bend, in supports that a sensor sits on",
+        "Teeth that touch and separate, flexible shafts, and supports that carry the sensors",
         Model::Contact,
     ),
-    ("linear", "What the theory of a linear mesh says", Model::Linear),
-    ("published", "The published code, its known errors included", Model::Published),
+    ("linear", "A linear mesh that is always closed", Model::Linear),
+    ("published", "The published code with its known errors", Model::Published),
 ];
 
 /// A run that can be simulated, of either form of the scenario file.

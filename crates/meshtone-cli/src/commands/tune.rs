@@ -24,7 +24,7 @@ const FILES: [&str; 4] = [TUNING, TUNED, FIGURE[0], FIGURE[1]];
 /// Tune simulations to what was measured on a rig
 ///
 /// Simulates the experiment's cases and finds the enhancement, and the scenario's numbers, with which they resemble the
-/// measurements most. Writes tuning.json, tuned.toml, tuning.svg and tuning.png; nothing is written unless all went well.
+/// measurements most. Writes tuning.json, tuned.toml, tuning.svg and tuning.png; nothing is written after an error.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Tune {

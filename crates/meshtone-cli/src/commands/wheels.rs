@@ -55,8 +55,8 @@ impl Wheels {
             gear_profile_errors_mm: ideal(scenario.gears.gear_teeth),
         };
         let errors = stages.profile_errors.or_else(|| has_others.then(ideal_profiles)).ok_or_else(|| {
-            let problem = "must be a grade of DIN 3962, from 1 (best) to 12: the teeth of grade 0 are ideal and have no \
-                           errors to write";
+            let problem = "must be a grade of DIN 3961, from 1 (best) to 12: the teeth of grade 0 are ideal \
+                           and have no errors to write";
             file.refuse(ScenarioError::new("quality.din_grade", 0, problem))
         })?;
         Ok(write_wheels_npz(&self.output, &errors, &deviations)?)

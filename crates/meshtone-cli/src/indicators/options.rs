@@ -16,10 +16,10 @@ pub struct ReadingOptions {
     /// [default: the only one; of a simulation its first listed sensor, or the vertical acceleration]
     #[arg(short, long, value_name = "CHANNEL")]
     pub channel: Option<String>,
-    /// (S/s) Sampling rate, where the file does not say it, or instead of what it says
+    /// (S/s) Sampling rate, if the file does not state it, or instead of the file's
     #[arg(long, value_name = "RATE", value_parser = positive, allow_negative_numbers = true)]
     pub sampling_rate_hz: Option<f64>,
-    /// Column that holds the time, by its name or number, or `none`. [default: the one that is named as time]
+    /// Column of the time, by its name or number, or `none`. [default: the one that is named as time]
     #[arg(long, value_name = "CHANNEL")]
     pub time_column: Option<String>,
     /// Variable of an NPZ or MAT file that holds the recording, such as `run.sensors`
@@ -31,13 +31,13 @@ pub struct ReadingOptions {
     /// Unit of the channel (after the division), such as g or m/s²
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<String>,
-    /// Separator of the cells of a text file. [default: found out]
+    /// Separator of the cells of a text file. [default: detected]
     #[arg(long, value_parser = one_of(&SEPARATORS))]
     pub separator: Option<Separator>,
-    /// Decimal sign of a text file. [default: found out]
+    /// Decimal sign of a text file. [default: detected]
     #[arg(long, value_parser = one_of(&DECIMAL_SIGNS))]
     pub decimal_sign: Option<DecimalSign>,
-    /// Lines at the start of a text file that are no table
+    /// Lines to skip at the start of a text file
     #[arg(long, value_name = "LINES", default_value_t = 0)]
     pub skip_lines: usize,
 }
@@ -58,13 +58,13 @@ impl ReadingOptions {
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Wheels and phase (what `meshtone simulate` wrote needs none of these)")]
 pub struct PhaseOptions {
-    /// Teeth of the wheel on the shaft that speed or pulses are of
+    /// Teeth of the wheel on the shaft to which speed or pulses belong
     #[arg(long, value_name = "TEETH", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub teeth: Option<u32>,
-    /// Teeth of the wheel that meshes with it, to process that one too, on its own shaft
+    /// Teeth of the mating gear, to process it too, on its own shaft
     #[arg(long, value_name = "TEETH", requires = "teeth", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub mate_teeth: Option<u32>,
-    /// (Hz) Speed of the shaft: constant; with pulses, what they are checked against; with --from-mesh-tone, the nominal one
+    /// (Hz) Speed of the shaft: constant; with pulses, the value for their check; with --from-mesh-tone, the nominal speed
     #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
     pub shaft_hz: Option<f64>,
     /// Channel with a tachometer's waveform, by its name or number
@@ -79,7 +79,7 @@ pub struct PhaseOptions {
     /// File with two columns, time in s and speed in Hz or rpm, on the recording's own time
     #[arg(long, value_name = "FILE", group = "source", conflicts_with = "shaft_hz")]
     pub speed_profile: Option<PathBuf>,
-    /// Follow the mesh tone itself; needs no tachometer but a nearly constant speed
+    /// Follow the mesh tone; needs no tachometer, but a nearly constant speed
     #[arg(long, group = "source", requires = "shaft_hz")]
     pub from_mesh_tone: bool,
     /// Pulses in a revolution
@@ -88,7 +88,8 @@ pub struct PhaseOptions {
     /// (unit of the waveform) Level that a pulse crosses. [default: the middle]
     #[arg(long, value_name = "LEVEL", requires = "tach", allow_negative_numbers = true)]
     pub threshold: Option<f64>,
-    /// (unit of the waveform) How far it goes back before the next pulse counts. [default: 0.2 of its range]
+    /// (unit of the waveform) Hysteresis, by which it must return before the next pulse counts. [default:
+    /// 0.2 of its range]
     #[arg(long, value_name = "LEVEL", requires = "tach", value_parser = positive, allow_negative_numbers = true)]
     pub hysteresis: Option<f64>,
     /// Side of a pulse that counts
@@ -100,7 +101,8 @@ pub struct PhaseOptions {
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Shafts of the scenario")]
 pub struct ShaftOptions {
-    /// Shaft that speed or pulses are of, by its name: of a pair, pinion or gear. [default: the input]
+    /// Name of the shaft to which speed or pulses belong: of a pair, pinion or gear. [default: the
+    /// input]
     #[arg(long, value_name = "NAME")]
     pub shaft: Option<String>,
     /// Mesh whose tone is followed, such as z3-z4. [default: the first one on the shaft]

@@ -105,7 +105,7 @@ impl PhaseOptions {
                     (teeth_that_are("missing", &of(true)), teeth_that_are("damaged", &of(false)));
                 return format!("each enters contact at the left of its pitch{missing}{damaged}");
             }
-            "mesh tone" => "1: chosen by chance",
+            "mesh tone" => "1: chosen arbitrarily",
             "tachometer" | "pulse times" if is_on_shaft && self.pulses_per_rev == 1 => {
                 "1: in mesh at the pulse"
             }

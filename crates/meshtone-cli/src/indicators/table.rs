@@ -45,7 +45,7 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
         String::new()
     };
     if lines.is_empty() {
-        return format!("\n  every line{of} that stands out belongs to a shaft or a mesh\n");
+        return format!("\n  every prominent line{of} belongs to a shaft or a mesh\n");
     }
     let on = if series.wheels.len() > 2 { "the input" } else { "the shaft" };
     let mut text = format!("\n  lines{of} that belong to no shaft and no mesh\n");

@@ -183,15 +183,14 @@ fn wheels(
 fn damaged_teeth(form: &ScenarioForm, wheel: usize) -> Vec<DamagedTooth> {
     let of_pair = |Scenario { gears, faults, .. }: &Scenario| {
         let wheel = WheelName::BOTH[wheel.min(1)];
-        DamagedTooth::of_wheel(faults, wheel, gears.teeth(wheel), gears.contact_ratio())
+        DamagedTooth::of_wheel(faults, wheel, gears)
     };
     let of_gearbox = |gearbox: &Gearbox| {
         let layout = GearboxLayout::new(gearbox).ok()?;
         let (mesh, side) = layout.mesh_of(wheel)?;
         let faults: Vec<_> =
             layout.faults_of_mesh(gearbox, mesh).into_iter().map(|(_, fault)| fault).collect();
-        let teeth = gearbox.wheels[wheel].teeth;
-        Some(DamagedTooth::of_wheel(&faults, side, teeth, layout.gears[mesh].contact_ratio()))
+        Some(DamagedTooth::of_wheel(&faults, side, &layout.gears[mesh]))
     };
     match form {
         ScenarioForm::Pair(scenario) => of_pair(scenario),
@@ -226,7 +225,7 @@ impl ShaftOptions {
                 let what =
                     if found.is_none() { "is no wheel of the scenario" } else { "is more than one wheel" };
                 let problem = format!("--teeth {teeth}: {what}; there are {}", all());
-                Failure::refuse(problem, "--shaft NAME names the shaft that speed or pulses are of")
+                Failure::refuse(problem, "--shaft NAME names the shaft to which speed or pulses belong")
             }
         }
     }

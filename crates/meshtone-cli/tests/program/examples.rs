@@ -38,8 +38,14 @@ fn examples_are_the_cases_of_the_templates() {
 #[test]
 fn every_example_is_simulated() {
     let workplace = Workplace::new();
-    for name in NAMES.into_iter().chain(["several_faults", "contact", "sensors", "profile_shift", "gearbox"])
-    {
+    for name in NAMES.into_iter().chain([
+        "several_faults",
+        "contact",
+        "sensors",
+        "profile_shift",
+        "helical",
+        "gearbox",
+    ]) {
         let path = examples().join(name).with_extension("toml");
         workplace.succeeds(&["simulate", path.to_str().unwrap()]);
         assert_eq!(workplace.names(&format!("{name}_results")).len(), 4);

@@ -101,7 +101,7 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
 #[test]
 fn published_rigs_are_printed_and_simulate() {
     let workplace = Workplace::new();
-    for rig in ["phm2009-spur", "uconn", "tecnalia"] {
+    for rig in ["phm2009-spur", "phm2009-helical", "uconn", "tecnalia"] {
         let output = workplace.succeeds(&["init", "gearbox", "--rig", rig]);
         let text = stdout(&output);
         assert!(text.contains("# assumed") && text.contains("# Published:"), "{text}");
@@ -205,6 +205,6 @@ fn what_knows_one_pair_says_so() {
     workplace.fails(
         2,
         &["tune", "experiment.toml", "-o", "tuned"],
-        &["of a gearbox", "tuning", "know one pair"],
+        &["of a gearbox", "tuning", "accept one pair only"],
     );
 }

@@ -224,7 +224,7 @@ fn wrong_experiments_are_refused() {
         &with("sampling_rate_hz = 10e3", "sampling_rate_hz = 10e3\nwheel = \"pinon\""),
         &["line 4", "signal.wheel", "did you mean \"pinion\"?"],
     );
-    refused(&workplace, &with(MEASURED, ""), &["nothing measured"]);
+    refused(&workplace, &with(MEASURED, ""), &["no measurements are given"]);
     workplace.write(
         "table.csv",
         table(|case, name, record| (case == 1 && name == "rms" && record == 3).then(|| "NaN".into())),

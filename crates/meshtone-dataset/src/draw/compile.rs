@@ -106,11 +106,11 @@ fn is_of_fault(key: &str) -> bool {
 
 /// Returns whether a key is one of the teeth or of their material, which make a unit what it is.
 fn is_of_wheels(key: &str) -> bool {
-    const OF_TEETH: [&str; 2] = ["module_mm", "pressure_angle_deg"];
+    const OF_TEETH: [&str; 4] = ["module_mm", "pressure_angle_deg", "helix_angle_deg", "lead_crowning_um"];
     let (section, rest) = split_key(key);
     match list_and_entry(section).0 {
         "gears" | "quality" | "material" | "wheel" => true,
-        "mesh" => rest.is_some_and(|rest| OF_TEETH.contains(&rest)),
+        "mesh" => rest.is_some_and(|rest| OF_TEETH.contains(&rest) || rest.starts_with("end_relief.")),
         _ => false,
     }
 }
@@ -386,7 +386,7 @@ fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
             key == SEVERITY || is_varied(key) || classes.iter().any(|class| class.computes_severity(key))
         };
         if !keys.iter().any(|key| varies(key)) {
-            let problem = format!("`{condition}` is about nothing that varies");
+            let problem = format!("`{condition}` concerns nothing that varies");
             return Err(refused(place, problem, "vary one of its keys, or remove it"));
         }
     }

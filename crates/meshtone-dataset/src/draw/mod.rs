@@ -403,7 +403,7 @@ impl Obstacles {
         let key = self.0.first().map(|(key, _, _)| key.clone()).unwrap_or_default();
         let most = self.0.iter().take(3).map(|(_, what, count)| format!("{what} was not met by {count}"));
         let most = most.collect::<Vec<_>>().join(", ");
-        let problem = format!("{MOST_ATTEMPTS} draws for {of} met not all that is asked: {most}");
+        let problem = format!("{MOST_ATTEMPTS} draws for {of} did not meet all conditions: {most}");
         TomlError::new(key, "", problem)
     }
 }

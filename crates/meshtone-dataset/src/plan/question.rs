@@ -36,7 +36,7 @@ impl Question {
                 "whether `fault_kind` is null",
                 "area under the ROC curve, by kind; severity from which 90 % are found at 5 % false alarms",
             ],
-            Self::Diagnosis => ["`label`", "mean over the classes of the part that is named rightly"],
+            Self::Diagnosis => ["`label`", "mean over the classes of the fraction classified correctly"],
             Self::Severity => [
                 "`fault_severity`, 0 for healthy",
                 "continuous ranked probability score of a predicted distribution, or the mean absolute error of a number",

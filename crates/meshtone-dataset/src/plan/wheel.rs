@@ -168,7 +168,7 @@ impl ClassFault {
             Some(fault) => {
                 let names: Vec<&str> = wheels.iter().map(Wheel::name).collect();
                 let problem = format!(
-                    "is on the wheel {:?}, which there is not; must be one of {}",
+                    "is on the wheel {:?}, which does not exist; must be one of {}",
                     fault.wheel.name(),
                     names.join(", ")
                 );

@@ -107,8 +107,9 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
     if last > MOST_GROWTH * MOST_GROWTH * first {
         let growth = (last / first).sqrt();
         return Err(format!(
-            "the motion grows from the record's start to its end, by a factor of {growth:.0}: damping does not take what \
-             the varying mesh stiffness puts into a mode; raise {damping_key} or use other teeth or another speed"
+            "the motion grows from the record's start to its end, by a factor of {growth:.0}: damping does \
+             not remove the energy that the varying mesh stiffness adds to a mode; raise {damping_key} or \
+             use other teeth or another speed"
         ));
     }
     Ok(())

@@ -213,7 +213,7 @@ fn of_record(content: &Content) -> Vec<Column> {
         Column::int64("unit", |r| r.drawn.unit)
             .meaning(format!("number of the unit: the {unit}, shared by several records")),
         Column::int64("mounting", |r| r.drawn.mounting)
-            .meaning("number of the mounting: a unit as it was put together once"),
+            .meaning("number of the mounting, that is of one assembly of the unit"),
         Column::text("split", move |r| Some(splits[r.drawn.split].clone()))
             .meaning("the split that the unit, or its mounting, belongs to"),
         Column::text("label", move |r| Some(labels[r.drawn.class].clone())).meaning("the class"),
@@ -311,7 +311,7 @@ fn torque(shaft: &str) -> Column {
 
 /// Lists the columns of what the simulation of a record says about itself.
 fn of_simulation(base: &ScenarioForm) -> Vec<Column> {
-    const APART: &str = "part of the simulated time in which no teeth touch";
+    const APART: &str = "fraction of the simulated time with contact loss";
     let slack = |name: &str, mesh: usize, meaning: &str| {
         Column::float64(name, "-", move |r| r.slack_fractions.get(mesh).copied()).meaning(meaning)
     };
@@ -326,16 +326,16 @@ fn of_simulation(base: &ScenarioForm) -> Vec<Column> {
         ScenarioForm::Pair(pair) if !Model::teeth_part(pair.model) => vec![slack(
             "tension_fraction",
             0,
-            "part of the simulated time in which the linear mesh pulls where real teeth would part",
+            "part of the simulated time in which the linear mesh pulls where real teeth would separate",
         )],
         _ => vec![slack("apart_fraction", 0, APART)],
     };
     let codes =
         |r: &Record| r.warnings.iter().map(|kind| kind.code()).collect::<Vec<_>>().join(BETWEEN_CODES);
     let warnings = Column::text(WARNINGS, move |r| Some(codes(r)))
-        .meaning("codes of what is doubtful about the simulation, with `;` between; empty where nothing is");
+        .meaning("codes of the simulation's warnings, with `;` between; empty without any");
     let simulated = Column::float64("simulated_s", "s", |r| Some(r.simulated_s))
-        .meaning("simulated time that average and indicators are of");
+        .meaning("simulated time from which average and indicators are computed");
     [warnings].into_iter().chain(slack).chain([simulated]).collect()
 }
 
@@ -429,8 +429,8 @@ fn of_fault(number: usize, wheels: &[Wheel]) -> [Column; 4] {
              the first two meet",
         ),
         Column::float64(&named("severity"), "-", move |r| Some(r.faults.get(number)?.severity)).meaning(
-            "how severe the damage is, from 0, none, to 1, the largest that the tooth allows; each kind's scale is in \
-             the guide",
+            "severity of the damage, from 0, none, to 1, the largest that the tooth allows; each kind's \
+             scale is in the guide",
         ),
     ]
     .map(Column::nullable)

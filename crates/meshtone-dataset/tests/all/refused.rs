@@ -77,7 +77,7 @@ fn contradictory() {
         "uniform = [30.0, 60.0]\nfixed = 3",
         &["uniform", "given beside fixed"],
     );
-    refused_with("uniform = [30.0, 60.0]", "per = \"record\"", &["says not how it varies"]);
+    refused_with("uniform = [30.0, 60.0]", "per = \"record\"", &["does not state how it varies"]);
     refused_with("label = \"missing\"", "label = \"breakage\"", &["label \"breakage\" of another class"]);
     refused_with(
         "label = \"healthy\"",
@@ -144,7 +144,7 @@ fn keys_that_are_none() {
     refused_with(
         "when = \"operation.pinion_speed_hz > 50\"",
         "when = \"gears.module_mm > 2\"",
-        &["about nothing that varies"],
+        &["concerns nothing that varies"],
     );
     let teeth = "[[vary]]\nkey = \"gears.gear_teeth\"\nuniform = [30, 50]\n[keep]";
     refused_with("[keep]", teeth, &["is a whole number", "choice or grid"]);

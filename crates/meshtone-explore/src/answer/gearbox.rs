@@ -202,7 +202,9 @@ impl GearboxState {
         };
         let wheel = |(number, wheel): (usize, &meshtone::scenario::GearboxWheel)| {
             let of = layout.shaft_of_wheel[number];
-            let module_mm = layout.mesh_of(number).map_or(f64::NAN, |(mesh, _)| layout.gears[mesh].module_mm);
+            let module_mm = layout
+                .mesh_of(number)
+                .map_or(f64::NAN, |(mesh, _)| layout.gears[mesh].transverse_module_mm());
             json!({
                 "name": wheel.name,
                 "shaft": of,

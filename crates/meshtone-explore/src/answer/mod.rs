@@ -206,6 +206,12 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
     let largest = channels.mesh_force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut figures =
         vec![("contact ratio", stages.teeth.path.contact_ratio, ""), ("mesh frequency", mesh_hz, "Hz")];
+    if gears.is_helical() {
+        figures.extend([
+            ("overlap ratio", gears.overlap_ratio(), ""),
+            ("axial force", (stages.static_force_n() * gears.thrust()).abs(), "N"),
+        ]);
+    }
     let curves = stages.mesh_curves().into_iter();
     figures.extend(curves.map(|curve| ("mean mesh stiffness", curve.mean_stiffness_n_per_mm, "N/mm")));
     figures

@@ -25,6 +25,8 @@ pub struct TeethInPlane {
     pub path_per_pitch_mm: [f64; 2],
     /// (pitches) How long it is in contact.
     pub contact_ratio: f64,
+    /// (pitches) From where to where a pair is in contact anywhere on its face, since its middle could enter contact.
+    pub contact_span_pitches: [f64; 2],
     /// Pinion and gear.
     pub wheels: [WheelInPlane; 2],
 }
@@ -80,18 +82,22 @@ impl TeethInPlane {
             let profile = teeth.profile(name);
             let points = drawn_points(profile.len());
             let damaged = stages.damaged.iter().filter(|tooth| tooth.wheel == name);
-            WheelInPlane {
+            let place = |point_mm: [f64; 2]| teeth.transverse_point_mm(name, point_mm);
+            let mut in_plane = WheelInPlane {
                 wheel,
                 first_tooth_rad: y_mm.atan2(x_mm) - half_rad,
                 flank_mm: [&profile.x_mm, &profile.y_mm].map(|values| at(values, &points)),
                 damaged: damaged.map(|tooth| DamagedInPlane::new(tooth, profile, &points)).collect(),
-            }
+            };
+            in_plane.place(&place);
+            in_plane
         };
         Self {
             centre_distance_mm,
             path_start_mm,
             path_per_pitch_mm: along.map(|part| part * path.base_pitch_mm),
             contact_ratio: path.contact_ratio,
+            contact_span_pitches: teeth.contact_span_pitches(),
             wheels: WheelName::BOTH.map(wheel),
         }
     }
@@ -103,12 +109,26 @@ impl TeethInPlane {
             "path_start_mm": self.path_start_mm,
             "path_per_pitch_mm": self.path_per_pitch_mm,
             "contact_ratio": self.contact_ratio,
+            "contact_span_pitches": self.contact_span_pitches,
             "wheels": self.wheels.each_ref().map(|wheel| wheel.json(packet)),
         })
     }
 }
 
 impl WheelInPlane {
+    /// Moves all points from the section in which the teeth are computed to the one that is drawn.
+    fn place(&mut self, place: &dyn Fn([f64; 2]) -> [f64; 2]) {
+        let along = |x_mm: f64| place([x_mm, 0.0])[0];
+        let [x_mm, y_mm] = &mut self.flank_mm;
+        x_mm.iter_mut().zip(y_mm).for_each(|(x, y)| [*x, *y] = place([*x, *y]));
+        for tooth in &mut self.damaged {
+            tooth.flank_y_mm.iter_mut().for_each(|y| *y = place([0.0, *y])[1]);
+            tooth.end_x_mm = along(tooth.end_x_mm);
+            tooth.chip_x_mm = tooth.chip_x_mm.map(along);
+            tooth.crack_mm = tooth.crack_mm.map(|ends| ends.map(place));
+        }
+    }
+
     fn json(&self, packet: &mut Packet) -> Value {
         let [x_mm, y_mm] = self.flank_mm.each_ref().map(|values| packet.array(values.iter().copied()));
         let damaged: Vec<Value> = self.damaged.iter().map(|tooth| tooth.json(packet)).collect();

@@ -182,11 +182,11 @@ export class Views {
   }
 
   /** Pitches in which a damaged pair is in contact, or would be. */
-  #damagedPairs({ wheels, contact_ratio: ratio }) {
+  #damagedPairs({ wheels, contact_span_pitches: [before, after] }) {
     const gearTeeth = wheels[1].teeth;
     const bands = [];
     wheels.forEach(({ teeth, damaged }) => damaged.filter(({ numbers }) => damaged.length === 1 || 2 * numbers.length <= teeth).forEach(({ numbers }) => numbers.forEach((number) => {
-      for (let pair = number - 1 - teeth; pair <= gearTeeth; pair += teeth) bands.push([pair, pair + ratio]);
+      for (let pair = number - 1 - teeth; pair <= gearTeeth; pair += teeth) bands.push([pair + before, pair + after]);
     })));
     // All teeth alike: nothing stands out.
     return bands.length > 2 * gearTeeth ? [] : bands;
@@ -217,10 +217,11 @@ export class Views {
     const others = [["held", this.#held?.wheels[wheel], "held"], ["recording", this.#recording?.wheels[wheel], "recorded"]];
     const unit = this.#now.signal.channel.unit;
     const all = [...others.slice(0, 1), ["now", now, "now"], ...others.slice(1)].filter(([, drawn]) => drawn?.average);
-    const ratio = this.#now.teeth.contact_ratio;
+    const span = this.#now.teeth.contact_span_pitches;
     const few = now.damaged.length < now.teeth;
     const bands = few ? now.damaged.flatMap((number) => {
-      const [from, to] = [number - 1, number - 1 + ratio].map((pitches) => (360 * pitches) / now.teeth);
+      const [from, to] = span.map((pitches) => (360 * (number - 1 + pitches)) / now.teeth);
+      if (from < 0) return [[0, to], [from + 360, 360]];
       return to > 360 ? [[from, 360], [0, to - 360]] : [[from, to]];
     }) : [];
     const over = (key, look) => all.map(([label, drawn, own]) => line(label, drawn[key], 0, 360 / drawn[key].length, look ?? own));

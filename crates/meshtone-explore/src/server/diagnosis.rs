@@ -84,7 +84,7 @@ async fn work(
     let said = match diagnosing.await {
         Ok(Ok(answer)) => json!({ "answer": answer }),
         Ok(Err(refusal)) => json!({ "error": refusal.json() }),
-        Err(_) => json!({ "error": Refusal::unfit("the diagnosis broke off").json() }),
+        Err(_) => json!({ "error": Refusal::unfit("the diagnosis was interrupted").json() }),
     };
     let _ = to_page.send(said);
 }

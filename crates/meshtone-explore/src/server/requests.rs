@@ -123,7 +123,7 @@ async fn compute_of<S: 'static, T: Send + 'static>(
     let turn = shared.latest.note(&format!("{purpose} {}", asked.page), asked.number);
     let _abandoned = turn.abandoned_on_drop();
     let failed = |what: &str| {
-        Refusal::unfit(format!("the computation {what}")).with_help("reload the page; tell us what was set")
+        Refusal::unfit(format!("the computation {what}")).with_help("reload the page and report the settings")
     };
     let permit = Arc::clone(&shared.room).acquire_owned().await.map_err(|_| failed("was ended"))?;
     if !turn.is_wanted() {

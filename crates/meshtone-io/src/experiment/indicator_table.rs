@@ -139,7 +139,7 @@ impl Rows<'_> {
         if self.experiment.is_none() && self.contents.experiments.len() > 1 {
             let all = listed(&self.contents.experiments);
             return Err(format!(
-                "holds more than one experiment; say which with measured.experiment ({all})"
+                "contains more than one experiment; choose one with measured.experiment ({all})"
             ));
         }
         for (case, of_case) in wanted.cases.iter().zip(&self.values) {

@@ -67,7 +67,7 @@ pub(super) fn read(
         }
         (None, false, false) => Err(table.error(
             "indicators_file",
-            "nothing measured is given; name a table of indicators here, or give every [[case]] a difference_file or recordings",
+            "no measurements are given; name a table of indicators here, or give every [[case]] a difference_file or recordings",
         )),
         _ => Err(table.error(
             "indicators_file",

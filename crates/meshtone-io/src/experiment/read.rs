@@ -162,7 +162,8 @@ fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
 
 fn case<'a>(table: &TomlTable<'a>) -> ReadResult<(Case, CaseFiles<'a>)> {
     let label = table.required("label", "the case's name")?.string()?.to_owned();
-    let severity = table.required("severity", "how severe the fault is, 0 for the healthy case")?.number()?;
+    let severity =
+        table.required("severity", "the severity of the fault, 0 for the healthy case")?.number()?;
     let faults = Fault::list_from_table(table)?;
     Ok((Case { label, severity, faults }, CaseFiles::read(table)?))
 }

@@ -214,7 +214,7 @@ fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
         false => Ok(()),
     };
     let Some(channel) = tachometer else {
-        let problem = "given without tachometer_channel, so it has no meaning";
+        let problem = "given without tachometer_channel, so it has no effect";
         refuse_if(pulses.is_some(), "pulses_per_revolution", problem)?;
         refuse_if(on.is_some(), "tachometer_shaft", problem)?;
         return Ok(match is_mesh_tone {

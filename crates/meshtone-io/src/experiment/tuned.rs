@@ -79,7 +79,7 @@ impl Tuned {
     pub fn warning_for(&self, scenario: &Scenario) -> Option<String> {
         (scenario.model != self.model).then(|| {
             format!(
-                "was tuned with model = \"{}\", but the scenario has \"{}\": the same numbers mean something else there",
+                "was tuned with model = \"{}\", but the scenario has \"{}\": the same numbers have another meaning there",
                 self.model.name(),
                 scenario.model.name()
             )
@@ -198,14 +198,14 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
             let number = value.number()?;
             if number > 0.0 { Ok(number) } else { Err(value.error("must be more than 0")) }
         };
-        let noise = table.required("noise_level", "the noise over the healthy signal's rms")?;
+        let noise = table.required("noise_level", "the ratio of the noise to the healthy signal's rms")?;
         let noise_level = noise.number()?;
         if noise_level < 0.0 {
             return Err(noise.error("must be 0 or more"));
         }
         let ratio = table.required("fault_to_harmonics_ratio", "the weight of the fault's response")?;
         let enhancement = Enhancement {
-            width_ratio: above_0("width_ratio", "the part of the cycle that becomes the cycle")?,
+            width_ratio: above_0("width_ratio", "the fraction of the cycle that is stretched to the cycle")?,
             fault_to_harmonics_ratio: ratio.number()?,
             noise_level,
         };

@@ -21,8 +21,8 @@ pub enum ReadRecordingError {
     },
     /// Neither the first bytes nor the ending of the file belong to a format that is read.
     #[error(
-        "{}: is of no format that is known here ({found}); known are CSV, TSV and other separated text (.csv, .tsv, .txt, .dat, \
-         .asc), Parquet (.parquet), NumPy (.npy, .npz), MATLAB version 5 to 7 (.mat) and WAV (.wav)",
+        "{}: has no known format ({found}); known are CSV, TSV and other separated text (.csv, .tsv, .txt, \
+         .dat, .asc), Parquet (.parquet), NumPy (.npy, .npz), MATLAB version 5 to 7 (.mat) and WAV (.wav)",
         path.display()
     )]
     UnknownFormat {

@@ -67,7 +67,7 @@ pub(super) fn decide(
     };
     for StatedRate { by, rate_hz } in stated {
         if !(rate_hz.is_finite() && *rate_hz > 0.0) {
-            let problem = format!("{by} says a sampling rate of {rate_hz} S/s; must be above 0");
+            let problem = format!("{by} states a sampling rate of {rate_hz} S/s; must be above 0");
             return Err(Problem::rate(&problem));
         }
         if (rate_hz / first.rate_hz - 1.0).abs() > AGREEMENT {
@@ -83,7 +83,7 @@ pub(super) fn decide(
 
 fn contradiction(first: &StatedRate, other: &str, other_hz: f64) -> Problem {
     let StatedRate { by, rate_hz } = first;
-    Problem::rate(&format!("{by} says a sampling rate of {rate_hz} S/s, but {other} says {other_hz} S/s"))
+    Problem::rate(&format!("{by} states a sampling rate of {rate_hz} S/s, but {other} says {other_hz} S/s"))
 }
 
 /// A file that does not state its sampling rate. A single column is hardly the time.
@@ -96,7 +96,7 @@ fn no_rate(present: &[String]) -> Problem {
             names(present)
         ),
     };
-    Problem::NoRate(format!("does not say its sampling rate{rest}"))
+    Problem::NoRate(format!("does not state its sampling rate{rest}"))
 }
 
 #[cfg(test)]

@@ -47,7 +47,7 @@ fn time_columns(labels: &[Label], options: &RecordingOptions) -> Result<Vec<(usi
             let [index] = matching(labels, choice)?[..] else {
                 return Err(ambiguous(labels, &format!("{choice} is several columns; choose one")));
             };
-            let problem = "is in no unit of time that is known here (h, min, s, ms, µs, ns)";
+            let problem = "has no known unit of time (h, min, s, ms, µs, ns)";
             let unit = labels[index].chosen_time_unit_s();
             Ok(vec![(index, unit.ok_or_else(|| Problem::time(&labels[index].raw, problem))?)])
         }

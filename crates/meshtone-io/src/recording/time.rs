@@ -64,7 +64,7 @@ struct Steps {
 pub(super) fn timing(column: &str, times: &[f64], unit_s: f64) -> Result<Timing, Problem> {
     let refuse = |problem: &str| Err(Problem::time(column, problem));
     let (&[first, .., last], count) = (times, times.len()) else {
-        return refuse("has one sample only, which tells no sampling rate");
+        return refuse("has one sample only, which gives no sampling rate");
     };
     // All are compared first: without a way out in between, in vectors.
     let goes_back = times.iter().zip(&times[1..]).fold(false, |back, (from, to)| back | (to < from));
@@ -109,7 +109,7 @@ pub(super) fn timing(column: &str, times: &[f64], unit_s: f64) -> Result<Timing,
         let (resolution_s, span_s) = (readable(resolution * unit_s), readable((last - first) * unit_s));
         let percent = readable(100.0 * uncertainty);
         return refuse(&format!(
-            "is rounded to {resolution_s} s over {span_s} s, which tells the sampling rate only to {percent} %"
+            "is rounded to {resolution_s} s over {span_s} s, which gives the sampling rate only to {percent} %"
         ));
     }
     let rate_hz = shortest_within(1.0 / (line.interval() * unit_s), uncertainty);

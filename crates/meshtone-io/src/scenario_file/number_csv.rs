@@ -96,7 +96,7 @@ fn append<const COLUMNS: usize>(
     }
     for (column, field) in columns.iter_mut().zip(record) {
         let number = field.parse().ok().filter(|number: &f64| number.is_finite());
-        column.push(number.ok_or_else(|| format!("says `{field}` in line {line}; must be a finite number"))?);
+        column.push(number.ok_or_else(|| format!("has `{field}` in line {line}; must be a finite number"))?);
     }
     Ok(())
 }

@@ -62,7 +62,7 @@ pub fn write_gearbox_signals(
 ) -> io::Result<()> {
     let column = |signal: &'_ GearboxSignal| {
         let meaning = match signal.unit {
-            "N" => "force along the line of action of the mesh; negative where back flanks touch",
+            "N" => "force along the line of action of the mesh; negative where coast flanks touch",
             "µm" => {
                 "how far the wheels of the mesh have turned against one another, along the line of action"
             }

@@ -6,7 +6,8 @@ use meshtone::sensor::ContactFigures;
 use serde::Serialize;
 
 use super::{
-    ChannelSummary, FORMAT_VERSION, MeshForce, MeshStiffness, SummaryEnd, SummaryHead, extremes, json,
+    ChannelSummary, FORMAT_VERSION, HelixSummary, MeshForce, MeshStiffness, SummaryEnd, SummaryHead,
+    extremes, json,
 };
 use crate::run_identity::RunIdentity;
 
@@ -72,8 +73,10 @@ pub struct MeshSummary {
     pub wheels: [String; 2],
     /// (Hz) Nominal mesh frequency.
     pub mesh_frequency_hz: f64,
-    /// (-) Contact ratio.
+    /// (-) Contact ratio, of helical wheels in the transverse section.
     pub contact_ratio: f64,
+    /// Overlap and thrust; only of helical wheels.
+    pub helix: Option<HelixSummary>,
     /// (-) Face load factor K_Hβ of sound teeth under the nominal load.
     pub face_load_factor: f64,
     /// (N) Force that holds the nominal torque.
@@ -128,6 +131,7 @@ impl GearboxSummary {
                 mesh_frequency_hz: tables.turning.pitches_per_revolution
                     * gearbox.operation.drive.pinion_speed_hz,
                 contact_ratio: stages.pairs[number].teeth.contact.contact_ratio,
+                helix: HelixSummary::of(&stages.layout.gears[number], static_force_n),
                 face_load_factor: tables.face_load_factor,
                 static_force_n,
                 mesh_stiffness: MeshStiffness { min_n_per_mm, mean_n_per_mm, max_n_per_mm },

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use meshtone::damage::{QuantityValue, ToothPart, damages_of_fault};
-use meshtone::scenario::{Fault, FaultyTeeth, ScenarioWarning};
+use meshtone::scenario::{Fault, FaultyTeeth, Gears, ScenarioWarning};
 use meshtone::sensor::{Channel, ContactFigures};
 use meshtone::signal::{ChainSettings, Indicators, SimulatedShafts, kurtosis, peak, rms};
 use meshtone::wheel::WheelName;
@@ -86,8 +86,10 @@ pub struct Summary {
     pub faults: Vec<FaultSummary>,
     /// Samples per revolution of the pinion, at the nominal speed.
     pub samples_per_pinion_revolution: usize,
-    /// (-) Contact ratio.
+    /// (-) Contact ratio, of helical wheels in the transverse section.
     pub contact_ratio: f64,
+    /// Overlap and thrust; only of helical wheels.
+    pub helix: Option<HelixSummary>,
     /// (-) Face load factor K_Hβ of sound teeth under the nominal load; only under `contact`.
     pub face_load_factor: Option<f64>,
     /// (Hz) The natural frequencies at the mean mesh stiffness, rising: 13, under `contact` 17.
@@ -149,6 +151,29 @@ impl FaultSummary {
                 .collect(),
         };
         faults.map(summary).collect()
+    }
+}
+
+/// What only helical wheels have.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct HelixSummary {
+    /// (-) Overlap ratio ε_β.
+    pub overlap_ratio: f64,
+    /// (-) Total contact ratio ε_γ.
+    pub total_contact_ratio: f64,
+    /// (N) Force along the shafts under the nominal torque, on the driving wheel; positive towards positive z where it turns about that.
+    pub axial_force_n: f64,
+}
+
+impl HelixSummary {
+    /// Of two wheels; none of spur wheels.
+    fn of(gears: &Gears, static_force_n: f64) -> Option<Self> {
+        gears.is_helical().then(|| Self {
+            overlap_ratio: gears.overlap_ratio(),
+            total_contact_ratio: gears.total_contact_ratio(),
+            axial_force_n: static_force_n * gears.thrust(),
+        })
     }
 }
 
@@ -243,6 +268,7 @@ impl Summary {
             faults: FaultSummary::all(stages),
             samples_per_pinion_revolution: stages.time.samples_per_pinion_revolution,
             contact_ratio: stages.teeth.contact.contact_ratio,
+            helix: HelixSummary::of(&stages.scenario.gears, stages.static_force_n()),
             face_load_factor: mesh.and_then(|mesh| mesh.face_load_factor),
             natural_frequencies_hz: stages.natural_frequencies_hz(),
             mesh_stiffness: MeshStiffness { min_n_per_mm, mean_n_per_mm, max_n_per_mm },

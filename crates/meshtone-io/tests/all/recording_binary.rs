@@ -171,7 +171,7 @@ fn a_stated_rate_and_a_time_array_must_agree() {
     assert_eq!((recording.sampling_rate_hz, recording.start_s, names(&recording)), (1000.0, 3.0, vec!["a"]));
     assert_eq!(recording.len(), 100);
     let message = refused("a.npz", &with_rate(2000.0), &defaults());
-    assert!(message.contains("sampling_rate_khz says a sampling rate of 2000 S/s"), "{message}");
+    assert!(message.contains("sampling_rate_khz states a sampling rate of 2000 S/s"), "{message}");
     assert!(message.contains("time column t says 1000 S/s; give the sampling rate"), "{message}");
     assert_eq!(read("a.npz", &with_rate(2000.0), &rate(50.0)).unwrap().sampling_rate_hz, 50.0);
     assert!(refused("a.npz", &with_rate(-1.0), &defaults()).contains("must be above 0"));
@@ -328,7 +328,7 @@ fn files_that_are_empty_cut_or_unknown_are_refused() {
         }
     }
     let message = refused("a.xyz", b"hello", &defaults());
-    assert!(message.contains("is of no format that is known here (it ends in .xyz"), "{message}");
+    assert!(message.contains("has no known format (it ends in .xyz"), "{message}");
     let missing = read_recording("no/such/file.csv".as_ref(), &defaults()).unwrap_err().to_string();
     assert!(missing.starts_with("cannot read no/such/file.csv: "), "{missing}");
 }
@@ -353,7 +353,7 @@ fn options_are_checked() {
     }
     let variable = RecordingOptions { variable: Some("x".to_string()), ..rate(1.0) };
     assert!(refused("a.npy", &bytes, &variable).contains("a.npy: variable `x` is given, but only NPZ"));
-    assert!(refused("a.npy", &bytes, &defaults()).contains("does not say its sampling rate"));
+    assert!(refused("a.npy", &bytes, &defaults()).contains("does not state its sampling rate"));
     let directory = tempfile::tempdir().unwrap();
     let empty = read_recording(directory.path(), &defaults()).unwrap_err().to_string();
     assert!(empty.starts_with("cannot read "), "{empty}");

@@ -202,7 +202,7 @@ fn time_must_be_uniform() {
     assert!(message.contains("by 0.00004 s, elsewhere by 0.00002 s"), "{message}");
     let no_time = RecordingOptions { time: TimeColumn::Absent, ..RecordingOptions::default() };
     let message = refused("run.csv", b"time,a\n0,1\n1,2\n", &no_time);
-    assert!(message.contains("does not say its sampling rate"), "{message}");
+    assert!(message.contains("does not state its sampling rate"), "{message}");
     assert!(message.contains("option sampling_rate_hz") && message.contains("it has time, a"), "{message}");
     let recording = read("run.csv", content(&times).as_bytes(), &rate(50_000.0)).unwrap();
     assert_eq!((recording.len(), recording.channels.len()), (999, 1));

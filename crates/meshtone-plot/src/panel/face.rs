@@ -11,6 +11,8 @@ use crate::drawing::{Anchor, Area, Axes, Canvas, Fill, Stroke, TextStyle, Ticks,
 
 /// Where contact starts, here and at the profile errors.
 pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, &[7.0, 3.0]);
+/// Where helical teeth touch at one instant.
+const CONTACT_LINE: Stroke = Stroke::solid(colour::GREEN, 0.8);
 /// Where the tip relief and the chamfer start.
 pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, &[2.0, 2.5]);
 const CONTACT_NAME: &str = "contact start";
@@ -28,12 +30,16 @@ const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
 /// Draws the face; `along` is the tooth's own range.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
     let half = side.wheel.face_width_mm / 2.0;
-    let axes = Axes::titled(canvas, area, [-1.12 * half, 1.12 * half], along, "Tooth face");
+    let title = if side.contact_lines_mm.is_empty() { "Tooth face" } else { "Face, contact lines" };
+    let axes = Axes::titled(canvas, area, [-1.12 * half, 1.12 * half], along, title);
     axes.x_axis(canvas, &Ticks::about_zero(half), "Face width, z (mm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
     let (root, tip) = (side.profile.x_mm[0], side.profile.tip_x_mm());
     let top = if side.is_missing() { root } else { tip };
     canvas.rectangle(axes.at(-half, along[0]), axes.at(half, top), Fill::solid(colour::STEEL));
+    for line in &side.contact_lines_mm {
+        canvas.polyline(&line.iter().map(|&[z, x]| axes.at(z, x)).collect::<Vec<_>>(), CONTACT_LINE);
+    }
     if let Some(tooth) = side.tooth {
         tooth.descriptions.iter().for_each(|damage| damaged(canvas, &axes, damage));
     }

@@ -86,11 +86,12 @@ fn facts(stages: &GearboxStages) -> Vec<String> {
     let stage = |mesh: usize| {
         let gears = &stages.layout.gears[mesh];
         format!(
-            "{}: {}/{} teeth, module {} mm",
+            "{}: {}/{} teeth, {} mm{}",
             gearbox.meshes[mesh].name(),
             gears.pinion_teeth,
             gears.gear_teeth,
-            number(gears.module_mm)
+            heading::module(gears),
+            heading::helix(gears).map_or_else(String::new, |helix| format!(", {helix}"))
         )
     };
     let drive = &gearbox.operation.drive;
@@ -125,7 +126,7 @@ fn drawn_wheels<'a>(stages: &'a GearboxStages) -> Vec<DrawnWheel<'a>> {
         let shaft = layout.shaft_of_wheel[number];
         let [x, y] = layout.positions_m[shaft].map(|m| m * 1e3);
         let z = at * gearbox.shafts[shaft].length_mm;
-        let radius = layout.gears[mesh].module_mm * f64::from(*teeth) / 2.0;
+        let radius = layout.gears[mesh].transverse_module_mm() * f64::from(*teeth) / 2.0;
         let is_damaged = gearbox.faults.iter().any(|fault| fault.wheel == *name);
         Some(DrawnWheel { name, x, y, z, radius, width: *face_width_mm, is_damaged })
     };

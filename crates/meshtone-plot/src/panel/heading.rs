@@ -1,7 +1,7 @@
 //! Title, key facts and the columns' headings.
 
 use meshtone::Stages;
-use meshtone::scenario::{Gears, Scenario};
+use meshtone::scenario::{Gears, Hand, Scenario};
 
 use super::damage;
 use super::side::Side;
@@ -22,7 +22,7 @@ pub(super) fn title(stages: &Stages) -> String {
 /// The panel in a sentence, for readers who cannot see it.
 pub(super) fn description(stages: &Stages) -> String {
     format!(
-        "Results panel of a simulated spur gear pair: teeth, tooth faces, profile errors, averages over the \
+        "Results panel of a simulated gear pair: teeth, tooth faces, profile errors, averages over the \
          shafts' revolutions and mesh stiffness. {}.",
         facts(&stages.scenario).join(", ")
     )
@@ -45,7 +45,7 @@ fn facts(scenario: &Scenario) -> Vec<String> {
     let torques_nm = operation.torque_profile_nm.as_ref().map(|profile| &profile.value[..]);
     let wheels = vec![
         format!("{} and {} teeth", gears.pinion_teeth, gears.gear_teeth),
-        format!("module {} mm", number(gears.module_mm)),
+        format!("{} mm", module(gears)),
         format!("face width {} mm", number(gears.face_width_mm)),
         format!("pressure angle {}°", number(gears.pressure_angle_deg)),
     ];
@@ -58,7 +58,19 @@ fn facts(scenario: &Scenario) -> Vec<String> {
             false => "model as published".to_owned(),
         },
     ];
-    wheels.into_iter().chain(mounting(gears)).chain(run).collect()
+    wheels.into_iter().chain(helix(gears)).chain(mounting(gears)).chain(run).collect()
+}
+
+/// The module with its section, in mm.
+pub(super) fn module(gears: &Gears) -> String {
+    let name = if gears.is_helical() { "normal module" } else { "module" };
+    format!("{name} {}", number(gears.module_mm))
+}
+
+/// The helix angle of helical wheels, with the hand of the driving one.
+pub(super) fn helix(gears: &Gears) -> Option<String> {
+    let hand = if gears.hand == Hand::Right { "right" } else { "left" };
+    gears.is_helical().then(|| format!("helix angle {}° {hand}", number(gears.helix_angle_deg)))
 }
 
 /// Profile shifts and centre distance, where they are not the standard's.

@@ -14,10 +14,13 @@ pub(super) struct Side<'a> {
     pub(super) shaft: String,
     /// What stands before a tooth's number, with a space; nothing where the heading's name is enough.
     of_tooth: &'static str,
+    /// The wheel, of helical ones that of the normal section, in which teeth are drawn.
     pub(super) wheel: &'a Wheel,
     pub(super) profile: &'a ToothProfile,
     /// Profile index where contact starts.
     pub(super) contact_index: usize,
+    /// (mm) Contact lines on the face every half base pitch, by z and x of their points; none of spur teeth.
+    pub(super) contact_lines_mm: Vec<Vec<[f64; 2]>>,
     /// (mm) x where what shapes the tip starts, and its name.
     pub(super) tip_shapes: Vec<(f64, &'static str)>,
     /// What is left of the tooth; none of a sound one.
@@ -38,7 +41,8 @@ impl<'a> Side<'a> {
         };
         let heading = [title.to_owned(), shaft.to_owned()];
         let (errors, tips) = (stages.profile_errors.as_ref(), stages.tip_lengths_mm());
-        Self::of_pair(name, heading, of_tooth, &stages.teeth, &stages.damaged, errors, tips)
+        let overlap = stages.meshes.first().map_or(0.0, |mesh| mesh.overlap);
+        Self::of_pair(name, heading, of_tooth, (&stages.teeth, overlap), &stages.damaged, errors, tips)
     }
 
     /// A wheel of a gearbox, in its first mesh; none of a wheel in no mesh.
@@ -47,15 +51,17 @@ impl<'a> Side<'a> {
         let (of_mesh, of_file) = (&stages.pairs[mesh], &stages.gearbox.wheels[wheel]);
         let heading = [of_file.name.clone(), format!("shaft {}", of_file.shaft)];
         let (errors, tips) = (of_mesh.profile_errors.as_ref(), stages.layout.gears[mesh].tip_lengths_mm());
-        Some(Self::of_pair(name, heading, "", &of_mesh.teeth, &of_mesh.damaged, errors, tips))
+        let teeth = (&of_mesh.teeth, stages.meshes[mesh].overlap);
+        Some(Self::of_pair(name, heading, "", teeth, &of_mesh.damaged, errors, tips))
     }
 
-    /// One of two wheels in mesh.
+    /// One of two wheels in mesh, with (base pitches) how much farther on its path a pair is at the end of the face at positive z than at
+    /// the other one.
     fn of_pair(
         name: WheelName,
         [title, shaft]: [String; 2],
         of_tooth: &'static str,
-        teeth: &'a Teeth,
+        (teeth, overlap): (&'a Teeth, f64),
         damaged: &'a [DamagedTooth],
         errors: Option<&'a ProfileErrors>,
         tip_lengths_mm: [f64; 2],
@@ -74,7 +80,8 @@ impl<'a> Side<'a> {
             name: title,
             shaft,
             of_tooth,
-            wheel: teeth.wheel(name),
+            wheel: teeth.section(name),
+            contact_lines_mm: contact_lines_mm(teeth, name, overlap),
             profile,
             contact_index,
             tip_shapes: tip_shapes(tip_lengths_mm, profile),
@@ -145,6 +152,15 @@ impl<'a> Side<'a> {
         let t = if b > a { ((radius_mm - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
         self.profile.x_mm[low] + t * (self.profile.x_mm[high] - self.profile.x_mm[low])
     }
+}
+
+fn contact_lines_mm(teeth: &Teeth, name: WheelName, overlap: f64) -> Vec<Vec<[f64; 2]>> {
+    if overlap == 0.0 {
+        return Vec::new();
+    }
+    let reach = ((teeth.path.contact_ratio + overlap.abs()) * 2.0).ceil() as i32;
+    let lines = (-reach..=reach).map(|half| teeth.contact_line_mm(name, overlap, f64::from(half) / 2.0));
+    lines.filter(|line| line.len() > 1).collect()
 }
 
 /// From the tip inwards, as the scenario says: the resampled pinion profile's own index is that of the profile before

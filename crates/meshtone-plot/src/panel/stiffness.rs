@@ -77,8 +77,8 @@ impl DamagedPairs {
 
     /// (pitches) The parts of a window in which one of them is in contact.
     fn turns(&self, window: [f64; 2]) -> Vec<[f64; 2]> {
-        let damaged = self.wheels.iter().flat_map(|(_, damaged)| damaged);
-        let contact = damaged.map(|tooth| tooth.contact_pitches).fold(0.0, f64::max);
+        let damaged = self.wheels.iter().flat_map(|(_, damaged)| damaged).next();
+        let contact = damaged.map_or([0.0; 2], |tooth| tooth.contact_pitches);
         damaged_tooth::turns(window, contact, |pair| {
             self.wheels.iter().any(|(teeth, damaged)| damaged_tooth::is_of_pair(damaged, *teeth, pair))
         })

@@ -56,8 +56,9 @@ impl<'a> HealthyTooth<'a> {
         Self { teeth, name: WheelName::Gear, tooth: 0, seed }
     }
 
+    /// The wheel, of helical ones that of the normal section.
     pub(super) fn wheel(&self) -> &'a Wheel {
-        self.teeth.wheel(self.name)
+        self.teeth.section(self.name)
     }
 
     pub(super) fn profile(&self) -> &'a ToothProfile {
@@ -75,8 +76,13 @@ impl<'a> HealthyTooth<'a> {
 
     /// (rev) Position of a profile point in contact: pinion revolutions since the tooth entered contact.
     pub(super) fn position_rev(&self, index: usize) -> f64 {
-        let position = self.teeth.path.position(self.name, self.flank().curvature_mm(index));
-        position.clamp(0.0, self.teeth.path.contact_ratio) / f64::from(self.teeth.pinion.teeth)
+        self.position(index).clamp(0.0, self.teeth.path.contact_ratio) / f64::from(self.teeth.pinion.teeth)
+    }
+
+    /// (base pitches) Position of the path at which a profile point is touched, at the middle of the face.
+    pub(super) fn position(&self, index: usize) -> f64 {
+        let curvature_mm = self.teeth.transverse_curvature_mm(self.name, self.flank().curvature_mm(index));
+        self.teeth.path.position(self.name, curvature_mm)
     }
 
     /// Random draws for a damage of this tooth.
@@ -173,7 +179,7 @@ impl DamagedTooth {
                 beside(self.descriptions.split_last().map_or(&[], |(_, earlier)| earlier))
             );
             return Err(ScenarioError::new("fault", "", problem)
-                .with_help("move the pit towards the root, or lessen the breakage's tip_loss_mm"));
+                .with_help("move the pit towards the root, or reduce the breakage's tip_loss_mm"));
         }
         let is_cut = |damage: &&DamageDescription| damage.part == ToothPart::FlankLength;
         let Some((last, earlier)) = self.descriptions.split_last() else { return Ok(()) };
@@ -184,7 +190,7 @@ impl DamagedTooth {
             None => Ok(()),
             Some(other) => {
                 let problem = format!(
-                    "cuts the flank of {place} where {} has cut it; must leave a piece of sound flank between them",
+                    "cuts the flank of {place} where {} has cut it; must leave a piece of undamaged flank between them",
                     named(other)
                 );
                 Err(ScenarioError::new("fault", "", problem)

@@ -140,7 +140,7 @@ impl Keys for Fault {
             row(
                 "severity",
                 "-",
-                "how severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows",
+                "the severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows",
                 field!(severity),
             )
             .otherwise("that of the sizes")
@@ -196,7 +196,7 @@ impl Fault {
         };
         let sizes = fault.damage.sizes();
         if let Some(size) = sizes.iter().find(|size| table.optional(size).is_some()) {
-            let problem = "given beside severity, which the sizes follow from";
+            let problem = "given beside severity, which determines the sizes";
             let keys = sizes.join(", ");
             return Err(table.error(size, problem).with_help(format!("remove severity, or all of {keys}")));
         }

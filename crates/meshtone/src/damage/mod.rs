@@ -16,6 +16,7 @@ mod pits;
 mod root_crack;
 mod section;
 mod severity;
+mod slice;
 mod through_face;
 mod tooth_breakage;
 mod tooth_destruction;

@@ -38,14 +38,12 @@ impl ToothPart {
     pub(super) fn excludes(self, other: Self) -> Option<&'static str> {
         match (self, other) {
             (Self::Whole, Self::FlankSurface) | (Self::FlankSurface, Self::Whole) => None,
-            (Self::Whole, _) | (_, Self::Whole) => {
-                Some("a tooth that is gone as a whole has no other damage but of its flank's surface")
-            }
+            (Self::Whole, _) | (_, Self::Whole) => Some("a missing tooth can have no other damage than wear"),
             (one, other) if one != other => None,
             (Self::FlankLength | Self::FlankSpots, _) => None,
-            (Self::Tip, _) => Some("a tooth's tip breaks once"),
-            (Self::Root, _) => Some("a tooth's root cracks once"),
-            (Self::FlankSurface, _) => Some("a flank's surface has worn once"),
+            (Self::Tip, _) => Some("a tooth can have one breakage only"),
+            (Self::Root, _) => Some("a tooth can have one root crack only"),
+            (Self::FlankSurface, _) => Some("a flank can have one wear fault only"),
         }
     }
 }

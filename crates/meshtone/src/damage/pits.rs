@@ -92,7 +92,7 @@ impl Keys for Pits {
             listed(row(
                 "z_mm",
                 "mm",
-                "the centre of each along the face, from the face's middle; one number a pit, as of all keys here",
+                "the centre of each along the face, from the face's middle; one number per pit, as for all keys here",
                 field!(Self::Listed, z_mm),
             ))
             .rule("within half the face width and the radius"),
@@ -281,7 +281,7 @@ impl Kind for Pits {
         let left_mm = on_flank.least_left_mm();
         if left_mm <= LEAST_LEFT * face_width_mm {
             let problem = format!(
-                "leave{} no more than {:.0} % of the face at some height of tooth {}'s flank: the mate would find nothing there",
+                "leave{} no more than {:.0} % of the face at some height of tooth {}'s flank: the mating gear would have no contact there",
                 if on_flank.pits.len() > pits.len() { " together with other pits" } else { "" },
                 100.0 * LEAST_LEFT,
                 tooth.first_tooth() + 1,

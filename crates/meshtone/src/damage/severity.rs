@@ -23,7 +23,7 @@ pub(crate) struct SoundTooth<'a> {
 impl<'a> SoundTooth<'a> {
     /// A tooth of one of the two wheels.
     pub(super) fn new(teeth: &'a Teeth, wheel: WheelName) -> Self {
-        let of_wheel = teeth.wheel(wheel);
+        let of_wheel = teeth.section(wheel);
         Self {
             profile: teeth.profile(wheel),
             first_contact: teeth.initial_contact_index(wheel),

@@ -87,7 +87,7 @@ impl Keys for DestructionLine {
             row(
                 "end",
                 "-",
-                "the flank point that the line is aimed at, likewise",
+                "the flank point to which the line leads, likewise",
                 field!(Self::End, 0),
             )
             .required_unless(&["slope_deg", "severity"])
@@ -112,10 +112,11 @@ impl Keys for DestructionLine {
                 Ok(())
             }
             (true, true) => Err(table
-                .error("slope_deg", "given beside end; exactly one of the two says where the line goes")
+                .error("slope_deg", "given beside end; exactly one of the two must say where the line leads")
                 .with_help("remove slope_deg, or remove end")),
             (false, false) => Err(table
-                .error("end", "missing, and slope_deg too; exactly one of the two says where the line goes")
+                .error("end", "missing, and slope_deg too; exactly one of the two must say where the line \
+                               leads")
                 .with_help("give end, a fraction of the flank after start, or slope_deg, an angle, or severity alone")),
         }
     }

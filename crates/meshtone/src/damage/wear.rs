@@ -33,8 +33,8 @@ impl Keys for Wear {
             row("depth_um", "µm", "the largest depth of wear, along the flank's normal", field!(depth_um))
                 .required_unless(&["severity"])
                 .range(Range::from_to(0.0, MOST_UM).help(
-                    "what has worn deeper bears where it was not worn before; for a flank that is gone, use kind = \
-                     \"tooth-destruction\"",
+                    "a flank that is worn deeper touches where it was not worn before; for a flank that is \
+                     destroyed, use kind = \"tooth-destruction\"",
                 )),
         ]
     }
@@ -105,14 +105,13 @@ impl Wear {
 
     /// (mm) Depth at the profile's points, along the flank's normal.
     fn depths_mm(&self, healthy: &HealthyTooth) -> Vec<f64> {
-        let (flank, path) = (healthy.flank(), &healthy.teeth.path);
+        let path = &healthy.teeth.path;
         // The point before the first one in contact, too: what lies between is interpolated.
         let first = healthy.first_contact().saturating_sub(1);
         let begin_mm = involutes_begin_mm(healthy.teeth);
         let shape: Vec<f64> = (0..healthy.profile().len())
             .map(|i| {
-                let position =
-                    path.position(healthy.name, flank.curvature_mm(i)).clamp(0.0, path.contact_ratio);
+                let position = healthy.position(i).clamp(0.0, path.contact_ratio);
                 if i < first { 0.0 } else { wear_rate(healthy.teeth, begin_mm, healthy.name, position) }
             })
             .collect();

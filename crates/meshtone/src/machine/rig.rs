@@ -84,7 +84,7 @@ impl Keys for Rig {
             row(
                 "wheel_rotational_stiffness_nm_per_rad",
                 "N m/rad",
-                "the stiffness of each wheel against tilting, about x and about y",
+                "the tilting stiffness of each wheel, about x and about y",
                 field!(wheel_rotational_stiffness_nm_per_rad),
             )
             .range(STIFFNESS),
@@ -106,9 +106,9 @@ impl Keys for Rig {
             row(
                 "misalignment_um",
                 "µm",
-                "how far the shafts, with the slope that the nominal load gives them, are from parallel in the plane \
-                 of action over the face width; positive where flanks come closer towards positive z. The tilt by an \
-                 uneven load is computed",
+                "the misalignment of the shafts in the plane of action over the face width, including their \
+                 slope under the nominal load; positive where flanks come closer towards positive z. The \
+                 tilt by an uneven load is computed",
                 field!(misalignment_um),
             )
             .range(Range::from_to(-1e3, 1e3)),
@@ -128,14 +128,14 @@ impl Keys for Rig {
             row(
                 "support",
                 "",
-                "what each shaft's bearings sit in",
+                "the supports of the shafts' bearings",
                 field!(support),
             ),
             row(
                 "mesh_damping_ratio",
                 "-",
-                "the damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh \
-                 stiffness",
+                "the damping of teeth in contact, relative to the critical damping of the wheels' rotation \
+                 on the mean mesh stiffness",
                 field!(mesh_damping_ratio),
             )
             .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
@@ -151,7 +151,8 @@ impl Rig {
         below("rig.eccentricity_mm", self.eccentricity_mm, gears.module_mm, "the module")?;
         for (wheel, shaft) in [(WheelName::Pinion, &self.pinion_shaft), (WheelName::Gear, &self.gear_shaft)] {
             let below_pitch_circle = gears.dedendum(wheel) - gears.profile_shift(wheel);
-            let root_radius_mm = gears.module_mm * (f64::from(gears.teeth(wheel)) / 2.0 - below_pitch_circle);
+            let root_radius_mm = gears.transverse_module_mm() * f64::from(gears.teeth(wheel)) / 2.0
+                - gears.module_mm * below_pitch_circle;
             let limit_is = format!("the root radius of the {}, whose bore it fills", wheel.name());
             below(
                 &format!("rig.{}_shaft.radius_mm", wheel.name()),
@@ -285,7 +286,7 @@ impl Keys for Shaft {
                 field!(bearing_span_mm),
             )
             .range(Range::positive().implausible_above(1e5)),
-            row("wheel_at", "-", "where between them the wheel sits", field!(wheel_at)).range(
+            row("wheel_at", "-", "the position of the wheel between them", field!(wheel_at)).range(
                 Range::between(Excluded(0.0), Excluded(1.0))
                     .message("must be more than 0 and less than 1 (0.5: midway between the bearings)"),
             ),

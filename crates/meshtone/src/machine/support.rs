@@ -93,8 +93,8 @@ impl Support {
         ];
         let kept: Vec<&str> = kept.into_iter().filter_map(|(text, is_kept)| is_kept.then_some(text)).collect();
         let message = format!(
-            "is given by stiffnesses and has {}, as former files had where they left it out; if that is not meant, give other values, or \
-             base_hz and differential_hz",
+            "is given by stiffnesses and has {}, the former default of what is left out; if this is not \
+             intended, give other values, or base_hz and differential_hz",
             kept.join(", ")
         );
         (!kept.is_empty()).then(|| ScenarioWarning::new(WarningKind::FormerDefaults, "rig.support", message))
@@ -104,7 +104,7 @@ impl Support {
     pub(super) fn check(&self) -> Check {
         match self.springs {
             SupportSprings::Frequencies { base_hz, differential_hz } if differential_hz <= base_hz => {
-                let problem = format!("must be more than base_hz, {base_hz:?} Hz: what couples the supports stiffens them");
+                let problem = format!("must be more than base_hz, {base_hz:?} Hz: the coupling of the supports stiffens them");
                 Err(ScenarioError::new("rig.support.differential_hz", format!("{differential_hz:?}"), problem))
             }
             _ => Ok(()),
@@ -132,7 +132,7 @@ impl Keys for Support {
             row(
                 "damping_ratio",
                 "-",
-                "the damping ratio of the supports and of what holds them",
+                "the damping ratio of the supports on their stiffnesses",
                 field!(damping_ratio),
             )
             .range(STRUCTURAL_DAMPING),
@@ -144,7 +144,7 @@ impl Keys for Support {
         let given = |keys: [&'static str; 2]| keys.into_iter().find(|key| table.optional(key).is_some());
         match (given(FREQUENCIES), given(STIFFNESSES)) {
             (Some(frequency), Some(stiffness)) => Err(table
-                .error(stiffness, format!("given beside {frequency}; what holds the supports is given in one way"))
+                .error(stiffness, format!("given beside {frequency}; the stiffness of the supports has only one source"))
                 .with_help(format!("remove {frequency}, or remove {stiffness}"))),
             (Some(_), None) => {
                 if let SupportSprings::Stiffnesses { .. } = self.springs {
@@ -174,7 +174,7 @@ impl Keys for SupportSprings {
             row(
                 "base_hz",
                 "Hz",
-                "the natural frequency of the bare supports, moving alike",
+                "the natural frequency of the bare supports, moving in phase",
                 field!(Self::Frequencies, base_hz),
             )
             .range(HZ)

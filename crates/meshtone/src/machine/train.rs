@@ -154,7 +154,7 @@ impl Train {
                     .map(|spring| spring.turned(&turn))
                     .collect(),
                 turn,
-                lines: vec![line_of_action(teeth, coordinates)],
+                lines: vec![line_of_action(gears, teeth, coordinates)],
                 drives: vec![
                     Drive::Motor {
                         coordinate: THETA_PINION,
@@ -232,16 +232,27 @@ pub(crate) fn turn_planes(
 }
 
 /// The line of action in turned coordinates. At the axial position z it is `g = g0 + z g1` with
-/// `g0 = [sin α, cos α, −sin α, −cos α, Rb_g, Rb_p, 0 …]` and `g1 = [0×9, −cos α, cos α, sin α, −sin α, 0 …]`, α the working pressure
-/// angle.
-fn line_of_action(teeth: &Teeth, coordinates: usize) -> LineOfAction {
+/// `g0 = [sin α, cos α, −sin α, −cos α, Rb_g, Rb_p, 0, t, −t, 0, 0, −t r_g, −t r_p, 0 …]` and
+/// `g1 = [0×9, −cos α, cos α, sin α, −sin α, 0 …]`, α the working pressure angle in the transverse section, t the thrust of helical wheels and
+/// r the radii of the working pitch circles, at which it tilts them.
+fn line_of_action(gears: &Gears, teeth: &Teeth, coordinates: usize) -> LineOfAction {
     let (mut at_middle, mut per_m) = (DVector::zeros(coordinates), DVector::zeros(coordinates));
     at_middle[X_GEAR] = 1.0;
     at_middle[X_PINION] = -1.0;
-    at_middle[THETA_GEAR] = teeth.gear.base_radius_mm * 1e-3;
-    at_middle[THETA_PINION] = teeth.pinion.base_radius_mm * 1e-3;
-    per_m[PHI_GEAR] = 1.0;
-    per_m[PHI_PINION] = -1.0;
+    let (sin, cos) = teeth.gear.working_pressure_angle_rad.sin_cos();
+    let thrust = gears.thrust();
+    for (wheel, theta, z, phi, psi, side) in [
+        (&teeth.gear, THETA_GEAR, Z_GEAR, PHI_GEAR, PSI_GEAR, 1.0),
+        (&teeth.pinion, THETA_PINION, Z_PINION, PHI_PINION, PSI_PINION, -1.0),
+    ] {
+        at_middle[theta] = wheel.base_radius_mm * 1e-3;
+        at_middle[z] = side * thrust;
+        // A moment about y, whose tilt ψ is turned with the line of action.
+        let about_y = -thrust * wheel.working_pitch_radius_mm * 1e-3;
+        at_middle[phi] = about_y * sin;
+        at_middle[psi] = about_y * cos;
+        per_m[phi] = side;
+    }
     LineOfAction { at_middle, per_m }
 }
 

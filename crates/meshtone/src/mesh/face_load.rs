@@ -65,6 +65,11 @@ impl FaceLoad {
         Self { loaded_slope: high.copysign(face.slope), ..unyielding }
     }
 
+    /// (-) How much closer together the flanks are per length of face, less what the wheels' tilt under the load takes.
+    pub(crate) fn loaded_slope(&self) -> f64 {
+        self.loaded_slope
+    }
+
     /// What bears of sound teeth.
     fn whole(&self) -> Bearing {
         self.bearing(-self.face.width_m / 2.0, self.face.width_m / 2.0)

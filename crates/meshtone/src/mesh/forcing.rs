@@ -9,7 +9,7 @@ use super::path_table::PairState;
 use crate::operation::{Motion, TimeGrid};
 use crate::wheel::WheelName;
 
-/// Most pairs that a step looks at: as many as reach from `ε + 0.6` back to `−0.6` base pitches.
+/// Pairs of spur wheels that a step looks at: as many as reach from `ε + 0.6` back to `−0.6` base pitches.
 pub(crate) const PAIRS: usize = 3;
 
 /// Forcing of successive samples of one simulation.
@@ -39,20 +39,23 @@ impl ExternalBlock {
     }
 }
 
-/// The pairs of one mesh at successive samples. Pair n is in place `n mod PAIRS`.
+/// The pairs of one mesh at successive samples, slice by slice. With m pairs at once pair n is in place `n mod m`, and spring s of all is
+/// slice `s mod N` of the pair in place `s div N`.
 #[derive(Debug, Clone, Default)]
 pub struct PairsBlock {
-    /// (N/m) Stiffness; 0 where there is no pair.
-    pub stiffness: [Vec<f64>; PAIRS],
+    /// (N/m) Stiffness of each spring; 0 where there is no pair.
+    pub stiffness: Vec<Vec<f64>>,
     /// (m) What the pair's deviation and separation add to the deflection, with the damping's lead: `o + τ ȯ`, `o = e − S`.
-    pub offset: [Vec<f64>; PAIRS],
+    pub offset: Vec<Vec<f64>>,
     /// (m) Where along the face the load acts; empty where that is the middle throughout.
     pub face_centre: Vec<f64>,
 }
 
 impl PairsBlock {
-    /// Room for `samples` samples, whatever they hold: the tabulated forcing sets each.
-    fn resize(&mut self, samples: usize, tilts: bool) {
+    /// Room for `samples` samples of some springs, whatever they hold: the tabulated forcing sets each.
+    fn resize(&mut self, springs: usize, samples: usize, tilts: bool) {
+        self.stiffness.resize_with(springs, Vec::new);
+        self.offset.resize_with(springs, Vec::new);
         for values in self.stiffness.iter_mut().chain(&mut self.offset) {
             values.resize(samples, 0.0);
         }
@@ -60,9 +63,22 @@ impl PairsBlock {
     }
 
     /// `samples` samples without pairs.
-    fn clear(&mut self, samples: usize, tilts: bool) {
-        self.resize(0, false);
-        self.resize(samples, tilts);
+    fn clear(&mut self, springs: usize, samples: usize, tilts: bool) {
+        self.resize(springs, 0, false);
+        self.resize(springs, samples, tilts);
+    }
+
+    /// (N/m, m) Stiffness and offset of every spring at a sample.
+    pub(crate) fn springs(&self, sample: usize) -> impl Iterator<Item = [f64; 2]> {
+        self.stiffness
+            .iter()
+            .zip(&self.offset)
+            .map(move |(stiffness, offset)| [stiffness[sample], offset[sample]])
+    }
+
+    /// (m) Where along the face the load acts at a sample.
+    pub(crate) fn face_centre_m(&self, sample: usize) -> f64 {
+        self.face_centre.get(sample).copied().unwrap_or(0.0)
     }
 }
 
@@ -123,6 +139,11 @@ impl<'a> Forcing<'a> {
             meshes: meshes.collect(),
             revolutions: Vec::new(),
         }
+    }
+
+    /// Number of springs of each mesh.
+    pub(crate) fn springs(&self) -> impl Iterator<Item = usize> {
+        self.meshes.iter().map(|forcing| forcing.mesh.springs())
     }
 
     /// Sets a block to the next `samples` samples.
@@ -196,22 +217,25 @@ struct MeshForcing<'a> {
     /// (-) τ over the time step.
     lead: f64,
     reading: Reading,
-    /// The pairs at every point, while motor and brake are steady.
+    /// The pairs at every point, while motor and brake are steady, and always where the teeth are helical or in slices.
     tables: Option<TabulatedPairs>,
-    /// (m) Offset of each place's pair at the two samples before, with the pair's number, where it is not.
-    before: [(i64, [f64; 2]); PAIRS],
+    /// (m) Offset of each spring at the two samples before, with the pair's number, where motor or brake is not steady.
+    before: Vec<(i64, [f64; 2])>,
 }
 
-/// Pairs at every point of their tables, with the damping's lead.
+/// Pairs at every point of their tables, with the damping's lead. Tables of a class have all points of the first slice, then those of the
+/// next one.
 struct TabulatedPairs {
     /// (N/m) By class.
     stiffness: Vec<Vec<f64>>,
-    /// (m) By class, `−S` less that of sound pairs.
+    /// (m) By class, `−S`; less that of sound pairs, which is a part of the gear's table, where the face is one slice.
     further_apart_m: Vec<Vec<f64>>,
-    /// (m) Deviation by tooth.
+    /// (m) Deviation by tooth, at the mesh's points of flanks; none where all are ideal.
     pinion_m: Vec<Vec<f64>>,
-    /// (m) Deviation by tooth, and `−S` of sound pairs: all that most pairs need beside the pinion's.
+    /// (m) Deviation by tooth, and where the face is one slice `−S` of sound pairs: all that most pairs need beside the pinion's.
     gear_m: Vec<Vec<f64>>,
+    /// (m) Where the face has slices, what all slices of a tooth deviate by alike, by wheel and tooth; none where all turn true.
+    alike_m: Option<[Vec<Vec<f64>>; 2]>,
     /// By class; none where the load stays midway along the face.
     bearing: Vec<BorneLoad>,
 }
@@ -231,9 +255,13 @@ struct BorneLoad {
 
 impl BorneLoad {
     fn of(mesh: &Mesh, table: &PairTable) -> Self {
-        let load: Vec<f64> = table.states.iter().map(|state| borne_n(mesh, state)).collect();
-        let moment: Vec<f64> =
-            load.iter().zip(&table.states).map(|(load, state)| load * state.face_centre_m).collect();
+        let points = mesh.points();
+        let (mut load, mut moment) = (vec![0.0; points], vec![0.0; points]);
+        for (number, state) in table.states.iter().enumerate() {
+            let borne_n = mesh.borne_n(state, number % points);
+            load[number % points] += borne_n;
+            moment[number % points] += borne_n * state.face_centre_m;
+        }
         let leans = table.states.iter().any(|state| state.face_centre_m != 0.0);
         Self { load, moment, leans }
     }
@@ -252,6 +280,10 @@ fn add_lead(offset_m: &mut [f64], lead: f64) {
 }
 
 impl TabulatedPairs {
+    /// Tabulates stiffness, separation and deviations.
+    ///
+    /// Where the face is one slice, everything that a tooth adds to the offset is put into one table of it, so that a pair takes two.
+    /// Slices read a tooth's deviations at points of their own.
     fn new(
         mesh: &Mesh,
         flanks: [&FlankErrors; 2],
@@ -260,25 +292,37 @@ impl TabulatedPairs {
         lead: f64,
     ) -> Self {
         let sound = &mesh.classes[SOUND].states;
+        let is_whole = mesh.slices() == 1;
+        let teeth = |wheel: WheelName| vec![vec![0.0; mesh.points()]; mesh.sequence.teeth_of(wheel)];
         let tabulate = |wheel: WheelName| -> Vec<Vec<f64>> {
-            let positions = (0..mesh.points()).map(|point| mesh.position(point));
-            let mut tables = flanks[wheel as usize].tabulate_at(positions);
-            tables.resize_with(mesh.sequence.teeth_of(wheel), || vec![0.0; mesh.points()]);
-            if let Some(eccentricity) = eccentricity {
-                eccentricity.add_to(&mut tables, mesh, wheel);
-            }
-            if wheel == WheelName::Gear {
-                let apart = |(deviation, state): (&mut f64, &PairState)| *deviation -= state.separation_m;
-                tables.iter_mut().for_each(|table| table.iter_mut().zip(sound).for_each(apart));
+            let mut tables = flanks[wheel as usize].tabulate_at(mesh.flank_positions());
+            if is_whole {
+                tables = if tables.is_empty() { teeth(wheel) } else { mesh.averaged_along_face(tables) };
+                if let Some(eccentricity) = eccentricity {
+                    eccentricity.add_to(&mut tables, mesh, wheel);
+                }
+                if wheel == WheelName::Gear {
+                    let apart = |(deviation, state): (&mut f64, &PairState)| *deviation -= state.separation_m;
+                    tables.iter_mut().for_each(|table| table.iter_mut().zip(sound).for_each(apart));
+                }
             }
             tables.iter_mut().for_each(|table| add_lead(table, lead));
             tables
         };
+        let alike = |eccentricity: &Eccentricity| {
+            WheelName::BOTH.map(|wheel| {
+                let mut tables = teeth(wheel);
+                eccentricity.add_to(&mut tables, mesh, wheel);
+                tables.iter_mut().for_each(|table| add_lead(table, lead));
+                tables
+            })
+        };
         let further_apart = |class: &PairTable| {
             let states = sound.iter().zip(&class.states);
+            let of_sound = |state: &PairState| if is_whole { state.separation_m } else { 0.0 };
             let mut further_m: Vec<f64> =
-                states.map(|(sound, state)| sound.separation_m - state.separation_m).collect();
-            add_lead(&mut further_m, lead);
+                states.map(|(sound, state)| of_sound(sound) - state.separation_m).collect();
+            further_m.chunks_mut(mesh.points()).for_each(|slice| add_lead(slice, lead));
             further_m
         };
         Self {
@@ -291,8 +335,50 @@ impl TabulatedPairs {
                 .collect(),
             pinion_m: tabulate(WheelName::Pinion),
             gear_m: tabulate(WheelName::Gear),
+            alike_m: eccentricity.filter(|_| !is_whole).map(alike),
         }
     }
+
+    /// The tables of a pair, each with the point of it that is the pair's first point: what its slices have in common, then for each
+    /// slice its stiffness and what it has of its own.
+    fn of_pair(&self, mesh: &Mesh, pair: i64) -> PairParts<'_> {
+        let class = mesh.sequence.class(pair);
+        let teeth: [usize; 2] = mesh.sequence.teeth(pair).into();
+        let flanks = || [&self.pinion_m, &self.gear_m].into_iter().zip(teeth);
+        let points = mesh.points();
+        let alike = self.alike_m.iter().flatten().zip(teeth).map(|(tables, tooth)| (&tables[tooth][..], 0));
+        let slice = |slice: usize| {
+            let of_class = (class != SOUND || mesh.slices() > 1)
+                .then(|| (&self.further_apart_m[class][slice * points..(slice + 1) * points], 0));
+            let from = mesh.first_flank_point(slice);
+            let of_teeth =
+                flanks().filter_map(|(tables, tooth)| tables.get(tooth)).map(|table| (&table[..], from));
+            SliceParts {
+                stiffness: &self.stiffness[class][slice * points..(slice + 1) * points],
+                offsets: of_teeth.chain(of_class).collect(),
+            }
+        };
+        PairParts { class, alike: alike.collect(), slices: (0..mesh.slices()).map(slice).collect() }
+    }
+}
+
+/// (m) A table, and the point of it that is the first point of a pair.
+type FromPoint<'a> = (&'a [f64], usize);
+
+/// The tables that make the springs of a pair.
+struct PairParts<'a> {
+    class: usize,
+    /// What all slices add to their offset.
+    alike: Vec<FromPoint<'a>>,
+    slices: Vec<SliceParts<'a>>,
+}
+
+/// The tables of one slice of a pair.
+struct SliceParts<'a> {
+    /// (N/m) At the pair's points.
+    stiffness: &'a [f64],
+    /// Their sum is the slice's offset, but for what all slices have.
+    offsets: Vec<FromPoint<'a>>,
 }
 
 impl<'a> MeshForcing<'a> {
@@ -301,15 +387,15 @@ impl<'a> MeshForcing<'a> {
         let lead = mesh.damping_time_s / step_s;
         let eccentricity = Eccentricity::of(deviations);
         let tilts = mesh.face_reach_m() > 0.0;
-        // (-) τ over the time from one point to the next.
+        // (-) τ over the time from one point to the next. In any motion it is found from the samples.
         let lead_of_points = match reading {
             Reading::EveryPoint => Some(lead),
             Reading::BetweenPoints { points_per_sample } => Some(lead * points_per_sample),
-            Reading::AnyMotion => None,
+            Reading::AnyMotion => (mesh.overlap != 0.0 || mesh.slices() > 1).then_some(0.0),
         };
         let tables = lead_of_points
             .map(|lead| TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, lead));
-        let before = [(i64::MIN, [0.0; 2]); PAIRS];
+        let before = vec![(i64::MIN, [0.0; 2]); mesh.springs()];
         Self { mesh, pinion, gear, eccentricity, tilts, lead, reading, tables, before }
     }
 
@@ -318,59 +404,70 @@ impl<'a> MeshForcing<'a> {
     /// # Arguments
     /// * `revolutions` - (rev) rotation of the motor at each, where the samples are not points of the tables
     fn next_block(&mut self, first: usize, samples: usize, revolutions: &[f64], block: &mut PairsBlock) {
-        match &self.tables {
-            Some(tables) if self.reading == Reading::EveryPoint => {
-                block.resize(samples, self.tilts);
+        let springs = self.mesh.springs();
+        match (&self.tables, self.reading) {
+            (Some(tables), Reading::EveryPoint) => {
+                block.resize(springs, samples, self.tilts);
                 self.copy_from(tables, first, block);
             }
-            Some(tables) => {
-                block.clear(samples, self.tilts);
-                self.read_tables_between_points(tables, revolutions, block);
+            (Some(tables), _) => {
+                block.clear(springs, samples, self.tilts);
+                let mut before = std::mem::take(&mut self.before);
+                self.read_tables_between_points(tables, revolutions, &mut before, block);
+                self.before = before;
             }
-            None => {
-                block.clear(samples, self.tilts);
+            (None, _) => {
+                block.clear(springs, samples, self.tilts);
                 self.read_between_points(revolutions, block);
             }
         }
     }
 
-    /// Copies the pairs at successive points from their tables. Each place of the block holds every third pair, one after the other,
-    /// so that whole ranges are copied, and zeros between them.
+    /// Copies the pairs at successive points from their tables. Each place of the block holds one pair after the other, so that whole
+    /// ranges are copied, and zeros between them.
     fn copy_from(&self, tables: &TabulatedPairs, first: usize, block: &mut PairsBlock) {
         let (per_pitch, before) = (self.mesh.points_per_pitch, self.mesh.points_before);
         let samples = block.stiffness[0].len();
+        let (slices, at_once) = (self.mesh.slices(), self.mesh.pairs_at_once());
         // Sample s is point s + before of pair 0, and each pair begins a pitch after the one before.
         let (first_point, last_point) = (first + before, first + samples - 1 + before);
         let oldest = (first_point as i64 - self.mesh.points() as i64).div_euclid(per_pitch as i64) + 1;
         let pairs = oldest..=(last_point / per_pitch) as i64;
-        let mut set = [0; PAIRS];
+        let mut set = vec![0; at_once];
         let mut leans = false;
         for pair in pairs.clone() {
             let Some(Part { from, until, point }) = self.part(pair, first, samples) else { continue };
-            let range = point..point + until - from;
-            let place = pair.rem_euclid(PAIRS as i64) as usize;
-            let class = self.mesh.sequence.class(pair);
+            let place = pair.rem_euclid(at_once as i64) as usize;
+            let PairParts { class, alike, slices: parts } = tables.of_pair(self.mesh, pair);
             leans |= tables.bearing.get(class).is_some_and(|bearing| bearing.leans);
-            block.stiffness[place][set[place]..from].fill(0.0);
-            block.offset[place][set[place]..from].fill(0.0);
-            set[place] = until;
-            block.stiffness[place][from..until].copy_from_slice(&tables.stiffness[class][range.clone()]);
-            let offsets = &mut block.offset[place][from..until];
-            let (pinion_tooth, gear_tooth) = self.mesh.sequence.teeth(pair);
-            let pinion = &tables.pinion_m[pinion_tooth][range.clone()];
-            let gear = &tables.gear_m[gear_tooth][range.clone()];
-            for (offset, (pinion, gear)) in offsets.iter_mut().zip(pinion.iter().zip(gear)) {
-                *offset = pinion + gear;
-            }
-            if class != SOUND {
-                for (offset, further) in offsets.iter_mut().zip(&tables.further_apart_m[class][range]) {
-                    *offset += further;
+            for (slice, part) in parts.iter().enumerate() {
+                let spring = place * slices + slice;
+                block.stiffness[spring][set[place]..from].fill(0.0);
+                block.offset[spring][set[place]..from].fill(0.0);
+                block.stiffness[spring][from..until]
+                    .copy_from_slice(&part.stiffness[point..point + until - from]);
+                let offsets = &mut block.offset[spring][from..until];
+                let mut terms =
+                    part.offsets.iter().chain(&alike).map(|(table, begin)| &table[begin + point..]);
+                // Most pairs have two: both are added at once.
+                match (terms.next(), terms.next()) {
+                    (Some(one), Some(other)) => {
+                        for (offset, (one, other)) in offsets.iter_mut().zip(one.iter().zip(other)) {
+                            *offset = one + other;
+                        }
+                    }
+                    (Some(one), None) => offsets.copy_from_slice(&one[..until - from]),
+                    _ => offsets.fill(0.0),
+                }
+                for term in terms {
+                    offsets.iter_mut().zip(term).for_each(|(offset, term)| *offset += term);
                 }
             }
+            set[place] = until;
         }
-        for (place, set) in set.into_iter().enumerate() {
-            block.stiffness[place][set..].fill(0.0);
-            block.offset[place][set..].fill(0.0);
+        for (spring, (stiffness, offset)) in block.stiffness.iter_mut().zip(&mut block.offset).enumerate() {
+            stiffness[set[spring / slices]..].fill(0.0);
+            offset[set[spring / slices]..].fill(0.0);
         }
         block.face_centre.fill(0.0);
         if leans {
@@ -421,7 +518,7 @@ impl<'a> MeshForcing<'a> {
         let (mut moment, mut whole) = (0.0, 0.0);
         let (mut least_m, mut of_nearest) = (f64::INFINITY, 0.0);
         for (_, state) in self.mesh.pairs_at(point) {
-            let load = borne_n(self.mesh, state);
+            let load = self.mesh.borne_n(state, point + self.mesh.points_before);
             moment += load * state.face_centre_m;
             whole += load;
             if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
@@ -431,16 +528,19 @@ impl<'a> MeshForcing<'a> {
         if whole > 0.0 { moment / whole } else { of_nearest }
     }
 
-    /// Reads the tables between their points while the mesh turns evenly, pair by pair: straight from one point to the next.
+    /// Reads the tables between their points, pair by pair: straight from one point to the next. Where the mesh turns evenly the samples of
+    /// a pair follow from its first one, and the tables have the damping's lead; elsewhere it is found from the samples.
     ///
     /// # Arguments
     /// * `tables` - the pairs at every point
     /// * `revolutions` - (rev) rotation of the motor at each sample of the block
+    /// * `before` - as [`Self::before`]
     /// * `block` - holds zeros
     fn read_tables_between_points(
         &self,
         tables: &TabulatedPairs,
         revolutions: &[f64],
+        before: &mut [(i64, [f64; 2])],
         block: &mut PairsBlock,
     ) {
         let (mesh, per_pitch) = (self.mesh, self.mesh.points_per_pitch as f64);
@@ -452,15 +552,13 @@ impl<'a> MeshForcing<'a> {
         };
         let (Some(&first), Some(&last)) = (revolutions.first(), revolutions.last()) else { return };
         let [first, last] = [first, last].map(point_at);
-        let step = (last - first) / (revolutions.len() - 1).max(1) as f64;
+        let is_even = self.reading != Reading::AnyMotion;
+        let step = if is_even { (last - first) / (revolutions.len() - 1).max(1) as f64 } else { 0.0 };
         let reach = mesh.points() as f64 - 1.0;
         for pair in ((first - reach) / per_pitch).floor() as i64..=(last / per_pitch).floor() as i64 {
             let begins = pair as f64 * per_pitch;
-            let place = pair.rem_euclid(PAIRS as i64) as usize;
-            let class = mesh.sequence.class(pair);
-            let (pinion_tooth, gear_tooth) = mesh.sequence.teeth(pair);
-            let (pinion, gear) = (&tables.pinion_m[pinion_tooth], &tables.gear_m[gear_tooth]);
-            let (stiffness, further) = (&tables.stiffness[class], &tables.further_apart_m[class]);
+            let first_spring = pair.rem_euclid(mesh.pairs_at_once() as i64) as usize * mesh.slices();
+            let parts = tables.of_pair(mesh, pair);
             // As many as are certainly in it; each is checked again.
             let from = if step > 0.0 { ((begins - first) / step - 1.0).max(0.0) as usize } else { 0 };
             let until = if step > 0.0 {
@@ -474,9 +572,11 @@ impl<'a> MeshForcing<'a> {
                     continue;
                 }
                 let (index, part) = (point as usize, point - point.floor());
-                let between = |table: &[f64]| table[index] + part * (table[index + 1] - table[index]);
-                block.stiffness[place][k] = between(stiffness);
-                block.offset[place][k] = between(pinion) + between(gear) + between(further);
+                for (spring, [stiffness, offset]) in (first_spring..).zip(parts.between_points(index, part)) {
+                    block.stiffness[spring][k] = stiffness;
+                    block.offset[spring][k] =
+                        if is_even { offset } else { self.leading(offset, pair, &mut before[spring]) };
+                }
             }
         }
         if self.tilts {
@@ -487,9 +587,31 @@ impl<'a> MeshForcing<'a> {
         }
     }
 
-    /// Reads the tables between their points, at any rotation of the motor.
+    /// (m) An offset with the damping's lead, by the samples before it.
+    ///
+    /// # Arguments
+    /// * `offset` - (m) of a pair's spring at a sample
+    /// * `pair` - its number
+    /// * `before` - of the spring
+    fn leading(&self, offset: f64, pair: i64, before: &mut (i64, [f64; 2])) -> f64 {
+        let [last, last_but_one] = if before.0 == pair { before.1 } else { [f64::NAN; 2] };
+        *before = (pair, [offset, last]);
+        // The next one is not known: the slope here of the parabola through the last three, or of the line through two.
+        let change = if last.is_nan() {
+            0.0
+        } else if last_but_one.is_nan() {
+            offset - last
+        } else {
+            1.5 * offset - 2.0 * last + 0.5 * last_but_one
+        };
+        offset + self.lead * change
+    }
+
+    /// Reads the pairs of spur wheels, whose face is one slice, at any rotation of the motor: stiffness and separation from their tables,
+    /// deviations from the flanks themselves.
     fn read_between_points(&mut self, revolutions: &[f64], block: &mut PairsBlock) {
         let (mesh, per_pitch) = (self.mesh, self.mesh.points_per_pitch as f64);
+        let at_once = mesh.pairs_at_once() as i64;
         for (k, revolutions) in revolutions.iter().enumerate() {
             let pitches = mesh.turning.first_pitch + revolutions * mesh.turning.pitches_per_revolution;
             let eccentric = self.eccentricity.as_ref().map_or(0.0, |eccentricity| {
@@ -498,12 +620,13 @@ impl<'a> MeshForcing<'a> {
                 WheelName::BOTH.map(of_wheel).iter().sum()
             });
             let latest = (pitches + mesh.points_before as f64 / per_pitch).floor() as i64;
-            for pair in latest + 1 - PAIRS as i64..=latest {
-                let place = pair.rem_euclid(PAIRS as i64) as usize;
+            for pair in latest + 1 - at_once..=latest {
+                let place = pair.rem_euclid(at_once) as usize;
                 let position = pitches - pair as f64;
                 let point = position * per_pitch + mesh.points_before as f64;
                 let states = &mesh.classes[mesh.sequence.class(pair)].states;
                 let (index, part) = (point.floor().max(0.0) as usize, point - point.floor());
+                let mut before = self.before[place];
                 let Some([here, next]) = states.get(index..index + 2) else {
                     self.before[place] = (i64::MIN, [0.0; 2]);
                     continue;
@@ -514,19 +637,9 @@ impl<'a> MeshForcing<'a> {
                     + self.gear.at_position_m(gear_tooth, position)
                     + eccentric
                     - between(here.separation_m, next.separation_m);
-                let [last, last_but_one] =
-                    if self.before[place].0 == pair { self.before[place].1 } else { [f64::NAN; 2] };
-                self.before[place] = (pair, [offset, last]);
                 block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
-                // The next one is not known: the slope here of the parabola through the last three, or of the line through two.
-                let change = if last.is_nan() {
-                    0.0
-                } else if last_but_one.is_nan() {
-                    offset - last
-                } else {
-                    1.5 * offset - 2.0 * last + 0.5 * last_but_one
-                };
-                block.offset[place][k] = offset + self.lead * change;
+                block.offset[place][k] = self.leading(offset, pair, &mut before);
+                self.before[place] = before;
             }
             if self.tilts {
                 block.face_centre[k] = self.face_centre_m((pitches * per_pitch).round().max(0.0) as usize);
@@ -535,17 +648,30 @@ impl<'a> MeshForcing<'a> {
     }
 }
 
+impl PairParts<'_> {
+    /// (N/m, m) Stiffness and offset of every slice between two points.
+    ///
+    /// # Arguments
+    /// * `index` - of the point before
+    /// * `part` - (-) of the way to the next one
+    fn between_points(&self, index: usize, part: f64) -> impl Iterator<Item = [f64; 2]> {
+        let between = move |table: &[f64], from: usize| {
+            let at = index + from;
+            table[at] + part * (table[at + 1] - table[at])
+        };
+        let sum = move |terms: &[FromPoint<'_>]| {
+            terms.iter().map(|(table, from)| between(table, *from)).sum::<f64>()
+        };
+        let alike = sum(&self.alike);
+        self.slices.iter().map(move |slice| [between(slice.stiffness, 0), sum(&slice.offsets) + alike])
+    }
+}
+
 /// The samples of a block in which a pair takes part, and its point at the first of them.
 struct Part {
     from: usize,
     until: usize,
     point: usize,
-}
-
-/// (N) The part of the nominal load, which presses the mean mesh together, that a pair bears: its weight where the place of the load
-/// along the face is found.
-fn borne_n(mesh: &Mesh, state: &PairState) -> f64 {
-    state.stiffness_n_per_m * (mesh.nominal_deflection_m - state.separation_m).max(0.0)
 }
 
 #[cfg(test)]

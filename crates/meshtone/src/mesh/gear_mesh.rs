@@ -5,12 +5,12 @@ use std::ops::Range;
 
 use super::face_load::{FaceLoad, FaceSlope};
 use super::forcing::{PAIRS, Turning};
-use super::law::{Contact, MeshLaw, PairsSample, deflection_at_rest};
+use super::law::{Contact, MeshLaw, deflection_at_rest};
 use super::pair::Pairs;
-use super::path_table::{PairState, PairTables, TipShape, share_on_path};
+use super::path_table::{PairState, PairTables, PathEnds, TipShape, share_on_path};
 use super::sequence::{PairKind, PairSequence};
+use super::window::{Integral, Window};
 use crate::machine::ClosedMesh;
-use crate::simd::Lanes;
 
 /// (base pitches) How far outside its path a pair is looked at: a corner there is some mm away from the flank.
 const REACH: f64 = 0.6;
@@ -29,12 +29,18 @@ pub struct Mesh {
     pub points_before: usize,
     /// (N/m) Mean over the cycle of the stiffness of all pairs on their path, of sound teeth.
     pub mean_stiffness_n_per_m: f64,
+    /// (N/m) The same if the whole face of all pairs touched: of coast flanks that hit, and a bound of what the drive flanks reach. It differs
+    /// where slices of the face are apart under the nominal load.
+    pub closed_stiffness_n_per_m: f64,
     /// (s) Damping of a contact over its stiffness, `2 ζ √(m/k̄)`.
     pub damping_time_s: f64,
-    /// (m) Normal backlash; none where the mesh may pull, so that back flanks never touch.
+    /// (m) Normal backlash; none where the mesh may pull, so that coast flanks never touch.
     pub backlash_m: Option<f64>,
-    /// (-) Contact ratio of sound teeth: the length of their path between the chamfers, in base pitches.
+    /// (-) Contact ratio of sound teeth: the length of their path between the chamfers, in base pitches of the transverse section.
     pub contact_ratio: f64,
+    /// (base pitches) How much farther on its path a pair is at the end of the face at positive z than at the other one: the overlap ratio
+    /// with the sign of the end that enters contact first; 0 of spur wheels.
+    pub overlap: f64,
     /// (m) How far the nominal load presses the mean mesh together.
     pub nominal_deflection_m: f64,
     /// (-) Largest load per length of face over its mean, of sound teeth under the nominal load: the face load factor K_Hβ of
@@ -44,6 +50,13 @@ pub struct Mesh {
     pub contact: Contact,
     /// How it turns with the motor.
     pub turning: Turning,
+    /// Number of slices of the face.
+    slices: usize,
+    /// (m) How far the nominal load presses sound pairs together at each point of a pitch, counted as those of the tables; none where that
+    /// is taken as [`Self::nominal_deflection_m`] throughout.
+    pressed_m: Vec<f64>,
+    /// (N/m) Stiffness of a sound pair of helical teeth at each point if its whole face touched there; none of spur wheels.
+    of_path_n_per_m: Vec<f64>,
 }
 
 /// A class of pairs, point by point.
@@ -52,7 +65,7 @@ pub struct Mesh {
 pub struct PairTable {
     /// The class.
     pub kind: PairKind,
-    /// The pair at each point.
+    /// The pair at each point; where the face has slices all points of the first one, then those of the next one.
     pub states: Vec<PairState>,
 }
 
@@ -64,7 +77,7 @@ impl PairTable {
 }
 
 /// The parameters of a mesh beside its pairs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MeshParameters {
     /// How its flanks touch.
     pub(crate) contact: Contact,
@@ -80,6 +93,12 @@ pub(crate) struct MeshParameters {
     pub(crate) static_force_n: f64,
     /// How the flanks close along the face; none where they close alike.
     pub(crate) face: Option<FaceSlope>,
+    /// (base pitches) As [`Mesh::overlap`].
+    pub(crate) overlap: f64,
+    /// (m) Face width.
+    pub(crate) face_width_m: f64,
+    /// (m) Of each slice, how much farther apart its flanks are than those in the middle of the face: crowning and end relief.
+    pub(crate) gaps_m: Vec<f64>,
 }
 
 impl Mesh {
@@ -88,88 +107,257 @@ impl Mesh {
 
     /// Tabulates the pairs.
     ///
-    /// The tables reach as far beyond the path as a tip corner can touch. Where the flanks close unevenly along the face, the states of
-    /// all pairs are changed to those of the part of the face that bears under the nominal load.
+    /// The tables of spur wheels reach as far beyond the path as a tip corner can touch, those of helical ones until the last end of a tooth
+    /// has left it. Where the flanks close unevenly along the face, the states of all pairs are changed to those of the part of the face
+    /// that bears under the nominal load; slices have their own separations instead.
     ///
     /// # Arguments
-    /// * `pairs` - the tooth pairs
+    /// * `faces` - the tooth pairs of each slice
     /// * `shape` - of all tips
     /// * `sequence` - which of them meet
     /// * `points_per_pitch` - number of points from one pair to the next
-    /// * `parameters` - contact, damping, back flanks, load along the face
+    /// * `parameters` - contact, damping, coast flanks, load along the face
     pub(crate) fn new(
-        pairs: &Pairs,
+        faces: &[Pairs],
         shape: TipShape,
         sequence: PairSequence,
         points_per_pitch: NonZeroUsize,
         parameters: MeshParameters,
     ) -> Self {
         let MeshParameters {
-            contact,
-            turning,
-            damping_ratio,
-            mesh_mass_kg,
-            backlash_m,
-            static_force_n,
-            face,
+            contact, turning, damping_ratio, mesh_mass_kg, backlash_m, static_force_n, ..
         } = parameters;
+        let (overlap, slices) = (parameters.overlap, faces.len());
         let points_per_pitch = points_per_pitch.get();
         let per_pitch = points_per_pitch as f64;
-        let tables = PairTables::new(pairs, shape, contact);
-        let [begins, ends] = tables.path_of_sound_teeth();
-        // As many pairs as a step looks at reach from the first point to the last.
-        let reach = REACH.min((PAIRS as f64 - (ends - begins)) / 2.0).max(0.0);
+        let step = 1.0 / per_pitch;
+        let has_corners = contact == Contact::Unilateral && overlap == 0.0;
+        let ends_of_path = if has_corners { PathEnds::Corners } else { PathEnds::Sharp };
+        let tables: Vec<PairTables> =
+            faces.iter().map(|pairs| PairTables::new(pairs, shape, ends_of_path)).collect();
+        let [begins, ends] = tables[0].path_of_sound_teeth();
+        // As many pairs of spur wheels as a step looks at reach from the first point to the last.
+        let reach = if overlap == 0.0 {
+            REACH.min((PAIRS as f64 - (ends - begins)) / 2.0).max(0.0)
+        } else {
+            // A point more, as the last one lies before the end of the reach.
+            overlap.abs() / 2.0 + 2.0 * step
+        };
         let points_before = ((reach - begins) * per_pitch).floor().max(0.0) as usize;
-        let points =
-            (((ends + reach) * per_pitch).floor() as usize + points_before).min(PAIRS * points_per_pitch);
+        let points = ((ends + reach) * per_pitch).floor() as usize + points_before;
+        let points = if overlap == 0.0 { points.min(PAIRS * points_per_pitch) } else { points };
         let positions: Vec<f64> =
             (0..points).map(|point| (point as f64 - points_before as f64) / per_pitch).collect();
-        let mut classes: Vec<PairTable> = (sequence.classes().iter())
-            .map(|&kind| PairTable { kind, states: tables.tabulate(&kind, &positions, 1.0 / per_pitch) })
-            .collect();
-        let mean_stiffness = |classes: &[PairTable]| {
-            let share = |at: f64| match contact {
-                Contact::Unilateral => share_on_path(at, 1.0 / per_pitch, [begins, ends]),
-                // The stiffness ends with the path.
-                Contact::Bilateral => 1.0,
+        let middle = |slice: usize| (slice as f64 + 0.5) / slices as f64 - 0.5;
+        let sound = sequence.classes()[0];
+        // Slices of sound pairs are alike.
+        let along_path = (overlap != 0.0).then(|| tables[0].along_path(&sound));
+        let of_slice = |kind: &PairKind, slice: usize| -> Vec<PairState> {
+            let window = Window { overlap, middle: middle(slice), width: 1.0 / slices as f64 };
+            let mut states = match &along_path {
+                None => tables[slice].tabulate(kind, &positions, step),
+                Some(sound) if kind.is_sound() => {
+                    sound.over_face(&positions, window, parameters.face_width_m)
+                }
+                Some(_) => {
+                    tables[slice].along_path(kind).over_face(&positions, window, parameters.face_width_m)
+                }
             };
-            let states = classes[0].states.iter().zip(&positions);
-            states.map(|(state, at)| share(*at) * state.stiffness_n_per_m).sum::<f64>() / per_pitch
-        };
-        let mut mean_stiffness_n_per_m = mean_stiffness(&classes);
-        let mut face_load_factor = 1.0;
-        if let Some(face) = face {
-            let of_mean = FaceLoad::new(face, static_force_n / mean_stiffness_n_per_m);
-            let middle_m = of_mean.middle_m();
-            let sound: Vec<FaceLoad> = (0..points_per_pitch)
-                .map(|from| pressed_m(&classes[0].states, from, points_per_pitch, static_force_n))
-                .map(|deflection_m| FaceLoad::new(face, deflection_m))
-                .collect();
-            for (at, state) in classes.iter_mut().flat_map(|class| class.states.iter_mut().enumerate()) {
-                sound[at % points_per_pitch].lean(state, middle_m);
+            for state in states.iter_mut().filter(|_| slices > 1) {
+                state.separation_m += parameters.gaps_m[slice];
+                state.face_centre_m += window.middle * parameters.face_width_m;
             }
-            mean_stiffness_n_per_m = mean_stiffness(&classes);
-            face_load_factor = of_mean.factor();
-        }
-        Self {
+            states
+        };
+        let classes = (sequence.classes().iter())
+            .map(|&kind| PairTable {
+                kind,
+                states: (0..slices).flat_map(|slice| of_slice(&kind, slice)).collect(),
+            })
+            .collect();
+        let of_path_n_per_m = if overlap == 0.0 {
+            Vec::new()
+        } else {
+            tables[0].tabulate(&sound, &positions, step).iter().map(|state| state.stiffness_n_per_m).collect()
+        };
+        let mut mesh = Self {
             points_per_pitch,
             sequence,
             classes,
             points_before,
-            mean_stiffness_n_per_m,
-            damping_time_s: 2.0 * damping_ratio * (mesh_mass_kg / mean_stiffness_n_per_m).sqrt(),
+            mean_stiffness_n_per_m: 0.0,
+            closed_stiffness_n_per_m: 0.0,
+            damping_time_s: 0.0,
             backlash_m: (contact == Contact::Unilateral).then_some(backlash_m),
             contact_ratio: ends - begins,
-            nominal_deflection_m: static_force_n / mean_stiffness_n_per_m,
-            face_load_factor,
+            overlap,
+            nominal_deflection_m: 0.0,
+            face_load_factor: 1.0,
             contact,
             turning,
+            slices,
+            pressed_m: Vec::new(),
+            of_path_n_per_m,
+        };
+        let share = |at: f64| if has_corners { share_on_path(at, step, [begins, ends]) } else { 1.0 };
+        let mean_stiffness = |classes: &[PairTable]| {
+            let states = classes[0].states.iter().zip(positions.iter().cycle());
+            states.map(|(state, at)| share(*at) * state.stiffness_n_per_m).sum::<f64>() / per_pitch
+        };
+        mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
+        mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
+        match parameters.face {
+            Some(face) if slices == 1 => {
+                let of_mean = FaceLoad::new(face, static_force_n / mesh.mean_stiffness_n_per_m);
+                mesh.lean(face, &of_mean, static_force_n);
+                mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
+                mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
+                mesh.face_load_factor = of_mean.factor();
+            }
+            face => {
+                if let Some(face) = face {
+                    // Slices touch at one deflection: the wheels' tilt under the load is taken off beforehand.
+                    let slope =
+                        FaceLoad::new(face, static_force_n / mesh.mean_stiffness_n_per_m).loaded_slope();
+                    let closer_m = |slice: usize| slope * middle(slice) * parameters.face_width_m;
+                    for states in mesh.classes.iter_mut().map(|class| &mut class.states) {
+                        let numbered = states.iter_mut().enumerate();
+                        numbered.for_each(|(n, state)| state.separation_m -= closer_m(n / points));
+                    }
+                }
+                if slices > 1 && contact == Contact::Unilateral && static_force_n > 0.0 {
+                    mesh.press(static_force_n);
+                }
+            }
         }
+        mesh.damping_time_s = 2.0 * damping_ratio * (mesh_mass_kg / mesh.mean_stiffness_n_per_m).sqrt();
+        mesh.nominal_deflection_m = static_force_n / mesh.mean_stiffness_n_per_m;
+        mesh
+    }
+
+    /// Makes pairs whose flanks close alike along the face such whose flanks close as given.
+    fn lean(&mut self, face: FaceSlope, of_mean: &FaceLoad, static_force_n: f64) {
+        let per_pitch = self.points_per_pitch;
+        let sound: Vec<FaceLoad> = (0..per_pitch)
+            .map(|from| pressed_m(&self.classes[0].states, from, per_pitch, static_force_n))
+            .map(|deflection_m| FaceLoad::new(face, deflection_m))
+            .collect();
+        let classes = self.classes.iter_mut();
+        for (at, state) in classes.flat_map(|class| class.states.iter_mut().enumerate()) {
+            sound[at % per_pitch].lean(state, of_mean.middle_m());
+        }
+    }
+
+    /// Finds how far the nominal load presses sound pairs together at each point of a pitch, and by what of them touches then the mean
+    /// stiffness, and how unevenly the slices share the load.
+    fn press(&mut self, static_force_n: f64) {
+        let (per_pitch, points) = (self.points_per_pitch, self.points());
+        let states = &self.classes[0].states;
+        let mut stiffness_n_per_m = 0.0;
+        let mut load_n = vec![0.0; self.slices];
+        let mut pressed_m = Vec::with_capacity(per_pitch);
+        for from in 0..per_pitch {
+            let together = || {
+                states.chunks(points).enumerate().flat_map(move |(slice, states)| {
+                    states.iter().skip(from).step_by(per_pitch).map(move |state| (slice, state))
+                })
+            };
+            let springs = springs_of(together().map(|(_, state)| state));
+            let deflection_m = deflection_at_rest(self.contact, springs, static_force_n);
+            for (slice, state) in together().filter(|(_, state)| state.separation_m < deflection_m) {
+                stiffness_n_per_m += state.stiffness_n_per_m;
+                load_n[slice] += state.stiffness_n_per_m * (deflection_m - state.separation_m);
+            }
+            pressed_m.push(deflection_m);
+        }
+        let mean_n = load_n.iter().sum::<f64>() / self.slices as f64;
+        self.face_load_factor = load_n.iter().copied().fold(0.0, f64::max) / mean_n;
+        self.mean_stiffness_n_per_m = stiffness_n_per_m / per_pitch as f64;
+        self.pressed_m = pressed_m;
+    }
+
+    /// Number of slices of the face; 1 where it is taken as a whole.
+    pub fn slices(&self) -> usize {
+        self.slices
+    }
+
+    /// Number of pairs that are looked at together.
+    pub(crate) fn pairs_at_once(&self) -> usize {
+        if self.overlap == 0.0 { PAIRS } else { self.points().div_ceil(self.points_per_pitch) }
+    }
+
+    /// Number of springs that are looked at together: slices of pairs.
+    pub(crate) fn springs(&self) -> usize {
+        self.pairs_at_once() * self.slices
+    }
+
+    /// (N) The part of the nominal load that a slice of a pair bears: its weight where the place of the load along the face is found.
+    ///
+    /// # Arguments
+    /// * `state` - the slice
+    /// * `point` - of the tables
+    pub(super) fn borne_n(&self, state: &PairState, point: usize) -> f64 {
+        let deflection_m =
+            self.pressed_m.get(point % self.points_per_pitch).copied().unwrap_or(self.nominal_deflection_m);
+        state.stiffness_n_per_m * (deflection_m - state.separation_m).max(0.0)
+    }
+
+    /// Points by which the flanks' tables begin before a pair's, and end after it: as many as the first slice is ahead of the middle.
+    fn flank_margin(&self) -> usize {
+        if self.slices == 1 {
+            0
+        } else {
+            (self.overlap.abs() / 2.0 * self.points_per_pitch as f64).ceil() as usize
+        }
+    }
+
+    /// (base pitches) Positions of the path at which the deviations of flanks are tabulated.
+    pub(super) fn flank_positions(&self) -> impl Iterator<Item = f64> {
+        let margin = self.flank_margin();
+        let position = move |point: usize| {
+            (point as f64 - (self.points_before + margin) as f64) / self.points_per_pitch as f64
+        };
+        (0..self.points() + 2 * margin).map(position)
+    }
+
+    /// The point of the flanks' tables that a slice is at when its pair is at the pair's first point.
+    ///
+    /// # Arguments
+    /// * `slice` - its number
+    pub(super) fn first_flank_point(&self, slice: usize) -> usize {
+        let middle = (slice as f64 + 0.5) / self.slices as f64 - 0.5;
+        let ahead = (self.overlap * middle * self.points_per_pitch as f64).round() as i64;
+        (self.flank_margin() as i64 + ahead).max(0) as usize
+    }
+
+    /// Tables over the points of flanks as means along the contact lines of helical teeth, weighted by stiffness: as long as a whole line
+    /// touches, its deviation is this mean.
+    ///
+    /// # Arguments
+    /// * `tables` - a quantity of each tooth, at the mesh's points
+    pub(super) fn averaged_along_face(&self, tables: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        if self.overlap == 0.0 {
+            return tables;
+        }
+        let window = Window { overlap: self.overlap, middle: 0.0, width: 1.0 };
+        let (first, step) = (self.position(0), 1.0 / self.points_per_pitch as f64);
+        let weight = Integral::new(first, step, self.of_path_n_per_m.iter().copied());
+        let mean = |table: Vec<f64>| {
+            let weighted = self.of_path_n_per_m.iter().zip(&table).map(|(weight, value)| weight * value);
+            let weighted = Integral::new(first, step, weighted);
+            let at = |point: usize| {
+                let [from, until] = window.around(self.position(point));
+                let whole = weight.between(from, until);
+                if whole > 0.0 { weighted.between(from, until) / whole } else { table[point] }
+            };
+            (0..table.len()).map(at).collect()
+        };
+        tables.into_iter().map(mean).collect()
     }
 
     /// Number of points of a pair.
     pub fn points(&self) -> usize {
-        self.classes[0].states.len()
+        self.classes[0].states.len() / self.slices
     }
 
     /// (base pitches) Position of a point of a pair since the start of its path.
@@ -196,21 +384,18 @@ impl Mesh {
         MeshLaw {
             contact: self.contact,
             damping_time_s: self.damping_time_s,
-            back_stiffness_n_per_m: self.mean_stiffness_n_per_m,
+            back_stiffness_n_per_m: self.closed_stiffness_n_per_m,
             backlash_m: self.backlash_m,
         }
     }
 
-    /// (N/m) Sum of the stiffnesses of the pairs that touch under a light load at a point, counted from the start of the simulation.
+    /// (N/m) Sum of the stiffnesses of the pairs that touch at a point, counted from the start of the simulation: under a light load, and
+    /// where the face has slices under the nominal one.
     pub(crate) fn whole_stiffness_at(&self, point: usize) -> f64 {
-        let (pitch, since) = ((point / self.points_per_pitch) as i64, point % self.points_per_pitch);
-        let ages = (since + self.points_before..self.points()).step_by(self.points_per_pitch).enumerate();
-        let state =
-            |(age, at): (usize, usize)| self.classes[self.sequence.class(pitch - age as i64)].states[at];
-        self.touching_n_per_m(&ages.map(state).collect::<Vec<_>>())
+        self.touching_n_per_m(&self.pairs_at(point).map(|(_, state)| *state).collect::<Vec<_>>())
     }
 
-    /// (N/mm) Sum of the stiffnesses of the pairs that touch under a light load, at every point of some pitches.
+    /// (N/mm) Sum of the stiffnesses of the pairs that touch, as [`Self::whole_stiffness_at`], at every point of some pitches.
     ///
     /// # Arguments
     /// * `pitches` - counted from the start of the simulation
@@ -224,18 +409,26 @@ impl Mesh {
         let states = &self.classes[0].states;
         (0..self.points_per_pitch)
             .map(|since| {
-                let pairs = states[since + self.points_before..].iter().step_by(self.points_per_pitch);
-                self.touching_n_per_m(&pairs.copied().collect::<Vec<_>>()) * 1e-3
+                let of_slice = |slice: &[PairState]| -> Vec<PairState> {
+                    let first = (since + self.points_before) % self.points_per_pitch;
+                    slice[first..].iter().step_by(self.points_per_pitch).copied().collect()
+                };
+                let pairs: Vec<PairState> = states.chunks(self.points()).flat_map(of_slice).collect();
+                self.touching_n_per_m(&pairs) * 1e-3
             })
             .collect()
     }
 
     /// (N/m) Stiffness of the pairs that carry a light load: those that are hardly farther apart than the nearest, or all where they
-    /// may pull.
+    /// may pull. Of slices those that the nominal load brings together.
     fn touching_n_per_m(&self, states: &[PairState]) -> f64 {
         let pairs = || states.iter().filter(|state| state.stiffness_n_per_m > 0.0);
         let farthest_m = match self.contact {
-            Contact::Unilateral => nearest_m(pairs()) + TOUCHING_M,
+            Contact::Unilateral if self.pressed_m.is_empty() => nearest_m(pairs()) + TOUCHING_M,
+            Contact::Unilateral => {
+                let force_n = self.nominal_deflection_m * self.mean_stiffness_n_per_m;
+                self.deflection_at_rest(states.iter(), force_n).unwrap_or(f64::NEG_INFINITY)
+            }
             Contact::Bilateral => f64::INFINITY,
         };
         let touching = pairs().filter(|state| state.separation_m < farthest_m);
@@ -253,20 +446,16 @@ impl Mesh {
         states: impl Iterator<Item = &'a PairState>,
         force_n: f64,
     ) -> Option<f64> {
-        let sample = sample_of(states);
-        let touches = sample.stiffness.iter().any(|stiffness| stiffness.0[0] > 0.0);
-        touches.then(|| deflection_at_rest(self.contact, &sample, 0, force_n))
+        let mut springs = springs_of(states).peekable();
+        springs.peek()?;
+        Some(deflection_at_rest(self.contact, springs, force_n))
     }
 }
 
-/// Pairs without deviations as a sample of the time loop.
-fn sample_of<'a>(states: impl Iterator<Item = &'a PairState>) -> PairsSample<1> {
-    let mut sample = PairsSample::<1>::NONE;
-    for (place, state) in states.take(PAIRS).enumerate() {
-        sample.stiffness[place] = Lanes([state.stiffness_n_per_m]);
-        sample.offset[place] = Lanes([-state.separation_m]);
-    }
-    sample
+/// (N/m, m) Pairs without deviations, of which all that can touch, as springs of the time loop.
+fn springs_of<'a>(states: impl Iterator<Item = &'a PairState>) -> impl Iterator<Item = [f64; 2]> {
+    let can_touch = |state: &&PairState| state.stiffness_n_per_m > 0.0;
+    states.filter(can_touch).map(|state| [state.stiffness_n_per_m, -state.separation_m])
 }
 
 /// (m) How far a load presses the nearest of sound pairs together at rest.
@@ -279,7 +468,7 @@ fn sample_of<'a>(states: impl Iterator<Item = &'a PairState>) -> PairsSample<1> 
 fn pressed_m(states: &[PairState], from: usize, per_pitch: usize, force_n: f64) -> f64 {
     let together =
         || states.iter().skip(from).step_by(per_pitch).filter(|state| state.stiffness_n_per_m > 0.0);
-    deflection_at_rest(Contact::Unilateral, &sample_of(together()), 0, force_n) - nearest_m(together())
+    deflection_at_rest(Contact::Unilateral, springs_of(together()), force_n) - nearest_m(together())
 }
 
 /// (m) Least separation of some pairs.

@@ -1,7 +1,8 @@
-//! The law of a mesh: `f = Σ k_n max(0, x_n + τ ẋ_n) − k̄ max(0, −j − (δ + τ δ̇))` with `x_n = δ + e_n − S_n`.
+//! The law of a mesh: `f = Σ k_n max(0, x_n + τ ẋ_n) − k̄ max(0, −j − (δ + τ δ̇))` with `x_n = δ + e_n − S_n`, summed over its springs: the
+//! pairs of teeth, or the slices of each pair where its gap varies along the face.
 //!
 //! Flanks push and never pull. Where they may pull, as in a linear mesh, every pair on its path carries `k_n (x_n + τ ẋ_n)` of either
-//! sign, and back flanks are out of reach.
+//! sign, and coast flanks are out of reach.
 //!
 //! Stiffness, deviation and separation of every pair are known functions of the rotation, so a mesh has one unknown in a step, the
 //! deflection with its damping's lead, `D = δ + τ δ̇`. At the step's end `D = D₀ − Γ f(D)`, where D₀ is what it would be without
@@ -101,6 +102,60 @@ fn line_up<'a, const L: usize>(
     }
 }
 
+/// The springs of a mesh at one sample: pairs of teeth, or their slices.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Springs<'a> {
+    /// (N/m) Stiffness of each; 0 where there is none.
+    pub(crate) stiffness: &'a [f64],
+    /// (m) What deviations, damage and separation add to the deflection, with the damping's lead.
+    pub(crate) offset: &'a [f64],
+}
+
+/// Springs that are summed at once.
+const AT_ONCE: usize = 4;
+
+/// The springs of a mesh at successive samples, sample by sample.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SpringSamples {
+    /// Numbers of a sample: stiffnesses, then offsets, with zeros up to whole sums.
+    values: Vec<f64>,
+    springs: usize,
+    /// (m) Where along the face the load acts at each sample; empty where that is the middle throughout.
+    face_centre: Vec<f64>,
+}
+
+impl SpringSamples {
+    /// Takes the samples of a block.
+    pub(crate) fn line_up(&mut self, block: &PairsBlock) {
+        let samples = block.stiffness.first().map_or(0, Vec::len);
+        self.springs = block.stiffness.len().next_multiple_of(AT_ONCE);
+        let stride = 2 * self.springs;
+        self.values.resize(samples * stride, 0.0);
+        for (n, (stiffness, offset)) in block.stiffness.iter().zip(&block.offset).enumerate() {
+            let at = self.values.chunks_exact_mut(stride).zip(stiffness.iter().zip(offset));
+            for (values, (stiffness, offset)) in at {
+                values[n] = *stiffness;
+                values[self.springs + n] = *offset;
+            }
+        }
+        self.face_centre.clone_from(&block.face_centre);
+    }
+
+    /// The springs at a sample.
+    #[inline(always)]
+    pub(crate) fn at(&self, sample: usize) -> Springs<'_> {
+        let stride = 2 * self.springs;
+        let (stiffness, offset) = self.values[sample * stride..(sample + 1) * stride].split_at(self.springs);
+        Springs { stiffness, offset }
+    }
+
+    /// (m) Where along the face the load acts at a sample.
+    #[inline(always)]
+    pub(crate) fn face_centre_m(&self, sample: usize) -> f64 {
+        self.face_centre.get(sample).copied().unwrap_or(0.0)
+    }
+}
+
 /// The law of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshLaw {
@@ -108,9 +163,9 @@ pub struct MeshLaw {
     pub contact: Contact,
     /// (s) τ, the contact's damping over its stiffness.
     pub damping_time_s: f64,
-    /// (N/m) Stiffness of back flanks in contact.
+    /// (N/m) Stiffness of coast flanks in contact.
     pub back_stiffness_n_per_m: f64,
-    /// (m) Normal backlash; none where back flanks are out of reach.
+    /// (m) Normal backlash; none where coast flanks are out of reach.
     pub backlash_m: Option<f64>,
 }
 
@@ -118,7 +173,7 @@ pub struct MeshLaw {
 const OUT_OF_REACH_M: f64 = 1e9;
 
 impl MeshLaw {
-    /// (m) Deflection at which the back flanks touch, `−j`.
+    /// (m) Deflection at which the coast flanks touch, `−j`.
     fn back_touches_at_m(&self) -> f64 {
         -self.backlash_m.unwrap_or(OUT_OF_REACH_M)
     }
@@ -130,24 +185,35 @@ impl MeshLaw {
 
     /// (N, N/m) The force that the flanks carry at a deflection, and its slope.
     ///
+    /// The springs are summed in as many sums as fit side by side, so that the compiler can take several of them at once.
+    ///
     /// # Arguments
-    /// * `sample` - the pairs
-    /// * `lane` - which simulation
+    /// * `springs` - stiffness and offset of each
     /// * `deflection_m` - (m) D
-    pub(crate) fn force_and_slope<const L: usize>(
-        &self,
-        sample: &PairsSample<L>,
-        lane: usize,
-        deflection_m: f64,
-    ) -> [f64; 2] {
-        let pair = |n: usize| {
-            let penetration = deflection_m + sample.offset[n].0[lane];
-            let touches = self.contact.touches(penetration);
-            let stiffness = if touches { sample.stiffness[n].0[lane] } else { 0.0 };
-            [if touches { stiffness * penetration } else { 0.0 }, stiffness]
+    #[inline(always)]
+    pub(crate) fn force_and_slope(&self, springs: Springs, deflection_m: f64) -> [f64; 2] {
+        let lets_go_m = self.contact.lets_go_at_m();
+        let spring = |stiffness: f64, offset: f64| {
+            let penetration = deflection_m + offset;
+            let touching = if penetration > lets_go_m { stiffness } else { 0.0 };
+            [touching * penetration, touching]
         };
-        let [force, slope] =
-            (0..PAIRS).map(pair).fold([0.0; 2], |[force, slope], [f, k]| [force + f, slope + k]);
+        let (stiffness, of_rest) = springs.stiffness.as_chunks::<AT_ONCE>();
+        let (offset, offset_of_rest) = springs.offset.as_chunks::<AT_ONCE>();
+        let mut sums = [[0.0; AT_ONCE]; 2];
+        for (stiffness, offset) in stiffness.iter().zip(offset) {
+            for n in 0..AT_ONCE {
+                let [force, slope] = spring(stiffness[n], offset[n]);
+                sums[0][n] += force;
+                sums[1][n] += slope;
+            }
+        }
+        for (stiffness, offset) in of_rest.iter().zip(offset_of_rest) {
+            let [force, slope] = spring(*stiffness, *offset);
+            sums[0][0] += force;
+            sums[1][0] += slope;
+        }
+        let [force, slope] = sums.map(|[a, b, c, d]| (a + b) + (c + d));
         let back_m = self.back_touches_at_m() - deflection_m;
         let back = if back_m > 0.0 { self.back_stiffness_n_per_m } else { 0.0 };
         [force - back * back_m.max(0.0), slope + back]
@@ -183,7 +249,7 @@ impl<const L: usize> LawLanes<L> {
     /// about the middle of the face.
     ///
     /// The load acts in the one direction `g(z̄) = g₀ + z̄ g₁`, so that deflections and compliances in g₀ and g₁ come down to one
-    /// equation in D. It is solved for the drive flanks first; only where D would reach the back flanks, which is rare, they are added
+    /// equation in D. It is solved for the drive flanks first; only where D would reach the coast flanks, which is rare, they are added
     /// and the equation is solved again.
     ///
     /// # Arguments
@@ -225,7 +291,7 @@ impl<const L: usize> LawLanes<L> {
             let pushed = compliance.mul(simd, stiffness);
             let own = one.add(simd, pushed);
             let loaded = pushed.mul_add(simd, self.back_touches, load);
-            // Where no back flank touches the solution is found again, from the same pairs on.
+            // Where no coast flank touches the solution is found again, from the same pairs on.
             *touching = before;
             (deflection, sums) = self.solve(simd, sample, [compliance, own, loaded], touching);
             back = stiffness.mul(simd, self.back_touches.sub(simd, deflection));
@@ -323,28 +389,23 @@ fn sums_over<I: Instructions, const L: usize>(
     sums
 }
 
-/// (m) Deflection at which the pairs of one sample carry a force at rest. Where it is 0, the one at which the first would touch.
+/// (m) Deflection at which some springs carry a force at rest. Where it is 0, the one at which the first would touch.
 ///
 /// # Arguments
 /// * `contact` - how the flanks touch
-/// * `sample` - the pairs
-/// * `lane` - which simulation
+/// * `springs` - (N/m, m) stiffness and offset of each
 /// * `force_n` - (N) the force, 0 or more
-pub(crate) fn deflection_at_rest<const L: usize>(
+pub(crate) fn deflection_at_rest(
     contact: Contact,
-    sample: &PairsSample<L>,
-    lane: usize,
+    springs: impl Iterator<Item = [f64; 2]>,
     force_n: f64,
 ) -> f64 {
-    let mut pairs: Vec<[f64; 2]> = (0..PAIRS)
-        .map(|n| [sample.stiffness[n].0[lane], sample.offset[n].0[lane]])
-        .filter(|[stiffness, _]| *stiffness > 0.0)
-        .collect();
+    let mut springs: Vec<[f64; 2]> = springs.filter(|[stiffness, _]| *stiffness > 0.0).collect();
     // The one that touches first has the largest offset.
-    pairs.sort_by(|a, b| b[1].total_cmp(&a[1]));
+    springs.sort_by(|a, b| b[1].total_cmp(&a[1]));
     let (mut stiffness, mut load) = (0.0, force_n);
-    let mut deflection = pairs.first().map_or(0.0, |[_, offset]| -offset);
-    for [k, offset] in pairs {
+    let mut deflection = springs.first().map_or(0.0, |[_, offset]| -offset);
+    for [k, offset] in springs {
         if stiffness > 0.0 && !contact.touches(deflection + offset) {
             break;
         }
@@ -360,7 +421,7 @@ mod tests {
     use super::*;
     use crate::simd::{InstructionSet, Task};
 
-    /// Flanks that push, without damping and with back flanks out of reach.
+    /// Flanks that push, without damping and with coast flanks out of reach.
     const UNDAMPED: MeshLaw = MeshLaw {
         contact: Contact::Unilateral,
         damping_time_s: 0.0,
@@ -478,9 +539,11 @@ mod tests {
 
     #[test]
     fn two_pairs_share_a_load_as_in_closed_form() {
-        let two = sample([2e8, 1e8, 0.0], [1e-6, -2e-6, 0.0]);
+        let (stiffness, offset) = ([2e8, 1e8, 0.0], [1e-6, -2e-6, 0.0]);
+        let two = Springs { stiffness: &stiffness, offset: &offset };
+        let springs = || stiffness.into_iter().zip(offset).map(<[f64; 2]>::from);
         // Light: the first alone. Heavy: both, δ = (F − Σ k o)/Σ k.
-        let at_rest = |contact, load| deflection_at_rest(contact, &two, 0, load);
+        let at_rest = |contact, load| deflection_at_rest(contact, springs(), load);
         assert!((at_rest(Contact::Unilateral, 100.0) - (100.0 / 2e8 - 1e-6)).abs() < 1e-15);
         assert!((at_rest(Contact::Unilateral, 3000.0) - 3000.0 / 3e8).abs() < 1e-15);
         // Flanks that may pull share every load.
@@ -488,13 +551,13 @@ mod tests {
         for contact in [Contact::Unilateral, Contact::Bilateral] {
             let law = MeshLaw { contact, ..UNDAMPED };
             for load in [0.0, 100.0, 599.0, 601.0, 3000.0] {
-                let [carried, _] = law.force_and_slope(&two, 0, at_rest(contact, load));
+                let [carried, _] = law.force_and_slope(two, at_rest(contact, load));
                 assert!((carried - load).abs() < 1e-9, "{carried} {load}");
             }
         }
     }
 
-    /// Against bisection, over drawn pairs, compliances and free deflections: back flanks and jammed teeth too.
+    /// Against bisection, over drawn pairs, compliances and free deflections: coast flanks and jammed teeth too.
     #[test]
     fn a_step_is_solved_exactly() {
         use crate::random::{Draws, Purpose};
@@ -519,7 +582,7 @@ mod tests {
             let offset = [micrometre(10.0), micrometre(10.0), micrometre(10.0)];
             let (free, backlash) = (micrometre(30.0), micrometre(10.0).abs());
             let compliance = draws.uniform(1e-9, 1e-9);
-            let stiffness = std::array::from_fn(|_| draws.uniform(2e8, 2e8));
+            let stiffness: [f64; PAIRS] = std::array::from_fn(|_| draws.uniform(2e8, 2e8));
             let law = MeshLaw {
                 contact: Contact::Unilateral,
                 backlash_m: Some(backlash),
@@ -530,7 +593,8 @@ mod tests {
             let pairs = sample(stiffness, offset);
             let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
             let force = 300.0 - InstructionSet::fastest().run(solve);
-            let of = |d: f64| law.force_and_slope(&pairs, 0, d)[0];
+            let springs = Springs { stiffness: &stiffness, offset: &offset };
+            let of = |d: f64| law.force_and_slope(springs, d)[0];
             let relative = |d: f64| 300.0 - of(d);
             let (mut low, mut high) = (-1e-3, 1e-3);
             for _ in 0..200 {

@@ -12,6 +12,7 @@ mod pair;
 mod path_table;
 mod sequence;
 mod static_mesh;
+mod window;
 
 pub use curve::MeshCurve;
 pub use deviations::PairDeviations;
@@ -21,10 +22,11 @@ pub(crate) use forcing::ForcingBlock;
 #[cfg(feature = "internals")]
 pub use forcing::ForcingBlock;
 pub use forcing::{Forcing, Turning};
+pub(crate) use forcing::{PAIRS, PairsBlock};
 pub(crate) use gear_mesh::MeshParameters;
 pub use gear_mesh::{Mesh, PairTable};
 pub use law::{Contact, MeshLaw};
-pub(crate) use law::{LawLanes, PairsSample, Touching, deflection_at_rest};
+pub(crate) use law::{LawLanes, PairsSample, SpringSamples, Springs, Touching, deflection_at_rest};
 pub use pair::{LoadedPair, Pairs};
 pub use path_table::PairState;
 pub(crate) use path_table::TipShape;

@@ -1,5 +1,7 @@
 //! A pair of teeth that carries a load: how stiff it is, and where along the face the load acts.
 
+use std::sync::Arc;
+
 use super::sequence::PairKind;
 use crate::damage::{DamagedTooth, united};
 use crate::stiffness::{FlankLoad, LoadedFlank, hertz_compliance_mm_per_n};
@@ -9,7 +11,8 @@ use crate::wheel::{FlankPoint, FoundationCoefficients, Material, Teeth, WheelNam
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LoadedPair {
-    /// (N/mm) Stiffness along the line of action, `1/(c_pinion + c_gear + c_contact)`; 0 where nothing is left that could touch.
+    /// (N/mm) Stiffness along the line of action, `cos β_b/(c_pinion + c_gear + c_contact)`, of helical teeth in the transverse
+    /// section, as if the whole face touched at one position; 0 where nothing is left that could touch.
     pub stiffness_n_per_mm: f64,
     /// (m) Where along the face the load acts, from its middle: the centroid of the width that is left.
     pub face_centre_m: f64,
@@ -24,9 +27,12 @@ impl LoadedPair {
 pub struct Pairs<'a> {
     teeth: &'a Teeth,
     damaged: &'a [DamagedTooth],
-    sound: [LoadedFlank<'a>; 2],
+    sound: Arc<[LoadedFlank<'a>; 2]>,
     broken: Vec<LoadedFlank<'a>>,
     material: Material,
+    foundation: FoundationCoefficients,
+    /// (-) Cosine of the base helix angle, by which a stiffness across the teeth is less in the transverse section.
+    base_cos: f64,
 }
 
 /// One of a pair's two teeth where it is touched.
@@ -54,10 +60,23 @@ impl<'a> Pairs<'a> {
         Self {
             teeth,
             damaged,
-            sound: WheelName::BOTH.map(|wheel| loaded(wheel, None)),
+            sound: Arc::new(WheelName::BOTH.map(|wheel| loaded(wheel, None))),
             broken: damaged.iter().map(|tooth| loaded(tooth.wheel, Some(tooth))).collect(),
             material,
+            foundation: *foundation,
+            base_cos: teeth.pinion.base_helix_angle_rad().cos(),
         }
+    }
+
+    /// The same wheels with other damaged teeth.
+    ///
+    /// # Arguments
+    /// * `damaged` - the damaged teeth
+    pub(crate) fn with_damaged(&self, damaged: &'a [DamagedTooth]) -> Self {
+        let loaded = |tooth: &'a DamagedTooth| {
+            LoadedFlank::new(self.teeth.flank(tooth.wheel), Some(tooth), self.material, &self.foundation)
+        };
+        Self { damaged, broken: damaged.iter().map(loaded).collect(), sound: self.sound.clone(), ..*self }
     }
 
     /// A pair of a class at a position of its path.
@@ -75,7 +94,7 @@ impl<'a> Pairs<'a> {
     ///
     /// # Arguments
     /// * `kind` - the class
-    /// * `curvature_mm` - (mm) of the pinion's and of the gear's flank; on what is left of a broken tooth
+    /// * `curvature_mm` - (mm) of the pinion's and of the gear's flank in the transverse section; on what is left of a broken tooth
     pub(crate) fn loaded_at(&self, kind: &PairKind, curvature_mm: [f64; 2]) -> LoadedPair {
         let pair = self.touched(kind, curvature_mm);
         let is_missing = |tooth: &Touched| tooth.damage.is_some_and(DamagedTooth::is_missing);
@@ -89,7 +108,7 @@ impl<'a> Pairs<'a> {
             Touched {
                 damage: damage.map(|index| &self.damaged[index]),
                 loaded: damage.map_or(&self.sound[name as usize], |index| &self.broken[index]),
-                point: flank.at_curvature(curvature_mm[name as usize]),
+                point: flank.at_curvature(self.teeth.section_curvature_mm(name, curvature_mm[name as usize])),
             }
         })
     }
@@ -108,7 +127,7 @@ impl<'a> Pairs<'a> {
         });
         let compliance = compliance.sum::<f64>() + hertz_compliance_mm_per_n(self.material, width_mm);
         // What has no width left has no compliance that is a number.
-        let stiffness_n_per_mm = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
+        let stiffness_n_per_mm = if compliance > 0.0 { self.base_cos / compliance } else { 0.0 };
         LoadedPair { stiffness_n_per_mm, face_centre_m }
     }
 

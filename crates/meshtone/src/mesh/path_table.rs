@@ -2,9 +2,9 @@
 
 use super::bridging::bridged;
 use super::corner::Corner;
-use super::law::Contact;
 use super::pair::Pairs;
 use super::sequence::PairKind;
+use super::window::{Integral, Window};
 use crate::damage::DamagedTooth;
 use crate::wheel::{FlankRelief, WheelName};
 
@@ -42,12 +42,26 @@ struct Tooth {
     tip_curvature_mm: f64,
 }
 
+/// How a pair leaves its path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PathEnds {
+    /// With the corner of a tip, as spur wheels that push do.
+    Corners,
+    /// At once: flanks that may pull, and each place of helical teeth's contact line, of which only the last one has the corner.
+    Sharp,
+}
+
 /// Tabulates the pairs of a mesh.
 pub(crate) struct PairTables<'a> {
     pairs: &'a Pairs<'a>,
     shape: TipShape,
-    contact: Contact,
+    ends: PathEnds,
+    /// (-) Cosine of the base helix angle: of what is lost across the teeth in the transverse section.
+    base_cos: f64,
 }
+
+/// Positions in a base pitch at which helical pairs are tabulated before they are averaged along their contact lines.
+const PER_PITCH: f64 = 256.0;
 
 impl<'a> PairTables<'a> {
     /// The tables of some pairs.
@@ -55,9 +69,9 @@ impl<'a> PairTables<'a> {
     /// # Arguments
     /// * `pairs` - the tooth pairs
     /// * `shape` - of all tips
-    /// * `contact` - a pair that may pull has no tip corners: it ends with its path
-    pub(crate) fn new(pairs: &'a Pairs<'a>, shape: TipShape, contact: Contact) -> Self {
-        Self { pairs, shape, contact }
+    /// * `ends` - how a pair leaves its path
+    pub(crate) fn new(pairs: &'a Pairs<'a>, shape: TipShape, ends: PathEnds) -> Self {
+        Self { pairs, shape, ends, base_cos: pairs.teeth().pinion.base_helix_angle_rad().cos() }
     }
 
     fn tooth(&self, wheel: WheelName, damage: Option<&DamagedTooth>) -> Tooth {
@@ -65,13 +79,13 @@ impl<'a> PairTables<'a> {
         let (own, profile) = (teeth.wheel(wheel), teeth.profile(wheel));
         let chamfered = own.tip_radius_mm - self.shape.chamfer_mm;
         let left = damage.map(|damage| damage.gone_from_index).filter(|&index| index < profile.len());
-        let broken = left.map_or(f64::INFINITY, |index| profile.involute_radius_mm[index.saturating_sub(1)]);
-        let shortening = match self.contact {
-            Contact::Unilateral => self.shape.active_profile_shortening,
-            Contact::Bilateral => 0.0,
-        };
+        let broken_mm = left.map_or(f64::INFINITY, |index| {
+            let curvature_mm = teeth.flank(wheel).curvature_mm(index.saturating_sub(1));
+            teeth.transverse_curvature_mm(wheel, curvature_mm)
+        });
+        let shortening = self.shape.active_profile_shortening;
         let active = own.curvature_mm(chamfered) - shortening / 2.0 * teeth.path.base_pitch_mm;
-        let tip_curvature_mm = active.min(own.curvature_mm(broken)).max(0.0);
+        let tip_curvature_mm = active.min(broken_mm).max(0.0);
         Tooth { tip_radius_mm: tip_curvature_mm.hypot(own.base_radius_mm), tip_curvature_mm }
     }
 
@@ -114,15 +128,15 @@ impl<'a> PairTables<'a> {
             WheelName::BOTH.map(|wheel| self.gaps(wheel, damages[wheel as usize], &on_path));
         (0..positions.len())
             .map(|n| {
-                let (corner, share) = match self.contact {
-                    Contact::Unilateral => {
+                let (corner, share) = match self.ends {
+                    PathEnds::Corners => {
                         let before_mm = (begins - positions[n]) * path.base_pitch_mm;
                         let beyond_mm = (positions[n] - ends) * path.base_pitch_mm;
                         let corners =
                             gear_corner.separation_mm(before_mm) + pinion_corner.separation_mm(beyond_mm);
                         (corners, 1.0)
                     }
-                    Contact::Bilateral => (0.0, share_on_path(positions[n], step, [begins, ends])),
+                    PathEnds::Sharp => (0.0, share_on_path(positions[n], step, [begins, ends])),
                 };
                 let separation = corner + of_pinion[n].0 + of_gear[n].0;
                 // At the edge of a hollow the load acts at the edge.
@@ -137,6 +151,27 @@ impl<'a> PairTables<'a> {
                 }
             })
             .collect()
+    }
+
+    /// A class of pairs of helical teeth along its path, to be averaged over contact lines.
+    ///
+    /// # Arguments
+    /// * `kind` - the class
+    pub(crate) fn along_path(&self, kind: &PairKind) -> AlongPath {
+        let step = 1.0 / PER_PITCH;
+        let points = (self.pairs.teeth().path.contact_ratio * PER_PITCH).ceil() as i64 + 2;
+        let path: Vec<f64> = (-2..points).map(|point| point as f64 * step).collect();
+        let states = self.tabulate(kind, &path, step);
+        let integral = |of: &dyn Fn(&PairState, f64) -> f64| {
+            let weighted =
+                states.iter().zip(&path).map(|(state, at)| state.stiffness_n_per_m * of(state, *at));
+            Integral::new(path[0], step, weighted)
+        };
+        AlongPath {
+            stiffness: integral(&|_, _| 1.0),
+            separation: integral(&|state, _| state.separation_m),
+            place: integral(&|_, at| at),
+        }
     }
 
     /// (mm) How far one flank's damage and relief keep the mate off at each position, and the number of the position whose
@@ -161,8 +196,8 @@ impl<'a> PairTables<'a> {
             .iter()
             .enumerate()
             .map(|(n, &curvature)| {
-                let point = flank.at_curvature(curvature);
-                point.of(&lost) * point.load_cos + relief(n)
+                let point = flank.at_curvature(teeth.section_curvature_mm(wheel, curvature));
+                point.of(&lost) * point.load_cos / self.base_cos + relief(n)
             })
             .collect();
         // Arc length of an involute.
@@ -170,6 +205,41 @@ impl<'a> PairTables<'a> {
         let relative: Vec<f64> =
             curvature.iter().map(|rho| rho * (path.line_mm - rho) / path.line_mm).collect();
         bridged(&depth, &along, &relative)
+    }
+}
+
+/// Integrals along the path of contact of a class of pairs, each weighted by the pair's stiffness.
+pub(crate) struct AlongPath {
+    stiffness: Integral,
+    separation: Integral,
+    place: Integral,
+}
+
+impl AlongPath {
+    /// The pairs at positions of the middle of the face: means along a slice's contact line.
+    ///
+    /// A spring that stands for a slice has the stiffness of all its places together and their mean separation, weighted by stiffness, and
+    /// acts where their stiffnesses have their centre. While all of them touch that is exact.
+    ///
+    /// # Arguments
+    /// * `positions` - (base pitches) since the start of the path of whole teeth
+    /// * `window` - the slice
+    /// * `face_width_m` - (m) of the whole face
+    pub(crate) fn over_face(&self, positions: &[f64], window: Window, face_width_m: f64) -> Vec<PairState> {
+        let state = |&position: &f64| {
+            let [from, until] = window.around(position);
+            let whole = self.stiffness.between(from, until);
+            if whole <= 0.0 {
+                return PairState::APART;
+            }
+            let beyond_middle = self.place.between(from, until) / whole - (from + until) / 2.0;
+            PairState {
+                stiffness_n_per_m: whole / (until - from),
+                separation_m: self.separation.between(from, until) / whole,
+                face_centre_m: beyond_middle / window.overlap * face_width_m,
+            }
+        };
+        positions.iter().map(state).collect()
     }
 }
 

@@ -33,6 +33,13 @@ pub struct PairKind {
     pub pairs_per_cycle: usize,
 }
 
+impl PairKind {
+    /// Whether both teeth are sound.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.pinion.is_none() && self.gear.is_none()
+    }
+}
+
 impl PairSequence {
     /// The sequence of two wheels.
     ///

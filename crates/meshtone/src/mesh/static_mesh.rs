@@ -66,7 +66,7 @@ impl Mesh {
             for (pair, state) in self.pairs_at(point) {
                 let penetration = deflection - state.separation_m;
                 if self.contact.touches(penetration) {
-                    pair_force_n[(pair - first_pair) as usize][column] =
+                    pair_force_n[(pair - first_pair) as usize][column] +=
                         state.stiffness_n_per_m * penetration;
                 }
             }
@@ -74,16 +74,17 @@ impl Mesh {
         StaticMesh { deflection_m, first_pair, pair_force_n }
     }
 
-    /// The pairs whose tables reach a point, counted from the start of the simulation: the newest first.
+    /// The pairs whose tables reach a point, counted from the start of the simulation: the newest first, slice by slice.
     pub(super) fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, &PairState)> {
         let (newest, since) = (
             (point + self.points_before) / self.points_per_pitch,
             (point + self.points_before) % self.points_per_pitch,
         );
         let points = (since..self.points()).step_by(self.points_per_pitch).enumerate();
-        points.map(move |(age, at)| {
+        points.flat_map(move |(age, at)| {
             let pair = newest as i64 - age as i64;
-            (pair, &self.classes[self.sequence.class(pair)].states[at])
+            let states = &self.classes[self.sequence.class(pair)].states;
+            states[at..].iter().step_by(self.points()).map(move |state| (pair, state))
         })
     }
 }

@@ -62,8 +62,9 @@ impl Operation {
     pub(crate) fn ended_profiles(&self, kept_from_s: f64) -> Vec<ScenarioWarning> {
         let warning = |(key, ends_s): (&'static str, f64)| {
             let message = format!(
-                "ends at {ends_s} s, and the kept signal starts at {kept_from_s:.3} s: only its last value is seen; add \
-                 {kept_from_s:.3} s to its times, so that it starts where the kept signal does"
+                "ends at {ends_s} s, and the kept signal starts at {kept_from_s:.3} s: only its last value \
+                 has an effect; add {kept_from_s:.3} s to its times, so that it starts where the kept signal \
+                 does"
             );
             ScenarioWarning::new(WarningKind::ProfileEnded, key, message)
         };

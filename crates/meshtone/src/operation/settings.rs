@@ -99,7 +99,7 @@ impl Keys for Solver {
                 field!(sampling_rate_hz),
             )
             .range(Range::positive()),
-            row("duration_s", "s", "how long the kept signal is; settling comes before it", field!(duration_s))
+            row("duration_s", "s", "the length of the kept signal; settling comes before it", field!(duration_s))
                 .otherwise("see pinion_revolutions")
                 .range(Range::positive())
                 .rule("not beside pinion_revolutions")
@@ -110,7 +110,7 @@ impl Keys for Solver {
                 "the same as a number of revolutions of the pinion; settling comes before them",
                 field!(pinion_revolutions),
             )
-            .otherwise("what settling leaves of 2 z_g revolutions, or of the time that a speed profile spans")
+            .otherwise("2 z_g revolutions, or the time of a speed profile, less settling")
             .range(Range::positive())
             .rule("not beside duration_s, not with a speed profile")
             .alternative("20.0"),
@@ -126,9 +126,9 @@ impl Keys for Solver {
             row(
                 "settle_tolerance",
                 "-",
-                "what must be left of the slowest mode's transient where the kept signal starts: a steady simulation \
-                 starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, \
-                 as always under published",
+                "the fraction of the slowest mode's transient that may remain where the kept signal starts: \
+                 a steady simulation starts in equilibrium and simulates only as much of the discarded part \
+                 as this needs; 0: all of it, as always under published",
                 field!(settle_tolerance),
             )
             .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1")),

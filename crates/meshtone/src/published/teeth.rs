@@ -2,8 +2,7 @@
 
 use crate::interpolation::{NaturalSpline, Pchip};
 use crate::wheel::{
-    ContactLine, Gears, PathOfContact, Root, Teeth, TipRelief, ToothProfile, Wheel, WheelName, contact_line,
-    tooth_profile,
+    ContactLine, Gears, Root, Teeth, TipRelief, ToothProfile, Wheel, WheelName, tooth_profile,
 };
 
 /// The healthy teeth of both wheels, with the relief of the published code.
@@ -24,14 +23,12 @@ pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2]) -> Teeth {
 pub fn relieved_teeth(gears: &Gears, bore_radii_mm: [f64; 2], relief: Option<TipRelief>) -> Teeth {
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
-    let profile =
-        |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm, relief, Root::Published(joint(wheel)));
-    let (own_profile, gear_profile) = (profile(&pinion), profile(&gear));
-    let contact = contact_line(&pinion, &own_profile, &gear, &gear_profile);
-    let pinion_profile = resampled(&own_profile, &contact);
-    let contact = ContactLine { pinion_initial_contact_index: contact.initial_contact_index, ..contact };
-    let path = PathOfContact::new(&pinion, &gear);
-    Teeth { pinion, gear, pinion_profile, gear_profile, contact, path }
+    let profile = |wheel: &Wheel| {
+        tooth_profile(wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm, relief, Root::Published(joint(wheel)))
+    };
+    let own = Teeth::with_profiles(gears, [pinion, gear], profile);
+    let contact = ContactLine { pinion_initial_contact_index: own.contact.initial_contact_index, ..own.contact };
+    Teeth { pinion_profile: resampled(&own.pinion_profile, &own.contact), contact, ..own }
 }
 
 impl ContactLine {

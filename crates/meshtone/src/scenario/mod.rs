@@ -27,8 +27,8 @@ pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
 pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPath, SensorPlace};
 pub use crate::wheel::{
-    ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, MaterialConstants, ProfileErrors,
-    Quality, ReliefShape, WheelDeviations, WheelName,
+    ERROR_POINTS, EndRelief, FlankRelief, FoundationCoefficients, Gears, Hand, Material, MaterialConstants,
+    ProfileErrors, Quality, ReliefShape, WheelDeviations, WheelName,
 };
 pub use edit::{ScenarioNumber, split_key};
 pub use from_toml::{ScenarioFiles, line_of_key};

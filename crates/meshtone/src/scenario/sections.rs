@@ -25,7 +25,7 @@ impl Keys for Scenario {
             row(
                 "model",
                 "",
-                "the model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its known errors included",
+                "the model: teeth that touch and separate, a linear mesh that is always closed, or the published code with its known errors",
                 field!(model),
             ),
             row(

@@ -8,10 +8,9 @@ use crate::keys::{Keys, comment, commented};
 const HEALTHY: &str = "healthy";
 
 const HEAD: &str = "\
-# A Meshtone scenario: a pair of spur gears, how it is driven, and what is broken.
-# The pinion drives, on the motor's shaft; the gear is driven, on the brake's.
-# What stands behind \"# \" is a comment. What stands directly behind \"#\" is a key that may be left
-# out: take the \"#\" away to set it.
+# A Meshtone scenario: a pair of spur gears, its operation, and its damage.
+# The pinion, on the motor's shaft, drives the gear, on the brake's shaft.
+# Text after \"# \" is a comment. A key directly after \"#\" is optional: remove the \"#\" to set it.
 
 ";
 
@@ -24,8 +23,8 @@ const WITHOUT_SENSORS: &str = "\
 
 const WITHOUT_FAULTS: &str = "\
 # Damage may be listed, each as a section [[fault]], on any tooth of either wheel: `meshtone init KIND`
-# prints every key of a kind. Of all kinds but a missing tooth a severity may stand in place of the
-# sizes, from 0 to 1.
+# prints every key of a kind. Every kind but a missing tooth accepts a severity from 0 to 1 instead
+# of its sizes.
 #
 # [[fault]]
 ";
@@ -103,7 +102,7 @@ impl Style for Commented {
 
     fn without_faults(&self) -> Option<String> {
         let kinds: Vec<_> = damage_kinds().iter().map(|kind| format!("\"{}\"", kind.name)).collect();
-        let kinds = comment(&format!("What is wrong: one of {}.", kinds.join(", ")));
+        let kinds = comment(&format!("The kind of damage: one of {}.", kinds.join(", ")));
         Some(format!("{WITHOUT_FAULTS}{kinds}# kind = \"root-crack\"\n# severity = 0.4\n"))
     }
 

@@ -10,9 +10,9 @@ use super::Channels;
 pub struct ContactFigures {
     /// (-) Part of the time in which no teeth touched.
     pub apart_fraction: f64,
-    /// (-) Part of the time in which back flanks touched.
+    /// (-) Part of the time in which coast flanks touched.
     pub back_flank_fraction: f64,
-    /// Number of hits of back flanks.
+    /// Number of hits of coast flanks.
     pub back_flank_hits: usize,
     /// (N) Largest force, of either sign.
     #[serde(rename = "largest_n")]
@@ -23,7 +23,7 @@ impl ContactFigures {
     /// The figures of a simulation under the model of contact.
     ///
     /// # Arguments
-    /// * `channels` - its signals: the force along the line of action is 0 where no teeth touch, and negative where back flanks do
+    /// * `channels` - its signals: the force along the line of action is 0 where no teeth touch, and negative where coast flanks do
     ///
     /// ```
     /// use meshtone::sensor::{Channels, ContactFigures};
@@ -41,7 +41,7 @@ impl ContactFigures {
     /// The figures of one mesh.
     ///
     /// # Arguments
-    /// * `force` - (N) along its line of action, 0 where no teeth touch, negative where back flanks do
+    /// * `force` - (N) along its line of action, 0 where no teeth touch, negative where coast flanks do
     pub fn of_force(force: &[f64]) -> Self {
         let part = |is: fn(f64) -> bool| {
             force.iter().filter(|&&force| is(force)).count() as f64 / force.len().max(1) as f64

@@ -104,7 +104,7 @@ channels! {
     GearShaftSpeed gear_shaft_speed_hz "Hz" "revolutions of the gear per second"
         speed_hz(GEAR);
     MeshForce mesh_force_n "N"
-        "force along the line of action; negative: back flanks touch, or the linear mesh pulls where real teeth would part"
+        "force along the line of action; negative: coast flanks touch, or the linear mesh pulls where real teeth would separate"
         Output::MeshForce { mesh: 0 };
 }
 

@@ -175,7 +175,7 @@ impl Keys for Sensor {
             row("noise_seed", "", "the seed of the noise alone", field!(noise_seed))
                 .otherwise("the scenario's `seed`")
                 .example("1"),
-            row("range_g", "g", "the largest acceleration, of either sign, that it shows", field!(range_g))
+            row("range_g", "g", "the largest acceleration, of either sign, that it measures", field!(range_g))
                 .otherwise("none")
                 .range(Range::positive().implausible_above(1e9))
                 .example("50.0"),
@@ -187,14 +187,14 @@ impl Keys for Sensor {
             row(
                 "path",
                 "",
-                "the wall and the modes of a housing between its place and it; rigid under linear and published",
+                "the wall and the modes of a housing between its place and the sensor; rigid under linear and published",
                 field!(path),
             ),
             row(
                 "frequency_response",
                 "Hz, -, °",
-                "the measured path to the sensor: magnitude and phase over frequency, straight between the points, \
-                 the phase unwrapped; outside them nothing passes. Or { file = \"….csv\" } with the columns \
+                "the measured path to the sensor: magnitude and phase over frequency, straight between the \
+                 points, the phase unwrapped; zero outside them. Or { file = \"….csv\" } with the columns \
                  frequency_hz, magnitude, phase_deg",
                 field!(frequency_response),
             )
@@ -204,8 +204,9 @@ impl Keys for Sensor {
             row(
                 "response_input",
                 "",
-                "what goes through the frequency response: the place's acceleration, magnitudes without unit; or, \
-                 whatever `at` and `direction` say, the force along the line of action, magnitudes in (m/s²)/N",
+                "the input of the frequency response: the place's acceleration, magnitudes without unit; or, \
+                 regardless of `at` and `direction`, the force along the line of action, magnitudes in \
+                 (m/s²)/N",
                 field!(response_input),
             )
             .rule("\"force\" with frequency_response"),
@@ -264,7 +265,7 @@ impl Sensor {
         // Where the place is ignored, every sensor sits on the wheels.
         let on_support = self.at != SensorPlace::Wheels && !model.ignores("sensor.at");
         if on_support && self.reads_its_place() && self.direction == SensorDirection::Axial {
-            let problem = "cannot be felt at a support, which moves across the shafts alone";
+            let problem = "cannot be measured at a support, which moves only across the shafts";
             return Err(ScenarioError::new("sensor.direction", "\"axial\"", problem)
                 .with_help("write sensor.at = \"wheels\", or take another direction"));
         }
@@ -310,9 +311,7 @@ fn check_name(name: &str) -> Check {
     }
     let channel = channel_of(name);
     if TAKEN.contains(&name) || ChannelKind::ALL.iter().any(|kind| kind.name() == channel) {
-        return refused(format!(
-            "its channel {channel} would be taken for another of that name; take another name"
-        ));
+        return refused(format!("its channel {channel} has the name of another channel; take another name"));
     }
     Ok(())
 }

@@ -68,7 +68,7 @@ impl Keys for SensorPath {
             .range(Range::not_negative().implausible_above(100.0)),
             row("modes_per_khz", "1/kHz", "the housing modes in a kilohertz", field!(modes_per_khz))
                 .range(Range::positive().implausible_above(1e3)),
-            row("band_hz", "Hz", "where the housing has modes", field!(band_hz))
+            row("band_hz", "Hz", "the frequency band of the housing's modes", field!(band_hz))
                 .range(HZ)
                 .rule("the first less than the second"),
             row("damping_ratio", "-", "the damping ratio of the housing's modes", field!(damping_ratio))

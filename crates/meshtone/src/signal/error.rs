@@ -28,7 +28,7 @@ pub enum SignalError {
         samples: usize,
     },
     /// Every sample has the same value: the sensor was not connected, or the wrong column was read.
-    #[error("all {samples} samples are {value}: a constant channel tells nothing")]
+    #[error("all {samples} samples are {value}: a constant channel contains no information")]
     Constant {
         /// The value.
         value: f64,

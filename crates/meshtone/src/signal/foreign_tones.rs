@@ -276,7 +276,7 @@ impl std::fmt::Display for ForeignTones {
         }
         write!(
             f,
-            ": another stage or machine, a bearing, or teeth or speed that are not as stated; the average holds nothing of them"
+            ": another stage or machine, a bearing, or teeth or speed that are not as stated; the average does not contain them"
         )
     }
 }

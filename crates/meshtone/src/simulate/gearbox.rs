@@ -228,6 +228,7 @@ fn stages_with(
                 static_force_n: pair.static_force_n,
                 contact: Contact::Unilateral,
                 turning,
+                sense: layout.ratios[driving].value().signum(),
                 damping_ratio: gearbox.meshes[number].damping_ratio,
                 mesh_mass_kg,
             };
@@ -382,11 +383,12 @@ fn machine_of(
             Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
         })
         .collect();
-    let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh))
-        .map(|(teeth, &wheels)| MeshLine {
+    let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears))
+        .map(|((teeth, &wheels), gears)| MeshLine {
             wheels,
             base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
             working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
+            thrust: gears.thrust(),
         })
         .collect();
     let mass_kg = lines.iter().map(|line| {

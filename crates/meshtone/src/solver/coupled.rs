@@ -3,7 +3,7 @@
 //! In the notation of [`super::step`], the deflections with their damping's lead, `D_a` of mesh a, obey `D + G f(D) = D₀` with
 //! `G_ab = Σ_n B_na (β_n + ½ τ_a/Δt) Δt²E_n B_nb`, and `f_a` a rising, piecewise linear function of `D_a` alone.
 //!
-//! Newton's method takes the pairs that touch at the last iterate and solves the linear equations that these make. It ends, exactly,
+//! Newton's method takes the springs that touch at the last iterate and solves the linear equations that these make. It ends, exactly,
 //! when the same pairs touch at the new iterate. In theory it can go round in a circle; after [`MOST_PLAIN_ITERATIONS`] each iterate goes
 //! only as far towards Newton's as makes the residual smaller.
 
@@ -12,7 +12,7 @@ use std::ops::Range;
 use super::integrate::{Block, Diverged, Problem, Recorder, StepCounts, is_bounded};
 use super::outputs::{EXTERNALS, OutputWeights, dot};
 use super::prepare::{FirstState, Prepared};
-use crate::mesh::{ForcingBlock, MeshLaw, PairsSample};
+use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples};
 use crate::simd::{InstructionSet, Instructions, Lanes, Task};
 
 /// Most meshes that one machine has.
@@ -159,11 +159,9 @@ pub(super) fn integrate(
     let (start, end) = (problem.time.first_simulated_sample, problem.time.samples);
     let mut block = ForcingBlock::default();
     problem.forcing.next_block(1, &mut block);
-    let mut pairs = vec![vec![PairsSample::<1>::NONE; BLOCK]; prepared.laws.len()];
-    line_up(&block, 1, &mut pairs);
-    let first_pairs: Vec<PairsSample<1>> = pairs.iter().map(|of_mesh| of_mesh[0]).collect();
+    let mut springs = vec![SpringSamples::default(); prepared.laws.len()];
     let first_external = external(&block, 0);
-    let first = prepared.first_state(&problem.machine, &first_pairs, 0, first_external);
+    let first = prepared.first_state(&problem.machine, &block.meshes, first_external);
     let mut state = State::new(first, first_external, &order);
     let mut history = History::new(&constants.outputs);
     let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
@@ -171,14 +169,14 @@ pub(super) fn integrate(
     while sample < end && recorder.goes_on() {
         let steps = BLOCK.min(end - sample);
         problem.forcing.next_block(steps, &mut block);
-        line_up(&block, steps, &mut pairs);
+        springs.iter_mut().zip(&block.meshes).for_each(|(springs, block)| springs.line_up(block));
         outputs.iter_mut().for_each(Vec::clear);
         history.clear();
         let first_recorded = problem.first_sample.max(sample);
         instructions.run(Steps {
             constants: &constants,
             state: &mut state,
-            pairs: &pairs,
+            springs: &springs,
             block: &block,
             is_steady: problem.is_steady,
             samples: sample..sample + steps,
@@ -199,13 +197,6 @@ pub(super) fn integrate(
     }
     recorder.count(state.counts);
     Ok(())
-}
-
-/// Lines the pairs of each mesh up, sample by sample.
-fn line_up(block: &ForcingBlock, steps: usize, pairs: &mut [Vec<PairsSample<1>>]) {
-    for (samples, of_mesh) in pairs.iter_mut().zip(&block.meshes) {
-        PairsSample::line_up(&mut samples[..steps], &[of_mesh]);
-    }
 }
 
 /// Motor lead, torque deviation and speed deviation at one sample of a block; 0 while motor and brake are steady.
@@ -303,8 +294,8 @@ fn total(lanes: Lanes<SIDE_BY_SIDE>) -> f64 {
 struct Steps<'a, 'c> {
     constants: &'a Constants<'c>,
     state: &'a mut State,
-    /// For each mesh, the pairs at the samples after the state's.
-    pairs: &'a [Vec<PairsSample<1>>],
+    /// Of each mesh, at the samples after the state's.
+    springs: &'a [SpringSamples],
     block: &'a ForcingBlock,
     is_steady: bool,
     samples: Range<usize>,
@@ -322,7 +313,7 @@ impl Task for Steps<'_, '_> {
                 self.history.push(self.state);
             }
             let external = (!self.is_steady).then(|| external(self.block, k));
-            self.state.step(simd, self.constants, self.pairs, k, external);
+            self.state.step(simd, self.constants, self.springs, k, external);
         }
     }
 }
@@ -375,7 +366,7 @@ impl State {
         &mut self,
         simd: I,
         constants: &Constants,
-        pairs: &[Vec<PairsSample<1>>],
+        springs: &[SpringSamples],
         k: usize,
         external: Option<[f64; EXTERNALS]>,
     ) {
@@ -398,7 +389,7 @@ impl State {
             let sum = of_displacement.add(simd, of_velocity);
             *free = column.static_deflection + dot(&column.of_external, &self.external) + total(sum);
         }
-        constants.mesh_forces(pairs, k, self);
+        constants.mesh_forces(springs, k, self);
         for (column, force) in constants.columns.iter().zip(&self.force) {
             let force = Lanes::splat(*force);
             for (LotState([.., acceleration]), lot) in self.lots.iter_mut().zip(column) {
@@ -412,13 +403,13 @@ impl Constants<'_> {
     /// Sets (N) the forces of the meshes on the modes at the end of a step, in each column, relative to the static ones.
     ///
     /// # Arguments
-    /// * `pairs`, `k` - the pairs of each mesh, and which sample of them is the step's end
+    /// * `springs`, `k` - of each mesh, and which sample of them is the step's end
     /// * `state` - has the free deflections, and each mesh's deflection at the step's start, which is set to that at its end
     #[inline(always)]
-    fn mesh_forces(&self, pairs: &[Vec<PairsSample<1>>], k: usize, state: &mut State) {
+    fn mesh_forces(&self, springs: &[SpringSamples], k: usize, state: &mut State) {
         let prepared = self.prepared;
         let mut face_centres = [0.0; MOST_MESHES];
-        face_centres.iter_mut().zip(pairs).for_each(|(centre, pairs)| *centre = pairs[k].face_centre.0[0]);
+        face_centres.iter_mut().zip(springs).for_each(|(centre, springs)| *centre = springs.face_centre_m(k));
         let own;
         let equations = match &self.midway {
             Some(equations) => equations,
@@ -433,7 +424,7 @@ impl Constants<'_> {
             *free += columns.next().map_or(0.0, |column| state.free[column]);
             *free += columns.map(|column| face_centres[mesh] * state.free[column]).sum::<f64>();
         }
-        let law = PairsLaw { laws: &prepared.laws, pairs, k };
+        let law = SpringsLaw { laws: &prepared.laws, springs, k };
         let Solution { forces, iterations, searched } = equations.solve(&law, &free, &mut state.deflection);
         state.counts.steps += 1;
         state.counts.iterations += iterations;
@@ -491,17 +482,17 @@ trait Law {
     fn force_and_slope(&self, mesh: usize, deflection_m: f64) -> [f64; 2];
 }
 
-/// The pairs at one sample.
-struct PairsLaw<'a> {
+/// The springs at one sample.
+struct SpringsLaw<'a> {
     laws: &'a [MeshLaw],
-    pairs: &'a [Vec<PairsSample<1>>],
+    springs: &'a [SpringSamples],
     k: usize,
 }
 
-impl Law for PairsLaw<'_> {
+impl Law for SpringsLaw<'_> {
     #[inline(always)]
     fn force_and_slope(&self, mesh: usize, deflection_m: f64) -> [f64; 2] {
-        self.laws[mesh].force_and_slope(&self.pairs[mesh][self.k], 0, deflection_m)
+        self.laws[mesh].force_and_slope(self.springs[mesh].at(self.k), deflection_m)
     }
 }
 
@@ -558,7 +549,7 @@ impl Equations {
         (forces, slopes)
     }
 
-    /// The solution if the pairs that touch at `deflection` went on touching, `(1 + G K) D = D₀ − G (f − K D)`.
+    /// The solution if the springs that touch at `deflection` went on touching, `(1 + G K) D = D₀ − G (f − K D)`.
     #[inline(always)]
     fn newton(&self, free: &OfMeshes, deflection: &OfMeshes, forces: &OfMeshes, slopes: &OfMeshes) -> OfMeshes {
         let (mut matrix, mut right) = ([[0.0; MOST_MESHES]; MOST_MESHES], *free);
@@ -652,7 +643,7 @@ mod tests {
         }
     }
 
-    /// Springs that push from given deflections on, and back flanks: 2 000 drawn problems of one to eight meshes, also of such as are
+    /// Springs that push from given deflections on, and coast flanks: 2 000 drawn problems of one to eight meshes, also of such as are
     /// coupled far more strongly than those of a machine. The solution obeys the equations, from wherever the search begins.
     #[test]
     fn drawn_equations_are_solved_exactly() {

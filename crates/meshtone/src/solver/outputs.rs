@@ -46,7 +46,7 @@ pub enum Output {
         /// Which derivative with respect to time: 0, 1 or 2.
         derivative: usize,
     },
-    /// (N) Force with which a mesh presses its flanks together; negative: back flanks touch, or a linear mesh pulls.
+    /// (N) Force with which a mesh presses its flanks together; negative: coast flanks touch, or a linear mesh pulls.
     MeshForce {
         /// The mesh's number.
         mesh: usize,

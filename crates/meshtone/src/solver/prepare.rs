@@ -6,7 +6,7 @@ use super::integrate::Problem;
 use super::modal::ModalMachine;
 use super::mode_step::StepOfMode;
 use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
-use crate::mesh::{MeshLaw, PairsSample, deflection_at_rest};
+use crate::mesh::{MeshLaw, PairsBlock, Springs, deflection_at_rest};
 
 /// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh.
 pub(super) struct Prepared {
@@ -146,25 +146,24 @@ impl Prepared {
     ///
     /// # Arguments
     /// * `model` - the machine
-    /// * `samples`, `lane` - the pairs of each mesh at that sample
+    /// * `blocks` - of each mesh, whose first sample it is
     /// * `external` - the externals at that sample
-    pub(super) fn first_state<const L: usize>(
+    pub(super) fn first_state(
         &self,
         model: &ModalMachine,
-        samples: &[PairsSample<L>],
-        lane: usize,
+        blocks: &[PairsBlock],
         external: [f64; EXTERNALS],
     ) -> FirstState {
         let columns = &self.columns_of_mesh;
         let at_face_centre = |mesh: usize, of: &dyn Fn(usize) -> f64| {
-            let z = samples[mesh].face_centre.0[lane];
+            let z = blocks[mesh].face_centre_m(0);
             let tilted: f64 = columns[mesh].clone().skip(1).map(|column| z * of(column)).sum();
             (of(columns[mesh].start), tilted)
         };
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
                 let force_n = self.static_force_n[mesh].max(0.0);
-                let closed = deflection_at_rest(law.contact, &samples[mesh], lane, force_n);
+                let closed = deflection_at_rest(law.contact, blocks[mesh].springs(0), force_n);
                 let (at_rest, tilted) =
                     at_face_centre(mesh, &|column| self.columns[column].static_deflection);
                 closed - at_rest - tilted
@@ -178,10 +177,13 @@ impl Prepared {
                 self.columns[column].static_deflection + dot(lines[column], &displacement)
             });
             let lead = law.damping_time_s * dot(lines[columns[mesh].start], &model.initial_velocity);
-            let [carried, _] = law.force_and_slope(&samples[mesh], lane, deflection + tilted + lead);
+            let (stiffness, offset): (Vec<f64>, Vec<f64>) =
+                blocks[mesh].springs(0).map(|[stiffness, offset]| (stiffness, offset)).unzip();
+            let springs = Springs { stiffness: &stiffness, offset: &offset };
+            let [carried, _] = law.force_and_slope(springs, deflection + tilted + lead);
             let whole = self.static_force_n[mesh] - carried;
             force.push(whole);
-            let z = samples[mesh].face_centre.0[lane];
+            let z = blocks[mesh].face_centre_m(0);
             force.extend(columns[mesh].clone().skip(1).map(|_| z * (whole - self.static_force_n[mesh])));
         }
         let acceleration: Vec<f64> = (self.steps.iter().enumerate())

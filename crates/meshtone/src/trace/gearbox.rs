@@ -1,5 +1,6 @@
 //! Every stage's output of a gearbox.
 
+use super::stages::helix;
 use crate::simulate::GearboxSimulation;
 use crate::trace_fields::Trace;
 use crate::wheel::WheelName;
@@ -22,8 +23,10 @@ pub fn gearbox_trace(simulation: &GearboxSimulation) -> Trace {
     trace.matrix("shaft_position_mm", positions.len(), 2, |shaft, axis| positions[shaft][axis] * 1e3);
     trace.vector("phase", layout.phases.iter().copied());
     trace.vector("static_force_n", stages.pairs.iter().map(|pair| pair.static_force_n));
-    for ((mesh, pair), of_file) in stages.meshes.iter().zip(&stages.pairs).zip(&stages.gearbox.meshes) {
+    let of_file = stages.gearbox.meshes.iter().zip(&layout.gears);
+    for ((mesh, pair), (of_file, gears)) in stages.meshes.iter().zip(&stages.pairs).zip(of_file) {
         let named = |quantity: &str| format!("{quantity}.{}", of_file.name());
+        helix(&mut trace, &named(""), gears, pair.static_force_n);
         trace.vector(
             &named("radii_mm"),
             WheelName::BOTH.into_iter().flat_map(|side| {

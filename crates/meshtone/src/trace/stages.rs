@@ -5,7 +5,7 @@ use crate::damage::QuantityValue;
 use crate::mesh::MeshCurve;
 use crate::simulate::Stages;
 use crate::trace_fields::FAULT_STRIDE;
-use crate::wheel::{Mounting, WheelName};
+use crate::wheel::{Gears, Mounting, WheelName};
 
 /// Every how many points a profile, a flank and a section are given.
 const PROFILE_STRIDE: usize = 50;
@@ -30,12 +30,29 @@ pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
     trace.scalar("working_pressure_angle_rad", mounting.working_pressure_angle_rad);
     trace.scalar("centre_distance_mm", mounting.centre_distance_mm);
     trace.scalar("normal_backlash_mm", stages.scenario.gears.normal_backlash_mm());
+    helix(trace, "", &stages.scenario.gears, stages.static_force_n());
     bodies(trace, stages);
     stiffness(trace, stages);
     trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
     stages.trace_matrices(trace);
     damages(trace, stages);
     stages.trace_of_published(trace);
+}
+
+/// What only helical wheels have: angles, overlap and the force along the shafts.
+///
+/// # Arguments
+/// * `suffix` - of the names
+/// * `gears` - two wheels in mesh
+/// * `static_force_n` - (N) under the nominal torque, in the transverse section
+pub(super) fn helix(trace: &mut Trace, suffix: &str, gears: &Gears, static_force_n: f64) {
+    if gears.is_helical() {
+        let named = |quantity: &str| format!("{quantity}{suffix}");
+        trace.scalar(&named("transverse_pressure_angle_rad"), gears.transverse_pressure_angle_rad());
+        trace.scalar(&named("base_helix_angle_rad"), gears.base_helix_angle_rad());
+        trace.scalar(&named("overlap_ratio"), gears.overlap_ratio());
+        trace.scalar(&named("axial_force_n"), static_force_n * gears.thrust());
+    }
 }
 
 fn wheels(trace: &mut Trace, stages: &Stages) {

@@ -12,7 +12,7 @@ use crate::signal::{Edge, interpolate_band_limited, rms};
 ///
 /// # Arguments
 /// * `signal` - one cycle at equal angles
-/// * `width_ratio` - (-) the part of the cycle that becomes the cycle, above 0
+/// * `width_ratio` - (-) the fraction of the cycle that is stretched to the cycle, above 0
 /// * `centre_rev` - (rev) where the fault's response is; it comes to lie in the middle
 ///
 /// # Errors

@@ -112,7 +112,7 @@ impl LeftOutCase {
 pub enum TuningWarning {
     /// The measurements hardly limit a parameter.
     #[error(
-        "the measurements do not determine {parameter}: everything from {:.3} to {:.3} fits as well",
+        "the measurements do not determine {parameter}: all values from {:.3} to {:.3} fit equally well",
         interval[0], interval[1]
     )]
     Unknown {
@@ -132,9 +132,7 @@ pub enum TuningWarning {
         value: f64,
     },
     /// A case has few records.
-    #[error(
-        "case {case} has only {records} records, too few for the intervals to mean much (5 or more would do)"
-    )]
+    #[error("case {case} has only {records} records, too few for meaningful intervals (use 5 or more)")]
     FewRecords {
         /// Number of the case, the healthy one is 0.
         case: usize,
@@ -153,7 +151,7 @@ pub enum TuningWarning {
         averaged: WheelName,
     },
     /// The enhancement is no better than the simulation was.
-    #[error("the enhanced signals resemble the measured ones no better")]
+    #[error("the enhancement does not bring the signals closer to the measured ones")]
     NoBetter,
     /// No combination of the keys' values that was tried is better than the scenario as it is, which was kept.
     #[error(
@@ -162,8 +160,8 @@ pub enum TuningWarning {
     KeysDoNotHelp,
     /// With the keys the cases that are left out are predicted worse than without.
     #[error(
-        "left out, the cases are predicted worse with the keys ({together:.3}) than by the three parameters alone \
-         ({alone:.3}): the keys may have learned the cases instead of the rig"
+        "left out, the cases are predicted worse with the keys ({together:.3}) than by the three parameters \
+         alone ({alone:.3}): the keys may be fitted to the cases instead of the rig"
     )]
     KeysPredictWorse {
         /// Leave-one-out error of the three parameters alone.
@@ -184,8 +182,8 @@ pub enum TuningWarning {
     },
     /// No more numbers were measured than are tuned.
     #[error(
-        "{tuned} numbers are tuned to {measured} measured ones (cases times indicators), which they can follow whatever was \
-         measured: measure more cases, name more indicators, or hold numbers"
+        "{tuned} numbers are tuned to {measured} measured ones (cases times indicators), which they can fit \
+         whatever the measurements are: measure more cases, name more indicators, or hold numbers"
     )]
     FewNumbers {
         /// Cases times indicators.

@@ -64,8 +64,8 @@ impl GearboxStages {
         }
         (!found.is_empty()).then(|| {
             let message = format!(
-                "mesh frequencies meet natural frequencies within 1 %: {}; there the vibration depends on damping and on small changes of \
-                 speed",
+                "mesh frequencies coincide with natural frequencies within 1 %: {}; there the vibration \
+                 depends on damping and on small changes of speed",
                 found.join(", ")
             );
             ScenarioWarning::new(WarningKind::MeshResonance, "operation.input_speed_hz", message)

@@ -77,8 +77,9 @@ impl Stages {
         let bare = stiffness.iter().filter(|&&stiffness| stiffness <= 0.0).count();
         (bare > 0).then(|| {
             let message = format!(
-                "no pair of teeth meets for {:.2} % of a revolution: a linear mesh holds nothing there, and the teeth strike where the \
-                 next pair begins; model = \"contact\" has tips that touch beside their path, less damage leaves a pair",
+                "no pair of teeth meets for {:.2} % of a revolution: a linear mesh has no stiffness there, \
+                 and the teeth strike where the next pair begins; with model = \"contact\" tip corners touch \
+                 there, and with less damage a pair remains",
                 100.0 * bare as f64 / stiffness.len() as f64
             );
             ScenarioWarning::new(WarningKind::NoContact, "fault", message)
@@ -183,8 +184,9 @@ fn overload(
     (deflection_mm > most_mm).then(|| {
         let most_nm = torque_nm * most_mm / deflection_mm;
         let message = format!(
-            "{torque_nm:?} N m presses {teeth} {deflection_mm:.3} mm together, {:.2} modules, with {force_n:.0} N on {width_mm} mm \
-             of face: they would break; at most {most_nm:.0} N m stays below a tenth of the module",
+            "{torque_nm:?} N m deflects {teeth} by {deflection_mm:.3} mm, {:.2} modules, with {force_n:.0} N \
+             on {width_mm} mm of face: they would break; at most {most_nm:.0} N m stays below a tenth of the \
+             module",
             deflection_mm / module_mm
         );
         ScenarioWarning::new(WarningKind::Overload, key, message)

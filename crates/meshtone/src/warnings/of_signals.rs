@@ -58,8 +58,9 @@ impl Stages {
         let is_off = (mean_n - static_n).abs() > TOLERATED_MEAN_FORCE * static_n.abs();
         (!self.scenario.model.has_meshes() && is_off).then(|| {
             let message = format!(
-                "the mean mesh force is {mean_n:.0} N, but the load's is {static_n:.0} N: the published model's damping brakes the rotation of the \
-                 whole machine as well as its vibration, and the mesh drives against that; in \"linear\" and \"contact\" it acts on vibration alone"
+                "the mean mesh force is {mean_n:.0} N, but the load's is {static_n:.0} N: the published \
+                 model's damping brakes the rotation of the whole machine as well as its vibration, and the \
+                 mesh drives against that; in \"linear\" and \"contact\" it acts on vibration alone"
             );
             ScenarioWarning::new(WarningKind::BrakedRotation, "model", message)
         })
@@ -150,13 +151,13 @@ fn tension(force: &ForceFigures, is_damaged: bool) -> Option<ScenarioWarning> {
         let mean_n = force.mean_n();
         // The force that deviations and lost material add hardly depends on the load.
         let advice = if is_damaged && mean_n - least_n > SENSIBLE_LOAD_FACTOR * mean_n {
-            "no sensible load would hold these teeth together; less damage brings it down"
+            "no sensible load would keep these teeth in contact; less damage reduces it"
         } else {
-            "a heavier load or better teeth bring it down"
+            "a heavier load or better teeth reduce it"
         };
         let message = format!(
-            "the mesh force is negative for {:.1} % of the time, down to {least_n:.0} N at a mean of {mean_n:.0} N: this linear \
-             mesh pulls where real teeth would part; {advice}",
+            "the mesh force is negative for {:.1} % of the time, down to {least_n:.0} N at a mean of \
+             {mean_n:.0} N: this linear mesh pulls where real teeth would separate; {advice}",
             100.0 * fraction
         );
         ScenarioWarning::new(WarningKind::MeshPulls, "operation.brake_torque_nm", message)
@@ -182,9 +183,9 @@ mod tests {
         assert!(message.starts_with(
             "the mesh force is negative for 2.0 % of the time, down to -50 N at a mean of 195 N"
         ));
-        assert!(message.ends_with("a heavier load or better teeth bring it down"), "{message}");
+        assert!(message.ends_with("a heavier load or better teeth reduce it"), "{message}");
         assert_eq!(of(-4000.0, 2, false).rsplit("; ").next(), message.rsplit("; ").next());
         let damage = of(-4000.0, 2, true);
-        assert!(damage.ends_with("hold these teeth together; less damage brings it down"), "{damage}");
+        assert!(damage.ends_with("keep these teeth in contact; less damage reduces it"), "{damage}");
     }
 }

@@ -78,7 +78,7 @@ pub(crate) fn initial_contact_radius_mm(wheel: &Wheel, mate: &Wheel) -> f64 {
 ///
 /// # Arguments
 /// * `pinion`, `gear` - the wheels
-/// * `pinion_profile`, `gear_profile` - their profiles
+/// * `pinion_profile`, `gear_profile` - their profiles, in the normal section
 pub fn contact_line(
     pinion: &Wheel,
     pinion_profile: &ToothProfile,
@@ -87,12 +87,21 @@ pub fn contact_line(
 ) -> ContactLine {
     let pinion_radius = initial_contact_radius_mm(pinion, gear);
     let gear_radius = initial_contact_radius_mm(gear, pinion);
-    let gear_index = gear_profile.nearest_to_radius(gear_radius);
+    // Heights are the same in both sections.
+    let nearest = |profile: &ToothProfile, wheel: &Wheel, radius_mm: f64| {
+        let outwards_mm = if wheel.helix_angle_rad == 0.0 {
+            0.0
+        } else {
+            profile.involute_radius_mm[profile.len() - 1] - wheel.tip_radius_mm
+        };
+        profile.nearest_to_radius(radius_mm + outwards_mm)
+    };
+    let gear_index = nearest(gear_profile, gear, gear_radius);
     let ratio = contact_ratio_of(pinion, gear);
     ContactLine {
         contact_ratio: ratio,
         initial_contact_index: gear_index,
-        pinion_initial_contact_index: pinion_profile.nearest_to_radius(pinion_radius),
+        pinion_initial_contact_index: nearest(pinion_profile, pinion, pinion_radius),
         points: gear_profile.len() - gear_index,
         pinion_initial_radius_mm: pinion_radius,
         gear_initial_radius_mm: gear_radius,

@@ -56,7 +56,7 @@ impl Keys for FlankRelief {
             row(
                 "amount_um",
                 "µm",
-                "how far the flank lies back at the tip, along its normal; usually 10 to 40",
+                "the depth of the relief at the tip, along the flank's normal; usually 10 to 40",
                 field!(amount_um),
             )
             .range(Range::not_negative().implausible_above(1000.0)),

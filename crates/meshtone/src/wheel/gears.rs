@@ -1,14 +1,14 @@
 //! The two wheels of the pair.
 
 use super::rows::*;
-use super::{FlankRelief, Material, WheelName};
+use super::{EndRelief, FlankRelief, Hand, Material, WheelName};
 use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
 
 /// Geometry and material of the two wheels.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Gears {
-    /// (mm) Module of both wheels.
+    /// (mm) Module of both wheels, of helical ones in the normal section.
     pub module_mm: f64,
     /// Tooth count of the driving wheel.
     pub pinion_teeth: u32,
@@ -16,8 +16,19 @@ pub struct Gears {
     pub gear_teeth: u32,
     /// (mm) Face width of both wheels.
     pub face_width_mm: f64,
-    /// (°) Pressure angle at the pitch circle. Default 20.
+    /// (°) Pressure angle at the pitch circle, of helical wheels in the normal section. Default 20.
     pub pressure_angle_deg: f64,
+    /// (°) Helix angle at the pitch circle. Default 0: spur wheels.
+    pub helix_angle_deg: f64,
+    /// Hand of the pinion's helix; the gear's is the other one. Default right.
+    pub hand: Hand,
+    /// (µm) Lead crowning of both wheels together: how much farther apart the flanks are at the ends of the face than at its middle.
+    /// Default 0.
+    pub lead_crowning_um: f64,
+    /// Relief of the flanks towards both ends of the face. Default none.
+    pub end_relief: EndRelief,
+    /// Number of slices of the face where the gap varies along it. Default 11.
+    pub slices: u32,
     /// (-) Profile shift coefficient of the pinion, in modules. Default 0.
     pub pinion_profile_shift: f64,
     /// (-) Profile shift coefficient of the gear, in modules. Default 0.
@@ -70,6 +81,11 @@ impl Gears {
             gear_teeth,
             face_width_mm,
             pressure_angle_deg: 20.0,
+            helix_angle_deg: 0.0,
+            hand: Hand::Right,
+            lead_crowning_um: 0.0,
+            end_relief: EndRelief::default(),
+            slices: 11,
             pinion_profile_shift: 0.0,
             gear_profile_shift: 0.0,
             pinion_addendum: STANDARD_ADDENDUM,
@@ -103,6 +119,11 @@ impl Keys for Gears {
             teeth_row("gear_teeth", field!(gear_teeth)),
             face_width_row("the face width of both wheels", field!(face_width_mm)),
             pressure_angle_row(field!(pressure_angle_deg)),
+            helix_angle_row(field!(helix_angle_deg)),
+            hand_row("the hand of the pinion's helix; the gear's is the other one", field!(hand)),
+            lead_crowning_row(field!(lead_crowning_um)),
+            end_relief_row(field!(end_relief)),
+            slices_row(field!(slices)),
             profile_shift_row("pinion_profile_shift", field!(pinion_profile_shift)),
             profile_shift_row("gear_profile_shift", field!(gear_profile_shift)),
             addendum_row("pinion_addendum", field!(pinion_addendum)),
@@ -166,8 +187,9 @@ impl Gears {
             ("gears.gear_dedendum", self.gear_dedendum, STANDARD_DEDENDUM),
         ];
         let changed = coefficients.into_iter().filter(|(_, value, default)| value != default);
+        let helix = self.is_helical().then_some(("gears.helix_angle_deg", self.helix_angle_deg));
         let distance = self.centre_distance_mm.map(|distance_mm| ("gears.centre_distance_mm", distance_mm));
-        changed.map(|(key, value, _)| (key, value)).chain(distance).collect()
+        changed.map(|(key, value, _)| (key, value)).chain(helix).chain(distance).collect()
     }
 }
 

@@ -45,13 +45,14 @@ impl Mounting {
         let Some(centre_distance_mm) = gears.centre_distance_mm else { return tight };
         // The base circles stay: a cos α_w is the same at any distance.
         let reference_mm = gears.reference_centre_distance_mm();
-        let base_mm = reference_mm * gears.pressure_angle_deg.to_radians().cos();
+        let base_mm = reference_mm * gears.transverse_pressure_angle_rad().cos();
         let working_pressure_angle_rad = (base_mm / centre_distance_mm).min(1.0).acos();
         let turned = involute(working_pressure_angle_rad) - involute(tight.working_pressure_angle_rad);
         Self {
             working_pressure_angle_rad,
             centre_distance_mm,
-            opened_backlash_mm: (2.0 * base_mm * turned).max(0.0),
+            // Across the teeth, not across the axes.
+            opened_backlash_mm: (2.0 * base_mm * turned).max(0.0) * gears.base_helix_angle_rad().cos(),
         }
     }
 
@@ -60,7 +61,7 @@ impl Mounting {
     /// # Arguments
     /// * `gears` - the pair
     pub fn without_backlash(gears: &Gears) -> Self {
-        let angle = gears.pressure_angle_deg.to_radians();
+        let angle = gears.transverse_pressure_angle_rad();
         let working_pressure_angle_rad = working_pressure_angle_rad(gears);
         Self {
             working_pressure_angle_rad,
@@ -77,9 +78,9 @@ impl Mounting {
 }
 
 impl Gears {
-    /// (mm) Distance of the axes at which the pitch circles touch, `a₀ = m (z₁ + z₂)/2`.
+    /// (mm) Distance of the axes at which the pitch circles touch, `a₀ = m_t (z₁ + z₂)/2`.
     pub fn reference_centre_distance_mm(&self) -> f64 {
-        self.module_mm * f64::from(self.pinion_teeth + self.gear_teeth) / 2.0
+        self.transverse_module_mm() * f64::from(self.pinion_teeth + self.gear_teeth) / 2.0
     }
 
     /// (-) Tip alteration coefficient k: by how many modules both wheels' tips are set off, so that they clear their mates' roots
@@ -125,13 +126,14 @@ impl Gears {
     }
 }
 
-/// (rad) `inv α_w = inv α + 2 tan α (x₁ + x₂)/(z₁ + z₂)`, by Newton's method from above, where the involute function is convex; 0
+/// (rad) `inv α_wt = inv α_t + 2 tan α_n (x₁ + x₂)/(z₁ + z₂)`, by Newton's method from above, where the involute function is convex; 0
 /// where the right side is not positive, which the rules of the scenario refuse.
 fn working_pressure_angle_rad(gears: &Gears) -> f64 {
-    let reference_rad = gears.pressure_angle_deg.to_radians();
+    let reference_rad = gears.transverse_pressure_angle_rad();
     let shifts = gears.pinion_profile_shift + gears.gear_profile_shift;
     let teeth = f64::from(gears.pinion_teeth + gears.gear_teeth);
-    let target = involute(reference_rad) + 2.0 * reference_rad.tan() * shifts / teeth;
+    let normal_tan = gears.pressure_angle_deg.to_radians().tan();
+    let target = involute(reference_rad) + 2.0 * normal_tan * shifts / teeth;
     if target <= 0.0 {
         return 0.0;
     }

@@ -64,11 +64,10 @@ pub(super) fn thin_tips(gears: &NamedGears<'_>) -> impl Iterator<Item = Scenario
     })
 }
 
-/// (-) Least profile shift that leaves a wheel without undercut, `h − z sin²α/2`, h the height of the tool's straight flank:
+/// (-) Least profile shift that leaves a wheel without undercut, `h − z sin²α_t/(2 cos β)`, h the height of the tool's straight flank:
 /// the dedendum coefficient less the tool's rounding. To four digits, rounded up.
 pub(super) fn least_shift(gears: &Gears, wheel: WheelName) -> f64 {
-    let sin = gears.pressure_angle_deg.to_radians().sin();
-    rounded_up(straight_dedendum(gears, wheel) - f64::from(gears.teeth(wheel)) * sin * sin / 2.0)
+    rounded_up(straight_dedendum(gears, wheel) - f64::from(gears.teeth(wheel)) * undercut_height(gears))
 }
 
 /// Number of teeth below which a wheel without a shift is undercut, where it has no shift and fewer.
@@ -79,10 +78,15 @@ pub(super) fn fewer_than_limit(gears: &Gears, wheel: WheelName) -> Option<f64> {
 /// Number of teeth below which a wheel without a shift is undercut, `2h/sin²α`, where it has fewer. Rounded down, as in the textbooks:
 /// for 20° it is 17.1, and 17 teeth are made without undercut to speak of.
 fn limit_without_shift(gears: &Gears, wheel: WheelName) -> Option<f64> {
-    let per_height = 2.0 / gears.pressure_angle_deg.to_radians().sin().powi(2);
-    let limit = (straight_dedendum(gears, wheel) * per_height).floor();
+    let limit = (straight_dedendum(gears, wheel) / undercut_height(gears)).floor();
     let is_undercut = f64::from(gears.teeth(wheel)) < limit;
     is_undercut.then_some(limit)
+}
+
+/// (modules) Height of the tool's straight flank per tooth below which a wheel without a shift is undercut, `sin²α_t/(2 cos β)`.
+fn undercut_height(gears: &Gears) -> f64 {
+    let sin = gears.transverse_pressure_angle_rad().sin();
+    sin * sin / 2.0 * (gears.transverse_module_mm() / gears.module_mm)
 }
 
 /// (-) Dedendum coefficient of the part of a wheel's flank that the tool's straight flank makes.
@@ -202,7 +206,7 @@ fn clearance(gears: &NamedGears, wheel: WheelName) -> Check {
 fn is_free(gears: &Gears, wheel: WheelName) -> bool {
     let (own, mate) = (gears.wheel(wheel), gears.wheel(wheel.mate()));
     let sin = own.pressure_angle_rad.sin();
-    let below_mm = own.module_mm * (straight_dedendum(gears, wheel) - own.profile_shift);
+    let below_mm = gears.module_mm * (straight_dedendum(gears, wheel) - gears.profile_shift(wheel));
     let end_mm = (own.pitch_radius_mm * sin - below_mm / sin).max(0.0);
     fewer_than_limit(gears, wheel).is_some()
         || touched_curvature_mm(&own, &mate) >= end_mm - ROUNDING * own.module_mm
@@ -233,12 +237,12 @@ const ROUNDING: f64 = 1e-9;
 
 /// Returns whether a pair of teeth is still in contact when the next one comes.
 fn stays_in_contact(gears: &Gears) -> bool {
-    gears.contact_ratio() >= 1.0
+    gears.total_contact_ratio() >= 1.0
 }
 
 /// By the distance, else by one of the coefficients; what is left is refused as of standard wheels.
 fn contact_ratio(gears: &NamedGears) -> Check {
-    let what = format!("the contact ratio is {:.3}, less than 1", gears.contact_ratio());
+    let what = format!("the contact ratio is {:.3}, less than 1", gears.total_contact_ratio());
     if let Some(distance_mm) = gears.centre_distance_mm {
         let tight_mm = Mounting::without_backlash(gears).centre_distance_mm;
         let at = |distance_mm| Gears { centre_distance_mm: Some(distance_mm), ..Gears::clone(gears) };

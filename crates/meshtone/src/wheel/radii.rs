@@ -4,21 +4,26 @@ use std::f64::consts::PI;
 
 use crate::wheel::{Gears, Mounting, WheelName};
 
-/// A spur wheel, with what its mate and the distance between their axes make of it.
+/// A wheel in its transverse section, with what its mate and the distance between their axes make of it; or the spur wheel whose teeth
+/// are those of its normal section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Wheel {
     /// Tooth count.
     pub teeth: u32,
-    /// (mm) Module.
+    /// (-) Tooth count of the section: whole in the transverse one, `z/(cos² β_b cos β)` in the normal one.
+    pub section_teeth: f64,
+    /// (mm) Module of the section: the transverse one of a helical wheel.
     pub module_mm: f64,
+    /// (rad) Helix angle at the pitch circle; 0 of a spur wheel and of a normal section.
+    pub helix_angle_rad: f64,
     /// (mm) Face width.
     pub face_width_mm: f64,
-    /// (rad) Pressure angle at the pitch circle.
+    /// (rad) Pressure angle at the pitch circle, in the section.
     pub pressure_angle_rad: f64,
     /// (rad) Pressure angle of the pair at its centre distance: the direction of the line of action.
     pub working_pressure_angle_rad: f64,
-    /// (-) Profile shift coefficient, `x`.
+    /// (-) Profile shift coefficient in modules of the section, `x`.
     pub profile_shift: f64,
     /// (modules) Height of the tip above the pitch circle, addendum coefficient + `x` + `k`; 1 of a standard wheel.
     pub tip_height: f64,
@@ -44,15 +49,22 @@ impl Wheel {
     /// * `wheel` - which of the two
     /// * `bore_radius_mm` - (mm) radius of the shaft that the wheel sits on
     pub fn new(gears: &Gears, wheel: WheelName, bore_radius_mm: f64) -> Self {
-        let (teeth, module_mm) = (gears.teeth(wheel), gears.module_mm);
-        let pressure_angle_rad = gears.pressure_angle_deg.to_radians();
+        let (teeth, module_mm) = (gears.teeth(wheel), gears.transverse_module_mm());
+        let helix_angle_rad = gears.helix_angle_deg.to_radians();
+        let pressure_angle_rad = gears.transverse_pressure_angle_rad();
         let working_pressure_angle_rad = Mounting::new(gears).working_pressure_angle_rad;
-        let profile_shift = gears.profile_shift(wheel);
-        let tip_height = gears.addendum(wheel) + profile_shift + gears.tip_alteration();
+        // (-) From modules of the normal section to transverse ones.
+        let per_module = helix_angle_rad.cos();
+        let profile_shift = gears.profile_shift(wheel) * per_module;
+        let tip_height =
+            (gears.addendum(wheel) + gears.profile_shift(wheel) + gears.tip_alteration()) * per_module;
+        let root_depth = (gears.dedendum(wheel) - gears.profile_shift(wheel)) * per_module;
         let pitch_radius_mm = module_mm * f64::from(teeth) / 2.0;
         Self {
             teeth,
+            section_teeth: f64::from(teeth),
             module_mm,
+            helix_angle_rad,
             face_width_mm: gears.face_width_mm,
             pressure_angle_rad,
             working_pressure_angle_rad,
@@ -62,10 +74,15 @@ impl Wheel {
             working_pitch_radius_mm: pitch_radius_mm
                 * (pressure_angle_rad.cos() / working_pressure_angle_rad.cos()),
             tip_radius_mm: pitch_radius_mm + module_mm * tip_height,
-            root_radius_mm: pitch_radius_mm - module_mm * (gears.dedendum(wheel) - profile_shift),
+            root_radius_mm: pitch_radius_mm - module_mm * root_depth,
             base_radius_mm: pitch_radius_mm * pressure_angle_rad.cos(),
             bore_radius_mm,
         }
+    }
+
+    /// (mm) Module of the normal section.
+    pub fn normal_module_mm(&self) -> f64 {
+        self.module_mm * self.helix_angle_rad.cos()
     }
 
     /// (mm) Radius of the V circle, `m (z/2 + x)`: the wheel's pitch line on a rack that is set off by the profile shift, which
@@ -90,13 +107,13 @@ impl Wheel {
 
     /// (rad) Half the angle that a tooth fills on the pitch circle, `θ0 = (π/2 + 2x tan α)/z`.
     pub fn half_thickness_angle_rad(&self) -> f64 {
-        let teeth = f64::from(self.teeth);
+        let teeth = self.section_teeth;
         PI / (2.0 * teeth) + 2.0 * self.profile_shift * self.pressure_angle_rad.tan() / teeth
     }
 
     /// (rad) Half the angle from one tooth to the next, `π/z`.
     pub fn half_pitch_angle_rad(&self) -> f64 {
-        PI / f64::from(self.teeth)
+        PI / self.section_teeth
     }
 
     /// (rad) Half the angle that a tooth fills on the circle of a radius, `θ0 + inv α − inv a` with `cos a = Rb/R`; the flank's

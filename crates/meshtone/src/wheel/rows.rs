@@ -1,10 +1,11 @@
 //! Keys that the wheels of a pair have, and those of a gearbox.
 
+use super::{EndRelief, Hand};
 use crate::keys::{Field, KeyRow, Range, row};
 
 /// The row of the module.
 pub(crate) fn module_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    row("module_mm", "mm", "the module of both wheels", field)
+    row("module_mm", "mm", "the module of both wheels, of helical ones in the normal section", field)
         .required()
         .range(Range::positive().implausible_above(100.0))
 }
@@ -14,7 +15,7 @@ pub(crate) fn teeth_row<S: 'static>(name: &'static str, field: Field<S, u32>) ->
     row(name, "", "the tooth count", field)
         .required()
         .range(Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth"))
-        .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning")
+        .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is not simulated, with a warning")
 }
 
 /// The row of a face width.
@@ -24,9 +25,44 @@ pub(crate) fn face_width_row<S: 'static>(meaning: &'static str, field: Field<S, 
 
 /// The row of the pressure angle.
 pub(crate) fn pressure_angle_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field)
-        .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
-        .rule("no teeth pointed below full height")
+    row(
+        "pressure_angle_deg",
+        "°",
+        "the pressure angle at the pitch circle, of helical wheels in the normal section",
+        field,
+    )
+    .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
+    .rule("no teeth pointed below full height")
+}
+
+/// The row of the helix angle.
+pub(crate) fn helix_angle_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    row("helix_angle_deg", "°", "the helix angle at the pitch circle; 0: spur wheels", field).range(
+        Range::from_to(0.0, 45.0)
+            .help("usual helix angles are 8° to 30°; hand says to which side the teeth lean"),
+    )
+}
+
+/// The row of the helix's hand.
+pub(crate) fn hand_row<S: 'static>(meaning: &'static str, field: Field<S, Hand>) -> KeyRow<S> {
+    row("hand", "", meaning, field)
+}
+
+/// The row of the lead crowning.
+pub(crate) fn lead_crowning_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    let meaning = "the lead crowning of both wheels together: how much farther apart the flanks are at the ends of the face than at its middle";
+    row("lead_crowning_um", "µm", meaning, field).range(Range::not_negative().implausible_above(1000.0))
+}
+
+/// The row of the end relief.
+pub(crate) fn end_relief_row<S: 'static>(field: Field<S, EndRelief>) -> KeyRow<S> {
+    row("end_relief", "", "the relief of the flanks towards both ends of the face, as a gap in µm", field)
+}
+
+/// The row of the number of slices.
+pub(crate) fn slices_row<S: 'static>(field: Field<S, u32>) -> KeyRow<S> {
+    let meaning = "the number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it";
+    row("slices", "", meaning, field).range(Range::from_to(5.0, 41.0))
 }
 
 /// The row of a profile shift.
@@ -41,14 +77,14 @@ pub(crate) fn profile_shift_row<S: 'static>(name: &'static str, field: Field<S, 
 pub(crate) fn addendum_row<S: 'static>(name: &'static str, field: Field<S, f64>) -> KeyRow<S> {
     row(name, "-", "the addendum coefficient of the basic rack, in modules", field)
         .range(Range::from_to(0.3, 2.0).help("the standard basic rack has 1"))
-        .rule("tips not pointed, clear of the mate's fillets")
+        .rule("tips not pointed, clear of the mating gear's fillets")
 }
 
 /// The row of a dedendum.
 pub(crate) fn dedendum_row<S: 'static>(name: &'static str, field: Field<S, f64>) -> KeyRow<S> {
     row(name, "-", "the dedendum coefficient of the basic rack, in modules", field)
         .range(Range::from_to(0.5, 2.5).help("the standard basic rack has 1.25"))
-        .rule("roots clear of the mate's tips")
+        .rule("roots clear of the mating gear's tips")
 }
 
 /// The row of the centre distance.
@@ -71,16 +107,16 @@ pub(crate) fn chamfer_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S>
 
 /// The row of the active profile's shortening.
 pub(crate) fn shortening_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    let meaning = "by how much the path of contact is shorter than that between the chamfers, in base pitches, half at either end";
+    let meaning = "the shortening of the path of contact against that between the chamfers, in base pitches, half at either end";
     row("active_profile_shortening", "-", meaning, field).range(Range::from_to(0.0, 0.5))
 }
 
 /// The row of the backlash.
 pub(crate) fn backlash_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S> {
     row("backlash_mm", "mm", "the backlash along the line of action", field)
-        .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
+        .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, plus the backlash of a given one")
         .range(Range::not_negative())
-        .rule("less than 1 module; at least what a given centre distance opens")
+        .rule("less than 1 module; at least that of a given centre distance")
         .alternative("0.1275")
 }
 

@@ -71,6 +71,7 @@ impl NamedGears<'_> {
         mounting_rules::check(self)?;
         pressure_angle(self)?;
         contact_ratio(self)?;
+        helix(self)?;
         let thinner_mm = self.half_thicknesses_mm().into_iter().fold(f64::INFINITY, f64::min);
         let reduction_mm = self.uniform_flank_reduction_mm;
         below(&self.key("uniform_flank_reduction_mm"), reduction_mm, thinner_mm, HALF_THICKNESS)?;
@@ -78,6 +79,11 @@ impl NamedGears<'_> {
         if relief.amount_um > 0.0 {
             let key = self.key("flank_relief.length_mm");
             below(&key, relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
+        }
+        if self.end_relief.amount_um > 0.0 {
+            let (length_mm, half_mm) = (self.end_relief.length_mm, self.face_width_mm / 2.0);
+            let problem = format!("must be at most {half_mm} mm, half the face width");
+            require(&self.key("end_relief.length_mm"), length_mm, length_mm <= half_mm, problem)?;
         }
         below(&self.key("tip_chamfer_mm"), self.chamfer_mm(), self.module_mm, "the module")?;
         // The default grows with the centre distance: it is no typing error of the user.
@@ -135,8 +141,40 @@ fn pressure_angle(gears: &NamedGears) -> Check {
     Err(refuse(&key, gears.pressure_angle_deg, problem).with_help(format!("lower {key}, or use more teeth")))
 }
 
+/// (°) Least helix angle but 0: below, a contact line's place on the face is lost to rounding.
+const LEAST_HELIX_DEG: f64 = 0.01;
+/// (-) Largest total contact ratio: wider faces carry their load by so many pairs that nothing is left to be heard of a single one.
+const MOST_TOTAL_CONTACT_RATIO: f64 = 12.0;
+
+/// The helix of helical wheels.
+fn helix(gears: &NamedGears) -> Check {
+    if !gears.is_helical() {
+        return Ok(());
+    }
+    let (key, angle_deg) = (gears.key("helix_angle_deg"), gears.helix_angle_deg);
+    require(
+        &key,
+        angle_deg,
+        angle_deg >= LEAST_HELIX_DEG,
+        format!("must be 0 or at least {LEAST_HELIX_DEG}°"),
+    )?;
+    let total = gears.total_contact_ratio();
+    let problem = format!(
+        "the face is so wide that the total contact ratio is {total:.1}; it must be at most {MOST_TOTAL_CONTACT_RATIO}"
+    );
+    require(&key, angle_deg, total <= MOST_TOTAL_CONTACT_RATIO, problem).map_err(|error| {
+        error.with_help("lower the helix angle or the face width, or use a larger module")
+    })?;
+    let transverse = gears.contact_ratio();
+    let problem = format!("the transverse contact ratio is {transverse:.3}; it must be more than 0");
+    let [pinion, gear] = WheelName::BOTH.map(|wheel| gears.key_of(wheel, "teeth"));
+    require(&gears.whole(), transverse, transverse > 0.0, problem).map_err(|error| {
+        error.with_help(format!("raise {pinion} or {gear}, or lower {}", gears.key("centre_distance_mm")))
+    })
+}
+
 fn contact_ratio(gears: &NamedGears) -> Check {
-    let ratio = gears.contact_ratio();
+    let ratio = gears.total_contact_ratio();
     if ratio >= 1.0 {
         return Ok(());
     }

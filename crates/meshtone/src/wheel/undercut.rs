@@ -25,7 +25,7 @@ impl Wheel {
     /// ```
     pub fn undercut_curvature_mm(&self) -> f64 {
         let (radius_mm, base_mm) = (self.pitch_radius_mm, self.base_radius_mm);
-        let end_mm = self.root_radius_mm + TOOL_ROUNDING * self.module_mm;
+        let end_mm = self.root_radius_mm + TOOL_ROUNDING * self.normal_module_mm();
         let below_mm = radius_mm - end_mm;
         if end_mm >= base_mm {
             return 0.0;

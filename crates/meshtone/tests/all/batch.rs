@@ -85,7 +85,7 @@ fn mixed() -> Vec<Scenario> {
     scenarios
 }
 
-/// Under `contact`: faults that tilt the wheels and such that do not, light loads under which teeth let go and back flanks touch,
+/// Under `contact`: faults that tilt the wheels and such that do not, light loads under which teeth let go and coast flanks touch,
 /// drives that are not steady, initial states, and one that is refused.
 fn mixed_in_contact() -> Vec<Scenario> {
     let mut scenarios: Vec<Scenario> = mixed()

@@ -50,7 +50,7 @@ fn rigid(scenario: &mut Scenario) {
     }
 }
 
-// With all pairs closed, tip corners and back flanks out of reach, what remains is the linear model: same stiffness, same start.
+// With all pairs closed, tip corners and coast flanks out of reach, what remains is the linear model: same stiffness, same start.
 // The two are solved in different modes, with and without the mesh.
 #[test]
 fn closed_pairs_are_the_linear_model() {
@@ -192,7 +192,7 @@ fn halving_the_step_changes_no_indicator_of_a_healthy_pair() {
     }
 }
 
-// Teeth never pull: the force is never negative unless back flanks touch, which a light load and coarse teeth make them do.
+// Teeth never pull: the force is never negative unless coast flanks touch, which a light load and coarse teeth make them do.
 #[test]
 fn teeth_let_go_and_never_pull() {
     let mut scenario = of_rig(9);

@@ -13,8 +13,6 @@ use meshtone::wheel::WheelName;
 use meshtone::{Equations, Stages};
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Pairs that can touch at once.
-const PAIRS: i64 = 3;
 /// Most of Newton's iterations in a step.
 const MOST_ITERATIONS: usize = 50;
 
@@ -71,9 +69,9 @@ pub struct DenseMesh<'a> {
 /// What a mesh does at one sample.
 struct Load {
     contact: Contact,
-    /// (N/m, m) Stiffness of each pair, and what it adds to the deflection, with the damping's lead.
+    /// (N/m, m) Stiffness of each pair, or of each slice of it, and what it adds to the deflection, with the damping's lead.
     pairs: Vec<[f64; 2]>,
-    /// (N/m, m) The same of the back flanks.
+    /// (N/m, m) The same of the coast flanks.
     back: Option<[f64; 2]>,
     /// (m) Where along the face the load acts.
     face_centre_m: f64,
@@ -94,8 +92,9 @@ impl<'a> DenseMesh<'a> {
         Self { mesh, deviations, errors }
     }
 
-    /// (m) How far the flank of a pair's tooth lies outside of the ideal one, at a position in base pitches.
-    fn deviation_m(&self, wheel: WheelName, pair: i64, position: f64) -> f64 {
+    /// (m) How far the flank of a pair's tooth lies outside of the ideal one, of a pair at a position in base pitches, on a slice that is
+    /// at a position of its own.
+    fn deviation_m(&self, wheel: WheelName, pair: i64, position: f64, of_slice: f64) -> f64 {
         let PairDeviations { teeth, errors, eccentricity_m, run_out } = &self.deviations;
         let (of_wheel, run_out) = (teeth.wheel(wheel), run_out[wheel as usize]);
         let (sign, first_mm) = match wheel {
@@ -108,7 +107,7 @@ impl<'a> DenseMesh<'a> {
         let circle_m = run_out.run_out_um * 0.5e-6 * (angle + run_out.phase_rad).sin();
         let flank_m = errors.map_or(0.0, |errors| {
             // Rows are uniform in radius, from where a flank's contact begins to where it ends: the gear's begins at its tip.
-            let radius_mm = teeth.path.curvature_mm(wheel, position).hypot(of_wheel.base_radius_mm);
+            let radius_mm = teeth.path.curvature_mm(wheel, of_slice).hypot(of_wheel.base_radius_mm);
             let from_root = ((radius_mm - first_mm) / (of_wheel.tip_radius_mm - first_mm)).clamp(0.0, 1.0);
             let passed = if wheel == WheelName::Pinion { from_root } else { 1.0 - from_root };
             let rows = (errors.pinion_profile_errors_mm.points() - 1) as f64;
@@ -117,18 +116,31 @@ impl<'a> DenseMesh<'a> {
         axis_m + circle_m + flank_m
     }
 
-    /// (N/m, m) Stiffness of a pair and its offset, deviation less separation, at a point of its table: between two of them where
-    /// the point is not a whole number. None beyond the table.
-    fn pair_at(&self, pair: i64, point: f64) -> Option<[f64; 2]> {
+    /// (N/m, m) Stiffness of a pair's slice and its offset, deviation less separation, at a point of its table: between two of them
+    /// where the point is not a whole number. None beyond the table.
+    fn pair_at(&self, pair: i64, slice: usize, point: f64) -> Option<[f64; 2]> {
         let states = &self.mesh.classes[self.mesh.sequence.class(pair)].states;
+        let points = self.mesh.points();
+        let states = &states[slice * points..(slice + 1) * points];
         let (index, part) = (point.floor(), point - point.floor());
         let at = |n: f64| states.get((n >= 0.0).then_some(n as usize)?);
         let here = at(index)?;
         let next = if part > 0.0 { at(index + 1.0)? } else { here };
         let between = |of: fn(&PairState) -> f64| of(here) + part * (of(next) - of(here));
-        let position = (point - self.mesh.points_before as f64) / self.mesh.points_per_pitch as f64;
-        let deviation: f64 =
-            WheelName::BOTH.map(|wheel| self.deviation_m(wheel, pair, position)).iter().sum();
+        let per_pitch = self.mesh.points_per_pitch as f64;
+        // A slice is read off at the nearest point.
+        let ahead = self.mesh.overlap * ((slice as f64 + 0.5) / self.mesh.slices() as f64 - 0.5);
+        let deviation_at = |point: f64| -> f64 {
+            let position = (point - self.mesh.points_before as f64) / per_pitch;
+            let of_slice = position + (ahead * per_pitch).round() / per_pitch;
+            WheelName::BOTH.map(|wheel| self.deviation_m(wheel, pair, position, of_slice)).iter().sum()
+        };
+        // Deviations of slices are tabulated at points too.
+        let deviation = if self.mesh.slices() == 1 {
+            deviation_at(point)
+        } else {
+            deviation_at(index) + part * (deviation_at(index + 1.0) - deviation_at(index))
+        };
         Some([between(|state| state.stiffness_n_per_m), deviation - between(|state| state.separation_m)])
     }
 
@@ -136,7 +148,8 @@ impl<'a> DenseMesh<'a> {
     fn pairs_after(&self, pitches: f64) -> impl Iterator<Item = (i64, f64)> {
         let (per_pitch, before) = (self.mesh.points_per_pitch as f64, self.mesh.points_before as f64);
         let newest = ((pitches * per_pitch + before) / per_pitch).floor() as i64;
-        (0..PAIRS).map(move |age| (newest - age, (pitches - (newest - age) as f64) * per_pitch + before))
+        let at_once = self.mesh.points().div_ceil(self.mesh.points_per_pitch) as i64;
+        (0..at_once).map(move |age| (newest - age, (pitches - (newest - age) as f64) * per_pitch + before))
     }
 
     /// What the mesh does at a sample, of the motor's rotation until then.
@@ -155,15 +168,15 @@ impl<'a> DenseMesh<'a> {
             mesh.turning.first_pitch + revolutions[sample] * mesh.turning.pitches_per_revolution
         };
         let last = (mesh.points() - 1) as f64;
-        let of_pair = |(pair, point): (i64, f64)| {
+        let of_slice = |((pair, point), slice): ((i64, f64), usize)| {
             let point = if on_points { point.round() } else { point };
-            let [stiffness, offset] = self.pair_at(pair, point)?;
+            let [stiffness, offset] = self.pair_at(pair, slice, point)?;
             let before = |samples: usize| {
                 let then = pitches(sample.checked_sub(samples)?) - pair as f64;
-                Some(self.pair_at(pair, then * per_pitch + mesh.points_before as f64)?[1])
+                Some(self.pair_at(pair, slice, then * per_pitch + mesh.points_before as f64)?[1])
             };
             let change = if on_points {
-                let beside = |by: f64| self.pair_at(pair, (point + by).clamp(0.0, last));
+                let beside = |by: f64| self.pair_at(pair, slice, (point + by).clamp(0.0, last));
                 (beside(1.0)?[1] - beside(-1.0)?[1]) / 2.0
             } else {
                 match (before(1), before(2)) {
@@ -176,25 +189,42 @@ impl<'a> DenseMesh<'a> {
         };
         Load {
             contact: mesh.contact,
-            pairs: self.pairs_after(pitches(sample)).filter_map(of_pair).collect(),
-            back: mesh.backlash_m.map(|backlash_m| [mesh.mean_stiffness_n_per_m, backlash_m]),
+            pairs: (self.pairs_after(pitches(sample)))
+                .flat_map(|pair| (0..mesh.slices()).map(move |slice| (pair, slice)))
+                .filter_map(of_slice)
+                .collect(),
+            back: mesh.backlash_m.map(|backlash_m| [mesh.closed_stiffness_n_per_m, backlash_m]),
             face_centre_m: self.face_centre_m((pitches(sample) * per_pitch).round()),
         }
     }
 
     /// (m) Where the parts of the nominal load that the pairs bear at a point act together; at the nearest pair where none bears any.
     fn face_centre_m(&self, point: f64) -> f64 {
+        let (mesh, points) = (self.mesh, self.mesh.points());
+        let pairs: Vec<(i64, f64)> = self.pairs_after(point / mesh.points_per_pitch as f64).collect();
+        let states_of = |class: usize, at: f64| -> Vec<&PairState> {
+            let at = at.round() as usize;
+            let slices = mesh.classes[class].states.chunks(points);
+            slices.filter_map(|slice| slice.get(at)).collect()
+        };
+        let nominal_n = mesh.nominal_deflection_m * mesh.mean_stiffness_n_per_m;
+        let deflection_m = if mesh.slices() == 1 {
+            mesh.nominal_deflection_m
+        } else {
+            let sound = pairs.iter().flat_map(|(_, at)| states_of(0, *at));
+            let pairs = sound.map(|state| [state.stiffness_n_per_m, -state.separation_m]).collect();
+            Load { contact: mesh.contact, pairs, back: None, face_centre_m: 0.0 }.at_rest_m(nominal_n)
+        };
         let (mut load, mut moment) = (0.0, 0.0);
         let (mut least_m, mut of_nearest_m) = (f64::INFINITY, 0.0);
-        for (pair, at) in self.pairs_after(point / self.mesh.points_per_pitch as f64) {
-            let states = &self.mesh.classes[self.mesh.sequence.class(pair)].states;
-            let Some(state) = states.get(at.round() as usize) else { continue };
-            let borne =
-                state.stiffness_n_per_m * (self.mesh.nominal_deflection_m - state.separation_m).max(0.0);
-            load += borne;
-            moment += borne * state.face_centre_m;
-            if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
-                (least_m, of_nearest_m) = (state.separation_m, state.face_centre_m);
+        for (pair, at) in &pairs {
+            for state in states_of(mesh.sequence.class(*pair), *at) {
+                let borne = state.stiffness_n_per_m * (deflection_m - state.separation_m).max(0.0);
+                load += borne;
+                moment += borne * state.face_centre_m;
+                if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
+                    (least_m, of_nearest_m) = (state.separation_m, state.face_centre_m);
+                }
             }
         }
         if load > 0.0 { moment / load } else { of_nearest_m }
@@ -422,7 +452,7 @@ impl<'a> Dense<'a> {
                     let k = omega[mode] * omega[mode] * dt * dt;
                     let stepped_k = of(mode, betas[mode])[0];
                     let factor = if k > 0.0 { stepped_k / k } else { 1.0 };
-                    let mesh_n_per_m = 2.0 * mesh.mesh.mean_stiffness_n_per_m;
+                    let mesh_n_per_m = 2.0 * mesh.mesh.closed_stiffness_n_per_m;
                     mesh_n_per_m * dt * dt * factor * line[mode].powi(2) / (6.0 - stepped_k)
                 };
                 stepped.map(term).sum()

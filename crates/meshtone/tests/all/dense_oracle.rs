@@ -140,3 +140,55 @@ fn modal_and_dense_solutions_agree() {
     }
     println!("largest: {worst:.2e}");
 }
+
+/// Helical and crowned teeth: with even faces and in slices, with damage of every kind, at constant and at varying speed.
+#[test]
+fn helical_teeth_agree_with_the_dense_solution() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let mut random = |low: f64, high: f64| {
+        use proptest::strategy::{Strategy, ValueTree};
+        (low..high).new_tree(&mut runner).unwrap().current()
+    };
+    let mut worst: f64 = 0.0;
+    for case in 0..8_usize {
+        let (module, width) = (random(2.0, 4.0), random(10.0, 40.0));
+        let mut scenario = Scenario::new(GearPair {
+            module_mm: module,
+            pinion_teeth: 18,
+            gear_teeth: 24,
+            face_width_mm: width,
+            pinion_speed_hz: random(15.0, 40.0),
+            brake_torque_nm: random(10.0, 80.0),
+        });
+        with_own_structure(&mut scenario);
+        let gears = &mut scenario.gears;
+        // Spur teeth that are crowned in two cases.
+        gears.helix_angle_deg = if case >= 6 { 0.0 } else { random(5.0, 30.0) };
+        gears.hand = if case % 2 == 0 { Hand::Right } else { Hand::Left };
+        gears.points_per_tooth = 2000;
+        if case != 0 {
+            gears.lead_crowning_um = random(1.0, 8.0);
+            gears.end_relief = EndRelief { length_mm: 0.2 * width, amount_um: random(0.0, 10.0) };
+            scenario.quality.iso_class = 6;
+        }
+        scenario.rig.eccentricity_mm = 0.01;
+        scenario.solver.sampling_rate_hz = 4e4;
+        scenario.solver.settle_tolerance = 0.0;
+        if case % 3 == 2 {
+            driven_unsteadily(&mut scenario, &mut random);
+        }
+        let damage = damage(case.saturating_sub(1) % 6, module, width, &mut random);
+        scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
+        let stages = stages(&scenario).unwrap();
+        assert_eq!(stages.meshes[0].slices(), if case == 0 { 1 } else { 11 });
+        let outputs: Vec<Output> = coordinates(&machine_of(&stages).0.machine, 2).collect();
+        let mut modal = outputs_from(0, &stages, &outputs);
+        modal.iter_mut().for_each(|values| values.truncate(300));
+        let dense = Dense::of(&stages, 300).accelerations();
+        let difference = difference(&modal, &dense);
+        println!("{case}: {difference:.2e}");
+        worst = worst.max(difference);
+        assert!(difference < 1e-9, "{difference:.2e} for\n{}", scenario.to_toml());
+    }
+    println!("largest: {worst:.2e}");
+}

@@ -506,7 +506,7 @@ fn mistakes_are_named_with_their_key_and_line() {
     assert!(
         error
             .problem
-            .contains("is 90.0000 mm from its mate's axis, but the wheels of mesh z1-z2 mesh at 101.6000 mm"),
+            .contains("is 90.0000 mm from the axis of its mating shaft, but the wheels of mesh z1-z2 mesh at 101.6000 mm"),
         "{error}"
     );
     // The number of a fault is that in the file, whichever mesh its wheel is in.
@@ -765,7 +765,7 @@ fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
     gearbox.wheels[2].deviations.helix_slope_um = Some(5.0);
     let error = gearbox_stages(&gearbox).map(drop).unwrap_err();
     assert_eq!(error.key, "mesh[1].wheels");
-    assert!(error.problem.starts_with("the mesh carries nothing"), "{error}");
+    assert!(error.problem.starts_with("the mesh is unloaded"), "{error}");
     assert!(error.help.unwrap().contains("set wheel[1].helix_slope_um and wheel[2].helix_slope_um to 0"));
 }
 

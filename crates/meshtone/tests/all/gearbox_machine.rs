@@ -42,6 +42,9 @@ struct TwoStages {
     poisson_ratio: f64,
     /// Sense of rotation of the input.
     sense: f64,
+    /// Helix angle; the hand of the driving wheel is right in the first mesh and left in the second one, so that both wheels on the shaft
+    /// between them have the same hand.
+    helix_angle_rad: f64,
 }
 
 impl TwoStages {
@@ -75,11 +78,13 @@ impl TwoStages {
             let body = WheelBody { mass_kg, polar_kgm2: mass_kg * r * r / 2.0, transverse_kgm2 };
             Disc { shaft: [0, 1, 1, 2][wheel], at: self.at[wheel / 2], body }
         };
-        let alpha = 20f64.to_radians();
+        let alpha = (20f64.to_radians().tan() / self.helix_angle_rad.cos()).atan();
+        let thrust = self.helix_angle_rad.tan() * alpha.cos();
         let line = |stage: usize| MeshLine {
             wheels: [2 * stage, 2 * stage + 1],
             base_radii_m: [0, 1].map(|wheel| self.radius_m(2 * stage + wheel) * alpha.cos()),
             working_pressure_angle_rad: alpha,
+            thrust: [thrust, -thrust][stage],
         };
         let second = -self.sense * f64::from(self.teeth[0]) / f64::from(self.teeth[1]);
         let third = -second * f64::from(self.teeth[2]) / f64::from(self.teeth[3]);
@@ -148,6 +153,7 @@ fn beams_and_meshes_have_the_frequencies_and_responses_of_ross() {
         // The shear modulus is 79.23 GPa.
         poisson_ratio: 206.0 / (2.0 * 79.23) - 1.0,
         sense: -1.0,
+        helix_angle_rad: 0.0,
     };
     let mut bearing = Bearing::new("", 0.0);
     bearing.axial_stiffness_n_per_m = 5e7;
@@ -187,9 +193,11 @@ fn beams_and_meshes_have_the_frequencies_and_responses_of_ross() {
 
 #[test]
 fn gearboxes_in_a_housing_have_the_frequencies_of_the_independent_model() {
-    for (name, teeth, module_mm, face_width_mm) in
-        [("phm09_spur", [32, 96, 48, 80], 1.5875, 19.05), ("spectraquest_like", [29, 100, 36, 90], 1.5, 15.0)]
-    {
+    for (name, teeth, module_mm, face_width_mm, helix_angle_deg) in [
+        ("phm09_spur", [32, 96, 48, 80], 1.5875, 19.05, 0f64),
+        ("spectraquest_like", [29, 100, 36, 90], 1.5, 15.0, 0.0),
+        ("phm09_helical", [16, 48, 24, 40], 3.175, 25.4, 20.0),
+    ] {
         let reference = arrays(name);
         let stages = TwoStages {
             teeth,
@@ -201,6 +209,7 @@ fn gearboxes_in_a_housing_have_the_frequencies_of_the_independent_model() {
             elements: 12,
             poisson_ratio: 0.3,
             sense: 1.0,
+            helix_angle_rad: helix_angle_deg.to_radians(),
         };
         let machine = stages.machine(&Bearing::new("", 0.0), Some(&Housing::default())).machine;
         let mean: Vec<f64> = (0..2).map(|mesh| reference["mesh_stiffness_n_per_m"][[mesh, 1]]).collect();

@@ -14,6 +14,7 @@ mod gearbox;
 mod gearbox_machine;
 mod gearbox_recordings;
 mod generated;
+mod helical;
 mod hybrid;
 mod hybrid_experiment;
 mod hybrid_rig;

@@ -340,5 +340,5 @@ fn what_cannot_be_is_refused() {
     let (key, text) = refused(Model::Linear, vec![drawn(1e5).into()]);
     assert!(key == "fault.random.density_per_cm2" && text.contains("must be at most"), "{text}");
     let (key, text) = refused(Model::Published, vec![listed(&[one]).into()]);
-    assert!(key == "fault.kind" && text.contains("is not known to the published model"), "{text}");
+    assert!(key == "fault.kind" && text.contains("is not supported by the published model"), "{text}");
 }

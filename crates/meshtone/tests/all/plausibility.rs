@@ -90,7 +90,7 @@ fn a_load_that_breaks_teeth_is_warned_of_with_their_deflection() {
     let told = of(&scenario);
     let told = about(&told, "operation.brake_torque_nm").unwrap();
     // 187 kN over 180 000 N/mm.
-    assert!(told.starts_with("10000.0 N m presses the teeth 1.03"), "{told}");
+    assert!(told.starts_with("10000.0 N m deflects the teeth by 1.03"), "{told}");
     assert!(told.contains("with 186698 N on 15 mm of face"), "{told}");
     assert!(told.ends_with("at most 2896 N m stays below a tenth of the module"), "{told}");
     scenario.operation.brake_torque_nm = 10.0;

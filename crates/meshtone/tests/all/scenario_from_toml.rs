@@ -194,7 +194,7 @@ fn unknown_keys() {
     assert_eq!(error.help.as_deref(), Some("did you mean `pressure_angle_deg`?"));
     for (key, words) in [
         ("crowning_mm", "is now called uniform_flank_reduction_mm"),
-        ("helix_angle_deg", "is not modelled: the gears are spur gears"),
+        ("internal", "is not modelled: both wheels are external gears"),
     ] {
         assert_refused(&gears(&format!("{key} = 0.01")), &format!("gears.{key}"), 6, &[words]);
     }

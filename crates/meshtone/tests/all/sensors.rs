@@ -74,7 +74,7 @@ fn what_is_refused_names_key_and_line() {
     let cases: [(&str, &str, usize, &[&str]); 18] = [
         ("name = \"a b\"", "sensor.name", 10, &["\"a b\"", "letters"]),
         ("name = \"1a\"", "sensor.name", 10, &["must be a letter"]),
-        ("name = \"vertical\"", "sensor.name", 10, &["vertical_g", "taken for another"]),
+        ("name = \"vertical\"", "sensor.name", 10, &["vertical_g", "the name of another channel"]),
         ("name = 3", "sensor.name", 10, &["text"]),
         ("at = \"wheel\"", "sensor.at", 10, &["\"gear-support\"", "\"wheels\""]),
         ("direction = \"up\"", "sensor.direction", 10, &["\"vertical\""]),

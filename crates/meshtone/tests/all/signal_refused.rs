@@ -44,7 +44,7 @@ fn samples_that_are_no_numbers() {
 #[test]
 fn a_channel_that_was_not_connected() {
     let message = refused(&[0.31; 5_000], &steady(5_000), TEETH);
-    assert_eq!(message, "all 5000 samples are 0.31: a constant channel tells nothing");
+    assert_eq!(message, "all 5000 samples are 0.31: a constant channel contains no information");
     assert!(tachometer_pulses(&[0.31; 5_000], RATE_HZ, &Tachometer::default()).is_err());
 }
 

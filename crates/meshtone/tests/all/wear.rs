@@ -349,7 +349,7 @@ fn what_cannot_be_is_refused() {
         "{text}"
     );
     let (key, text) = refused(Model::Published, vec![worn(WheelName::Gear, 1, 5.0)]);
-    assert!(key == "fault.kind" && text.contains("is not known to the published model"), "{text}");
+    assert!(key == "fault.kind" && text.contains("is not supported by the published model"), "{text}");
     let mut small = scenario(Model::Linear, 40.0, 0, vec![worn(WheelName::Gear, 1, 99.0)]);
     (small.gears.module_mm, small.gears.face_width_mm) = (0.05, 0.25);
     small.gears.tip_chamfer_mm = None;

@@ -74,7 +74,7 @@ pub(super) fn distribution(table: &TomlTable<'_>, keys: usize) -> ReadResult<Dis
     let (name, value) = match &given[..] {
         [] => {
             let names = "fixed, grid, choice, uniform, log_uniform or normal";
-            return Err(table.error("key", format!("says not how it varies; give one of {names}")));
+            return Err(table.error("key", format!("does not state how it varies; give one of {names}")));
         }
         [(name, _), (other, _), ..] => {
             return Err(table.error(other, format!("given beside {name}; give one of the two")));

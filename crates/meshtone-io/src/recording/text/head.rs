@@ -63,8 +63,8 @@ impl Head {
         }
         let undecided = options.separator.is_none() && options.decimal_sign.is_none();
         if undecided && !named && content.iter().all(|line| candidate.may_be_one_number(line.text)) {
-            let problem = "has lines such as `1,5`, which are two columns or one with a decimal comma; say which (option \
-                           text.separator or text.decimal_sign)";
+            let problem = "has lines such as `1,5`, which are two columns or one with a decimal comma; state \
+                           which (option text.separator or text.decimal_sign)";
             return Err(Problem::Refused(problem.to_string()));
         }
         let mut labels = if named {
@@ -93,9 +93,9 @@ impl Head {
 }
 
 /// The problem of lines none of which looks like numbers.
-const NO_COLUMNS: &str = "its first lines hold no columns of numbers; if they are a head, skip them (option text.skip_lines) or begin \
-                          them with #; if separator or decimal sign are unusual, say them (options text.separator and \
-                          text.decimal_sign)";
+const NO_COLUMNS: &str = "its first lines hold no columns of numbers; if they are a head, skip them (option \
+                          text.skip_lines) or begin them with #; if separator or decimal sign are unusual, \
+                          state them (options text.separator and text.decimal_sign)";
 
 /// Whether a line is passed over: blank, or a comment.
 pub(super) fn is_passed(line: &[u8]) -> bool {

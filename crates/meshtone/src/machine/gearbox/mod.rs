@@ -55,8 +55,10 @@ pub struct MeshLine {
     pub wheels: [usize; 2],
     /// (m) Their base radii.
     pub base_radii_m: [f64; 2],
-    /// (rad) Working pressure angle.
+    /// (rad) Working pressure angle in the transverse section.
     pub working_pressure_angle_rad: f64,
+    /// (-) Force along the shafts per transverse force, `h tan β_b`: positive of a driving wheel with a right-hand helix, 0 of spur wheels.
+    pub thrust: f64,
 }
 
 /// A place at which the motion can be measured.
@@ -329,8 +331,9 @@ impl GearboxMachine {
     }
 
     /// The line of action of a mesh: the driving wheel, which turns in the sense s about z, pushes the other one along
-    /// `n = s cos α t + sin α c`, c the direction from centre to centre and `t = z × c`. With the arm r from each centre to the pitch point
-    /// it is `[n; r × n]` of the driving wheel, less the same of the driven one.
+    /// `n = s cos α t + sin α c − s h tan β_b z`, c the direction from centre to centre, `t = z × c`, and h the hand of the driving wheel's
+    /// helix. With the arm r from each centre to the pitch point it is `[n; r × n]` of the driving wheel, less the same of the driven one.
+    /// Deflections and forces along it are those of the transverse section, in which `F r_b` is the torque.
     fn line_of_action(&self, parts: &GearboxParts, mesh: &MeshLine, coordinates: usize) -> LineOfAction {
         let [driving, driven] = mesh.wheels;
         let centre = |disc: usize| {
@@ -341,7 +344,7 @@ impl GearboxMachine {
         let along = Vector3::z();
         let sense = parts.speed_ratios[parts.discs[driving].shaft].signum();
         let (sin, cos) = mesh.working_pressure_angle_rad.sin_cos();
-        let n = along.cross(&c) * (sense * cos) + c * sin;
+        let n = along.cross(&c) * (sense * cos) + c * sin - along * (sense * mesh.thrust);
         let mut line =
             LineOfAction { at_middle: DVector::zeros(coordinates), per_m: DVector::zeros(coordinates) };
         for (disc, base_radius_m, side) in

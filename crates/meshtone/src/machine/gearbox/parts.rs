@@ -133,7 +133,7 @@ impl Keys for GearboxShaft {
                 .rule("less than its radius"),
             row("position_mm", "mm", "x and y of its axis", field!(position_mm))
                 .otherwise("beside the shaft that it meshes with, at the mesh's centre distance towards positive x")
-                .rule("as far from that of each mate as the mesh's centre distance, within 0.01 mm")
+                .rule("at the mesh's centre distance from the axis of each mating shaft, within 0.01 mm")
                 .alternative("[101.6, 0.0]"),
             row("elements", "", "the number of its beam elements", field!(elements))
                 .range(Range::from_to(2.0, 60.0)),
@@ -167,7 +167,7 @@ pub struct Bearing {
     pub shaft: String,
     /// (-) Where along the shaft, as a part of its length.
     pub at: f64,
-    /// What it is.
+    /// The kind of bearing.
     pub kind: BearingKind,
     /// (N/m) Stiffness across the shaft, in every direction. Default 1.5e8.
     pub stiffness_n_per_m: f64,
@@ -221,27 +221,27 @@ impl Keys for Bearing {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("shaft", "", "the name of its shaft", field!(shaft)).required(),
-            row("at", "-", "where along the shaft, as a part of its length from z = 0", field!(at))
+            row("at", "-", "the position along the shaft, as a fraction of its length from z = 0", field!(at))
                 .required()
                 .range(ALONG),
-            row("kind", "", "what it is", field!(kind)),
-            row("stiffness_n_per_m", "N/m", "the stiffness across the shaft", field!(stiffness_n_per_m))
+            row("kind", "", "the kind of bearing", field!(kind)),
+            row("stiffness_n_per_m", "N/m", "the radial stiffness", field!(stiffness_n_per_m))
                 .range(STIFFNESS),
             row(
                 "axial_stiffness_n_per_m",
                 "N/m",
-                "the stiffness along the shaft; 0 where the shaft may slide",
+                "the axial stiffness; 0 where the shaft may slide",
                 field!(axial_stiffness_n_per_m),
             )
             .range(MAYBE_STIFF),
             row(
                 "tilt_stiffness_nm_per_rad",
                 "N m/rad",
-                "the stiffness against tilting of the shaft in it",
+                "the tilting stiffness of the shaft in the bearing",
                 field!(tilt_stiffness_nm_per_rad),
             )
             .range(MAYBE_STIFF),
-            row("seat", "", "what it sits in, on the housing or on the ground", field!(seat)),
+            row("seat", "", "the bearing's seat, on the housing or on the ground", field!(seat)),
             row("damping_ratio", "-", "the damping ratio of the bearing and its seat", field!(damping_ratio))
                 .range(DAMPING),
         ]
@@ -286,7 +286,7 @@ impl Keys for Seat {
             row(
                 "tilt_stiffness_nm_per_rad",
                 "N m/rad",
-                "its stiffness against every rotation",
+                "its rotational stiffness about every axis",
                 field!(tilt_stiffness_nm_per_rad),
             )
             .range(STIFFNESS),
@@ -322,7 +322,7 @@ impl Keys for Housing {
                 .otherwise("mass_kg (0.3² + 0.2²)/12")
                 .range(MASS)
                 .alternative("0.325"),
-            row("feet", "", "what it stands on, foot by foot", field!(feet))
+            row("feet", "", "the feet on which it stands, one by one", field!(feet))
                 .otherwise(
                     "four feet of 6e7 N/m: in x 100 mm outside of the outermost shafts, in y 100 mm below the lowest one, \
                      at both ends of the longest shaft",

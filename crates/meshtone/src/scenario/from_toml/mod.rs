@@ -147,23 +147,19 @@ fn section<S: Keys>(
 }
 
 /// Keys that users may expect, and what is said of them: names of former versions, and what is not modelled.
-const NOT_MODELLED: [(&str, &str, &str); 9] = [
+const NOT_MODELLED: [(&str, &str, &str); 7] = [
     (
         "gears",
         "crowning_mm",
-        "is now called uniform_flank_reduction_mm: it takes back the whole flank alike, which is no crowning, and crowning is not modelled",
+        "is now called uniform_flank_reduction_mm: it is a constant reduction of the whole flank; lead crowning is lead_crowning_um",
     ),
-    ("gears", "lead_crowning_um", CROWNING),
-    ("gears", "profile_crowning_um", CROWNING),
-    ("gears", "helix_angle_deg", "is not modelled: the gears are spur gears, whose helix angle is 0"),
+    ("gears", "profile_crowning_um", "is not modelled: flank_relief relieves the profile's ends"),
     ("gears", "internal", "is not modelled: both wheels are external gears"),
     ("gears", "shaft_angle_deg", "is not modelled: the shafts are parallel"),
     ("gears", "rim_thickness_mm", "is not modelled: the wheels' bodies are solid"),
-    ("operation", "temperature_c", "is not modelled: the simulation knows neither heat nor oil"),
-    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: the simulation knows neither heat nor oil"),
+    ("operation", "temperature_c", "is not modelled: heat and oil are not simulated"),
+    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: heat and oil are not simulated"),
 ];
-const CROWNING: &str =
-    "is not modelled: flanks are straight along the face; flank_relief relieves the profile's ends";
 
 fn refuse_not_modelled(section: &str, table: &TomlTable<'_>) -> ReadResult<()> {
     let of_section = NOT_MODELLED.iter().filter(|(of, ..)| *of == section);

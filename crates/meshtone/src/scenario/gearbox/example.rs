@@ -6,6 +6,8 @@
 pub enum GearboxRig {
     /// The spur gearbox of the PHM Society's data challenge of 2009.
     Phm2009Spur,
+    /// Its helical gearbox.
+    Phm2009Helical,
     /// The two-stage gearbox of the University of Connecticut's gear data.
     Uconn,
     /// The two-stage gearbox of Tecnalia's data of 2025.
@@ -14,12 +16,13 @@ pub enum GearboxRig {
 
 impl GearboxRig {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Phm2009Spur, Self::Uconn, Self::Tecnalia];
+    pub const ALL: [Self; 4] = [Self::Phm2009Spur, Self::Phm2009Helical, Self::Uconn, Self::Tecnalia];
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Phm2009Spur => "phm2009-spur",
+            Self::Phm2009Helical => "phm2009-helical",
             Self::Uconn => "uconn",
             Self::Tecnalia => "tecnalia",
         }
@@ -36,17 +39,28 @@ impl GearboxRig {
 ",
                 teeth: [32, 96, 48, 80],
                 module_mm: 1.5875,
+                helix_angle_deg: 0.0,
                 face_width_mm: 19.05,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 66_666.67,
-                fault: "\
-# Faults of the challenge are listed by label only. A chipped tooth of the first stage:
-#
-# [[fault]]
-# wheel = \"z1\"
-# kind = \"tooth-breakage\"
-# severity = 0.4
+                fault: CHALLENGE_FAULT,
+            },
+            Self::Phm2009Helical => RigData {
+                head: "\
+# The helical gearbox of the PHM Society's data challenge of 2009.
+# Published: 16/48 and 24/40 teeth, bearings MB ER-10K, input speeds of 30 to 50 rev/s, two loads,
+# 66 666.67 samples a second, a tachometer of 10 pulses per revolution of the input.
+# Assumed, and marked so: everything else. Tooth sums half those of the spur gearbox suggest the same
+# centre distance, 101.6 mm: a transverse diametral pitch of 8, and with a helix angle of 20° a normal
+# module of 25.4/8 cos 20° mm. Both wheels on the middle shaft have the same hand, so that their thrusts oppose.
 ",
+                teeth: [16, 48, 24, 40],
+                module_mm: 2.983_524_070_995_259,
+                helix_angle_deg: 20.0,
+                face_width_mm: 25.4,
+                input_speed_hz: 30.0,
+                sampling_rate_hz: 66_666.67,
+                fault: CHALLENGE_FAULT,
             },
             Self::Uconn => RigData {
                 head: "\
@@ -57,6 +71,7 @@ impl GearboxRig {
 ",
                 teeth: [32, 80, 48, 64],
                 module_mm: 1.5875,
+                helix_angle_deg: 0.0,
                 face_width_mm: 19.05,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 20_000.0,
@@ -77,6 +92,7 @@ impl GearboxRig {
 ",
                 teeth: [29, 100, 36, 90],
                 module_mm: 1.5,
+                helix_angle_deg: 0.0,
                 face_width_mm: 15.0,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 20_480.0,
@@ -98,16 +114,27 @@ struct RigData {
     head: &'static str,
     teeth: [u32; 4],
     module_mm: f64,
+    /// (°) 0 of spur wheels.
+    helix_angle_deg: f64,
     face_width_mm: f64,
     input_speed_hz: f64,
     sampling_rate_hz: f64,
     fault: &'static str,
 }
 
+const CHALLENGE_FAULT: &str = "\
+# Faults of the challenge are listed by label only. A chipped tooth of the first stage:
+#
+# [[fault]]
+# wheel = \"z1\"
+# kind = \"tooth-breakage\"
+# severity = 0.4
+";
+
 const EXAMPLE_HEAD: &str = "\
 # A Meshtone gearbox: two stages of spur gears on three shafts, in a housing on four feet.
-# What stands behind \"# \" is a comment. Every key is in the guide's chapter on gearboxes; what is left
-# out here is at its default.
+# Text after \"# \" is a comment. The guide's chapter on gearboxes has every key; keys that are left
+# out here have their defaults.
 ";
 
 const EXAMPLE_FAULT: &str = "\
@@ -138,6 +165,7 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         head: EXAMPLE_HEAD,
         teeth: [32, 96, 48, 80],
         module_mm: 1.5875,
+        helix_angle_deg: 0.0,
         face_width_mm: 19.05,
         input_speed_hz: 30.0,
         sampling_rate_hz: 100_000.0,
@@ -147,6 +175,7 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         head,
         teeth: [z1, z2, z3, z4],
         module_mm,
+        helix_angle_deg,
         face_width_mm,
         input_speed_hz,
         sampling_rate_hz,
@@ -164,10 +193,15 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
             "# {comment}\n[[shaft]]\nname = \"{name}\"\nlength_mm = 240.0{assumed}\nradius_mm = 7.9375{assumed}\n{coupled}"
         )
     };
-    let mesh = |wheels: [&str; 2]| {
+    let mesh = |wheels: [&str; 2], hand: &str| {
+        let helix = if helix_angle_deg == 0.0 {
+            String::new()
+        } else {
+            format!("helix_angle_deg = {helix_angle_deg:?}{assumed}\nhand = \"{hand}\"{assumed}\n")
+        };
         format!(
             "[[mesh]]\nwheels = [\"{}\", \"{}\"]\nmodule_mm = {module_mm:?}{assumed}\n\
-             pressure_angle_deg = 20.0{assumed}\n",
+             pressure_angle_deg = 20.0{assumed}\n{helix}",
             wheels[0], wheels[1]
         )
     };
@@ -188,8 +222,8 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         wheel("z2", "middle", 0.25, z2),
         wheel("z3", "middle", 0.75, z3),
         wheel("z4", "output", 0.75, z4),
-        format!("# The first wheel of a mesh drives.\n{}", mesh(["z1", "z2"])),
-        mesh(["z3", "z4"]),
+        format!("# The first wheel of a mesh drives.\n{}", mesh(["z1", "z2"], "right")),
+        mesh(["z3", "z4"], "left"),
         format!(
             "# Stiffnesses of bearings, seats, housing and couplings are at their defaults{}.\n{bearings}",
             if rig.is_some() { ", which are assumed" } else { "" }

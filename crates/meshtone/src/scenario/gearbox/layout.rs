@@ -7,7 +7,7 @@ use crate::damage::Fault;
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::Coupled;
 use crate::wheel::{
-    ERROR_POINTS, ErrorTable, Gears, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
+    ERROR_POINTS, ErrorTable, Gears, Hand, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
 };
 
 /// A ratio of two whole numbers, reduced; its sign is the numerator's.
@@ -156,11 +156,46 @@ impl GearboxLayout {
             this.named(&gears, gearbox, index).check()?;
             this.gears.push(gears);
         }
+        this.check_helices(gearbox)?;
         this.ratios = this.turn(gearbox)?;
         this.positions_m = this.place(gearbox)?;
         this.check_room(gearbox)?;
         this.phases = this.find_phases(gearbox);
         Ok(this)
+    }
+
+    /// A wheel in several meshes has one helix.
+    fn check_helices(&self, gearbox: &Gearbox) -> Result<(), ScenarioError> {
+        // (°) Positive of a right-hand helix.
+        let helix = |(mesh, side): (usize, WheelName)| {
+            let gears = &self.gears[mesh];
+            side.choose(1.0, -1.0) * gears.hand.sign() * gears.helix_angle_deg
+        };
+        for (wheel, of_file) in gearbox.wheels.iter().enumerate() {
+            let mut meshes = self.meshes_of(wheel);
+            let Some(first) = meshes.next() else { continue };
+            let Some(other) = meshes.find(|mesh| helix(*mesh) != helix(first)) else { continue };
+            let of_mesh = &gearbox.meshes[other.0];
+            let (key, value) = if helix(first).abs() == helix(other).abs() {
+                ("hand", if of_mesh.hand == Hand::Right { "\"right\"" } else { "\"left\"" }.to_owned())
+            } else {
+                ("helix_angle_deg", format!("{:?}", of_mesh.helix_angle_deg))
+            };
+            let problem = format!(
+                "wheel {:?} would have another helix than in mesh {}; hand is that of the driving wheel, and its mate has the opposite one",
+                of_file.name,
+                gearbox.meshes[first.0].name()
+            );
+            return Err(ScenarioError::new(
+                entry_key("mesh", other.0, gearbox.meshes.len(), key),
+                value,
+                problem,
+            )
+            .with_help(
+                "give both meshes the same helix_angle_deg, and the hands by which the wheel has one",
+            ));
+        }
+        Ok(())
     }
 
     /// The shaft of the motor, and the one of the brake.
@@ -212,12 +247,12 @@ impl GearboxLayout {
                     let other = ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth));
                     if other != known {
                         let problem = format!(
-                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast as the input, by the other \
-                             way it turns {known} times",
+                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast \
+                             as the input, by the other path it turns {known} times",
                             name(driven)
                         );
                         return Err(ScenarioError::new(key, written, problem).with_help(
-                            "change the tooth counts so that both ways have the same ratio, or remove a mesh",
+                            "change the tooth counts so that both paths have the same ratio, or remove a mesh",
                         ));
                     }
                 }
@@ -280,8 +315,8 @@ impl GearboxLayout {
                 let [x, y] = places[shaft];
                 let mesh = gearbox.meshes[mesh].name();
                 let problem = format!(
-                    "is {apart_mm:.4} mm from its mate's axis, but the wheels of mesh {mesh} mesh at {distance_mm:.4} mm; must be the \
-                     same within {CENTRE_TOLERANCE_MM} mm"
+                    "is {apart_mm:.4} mm from the axis of its mating shaft, but the wheels of mesh {mesh} \
+                     mesh at {distance_mm:.4} mm; must be the same within {CENTRE_TOLERANCE_MM} mm"
                 );
                 return Err(ScenarioError::new(key, format!("[{x:?}, {y:?}]"), problem).with_help(
                     "move the shaft, or give the mesh that centre_distance_mm or its wheels profile shifts",
@@ -330,6 +365,9 @@ impl GearboxLayout {
             pinion.face_width_mm.min(gear.face_width_mm),
         );
         gears.pressure_angle_deg = mesh.pressure_angle_deg;
+        (gears.helix_angle_deg, gears.hand) = (mesh.helix_angle_deg, mesh.hand);
+        (gears.lead_crowning_um, gears.end_relief, gears.slices) =
+            (mesh.lead_crowning_um, mesh.end_relief, mesh.slices);
         (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion.profile_shift, gear.profile_shift);
         (gears.pinion_addendum, gears.gear_addendum) = (pinion.addendum, gear.addendum);
         (gears.pinion_dedendum, gears.gear_dedendum) = (pinion.dedendum, gear.dedendum);

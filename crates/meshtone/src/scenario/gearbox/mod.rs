@@ -96,7 +96,7 @@ impl Keys for Gearbox {
                 "the seed of every random draw: deviations, fluctuations, sensors' noise",
                 field!(seed),
             ),
-            row("wheels_seed", "", "the seed of the wheels' deviations: with one of its own the same wheels have other noise and fluctuations", field!(wheels_seed))
+            row("wheels_seed", "", "the seed of the wheels' deviations alone, for the same wheels with other noise and fluctuations", field!(wheels_seed))
                 .otherwise("seed")
                 .alternative("2"),
             row("material", "", "the material of shafts and wheels", field!(material)),
@@ -111,7 +111,7 @@ const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
 /// A scenario file, as what it is read.
 #[derive(Clone, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is one of a file")]
+#[expect(clippy::large_enum_variant, reason = "a file has only one")]
 pub enum ScenarioForm {
     /// The short form: one pair of gears.
     Pair(Scenario),
@@ -166,8 +166,8 @@ impl Gearbox {
     pub(crate) fn refused_as_pair() -> ScenarioError {
         let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
         ScenarioError::new("mesh", "", problem).with_help(
-            "`meshtone simulate`, `indicators`, `path`, `diagnose`, `explore` and data sets take gearboxes; the models published and linear, \
-             and tuning, know one pair",
+            "`meshtone simulate`, `indicators`, `path`, `diagnose`, `explore` and data sets accept \
+             gearboxes; the models published and linear, and tuning, accept one pair only",
         )
     }
 
@@ -212,7 +212,7 @@ impl Gearbox {
             let name = model.string()?;
             if name != "contact" {
                 return Err(model
-                    .error("must be \"contact\" of a gearbox; the other models know one pair")
+                    .error("must be \"contact\" for a gearbox; the other models accept one pair only")
                     .with_help("remove model, or write one pair with [gears] and [rig]"));
             }
         }
@@ -434,8 +434,8 @@ impl Gearbox {
         let fastest = shafts.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, hz)| *hz > FAST_HZ);
         let fast = fastest.map(|(shaft, hz)| {
             let message = format!(
-                "shaft {:?} turns at {hz:.1} rev/s: gyroscopic moments, which are left out, shift natural frequencies by up to 2 % at \
-                 100 rev/s and by more above",
+                "shaft {:?} turns at {hz:.1} rev/s: gyroscopic moments, which are neglected, shift natural \
+                 frequencies by up to 2 % at 100 rev/s and by more above",
                 shaft.name
             );
             ScenarioWarning::new(WarningKind::Gyroscopic, key, message)
@@ -456,13 +456,14 @@ impl Gearbox {
         let of_shares = (0..wheels).flat_map(of_wheel);
         let ended = self.operation.drive.ended_profiles(time.kept_from_s());
         let of_speed = self.driven_speed(layout).warnings();
-        of_teeth.into_iter().chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()
+        let of_teeth = of_teeth.into_iter().chain(layout.added_thrusts(self));
+        of_teeth.chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()
     }
 
     fn driven_speed(&self, layout: &GearboxLayout) -> DrivenSpeed<'_> {
         let pitch_lines_mm = layout.gears.iter().zip(&layout.wheels_of_mesh).map(|(gears, [driving, _])| {
             let ratio = layout.ratios[layout.shaft_of_wheel[*driving]].value().abs();
-            pitch_line_mm(gears.module_mm, gears.pinion_teeth) * ratio
+            pitch_line_mm(gears.transverse_module_mm(), gears.pinion_teeth) * ratio
         });
         DrivenSpeed {
             operation: &self.operation.drive,

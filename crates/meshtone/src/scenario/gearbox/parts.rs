@@ -14,7 +14,7 @@ use crate::operation::{Operation, Solver};
 use crate::sensor::{Sensor, SensorDirection, SensorPath};
 use crate::wheel::quality::{file_deviations, ignored_shares};
 use crate::wheel::rows::*;
-use crate::wheel::{ErrorTable, FlankRelief, Material, WheelDeviations, WheelName};
+use crate::wheel::{EndRelief, ErrorTable, FlankRelief, Hand, Material, WheelDeviations, WheelName};
 
 /// A wheel on a shaft of a gearbox.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +49,7 @@ pub struct GearboxWheel {
     pub material: Option<Material>,
     /// Mass and inertias, instead of those of a solid disc.
     pub inertia: WheelInertia,
-    /// Grade of DIN 3962 of its deviations, 1 (best) to 12; 0 for ideal teeth. Default 0.
+    /// Grade of DIN 3961 of its deviations, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,
     /// Class of ISO 1328-1:2013 instead, 1 (best) to 11; 0 for none. Default 0.
     pub iso_class: u8,
@@ -158,10 +158,10 @@ impl Keys for GearboxWheel {
         vec![
             row("name", "", "the wheel's name", field!(name)).required().rule("no other wheel's"),
             row("shaft", "", "the name of its shaft", field!(shaft)).required(),
-            row("at", "-", "where along the shaft, as a part of its length from z = 0", field!(at))
+            row("at", "-", "the position along the shaft, as a fraction of its length from z = 0", field!(at))
                 .required()
                 .range(ALONG)
-                .rule("within half a face width of its mates"),
+                .rule("within half a face width of its mating wheels"),
             teeth_row("teeth", field!(teeth)),
             face_width_row("the face width; a mesh has the narrower one", field!(face_width_mm))
                 .rule("on its shaft, clear of other wheels"),
@@ -180,7 +180,7 @@ impl Keys for GearboxWheel {
             row("inertia", "", "its mass and inertias, any of the three", field!(inertia))
                 .otherwise("those of a solid disc of pitch radius")
                 .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
-            row("din_grade", "", "the grade of DIN 3962 of its deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade))
+            row("din_grade", "", "the grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade))
                 .range(Range::from_to(0.0, 12.0)),
             row("iso_class", "", "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none", field!(iso_class))
                 .range(Range::from_to(0.0, 11.0))
@@ -247,10 +247,20 @@ impl Keys for GearboxWheel {
 pub struct GearboxMesh {
     /// Names of the driving and of the driven wheel.
     pub wheels: [String; 2],
-    /// (mm) Module.
+    /// (mm) Module, of helical wheels in the normal section.
     pub module_mm: f64,
-    /// (°) Pressure angle at the pitch circle. Default 20.
+    /// (°) Pressure angle at the pitch circle, of helical wheels in the normal section. Default 20.
     pub pressure_angle_deg: f64,
+    /// (°) Helix angle at the pitch circle. Default 0: spur wheels.
+    pub helix_angle_deg: f64,
+    /// Hand of the driving wheel's helix; the driven one's is the other one. Default right.
+    pub hand: Hand,
+    /// (µm) Lead crowning of both wheels together. Default 0.
+    pub lead_crowning_um: f64,
+    /// Relief of the flanks towards both ends of the face. Default none.
+    pub end_relief: EndRelief,
+    /// Number of slices of the face where the gap varies along it. Default 11.
+    pub slices: u32,
     /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
     pub centre_distance_mm: Option<f64>,
     /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`.
@@ -284,6 +294,11 @@ impl Keys for GearboxMesh {
             wheels: [String::new(), String::new()],
             module_mm: f64::NAN,
             pressure_angle_deg: 20.0,
+            helix_angle_deg: 0.0,
+            hand: Hand::Right,
+            lead_crowning_um: 0.0,
+            end_relief: EndRelief::default(),
+            slices: 11,
             centre_distance_mm: None,
             backlash_mm: None,
             phase: None,
@@ -296,6 +311,11 @@ impl Keys for GearboxMesh {
             row("wheels", "", "the names of the driving and of the driven wheel", field!(wheels)).required(),
             module_row(field!(module_mm)),
             pressure_angle_row(field!(pressure_angle_deg)),
+            helix_angle_row(field!(helix_angle_deg)),
+            hand_row("the hand of the driving wheel's helix; the driven one's is the other one", field!(hand)),
+            lead_crowning_row(field!(lead_crowning_um)),
+            end_relief_row(field!(end_relief)),
+            slices_row(field!(slices)),
             centre_distance_row(field!(centre_distance_mm)),
             backlash_row(field!(backlash_mm)),
             row(
@@ -304,12 +324,12 @@ impl Keys for GearboxMesh {
                 "where on its path of contact the first pair of teeth is at the start",
                 field!(phase),
             )
-            .otherwise("0; of a wheel in two meshes, what its teeth make of the other mesh's")
+            .otherwise("0; for a wheel in two meshes, the phase that follows from the other mesh")
             .alternative("0.0"),
             row(
                 "damping_ratio",
                 "-",
-                "the damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh stiffness",
+                "the damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh stiffness",
                 field!(damping_ratio),
             )
             .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
@@ -391,7 +411,7 @@ impl Keys for GearboxOperation {
 /// A harmonic of the brake's torque.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ripple {
-    /// (-) h: how often it comes in a revolution of the brake's shaft.
+    /// (-) h: the number of its periods per revolution of the brake's shaft.
     pub order: f64,
     /// (-) a: its amplitude as a part of the torque.
     pub amplitude: f64,
@@ -406,7 +426,7 @@ impl Keys for Ripple {
 
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
-            row("order", "-", "how often it comes in a revolution of the brake's shaft", field!(order))
+            row("order", "-", "the number of its periods per revolution of the brake's shaft", field!(order))
                 .required()
                 .range(Range::positive().implausible_above(1e4)),
             row("amplitude", "-", "its amplitude as a part of the torque", field!(amplitude))
@@ -557,7 +577,7 @@ impl Keys for GearboxSolver {
         let duration = row(
             "duration_s",
             "s",
-            "how long the kept signal is; settling comes before it",
+            "the length of the kept signal; settling comes before it",
             field!(settings.duration_s),
         )
         .otherwise("that of input_revolutions")
@@ -567,17 +587,17 @@ impl Keys for GearboxSolver {
         let revolutions = row(
             "input_revolutions",
             "rev",
-            "how many revolutions of the input are kept; settling comes before them",
+            "the number of kept revolutions of the input; settling comes before them",
             field!(settings.pinion_revolutions),
         )
-        .otherwise("those of 1 s, or what settling leaves of the time that a speed profile spans")
+        .otherwise("those of 1 s, or of the time of a speed profile less settling")
         .range(Range::positive())
         .rule("not beside duration_s, not with a speed profile")
         .example("30.0");
         let highest = row(
             "highest_mode_hz",
             "Hz",
-            "the natural frequency up to which modes are stepped; those above deform as at rest",
+            "the natural frequency up to which modes are integrated; those above deform statically",
             field!(highest_mode_hz),
         )
         .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")

@@ -2,7 +2,7 @@
 
 use super::layout::entry_key;
 use super::{Gearbox, GearboxLayout};
-use crate::error::ScenarioError;
+use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::wheel::WheelName;
 
 /// (mm) How far faces may overlap by rounding.
@@ -44,8 +44,8 @@ impl GearboxLayout {
                 .with_help("add a [[mesh]] that names it, or remove the wheel"));
             };
             let gears = &self.gears[mesh];
-            let root_mm =
-                gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift - wheel.dedendum);
+            let root_mm = gears.transverse_module_mm() * f64::from(wheel.teeth) / 2.0
+                + gears.module_mm * (wheel.profile_shift - wheel.dedendum);
             if bore_mm >= root_mm {
                 let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
                 let problem = format!(
@@ -55,11 +55,58 @@ impl GearboxLayout {
                 return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
                     .with_help("make the shaft thinner, or the wheel larger"));
             }
+            self.check_axial_support(gearbox, index)?;
             self.check_on_shaft(gearbox, index)?;
             self.check_clear_of_shafts(gearbox, index)?;
             self.check_clear_of_wheels(gearbox, index)?;
         }
         Ok(())
+    }
+
+    /// The shaft of a helical wheel is held along its axis.
+    fn check_axial_support(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
+        let own = self.shaft_of_wheel[index];
+        let mut bearings = gearbox.bearings.iter().zip(&self.shaft_of_bearing);
+        let is_held = bearings.any(|(bearing, of)| *of == own && bearing.axial_stiffness_n_per_m > 0.0);
+        if is_held || self.meshes_of(index).all(|(mesh, _)| !self.gears[mesh].is_helical()) {
+            return Ok(());
+        }
+        let wheel = &gearbox.wheels[index];
+        let problem = format!(
+            "no bearing holds the shaft along its axis, where {:?}, a helical wheel, pushes it; one must have \
+             axial_stiffness_n_per_m above 0",
+            wheel.name
+        );
+        let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+        Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
+            .with_help("give one of the shaft's bearings an axial_stiffness_n_per_m, such as 3e7"))
+    }
+
+    /// Shafts on which the axial forces of two helical wheels add up.
+    pub(super) fn added_thrusts(&self, gearbox: &Gearbox) -> impl Iterator<Item = ScenarioWarning> {
+        (0..gearbox.shafts.len()).filter_map(|shaft| {
+            let wheels = (0..gearbox.wheels.len()).filter(|wheel| self.shaft_of_wheel[*wheel] == shaft);
+            let thrusts = wheels.flat_map(|wheel| self.meshes_of(wheel).map(move |(mesh, side)| (wheel, mesh, side)));
+            let pushed: Vec<(usize, usize, f64)> = thrusts
+                .map(|(wheel, mesh, side)| {
+                    let driving = self.shaft_of_wheel[self.wheels_of_mesh[mesh][0]];
+                    let sense = self.ratios[driving].value().signum();
+                    (wheel, mesh, side.choose(1.0, -1.0) * sense * self.gears[mesh].thrust())
+                })
+                .filter(|(.., thrust)| *thrust != 0.0)
+                .collect();
+            let (last, others) = pushed.split_last()?;
+            let adds_up = !others.is_empty() && others.iter().all(|other| other.2 * last.2 > 0.0);
+            let names: Vec<&str> =
+                pushed.iter().map(|(wheel, ..)| gearbox.wheels[*wheel].name.as_str()).collect();
+            let message = format!(
+                "the axial forces of {} add up on shaft {:?}; with the other hand in this mesh they would oppose",
+                names.join(" and "),
+                gearbox.shafts[shaft].name
+            );
+            let key = entry_key("mesh", last.1, gearbox.meshes.len(), "hand");
+            adds_up.then(|| ScenarioWarning::new(WarningKind::AddedThrust, key, message))
+        })
     }
 
     /// A wheel sits on its shaft with its whole face.
@@ -95,7 +142,8 @@ impl GearboxLayout {
         let tip_mm = |(mesh, side): (usize, WheelName)| {
             let gears = &self.gears[mesh];
             let of = &gearbox.wheels[wheel];
-            gears.module_mm * (f64::from(of.teeth) / 2.0 + of.profile_shift + gears.addendum(side))
+            gears.transverse_module_mm() * f64::from(of.teeth) / 2.0
+                + gears.module_mm * (of.profile_shift + gears.addendum(side))
         };
         self.mesh_of(wheel).map_or(0.0, tip_mm)
     }

@@ -75,7 +75,7 @@ impl Scenario {
         let speed = DrivenSpeed {
             operation: &honoured.operation,
             key: "operation.pinion_speed_hz",
-            pitch_line_mm: pitch_line_mm(honoured.gears.module_mm, honoured.gears.pinion_teeth),
+            pitch_line_mm: pitch_line_mm(honoured.gears.transverse_module_mm(), honoured.gears.pinion_teeth),
         };
         speed.check()?;
         let mut warnings = NamedGears::of_pair(&honoured.gears).warnings();

@@ -29,7 +29,7 @@ const KINDS_OF_PUBLISHED: [&str; 5] =
 /// The refusal of a kind that the published model does not know.
 pub(crate) fn unknown_kind(damage: &Damage) -> ScenarioError {
     let kind = format!("\"{}\"", damage.kind());
-    ScenarioError::new("fault.kind", kind, "is not known to the published model")
+    ScenarioError::new("fault.kind", kind, "is not supported by the published model")
         .with_help("write model = \"linear\" or model = \"contact\"")
 }
 
@@ -49,7 +49,7 @@ fn refuse_keys_of_published(scenario: &Scenario) -> Check {
     match given.find_map(|(of_published, value)| Some((of_published, value?))) {
         None => Ok(()),
         Some((PublishedKey { key, why, .. }, value)) => {
-            let problem = format!("concerns the published model alone: under \"{}\" {why}", model.name());
+            let problem = format!("applies only to the published model: under \"{}\" {why}", model.name());
             let help = "remove the key, or set model = \"published\"";
             Err(ScenarioError::new(*key, value, problem).with_help(help))
         }
@@ -59,10 +59,10 @@ fn refuse_keys_of_published(scenario: &Scenario) -> Check {
 /// What a refused scenario may do instead.
 const OTHER_MODELS_HELP: &str = "set model = \"linear\" or \"contact\" (or leave --model out), which have any number of faults on any teeth";
 const ONLY_STANDARD: &str =
-    "the published model knows only standard wheels, without profile shift and at their standard distance";
+    "the published model supports only standard wheels, without profile shift and at their standard distance";
 const STANDARD_HELP: &str =
     "set model = \"linear\" or \"contact\" (or leave --model out), which have any; or remove the key";
-const ONE_PLACE: &str = "the published model knows only one fault, on the gear's first tooth";
+const ONE_PLACE: &str = "the published model supports only one fault, on the gear's first tooth";
 
 /// Refuses other wheels than standard ones, those whose tips the relief takes away, and other faults than one, always on the same tooth.
 fn refuse_unknown_to_published(scenario: &Scenario) -> Check {

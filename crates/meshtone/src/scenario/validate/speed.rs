@@ -57,7 +57,7 @@ impl DrivenSpeed<'_> {
         let speed_m_per_s = self.pitch_line_m_per_s(speed_hz);
         (speed_m_per_s > USUAL_M_PER_S).then(|| {
             let message = format!(
-                "the teeth run at {speed_m_per_s:.0} m/s on the pitch line, and few spur gears run faster than {USUAL_M_PER_S:.0} m/s; \
+                "the teeth run at {speed_m_per_s:.0} m/s on the pitch line, and few gears run faster than {USUAL_M_PER_S:.0} m/s; \
                  speeds are in revolutions per second"
             );
             ScenarioWarning::new(WarningKind::FastTeeth, key, message)

@@ -19,12 +19,12 @@ impl Display for Mismatch {
         match self.alternative {
             Alternative::Teeth { teeth: alternative } => write!(
                 f,
-                "the mesh lines are those of {alternative} teeth on this shaft, or of a whole part of that, rather than {teeth}: check \
-                 the tooth count"
+                "the mesh lines fit {alternative} teeth on this shaft, or an integer fraction of that, \
+                 better than {teeth}: check the tooth count"
             ),
             Alternative::MateTeeth { teeth: alternative, stated } => write!(
                 f,
-                "the other shaft's orders are those of a mate of {alternative} teeth rather than {stated}: check its tooth count"
+                "the other shaft's orders fit a mating gear of {alternative} teeth better than {stated}: check its tooth count"
             ),
             Alternative::OtherShaft { mate_teeth } => {
                 let what = match self.stated.turning {
@@ -40,7 +40,11 @@ impl Display for Mismatch {
                 )
             }
             Alternative::PulsesPerRevolution { pulses, stated } => {
-                write!(f, "the pulses in a revolution are rather {pulses} than {stated}: check their number")
+                write!(
+                    f,
+                    "the recording fits {pulses} pulses per revolution better than {stated}: check \
+                           their number"
+                )
             }
             Alternative::VaryingSpeed { variation, stated_hz } => write!(
                 f,
@@ -61,7 +65,8 @@ impl Display for Mismatch {
                 let percent = 100.0 * (speed_hz / stated_hz - 1.0);
                 write!(
                     f,
-                    "the shaft turns rather at {speed_hz:.6} Hz than at {stated_hz} Hz ({percent:+.4} %)"
+                    "the recording fits a speed of {speed_hz:.6} Hz better than {stated_hz} Hz \
+                     ({percent:+.4} %)"
                 )?;
                 if let Some(ratio) = self.energy_ratio {
                     write!(f, ": the average then holds {ratio:.1} times the energy at the mesh orders")?;

@@ -34,7 +34,7 @@ pub enum PathError {
         problem: RecordingProblem,
     },
     /// Nothing stands out of the noise.
-    #[error("the recordings show nothing of the mesh above their noise")]
+    #[error("the recordings show no mesh vibration above their noise")]
     OnlyNoise,
     /// No path explains the recordings.
     #[error(

@@ -16,7 +16,7 @@ pub const ERROR_POINTS: usize = 100;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Quality {
-    /// Grade of DIN 3962, 1 (best) to 12; 0 for ideal teeth. Default 0.
+    /// Grade of DIN 3961, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,
     /// Seed of the draw by `din_grade`: which wheels they are. Default: the scenario's seed.
     pub seed: Option<u64>,
@@ -58,7 +58,7 @@ impl Default for Quality {
 }
 
 impl Quality {
-    /// Teeth of a grade of DIN 3962, drawn by the scenario's seed.
+    /// Teeth of a grade of DIN 3961, drawn by the scenario's seed.
     ///
     /// # Arguments
     /// * `din_grade` - 1 (best) to 12; 0 for ideal teeth
@@ -97,8 +97,8 @@ macro_rules! deviation_rows {
             row(
                 pitch,
                 "µm",
-                "the working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added; given \
-                 profile errors are added to",
+                "the working flanks' cumulative pitch deviations along the pitch circle, positive where \
+                 metal is added; they are added to given profile errors",
                 field!($field.cumulative_pitch_um),
             )
             .otherwise("drawn, or none beside given profile errors")
@@ -110,7 +110,7 @@ macro_rules! deviation_rows {
                 "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)",
                 field!($field.run_out_um),
             )
-            .otherwise("drawn, or none beside given profile errors or pitches, which have it in them")
+            .otherwise("drawn, or none beside given profile errors or pitches, which contain it")
             .range(Range::not_negative().implausible_above(1e4))
             .alternative("0.0"),
             row(
@@ -155,11 +155,11 @@ impl Keys for Quality {
             row(
                 "din_grade",
                 "",
-                "the grade of DIN 3962 of the profile errors, 1 (best) to 12; 0: ideal teeth",
+                "the grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth",
                 field!(din_grade),
             )
             .range(Range::from_to(0.0, 12.0).message(
-                "must be a whole number from 0 to 12: a grade of DIN 3962, from 1 (best) to 12, or 0 for ideal teeth",
+                "must be a whole number from 0 to 12: a grade of DIN 3961, from 1 (best) to 12, or 0 for ideal teeth",
             )),
             row(
                 "seed",

@@ -107,7 +107,7 @@ impl WheelDeviations {
 ///
 /// # Arguments
 /// * `section` - the keys' section
-/// * `grade`, `class` - of DIN 3962 and of ISO 1328; 0 for none
+/// * `grade`, `class` - of DIN 3961 and of ISO 1328; 0 for none
 /// * `has_errors` - whether profile errors are given
 pub(crate) fn one_source(section: &str, grade: u8, class: u8, has_errors: bool) -> Check {
     let (key, value, problem, help) = match (grade, class) {

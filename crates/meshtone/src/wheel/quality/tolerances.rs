@@ -40,7 +40,8 @@ impl Tolerances {
     /// assert!((class_6.cumulative_pitch_um - 25.639).abs() < 1e-3);
     /// ```
     pub fn iso_1328(wheel: &Wheel, class: u8) -> Self {
-        let (module, diameter, width) = (wheel.module_mm, 2.0 * wheel.pitch_radius_mm, wheel.face_width_mm);
+        let (module, diameter, width) =
+            (wheel.normal_module_mm(), 2.0 * wheel.pitch_radius_mm, wheel.face_width_mm);
         let step = std::f64::consts::SQRT_2.powi(i32::from(class) - 5);
         let cumulative = 0.002 * diameter + 0.55 * diameter.sqrt() + 0.7 * module + 12.0;
         Self {
@@ -63,7 +64,7 @@ impl Tolerances {
     ///
     /// Source: DIN 3961:1978.
     pub fn din_3961(wheel: &Wheel, grade: u8) -> Self {
-        let (module, diameter) = (wheel.module_mm, 2.0 * wheel.pitch_radius_mm);
+        let (module, diameter) = (wheel.normal_module_mm(), 2.0 * wheel.pitch_radius_mm);
         let above_nine = i32::from(grade.saturating_sub(9));
         let step = 1.4f64.powi(i32::from(grade.min(9)) - 5) * 1.6f64.powi(above_nine);
         let root = module.sqrt();

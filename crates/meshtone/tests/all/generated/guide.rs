@@ -31,7 +31,7 @@ fn table(name: &str) -> String {
     let own = if name == "top" { "" } else { name };
     if name == "fault" {
         let names = damage_kinds().iter().map(|kind| format!("`\"{}\"`", kind.name)).collect::<Vec<_>>();
-        let kind = format!("| `kind` | what is broken | | required | {} |\n", names.join(", "));
+        let kind = format!("| `kind` | the kind of damage | | required | {} |\n", names.join(", "));
         return rows(&keys_of_every_fault(), &kind);
     }
     if let Some(kind) = damage_kinds().into_iter().find(|kind| kind.name == own) {
