@@ -395,7 +395,8 @@ impl Mesh {
         self.touching_n_per_m(&self.pairs_at(point).map(|(_, state)| *state).collect::<Vec<_>>())
     }
 
-    /// (N/mm) Sum of the stiffnesses of the pairs that touch, as [`Self::whole_stiffness_at`], at every point of some pitches.
+    /// (N/mm) Sum of the stiffnesses of the pairs that touch, at every point of some pitches: under a light load, and where the face has slices
+    /// under the nominal one.
     ///
     /// # Arguments
     /// * `pitches` - counted from the start of the simulation
