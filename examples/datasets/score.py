@@ -65,10 +65,9 @@ class Records:
 
 
 def records(dataset: mt.Dataset) -> tuple[Records, Records]:
-    plain = [name for name in dataset.scalar_columns if name.startswith(PARTS) or name in GEAR]
     # Octaves beyond half the sampling rate are null in all records.
-    present = dataset.split("train").to_pandas(plain).notna().any()
-    indicators = [name for name in plain if present[name]]
+    present = [name for name in dataset.scalar_columns if name not in dataset.empty_columns]
+    indicators = [name for name in present if name.startswith(PARTS) or name in GEAR]
 
     def of(split: str) -> Records:
         part = dataset.split(split)

@@ -44,10 +44,10 @@ def strain_shares(shape: NDArray[np.float64]) -> NDArray[np.float64]:
         own = np.ix_(wheel + tilts, wheel + tilts)
         return float(bent @ free[own] @ bent)
 
-    parts = [shape @ (closed - free) @ shape, bending(GEAR, GEAR_SUPPORT, [9, 11]), bending(PINION, PINION_SUPPORT, [10, 12])]
+    parts: list[float] = [float(shape @ (closed - free) @ shape), bending(GEAR, GEAR_SUPPORT, [9, 11]), bending(PINION, PINION_SUPPORT, [10, 12])]
     parts += [gear_shaft * (shape[4] - shape[6]) ** 2, pinion_shaft * shape[5] ** 2]
     whole = shape @ closed @ shape
-    return np.asarray([*parts, whole - sum(parts)] / whole)
+    return np.asarray([*parts, whole - sum(parts)]) / whole
 
 
 def in_words(shape: NDArray[np.float64]) -> str:

@@ -182,7 +182,7 @@ class GearboxMesh(TypedDict, total=False):
         The relief of the flanks towards both ends of the face, as a gap in µm.
     slices : int
         The number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it. Allowed:
-        whole number 1…41.
+        whole number 5…41.
     centre_distance_mm : float
         (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1.
     backlash_mm : float

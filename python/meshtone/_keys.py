@@ -500,7 +500,7 @@ class ScenarioKeys:
             amount_um = 0.0 }. Ignored by linear, published.
         slices : int, optional
             The number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it.
-            Allowed: whole number 1…41. Default: 11. Ignored by published.
+            Allowed: whole number 5…41. Default: 11. Ignored by published.
         pinion_profile_shift, gear_profile_shift : float, optional
             (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip. Default: 0.0.
         pinion_addendum, gear_addendum : float, optional

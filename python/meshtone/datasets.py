@@ -32,6 +32,10 @@ Examples
 ['healthy', 'missing-tooth']
 >>> train.signals("vertical_g")[0].dtype
 dtype('float32')
+>>> gears.condition_columns
+['pinion_teeth', 'gear_teeth', 'pinion_speed_hz', 'brake_torque_nm']
+>>> any(train.to_pandas()[name].isna().all() for name in gears.condition_columns), "difference_octave_32_rms_g" in gears.empty_columns
+(False, True)
 >>> folder.cleanup()
 """
 
@@ -41,9 +45,10 @@ import errno
 import json
 import operator
 import os
+import re
 import stat
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,9 +71,17 @@ if TYPE_CHECKING:
     import pyarrow.dataset
     import pyarrow.fs
 
+    from ._torch import TorchDataset
+
 __all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets", "verify_dataset"]
 
 FloatSignal = npt.NDArray[np.float32]
+
+KNOWN = ("pinion_speed_hz", "input_speed_hz", "brake_torque_nm")
+"""Columns of what is known of a machine without its vibration, beside those of :data:`KNOWN_OF_WHEELS`."""
+
+KNOWN_OF_WHEELS = re.compile(r"(?!fault|latent).*(teeth|module_mm|face_width_mm|helix_angle_deg|pressure_angle_deg)")
+"""Likewise, of each wheel or mesh."""
 
 OVER_A_REVOLUTION = ("average_g", "difference_g", "enhanced_relative_difference")
 """Columns of signals at equal angles of one revolution; the others are at equal times."""
@@ -343,6 +356,7 @@ class Dataset:
         self._native = native
         self._filter = expression
         self._length: int | None = None
+        self._empty: list[str] | None = None
         self._rows: Rows | None = None
 
     @property
@@ -504,14 +518,14 @@ class Dataset:
         return self._native.to_table(columns=None if columns is None else list(columns), filter=self._filter)
 
     def to_pandas(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
-        """The records as a table of pandas; without the signals, which do not belong there, if no columns are named.
+        """The records as a table of pandas, with a row for each record and a column for each value.
 
         Needs pandas: ``pip install 'meshtone[tables]'``.
 
         Parameters
         ----------
         columns : sequence of str, optional
-            All but the signals by default.
+            All but the signals and :attr:`empty_columns` by default.
 
         Raises
         ------
@@ -520,19 +534,19 @@ class Dataset:
         ValueError
             A column that there is not.
         """
-        chosen = self.scalar_columns if columns is None else list(columns)
+        chosen = self._value_columns() if columns is None else list(columns)
         with extra("tables"):
             return self.to_arrow(chosen).to_pandas()
 
     def to_polars(self, columns: Sequence[str] | None = None) -> polars.DataFrame:
-        """The records as a table of polars; without the signals if no columns are named.
+        """The records as a table of polars, with a row for each record and a column for each value.
 
         Needs polars: ``pip install 'meshtone[polars]'``.
 
         Parameters
         ----------
         columns : sequence of str, optional
-            All but the signals by default.
+            All but the signals and :attr:`empty_columns` by default.
 
         Raises
         ------
@@ -543,7 +557,7 @@ class Dataset:
         """
         with extra("polars"):
             import polars
-        return polars.DataFrame(self.to_arrow(self.scalar_columns if columns is None else columns))
+        return polars.DataFrame(self.to_arrow(self._value_columns() if columns is None else columns))
 
     @property
     def scalar_columns(self) -> list[str]:
@@ -558,6 +572,27 @@ class Dataset:
         """Names of the columns that hold a signal."""
         scalars = set(self.scalar_columns)
         return [name for name in self.columns if name not in scalars]
+
+    @property
+    def empty_columns(self) -> list[str]:
+        """Names of the columns that are null in every record of the whole data set, such as octaves beyond half the sampling rate.
+
+        Tables leave them out if no columns are named; a learner refuses them.
+        """
+        if self._empty is None:
+            groups = [group for fragment in self._native.get_fragments() for group in _null_counts(fragment)]
+            self._empty = [name for name in self.scalar_columns if groups and all(group[name] for group in groups)]
+        return list(self._empty)
+
+    @property
+    def condition_columns(self) -> list[str]:
+        """Names of the columns of what is known of a machine without its vibration: speed, torque, teeth, module, face width, angles."""
+        names = [name for name in self.scalar_columns if name in KNOWN or KNOWN_OF_WHEELS.fullmatch(name)]
+        return [name for name in names if name not in self.empty_columns]
+
+    def _value_columns(self) -> list[str]:
+        empty = set(self.empty_columns)
+        return [name for name in self.scalar_columns if name not in empty]
 
     def column(self, name: str) -> npt.NDArray[Any]:
         """A column of one value a record.
@@ -645,12 +680,12 @@ class Dataset:
         Raises
         ------
         ValueError
-            A column that there is not, or that holds no numbers.
+            A column that there is not, that holds no numbers, or that is null in every record of the data set.
         """
-        if isinstance(columns, str):
-            raise TypeError(f"columns = '{columns}': must be a sequence of names, such as ['{columns}']")
+        names = _names("columns", columns)
+        self._check_values(names)
         values = []
-        for name in columns:
+        for name in names:
             try:
                 values.append(np.asarray(self.column(name), dtype=np.float64))
             except (TypeError, ValueError) as error:
@@ -713,27 +748,40 @@ class Dataset:
 
     def to_torch(
         self,
-        signal: str,
+        signals: str | Sequence[str],
         *,
+        targets: str | Sequence[str] = "label",
+        classes: Mapping[str, Sequence[Any]] | None = None,
+        conditions: bool | Sequence[str] = False,
         points: int | None = None,
-        label: str = "label",
         transform: Callable[[FloatSignal], Any] | None = None,
-    ) -> Any:
-        """A ``torch.utils.data.Dataset`` of (signal, class number); its attribute ``classes`` has the labels.
+    ) -> TorchDataset:
+        """A ``torch.utils.data.Dataset`` of (signals, target), or of ((signals, conditions), target) with conditions.
 
-        Needs torch: ``pip install 'meshtone[torch]'``. The labels are read at once; of the signals, the last file that was
+        Needs torch: ``pip install 'meshtone[torch]'``. Targets and conditions are read at once; of the signals, the last file that was
         asked for is kept in memory, so that reading in order is fast.
 
         Parameters
         ----------
-        signal : str
-            One of :attr:`signal_columns`.
+        signals : str or sequence of str
+            One or several of :attr:`signal_columns`: the channels. A record's signals are a tensor of float32 of the shape
+            (channels, points).
+        targets : str or sequence of str
+            Columns to learn. The target is a value where one name is given, and a dictionary of values where a sequence is given. Text
+            is a class number (int); a number, such as ``fault_severity`` or ``age_rev``, is a tensor of float32 of the shape (). A
+            severity is 0 where a record has no such fault; another number is NaN where the record has none.
+        classes : mapping, optional
+            Labels in the order of their numbers, by the names of targets. By default a text has the labels of the whole data set, sorted,
+            so that all splits and filters number them alike; None is first where records have no text. A number whose labels are
+            given, such as ``{"severity": range(6)}``, is a class too. The attribute ``classes`` of the result has them, so that another
+            data set can be numbered alike.
+        conditions : bool or sequence of str
+            Whether the inputs have :attr:`condition_columns` too, or those columns of numbers that are named: a tensor of float32 of
+            the shape (conditions,), in the units of :attr:`units`. The attribute ``conditions`` has their names.
         points : int, optional
-            Length of all, as of :meth:`arrays`, so that a ``DataLoader`` puts them into batches as it is; by default their own.
-        label : str
-            The column of labels.
+            Length of all signals, as of :meth:`arrays`, so that a ``DataLoader`` makes batches of them; by default their own.
         transform : callable, optional
-            Given each signal, as long as asked for; what it returns stands in its place.
+            Given each record's signals as an array; what it returns stands in their place.
 
         Returns
         -------
@@ -744,14 +792,66 @@ class Dataset:
         ModuleNotFoundError
             torch is not installed.
         ValueError
-            A column that there is not.
+            A column that there is not, that is null in every record, or that holds no numbers where they are needed; a label that is not
+            among the given classes; when a record is read, signals of several lengths.
+
+        Examples
+        --------
+        ::
+
+            train = gears.split("train").to_torch(
+                ["average_g", "difference_g"], targets=["label", "fault_severity"], conditions=True, points=1024
+            )
+            for (signals, conditions), target in DataLoader(train, batch_size=32, shuffle=True):
+                kind, severity = network(signals, conditions)
+                loss = cross_entropy(kind, target["label"]) + mse_loss(severity, target["fault_severity"])
         """
         with extra("torch"):
             from ._torch import TorchDataset
 
-        self._check_signals([signal])
-        self._check([label])
-        return TorchDataset(self, signal, label, None if points is None else whole("points", points, 1), transform)
+        channels = [signals] if isinstance(signals, str) else list(signals)
+        self._check_signals(channels)
+        known = [] if conditions is False else self.condition_columns if conditions is True else _names("conditions", conditions)
+        names = [targets] if isinstance(targets, str) else _names("targets", targets)
+        self._check_values([*known, *names])
+        classes = self._classes(names, classes)
+        values = {name: self._numbers(name, classes.get(name)) for name in names}
+        return TorchDataset(
+            Rows(self, channels),
+            channels,
+            values[targets] if isinstance(targets, str) else values,
+            classes,
+            {name: self.matrix([name])[:, 0] for name in known},
+            None if points is None else whole("points", points, 1),
+            transform,
+        )
+
+    def _classes(self, targets: Sequence[str], given: Mapping[str, Sequence[Any]] | None) -> dict[str, list[Any]]:
+        """Labels of the targets that are classes, in the order of their numbers."""
+        import pyarrow.types
+
+        if given is not None and not isinstance(given, Mapping):
+            raise TypeError(f"classes = {given!r}: must be a mapping, such as {{'{targets[0]}': [...]}}")
+        classes = {name: list(labels) for name, labels in (given or {}).items()}
+        if other := [name for name in classes if name not in targets]:
+            raise ValueError(f"classes: '{other[0]}' is no target, but {', '.join(targets)}")
+        schema = self._native.schema
+        for name in targets:
+            if name not in classes and pyarrow.types.is_string(schema.field(name).type):
+                labels = set(self._native.to_table(columns=[name]).column(0).to_pylist())
+                classes[name] = sorted(labels, key=lambda label: (label is not None, label))
+        return classes
+
+    def _numbers(self, name: str, classes: Sequence[Any] | None) -> npt.NDArray[Any]:
+        """What a network learns of a column: class numbers (int64), or the numbers themselves (float32)."""
+        if classes is None:
+            numbers = self.matrix([name])[:, 0].astype(np.float32)
+            return np.nan_to_num(numbers) if re.fullmatch(r"fault(_\d+)?_severity", name) else numbers
+        place = {label: number for number, label in enumerate(classes)}
+        labels = self.to_arrow([name]).column(0).to_pylist()
+        if missing := [label for label in labels if label not in place]:
+            raise ValueError(f"classes: there is no {missing[0]!r} among those of '{name}', which are {', '.join(map(repr, classes))}")
+        return np.array([place[label] for label in labels], dtype=np.int64)
 
     def to_mat(self, file: str | PathLike[str], columns: Sequence[str] | None = None) -> None:
         """Write the records as a MATLAB v5 file: a struct array ``records`` with a field for each column.
@@ -794,6 +894,12 @@ class Dataset:
                 raise ValueError(f"column '{name}' holds one value a record: column('{name}') gives them")
         if not columns:
             raise ValueError(f"no signals are named; there are {', '.join(self.signal_columns)}")
+
+    def _check_values(self, columns: Sequence[str]) -> None:
+        """Refuse columns from which nothing can be learnt."""
+        self._check(columns)
+        if empty := [name for name in columns if name in self.empty_columns]:
+            raise ValueError(f"null in every record: {', '.join(empty)}; leave out what `empty_columns` lists")
 
     def _check(self, columns: Sequence[str]) -> None:
         for name in columns:
@@ -864,6 +970,26 @@ def with_points(name: str, values: FloatSignal, points: int) -> FloatSignal:
     if values.size < points:
         raise ValueError(f"points = {points}: a record has {values.size} of '{name}'")
     return values[:points]
+
+
+def _names(argument: str, names: Sequence[str]) -> list[str]:
+    """Names of columns, of which a single one is given in a sequence too."""
+    if isinstance(names, str):
+        raise TypeError(f"{argument} = '{names}': must be a sequence of names, such as ['{names}']")
+    if not names:
+        raise ValueError(f"{argument}: no columns are named")
+    return list(names)
+
+
+def _null_counts(fragment: pyarrow.dataset.ParquetFileFragment) -> Iterator[dict[str, bool]]:
+    """For each part of a file, which columns are null in all of its records, by the statistics at the file's end."""
+    for number in range(fragment.metadata.num_row_groups):
+        group = fragment.metadata.row_group(number)
+        columns = [group.column(place) for place in range(group.num_columns)]
+        yield {
+            column.path_in_schema: column.statistics is not None and column.statistics.null_count == group.num_rows
+            for column in columns
+        }
 
 
 def _records_of(batch: pyarrow.RecordBatch) -> Iterator[dict[str, Any]]:

@@ -88,7 +88,8 @@ class Simulation:
     Beside the attributes below it has every field of a trace that belongs to the stages before the time loop, under the trace's names:
     ``natural_frequencies_hz``, ``mesh_stiffness_n_per_mm`` (every 4th point of a revolution of the gear),
     ``pair_stiffness_healthy_n_per_mm``, ``mass_diagonal``, ``damping_matrix``, ``stiffness_matrix_mean``, ``contact_ratio``, and so on:
-    :attr:`fields` has them all.
+    :attr:`fields` has them all. Type checkers know those of every pair; those of a fault are ``fields["fault_area_percent"]`` to them, and
+    the signals of named sensors ``sensors["casing"]``.
 
     Examples
     --------
@@ -102,16 +103,41 @@ class Simulation:
     1.609
     """
 
-    natural_frequencies_hz: Array
-    mesh_stiffness_n_per_mm: Array
+    pinion_profile_x_mm: Array
+    pinion_profile_y_mm: Array
+    pinion_tip_xy_mm: Array
+    pinion_radii_mm: Array
+    gear_profile_x_mm: Array
+    gear_profile_y_mm: Array
+    gear_tip_xy_mm: Array
+    gear_radii_mm: Array
+    pinion_profile_errors_mm: Array
+    gear_profile_errors_mm: Array
+    shaft_stiffness_nm_per_rad: Array
     pair_stiffness_healthy_n_per_mm: Array
     pair_stiffness_faulty_n_per_mm: Array
+    mesh_stiffness_n_per_mm: Array
+    natural_frequencies_hz: Array
     mass_diagonal: Array
     damping_matrix: Array
+    stiffness_matrix_open: Array
+    stiffness_matrix_mean: Array
+    force_first_200: Array
+    force_kept_first_500: Array
+    mesh_error_force_n: Array
     contact_ratio: float
     working_pressure_angle_rad: float
     centre_distance_mm: float
     normal_backlash_mm: float
+    fine_step_rev: float
+    coarse_step_rev: float
+    pinion_revolutions: float
+    pinion_mass_kg: float
+    pinion_transverse_inertia_kgm2: float
+    pinion_polar_inertia_kgm2: float
+    gear_mass_kg: float
+    gear_transverse_inertia_kgm2: float
+    gear_polar_inertia_kgm2: float
 
     def __init__(self, scenario: Scenario, native: _core.Simulation) -> None:
         self._scenario = scenario
@@ -246,21 +272,23 @@ class Simulation:
                     read_only(values)
         return self._fields
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        if name.endswith("_g") and name[:-2] in (sensors := self.sensors):
-            return sensors[name[:-2]]
-        try:
-            return self.fields[name]
-        except KeyError:
-            if name == "indicators" or name in INDICATORS:
-                key = "" if name == "indicators" else f'["{name}"]'
-                raise AttributeError(f"a simulation has no '{name}'; its record has: simulation.process().indicators{key}") from None
-            if name in ("save", "to_pandas", "to_csv"):
-                raise AttributeError(f"a simulation has no '{name}'; {_SAVED}") from None
-            near = hint(name, [*self.fields, *self.scenario.channels]) or "; simulation.fields has all"
-            raise AttributeError(f"a simulation has no field '{name}'{near}") from None
+    if not TYPE_CHECKING:  # a field that there is not is an error of types, too
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            if name.endswith("_g") and name[:-2] in (sensors := self.sensors):
+                return sensors[name[:-2]]
+            try:
+                return self.fields[name]
+            except KeyError:
+                if name == "indicators" or name in INDICATORS:
+                    key = "" if name == "indicators" else f'["{name}"]'
+                    raise AttributeError(f"a simulation has no '{name}'; its record has: simulation.process().indicators{key}") from None
+                if name in ("save", "to_pandas", "to_csv"):
+                    raise AttributeError(f"a simulation has no '{name}'; {_SAVED}") from None
+                near = hint(name, [*self.fields, *self.scenario.channels]) or "; simulation.fields has all"
+                raise AttributeError(f"a simulation has no field '{name}'{near}") from None
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self.fields, *self.scenario.channels})
@@ -469,8 +497,19 @@ def _check_wheel(wheel: str) -> None:
         raise ValueError(f"wheel = {wheel!r}: must be 'gear' or 'pinion'")
 
 
+class _Channels:
+    """Channels by their names, for type checkers; the signals of named sensors are ``channels["casing_g"]`` to them."""
+
+    horizontal_g: npt.NDArray[np.float32]
+    vertical_g: npt.NDArray[np.float32]
+    axial_g: npt.NDArray[np.float32]
+    pinion_shaft_speed_hz: npt.NDArray[np.float32]
+    gear_shaft_speed_hz: npt.NDArray[np.float32]
+    mesh_force_n: npt.NDArray[np.float32]
+
+
 @dataclass(frozen=True)
-class Signals:
+class Signals(_Channels):
     """Some channels of one of many simulations.
 
     Attributes
@@ -537,16 +576,18 @@ class Signals:
         channels = {name: resample(signal, self.sampling_rate_hz, rate_hz).astype(np.float32) for name, signal in self.channels.items()}
         return replace(self, sampling_rate_hz=rate_hz, channels=channels, is_resampled=True)
 
-    def __getattr__(self, name: str) -> npt.NDArray[np.float32]:
-        if name.startswith("_") or name == "channels":
-            raise AttributeError(name)
-        try:
-            return self.channels[name]
-        except KeyError:
-            if name == "indicators" or name in INDICATORS:
-                key = "" if name == "indicators" else f'["{name}"]'
-                raise AttributeError(f"signals have no '{name}'; their record has: signals.process().indicators{key}") from None
-            raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
+    if not TYPE_CHECKING:  # a channel that there is not is an error of types, too
+
+        def __getattr__(self, name: str) -> npt.NDArray[np.float32]:
+            if name.startswith("_") or name == "channels":
+                raise AttributeError(name)
+            try:
+                return self.channels[name]
+            except KeyError:
+                if name == "indicators" or name in INDICATORS:
+                    key = "" if name == "indicators" else f'["{name}"]'
+                    raise AttributeError(f"signals have no '{name}'; their record has: signals.process().indicators{key}") from None
+                raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self.channels})

@@ -131,7 +131,7 @@ def test_a_record_by_its_place(gears: datasets.Dataset) -> None:
 
 def test_tables(gears: datasets.Dataset) -> None:
     of_pandas, of_polars = gears.to_pandas(), gears.to_polars()
-    assert of_polars.columns == list(of_pandas.columns) == gears.scalar_columns
+    assert of_polars.columns == list(of_pandas.columns)
     assert of_polars["difference_kurtosis"].to_list() == of_pandas["difference_kurtosis"].tolist()
     [signals] = gears.to_polars(["average_g"])
     assert np.array_equal(signals[5].to_numpy(), gears.signals("average_g")[5])
@@ -418,22 +418,107 @@ def test_torch(gears: datasets.Dataset, monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.delitem(sys.modules, "meshtone._torch", raising=False)
     train = gears.split("train")
     pairs = train.to_torch("average_g")
-    assert len(pairs) == len(train) and pairs.classes == ["healthy", "tooth-breakage"]
+    assert len(pairs) == len(train) and pairs.classes == {"label": ["healthy", "tooth-breakage"]}
     signals, labels = train.signals("average_g"), train.column("label")
     # In any order, over the borders of the files.
     for index in [*range(len(train)), 3, 0, -1]:
         signal, number = pairs[index]
-        assert np.array_equal(np.asarray(signal), signals[index])
-        assert pairs.classes[number] == labels[index]
+        assert np.array_equal(np.asarray(signal), signals[index][None])
+        assert pairs.classes["label"][number] == labels[index]
     with pytest.raises(IndexError, match="record 99 of"):
         pairs[99]
-    halves = train.to_torch("average_g", transform=lambda signal: signal[::2])
-    assert np.array_equal(halves[1][0], signals[1][::2])
+    halves = train.to_torch("average_g", transform=lambda signals: signals[:, ::2])
+    assert np.array_equal(halves[1][0], signals[1][None, ::2])
     # Of one length, a DataLoader stacks them as it is.
-    batch = np.stack([np.asarray(train.to_torch("average_g", points=512)[index][0]) for index in range(4)])
-    assert np.array_equal(batch, train.arrays("average_g", points=512)[0][:4, 0])
-    with pytest.raises(ValueError, match=r"column\('fm4'\) gives them"):
-        train.to_torch("fm4")
-    with pytest.raises(ValueError, match="no column 'mean_g'"):
-        train.to_torch("mean_g")
+    both = train.to_torch(["average_g", "difference_g"], points=512)
+    batch = np.stack([np.asarray(both[index][0]) for index in range(4)])
+    assert np.array_equal(batch, train.arrays(["average_g", "difference_g"], points=512)[0][:4])
+    for refused, message in (
+        (lambda: train.to_torch("fm4"), r"column\('fm4'\) gives them"),
+        (lambda: train.to_torch("mean_g"), "no column 'mean_g'"),
+        (lambda: train.to_torch("average_g", targets="fault_size"), "no column 'fault_size'"),
+        (lambda: train.to_torch("average_g", targets=[]), "targets: no columns are named"),
+        (lambda: train.to_torch("average_g", targets=gears.empty_columns), f"null in every record: {gears.empty_columns[0]}"),
+        (lambda: train.to_torch("average_g", conditions=["split"]), "'split' holds no numbers"),
+        (lambda: train.to_torch("average_g", classes={"label": ["healthy"]}), "there is no 'tooth-breakage' among those of 'label'"),
+        (lambda: train.to_torch("average_g", classes={"labels": ["healthy"]}), "'labels' is no target, but label"),
+        (lambda: train.to_torch(["vertical_g", "average_g"])[0], r"the record has \d+ of 'vertical_g', \d+ of 'average_g': points="),
+    ):
+        with pytest.raises(ValueError, match=message):
+            refused()
+    with pytest.raises(TypeError, match=r"must be a mapping, such as \{'label': \[...\]\}"):
+        train.to_torch("average_g", classes=["healthy"])  # type: ignore[arg-type]
     monkeypatch.delitem(sys.modules, "meshtone._torch", raising=False)
+
+
+def test_torch_in_batches(gears: datasets.Dataset) -> None:
+    torch = pytest.importorskip("torch", reason="torch is not installed: pip install 'meshtone[torch]'")
+    damaged = gears.filter(pyarrow.dataset.field("label") == "tooth-breakage")
+    targets = ["label", "fault_kind", "fault_severity", "fault_tooth", "severity"]
+
+    def batch(records: datasets.Dataset, **options: Any) -> Any:
+        pairs = records.to_torch(["average_g", "difference_g"], points=256, targets=targets, conditions=True, **options)
+        return pairs, next(iter(torch.utils.data.DataLoader(pairs, batch_size=len(records))))
+
+    pairs, ((signals, conditions), target) = batch(gears)
+    assert signals.shape == (24, 2, 256) and signals.dtype == torch.float32
+    assert pairs.conditions == gears.condition_columns == ["pinion_teeth", "gear_teeth", "pinion_speed_hz", "brake_torque_nm"]
+    assert np.array_equal(conditions.numpy(), gears.matrix(gears.condition_columns).astype(np.float32))
+    assert list(target) == targets
+    kinds = {"label": torch.int64, "fault_kind": torch.int64}
+    assert {name: values.dtype for name, values in target.items()} == {name: kinds.get(name, torch.float32) for name in targets}
+    assert pairs.classes["fault_kind"] == [None, "tooth-breakage"]
+    healthy = gears.column("label") == "healthy"
+    assert np.array_equal(target["fault_severity"].numpy(), np.where(healthy, 0, gears.column("fault_severity")).astype(np.float32))
+    assert np.array_equal(np.isnan(target["fault_tooth"].numpy()), healthy)
+    # A part without healthy records numbers its classes as the whole does.
+    part, (_, alone) = batch(damaged)
+    assert part.classes == pairs.classes
+    assert torch.equal(alone["label"], target["label"][torch.from_numpy(~healthy)]) and set(alone["label"].tolist()) == {1}
+    _, (_, graded) = batch(damaged, classes={"severity": range(6), "label": ["tooth-breakage", "healthy"]})
+    assert graded["severity"].tolist() == [3] * len(damaged) and set(graded["label"].tolist()) == {0}
+    # A single name gives a bare value.
+    assert damaged.to_torch("average_g", targets="fault_severity")[0][1].shape == ()
+
+
+def test_columns_that_are_null_in_every_record(gears: datasets.Dataset) -> None:
+    table = gears.to_arrow(gears.scalar_columns)
+    empty = [name for name in table.column_names if table.column(name).null_count == len(table)]
+    assert gears.empty_columns == empty != []
+    healthy = gears.filter(pyarrow.dataset.field("label") == "healthy")
+    # What is null in some part only stays, so that all parts have the same columns.
+    assert healthy.empty_columns == empty
+    assert list(healthy.to_pandas().columns) == [name for name in gears.scalar_columns if name not in empty]
+    with pytest.raises(ValueError, match=f"null in every record: {empty[0]}; leave out what `empty_columns` lists"):
+        gears.matrix(["fm4", empty[0]])
+    [line] = re.findall("^Null in every record.*: (.*)\\.$", (gears.path / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert line.replace("`", "").split(", ") == empty
+
+
+def test_hugging_face(gears: datasets.Dataset, tmp_path: Path) -> None:
+    library = pytest.importorskip("datasets", reason="Hugging Face's datasets is not installed: pip install datasets")
+    for name in ("train", "test"):
+        part = library.load_dataset(str(gears.path), name, cache_dir=str(tmp_path))
+        assert list(part) == [name]
+        assert list(part[name]["record"]) == gears.split(name).column("record").tolist()
+        signal = part[name].with_format("numpy")[0]["average_g"]
+        assert np.array_equal(signal, gears.split(name).signals("average_g")[0])
+    # Without a name it would mix all splits, so that it must be named.
+    with pytest.raises(ValueError, match=r"(?s)Config name is missing.*'train', 'test'"):
+        library.load_dataset(str(gears.path), cache_dir=str(tmp_path))
+
+
+def test_front_matter_of_the_card(gears: datasets.Dataset) -> None:
+    card = (gears.path / "README.md").read_text(encoding="utf-8")
+    _, head, body = card.split("---\n", 2)
+    assert head.startswith('license: "cc-by-4.0"\npretty_name: ') and "\ntags: [vibration, " in head
+    assert re.findall(r'config_name: "(\w+)"', head) == re.findall(r'\["split", "==", "(\w+)"\]', head) == ["train", "test"]
+    assert "Cite as: " in body
+
+
+def test_object_store_in_a_build_without_them() -> None:
+    with pytest.raises(ValueError) as refused:
+        datasets.load_dataset("s3://")
+    if "has no object stores" not in str(refused.value):
+        pytest.skip("this build has object stores")
+    assert "pip install . --config-settings build-args='--features cloud'" in str(refused.value)

@@ -57,7 +57,7 @@ def test_curves(broken: meshtone.Simulation) -> None:
     with pytest.raises(ValueError, match="wheel = 'wheel': must be 'gear' or 'pinion'"):
         broken.tooth_profile("wheel")  # type: ignore[arg-type]
     with pytest.raises(AttributeError, match="no field 'stiffness'"):
-        _ = broken.stiffness
+        _ = broken.stiffness  # type: ignore[attr-defined]
 
 
 def test_healthy_has_no_errors_under_ideal_quality() -> None:
@@ -292,7 +292,7 @@ def test_a_target_rate_is_met() -> None:
     with pytest.raises(ValueError, match=r"own rate.*ShaftPhase.constant\(17.8947, 10000, x.size\), 38\)"):
         at_rate.process()
     with pytest.raises(AttributeError, match=r'signals.process\(\).indicators\["fm4"\]'):
-        _ = own.fm4
+        _ = own.fm4  # type: ignore[attr-defined]
     for refused in (0, -1, float("nan"), float("inf")):
         with pytest.raises(ValueError, match=f"target_rate_hz = {refused}: must be more than 0, and finite"):
             simulate_many([scenario], target_rate_hz=refused)

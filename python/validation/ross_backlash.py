@@ -383,7 +383,7 @@ def simulated(case: Case, rate: float) -> Motion:
     """Meshtone's motion."""
     simulation = mt.simulate(mt.Scenario.from_toml(case.scenario(rate)))
     count = int(DURATION_S * simulation.sampling_rate_hz) + 2
-    return Motion(simulation.time_s[:count], simulation.mesh_force_n[:count], simulation.support_vertical_g[:count])
+    return Motion(simulation.time_s[:count], simulation.mesh_force_n[:count], simulation.sensors["support_vertical"][:count])
 
 
 def main() -> None:

@@ -1,7 +1,10 @@
 //! The data card: README.md.
 
 use meshtone::scenario::{ScenarioForm, WarningKind};
+use meshtone_io::table::CellType;
+use serde_json::json;
 
+use crate::croissant::citation;
 use crate::finish::Finished;
 use crate::manifest::PREVIEW;
 use crate::plan::{
@@ -13,8 +16,32 @@ use crate::words::counted;
 
 /// Writes the data card.
 pub(crate) fn card(set: &Finished) -> String {
-    let sections = [head, counts, warnings, classes, draws, questions, columns, files, loading];
+    let sections = [front_matter, head, counts, warnings, classes, draws, questions, columns, files, loading];
     sections.map(|section| section(set)).concat()
+}
+
+/// Writes what Hugging Face's `datasets` and its website read of a card: licence, title, tags, and each split as a configuration, whose
+/// records it filters out of the files, which hold all splits.
+fn front_matter(set: &Finished) -> String {
+    let (about, units_of_split) = (&set.plan.about, set.plan.content.units_of_split());
+    let licence = match about.licence.as_str() {
+        words if words.contains(char::is_whitespace) => format!("other\nlicense_name: {}", json!(words)),
+        identifier => json!(identifier.to_lowercase()).to_string(),
+    };
+    let configuration = |split: &str| {
+        // Names of splits are words there.
+        let (word, files) = (split.replace('-', "_"), set.shards.pattern());
+        format!(
+            "- config_name: {split:?}\n  data_files:\n  - split: {word:?}\n    path: {files:?}\n  filters: \
+             [[\"split\", \"==\", {split:?}]]\n"
+        )
+    };
+    let splits = set.plan.content.splits.names_in(&units_of_split);
+    format!(
+        "---\nlicense: {licence}\npretty_name: {}\ntags: [vibration, gears, condition-monitoring, simulation]\nconfigs:\n{}---\n\n",
+        json!(about.title),
+        splits.into_iter().map(configuration).collect::<String>()
+    )
 }
 
 fn head(set: &Finished) -> String {
@@ -49,9 +76,11 @@ fn head(set: &Finished) -> String {
     format!(
         "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
          Meshtone {version} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\
-         **Licence of the data: {}.**\n\n\
+         **Licence of the data: {}.** Cite as: {}.\n\n\
          ![Examples of each class, distributions of the keys, indicators by class]({})\n\n",
-        about.licence, PREVIEW[1]
+        about.licence,
+        citation(about).trim_end_matches('.'),
+        PREVIEW[1]
     )
 }
 
@@ -244,7 +273,25 @@ fn columns(set: &Finished) -> String {
             ),
         };
     }
+    let names = set.columns.iter().filter(|column| is_empty(set, column));
+    let empty: Vec<String> = names.map(|column| format!("`{}`", column.name)).collect();
+    if !empty.is_empty() {
+        text += &format!("\nNull in every record, and left out of Python's tables: {}.\n", empty.join(", "));
+    }
     text + "\n"
+}
+
+/// Returns whether a column is null in every record.
+fn is_empty(set: &Finished, column: &Column) -> bool {
+    match column.cell_type {
+        CellType::Float32List => false,
+        // Of texts, only those of a fault can be null.
+        CellType::Text => {
+            column.name.starts_with("fault_")
+                && set.plan.content.classes.iter().all(|class| class.faults.is_empty())
+        }
+        _ => !set.contents.summary.ranges.contains_key(&column.name),
+    }
 }
 
 fn files(set: &Finished) -> String {

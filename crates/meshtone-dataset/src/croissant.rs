@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use crate::finish::Finished;
 use crate::manifest::{Document, MANIFEST};
+use crate::plan::About;
 use crate::shard::{Column, Shards};
 
 const CONFORMS_TO: &str = "http://mlcommons.org/croissant/1.0";
@@ -13,6 +14,14 @@ const SHARDS: &str = "shards";
 const RECORDS: &str = "records";
 const SPLITS: &str = "splits";
 
+const SIMULATED: &str = concat!("simulated with Meshtone ", env!("CARGO_PKG_VERSION"));
+
+/// How a data set is to be cited.
+pub(crate) fn citation(about: &About) -> String {
+    let by_title = || format!("{}, version {}, {SIMULATED}", about.title, about.version);
+    about.citation.clone().unwrap_or_else(by_title)
+}
+
 /// The metadata's text.
 ///
 /// # Arguments
@@ -20,12 +29,8 @@ const SPLITS: &str = "splits";
 pub(crate) fn metadata(set: &Finished, documents: &[Document]) -> String {
     let Finished { plan, shards, columns, .. } = *set;
     let about = &plan.about;
-    let simulated = format!("simulated with Meshtone {}", env!("CARGO_PKG_VERSION"));
-    let citation = about.citation.clone();
-    let citation =
-        citation.unwrap_or_else(|| format!("{}, version {}, {simulated}", about.title, about.version));
     let description = match about.description.trim() {
-        "" => format!("{}, {simulated}", about.title),
+        "" => format!("{}, {SIMULATED}", about.title),
         description => description.to_owned(),
     };
     let units_of_split = plan.content.units_of_split();
@@ -38,7 +43,7 @@ pub(crate) fn metadata(set: &Finished, documents: &[Document]) -> String {
         "description": description,
         "license": about.licence,
         "version": about.version,
-        "citeAs": citation,
+        "citeAs": citation(about),
         "distribution": distribution(shards, documents),
         "recordSet": [of_splits(&splits), of_records(columns)],
     });

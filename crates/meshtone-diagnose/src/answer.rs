@@ -163,14 +163,12 @@ impl Answer {
         self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
     }
 
-    /// A wheel in words, after `the`: gear, or wheel z3 of a gearbox.
+    /// A wheel's name after `the`: gear, or wheel z3 of a gearbox.
     ///
     /// # Arguments
     /// * `wheel` - its place in [`Self::wheels`]
     pub fn wheel_in_words(&self, wheel: usize) -> String {
-        let name = &self.wheels[wheel];
-        let is_of_pair = WheelName::BOTH.iter().any(|of| of.name() == name);
-        if is_of_pair { name.clone() } else { format!("wheel {name}") }
+        wheel_in_words(&self.wheels[wheel])
     }
 
     /// Returns whether several damages at once are likelier than any single one.
@@ -196,6 +194,12 @@ impl Answer {
 /// ```
 pub fn p_in_words(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {p:.3}") }
+}
+
+/// A wheel's name after `the`: gear, or wheel z3 of a gearbox.
+pub(crate) fn wheel_in_words(name: &str) -> String {
+    let is_of_pair = WheelName::BOTH.iter().any(|of| of.name() == name);
+    if is_of_pair { name.to_owned() } else { format!("wheel {name}") }
 }
 
 /// The label of a rig without damage.

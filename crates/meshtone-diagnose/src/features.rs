@@ -188,19 +188,6 @@ impl Difference {
     }
 }
 
-/// (rev) Where the burst of a difference signal is: where its envelope's energy over one tooth is largest.
-///
-/// # Arguments
-/// * `view` - the lines
-/// * `last` - the last order that is looked at
-pub(crate) fn burst_rev(view: &WheelLines, last: usize) -> f64 {
-    let last = last.min(view.last());
-    let difference: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
-    let points = (2 * last + 1).next_power_of_two().max(64);
-    let smooth = energy_over_tooth(&revolution(&difference, points), view.teeth());
-    largest_at(&smooth) as f64 / points as f64
-}
-
 /// Index at which a sequence is largest.
 fn largest_at(values: &[f64]) -> usize {
     (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0)

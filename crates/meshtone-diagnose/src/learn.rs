@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::DiagnoseError;
+use crate::answer::wheel_in_words;
 use crate::features::wheel_features;
 use crate::healthy::beyond_healthy;
 use crate::matrix::{FOLDS, RandomFeatures, Standardisation, ridge};
@@ -23,7 +24,7 @@ use crate::softmax::Softmax;
 /// Random features beside the linear ones.
 const RANDOM_FEATURES: usize = 512;
 /// (-) Penalty of the regression on classes, by which the linear features were best on other simulations.
-const PENALTY: f64 = 30.0;
+const PENALTY: f64 = 100.0;
 /// (-) Probability before anything is seen that nothing is damaged; the kinds of damage share the rest evenly.
 const PRIOR_HEALTHY: f64 = 0.5;
 /// (-) Noise in an average of unknown noise, as a part of its difference signal's rms: least and largest.
@@ -152,7 +153,7 @@ impl Layout {
         {
             let needed = FEWEST_MESH_ORDERS * wheel.teeth as usize + wheel.teeth as usize / 2;
             if last < needed {
-                let (of, wheel) = (first.signal.name(), wheel.name.clone());
+                let (of, wheel) = (first.signal.name(), wheel_in_words(&wheel.name));
                 return Err(DiagnoseError::TooFewOrders { of, wheel, last, needed });
             }
         }

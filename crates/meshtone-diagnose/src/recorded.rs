@@ -3,12 +3,13 @@
 use meshtone::signal::{
     AngleZero, AngularSettings, AngularSignal, ForeignTones, GearTrain, LinesOffShafts, Mismatch, ShaftPhase,
     SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage, TrainRecording, TrainTurning,
-    TrainWheel, find_mismatch, foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation,
+    TrainWheel, find_train_mismatch, foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation,
     synchronous_average, synchronous_part,
 };
 use meshtone::wheel::WheelName;
 use meshtone_fourier::{Complex64, from_real_spectrum};
 
+use crate::answer::wheel_in_words;
 use crate::observation::{
     MESH_ORDERS, Observation, PASSED, SignalKind, WheelLines, other_teeth, separations,
 };
@@ -29,22 +30,44 @@ const WINDOW_SQUARE: f64 = 0.375;
 /// (-) The same over its middle half: 3/8 + 1/π.
 const MIDDLE_SQUARE: f64 = 0.375 + std::f64::consts::FRAC_1_PI;
 
+/// The recording over whole cycles, after which the same teeth meet again, without the mean cycle, and the part of the energy of what does not
+/// repeat that is left then. Where it is shorter than two cycles it is as it was, since nothing is known to repeat.
+fn without_cycle(angular: &AngularSignal, train: &GearTrain, shaft: usize) -> (AngularSignal, f64) {
+    let mut angular = angular.clone();
+    let cycle = train.revolutions_of_a_cycle(shaft).max(1);
+    let cycles = angular.revolutions() / cycle;
+    if cycles < 2 {
+        return (angular, 1.0);
+    }
+    let points = cycle * angular.points_per_revolution;
+    angular.values.truncate(cycles * points);
+    for point in 0..points {
+        let mean = angular.values[point..].iter().step_by(points).sum::<f64>() / cycles as f64;
+        angular.values[point..].iter_mut().step_by(points).for_each(|value| *value -= mean);
+    }
+    (angular, 1.0 - 1.0 / cycles as f64)
+}
+
 /// (g) Standard deviation of the noise in the lines of an average, by mesh order: from the median of the lines beside the orders of
-/// all shafts, which tones do not move. Empty where there are too few revolutions.
+/// all shafts, which tones do not move, without what repeats with the cycle. Empty where there are too few revolutions.
 fn noise(angular: &AngularSignal, train: &GearTrain, wheel: &TrainWheel) -> Vec<f64> {
-    let revolutions = angular.revolutions();
-    if revolutions < FEWEST_REVOLUTIONS {
+    if angular.revolutions() < FEWEST_REVOLUTIONS {
         return Vec::new();
     }
-    let LinesOffShafts { spectrum, is_off } = lines_off_shafts(angular, train, wheel.shaft);
+    let (unrepeated, kept) = without_cycle(angular, train, wheel.shaft);
+    let revolutions = unrepeated.revolutions();
+    let LinesOffShafts { spectrum, is_off } = lines_off_shafts(&unrepeated, train, wheel.shaft);
     let per_mesh_order = wheel.teeth as usize * revolutions;
-    let count = (revolutions * angular.points_per_revolution) as f64;
     let last = (PASSED * angular.nyquist_order) as usize * revolutions;
+    // A line's square grows with the number of values, that of a line of the average falls with the number of all.
+    let [values, all] =
+        [revolutions, angular.revolutions()].map(|turns| (turns * angular.points_per_revolution) as f64);
+    let scale = (MEDIAN_OF_SQUARES * WINDOW_SQUARE * kept * values * all).sqrt();
     let band = |mesh: usize| {
         let from = (mesh * per_mesh_order).saturating_sub(per_mesh_order / 2);
         let to = (mesh * per_mesh_order + per_mesh_order / 2).min(last).min(spectrum.len());
         let squares = (from..to).filter(|&line| is_off[line]).map(|line| spectrum[line].norm_sqr());
-        Some((median(squares.collect())? / MEDIAN_OF_SQUARES / WINDOW_SQUARE).sqrt() / count)
+        Some(median(squares.collect())?.sqrt() / scale)
     };
     (0..=MESH_ORDERS).map_while(band).collect()
 }
@@ -157,14 +180,11 @@ fn mismatch(recording: &TrainRecording, angular: &[AngularSignal]) -> Result<Opt
     let TrainRecording { train, signal, sampling_rate_hz, turning } = *recording;
     let TrainTurning::Shaft { shaft, phase, stated } = turning else { return Ok(None) };
     let wheel = train.wheels.iter().position(|wheel| wheel.shaft == *shaft);
-    let Some((wheel, stated)) = wheel.zip(StatedFacts::of_shaft(train, *shaft, *stated)) else {
+    let Some((wheel, facts)) = wheel.zip(StatedFacts::of_shaft(train, *shaft, *stated)) else {
         return Ok(None);
     };
-    let is_pair = train.meshes.len() < 2;
-    // Lines of another mesh would look like another tooth count.
-    let found = find_mismatch(&angular[wheel], &stated).filter(|of| is_pair || of.alternative.is_speed());
-    match found {
-        None if is_pair => other_tone(signal, sampling_rate_hz, phase, &stated),
+    match find_train_mismatch(&angular[wheel], train, *shaft, *stated) {
+        None if train.meshes.len() < 2 => other_tone(signal, sampling_rate_hz, phase, &facts),
         found => Ok(found),
     }
 }
@@ -182,7 +202,7 @@ impl SlowestShaft<'_> {
     /// Warning about averages over so few revolutions that each wheel's is not free of the others', or that noise is not separated from
     /// what repeats.
     fn too_short(&self) -> Option<String> {
-        let (revolutions, name) = (self.angular.revolutions(), &self.wheel.name);
+        let (revolutions, name) = (self.angular.revolutions(), wheel_in_words(&self.wheel.name));
         let lasts = |revolutions: usize| {
             format!("{revolutions} turns of the {name}, {:.2} s", revolutions as f64 / self.speed_hz)
         };
@@ -217,7 +237,7 @@ impl SlowestShaft<'_> {
                 "{silent} of {} revolutions of the {} have less than 1/{:.0} of the level of the loudest: a sensor that failed, or knocks; \
                  cut the recording to where the machine runs evenly",
                 levels.len(),
-                self.wheel.name,
+                wheel_in_words(&self.wheel.name),
                 1.0 / QUIETEST
             )
         })
@@ -225,18 +245,22 @@ impl SlowestShaft<'_> {
 
     /// Evidence against the recording where the orders of the shafts do not explain it: impulses, or tones, that repeat with none.
     ///
-    /// The lines of all shafts are left out of the spectrum of the whole recording. Of the others, those that stand out of their surroundings are
-    /// tones; and what they make over time is impulsive where something strikes. Impulses are looked for first, since their lines may stand out
-    /// like tones.
+    /// What repeats whenever the same teeth meet again is taken away, and the lines of all shafts are left out of the spectrum of the rest. Of the
+    /// others, those that stand out of their surroundings are tones; and what they make over time is impulsive where something strikes. Impulses are
+    /// looked for first, since their lines may stand out like tones.
     fn energy_off_all_shafts(&self) -> Option<String> {
         let Self { angular, train, wheel, speed_hz } = self;
         if angular.revolutions() < FEWEST_REVOLUTIONS {
             return None;
         }
-        let whole = angular.revolutions() * angular.points_per_revolution;
-        let mut lines = lines_off_shafts(angular, train, wheel.shaft);
-        let tones = foreign_tones(angular, train, wheel.shaft, *speed_hz);
-        let passed = (PASSED * angular.nyquist_order) as usize * angular.revolutions();
+        let (unrepeated, kept) = without_cycle(angular, train, wheel.shaft);
+        let whole = unrepeated.values.len();
+        let mut lines = lines_off_shafts(&unrepeated, train, wheel.shaft);
+        let level = standard_deviation(&angular.values).max(f64::MIN_POSITIVE);
+        let unrepeated_part = (standard_deviation(&unrepeated.values) / level).powi(2) / kept;
+        let mut tones = foreign_tones(&unrepeated, train, wheel.shaft, *speed_hz).unwrap_or_default();
+        tones.iter_mut().for_each(|tone| tone.part *= unrepeated_part);
+        let passed = (PASSED * angular.nyquist_order) as usize * unrepeated.revolutions();
         for (line, value) in lines.spectrum.iter_mut().enumerate() {
             if !lines.is_off[line] || line >= passed {
                 *value = Complex64::default();
@@ -245,8 +269,7 @@ impl SlowestShaft<'_> {
         // The middle half, where the window is level enough to leave the shape.
         let rest = from_real_spectrum(lines.spectrum, whole);
         let rest = &rest[whole / 4..3 * whole / 4];
-        let level = standard_deviation(&angular.values).max(f64::MIN_POSITIVE);
-        let part = (rms(rest) / level).powi(2) / MIDDLE_SQUARE;
+        let part = (rms(rest) / level).powi(2) / MIDDLE_SQUARE / kept;
         let impulses = kurtosis(rest)?;
         if impulses > IMPULSIVE && part > COUNTS {
             return Some(format!(
@@ -255,7 +278,7 @@ impl SlowestShaft<'_> {
                 100.0 * part
             ));
         }
-        tones.as_deref().and_then(ForeignTones::that_count).map(|tones| tones.to_string())
+        ForeignTones::that_count(&tones).map(|tones| tones.to_string())
     }
 }
 

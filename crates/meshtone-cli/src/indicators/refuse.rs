@@ -120,7 +120,7 @@ fn help(subject: RefusedInput, error: &SignalError) -> Option<String> {
             "state fewer --revolutions: a simulation keeps as many revolutions of a wheel as its mate has teeth, or less"
         }
         (TooFewRevolutions { .. }, Simulated { in_segments: false }) => {
-            "simulate for longer: raise solver.pinion_revolutions or solver.duration_s in the scenario"
+            "simulate for longer: raise solver.duration_s, or the revolutions under [solver], in the scenario"
         }
         (TooFewRevolutions { .. }, _) => {
             "record for longer, or check --shaft-hz, --pulses-per-rev, --revolutions and the sampling rate"

@@ -239,7 +239,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     workplace.fails(2, &["dataset", "plan.toml", "-o", "."], &["has another file in it: fast.toml", "-o"]);
     workplace.fails(2, &["dataset", "plan.toml", "-o", "fast.toml"], &["fast.toml"]);
     for url in ["s3://bucket/gears", "gs://bucket/gears", "az://container/gears", "https://host/gears"] {
-        let problem = format!("this build of the program cannot write to {url}");
+        let problem = format!("this build has no object stores, such as that of {url}");
         workplace.fails(2, &["dataset", "plan.toml", "-o", url], &[&problem, "--features cloud"]);
     }
 }

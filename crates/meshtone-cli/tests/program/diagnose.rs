@@ -5,7 +5,7 @@ use std::fs;
 use std::process::Stdio;
 
 use meshtone::scenario::{Gearbox, gearbox_template};
-use meshtone_io::signals::read_signals;
+use meshtone_io::signals::{read_gearbox_signals, read_signals};
 use serde_json::Value;
 
 use crate::indicators::{csv, tacho};
@@ -244,6 +244,33 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     assert_eq!((&any["wheel"], &any["tooth"]), (&"z3".into(), &8.into()), "{found:#}");
     assert!(found["damaged"].as_f64().unwrap() > 0.9, "{found:#}");
     assert_eq!(found["shown_wheel"], "z3");
+
+    // The same as measured signals, with pulses of the input alone: from them the angle of the third wheel follows, but not which tooth
+    // is the first.
+    let speed_hz = Gearbox::from_toml(&small_gearbox("")).unwrap().operation.drive.pinion_speed_hz;
+    for of in ["box", "gone"] {
+        let recorded =
+            read_gearbox_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().unwrap();
+        let rate = recorded.sampling_rate_hz;
+        workplace.write(&format!("{of}.csv"), csv(rate, &recorded.signals[0].1, tacho(speed_hz, rate)));
+    }
+    let of_box = [
+        "--scenario",
+        "box.toml",
+        "--healthy",
+        "box.csv",
+        "-o",
+        "measured",
+        "-c",
+        "bearing",
+        "--tach",
+        "tacho",
+    ];
+    workplace.succeeds(&[&["diagnose", "gone.csv"][..], &of_box, &asked].concat());
+    let measured = answer(&workplace, "measured");
+    assert_eq!(measured["any_damage"]["wheel"], "z3", "{measured:#}");
+    assert!(measured["damaged"].as_f64().unwrap() > 0.9, "{measured:#}");
+    assert_eq!(measured["is_outside"], false);
 
     let pair = fast_with("pinion_teeth", "pinion_teeth = 20").replace("gear_teeth = 40", "gear_teeth = 50");
     workplace.write("pair.toml", pair);

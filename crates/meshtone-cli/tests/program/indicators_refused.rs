@@ -194,11 +194,7 @@ fn series_of_different_things() {
     // The advice is about the simulation where no segments are asked for.
     workplace.write("short.toml", fast_and("pinion_revolutions = 2.0"));
     workplace.succeeds(&["simulate", "short.toml", "-o", "short", "--no-panel", "-q"]);
-    refused(
-        &workplace,
-        &["short"],
-        &["covers 1 whole revolution of the shaft", "raise solver.pinion_revolutions"],
-    );
+    refused(&workplace, &["short"], &["covers 1 whole revolution of the shaft", "raise solver.duration_s"]);
     refused(
         &workplace,
         &["out_s/fast", "--teeth", "20"],

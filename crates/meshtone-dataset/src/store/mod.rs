@@ -274,7 +274,8 @@ impl fmt::Display for Destination {
 
 fn without_cloud(url: &str) -> DatasetError {
     DatasetError::refused(
-        format!("this build of the program cannot write to {url}"),
-        "build it with object stores: cargo build --release --features cloud",
+        format!("this build has no object stores, such as that of {url}"),
+        "in the source code's folder build the program with them: cargo build --release --features cloud, and the Python package: \
+         pip install . --config-settings build-args='--features cloud'",
     )
 }

@@ -38,7 +38,9 @@ fn other_places_are_refused_with_what_to_do() {
 fn a_build_without_object_stores_says_so() {
     for url in ["s3://bucket/gears", "gs://bucket/gears", "az://container/gears", "https://host/gears"] {
         let refused = Destination::parse(url).unwrap_err();
-        assert!(refused.to_string().contains(&format!("this build of the program cannot write to {url}")));
+        assert!(
+            refused.to_string().contains(&format!("this build has no object stores, such as that of {url}"))
+        );
         let DatasetError::Refused { help, .. } = refused else { unreachable!("{url}") };
         assert!(help.contains("--features cloud"));
     }

@@ -39,7 +39,7 @@ fn shown(figure: &Figure, words: &[&str]) {
     }
 }
 
-const FIRST: [DamagedTooth; 1] = [DamagedTooth { tooth: 1, contact_pitches: 1.6, is_missing: false }];
+const FIRST: [DamagedTooth; 1] = [DamagedTooth { tooth: 1, contact_pitches: [0.0, 1.6], is_missing: false }];
 
 #[test]
 fn one_wheel_and_both_of_a_pair() {
@@ -152,7 +152,8 @@ fn no_order_is_off_the_chart() {
 fn the_damaged_tooth_is_tinted_as_long_as_it_is_in_contact() {
     let tones = tones(5555, 14_440);
     let left_to_right = |contact_pitches: f64| {
-        let figure = of_tones(&tones, &[DamagedTooth { contact_pitches, ..FIRST[0] }]);
+        let figure =
+            of_tones(&tones, &[DamagedTooth { contact_pitches: [0.0, contact_pitches], ..FIRST[0] }]);
         let document = roxmltree::Document::parse(figure.svg()).unwrap();
         let tinted = |node: &roxmltree::Node| node.attribute("fill") == Some("#d55e00");
         let paths: Vec<String> =

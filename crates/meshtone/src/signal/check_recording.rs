@@ -2,7 +2,7 @@
 
 use super::{
     AngularSignal, ForeignTone, ForeignTones, GearTrain, ShaftPhase, SignalWarning, StatedFacts,
-    StatedTurning, find_mismatch, foreign_tones,
+    StatedTurning, find_train_mismatch, foreign_tones,
 };
 
 /// Looks for a sign that a recording does not fit the stated facts, and for tones that belong to neither shaft.
@@ -57,8 +57,6 @@ pub(super) struct RecordingCheck {
 impl RecordingCheck {
     /// Checks a recording against the tooth counts of a train, and how one of its shafts turns.
     ///
-    /// Of a train of several meshes only the speed is doubted: lines of another mesh would look like another tooth count.
-    ///
     /// # Arguments
     /// * `angular` - the recording over the angle of a shaft
     /// * `train` - the tooth counts
@@ -74,10 +72,7 @@ impl RecordingCheck {
         phase: &ShaftPhase,
         sampling_rate_hz: f64,
     ) -> Self {
-        let mismatch = StatedFacts::of_shaft(train, shaft, turning)
-            .and_then(|stated| find_mismatch(angular, &stated))
-            .filter(|mismatch| train.meshes.len() < 2 || mismatch.alternative.is_speed());
-        if let Some(mismatch) = mismatch {
+        if let Some(mismatch) = find_train_mismatch(angular, train, shaft, turning) {
             return Self { warnings: vec![SignalWarning::DoesNotFit(mismatch)], foreign: None };
         }
         // Over a run-up, what rings at a resonance looks like a foreign tone, and a tone of a constant frequency has no order.

@@ -229,6 +229,36 @@ pub struct Mismatch {
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mismatch> {
+    find_among(angular, stated, |_| true)
+}
+
+/// Does what [`find_mismatch`] does for a shaft of a train.
+///
+/// Of a train of several meshes only the speed is doubted: lines of another mesh would look like another tooth count. None of a shaft
+/// without wheels.
+///
+/// # Arguments
+/// * `angular` - the recording over the angle of the shaft, as it is stated
+/// * `train` - the tooth counts
+/// * `shaft` - number of the shaft
+/// * `turning` - the source from which its angle is known
+pub fn find_train_mismatch(
+    angular: &AngularSignal,
+    train: &GearTrain,
+    shaft: usize,
+    turning: StatedTurning,
+) -> Option<Mismatch> {
+    let is_pair = train.meshes.len() < 2;
+    let stated = StatedFacts::of_shaft(train, shaft, turning)?;
+    find_among(angular, &stated, |alternative| is_pair || alternative.is_speed())
+}
+
+/// Does what [`find_mismatch`] does, comparing only some of the alternatives.
+fn find_among(
+    angular: &AngularSignal,
+    stated: &StatedFacts,
+    is_compared: impl Fn(&Alternative) -> bool,
+) -> Option<Mismatch> {
     if stated.teeth.max(stated.mate_teeth.unwrap_or(0)) > MOST_TEETH {
         return None;
     }
@@ -256,7 +286,7 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
     let total =
         |hypothesis: &Hypothesis, evidence: &Evidence| evidence.total() + hypothesis.prior(may_be_speed);
     let better: Vec<(Hypothesis, Evidence)> = hypotheses::alternatives(stated, &orders)
-        .filter(|hypothesis| !hypothesis.is_of_mains(stated, &orders))
+        .filter(|hypothesis| is_compared(&hypothesis.alternative) && !hypothesis.is_of_mains(stated, &orders))
         .filter_map(|hypothesis| {
             let better = evidence_if_better(
                 &hypothesis,
