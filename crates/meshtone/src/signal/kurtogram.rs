@@ -77,10 +77,15 @@ impl Kurtogram {
 /// Source: J. Antoni, "Fast computation of the kurtogram for the detection of transient faults", Mech. Syst. Signal Process. 21 (2007) 108–124.
 ///
 /// ```
-/// // Bursts of 3 kHz in a louder tone of 1 kHz.
+/// // Bursts of 3 kHz in noise and a louder tone of 1 kHz.
 /// let tau = std::f64::consts::TAU;
 /// let burst = |i: usize| (-((i % 1000) as f64) / 20.0).exp() * (tau * 0.15 * (i % 1000) as f64).sin();
-/// let signal: Vec<f64> = (0..50_000).map(|i| burst(i) + 2.0 * (tau * 0.05 * i as f64).sin()).collect();
+/// let mut bits = 1u64;
+/// let mut noise = || {
+///     bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+///     (bits >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+/// };
+/// let signal: Vec<f64> = (0..50_000).map(|i| burst(i) + 2.0 * (tau * 0.05 * i as f64).sin() + 0.1 * noise()).collect();
 /// let best = meshtone::signal::kurtogram(&signal, 20_000.0, 6)?.best(0.0).ok_or("no band")?;
 /// assert!((best.band.from_hz..best.band.to_hz).contains(&3000.0) && best.kurtosis > 5.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
