@@ -31,7 +31,7 @@ use meshtone_io::memory::parse_bytes;
 
 use crate::commands::Command;
 
-/// Simulates the vibration of spur gears, healthy or with damaged teeth, and computes indicators of
+/// Simulates the vibration of gears, healthy or with damaged teeth, and computes indicators of
 /// recordings.
 #[derive(Debug, Parser)]
 #[command(name = "meshtone", version, after_help = examples(), arg_required_else_help = true)]

@@ -13,6 +13,8 @@ use super::{FrequencyBand, SignalError};
 const FEWEST_LINES: usize = 256;
 /// (bandwidths) A band falls from 1 to 0 over so much on either side of its ends.
 const TRANSITION: f64 = 0.125;
+/// (-) Part of a signal's power below which a band holds nothing but what a recorder or a filter leaves.
+const NOTHING: f64 = 1e-7;
 /// Blocks that begin within the length of one.
 const OVERLAPPING: usize = 4;
 
@@ -63,7 +65,7 @@ impl Kurtogram {
 ///
 /// With c the complex envelope in a band it is `⟨|c|⁴⟩/⟨|c|²⟩² − 2`: 0 in Gaussian noise, −1 of a tone, large where bursts stand out. The bands are
 /// those of the original's binary and ternary tree; here each is cut out of the spectrum of the whole signal, with half its power at its ends and
-/// a cosine's flank about them, and its inverse transform is the envelope at the band's own low rate. So values differ slightly from those
+/// a cosine's flank about them (0 where it has less than 10⁻⁷ of the whole power), and its inverse transform is the envelope at the band's own low rate. So values differ slightly from those
 /// of the original's short filters.
 ///
 /// # Arguments
@@ -108,6 +110,8 @@ pub fn kurtogram(signal: &[f64], sampling_rate_hz: f64, most_levels: u32) -> Res
 /// Kurtosis in each of equally wide bands.
 fn kurtosis_in_bands(spectrum: &[Complex64], bands: usize) -> Vec<f64> {
     let width = (spectrum.len() - 1) as f64 / bands as f64;
+    let power = |lines: &[Complex64]| lines.iter().map(Complex64::norm_sqr).sum::<f64>();
+    let least_power = NOTHING * power(spectrum);
     let flank = TRANSITION * width;
     // Of all bands, so that they share a plan.
     let length = convenient_length((width + 2.0 * flank) as usize + 2);
@@ -126,13 +130,16 @@ fn kurtosis_in_bands(spectrum: &[Complex64], bands: usize) -> Vec<f64> {
                 *value *= (FRAC_PI_4 * (1.0 + below)).sin();
             }
         }
+        // Where there is nothing, nothing is impulsive.
+        if power(&lines) <= least_power {
+            return 0.0;
+        }
         lines.resize(length, Complex64::default());
         let squares = inverse_complex(lines);
         let squares = squares.iter().map(Complex64::norm_sqr);
         let [second, fourth] =
             squares.fold([0.0; 2], |[second, fourth], square| [second + square, fourth + square * square]);
-        // Where there is nothing, nothing is impulsive.
-        if second > 0.0 { fourth * length as f64 / (second * second) - 2.0 } else { 0.0 }
+        fourth * length as f64 / (second * second) - 2.0
     };
     (0..bands).map(in_band).collect()
 }
@@ -168,7 +175,7 @@ pub fn spectral_kurtosis(signal: &[f64], block_samples: usize) -> Result<Vec<f64
     if block_samples < OVERLAPPING {
         return Err(SignalError::parameter("block_samples", block_samples as f64, "at least 4"));
     }
-    check_count("samples for two blocks", signal.len(), 2 * block_samples)?;
+    check_count("samples for two blocks", signal.len(), block_samples.saturating_mul(2))?;
     let window = hann_window(block_samples);
     let mut moments = vec![[0.0; 2]; block_samples / 2 + 1];
     let mut blocks = 0.0;

@@ -27,7 +27,7 @@ pub struct Gears {
     pub lead_crowning_um: f64,
     /// Relief of the flanks towards both ends of the face. Default none.
     pub end_relief: EndRelief,
-    /// Number of slices of the face where the gap varies along it. Default 11.
+    /// Number of slices of the face where the gap varies along it. Default 21.
     pub slices: u32,
     /// (-) Profile shift coefficient of the pinion, in modules. Default 0.
     pub pinion_profile_shift: f64,
@@ -85,7 +85,7 @@ impl Gears {
             hand: Hand::Right,
             lead_crowning_um: 0.0,
             end_relief: EndRelief::default(),
-            slices: 11,
+            slices: 21,
             pinion_profile_shift: 0.0,
             gear_profile_shift: 0.0,
             pinion_addendum: STANDARD_ADDENDUM,

@@ -37,10 +37,12 @@ pub(crate) fn pressure_angle_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> 
 
 /// The row of the helix angle.
 pub(crate) fn helix_angle_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    row("helix_angle_deg", "°", "the helix angle at the pitch circle; 0: spur wheels", field).range(
-        Range::from_to(0.0, 45.0)
-            .help("usual helix angles are 8° to 30°; hand says to which side the teeth lean"),
-    )
+    row("helix_angle_deg", "°", "the helix angle at the pitch circle; 0: spur wheels", field)
+        .range(
+            Range::from_to(0.0, 45.0)
+                .help("usual helix angles are 8° to 30°; hand says to which side the teeth lean"),
+        )
+        .rule("0, or at least 0.01; total contact ratio at most 12")
 }
 
 /// The row of the helix's hand.

@@ -180,7 +180,7 @@ fn helical_teeth_agree_with_the_dense_solution() {
         let damage = damage(case.saturating_sub(1) % 6, module, width, &mut random);
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
         let stages = stages(&scenario).unwrap();
-        assert_eq!(stages.meshes[0].slices(), if case == 0 { 1 } else { 11 });
+        assert_eq!(stages.meshes[0].slices(), if case == 0 { 1 } else { 21 });
         let outputs: Vec<Output> = coordinates(&machine_of(&stages).0.machine, 2).collect();
         let mut modal = outputs_from(0, &stages, &outputs);
         modal.iter_mut().for_each(|values| values.truncate(300));

@@ -259,7 +259,7 @@ pub struct GearboxMesh {
     pub lead_crowning_um: f64,
     /// Relief of the flanks towards both ends of the face. Default none.
     pub end_relief: EndRelief,
-    /// Number of slices of the face where the gap varies along it. Default 11.
+    /// Number of slices of the face where the gap varies along it. Default 21.
     pub slices: u32,
     /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
     pub centre_distance_mm: Option<f64>,
@@ -298,7 +298,7 @@ impl Keys for GearboxMesh {
             hand: Hand::Right,
             lead_crowning_um: 0.0,
             end_relief: EndRelief::default(),
-            slices: 11,
+            slices: 21,
             centre_distance_mm: None,
             backlash_mm: None,
             phase: None,

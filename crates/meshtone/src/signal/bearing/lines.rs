@@ -102,7 +102,7 @@ impl DefectLine {
 
 /// Finds the lines of a bearing's defects in a squared envelope spectrum: FTF, and three harmonics each of BPFO, BPFI and 2 BSF.
 ///
-/// Each is the largest amplitude within 1.5 % of its place, since elements slip, that is not nearer to a harmonic of another kind. Amplitudes
+/// Each is the largest amplitude within 1.5 % of its place, since elements slip, that is not nearer to a line of another kind: a harmonic, or a sideband of an inner race's by the shaft, of an element's by the cage. Amplitudes
 /// within two lines of a whole order of the shaft are not taken for it, unless the place itself is so near. The median is of the lines within half a shaft order, and at least 24 lines, of where
 /// it is looked for. Lines beyond the spectrum are left out.
 ///
@@ -139,7 +139,20 @@ pub fn defect_lines(
     let all = DefectKind::ALL.into_iter().flat_map(|kind| of_kind(kind, kind.harmonics()));
     let others = |kind: DefectKind| {
         let with_harmonics = DefectKind::ALL.into_iter().filter(|of| of.harmonics() > 1 && *of != kind);
-        with_harmonics.flat_map(|of| of_kind(of, MOST_HARMONICS)).map(|(.., order)| order).collect::<Vec<_>>()
+        let lines = with_harmonics.flat_map(|of| of_kind(of, MOST_HARMONICS));
+        // An inner race turns through the load with the shaft, an element with the cage.
+        let modulated = |of: DefectKind| match of {
+            DefectKind::InnerRace => Some(1.0),
+            DefectKind::Element => Some(orders.cage),
+            _ => None,
+        };
+        lines
+            .flat_map(|(of, _, order)| {
+                let beside = modulated(of).unwrap_or(0.0);
+                let sidebands = if beside > 0.0 { -2..=2 } else { 0..=0 };
+                sidebands.map(move |side: i32| order + f64::from(side) * beside)
+            })
+            .collect::<Vec<_>>()
     };
     all.filter_map(|of| line(spectrum, shaft, of, &others(of.0))).collect()
 }
@@ -171,7 +184,8 @@ fn line(
     let mut beside = spectrum.amplitudes[beside.start..beside.end.min(spectrum.amplitudes.len())].to_vec();
     let middle = beside.len() / 2;
     let median = *beside.select_nth_unstable_by(middle, f64::total_cmp).1;
-    Some(DefectLine {
+    // A spectrum of zeros has no lines.
+    (median > 0.0).then(|| DefectLine {
         kind,
         harmonic,
         order,

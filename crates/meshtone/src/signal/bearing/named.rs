@@ -67,7 +67,10 @@ impl NamedBearing {
     /// * `name` - such as `6205` or `er10k`
     pub fn find(name: &str) -> Option<&'static Self> {
         let plain = |name: &str| {
-            name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase()
+            name.chars()
+                .filter(|letter| !matches!(letter, '-' | ' '))
+                .collect::<String>()
+                .to_ascii_lowercase()
         };
         NAMED_BEARINGS.iter().find(|known| plain(known.name) == plain(name))
     }

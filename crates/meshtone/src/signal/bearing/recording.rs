@@ -116,7 +116,9 @@ impl TrainRecording<'_> {
             let phase = within(&phases[of.shaft], first_sample, signal.len());
             let spectrum =
                 squared_envelope_order_spectrum(&signal, self.sampling_rate_hz, Some(band), &phase)?;
-            let lines = defect_lines(&spectrum, &of.geometry.defect_orders(), 1.0);
+            let mut lines = defect_lines(&spectrum, &of.geometry.defect_orders(), 1.0);
+            // The envelope of a band has nothing beyond its width.
+            lines.retain(|line| line.order * speed_hz(of.shaft) <= band.to_hz - band.from_hz);
             Ok((spectrum, lines))
         };
         let bearings = bearings.iter().map(record).collect::<Result<_, SignalError>>()?;
@@ -160,8 +162,13 @@ impl TrainRecording<'_> {
 
 /// The phase over a part of its recording.
 fn within(phase: &ShaftPhase, first_sample: usize, samples: usize) -> ShaftPhase {
-    let from = phase.first_sample.max(first_sample);
+    let from = phase.first_sample.max(first_sample).min(phase.first_sample + phase.revolutions.len());
     let end = (phase.first_sample + phase.revolutions.len()).min(first_sample + samples).max(from);
     let revolutions = phase.revolutions[from - phase.first_sample..end - phase.first_sample].to_vec();
-    ShaftPhase { first_sample: from - first_sample, revolutions, zero: phase.zero, warnings: Vec::new() }
+    ShaftPhase {
+        first_sample: from.saturating_sub(first_sample),
+        revolutions,
+        zero: phase.zero,
+        warnings: Vec::new(),
+    }
 }
