@@ -172,7 +172,8 @@ class GearboxMesh(TypedDict, total=False):
         (°) The pressure angle at the pitch circle, of helical wheels in the normal section. Allowed: 10…35; no teeth
         pointed below full height.
     helix_angle_deg : float
-        (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45.
+        (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45; 0, or at least 0.01; total contact ratio
+        at most 12.
     hand : {'right', 'left'}
         The hand of the driving wheel's helix; the driven one's is the other one.
     lead_crowning_um : float

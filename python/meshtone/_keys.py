@@ -489,7 +489,8 @@ class ScenarioKeys:
             (°) The pressure angle at the pitch circle, of helical wheels in the normal section. Allowed: 10…35; no
             teeth pointed below full height. Default: 20.0.
         helix_angle_deg : float, optional
-            (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45. Default: 0.0.
+            (°) The helix angle at the pitch circle; 0: spur wheels. Allowed: 0…45; 0, or at least 0.01; total contact
+            ratio at most 12. Default: 0.0.
         hand : {'right', 'left'}, optional
             The hand of the pinion's helix; the gear's is the other one. Default: "right". Ignored by published.
         lead_crowning_um : float, optional
@@ -500,7 +501,7 @@ class ScenarioKeys:
             amount_um = 0.0 }. Ignored by linear, published.
         slices : int, optional
             The number of slices of the face where the gap of helical teeth, or of crowned ones, varies along it.
-            Allowed: whole number 5…41. Default: 11. Ignored by published.
+            Allowed: whole number 5…41. Default: 21. Ignored by published.
         pinion_profile_shift, gear_profile_shift : float, optional
             (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip. Default: 0.0.
         pinion_addendum, gear_addendum : float, optional
