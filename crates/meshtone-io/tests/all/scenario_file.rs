@@ -271,8 +271,8 @@ fn profiles_that_cannot_be_used() {
     assert_refused(absent, file, 9, &["speed.csv", "there is no file"]);
     for (csv, words) in [
         ("value,time_s\n38,0\n40,1\n", "names its first column `value`; it must be time_s"),
-        ("0,38\n1,fast\n", "says `fast` in line 2; must be a finite number"),
-        ("0,38\nnan,40\n", "says `nan` in line 2"),
+        ("0,38\n1,fast\n", "has `fast` in line 2; must be a finite number"),
+        ("0,38\nnan,40\n", "has `nan` in line 2"),
         ("0,38\n1,40,2\n", "has 3 columns in line 2; must have 2"),
         ("0;38\n1;40\n", "has 1 columns in line 1; must have 2"),
     ] {
@@ -324,8 +324,8 @@ fn frequency_responses_that_are_none() {
         ("frequency_hz,real,imaginary\n0,1,0\n", &["second column `real`", "must be magnitude"]),
         ("frequency_hz,magnitude,phase_rad\n0,1,0\n", &["third column `phase_rad`"]),
         (&format!("{head}0,1\n"), &["2 columns in line 2", "must have 3"]),
-        (&format!("{head}0,1,east\n"), &["says `east` in line 2", "finite number"]),
-        (&format!("{head}0,1,inf\n"), &["says `inf` in line 2"]),
+        (&format!("{head}0,1,east\n"), &["has `east` in line 2", "finite number"]),
+        (&format!("{head}0,1,inf\n"), &["has `inf` in line 2"]),
     ];
     for (csv, words) in cases {
         assert_refused(with_response(&directory, csv), file, 10, words);
