@@ -41,6 +41,7 @@ import meshtone as mt
 CONDITIONS = ["pinion_speed_hz", "brake_torque_nm", "pinion_teeth", "gear_teeth", "module_mm", "face_width_mm"]
 PARTS = ("average_", "regular_", "residual_", "difference_", "envelope_")
 GEAR = ["fm0", "fm4", "m6a", "m8a", "na4", "energy_ratio", "sideband_level_factor"]
+ORDERS = "mesh_harmonic_"
 QUANTILES = np.arange(0.1, 0.95, 0.1)
 DRAWS = 400
 
@@ -51,7 +52,7 @@ BOUNDS = {"detection": (0.85, 0.97), "diagnosis": (0.6, 0.9), "kind at its large
 class Records:
     """The records of a split, as models take them."""
 
-    def __init__(self, table: pd.DataFrame, signals: np.ndarray, indicators: list[str]) -> None:
+    def __init__(self, table: pd.DataFrame, signals: np.ndarray, indicators: list[str], orders: list[str]) -> None:
         self.table, self.signals = table, signals
         self.labels = table["label"].to_numpy(str)
         self.damaged = (self.labels != "healthy").astype(int)
@@ -61,18 +62,20 @@ class Records:
         conditions = table[[name for name in CONDITIONS if name in table]].to_numpy(float)
         self.conditions = np.log(conditions)
         # Indicators span decades; a skewness may be negative, and 0 is no logarithm.
-        self.features = np.hstack([np.arcsinh(100.0 * table[indicators].to_numpy(float)), self.conditions])
+        self.indicators = np.hstack([np.arcsinh(100.0 * table[indicators].to_numpy(float)), self.conditions])
+        self.features = np.hstack([self.indicators, np.arcsinh(100.0 * table[orders].to_numpy(float))])
 
 
 def records(dataset: mt.Dataset) -> tuple[Records, Records]:
     # Octaves beyond half the sampling rate are null in all records.
     present = [name for name in dataset.scalar_columns if name not in dataset.empty_columns]
     indicators = [name for name in present if name.startswith(PARTS) or name in GEAR]
+    orders = [name for name in present if name.startswith(ORDERS)]
 
     def of(split: str) -> Records:
         part = dataset.split(split)
         signals, _ = part.arrays(["average_g", "difference_g"])
-        return Records(part.to_pandas(), signals, indicators)
+        return Records(part.to_pandas(), signals, indicators, orders)
 
     return of("train"), of("test")
 
@@ -91,8 +94,18 @@ def shares(margin: np.ndarray) -> np.ndarray:
     return odds / odds.sum(axis=1, keepdims=True)
 
 
+class OnIndicators:
+    """A scikit-learn classifier on the indicators without the order features."""
+
+    def __init__(self, make: Callable[[int], object]) -> None:
+        self.make = make
+
+    def probabilities(self, train: Records, target: np.ndarray, test: Records, seed: int) -> np.ndarray:
+        return self.make(seed).fit(train.indicators, target).predict_proba(test.indicators)
+
+
 class OnFeatures:
-    """A scikit-learn classifier on the indicators."""
+    """A scikit-learn classifier on the indicators and the order features."""
 
     def __init__(self, make: Callable[[int], object]) -> None:
         self.make = make
@@ -102,7 +115,7 @@ class OnFeatures:
 
 
 class SupportVectors:
-    """Support vectors on the indicators; the penalty is the best of fifths of the training's units that are left out."""
+    """Support vectors on the indicators and the order features; the penalty is the best of fifths of the training's units that are left out."""
 
     def probabilities(self, train: Records, target: np.ndarray, test: Records, seed: int) -> np.ndarray:
         machine = make_pipeline(SimpleImputer(keep_empty_features=True), StandardScaler(), SVC(class_weight="balanced"))
@@ -138,6 +151,7 @@ class Network:
         from torch import nn
 
         torch.manual_seed(seed)
+        device = "cuda" if torch.cuda.is_available() else "cpu"
         channels = 2 * train.signals.shape[1]
         classes = int(target.max()) + 1
 
@@ -148,11 +162,11 @@ class Network:
         network = nn.Sequential(
             *stage(channels, 24, 15), *stage(24, 48, 9), *stage(48, 64, 5),
             nn.AdaptiveMaxPool1d(1), nn.Flatten(), nn.Dropout(0.2), nn.Linear(64, classes),
-        )  # fmt: skip
-        inputs = torch.from_numpy(scaled(train.signals))
-        answers = torch.from_numpy(target.astype(np.int64))
+        ).to(device)  # fmt: skip
+        inputs = torch.from_numpy(scaled(train.signals)).to(device)
+        answers = torch.from_numpy(target.astype(np.int64)).to(device)
         weights = len(target) / (classes * np.bincount(target, minlength=classes))
-        loss = nn.CrossEntropyLoss(weight=torch.tensor(weights, dtype=torch.float32))
+        loss = nn.CrossEntropyLoss(weight=torch.tensor(weights, dtype=torch.float32, device=device))
         optimiser = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-3)
         epochs, batch = 30, 64
         schedule = torch.optim.lr_scheduler.OneCycleLR(
@@ -167,7 +181,15 @@ class Network:
                 schedule.step()
         network.eval()
         with torch.no_grad():
-            return torch.softmax(network(torch.from_numpy(scaled(test.signals))), 1).numpy()
+            return torch.softmax(network(torch.from_numpy(scaled(test.signals)).to(device)), 1).cpu().numpy()
+
+
+class NetworkAndBoosting:
+    """The mean of what the network and gradient boosting on the indicators and the order features answer."""
+
+    def probabilities(self, train: Records, target: np.ndarray, test: Records, seed: int) -> np.ndarray:
+        models = (Network(), OnFeatures(boosting))
+        return np.mean([model.probabilities(train, target, test, seed) for model in models], axis=0)
 
 
 def logistic(seed: int) -> object:
@@ -185,13 +207,15 @@ MODELS = {
     "constant": (OnFeatures(lambda seed: DummyClassifier(strategy="prior")), None),
     "logistic regression": (OnFeatures(logistic), None),
     "support vectors": (SupportVectors(), None),
+    "gradient boosting without order features": (OnIndicators(boosting), None),
     "gradient boosting": (OnFeatures(boosting), None),
     "random kernels": (RandomKernels(), "aeon"),
     "network": (Network(), "torch"),
+    "network and gradient boosting": (NetworkAndBoosting(), "torch"),
 }
 
 # What a seed changes.
-DRAWN = ("random kernels", "network")
+DRAWN = ("random kernels", "network", "network and gradient boosting")
 
 
 def resampled(units: np.ndarray, seed: int) -> np.ndarray:

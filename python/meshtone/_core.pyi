@@ -20,6 +20,7 @@ __all__ = [
     "Scenario",
     "ShaftPhase",
     "Simulation",
+    "INDICATORS",
     "ORDER_MAP_MESH_ORDERS",
     "__version__",
     "add_noise",
@@ -83,6 +84,7 @@ __all__ = [
     "verify_dataset",
 ]
 
+INDICATORS: tuple[str, ...]
 ORDER_MAP_MESH_ORDERS: float
 __version__: str
 

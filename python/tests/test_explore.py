@@ -287,7 +287,7 @@ def test_a_preset_its_damage_and_severity(page: Page, explorer: mt.Explorer) -> 
     script = "const p = document.getElementById('preset'); p.value = 'tooth_breakage'; p.dispatchEvent(new Event('change'))"
     page.settled(lambda: page.run(script), "the preset")
     assert explorer.scenario.fault == mt.examples.tooth_breakage().fault
-    page.wait(lambda: page.run("return document.querySelectorAll('#indicators tbody tr').length === 32"), "indicators")
+    page.wait(lambda: page.run("return document.querySelectorAll('#indicators tbody tr').length === 86"), "indicators")
     page.wait(lambda: "The line marks" in page.run("return document.getElementById('severity-note').textContent"), "severities")
     page.enter("fault[0].severity", "0.3")
     fault = explorer.scenario.fault

@@ -246,7 +246,7 @@ def test_a_transformer_of_scikit_learn() -> None:
 def test_an_indicator_that_there_is_not() -> None:
     tone = vibration()
     record = signal.process_channel(tone, ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size), TEETH)
-    assert isinstance(record.indicators, signal.Indicators) and len(record.indicators) == 32
+    assert isinstance(record.indicators, signal.Indicators) and len(record.indicators) == 86
     with pytest.raises(KeyError, match="there is no indicator 'FM4'; did you mean 'fm4'[?] There are average_rms, .*sideband_level_factor"):
         _ = record.indicators["FM4"]
     with pytest.raises(KeyError, match="did you mean 'average_kurtosis' or .* or 'envelope_kurtosis'[?]"):

@@ -57,10 +57,13 @@ mod _core {
     };
 
     use pyo3::prelude::*;
+    use pyo3::types::PyTuple;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("ORDER_MAP_MESH_ORDERS", meshtone::signal::OrderMapSettings::MESH_ORDERS)?;
+        let indicators = meshtone::signal::Indicators::default().table("");
+        module.add("INDICATORS", PyTuple::new(module.py(), indicators.into_iter().map(|of| of.name))?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -16,14 +16,7 @@ from .._names import near
 from ._arguments import Array, signal_array, teeth_number
 
 
-INDICATORS = (
-    *(
-        f"{part}_{size}"
-        for part in ("average", "regular", "residual", "difference", "envelope")
-        for size in ("rms", "peak_to_peak", "crest_factor", "skewness", "kurtosis")
-    ),
-    *("fm0", "fm4", "m6a", "m8a", "na4", "energy_ratio", "sideband_level_factor"),
-)
+INDICATORS = _core.INDICATORS
 """Names of all."""
 
 
@@ -51,8 +44,11 @@ class Indicators(dict[str, float]):
     ========================  ==================  =============================================  ==========================
 
     and those of gears, all without unit: ``fm0``, ``fm4``, ``m6a``, ``m8a``, ``na4``, ``energy_ratio``, ``sideband_level_factor``,
-    whose formulas and sources the functions of their names in :mod:`meshtone.signal` have. One that is not defined, as the kurtosis
-    of a part that is 0, is NaN.
+    whose formulas and sources the functions of their names in :mod:`meshtone.signal` have. Of the difference there are the rms and the
+    kurtosis in octaves of mesh orders, ``difference_octave_1_rms``, ``difference_octave_half_kurtosis``, and of the average the
+    amplitudes of the mesh harmonics 1 to 8 and of two sidebands on each side: ``mesh_harmonic_3``, ``mesh_harmonic_3_sideband_minus_1``,
+    ``mesh_harmonic_3_sideband_plus_2``. One that is not defined, as the kurtosis of a part that is 0 or an amplitude beyond what the
+    sampling rate shows, is NaN.
 
     Examples
     --------

@@ -144,6 +144,23 @@ fn of_record(series: &Series, wheels: &[&Wheel]) -> String {
         let label = if wheels.len() > 1 { &wheel.name } else { "gear metrics" };
         series.of(wheel).next().into_iter().for_each(|record| add(label, &gear(record)));
     }
+    text + &of_mesh(series, wheels)
+}
+
+/// The amplitudes of the mesh harmonics of each wheel on a shaft, and of the nearest sidebands.
+fn of_mesh(series: &Series, wheels: &[&Wheel]) -> String {
+    let mut text = String::new();
+    let mut add = |label: &str, cells: Vec<String>| text += &line(format_args!("{label:<16}"), cells, 11);
+    for wheel in wheels {
+        let Some(record) = series.of(wheel).next() else { continue };
+        let harmonics = &record.indicators.mesh_harmonics;
+        let named =
+            if wheels.len() > 1 { format!("{} mesh", wheel.name) } else { "mesh harmonic".to_owned() };
+        add(&named, (1..=harmonics.len()).map(|number| number.to_string()).collect());
+        add("amplitude", harmonics.iter().map(|of| or_dash(of.amplitude)).collect());
+        add("lower sideband", harmonics.iter().map(|of| or_dash(of.lower_sidebands[0])).collect());
+        add("upper sideband", harmonics.iter().map(|of| or_dash(of.upper_sidebands[0])).collect());
+    }
     text
 }
 

@@ -12,7 +12,7 @@ use meshtone::scenario::{ScenarioWarning, Sensor};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, GearTrain, MeanPart, Record as Analysis,
-    SeparationSettings, ShaftPhase, SignalError, angular_resample, octave_bands, process_channel,
+    SeparationSettings, ShaftPhase, SignalError, angular_resample, process_channel,
 };
 use meshtone::tuning::DifferenceChain;
 use meshtone::{GearboxSimulation, GearboxStages, Stages, StepJudgement};
@@ -84,8 +84,6 @@ pub(super) fn twin(
     Ok(record)
 }
 
-/// (-) Part of half the sampling rate up to which the filter does not attenuate.
-const PASSED: f64 = 0.8;
 /// Growth is judged by the first and the last part of a record, one of so many.
 const END: usize = 10;
 /// Growth from the first to the last part above which a motion is not steady.
@@ -274,9 +272,6 @@ impl<'a> View<'a> {
         }
         if self.keep.indicators {
             kept.indicators = analysis.indicators.table("g");
-            // At higher orders the filter attenuates the signal.
-            let passed = PASSED * analysis.average.nyquist_order;
-            kept.octaves = octave_bands(&analysis.parts.difference, self.wheel(wheel).teeth, passed)?;
         }
         Ok(kept)
     }

@@ -13,7 +13,7 @@ pub(crate) use window::{Window, simulated_scenario};
 use meshtone::batch::{Keep as BatchKeep, KeepObserved, ObservedRecorder, Output};
 use meshtone::operation::TimeGrid;
 use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
-use meshtone::signal::{IndicatorValue, OctaveBand};
+use meshtone::signal::IndicatorValue;
 use meshtone::{GearboxSimulation, Stages, StepJudgement};
 
 use crate::draw::DrawnRecord;
@@ -69,8 +69,6 @@ pub struct RecordAverage {
     pub difference: Vec<f32>,
     /// Indicators of the average.
     pub indicators: Vec<IndicatorValue>,
-    /// The difference signal in octaves of mesh orders.
-    pub octaves: Vec<OctaveBand>,
 }
 
 /// A wheel of a record.

@@ -1,7 +1,7 @@
 //! The columns of a data set: names, units, meanings, and the cells of each record.
 
 use meshtone::scenario::{Gearbox, Model, ScenarioForm, WheelName, split_key};
-use meshtone::signal::OCTAVES;
+use meshtone::signal::Indicators;
 use meshtone_io::table::{CellType, Cells, TableColumn};
 use meshtone_plot::without_unit;
 
@@ -370,24 +370,8 @@ fn of_indicators(keep: &Keep, number: usize) -> Vec<Column> {
         };
         Column::float64(&column, &unit, value).about(topic).nullable().meaning(meaning)
     };
-    let octaves = OCTAVES.iter().enumerate();
-    let octaves = octaves.flat_map(|(octave, (name, _))| of_octave(&prefix, number, octave, name));
-    indicator_names().into_iter().map(of_indicator).chain(octaves).collect()
-}
-
-/// Rms and kurtosis of the difference signal of an averaged wheel in an octave.
-fn of_octave(prefix: &str, wheel: usize, octave: usize, name: &str) -> [Column; 2] {
-    let orders = if octave > 1 { "orders" } else { "order" };
-    let words = format!("of the difference signal in the octave around {name} mesh {orders}");
-    let column = format!("{prefix}difference_octave_{name}");
-    let band = move |r: &Record| r.averages.get(wheel)?.octaves.get(octave).cloned();
-    [
-        Column::float64(&format!("{column}_rms_g"), "g", move |r| Some(band(r)?.rms))
-            .meaning(format!("rms {words}; null beyond 0.8 of half the sampling rate")),
-        Column::float64(&format!("{column}_kurtosis"), "-", move |r| band(r)?.kurtosis)
-            .meaning(format!("kurtosis {words}; likewise")),
-    ]
-    .map(Column::nullable)
+    let all = Indicators::default().table("g").into_iter();
+    all.map(|indicator| of_indicator((indicator.name, indicator.unit))).collect()
 }
 
 /// Average and difference signal over a revolution of one of the averaged wheels.
@@ -512,17 +496,6 @@ fn is_tooth(key: &str) -> bool {
     rest == Some("tooth") && list_and_entry(section).0 == "fault"
 }
 
-/// Names and units of all indicators, in their order.
-fn indicator_names() -> Vec<(String, String)> {
-    use meshtone::signal::{Indicators, SeparationSettings, separate};
-
-    // Any average has them all.
-    let average: Vec<f64> = (0..64).map(|i| f64::from(i % 7)).collect();
-    let parts = separate(&average, &SeparationSettings::new(20));
-    let table = parts.and_then(|parts| Indicators::new(&average, &parts, 20)).map(|all| all.table("g"));
-    table.unwrap_or_default().into_iter().map(|value| (value.name, value.unit)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -558,10 +531,5 @@ mod tests {
             assert_eq!(column_name(key), name);
             assert_eq!(of_key(key).unit, unit);
         }
-    }
-
-    #[test]
-    fn there_are_32_indicators() {
-        assert_eq!(indicator_names().len(), 32);
     }
 }

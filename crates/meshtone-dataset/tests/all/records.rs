@@ -729,8 +729,9 @@ fn octaves_are_of_the_difference_signal() {
         let difference = made.signal("difference_g", row);
         let nyquist_order = 4e3 / made.number("gear_speed_hz", row);
         let bands = octave_bands(&difference, 40, 0.8 * nyquist_order).unwrap();
-        assert!((2..=3).contains(&bands.len()), "{}", bands.len());
-        for (band, name) in bands.iter().zip(["half", "1", "2"]) {
+        let shown: Vec<_> = bands.iter().flatten().collect();
+        assert!((2..=3).contains(&shown.len()), "{}", shown.len());
+        for (band, name) in shown.into_iter().zip(["half", "1", "2"]) {
             let kept = made.number(&format!("difference_octave_{name}_rms_g"), row);
             assert!((kept - band.rms).abs() < 1e-6 * band.rms, "{name}: {kept} {}", band.rms);
         }

@@ -187,7 +187,7 @@ fn severity_healthy_and_files_are_answered() {
     let (curve, _) = server.post("severity", &asked).packet();
     assert_eq!((&curve["wheel"], &curve["severities"]["length"]), (&json!("gear"), &json!(9)));
     let healthy = server.post("healthy", &asked).json();
-    assert_eq!(healthy["healthy"][0].as_array().unwrap().len(), 32);
+    assert_eq!(healthy["healthy"][0].as_array().unwrap().len(), 86);
     // It is remembered.
     let (said, _) = server.post("answer", &asked).packet();
     assert_eq!(said["healthy"], healthy["healthy"]);

@@ -17,7 +17,7 @@
 //! | bands that are impulsive | [`kurtogram`], [`spectral_kurtosis`] |
 //! | what is not periodic | [`synchronous_residual`], [`discrete_random_separation`], [`cepstral_prewhitening`] |
 //! | a machine as a whole | [`velocity_rms`] |
-//! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
+//! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`], [`octave_bands`], [`mesh_harmonics`] |
 
 mod angular;
 mod anti_aliasing;
@@ -70,7 +70,8 @@ pub use error::SignalError;
 pub use foreign_tones::{ForeignTone, ForeignTones, LinesOffShafts, foreign_tones, lines_off_shafts};
 pub use gear_train::{GearTrain, TrainShaft, TrainWheel};
 pub use indicators::{
-    IndicatorValue, Indicators, ShapeIndicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor,
+    IndicatorValue, Indicators, MESH_HARMONICS, MESH_SIDEBANDS, MeshHarmonic, ShapeIndicators, energy_ratio,
+    fm0, fm4, m6a, m8a, mesh_harmonics, na4, sideband_level_factor,
 };
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;

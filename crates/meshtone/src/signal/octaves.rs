@@ -12,7 +12,7 @@ pub const OCTAVES: [(&str, f64); 7] =
     [("half", 0.5), ("1", 1.0), ("2", 2.0), ("4", 4.0), ("8", 8.0), ("16", 16.0), ("32", 32.0)];
 
 /// Content of a signal in an octave of mesh orders.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct OctaveBand {
     /// (mesh orders) Its middle: it reaches from `1/√2` to `√2` of it.
@@ -31,9 +31,9 @@ pub struct OctaveBand {
 /// # Arguments
 /// * `values` - over one revolution, at equal angles: an average, or its difference signal
 /// * `teeth` - of the wheel that turns
-/// * `nyquist_order` - (shaft orders) beyond which the signal holds nothing; octaves that reach beyond are left out
+/// * `highest_order` - (shaft orders) beyond which the signal holds nothing
 ///
-/// Returns those of [`OCTAVES`] that the signal can show.
+/// Returns a band for each of [`OCTAVES`]; none for those that reach beyond the highest order.
 ///
 /// # Errors
 /// NaN or infinity.
@@ -45,16 +45,21 @@ pub struct OctaveBand {
 ///
 /// let ringing: Vec<f64> = (0..1024).map(|i| (TAU * 8.0 * 20.0 * f64::from(i) / 1024.0).sin()).collect();
 /// let bands = meshtone::signal::octave_bands(&ringing, 20, 512.0)?;
-/// assert_eq!(bands.iter().map(|band| band.middle).collect::<Vec<_>>(), [0.5, 1.0, 2.0, 4.0, 8.0, 16.0]);
-/// assert!((bands[4].rms - 0.5f64.sqrt()).abs() < 1e-12 && bands[3].rms < 1e-12);
+/// let rms = bands.map(|band| band.map(|band| band.rms));
+/// assert!((rms[4].unwrap() - 0.5f64.sqrt()).abs() < 1e-12 && rms[3].unwrap() < 1e-12);
+/// assert_eq!(rms[6], None); // 32 mesh orders are beyond
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
-pub fn octave_bands(values: &[f64], teeth: u32, nyquist_order: f64) -> Result<Vec<OctaveBand>, SignalError> {
+pub fn octave_bands(
+    values: &[f64],
+    teeth: usize,
+    highest_order: f64,
+) -> Result<[Option<OctaveBand>; OCTAVES.len()], SignalError> {
     check_finite(values)?;
     let spectrum = real_spectrum(values);
-    let highest = nyquist_order.min(values.len() as f64 / 2.0);
+    let highest = highest_order.min(values.len() as f64 / 2.0);
     let band = |middle: f64| {
-        let [from, to] = [middle / SQRT_2, middle * SQRT_2].map(|order| order * f64::from(teeth));
+        let [from, to] = [middle / SQRT_2, middle * SQRT_2].map(|order| order * teeth as f64);
         let lines = from.ceil() as usize..(to.ceil() as usize).min(spectrum.len());
         let mut filtered = vec![Complex64::new(0.0, 0.0); spectrum.len()];
         filtered[lines.clone()].copy_from_slice(&spectrum[lines]);
@@ -62,8 +67,8 @@ pub fn octave_bands(values: &[f64], teeth: u32, nyquist_order: f64) -> Result<Ve
         let rms = super::rms(&filtered);
         OctaveBand { middle, rms, kurtosis: if rms > 0.0 { kurtosis(&filtered) } else { None } }
     };
-    let shown = OCTAVES.iter().filter(|(_, middle)| middle * SQRT_2 * f64::from(teeth) <= highest);
-    Ok(shown.map(|(_, middle)| band(*middle)).collect())
+    let is_shown = |middle: f64| middle * SQRT_2 * teeth as f64 <= highest;
+    Ok(OCTAVES.map(|(_, middle)| is_shown(middle).then(|| band(middle))))
 }
 
 #[cfg(test)]
@@ -80,7 +85,7 @@ mod tests {
                 tones.iter().map(|(order, size)| size * (TAU * order * f64::from(i) / 512.0).cos()).sum()
             })
             .collect();
-        let bands = octave_bands(&signal, 17, 256.0).unwrap();
+        let bands = octave_bands(&signal, 17, 256.0).unwrap().map(|band| band.unwrap_or_default());
         let squares: f64 = bands.iter().map(|band| band.rms * band.rms).sum();
         assert!((squares - crate::signal::rms(&signal).powi(2)).abs() < 1e-12);
         // 10 lies in the octave below the mesh order, 111 in that of 8.
@@ -91,9 +96,10 @@ mod tests {
 
     #[test]
     fn only_octaves_that_the_sampling_shows() {
-        assert_eq!(octave_bands(&[1.0, -1.0, 0.5, 0.0], 17, 2.0).unwrap(), []);
+        assert_eq!(octave_bands(&[1.0, -1.0, 0.5, 0.0], 17, 2.0).unwrap(), [None; OCTAVES.len()]);
         let silent = octave_bands(&[0.0; 128], 17, 30.0).unwrap();
-        assert_eq!((silent.len(), silent[0].kurtosis), (2, None));
+        assert_eq!(silent.iter().flatten().count(), 2);
+        assert_eq!(silent[0].and_then(|band| band.kurtosis), None);
         assert!(octave_bands(&[f64::NAN; 8], 2, 4.0).is_err());
     }
 }

@@ -221,7 +221,14 @@ pub fn process_average(
     let envelope = envelope(&parts.difference)?;
     let spectrum = order_spectrum(&average.values)?;
     Ok(Record {
-        indicators: Indicators::of_record(&average.values, &parts, &spectrum, &envelope, teeth)?,
+        indicators: Indicators::of_record(
+            &average.values,
+            &parts,
+            &spectrum,
+            &envelope,
+            teeth,
+            passed * nyquist_order,
+        )?,
         envelope_spectrum: order_spectrum(&envelope)?,
         order_spectrum: spectrum,
         warnings: doubtful.then_some(near).into_iter().collect(),

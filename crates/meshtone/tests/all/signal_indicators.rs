@@ -157,7 +157,14 @@ fn a_spectrum_made_by_hand() {
     assert_near(Some(own.residual.rms), 0.7f64.hypot(square(&[0.1, 0.5, 0.5, 0.1, 0.2])), 1e-12);
     assert_near(Some(own.regular.rms), regular, 1e-12);
     assert_eq!(own.na4, own.residual.kurtosis);
-    assert_eq!(own.table("g").len(), 32);
+    // Of 20 teeth the first harmonic is 3 high, between sidebands of 0.5.
+    let [first, ..] = own.mesh_harmonics;
+    assert_near(first.amplitude, 3.0, 1e-12);
+    for sidebands in [first.lower_sidebands, first.upper_sidebands] {
+        assert_near(sidebands[0], 0.5, 1e-12);
+        assert_near(sidebands[1], 0.1, 1e-12);
+    }
+    assert_eq!(own.table("g").len(), 86);
 
     let mut settings = SeparationSettings::new(20);
     settings.mean = MeanPart::Removed;

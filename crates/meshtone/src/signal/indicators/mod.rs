@@ -1,21 +1,23 @@
 //! Condition indicators of a gear.
 
 mod gear;
+mod mesh;
 mod na4;
 mod shape;
 
 pub use gear::{energy_ratio, fm0, fm4, m6a, m8a, sideband_level_factor};
+pub use mesh::{MESH_HARMONICS, MESH_SIDEBANDS, MeshHarmonic, mesh_harmonics};
 pub use na4::na4;
 pub use shape::ShapeIndicators;
 
 use super::check::check_length;
-use super::{Separation, SignalError, envelope, order_spectrum, peak};
+use super::{OCTAVES, OctaveBand, Separation, SignalError, envelope, octave_bands, order_spectrum, peak};
 
 /// Part of the average's peak below which a part of it is the transforms' rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// All indicators of one record. None where one is not defined, as the kurtosis of a part that is 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Indicators {
     /// Of the synchronous average.
@@ -42,6 +44,10 @@ pub struct Indicators {
     pub energy_ratio: Option<f64>,
     /// (-) [`sideband_level_factor`].
     pub sideband_level_factor: Option<f64>,
+    /// [`octave_bands`] of the difference.
+    pub octaves: [Option<OctaveBand>; OCTAVES.len()],
+    /// [`mesh_harmonics`] of the average.
+    pub mesh_harmonics: [MeshHarmonic; MESH_HARMONICS],
 }
 
 /// One line of a table of indicators.
@@ -83,7 +89,8 @@ impl Indicators {
     /// # Ok::<(), meshtone::signal::SignalError>(())
     /// ```
     pub fn new(average: &[f64], parts: &Separation, teeth: usize) -> Result<Self, SignalError> {
-        Self::of_record(average, parts, &order_spectrum(average)?, &envelope(&parts.difference)?, teeth)
+        let (spectrum, envelope) = (order_spectrum(average)?, envelope(&parts.difference)?);
+        Self::of_record(average, parts, &spectrum, &envelope, teeth, average.len() as f64 / 2.0)
     }
 
     /// Does what [`Self::new`] does, with quantities that a record holds already.
@@ -92,12 +99,14 @@ impl Indicators {
     /// * `average`, `parts`, `teeth` - as there
     /// * `spectrum` - order spectrum of the average
     /// * `envelope` - of the difference
+    /// * `highest_order` - (shaft orders) up to which the recording shows orders without loss
     pub(super) fn of_record(
         average: &[f64],
         parts: &Separation,
         spectrum: &[f64],
         envelope: &[f64],
         teeth: usize,
+        highest_order: f64,
     ) -> Result<Self, SignalError> {
         for (what, part) in [
             ("regular part", &parts.regular),
@@ -126,6 +135,8 @@ impl Indicators {
             na4: na4(&[residual])?[0],
             energy_ratio: energy_ratio(difference, regular),
             sideband_level_factor: sideband_level_factor(average, spectrum, teeth)?,
+            octaves: octave_bands(difference, teeth, highest_order)?,
+            mesh_harmonics: mesh_harmonics(spectrum, teeth, highest_order),
         })
     }
 
@@ -166,6 +177,16 @@ impl Indicators {
             unit: "-".to_owned(),
             value,
         });
-        of_shapes.chain(of_gear).collect()
+        let of_octaves = OCTAVES.iter().zip(&self.octaves).flat_map(|((name, _), band)| {
+            let value = |last, unit: &str, value| IndicatorValue {
+                name: format!("difference_octave_{name}_{last}"),
+                unit: unit.to_owned(),
+                value,
+            };
+            let kurtosis = band.and_then(|band| band.kurtosis);
+            [value("rms", unit, band.map(|band| band.rms)), value("kurtosis", "-", kurtosis)]
+        });
+        let of_mesh = (1..).zip(&self.mesh_harmonics).flat_map(|(number, of)| of.table(number, unit));
+        of_shapes.chain(of_gear).chain(of_octaves).chain(of_mesh).collect()
     }
 }

@@ -4,7 +4,7 @@ use super::IndicatorValue;
 use crate::signal::{crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation};
 
 /// Size and shape of a signal; `µ_k = Σ(x − x̄)ᵏ/n`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ShapeIndicators {
     /// (the signal's unit) Root mean square, `√(Σx²/n)`, mean included.
