@@ -62,6 +62,7 @@ __all__ = [
     "read_recording",
     "repair_pulses",
     "resample",
+    "rows_like",
     "separate",
     "set_memory_limit",
     "sideband_level_factor",
@@ -232,6 +233,7 @@ class ShaftPhase:
         half_band_hz: float | None,
     ) -> ShaftPhase: ...
     def of_mate(self, teeth: int, mate_teeth: int) -> ShaftPhase: ...
+    def part(self, start: int, stop: int) -> ShaftPhase: ...
     @property
     def zero(self) -> str: ...
     @property
@@ -380,4 +382,11 @@ def generate_dataset(
     progress: Callable[[int, int], None] | None,
 ) -> tuple[list[tuple[str, str]], list[str]]: ...
 def merge_datasets(parts: Sequence[str], to: str, verify: bool) -> None: ...
+def rows_like(
+    plan: _Path,
+    recordings: Sequence[tuple[Sequence[tuple[str | None, _Array]], ShaftPhase]],
+    machine: Scenario | Gearbox,
+    sampling_rate_hz: float,
+    shaft: str | None,
+) -> tuple[bytes, list[tuple[str, str, list[tuple[str, float]]]]]: ...
 def verify_dataset(path: str, bytes: bool) -> tuple[int, list[str], list[str], dict[str, str]]: ...

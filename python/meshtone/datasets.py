@@ -71,7 +71,10 @@ if TYPE_CHECKING:
     import pyarrow.dataset
     import pyarrow.fs
 
+    from ._like import Channels
     from ._torch import TorchDataset
+    from .signal.phase import ShaftPhase
+    from .signal.train import Machine
 
 __all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets", "verify_dataset"]
 
@@ -380,13 +383,19 @@ class Dataset:
     @property
     def manifest(self) -> dict[str, Any]:
         """``manifest.json``: versions, hashes, counts, failures; without most of them as long as parts are missing."""
+        text = self._beside("manifest.json")
+        manifest: dict[str, Any] = {} if text is None else json.loads(text)
+        return manifest
+
+    def _beside(self, name: str) -> bytes | None:
+        """A file beside the data; None where there is none of that name."""
         filesystem, folder = _filesystem(self.place)
         try:
-            with filesystem.open_input_stream(f"{folder}/manifest.json") as file:
-                manifest: dict[str, Any] = json.loads(file.read())
+            with filesystem.open_input_stream(f"{folder}/{name}") as file:
+                text: bytes = file.read()
         except FileNotFoundError:
-            return {}
-        return manifest
+            return None
+        return text
 
     @property
     def is_complete(self) -> bool:
@@ -852,6 +861,62 @@ class Dataset:
         if missing := [label for label in labels if label not in place]:
             raise ValueError(f"classes: there is no {missing[0]!r} among those of '{name}', which are {', '.join(map(repr, classes))}")
         return np.array([place[label] for label in labels], dtype=np.int64)
+
+    def like(
+        self,
+        recordings: Channels | Sequence[Channels],
+        phase: ShaftPhase | Sequence[ShaftPhase],
+        machine: Machine,
+        sampling_rate_hz: float,
+        *,
+        shaft: str | None = None,
+    ) -> Dataset:
+        """Take recordings to records like these: same channel, sampling rate or points per revolution, windows, columns and names.
+
+        Each recording is divided into windows as long as a record of the plan, one after the other, from a whole revolution of the averaged
+        wheel on. The channels are resampled and processed by the code that makes the data set's records.
+
+        Parameters
+        ----------
+        recordings : array_like, shape (samples,), or mapping of str to array_like, or a sequence of these
+            (g) The analysed channel, or several channels by the names of their columns. A channel that is not recorded is empty.
+        phase : ShaftPhase, or a sequence of these
+            Of one shaft; with a sequence of recordings one for each.
+        machine : Scenario or Gearbox
+            What was recorded: its tooth counts are used, and :attr:`condition_columns` have its values.
+        sampling_rate_hz : float
+            (S/s) Of all recordings, at least that of the data set.
+        shaft : str, optional
+            Name of the shaft that the phases are of: of a scenario ``pinion`` or ``gear``. By default the pinion's, or the input of a gearbox.
+
+        Returns
+        -------
+        Dataset
+            In memory. ``record`` counts the windows, ``unit`` the recordings; what no recording tells, such as the label, is null.
+
+        Raises
+        ------
+        ValueError
+            A machine without the plan's wheels, a channel or shaft that there is not, a lower sampling rate, fewer revolutions than a record
+            has, or what :func:`meshtone.process_channel` refuses.
+
+        Examples
+        --------
+        ::
+
+            phase = mt.signal.ShaftPhase.constant(25.0, 50e3, signal.size)
+            rig = gears.like(signal, phase, mt.Scenario(**rig), 50e3)
+            model.predict(rig.matrix(columns))
+        """
+        import pyarrow.dataset
+
+        from ._like import table_like
+
+        table = table_like(self, recordings, phase, machine, sampling_rate_hz, shaft)
+        made = Dataset(self.place, pyarrow.dataset.dataset(table), None)
+        # Columns that the data set fills are there for a learner, whatever a recording tells.
+        made._empty = self.empty_columns
+        return made
 
     def to_mat(self, file: str | PathLike[str], columns: Sequence[str] | None = None) -> None:
         """Write the records as a MATLAB v5 file: a struct array ``records`` with a field for each column.

@@ -10,13 +10,15 @@ import numpy.typing as npt
 
 from ._extras import extra
 from ._names import hint
+from .datasets import Dataset
 from .signal import Record, ShaftPhase, process_channel
+from .signal.train import Machine
 
 with extra("sklearn"):
     from sklearn.base import BaseEstimator, TransformerMixin
     from sklearn.utils.validation import check_is_fitted
 
-__all__ = ["IndicatorTransformer"]
+__all__ = ["DatasetTransformer", "IndicatorTransformer"]
 
 
 class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
@@ -124,6 +126,94 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
     def _record(self, record: npt.NDArray[Any]) -> Record:
         phase = ShaftPhase.constant(self.shaft_hz, self.sampling_rate_hz, record.size)
         return process_channel(record, phase, self.teeth, sidebands=self.sidebands)
+
+
+class DatasetTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
+    """From records of one channel, a row each, to columns of a data set, so that what was learnt of it answers for recordings.
+
+    All records have one rate and one constant speed; records with speeds of their own go through :meth:`meshtone.Dataset.like`.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Whose columns are computed.
+    columns : sequence of str
+        Columns of numbers.
+    machine : Scenario or Gearbox
+        What was recorded.
+    sampling_rate_hz : float
+        (S/s) Of the records.
+    shaft_hz : float
+        (rev/s) Speed of the pinion's shaft, or of the input of a gearbox.
+
+    Examples
+    --------
+    ::
+
+        columns = ["fm4", "difference_rms_g", "mesh_harmonic_1_sideband_minus_1_g"]
+        model.fit(gears.matrix(columns), gears.column("label"))
+        rig = DatasetTransformer(gears, columns, machine, sampling_rate_hz=50e3, shaft_hz=25.0)
+        model.predict(rig.fit_transform(records))
+    """
+
+    def __init__(
+        self, dataset: Dataset, columns: Sequence[str], machine: Machine, *, sampling_rate_hz: float, shaft_hz: float
+    ) -> None:
+        self.dataset = dataset
+        self.columns = columns
+        self.machine = machine
+        self.sampling_rate_hz = sampling_rate_hz
+        self.shaft_hz = shaft_hz
+
+    def fit(self, X: npt.ArrayLike, y: Any = None) -> DatasetTransformer:
+        """Look at the columns: nothing is learnt of the records.
+
+        Parameters
+        ----------
+        X : array_like, shape (records, samples)
+            (g) The records.
+        y : ignored
+
+        Raises
+        ------
+        ValueError
+            An array of another number of dimensions, or without records; masked values; a column that the data set does not have.
+        """
+        self.n_features_in_ = _records(X).shape[1]
+        self.dataset._check_values(self.columns)
+        self.names_ = list(self.columns)
+        return self
+
+    def transform(self, X: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Take each record to the columns.
+
+        Parameters
+        ----------
+        X : array_like, shape (records, samples)
+            (g) The records.
+
+        Returns
+        -------
+        array, shape (records, columns)
+            In the columns' units: the mean over the windows of a record; NaN where a column is not defined.
+
+        Raises
+        ------
+        ValueError
+            As :meth:`fit`; a record that :meth:`meshtone.Dataset.like` refuses.
+        sklearn.exceptions.NotFittedError
+            :meth:`fit` has not been called.
+        """
+        check_is_fitted(self)
+        records = _records(X)
+        phase = ShaftPhase.constant(self.shaft_hz, self.sampling_rate_hz, records.shape[1])
+        rows = self.dataset.like(list(records), [phase] * len(records), self.machine, self.sampling_rate_hz)
+        values, number = rows.matrix(self.names_), rows.column("unit")
+        return np.array([values[number == record].mean(axis=0) for record in range(len(records))])
+
+    def get_feature_names_out(self, input_features: Any = None) -> npt.NDArray[np.object_]:
+        """Names of the columns."""
+        return np.array(self.names_, dtype=object)
 
 
 def _records(X: npt.ArrayLike) -> npt.NDArray[Any]:

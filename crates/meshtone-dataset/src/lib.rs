@@ -14,6 +14,7 @@ mod error;
 pub mod expression;
 mod finish;
 pub mod generate;
+mod like;
 mod manifest;
 pub mod merge;
 mod part_list;
@@ -27,4 +28,5 @@ pub mod verify;
 mod words;
 
 pub use error::DatasetError;
+pub use like::{RecordedRows, rows_like};
 pub use words::counted;

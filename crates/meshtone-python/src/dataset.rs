@@ -3,18 +3,23 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use meshtone_dataset::DatasetError;
 use meshtone_dataset::generate::{self, GenerateControl, Part};
 use meshtone_dataset::merge::merge;
 use meshtone_dataset::plan::{Plan, template};
+use meshtone_dataset::record::MachineRecording;
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
+use meshtone_dataset::{DatasetError, rows_like as rows_like_of};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
+use crate::array::{Signal, samples};
 use crate::error::{os_error, read_error, value_error, with_help};
 use crate::interrupt::interruptible;
+use crate::phase::ShaftPhase;
+use crate::process::{Machine, TypedWarning, typed};
 
 /// The commented plan.
 #[pyfunction]
@@ -78,6 +83,43 @@ pub fn verify_dataset(py: Python<'_>, path: &str, bytes: bool) -> PyResult<Found
     let place = destination(path)?;
     let found = py.detach(|| verify(&place, check(bytes))).map_err(dataset_error)?;
     Ok((found.format, found.shards, found.missing, found.problems))
+}
+
+/// The channels of a recording by their names, none of the analysed one, and the phase of a shaft.
+type Recorded<'py> = (Vec<(Option<String>, Signal<'py>)>, PyRef<'py, ShaftPhase>);
+
+/// Takes recordings to records like those of the data set of a plan: a Parquet file, and what is doubtful.
+#[pyfunction]
+pub fn rows_like<'py>(
+    py: Python<'py>,
+    plan: PathBuf,
+    recordings: Vec<Recorded<'py>>,
+    machine: Machine<'py>,
+    sampling_rate_hz: f64,
+    shaft: Option<&str>,
+) -> PyResult<(Bound<'py, PyBytes>, Vec<TypedWarning>)> {
+    let read = py.detach(|| Plan::read_copy(&plan)).map_err(|error| read_error(&plan, &error))?;
+    let analysed = read.content.keep.analysed.name().into_owned();
+    let single = |(name, signal): &(Option<String>, Signal<'py>)| {
+        let name = name.as_ref().unwrap_or(&analysed);
+        Ok((name.clone(), samples(signal)?.iter().map(|&value| value as f32).collect()))
+    };
+    let channels = recordings.iter().map(|(channels, _)| channels.iter().map(single).collect());
+    let channels = channels.collect::<PyResult<Vec<Vec<(String, Vec<f32>)>>>>()?;
+    let machine = machine.form();
+    let phases: Vec<_> = recordings.iter().map(|(_, phase)| &phase.0).collect();
+    let rows = py.detach(|| {
+        let recordings = channels.iter().zip(phases).map(|(channels, phase)| MachineRecording {
+            channels,
+            sampling_rate_hz,
+            machine: &machine,
+            shaft,
+            phase,
+        });
+        rows_like_of(&read, &recordings.collect::<Vec<_>>())
+    });
+    let rows = rows.map_err(dataset_error)?;
+    Ok((PyBytes::new(py, &rows.parquet), typed(&rows.warnings)))
 }
 
 fn check(bytes: bool) -> Check {

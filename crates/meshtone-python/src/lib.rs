@@ -38,7 +38,9 @@ mod _core {
             kurtogram, named_bearings, spectral_kurtosis, squared_envelope, squared_envelope_spectrum,
             synchronous_residual, velocity_rms,
         },
-        dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset},
+        dataset::{
+            check_plan, dataset_template, generate_dataset, merge_datasets, rows_like, verify_dataset,
+        },
         diagnose::{Observation, check_diagnosis, diagnose, tuned_rig},
         explore::ExploreServer,
         gearbox::{Gearbox, GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes},

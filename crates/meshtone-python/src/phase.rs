@@ -112,6 +112,11 @@ impl ShaftPhase {
         self.0.of_mate(teeth, mate_teeth).map(Self).map_err(value_error)
     }
 
+    /// Of a part of the recording.
+    fn part(&self, start: usize, stop: usize) -> PyResult<Self> {
+        self.0.part(start..stop).map(Self).map_err(value_error)
+    }
+
     /// Meaning of angle 0.
     #[getter]
     fn zero(&self) -> &'static str {

@@ -220,6 +220,34 @@ class ShaftPhase:
         """
         return ShaftPhase._wrap(self._native.of_mate(teeth_number(teeth), whole("mate_teeth", mate_teeth, 1)))
 
+    def __getitem__(self, samples: slice) -> ShaftPhase:
+        """The phase of a part of the recording: ``phase[a:b]`` belongs to ``signal[a:b]``.
+
+        Parameters
+        ----------
+        samples : slice
+            Samples of the recording, without a step.
+
+        Raises
+        ------
+        TypeError
+            Something else than a slice.
+        ValueError
+            A slice with a step, or of fewer than two samples that have a phase.
+
+        Examples
+        --------
+        >>> phase = ShaftPhase.constant(20.0, 1000.0, 101)
+        >>> phase[50:]
+        <ShaftPhase: 1.00 revolutions in 51 samples from sample 0>
+        """
+        if not isinstance(samples, slice):
+            raise TypeError(f"phase[{samples!r}]: must be a slice of samples, such as phase[0:1000]; revolutions has the angles")
+        start, stop, step = samples.indices(self.first_sample + self.revolutions.size)
+        if step != 1:
+            raise ValueError(f"phase[::{step}]: a slice of a phase has no step")
+        return ShaftPhase._wrap(self._native.part(start, max(start, stop)))
+
     @property
     def first_sample(self) -> int:
         """Number of the recording's sample that the first angle belongs to."""

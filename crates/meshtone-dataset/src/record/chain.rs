@@ -10,17 +10,15 @@ use meshtone::damage::{DamagedTooth, damages_of_fault};
 use meshtone::operation::TimeGrid;
 use meshtone::scenario::{ScenarioWarning, Sensor};
 use meshtone::sensor::Channel;
-use meshtone::signal::{
-    AngularSettings, AntiAliasing, ChainSettings, Edge, GearTrain, MeanPart, Record as Analysis,
-    SeparationSettings, ShaftPhase, SignalError, angular_resample, process_channel,
-};
+use meshtone::signal::{AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
 use meshtone::tuning::DifferenceChain;
 use meshtone::{GearboxSimulation, GearboxStages, Stages, StepJudgement};
 
+use super::kept::KeptChain;
 use super::window::Window;
-use super::{Record, RecordAverage, RecordFault, RecordWheel, TurningWheel, noise, path, start};
+use super::{Record, RecordFault, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{ClassFault, Content, Keep, OverAngle, Wheel};
+use crate::plan::{ClassFault, Content, Keep, Wheel};
 
 /// Makes a record of the simulation of a pair.
 pub(super) fn record(
@@ -111,20 +109,6 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
         ));
     }
     Ok(())
-}
-
-/// Values at equal angles at another number of points in a revolution.
-fn at_points(
-    values: &[f64],
-    from: usize,
-    to: usize,
-    count: usize,
-    edge: Edge,
-) -> Result<Vec<f32>, SignalError> {
-    let step = from as f64 / to as f64;
-    let filter = AntiAliasing::steep(from as f64, to as f64)?;
-    let read = filter.read_double(values, (0..count).map(|i| i as f64 * step), edge);
-    Ok(read.into_iter().map(|value| value as f32).collect())
 }
 
 /// What is read like a recording.
@@ -241,39 +225,8 @@ impl<'a> View<'a> {
                 noise::add(&record.drawn, number as u64, channel);
             }
         }
-        if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
-            let averages = keep.wheel.all().iter().map(|wheel| self.average(&channels[analysed], wheel));
-            record.averages = averages.collect::<Result<_, _>>()?;
-        }
-        channels.truncate(keep.channels.len());
-        if let Some(seconds) = keep.duration_s {
-            self.cut(&mut channels, seconds)?;
-        }
-        if let Some(angle) = keep.over_angle {
-            let wheel = &keep.wheel.all()[0];
-            record.sampling_rate_hz = angle.points_per_revolution as f64 * self.wheel(wheel).speed_hz;
-            for channel in &mut channels {
-                *channel = self.over_angle(channel, wheel, angle)?;
-            }
-        }
-        record.channels = channels;
+        self.chain(&self.simulated.train())?.fill(&mut record, analysed, channels)?;
         Ok(record)
-    }
-
-    /// What a channel shows over the revolutions of a wheel.
-    fn average(&self, signal: &[f32], wheel: &Wheel) -> Result<RecordAverage, SignalError> {
-        let analysis = self.analyse(signal, wheel, AngularSettings::default(), MeanPart::default())?;
-        let mut kept = RecordAverage::default();
-        if self.keep.average {
-            kept.average = self.of_revolution(&analysis.average.values)?;
-        }
-        if self.keep.difference {
-            kept.difference = self.of_revolution(&analysis.parts.difference)?;
-        }
-        if self.keep.indicators {
-            kept.indicators = analysis.indicators.table("g");
-        }
-        Ok(kept)
     }
 
     /// Whether motor and brake are steady: the record then begins at the mark.
@@ -415,24 +368,14 @@ impl<'a> View<'a> {
         ShaftPhase::new(0, (0..samples).map(at).collect())
     }
 
-    fn analyse(
-        &self,
-        signal: &[f32],
-        wheel: &Wheel,
-        angular: AngularSettings,
-        mean: MeanPart,
-    ) -> Result<Analysis, SignalError> {
-        let teeth = self.wheel(wheel).teeth;
-        let separation = SeparationSettings {
-            sidebands: self.keep.sidebands,
-            shaft_orders: (1..=self.keep.shaft_orders).collect(),
-            mean,
-            ..SeparationSettings::new(teeth as usize)
-        };
-        let separation = self.simulated.train().separation(self.window.turning.number(wheel), &separation);
-        let settings = ChainSettings { angular, separation: Some(separation) };
-        let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
-        process_channel(&double, &self.phase(wheel, signal.len())?, teeth, &settings)
+    /// The chain that makes a record of the channels.
+    ///
+    /// # Arguments
+    /// * `train` - the machine
+    fn chain<'t>(&'t self, train: &'t GearTrain) -> Result<KeptChain<'t>, SignalError> {
+        let wheels = self.keep.wheel.all().iter();
+        let phases = wheels.map(|wheel| self.phase(wheel, self.samples())).collect::<Result<_, _>>()?;
+        Ok(KeptChain { keep: self.keep, train, phases })
     }
 
     /// The difference signal that is enhanced, without noise.
@@ -443,47 +386,7 @@ impl<'a> View<'a> {
         let Simulated::Pair(stages) = self.simulated else { return Ok(Vec::new()) };
         // The same settings as those of the signals that the enhancement was tuned with.
         let angular = DifferenceChain::angular_settings(stages.scenario.model);
-        let wheel = &self.keep.wheel.all()[0];
-        Ok(self.analyse(signal, wheel, angular, MeanPart::Removed)?.parts.difference)
-    }
-
-    /// A signal over one revolution, with as many values as are asked for.
-    fn of_revolution(&self, values: &[f64]) -> Result<Vec<f32>, SignalError> {
-        let Some(angle) = self.keep.over_angle else {
-            return Ok(values.iter().map(|&value| value as f32).collect());
-        };
-        let points = angle.points_per_revolution;
-        at_points(values, values.len(), points, points, Edge::Periodic)
-    }
-
-    /// A channel over whole revolutions of a wheel, from the mark on.
-    fn over_angle(&self, signal: &[f32], wheel: &Wheel, angle: OverAngle) -> Result<Vec<f32>, SignalError> {
-        // The chain refuses a constant channel.
-        if let Some(&first) = signal.first().filter(|first| signal.iter().all(|x| x == *first)) {
-            return Ok(vec![first; angle.values()]);
-        }
-        let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
-        let angular =
-            angular_resample(&double, &self.phase(wheel, signal.len())?, &AngularSettings::default())?;
-        if angular.revolutions() < angle.revolutions {
-            let what = "revolutions of a record for keep.revolutions";
-            let (given, needed) = (angular.revolutions(), angle.revolutions);
-            return Err(SignalError::TooFew { what, given, needed });
-        }
-        let (from, to) = (angular.points_per_revolution, angle.points_per_revolution);
-        at_points(&angular.values, from, to, angle.values(), Edge::Reflect)
-    }
-
-    /// Cuts the channels to a duration.
-    fn cut(&self, channels: &mut [Vec<f32>], seconds: f64) -> Result<(), SignalError> {
-        let wanted = (seconds * self.keep.sampling_rate_hz).round() as usize;
-        for channel in channels {
-            if channel.len() < wanted {
-                let what = "samples of a record for keep.duration_s";
-                return Err(SignalError::TooFew { what, given: channel.len(), needed: wanted });
-            }
-            channel.truncate(wanted);
-        }
-        Ok(())
+        let train = self.simulated.train();
+        Ok(self.chain(&train)?.analyse(signal, 0, angular, MeanPart::Removed)?.parts.difference)
     }
 }

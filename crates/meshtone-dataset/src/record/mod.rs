@@ -1,19 +1,23 @@
 //! Records: what a data set keeps of each simulation.
 
 mod chain;
+mod kept;
 mod noise;
 mod path;
+mod recorded;
 mod start;
 mod turning;
 mod window;
 
+pub use recorded::MachineRecording;
+pub(crate) use recorded::records;
 pub(crate) use turning::{Turning, TurningWheel};
 pub(crate) use window::{Window, simulated_scenario};
 
 use meshtone::batch::{Keep as BatchKeep, KeepObserved, ObservedRecorder, Output};
 use meshtone::operation::TimeGrid;
 use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
-use meshtone::signal::IndicatorValue;
+use meshtone::signal::{IndicatorValue, SignalWarning};
 use meshtone::{GearboxSimulation, Stages, StepJudgement};
 
 use crate::draw::DrawnRecord;
@@ -69,6 +73,8 @@ pub struct RecordAverage {
     pub difference: Vec<f32>,
     /// Indicators of the average.
     pub indicators: Vec<IndicatorValue>,
+    /// What is doubtful about the average.
+    pub warnings: Vec<SignalWarning>,
 }
 
 /// A wheel of a record.

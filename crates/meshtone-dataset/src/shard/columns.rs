@@ -35,6 +35,8 @@ pub(crate) struct Column {
     pub cell_type: CellType,
     /// Whether cells may be empty.
     nullable: bool,
+    /// Whether a recording has values of the column, too.
+    pub is_of_recording: bool,
     /// Makes the column's cells of some records.
     pub cells: CellsOf,
 }
@@ -70,7 +72,8 @@ impl Column {
     ) -> Self {
         let (name, unit, description) = (name.to_owned(), unit.to_owned(), String::new());
         let cells = Box::new(cells);
-        Self { name, unit, description, topic: Topic::Other, cell_type, nullable: false, cells }
+        let (topic, nullable, is_of_recording) = (Topic::Other, false, false);
+        Self { name, unit, description, topic, cell_type, nullable, is_of_recording, cells }
     }
 
     fn int32(name: &str, value: impl Fn(&Record) -> Option<u32> + 'static) -> Self {
@@ -100,7 +103,7 @@ impl Column {
         let column = Self::new(name, unit, CellType::Float32List, move |records| {
             Cells::Float32List(records.iter().map(&value).collect())
         });
-        column.about(Topic::Revolution)
+        column.about(Topic::Revolution).of_recording()
     }
 
     fn meaning(self, description: impl Into<String>) -> Self {
@@ -109,6 +112,10 @@ impl Column {
 
     fn about(self, topic: Topic) -> Self {
         Self { topic, ..self }
+    }
+
+    fn of_recording(self) -> Self {
+        Self { is_of_recording: true, ..self }
     }
 
     fn nullable(self) -> Self {
@@ -167,7 +174,9 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
     }
     if let Some(points) = keep.over_angle.map(|angle| angle.points_per_revolution as u32) {
         let meaning = format!("values in a revolution of the {wheel}, of channels, average and difference");
-        columns.push(Column::int32("points_per_revolution", move |_| Some(points)).meaning(meaning));
+        columns.push(
+            Column::int32("points_per_revolution", move |_| Some(points)).of_recording().meaning(meaning),
+        );
     }
     columns.extend(of_simulation(&plan.content.base));
     let keys = varied_keys(&plan.content).into_iter().map(|(_, key)| of_key(key));
@@ -209,8 +218,10 @@ fn of_record(content: &Content) -> Vec<Column> {
     let labels: Vec<String> = content.classes.iter().map(|class| class.label.clone()).collect();
     let mut columns = vec![
         Column::int64("record", |r| r.drawn.index)
+            .of_recording()
             .meaning("number of the record; with the plan it determines everything else"),
         Column::int64("unit", |r| r.drawn.unit)
+            .of_recording()
             .meaning(format!("number of the unit: the {unit}, shared by several records")),
         Column::int64("mounting", |r| r.drawn.mounting)
             .meaning("number of the mounting, that is of one assembly of the unit"),
@@ -241,6 +252,7 @@ fn of_record(content: &Content) -> Vec<Column> {
         Column::int64("seed", |r| r.drawn.seed).meaning("seed of the record's noise and fluctuations"),
         Column::int64("wheels_seed", |r| r.drawn.wheels_seed).meaning("seed of the unit's profile errors"),
         Column::float64("sampling_rate_hz", "Hz", |r| Some(r.sampling_rate_hz))
+            .of_recording()
             .meaning("sampling rate of the raw channels"),
     ]);
     match &content.base {
@@ -259,8 +271,10 @@ fn of_pair() -> [Column; 6] {
         teeth_of("gear", WheelName::Gear as usize, "the gear, the driven wheel"),
         Column::float64("pinion_speed_hz", "Hz", speed_hz(WheelName::Pinion))
             .about(Topic::Drawn)
+            .of_recording()
             .meaning("speed of the pinion's shaft"),
         Column::float64("gear_speed_hz", "Hz", speed_hz(WheelName::Gear))
+            .of_recording()
             .meaning("speed of the gear's shaft"),
         torque("the gear's shaft"),
     ]
@@ -270,6 +284,7 @@ fn of_pair() -> [Column; 6] {
 fn of_gearbox(gearbox: &Gearbox) -> Vec<Column> {
     let input = Column::float64("input_speed_hz", "Hz", |r| Some(r.input_speed_hz))
         .about(Topic::Drawn)
+        .of_recording()
         .meaning("speed of the motor and of the shaft that is coupled to it");
     let wheels = gearbox.wheels.iter().enumerate().flat_map(|(number, wheel)| {
         let words = format!("wheel {}", wheel.name);
@@ -278,7 +293,7 @@ fn of_gearbox(gearbox: &Gearbox) -> Vec<Column> {
         });
         [
             teeth_of(&wheel.name, number, &words),
-            speed.meaning(format!("speed of the shaft of {words}, {:?}", wheel.shaft)),
+            speed.of_recording().meaning(format!("speed of the shaft of {words}, {:?}", wheel.shaft)),
             angle_of(&wheel.name, number),
         ]
     });
@@ -301,12 +316,12 @@ fn angle_of(wheel: &str, number: usize) -> Column {
 
 fn teeth_of(wheel: &str, number: usize, words: &str) -> Column {
     let teeth = Column::int32(&of_wheel(wheel, "teeth"), move |r| Some(r.wheels[number].teeth));
-    teeth.about(Topic::Drawn).meaning(format!("teeth of {words}"))
+    teeth.about(Topic::Drawn).of_recording().meaning(format!("teeth of {words}"))
 }
 
 fn torque(shaft: &str) -> Column {
     let torque = Column::float64("brake_torque_nm", "N m", |r| Some(r.brake_torque_nm));
-    torque.about(Topic::Drawn).meaning(format!("brake torque on {shaft}"))
+    torque.about(Topic::Drawn).of_recording().meaning(format!("brake torque on {shaft}"))
 }
 
 /// Lists the columns of what the simulation of a record says about itself.
@@ -335,6 +350,7 @@ fn of_simulation(base: &ScenarioForm) -> Vec<Column> {
     let warnings = Column::text(WARNINGS, move |r| Some(codes(r)))
         .meaning("codes of the simulation's warnings, with `;` between; empty without any");
     let simulated = Column::float64("simulated_s", "s", |r| Some(r.simulated_s))
+        .of_recording()
         .meaning("simulated time from which average and indicators are computed");
     [warnings].into_iter().chain(slack).chain([simulated]).collect()
 }
@@ -368,7 +384,7 @@ fn of_indicators(keep: &Keep, number: usize) -> Vec<Column> {
         let value = move |r: &Record| {
             r.averages.get(number)?.indicators.iter().find(|value| value.name == name)?.value
         };
-        Column::float64(&column, &unit, value).about(topic).nullable().meaning(meaning)
+        Column::float64(&column, &unit, value).about(topic).of_recording().nullable().meaning(meaning)
     };
     let all = Indicators::default().table("g").into_iter();
     all.map(|indicator| of_indicator((indicator.name, indicator.unit))).collect()
@@ -466,7 +482,7 @@ fn of_key(key: &str) -> Column {
     };
     let unit = Some(without_unit(&name).1).filter(|unit| !unit.is_empty()).unwrap_or("-");
     let column = Column::float64(&name, unit, value).meaning(description);
-    column.about(Topic::Key(key.to_owned())).nullable()
+    column.about(Topic::Key(key.to_owned())).of_recording().nullable()
 }
 
 /// Name of a varied key's column: without its section, unless that is a fault, a sensor, a part of a gearbox or one of the plan's own. Of a

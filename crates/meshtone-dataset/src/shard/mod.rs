@@ -10,7 +10,7 @@ mod write;
 pub(crate) use columns::{BETWEEN_CODES, Column, Topic, WARNINGS, column_name, columns, varied_keys};
 pub use metadata::{FailedRecord, ShardMetadata};
 pub(crate) use metadata::{ReadShard, Wanted, read};
-pub(crate) use write::{Item, write};
+pub(crate) use write::{Item, write, write_table};
 
 use crate::draw::Sampler;
 use crate::plan::{MOST_SHARD_RECORDS, Plan};

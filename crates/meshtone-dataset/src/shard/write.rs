@@ -92,6 +92,19 @@ pub(crate) fn write(
     Ok(metadata)
 }
 
+/// Writes records as a table.
+///
+/// # Arguments
+/// * `to` - where it is written to
+/// * `columns` - its columns
+/// * `records` - its rows
+pub(crate) fn write_table(to: impl Write + Send, columns: &[Column], records: &[Record]) -> io::Result<()> {
+    let properties = properties(columns).map_err(io::Error::other)?;
+    let mut table = TableWriter::new(to, columns.iter().map(TableColumn::from).collect(), properties)?;
+    table.write_rows(columns.iter().map(|column| (column.cells)(records)).collect())?;
+    table.close()
+}
+
 fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::ParquetError> {
     let mut builder = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(COMPRESSION_LEVEL)?))

@@ -95,6 +95,28 @@ impl ShaftPhase {
         Ok(other)
     }
 
+    /// The phase of a part of the recording, as of `signal[100..900]`.
+    ///
+    /// # Arguments
+    /// * `samples` - of the recording: from the first one of the part to before its end
+    ///
+    /// # Errors
+    /// Fewer than two samples of the part have a phase.
+    ///
+    /// ```
+    /// let phase = meshtone::signal::ShaftPhase::new(10, vec![0.0, 0.25, 0.75, 1.0])?;
+    /// let part = phase.part(11..13)?;
+    /// assert_eq!((part.first_sample, part.revolutions), (0, vec![0.25, 0.75]));
+    /// # Ok::<(), meshtone::signal::SignalError>(())
+    /// ```
+    pub fn part(&self, samples: std::ops::Range<usize>) -> Result<Self, SignalError> {
+        let known = |sample: usize| sample.saturating_sub(self.first_sample).min(self.revolutions.len());
+        let (from, to) = (known(samples.start), known(samples.end));
+        let revolutions = self.revolutions.get(from..to).unwrap_or_default().to_vec();
+        let part = Self::new(self.first_sample.saturating_sub(samples.start), revolutions)?;
+        Ok(part.with_zero(self.zero).with_warnings(self.warnings.clone()))
+    }
+
     /// (rev) What the shaft turns between the first and the last value.
     pub fn span_rev(&self) -> f64 {
         self.revolutions.first().map_or(0.0, |first| self.last() - first)

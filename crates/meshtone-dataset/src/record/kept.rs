@@ -1,0 +1,155 @@
+//! From the channels of a record, simulated or recorded, to what a data set keeps of them.
+
+use meshtone::signal::{
+    AngularSettings, AntiAliasing, ChainSettings, Edge, GearTrain, MeanPart, Record as Analysis,
+    SeparationSettings, ShaftPhase, SignalError, angular_resample, process_channel,
+};
+
+use super::{Record, RecordAverage};
+use crate::plan::{Keep, OverAngle, Wheel};
+
+/// How the channels of a record become what its data set keeps. Simulated and recorded channels take the same way.
+pub(super) struct KeptChain<'a> {
+    /// What is kept.
+    pub keep: &'a Keep,
+    /// The machine by its tooth counts.
+    pub train: &'a GearTrain,
+    /// Phases of the shafts of the averaged wheels, at the samples of the channels.
+    pub phases: Vec<ShaftPhase>,
+}
+
+impl KeptChain<'_> {
+    /// Puts averages and channels into a record, whose wheels are known.
+    ///
+    /// # Arguments
+    /// * `record` - the record
+    /// * `analysed` - number of the analysed channel; none where nothing is analysed
+    /// * `channels` - (g, N, …) in the order of [`Keep::simulated`], at the data set's rate; empty where one was not recorded
+    ///
+    /// # Errors
+    /// Those of [`process_channel`]; channels that are shorter than what is kept.
+    pub fn fill(
+        &self,
+        record: &mut Record,
+        analysed: Option<usize>,
+        mut channels: Vec<Vec<f32>>,
+    ) -> Result<(), SignalError> {
+        let keep = self.keep;
+        if let Some(analysed) = analysed.filter(|_| keep.is_analysed()) {
+            let averages =
+                (0..keep.wheel.all().len()).map(|number| self.average(&channels[analysed], number));
+            record.averages = averages.collect::<Result<_, _>>()?;
+        }
+        channels.truncate(keep.channels.len());
+        let recorded = |channel: &&mut Vec<f32>| !channel.is_empty();
+        if let Some(seconds) = keep.duration_s {
+            let wanted = (seconds * keep.sampling_rate_hz).round() as usize;
+            for channel in channels.iter_mut().filter(recorded) {
+                if channel.len() < wanted {
+                    let what = "samples of a record for keep.duration_s";
+                    return Err(SignalError::TooFew { what, given: channel.len(), needed: wanted });
+                }
+                channel.truncate(wanted);
+            }
+        }
+        if let Some(angle) = keep.over_angle {
+            let speed_hz = record.wheels[self.number(&keep.wheel.all()[0])].speed_hz;
+            record.sampling_rate_hz = angle.points_per_revolution as f64 * speed_hz;
+            for channel in channels.iter_mut().filter(recorded) {
+                *channel = self.over_angle(channel, angle)?;
+            }
+        }
+        record.channels = channels;
+        Ok(())
+    }
+
+    /// The results of the signal chain for one of the averaged wheels.
+    ///
+    /// # Arguments
+    /// * `signal` - the analysed channel
+    /// * `averaged` - number of the wheel among the averaged ones
+    /// * `angular`, `mean` - how
+    pub fn analyse(
+        &self,
+        signal: &[f32],
+        averaged: usize,
+        angular: AngularSettings,
+        mean: MeanPart,
+    ) -> Result<Analysis, SignalError> {
+        let number = self.number(&self.keep.wheel.all()[averaged]);
+        let teeth = self.train.wheels[number].teeth;
+        let separation = SeparationSettings {
+            sidebands: self.keep.sidebands,
+            shaft_orders: (1..=self.keep.shaft_orders).collect(),
+            mean,
+            ..SeparationSettings::new(teeth as usize)
+        };
+        let separation = self.train.separation(number, &separation);
+        let settings = ChainSettings { angular, separation: Some(separation) };
+        process_channel(&double(signal), &self.phases[averaged], teeth, &settings)
+    }
+
+    /// Number of a wheel of the plan in the machine.
+    fn number(&self, wheel: &Wheel) -> usize {
+        self.train.wheels.iter().position(|known| known.name == wheel.name()).unwrap_or(0)
+    }
+
+    /// What a channel shows over the revolutions of an averaged wheel.
+    fn average(&self, signal: &[f32], averaged: usize) -> Result<RecordAverage, SignalError> {
+        let analysis = self.analyse(signal, averaged, AngularSettings::default(), MeanPart::default())?;
+        let mut kept = RecordAverage { warnings: analysis.warnings, ..RecordAverage::default() };
+        if self.keep.average {
+            kept.average = self.of_revolution(&analysis.average.values)?;
+        }
+        if self.keep.difference {
+            kept.difference = self.of_revolution(&analysis.parts.difference)?;
+        }
+        if self.keep.indicators {
+            kept.indicators = analysis.indicators.table("g");
+        }
+        Ok(kept)
+    }
+
+    /// A signal over one revolution, with as many values as are asked for.
+    fn of_revolution(&self, values: &[f64]) -> Result<Vec<f32>, SignalError> {
+        let Some(angle) = self.keep.over_angle else {
+            return Ok(values.iter().map(|&value| value as f32).collect());
+        };
+        let points = angle.points_per_revolution;
+        at_points(values, values.len(), points, points, Edge::Periodic)
+    }
+
+    /// A channel over whole revolutions of the first averaged wheel, from the first one on.
+    fn over_angle(&self, signal: &[f32], angle: OverAngle) -> Result<Vec<f32>, SignalError> {
+        // The chain refuses a constant channel.
+        if let Some(&first) = signal.first().filter(|first| signal.iter().all(|x| x == *first)) {
+            return Ok(vec![first; angle.values()]);
+        }
+        let angular = angular_resample(&double(signal), &self.phases[0], &AngularSettings::default())?;
+        if angular.revolutions() < angle.revolutions {
+            let what = "revolutions of a record for keep.revolutions";
+            let (given, needed) = (angular.revolutions(), angle.revolutions);
+            return Err(SignalError::TooFew { what, given, needed });
+        }
+        let (from, to) = (angular.points_per_revolution, angle.points_per_revolution);
+        at_points(&angular.values, from, to, angle.values(), Edge::Reflect)
+    }
+}
+
+fn double(signal: &[f32]) -> Vec<f64> {
+    signal.iter().map(|&x| f64::from(x)).collect()
+}
+
+/// Values at equal angles at another number of points in a revolution.
+fn at_points(
+    values: &[f64],
+    from: usize,
+    to: usize,
+    count: usize,
+    edge: Edge,
+) -> Result<Vec<f32>, SignalError> {
+    let step = from as f64 / to as f64;
+    let filter = AntiAliasing::steep(from as f64, to as f64)?;
+    let read = filter.read_double(values, (0..count).map(|i| i as f64 * step), edge);
+    Ok(read.into_iter().map(|value| value as f32).collect())
+}
