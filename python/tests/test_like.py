@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow.dataset
 import pytest
-from meshtone import Dataset, Gearbox, Scenario, gearbox_template, generate_dataset, simulate_gearbox
+from meshtone import Dataset, Gearbox, MeshtoneWarning, Scenario, gearbox_template, generate_dataset, simulate_gearbox
 from meshtone.signal import ShaftPhase, process_channel
 
 MACHINE = """
@@ -58,7 +58,7 @@ def gears(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
 
 
 def test_a_record_that_is_recorded_has_its_own_columns(gears: Dataset) -> None:
-    """Its raw channel passes the anti-aliasing filter a second time, which changes the band beyond 0.8 of half the rate alone."""
+    """Its raw channel passes the anti-aliasing filter a second time, which changes the band beyond 0.8 of half the rate alone: 0.7 % were seen."""
     columns = indicators(gears)
     for number in range(len(gears)):
         record = gears[number]
@@ -69,8 +69,8 @@ def test_a_record_that_is_recorded_has_its_own_columns(gears: Dataset) -> None:
         assert (known["gear_teeth"], known["face_width_mm"], known["label"], known["fault_kind"]) == (38, 15.0, None, None)
         assert known["pinion_speed_hz"] == pytest.approx(record["pinion_speed_hz"], rel=1e-9)
         of_record = np.array([record[name] for name in columns])
-        np.testing.assert_allclose(like.matrix(columns)[0], of_record, rtol=0.02, atol=2e-3)
-        np.testing.assert_allclose(known["average_g"], record["average_g"], atol=0.02 * np.ptp(record["average_g"]))
+        np.testing.assert_allclose(like.matrix(columns)[0], of_record, rtol=0.01, atol=1e-4)
+        np.testing.assert_allclose(known["average_g"], record["average_g"], atol=0.005 * np.ptp(record["average_g"]))
 
 
 def test_a_longer_recording_at_another_rate_has_several_windows(gears: Dataset) -> None:
@@ -145,7 +145,8 @@ def test_a_recording_of_a_gearbox(tmp_path: Path) -> None:
     (tmp_path / "machine.toml").write_text(gearbox_template(), "utf-8")
     text = 'scenario = "machine.toml"\n[[class]]\nlabel = "healthy"\n[keep]\nchannels = []\nduration_s = 0.6\n[split]\ntrain = 1.0\n'
     gears = made(tmp_path, text, records=2)
-    simulation = simulate_gearbox(gearbox)
+    with pytest.warns(MeshtoneWarning, match="start-up transient"):
+        simulation = simulate_gearbox(gearbox)
     channel = next(name for name in simulation.channels if name.endswith("vertical_g"))
     signal, rate_hz = simulation[channel], simulation.sampling_rate_hz
     phase = ShaftPhase._wrap(_core.ShaftPhase.of_simulated_input(gearbox._native, simulation.start_s, signal.size))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
 
 import numpy as np
 import numpy.typing as npt
@@ -208,7 +209,8 @@ def test_records_and_phases_pickle_and_cannot_be_written_to() -> None:
     record = signal.process_channel(np.cos(2 * np.pi * 20 * TEETH * time_s) + 0.1 * np.cos(900 * time_s), phase, TEETH, name="a")
     for again in (pickle.loads(pickle.dumps(record)), copy.deepcopy(record)):
         assert (again.teeth, again.name, again.revolutions, again.warnings) == (TEETH, "a", record.revolutions, record.warnings)
-        assert np.array_equal(again.difference, record.difference) and again.indicators == record.indicators
+        assert np.array_equal(again.difference, record.difference)
+        np.testing.assert_equal(dict(again.indicators), dict(record.indicators))
         assert repr(again) == repr(record)
     for again in (pickle.loads(pickle.dumps(phase)), copy.deepcopy(phase)):
         assert np.array_equal(again.revolutions, phase.revolutions)
@@ -249,21 +251,25 @@ def test_an_indicator_that_there_is_not() -> None:
     assert isinstance(record.indicators, signal.Indicators) and len(record.indicators) == 86
     with pytest.raises(KeyError, match="there is no indicator 'FM4'; did you mean 'fm4'[?] There are average_rms, .*sideband_level_factor"):
         _ = record.indicators["FM4"]
-    with pytest.raises(KeyError, match="did you mean 'average_kurtosis' or .* or 'envelope_kurtosis'[?]"):
+    with pytest.raises(KeyError, match="did you mean 'average_kurtosis' or .* or 'envelope_kurtosis'"):
         _ = record.indicators["kurtosis"]
     with pytest.raises(KeyError, match="there is no indicator 'xyz'; there are average_rms"):
         _ = record.indicators["xyz"]
     assert record.indicators.get("FM4") is None
-    assert pickle.loads(pickle.dumps(record)).indicators == record.indicators
+    np.testing.assert_equal(dict(pickle.loads(pickle.dumps(record)).indicators), dict(record.indicators))
 
 
 def test_every_indicator_is_documented() -> None:
-    """With its unit, what it refuses, and where it is from."""
+    """With its unit, what it refuses, and where it is from; of octaves, harmonics and sidebands one of each name."""
+
+    def without_numbers(text: str) -> str:
+        return re.sub(r"(octave|harmonic|minus|plus)_(\d+|half)", r"\1", text)
+
     of_gears = (signal.fm0, signal.fm4, signal.m6a, signal.m8a, signal.na4, signal.energy_ratio, signal.sideband_level_factor)
-    text = signal.Indicators.__doc__ or ""
+    text = without_numbers(signal.Indicators.__doc__ or "")
     tone = vibration()
     record = signal.process_channel(tone, ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size), TEETH)
-    for name in record.indicators:
+    for name in map(without_numbers, record.indicators):
         part, _, shape = name.partition("_")
         assert f"``{name}``" in text or (f"``{part}``" in text and f"``…_{shape}``" in text), name
     functions = (*of_gears, signal.statistics, signal.envelope, signal.envelope_spectrum, signal.separate, signal.tsa)
