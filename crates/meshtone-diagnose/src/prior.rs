@@ -4,6 +4,7 @@ use meshtone::damage::{Fault, FaultyTeeth, damage_kinds};
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{
     DamageKind, Gearbox, GearboxLayout, ScenarioError, ScenarioForm, Sensor, SensorPath, SensorPlace,
+    log_deviation,
 };
 use meshtone::signal::GearTrain;
 
@@ -140,7 +141,7 @@ impl Prior {
                 gearbox.sensors.is_empty()
             }
         };
-        let deviations = base.numbers().into_iter().map(|number| (deviation(&number.key), number.key));
+        let deviations = base.numbers().into_iter().map(|number| (log_deviation(&number.key), number.key));
         let spreads = deviations.filter_map(|(deviation, key)| Some(Spread { key, deviation: deviation? }));
         Ok(Self {
             spreads: spreads.collect(),
@@ -312,43 +313,6 @@ impl Drawn {
     pub fn path_gains(&self, frequencies_hz: impl IntoIterator<Item = f64>) -> Vec<f64> {
         let gain = 10f64.powf(self.gain_db / 20.0);
         self.path.at(frequencies_hz).into_iter().map(|path| gain * path.norm()).collect()
-    }
-}
-
-/// (-) Standard deviation of the logarithm of a number that is not known well; none of the others.
-///
-/// # Arguments
-/// * `key` - of the scenario file
-fn deviation(key: &str) -> Option<f64> {
-    const OF_PAIR: [(&str, f64); 14] = [
-        ("rig.bearing_stiffness_n_per_m", 0.3),
-        // A rig is given by these frequencies or by the stiffnesses; the others it does not have.
-        ("rig.support.base_hz", 0.3),
-        ("rig.support.differential_hz", 0.3),
-        ("rig.support.stiffness_n_per_m", 0.6),
-        ("rig.support.coupling_n_per_m", 0.6),
-        ("rig.support.mass_kg", 0.3),
-        ("rig.pinion_shaft.bearing_span_mm", 0.15),
-        ("rig.gear_shaft.bearing_span_mm", 0.15),
-        ("rig.support.damping_ratio", 0.5),
-        ("rig.pinion_shaft.damping_ratio", 0.5),
-        ("rig.gear_shaft.damping_ratio", 0.5),
-        ("rig.mesh_damping_ratio", 0.5),
-        ("gears.tip_chamfer_mm", 0.3),
-        ("gears.backlash_mm", 0.2),
-    ];
-    if let Some((_, deviation)) = OF_PAIR.into_iter().find(|(own, _)| *own == key) {
-        return Some(deviation);
-    }
-    let is_of = |sections: &[&str]| sections.iter().any(|section| key.starts_with(section));
-    match own_name(key) {
-        "stiffness_n_per_m" if is_of(&["bearing["]) && !key.contains("].seat") => Some(0.3),
-        "stiffness_n_per_m" if is_of(&["bearing[", "housing"]) => Some(0.6),
-        "coupling_stiffness_nm_per_rad" => Some(0.6),
-        "mass_kg" if is_of(&["bearing[", "housing"]) => Some(0.3),
-        "damping_ratio" if is_of(&["shaft[", "bearing[", "mesh", "housing"]) => Some(0.5),
-        "backlash_mm" if is_of(&["mesh"]) => Some(0.2),
-        _ => None,
     }
 }
 

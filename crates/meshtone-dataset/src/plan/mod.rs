@@ -10,6 +10,7 @@ mod question;
 mod read;
 mod rule;
 mod split;
+mod variation;
 mod wheel;
 
 use std::collections::BTreeMap;
@@ -26,6 +27,7 @@ pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
+pub use variation::Variation;
 pub use wheel::{AveragedWheels, ClassFault, Wheel};
 pub(crate) use wheel::{column_part, wheel_words, with_faults};
 

@@ -13,6 +13,7 @@ mod sections;
 mod serialise;
 mod template;
 mod to_toml;
+mod uncertainty;
 mod validate;
 
 pub use crate::damage::kinds::*;
@@ -39,6 +40,7 @@ pub use gearbox::{
 pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};
 pub use template::{template, template_kinds};
+pub use uncertainty::log_deviation;
 pub(crate) use validate::unknown_kind;
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};
 

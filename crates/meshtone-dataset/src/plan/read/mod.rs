@@ -10,11 +10,12 @@ mod split;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
+use meshtone::scenario::{Model, ScenarioForm};
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::scenario_file::{FileKind, ReadScenarioError, read_text};
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
-use super::{About, Class, Content, Plan, PlanFile, Question, check};
+use super::{About, Class, Content, Plan, PlanFile, Question, Rule, Variation, check};
 use crate::expression::Condition;
 use crate::sampling::Design;
 
@@ -129,14 +130,16 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     })?;
     let units =
         root.required("units", "how many units, that is pairs of wheels or gearboxes, share the records")?;
+    let classes = class::read_all(root, &base)?;
+    let keep = root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?;
     let content = Content {
         seed: seed.unwrap_or(1),
         units: units.integer(1..=MOST_UNITS)?,
         mountings: root.read_optional("mountings", |value| value.integer(1..=MOST_MOUNTINGS))?.unwrap_or(1),
         design: design.unwrap_or_default(),
-        keep: root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?,
-        classes: class::read_all(root, &base)?,
-        rules: rule::read_all(root)?,
+        keep,
+        rules: rules(root, &base, tuned.as_ref(), &classes)?,
+        classes,
         constraints: root.read_optional("constraints", conditions)?.unwrap_or_default(),
         splits: root.read_optional("split", |value| value.table()?.read(split::read))?.unwrap_or_default(),
         base,
@@ -150,6 +153,31 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         files: std::mem::take(&mut reading.files),
         sources: std::mem::take(&mut reading.sources),
     })
+}
+
+/// The rules for all classes: those of the plan, then those of its variation for keys that nothing else decides.
+fn rules(
+    root: &TomlTable<'_>,
+    base: &ScenarioForm,
+    tuned: Option<&Tuned>,
+    classes: &[Class],
+) -> ReadResult<Vec<Rule>> {
+    let mut rules = rule::read_all(root)?;
+    let Some(value) = root.optional("variation") else { return Ok(rules) };
+    let variation = value.choice(&Variation::NAMES)?;
+    if let ScenarioForm::Pair(pair) = base
+        && pair.model != Model::Contact
+    {
+        let problem =
+            format!("is for the model \"contact\", and the scenario has model = \"{}\"", pair.model.name());
+        return Err(value.error(problem).with_help("leave it out and vary keys with [[vary]]"));
+    }
+    let of_classes = classes.iter().flat_map(|class| &class.rules);
+    let mut decided: Vec<String> =
+        rules.iter().chain(of_classes).flat_map(|rule| rule.keys.clone()).collect();
+    decided.extend(tuned.iter().flat_map(|tuned| &tuned.keys).map(|(key, _)| key.clone()));
+    rules.extend(variation.rules(base).into_iter().filter(|rule| !decided.contains(&rule.keys[0])));
+    Ok(rules)
 }
 
 /// Reads a number that must meet a condition.

@@ -1,0 +1,98 @@
+//! Ready-made rules: what is not known of a rig.
+
+use meshtone::scenario::{ScenarioForm, ScenarioNumber, log_deviation, split_key};
+
+use super::{Distribution, Level, Rule};
+use crate::draw::PATH_KEYS;
+
+/// What is known of the rig that a data set is about, and so what varies in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variation {
+    /// The rig and the path to its sensor are known; its mounting and its operation scatter.
+    KnownRig,
+    /// The path from the gears to the sensor is not known either.
+    KnownRigUnknownPath,
+    /// Neither are the rig's stiffnesses, masses and dampings.
+    UnknownRig,
+}
+
+/// (-) Half of the range of a uniform number over its standard deviation.
+const HALF_RANGE: f64 = 1.732_050_807_568_877_2;
+
+impl Variation {
+    /// All of them with their names in a plan.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("known-rig", Self::KnownRig),
+        ("known-rig-unknown-path", Self::KnownRigUnknownPath),
+        ("unknown-rig", Self::UnknownRig),
+    ];
+
+    /// The rules that it stands for, of keys that the base scenario has.
+    ///
+    /// Speed and torque scatter by record about those of the base scenario, the damping of the mesh, which the oil's temperature changes, too.
+    /// Eccentricity and misalignment scatter by mounting, as does an unknown path. What is not known of the rig scatters by unit, uniformly
+    /// in the logarithm, with the standard deviation of [`log_deviation`].
+    ///
+    /// # Arguments
+    /// * `base` - the base scenario
+    pub fn rules(self, base: &ScenarioForm) -> Vec<Rule> {
+        let mut rules: Vec<Rule> = Vec::new();
+        let is_unknown_rig = self == Self::UnknownRig;
+        let numbers = base.numbers();
+        for number in &numbers {
+            let (key, value) = (number.key.as_str(), number.value);
+            let about = |factor: f64| Distribution::LogUniform([value / factor, value * factor]);
+            let rule = match (key, split_key(key).1.unwrap_or_default()) {
+                ("operation.pinion_speed_hz" | "operation.input_speed_hz", _) => {
+                    Some((Level::Record, about(if is_unknown_rig { 1.1 } else { 1.02 })))
+                }
+                ("operation.brake_torque_nm", _) => {
+                    Some((Level::Record, about(if is_unknown_rig { 1.5 } else { 1.05 })))
+                }
+                ("rig.eccentricity_mm", _) | (_, "eccentricity_mm") => {
+                    Some((Level::Mounting, Distribution::Uniform([value, value + 0.02])))
+                }
+                ("rig.misalignment_um", _) => {
+                    Some((Level::Mounting, Distribution::Uniform([value - 10.0, value + 10.0])))
+                }
+                // The oil's temperature changes it.
+                ("rig.mesh_damping_ratio", _) if !is_unknown_rig => Some((Level::Record, about(1.3))),
+                (_, "damping_ratio") if !is_unknown_rig && key.starts_with("mesh[") => {
+                    Some((Level::Record, about(1.3)))
+                }
+                // One of the two is 0: the other one counts.
+                (_, "din_grade" | "iso_class") if is_unknown_rig && value > 0.0 => {
+                    Some((Level::Unit, neighbours(number)))
+                }
+                _ => log_deviation(key)
+                    .filter(|_| is_unknown_rig)
+                    .map(|deviation| (Level::Unit, about((HALF_RANGE * deviation).exp()))),
+            };
+            // A torque of 0 has no logarithm.
+            let rule =
+                rule.filter(|(_, of)| !matches!(of, Distribution::LogUniform([least, _]) if *least <= 0.0));
+            rules.extend(rule.map(|(level, distribution)| one(key, level, distribution)));
+        }
+        if self != Self::KnownRig {
+            let [gain_db, ripple_db, plate_hz, strength] = PATH_KEYS;
+            let gain = Distribution::Normal { mean: 0.0, standard_deviation: 6.0, within: [-18.0, 18.0] };
+            rules.push(one(gain_db, Level::Mounting, gain));
+            rules.push(one(ripple_db, Level::Mounting, Distribution::Fixed(2.0)));
+            rules.push(one(plate_hz, Level::Mounting, Distribution::LogUniform([1.7e3, 9.5e3])));
+            rules.push(one(strength, Level::Mounting, Distribution::LogUniform([0.1, 0.4])));
+        }
+        rules
+    }
+}
+
+fn one(key: &str, level: Level, distribution: Distribution) -> Rule {
+    Rule { keys: vec![key.to_owned()], level, distribution, times: None, plus: None }
+}
+
+/// A grade, the next finer one and the next coarser one.
+fn neighbours(grade: &ScenarioNumber) -> Distribution {
+    let rows: Vec<Vec<f64>> =
+        [-1.0, 0.0, 1.0].map(|step| vec![(grade.value + step).clamp(1.0, 11.0)]).to_vec();
+    let weights = vec![1.0; rows.len()];
+    Distribution::Choice { rows, weights }
+}
