@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Channels = Union[npt.ArrayLike, Mapping[str, npt.ArrayLike]]
 """The analysed channel, or several by the data set's names."""
 
-COPIED = ("plan.toml", "scenario.toml", "tuned.toml")
+COPIED = ("plan.toml", "scenario.toml", "tuned.toml", "background.csv")
 """The plan beside the data, and the files that it names."""
 
 

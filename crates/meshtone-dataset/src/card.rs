@@ -72,7 +72,7 @@ fn head(set: &Finished) -> String {
         ScenarioForm::Gearbox(_) => "gearboxes",
         _ => "pairs of wheels",
     };
-    let ([plan, scenario, _], version) = (PlanFile::NAMES, env!("CARGO_PKG_VERSION"));
+    let ([plan, scenario, ..], version) = (PlanFile::NAMES, env!("CARGO_PKG_VERSION"));
     format!(
         "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
          Meshtone {version} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\

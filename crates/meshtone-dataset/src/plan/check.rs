@@ -9,7 +9,7 @@ use meshtone_toml::{ReadResult, TomlError, TomlTable};
 use super::{
     Class, Content, Distribution, Keep, Level, Plan, Rule, SplitBy, Splits, Wheel, refused, wheel_words,
 };
-use crate::draw::{DrawnRecord, Sampler, is_of_plan};
+use crate::draw::{DrawnRecord, NOISE_KEYS, Sampler, is_of_plan};
 use crate::record::Turning;
 use crate::shard::FailedRecord;
 
@@ -48,6 +48,12 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
     if let Some((key, _)) = tuned.find(|(key, _)| content.all_rules().any(|rule| rule.varies(key))) {
         let problem = format!("has the key `{key}`, which a rule varies; must be one of the two");
         return Err(root.error("tuned", problem));
+    }
+    let has_level = |rule: &Rule| NOISE_KEYS.iter().any(|key| rule.varies(key));
+    if content.background.is_some() && !content.all_rules().any(has_level) {
+        let help =
+            "vary noise.snr_db or noise.level_g: [[vary]] with key = \"noise.snr_db\" and uniform = [10, 30]";
+        return Err(root.error("background", "has no level").with_help(help));
     }
     Sampler::new(content).map(drop)
 }

@@ -2,6 +2,7 @@
 //!
 //! A plan is read from TOML with [`Plan::read`]. [`crate::draw`] draws its records.
 
+mod background;
 mod check;
 mod class;
 mod growth;
@@ -20,6 +21,7 @@ use meshtone::scenario::ScenarioForm;
 use meshtone_io::experiment::Tuned;
 use meshtone_toml::TomlError;
 
+pub use background::Background;
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
 pub use growth::{Growth, Law, RunPosition};
@@ -76,8 +78,8 @@ pub struct PlanFile {
 }
 
 impl PlanFile {
-    /// Names that such files have: the plan, its base scenario, what was tuned.
-    pub const NAMES: [&'static str; 3] = ["plan.toml", "scenario.toml", "tuned.toml"];
+    /// Names that such files have: the plan, its base scenario, what was tuned, the background.
+    pub const NAMES: [&'static str; 4] = ["plan.toml", "scenario.toml", "tuned.toml", "background.csv"];
 }
 
 /// The facts that the data card states about a data set.
@@ -124,6 +126,8 @@ pub struct Content {
     pub keep: Keep,
     /// How difference signals are enhanced; none if they are not.
     pub tuned: Option<Tuned>,
+    /// The noise of a healthy machine, which is added in place of white noise; none for white noise.
+    pub background: Option<Background>,
 }
 
 impl Content {

@@ -222,7 +222,7 @@ impl<'a> View<'a> {
         }
         for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
             if kind.is_acceleration() {
-                noise::add(&record.drawn, number as u64, channel);
+                noise::add(&record.drawn, content.background.as_ref(), number as u64, channel);
             }
         }
         self.chain(&self.simulated.train())?.fill(&mut record, analysed, channels)?;

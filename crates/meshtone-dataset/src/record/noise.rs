@@ -1,16 +1,18 @@
-//! Noise that is added to raw channels.
+//! Noise that is added to raw channels: white, or that of a recorded machine.
 
 use meshtone::random::{Draws, Purpose};
 
 use crate::draw::{DrawnRecord, NOISE_KEYS};
+use crate::plan::Background;
 
-/// Adds white Gaussian noise to acceleration channels, as the record's values say.
+/// Adds white Gaussian noise, or a piece of a machine's background, to acceleration channels, with the level that the record's values say.
 ///
 /// # Arguments
 /// * `drawn` - the record
+/// * `background` - of the plan; none for white noise
 /// * `channel` - number of the channel
 /// * `signal` - (g) its samples
-pub(super) fn add(drawn: &DrawnRecord, channel: u64, signal: &mut [f32]) {
+pub(super) fn add(drawn: &DrawnRecord, background: Option<&Background>, channel: u64, signal: &mut [f32]) {
     let [relative_db, level_g] = NOISE_KEYS.map(|key| drawn.value(key));
     let deviation = match (relative_db, level_g) {
         (Some(ratio_db), _) => standard_deviation(signal) * libm::pow(10.0, -ratio_db / 20.0),
@@ -18,6 +20,10 @@ pub(super) fn add(drawn: &DrawnRecord, channel: u64, signal: &mut [f32]) {
         (None, None) => return,
     };
     let mut draws = Draws::new(drawn.seed, Purpose::RecordNoise, channel);
+    if let Some(background) = background {
+        background.add(&mut draws, deviation, signal);
+        return;
+    }
     for pair in signal.chunks_mut(2) {
         for (sample, normal) in pair.iter_mut().zip(draws.normals()) {
             *sample = (f64::from(*sample) + deviation * normal) as f32;

@@ -1,5 +1,6 @@
 //! Reading a plan.
 
+mod background;
 mod base;
 mod class;
 mod growth;
@@ -137,6 +138,7 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         units: units.integer(1..=MOST_UNITS)?,
         mountings: root.read_optional("mountings", |value| value.integer(1..=MOST_MOUNTINGS))?.unwrap_or(1),
         design: design.unwrap_or_default(),
+        background: root.read_optional("background", |value| background::read(value, &keep, reading))?,
         keep,
         rules: rules(root, &base, tuned.as_ref(), &classes)?,
         classes,
