@@ -165,12 +165,35 @@ def test_arrays_for_learners(gears: datasets.Dataset) -> None:
 def test_python_of_the_data_card(gears: datasets.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
     blocks = re.findall(r"^```python\n(.*?)^```$", (gears.path / "README.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
     monkeypatch.chdir(gears.path)
-    for block, package in zip(blocks, ("meshtone", "pandas", "polars", "dask"), strict=True):
+    for block, package in zip(blocks, ("meshtone", "pandas", "polars", "dask", "datasets"), strict=True):
         assert package in block
+        if package == "datasets":
+            # The test below says so where it is not installed.
+            continue
         names: dict[str, Any] = {}
         exec(compile(block, f"{package} on the card", "exec"), names)
         assert len(names["train"]) == len(gears.split("train"))
-    assert set(names["train"].columns) == {"label", "split", "severity", "horizontal_g"}
+    assert set(names["train"].columns) == {"label", "severity", "horizontal_g"}
+
+
+def test_hugging_face_gives_the_declared_splits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the name of a configuration, and without a network."""
+    monkeypatch.setenv("HF_HUB_OFFLINE", "1")
+    hugging_face = pytest.importorskip("datasets", reason="datasets is not installed: pip install datasets")
+    plan = write_plan(tmp_path)
+    shift = '[[split.shift]]\nname = "fast-ones"\npart = 0.2\nwhen = "operation.pinion_speed_hz > 40"\n'
+    plan.write_text(PLAN.replace("test = 0.5", f"test = 0.3\n{shift}"), encoding="utf-8")
+    made = datasets.generate_dataset(plan, tmp_path / "set")
+    read = hugging_face.load_dataset(str(made.path), cache_dir=str(tmp_path / "cache"))
+    # Names of splits are words there.
+    assert {name.replace("_", "-"): len(split) for name, split in read.items()} == {
+        name: len(made.split(name)) for name in ("train", "test", "fast-ones")
+    }
+    units = [set(split["unit"]) for split in read.values()]
+    assert sum(map(len, units)) == len(set.union(*units)) == 6
+    train = hugging_face.load_dataset(str(made.path), split="train", cache_dir=str(tmp_path / "cache"))
+    assert train["record"][:] == sorted(train["record"]) == made.split("train").column("record").tolist()
+    assert train[0]["vertical_g"] == made.split("train").signals("vertical_g")[0].tolist()
 
 
 def test_card_of_splits_by_mounting(tmp_path: Path) -> None:
@@ -251,10 +274,10 @@ def test_parts_and_interruption_change_nothing(gears: datasets.Dataset, tmp_path
 def test_a_lost_file_is_reported_and_made_again(gears: datasets.Dataset, tmp_path: Path) -> None:
     path = tmp_path / "set"
     shutil.copytree(gears.path, path)
-    (path / "data" / "records-000001.parquet").unlink()
-    with pytest.warns(UserWarning, match="not complete: it has 16 records"):
+    (path / "data" / "train-000001.parquet").unlink()
+    with pytest.warns(UserWarning, match="not complete: it has 20 records"):
         damaged = datasets.load_dataset(path)
-    assert "16 records, not complete" in repr(damaged)
+    assert "20 records, not complete" in repr(damaged)
     assert datasets.generate_dataset(write_plan(tmp_path), path).is_complete
     assert digests(path) == digests(gears.path)
 
@@ -272,16 +295,16 @@ def test_every_flipped_bit_is_found(gears: datasets.Dataset, tmp_path: Path) -> 
     shutil.copytree(gears.path, path)
     assert datasets.verify_dataset(path) == {}
     assert len(datasets.load_dataset(path, verify=True)) == 24
-    file = path / "data" / "records-000001.parquet"
+    file = path / "data" / "train-000001.parquet"
     whole = file.read_bytes()
     for number in range(1, 31):
         flip(file, number)
-        assert list(datasets.verify_dataset(path)) == ["data/records-000001.parquet"]
-        with pytest.raises(ValueError, match=r"records-000001.parquet: its bytes are not those that were written"):
+        assert list(datasets.verify_dataset(path)) == ["data/train-000001.parquet"]
+        with pytest.raises(ValueError, match=r"train-000001.parquet: its bytes are not those that were written"):
             datasets.load_dataset(path, verify=True)
         file.write_bytes(whole)
     flip(file, 31)
-    with pytest.warns(UserWarning, match=r"1 files were made again; data/records-000001.parquet: its bytes"):
+    with pytest.warns(UserWarning, match=r"1 files were made again; data/train-000001.parquet: its bytes"):
         datasets.generate_dataset(write_plan(tmp_path), path)
     assert digests(path) == digests(gears.path)
 
@@ -289,13 +312,13 @@ def test_every_flipped_bit_is_found(gears: datasets.Dataset, tmp_path: Path) -> 
 def test_names_and_sizes_are_always_looked_at(gears: datasets.Dataset, tmp_path: Path) -> None:
     path = tmp_path / "set"
     shutil.copytree(gears.path, path)
-    first, extra = (path / "data" / f"records-{number:06}.parquet" for number in (0, 3))
+    first, extra = (path / "data" / f"train-{number:06}.parquet" for number in (0, 4))
     shutil.copy(first, extra)
-    with pytest.raises(ValueError, match="records-000003.parquet: no manifest or list of a part names it"):
+    with pytest.raises(ValueError, match="train-000004.parquet: no manifest or list of a part names it"):
         datasets.load_dataset(path)
     extra.unlink()
     first.write_bytes(first.read_bytes()[:-1])
-    with pytest.raises(ValueError, match=r"records-000000.parquet: it has \d+ bytes instead of \d+"):
+    with pytest.raises(ValueError, match=r"train-000000.parquet: it has \d+ bytes instead of \d+"):
         datasets.load_dataset(path)
     shutil.copy(gears.path / "data" / first.name, first)
     # Without its card it can be read, but is not all that was written.

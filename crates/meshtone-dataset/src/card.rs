@@ -20,27 +20,22 @@ pub(crate) fn card(set: &Finished) -> String {
     sections.map(|section| section(set)).concat()
 }
 
-/// Writes what Hugging Face's `datasets` and its website read of a card: licence, title, tags, and each split as a configuration, whose
-/// records it filters out of the files, which hold all splits.
+/// Writes what Hugging Face's `datasets` and its website read of a card: licence, title, tags, and the files of each split.
 fn front_matter(set: &Finished) -> String {
     let (about, units_of_split) = (&set.plan.about, set.plan.content.units_of_split());
     let licence = match about.licence.as_str() {
         words if words.contains(char::is_whitespace) => format!("other\nlicense_name: {}", json!(words)),
         identifier => json!(identifier.to_lowercase()).to_string(),
     };
-    let configuration = |split: &str| {
-        // Names of splits are words there.
-        let (word, files) = (split.replace('-', "_"), set.shards.pattern());
-        format!(
-            "- config_name: {split:?}\n  data_files:\n  - split: {word:?}\n    path: {files:?}\n  filters: \
-             [[\"split\", \"==\", {split:?}]]\n"
-        )
+    // Names of splits are words there.
+    let files_of = |split: &str| {
+        format!("  - split: {:?}\n    path: {:?}\n", split.replace('-', "_"), set.shards.pattern(split))
     };
     let splits = set.plan.content.splits.names_in(&units_of_split);
     format!(
-        "---\nlicense: {licence}\npretty_name: {}\ntags: [vibration, gears, condition-monitoring, simulation]\nconfigs:\n{}---\n\n",
+        "---\nlicense: {licence}\npretty_name: {}\ntags: [vibration, gears, condition-monitoring, simulation]\nconfigs:\n- config_name: default\n  data_files:\n{}---\n\n",
         json!(about.title),
-        splits.into_iter().map(configuration).collect::<String>()
+        splits.into_iter().map(files_of).collect::<String>()
     )
 }
 
@@ -297,8 +292,8 @@ fn is_empty(set: &Finished, column: &Column) -> bool {
 fn files(set: &Finished) -> String {
     let bytes: u64 = set.contents.files.values().map(|file| file.digest.bytes).sum();
     format!(
-        "## Files\n\n{} in `data/`, {} each, {:.1} MB together. Records are in random order, so that every file \
-         is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n\n",
+        "## Files\n\n{} in `data/`, {} each at most, {:.1} MB together. Every file has records of one split, in \
+         random order, so that it is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n\n",
         counted(set.contents.files.len() as u64, "Parquet file"),
         counted(set.shards.records_per_shard, "record"),
         bytes as f64 / 1e6
@@ -310,7 +305,7 @@ fn loading(set: &Finished) -> String {
     let signal = set.columns.iter().find(|column| column.is_signal()).map_or("label", |column| &column.name);
     include_str!("loading.md")
         .replace("{signal}", signal)
-        .replace("{all}", set.shards.pattern())
+        .replace("{train}", &set.shards.pattern("train"))
         .replace("{first}", &set.shards.name(0))
 }
 

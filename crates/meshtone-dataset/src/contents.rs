@@ -81,14 +81,14 @@ pub(crate) struct SummaryColumns<'c> {
 
 impl<'c> SummaryColumns<'c> {
     /// Selects them from the columns of a plan.
-    pub fn new(columns: &'c [Column], shards: Shards) -> Self {
+    pub fn new(columns: &'c [Column], shards: &Shards) -> Self {
         let named = |wanted: fn(&Column) -> bool| {
             columns.iter().filter(|column| wanted(column)).map(|column| column.name.as_str()).collect()
         };
         Self {
             plain: named(|column| !column.is_signal()),
             sampled: named(Column::is_previewed),
-            every: shards.records.div_ceil(PREVIEWED).max(1),
+            every: shards.all_records().div_ceil(PREVIEWED).max(1),
         }
     }
 
@@ -256,7 +256,7 @@ impl Contents {
     }
 
     /// Decides by its bytes which of several listed files each shard is.
-    pub fn resolve_conflicts(&mut self, to: &Destination, shards: Shards) -> Result<(), DatasetError> {
+    pub fn resolve_conflicts(&mut self, to: &Destination, shards: &Shards) -> Result<(), DatasetError> {
         for (shard, others) in std::mem::take(&mut self.conflicting) {
             let digest = to.digest(&shards.name(shard))?;
             let others = others.into_iter().find(|file| file.digest == digest);
@@ -269,7 +269,7 @@ impl Contents {
     pub fn count_all(
         &mut self,
         columns: &SummaryColumns<'_>,
-        shards: Shards,
+        shards: &Shards,
         to: &Destination,
     ) -> Result<(), DatasetError> {
         let uncounted: Vec<u64> = self.uncounted.iter().copied().collect();

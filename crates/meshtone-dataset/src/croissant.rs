@@ -58,7 +58,7 @@ pub(crate) fn metadata(set: &Finished, documents: &[Document]) -> String {
 const CONTEXT: &str = include_str!("croissant_context.json");
 
 /// The files. That of all hashes cannot stand here with its own, as it has this file's; nor do a million shards.
-fn distribution(shards: Shards, documents: &[Document]) -> Value {
+fn distribution(shards: &Shards, documents: &[Document]) -> Value {
     let file_set = |id: &str, includes: &str, format: &str, description: &str| {
         json!({
             "@type": "cr:FileSet",
@@ -71,7 +71,12 @@ fn distribution(shards: Shards, documents: &[Document]) -> Value {
     };
     let manifest = "counts, failures, and the SHA-256 of every file";
     let mut files = vec![
-        file_set(SHARDS, shards.pattern(), "application/x-parquet", "the records, in random order"),
+        file_set(
+            SHARDS,
+            &shards.pattern("*"),
+            "application/x-parquet",
+            "the records, of one split in each file",
+        ),
         file_set("manifest", MANIFEST, "application/json", manifest),
     ];
     files.extend(documents.iter().map(|Document { name, digest }| {
@@ -162,6 +167,7 @@ fn data_type(column: &Column) -> Value {
         CellType::Int32 | CellType::Int64 => "sc:Integer",
         CellType::Float64 | CellType::Float32List => "sc:Float",
         CellType::Text => "sc:Text",
+        CellType::Boolean => "sc:Boolean",
     };
     if column.name == "label" { json!([cells, "cr:Label"]) } else { json!(cells) }
 }

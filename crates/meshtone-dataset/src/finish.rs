@@ -22,7 +22,7 @@ const SHOWN: [&str; 2] = ["difference_g", "average_g"];
 #[derive(Clone, Copy)]
 pub(crate) struct Finished<'a> {
     pub plan: &'a Plan,
-    pub shards: Shards,
+    pub shards: &'a Shards<'a>,
     pub contents: &'a Contents,
     pub columns: &'a [Column],
 }
@@ -37,7 +37,7 @@ impl Finished<'_> {
 /// Finishes a data set whose shards are all there. Returns whether it is complete.
 pub(crate) fn finish_if_complete(
     plan: &Plan,
-    shards: Shards,
+    shards: &Shards,
     to: &Destination,
 ) -> Result<bool, DatasetError> {
     let files = to.files()?;
@@ -63,7 +63,7 @@ pub(crate) fn finish_if_complete(
 /// Writes data card, preview, Croissant metadata and manifest of a data set whose shards are all there and known.
 pub(crate) fn finish(
     plan: &Plan,
-    shards: Shards,
+    shards: &Shards,
     to: &Destination,
     mut contents: Contents,
 ) -> Result<(), DatasetError> {
@@ -161,7 +161,7 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
 /// One signal of one record.
 fn signal(to: &Destination, shard: &str, row: usize, column: &str) -> Vec<f64> {
     let read = to.read_shard(shard, Wanted::Signal { column, row });
-    read.map_or_else(|_| Vec::new(), |read| read.signal.iter().map(|&x| f64::from(x)).collect())
+    read.ok().and_then(|read| read.signals.into_iter().next()).unwrap_or_default()
 }
 
 /// Teeth, speed, load and severity of one record, in words.

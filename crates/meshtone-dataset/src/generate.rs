@@ -159,9 +159,9 @@ pub fn generate(
     }
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(plan, error))?;
     let shards = Shards::new(plan, &sampler);
-    let was_complete = manifest::check_place(plan, shards, to, &to.files()?, manifest::read(to)?.as_ref())?;
+    let was_complete = manifest::check_place(plan, &shards, to, &to.files()?, manifest::read(to)?.as_ref())?;
     // A data set that is called complete is examined all the same: a file may have been lost or damaged since.
-    let look = || PartContents::look(plan, shards, to, part);
+    let look = || PartContents::look(plan, &shards, to, part);
     let there = was_complete.then(look).transpose()?;
     if let Some(found) = there.as_ref().filter(|found| found.missing.is_empty() && found.has_documents) {
         return Ok(found.generated.clone());
@@ -174,9 +174,9 @@ pub fn generate(
     let _claimed = to.claim(&format!("part-{number}-{of}"), &format!("is making {making} in"))?;
     to.remove_leftovers();
     let PartContents { missing, mut generated, .. } = there.map_or_else(look, Ok)?;
-    let run = Run { plan, sampler: &sampler, shards, to, part, control };
+    let run = Run { plan, sampler: &sampler, shards: &shards, to, part, control };
     run.generate(&missing, &mut generated)?;
-    generated.complete = finish::finish_if_complete(plan, shards, to)?;
+    generated.complete = finish::finish_if_complete(plan, &shards, to)?;
     Ok(generated)
 }
 
@@ -193,18 +193,15 @@ struct PartContents {
 impl PartContents {
     /// Reads all files of a part that are there, and compares them with what the manifest and the lists say about them.
     ///
-    /// Shards that are as they were written are kept; all others are missing, and those that were damaged are listed with the reason. A
-    /// data set whose records have other columns than the plan's is refused only where something is to be added to it.
-    fn look(plan: &Plan, shards: Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
+    /// Shards that are as they were written are kept; all others are missing, and those that were damaged are listed with the reason.
+    fn look(plan: &Plan, shards: &Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
         let files = to.files()?;
         let manifest = manifest::read(to)?;
         let mut generated = Generated { complete: true, ..Generated::default() };
         // A data set that was finished by an earlier version has no other documents than those that its manifest lists.
         let mut wanted: Vec<&str> = [CARD].into_iter().chain(PREVIEW).collect();
         wanted.extend(plan.files.iter().map(|file| file.name));
-        let mut columns = Ok(());
         if let Some(manifest) = &manifest {
-            columns = manifest.check_columns(to);
             wanted.extend(manifest.documents.iter().map(|document| document.name.as_str()));
             let changed = manifest.changed_documents(to, &files)?;
             let wrong = changed.into_iter().chain((!manifest.is_whole).then_some(MANIFEST));
@@ -225,17 +222,13 @@ impl PartContents {
         for (shard, objection) in objections.collect::<Vec<_>>() {
             if let Some(None) = objection {
                 generated.kept_shards += 1;
-                let failures = contents.failures.range(shards.range(shard));
-                generated.earlier_failures.extend(failures.map(|(_, failed)| failed.clone()));
+                let failures = shards.records(shard).filter_map(|record| contents.failures.get(&record));
+                generated.earlier_failures.extend(failures.cloned());
                 continue;
             }
             missing.push(shard);
             let remade = objection.flatten().map(|reason| Remade { file: shards.name(shard), reason });
             generated.remade.extend(remade);
-        }
-        // Records are added only to a data set whose records have the same columns.
-        if !missing.is_empty() || !has_documents {
-            columns?;
         }
         Ok(Self { missing, has_documents, generated })
     }
@@ -245,7 +238,7 @@ impl PartContents {
 struct Run<'a> {
     plan: &'a Plan,
     sampler: &'a Sampler<'a>,
-    shards: Shards,
+    shards: &'a Shards<'a>,
     to: &'a Destination,
     part: Part,
     control: &'a GenerateControl<'a>,
@@ -280,7 +273,7 @@ impl Run<'_> {
         if missing.is_empty() {
             return Ok(());
         }
-        let records: u64 = missing.iter().map(|&shard| self.shards.range(shard).count() as u64).sum();
+        let records: u64 = missing.iter().map(|&shard| self.shards.len(shard)).sum();
         let stop = AtomicBool::new(false);
         let (sender, receiver) = sync_channel(WAITING);
         let written = std::thread::scope(|scope| {
@@ -297,7 +290,7 @@ impl Run<'_> {
     /// Simulates all records of some shards and sends them to the writer in their order.
     fn simulate(&self, missing: &[u64], sender: SyncSender<Item>, stop: &AtomicBool) {
         let asked = Mutex::new(PendingSimulations::default());
-        let records = missing.iter().flat_map(|&shard| self.shards.range(shard));
+        let records = missing.iter().flat_map(|&shard| self.shards.records(shard));
         let records = records.take_while(|_| !stop.load(Ordering::Relaxed));
         let scenarios = records.flat_map(|index| self.ask(index, &asked));
         let role = |number: usize| lock(&asked).roles.get(&number).map(|(role, _)| role.clone());
@@ -411,8 +404,8 @@ impl Run<'_> {
         listing: &mut Listing<'_>,
         next: impl FnMut() -> Option<Item>,
     ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
-        let metadata =
-            ShardMetadata { plan: self.plan.hash(), records: self.shards.range(shard), failures: Vec::new() };
+        let records = self.shards.len(shard);
+        let metadata = ShardMetadata { plan: self.plan.hash(), records, failures: Vec::new() };
         let content = &self.plan.content;
         let written = self.to.write(&self.shards.name(shard), |file: &mut File| {
             let mut hashing = Hashing::new(&mut *file);

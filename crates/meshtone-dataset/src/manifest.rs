@@ -22,8 +22,9 @@ pub(crate) const CARD: &str = "README.md";
 pub(crate) const CROISSANT: &str = "croissant.json";
 pub(crate) const PREVIEW: [&str; 2] = ["preview.svg", "preview.png"];
 /// Since format 2, a shard's SHA-256 is computed from the bytes that were to be written; in format 1 it was computed from the disk.
-/// Since format 3, records have the column [`crate::shard::WARNINGS`] and the one of the time in which the teeth do not push.
-pub(crate) const FORMAT_VERSION: u64 = 3;
+/// Since format 3, records have the column [`crate::shard::WARNINGS`] and the one of the time in which the teeth do not push. Since format
+/// 4, a shard has the records of one split only; before, it had all records of a range of numbers.
+pub(crate) const FORMAT_VERSION: u64 = 4;
 
 /// Begins a data set or goes on with one.
 pub(crate) fn begin(plan: &Plan, to: &Destination) -> Result<(), DatasetError> {
@@ -43,7 +44,7 @@ pub(crate) fn begin(plan: &Plan, to: &Destination) -> Result<(), DatasetError> {
 /// * `manifest` - the manifest of the place
 pub(crate) fn check_place(
     plan: &Plan,
-    shards: Shards,
+    shards: &Shards,
     to: &Destination,
     there: &Files,
     manifest: Option<&ReadManifest>,
@@ -82,9 +83,7 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
         let help = "go on with that version, or name another directory with -o";
         return Err(DatasetError::refused(problem, help));
     }
-    if !manifest.complete {
-        manifest.check_columns(to)?;
-    }
+    manifest.check_format(to)?;
     if manifest.plan != plan.hash() {
         let problem = format!(
             "the data set in {to} was begun with another plan, or by a Meshtone whose simulations gave other numbers"
@@ -154,13 +153,13 @@ impl ReadManifest {
         changed.collect()
     }
 
-    /// Refuses to add records to a data set whose records have other columns.
-    pub fn check_columns(&self, place: &Destination) -> Result<(), DatasetError> {
+    /// Refuses to go on with a data set of an earlier format.
+    fn check_format(&self, place: &Destination) -> Result<(), DatasetError> {
         if self.format == FORMAT_VERSION {
             return Ok(());
         }
         let problem = format!(
-            "the data set in {place} has the format {}, whose records have other columns than those of format {FORMAT_VERSION}",
+            "the data set in {place} has the format {}, whose files or columns are others than those of format {FORMAT_VERSION}",
             self.format
         );
         Err(DatasetError::refused(problem, "name another directory with -o, and make all of it there"))

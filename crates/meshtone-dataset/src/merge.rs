@@ -47,7 +47,7 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     let mut places = Vec::with_capacity(parts.len());
     for part in parts {
         let manifest = manifest::read_begun(part)?;
-        let mut place = MergeSource::look(part, Some(manifest), &plan, shards, &mut contents)?;
+        let mut place = MergeSource::look(part, Some(manifest), &plan, &shards, &mut contents)?;
         if !is_same(part, to) {
             // The names are not needed any more; a million of them take a hundred megabytes.
             place.files.clear();
@@ -57,7 +57,7 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     let nowhere = |shard: &u64| !places.iter().any(|place| place.shards.contains_key(shard));
     let missing: Vec<u64> = (0..shards.count()).filter(nowhere).collect();
     if let Some(&shard) = missing.first() {
-        return Err(no_part_has(shard, missing.len(), shards, &places));
+        return Err(no_part_has(shard, missing.len(), &shards, &places));
     }
     let mut merged = Generated {
         earlier_failures: contents.failures.values().cloned().collect(),
@@ -66,7 +66,7 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     };
     let target = match places.iter().find(|place| is_same(place.at, to)) {
         Some(part) => part,
-        None => &MergeSource::look(to, manifest::read(to)?, &plan, shards, &mut Contents::default())?,
+        None => &MergeSource::look(to, manifest::read(to)?, &plan, &shards, &mut Contents::default())?,
     };
     let was_complete = target.is_complete;
     if !was_complete {
@@ -85,14 +85,14 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
             }
             None => {
                 merged.written_shards += 1;
-                merged.written_records += shards.range(shard).count() as u64;
+                merged.written_records += shards.len(shard);
                 take_over(&name, &of_parts, to)?
             }
         };
         contents.choose(shard, file);
     }
     if !was_complete || merged.written_shards > 0 {
-        finish::finish(&plan, shards, to, contents)?;
+        finish::finish(&plan, &shards, to, contents)?;
     }
     Ok(merged)
 }
@@ -146,11 +146,9 @@ impl<'p> MergeSource<'p> {
         at: &'p Destination,
         manifest: Option<ReadManifest>,
         plan: &Plan,
-        shards: Shards,
+        shards: &Shards,
         contents: &mut Contents,
     ) -> Result<Self, DatasetError> {
-        // What is written in the end says that all shards have this version's columns.
-        manifest.as_ref().map_or(Ok(()), |manifest| manifest.check_columns(at))?;
         let files = at.files()?;
         let is_complete = manifest::check_place(plan, shards, at, &files, manifest.as_ref())?;
         let mut listed = contents.add_place(plan, at, &files, manifest)?;
@@ -182,7 +180,7 @@ impl<'p> MergeSource<'p> {
     }
 }
 
-fn no_part_has(shard: u64, count: usize, shards: Shards, places: &[MergeSource<'_>]) -> DatasetError {
+fn no_part_has(shard: u64, count: usize, shards: &Shards, places: &[MergeSource<'_>]) -> DatasetError {
     let (all, name) = (shards.count(), shards.name(shard));
     let mut problem = format!("{count} of {all} shards are in none of the parts; the first is {name}");
     if let Some(place) = places.iter().find(|place| place.doubtful.contains(&shard)) {
@@ -192,7 +190,7 @@ fn no_part_has(shard: u64, count: usize, shards: Shards, places: &[MergeSource<'
 }
 
 /// Reads the plan that a data set was made by from the copies beside its data.
-fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
+pub(crate) fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
     let directory = tempfile::tempdir().map_err(DatasetError::write("a temporary directory"))?;
     for name in PlanFile::NAMES {
         if let Some(text) = place.text(name)? {
@@ -300,7 +298,15 @@ mod tests {
         let shards = std::env::var("MESHTONE_SHARDS").map_or(3_000, |shards| shards.parse().unwrap());
         let text = PLAN.replacen("records = 100", &format!("records = {}", 100 * shards), 1);
         let plan = Plan::read_text(text, std::path::Path::new("plan.toml")).unwrap();
-        let all = Shards { records: plan.records(), records_per_shard: 100 };
+        let sampler = Sampler::new(&plan.content).unwrap();
+        let start = processor_s();
+        let all = Shards::new(&plan, &sampler);
+        println!(
+            "{} records divided into shards in {:.1} s of the processor",
+            plan.records(),
+            processor_s() - start
+        );
+        let shards = all.count();
         let directory = tempfile::tempdir().unwrap();
         let to = Destination::directory(directory.path());
         manifest::begin(&plan, &to).unwrap();
@@ -314,8 +320,9 @@ mod tests {
                 let path = directory.path().join(&name);
                 fs::create_dir_all(path.parent().unwrap()).unwrap();
                 File::create(path).unwrap().set_len(digest.bytes).unwrap();
-                let counts = Counts::from([("train".to_owned(), [("healthy".to_owned(), 100)].into())]);
-                let file = ShardFile { digest, rows: 100 };
+                let counts =
+                    Counts::from([("train".to_owned(), [("healthy".to_owned(), all.len(shard))].into())]);
+                let file = ShardFile { digest, rows: all.len(shard) };
                 let (warnings, failures) = (WarningCounts::new(), Vec::new());
                 (shard, ShardContents { file, counts, warnings, failures })
             });
@@ -328,17 +335,14 @@ mod tests {
         println!("merged in {:.1} s of the processor, {:.0} MB at most", processor_s() - start, peak_mb());
         let start = processor_s();
         let found = verify(&to, Check::Sizes).unwrap();
-        assert!(found.is_good() && found.complete && found.rows == 100 * shards, "{:?}", found.problems);
+        assert!(found.is_good() && found.complete && found.rows == plan.records(), "{:?}", found.problems);
         println!(
             "names, sizes and counts in {:.1} s of the processor, {:.0} MB at most",
             processor_s() - start,
             peak_mb()
         );
-        // Names sort as the shards' numbers do, and no folder has more than a thousand.
-        assert!(
-            found.shards.is_sorted()
-                && found.shards.iter().map(|name| all.number(name)).eq((0..shards).map(Some))
-        );
+        // A name says its shard's number, and no folder has more than a thousand.
+        assert!((0..shards).all(|shard| all.number(&all.name(shard)) == Some(shard)));
         let folders =
             fs::read_dir(directory.path().join("data")).unwrap().map(|folder| folder.unwrap().path());
         assert!(folders.into_iter().all(|folder| fs::read_dir(folder).unwrap().count() <= 1000));

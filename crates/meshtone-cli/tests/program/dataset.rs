@@ -306,7 +306,7 @@ fn a_full_disk_leaves_what_can_be_gone_on_with() {
         .unwrap();
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{message}");
-    for words in ["cannot write full/data/records-000000.parquet", "run the same command again"] {
+    for words in ["cannot write full/data/train-000000.parquet", "run the same command again"] {
         assert!(message.contains(words), "{message}");
     }
     workplace.succeeds(&["dataset", "plan.toml", "-o", "full"]);
@@ -329,14 +329,14 @@ fn a_data_set_is_verified() {
     let good = stdout(&workplace.succeeds(&["dataset", "verify", "set"]));
     assert!(good.contains("96 records in 12 shards") && good.contains("every byte is as written"), "{good}");
     workplace.succeeds(&["dataset", "verify", "set", "--quiet"]).stdout("");
-    flip(&workplace.path("set/data/records-000004.parquet"));
-    std::fs::remove_file(workplace.path("set/data/records-000007.parquet")).unwrap();
+    flip(&workplace.path("set/data/train-000004.parquet"));
+    std::fs::remove_file(workplace.path("set/data/train-000007.parquet")).unwrap();
     std::fs::remove_file(workplace.path("set/README.md")).unwrap();
     let output = workplace.command(&["dataset", "verify", "set"]).assert().code(1).stdout("");
     let message = crate::support::stderr(&output);
     for words in [
-        "data/records-000004.parquet: its bytes are not those that were written: the SHA-256 differs",
-        "data/records-000007.parquet: it is missing",
+        "data/train-000004.parquet: its bytes are not those that were written: the SHA-256 differs",
+        "data/train-000007.parquet: it is missing",
         "README.md: it is missing",
         "error: set: 3 files are not as written",
         "help: put the files back",
@@ -349,7 +349,7 @@ fn a_data_set_is_verified() {
     let again = workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]);
     let message = crate::support::stderr(&again);
     assert!(
-        message.contains("warning: data/records-000004.parquet was made again: its bytes are not those"),
+        message.contains("warning: data/train-000004.parquet was made again: its bytes are not those"),
         "{message}"
     );
     assert!(stdout(&again).contains("16 records in 2 shards written, 10 shards were there already"));

@@ -120,7 +120,7 @@ pub fn readers(work: &Path) -> Vec<Reader> {
         reader("summary", "summary.json", &["summary.json"], Box::new(|path| read_run(path).is_ok())),
         reader("manifest", "manifest of a data set", &["set/manifest.json"], Box::new(verified)),
         reader("parts", "list of a part", &["part/parts/part-1-2-000000.json"], Box::new(verified)),
-        reader("shard", "shard of a data set", &["set/data/records-000000.parquet"], Box::new(verified)),
+        reader("shard", "shard of a data set", &["set/data/train-000000.parquet"], Box::new(verified)),
     ]
 }
 

@@ -141,11 +141,8 @@ impl Sampler<'_> {
     /// # Errors
     /// No values were found that meet the constraints: about the key in the plan of the condition that was broken most often.
     pub fn record(&self, index: u64) -> ReadResult<DrawnRecord> {
-        let place = permuted(index, self.records(), self.seed(ORDER));
-        let class = self.ends.iter().position(|&end| place < end).unwrap_or(0);
-        let start = class.checked_sub(1).map_or(0, |before| self.ends[before]);
-        let number = place - start;
-        let [design_seed, unit_seed] = [0, 1].map(|which| self.seed(CLASSES + 2 * class as u64 + which));
+        let (class, number) = self.class_and_number(index);
+        let [design_seed, unit_seed] = self.class_seeds(class);
         let place = self.place(class, number, unit_seed);
         let split = self.split_of(place.unit, place.mounting);
         let mut before = self.mounting_values(&place, split)?;
@@ -168,6 +165,38 @@ impl Sampler<'_> {
             mounting_seed: keyed(self.content.seed, Purpose::DatasetMounting, place.mounting),
             ..self.suitable(drawn)?
         })
+    }
+
+    /// Number of a record's split in [`Splits::names`](crate::plan::Splits::names). Drawing the record takes much longer.
+    ///
+    /// # Arguments
+    /// * `index` - number of the record, below [`Self::records`]
+    pub fn split(&self, index: u64) -> usize {
+        let (class, number) = self.class_and_number(index);
+        let [_, unit_seed] = self.class_seeds(class);
+        let place = self.place(class, number, unit_seed);
+        self.split_of(place.unit, place.mounting)
+    }
+
+    /// Name of a split.
+    ///
+    /// # Arguments
+    /// * `split` - its number
+    pub fn split_name(&self, split: usize) -> &str {
+        self.content.splits.names()[split]
+    }
+
+    /// The class of a record, and its number in the class.
+    fn class_and_number(&self, index: u64) -> (usize, u64) {
+        let place = permuted(index, self.records(), self.seed(ORDER));
+        let class = self.ends.iter().position(|&end| place < end).unwrap_or(0);
+        let start = class.checked_sub(1).map_or(0, |before| self.ends[before]);
+        (class, place - start)
+    }
+
+    /// Seeds of the design of a class and of its order of units.
+    fn class_seeds(&self, class: usize) -> [u64; 2] {
+        [0, 1].map(|which| self.seed(CLASSES + 2 * class as u64 + which))
     }
 
     /// The position of a record among the records of its class.

@@ -35,7 +35,7 @@ pub struct Keep {
     /// Whether every record begins when the damaged tooth, of several that of the first fault, comes into contact, instead of any
     /// tooth.
     pub aligned: bool,
-    /// Records in a shard; by default as many as make about 32 MB.
+    /// Records in a shard; by default as many as make about 32 MB, or take half a minute of a core.
     pub records_per_shard: Option<u64>,
 }
 

@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 const PLAN: &str = "meshtone.plan_sha256";
 const VERSION: &str = "meshtone.version";
-const FIRST: &str = "meshtone.first_record";
 const RECORDS: &str = "meshtone.records";
 const FAILURES: &str = "meshtone.failures";
 
@@ -28,8 +27,8 @@ pub struct FailedRecord {
 pub struct ShardMetadata {
     /// Hash of the plan.
     pub plan: String,
-    /// The shard's records, including those that failed.
-    pub records: std::ops::Range<u64>,
+    /// Number of the shard's records, including those that failed.
+    pub records: u64,
     /// The records that failed.
     pub failures: Vec<FailedRecord>,
 }
@@ -39,8 +38,7 @@ impl ShardMetadata {
         let values = [
             (PLAN, self.plan.clone()),
             (VERSION, env!("CARGO_PKG_VERSION").to_owned()),
-            (FIRST, self.records.start.to_string()),
-            (RECORDS, (self.records.end - self.records.start).to_string()),
+            (RECORDS, self.records.to_string()),
             (FAILURES, serde_json::to_string(&self.failures)?),
         ];
         Ok(values.map(|(key, value)| (key.to_owned(), value)).to_vec())
@@ -48,10 +46,9 @@ impl ShardMetadata {
 
     fn from_key_values(values: &[KeyValue]) -> Option<Self> {
         let text = |key: &str| values.iter().find(|value| value.key == key)?.value.as_deref();
-        let first: u64 = text(FIRST)?.parse().ok()?;
         Some(Self {
             plan: text(PLAN)?.to_owned(),
-            records: first..first.checked_add(text(RECORDS)?.parse().ok()?)?,
+            records: text(RECORDS)?.parse().ok()?,
             failures: serde_json::from_str(text(FAILURES)?).ok()?,
         })
     }
@@ -65,8 +62,8 @@ pub(crate) struct ReadShard {
     pub schema: Vec<FoundColumn>,
     numbers: BTreeMap<String, Vec<f64>>,
     texts: BTreeMap<String, Vec<String>>,
-    /// The signal of one row.
-    pub signal: Vec<f32>,
+    /// The signals of one row.
+    pub signals: Vec<Vec<f64>>,
 }
 
 impl ReadShard {
@@ -75,7 +72,7 @@ impl ReadShard {
         self.numbers.get(name).map_or(&[], Vec::as_slice)
     }
 
-    /// A column of text. A column that was not read has no values.
+    /// A column of text. An empty cell is an empty text; a column that was not read has no values.
     pub fn texts(&self, name: &str) -> &[String] {
         self.texts.get(name).map_or(&[], Vec::as_slice)
     }
@@ -106,29 +103,30 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
     let metadata = head.key_value_metadata().and_then(|values| ShardMetadata::from_key_values(values));
     let metadata = metadata.ok_or_else(|| io::Error::other("is no shard of a data set"))?;
     let rows = u64::try_from(head.num_rows()).unwrap_or(0);
-    let expected =
-        (metadata.records.end - metadata.records.start).checked_sub(metadata.failures.len() as u64);
+    let expected = metadata.records.checked_sub(metadata.failures.len() as u64);
     if expected != Some(rows) {
         return Err(io::Error::other(format!("has {rows} rows, which is not what its metadata say")));
     }
     let (numbers, texts) = (BTreeMap::new(), BTreeMap::new());
     let schema = table.columns().to_vec();
-    let mut read = ReadShard { metadata, rows, schema, numbers, texts, signal: Vec::new() };
+    let mut read =
+        ReadShard { metadata, rows, schema, numbers, texts, signals: Vec::new() };
+    let signals = |name: &str| table.column(name).ok_or_else(|| io::Error::other("has no such column"));
     match wanted {
         Wanted::Columns(names) => {
             for column in names.iter().filter_map(|name| table.column(name)) {
                 let name = column.name.clone();
                 if column.kind == FoundType::Text {
                     let texts = table.texts(column).map_err(into_io)?;
-                    read.texts.insert(name, texts.into_iter().flatten().collect());
+                    let texts = texts.into_iter().map(Option::unwrap_or_default);
+                    read.texts.insert(name, texts.collect());
                 } else {
                     read.numbers.insert(name, table.numbers(column, 0).map_err(into_io)?.values);
                 }
             }
         }
         Wanted::Signal { column, row } => {
-            let column = table.column(column).ok_or_else(|| io::Error::other("has no such column"))?;
-            read.signal = table.list(column, row).map_err(into_io)?;
+            read.signals = vec![table.list(signals(column)?, row).map_err(into_io)?];
         }
     }
     Ok(read)

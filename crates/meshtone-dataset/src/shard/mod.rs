@@ -12,98 +12,143 @@ pub use metadata::{FailedRecord, ShardMetadata};
 pub(crate) use metadata::{ReadShard, Wanted, read};
 pub(crate) use write::{Item, write, write_table};
 
+use meshtone::scenario::ScenarioForm;
+
 use crate::draw::Sampler;
 use crate::plan::{MOST_SHARD_RECORDS, Plan};
-use crate::record::kept_bytes;
+use crate::record::{kept_bytes, simulated_scenario};
 
-/// (bytes) Approximate size of a shard, unless the plan says how many records it has.
-const SHARD_BYTES: usize = 32 << 20;
-/// Number of records from which the size is estimated.
+/// (bytes) Size of a shard at most, approximately, unless the plan says how many records it has.
+const SHARD_BYTES: f64 = (32 << 20) as f64;
+/// (s) Time in which one core of a processor makes a shard at most, approximately, likewise: what is lost when a run is killed.
+const SHARD_S: f64 = 30.0;
+/// (s) Time that a core takes for one simulated sample of a pair, with all that is computed of the record (2026-11).
+const PAIR_SAMPLE_S: f64 = 1e-7;
+/// (s) Likewise of a gearbox of three shafts.
+const GEARBOX_SAMPLE_S: f64 = 1e-6;
+/// Number of records from which size and time are estimated.
 const ESTIMATED_BY: u64 = 32;
 
-/// The division of a plan's records into shards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shards {
-    /// Records of all shards.
-    pub records: u64,
-    /// Records in a shard; the last may have fewer.
+/// The division of a plan's records into shards. A shard has records of one split only, in the order of their numbers, so that programs
+/// find the splits by the names of the files.
+#[derive(Debug, Clone)]
+pub struct Shards<'a> {
+    sampler: &'a Sampler<'a>,
+    /// Records in a shard; the last one of each split may have fewer.
     pub records_per_shard: u64,
+    /// All shards by their numbers: those of the first split, then those of the next.
+    all: Vec<Shard>,
 }
 
-impl Shards {
+/// The records of one shard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Shard {
+    /// Number of the split.
+    split: usize,
+    /// Number of the first record.
+    first: u64,
+    /// Number of records, with those that fail.
+    records: u64,
+}
+
+impl<'a> Shards<'a> {
     /// The division of a plan.
     ///
     /// # Arguments
     /// * `plan` - the plan
     /// * `sampler` - of the same plan
-    pub fn new(plan: &Plan, sampler: &Sampler) -> Self {
+    pub fn new(plan: &Plan, sampler: &'a Sampler<'a>) -> Self {
         let records = plan.records();
         let records_per_shard = plan.content.keep.records_per_shard.unwrap_or_else(|| {
-            let bytes: Vec<usize> = (0..records.min(ESTIMATED_BY))
-                .filter_map(|index| sampler.scenario(&sampler.record(index).ok()?).ok())
-                .map(|scenario| kept_bytes(&plan.content, &scenario.time_grid()))
+            // Parts of a shard that records are, by their size and by their time.
+            let parts: Vec<f64> = (0..records.min(ESTIMATED_BY))
+                .filter_map(|index| {
+                    let record = sampler.record(index).ok()?;
+                    let scenario = sampler.scenario(&record).ok()?;
+                    let bytes = kept_bytes(&plan.content, &scenario.time_grid()) as f64;
+                    let (simulated, _) = simulated_scenario(&plan.content.keep, &record, scenario).ok()?;
+                    let time = simulated.time_grid();
+                    let samples = (time.samples - time.first_simulated_sample) as f64;
+                    let sample_s = match simulated {
+                        ScenarioForm::Gearbox(_) => GEARBOX_SAMPLE_S,
+                        _ => PAIR_SAMPLE_S,
+                    };
+                    Some((bytes / SHARD_BYTES).max(samples * sample_s / SHARD_S))
+                })
                 .collect();
-            let mean = bytes.iter().sum::<usize>() / bytes.len().max(1);
-            let fitting = (SHARD_BYTES / mean.max(1)).max(1) as u64;
+            let fitting = parts.len() as f64 / parts.iter().sum::<f64>();
             // A power of two is a rounder number of records.
-            (1 << fitting.ilog2()).clamp(1, MOST_SHARD_RECORDS)
+            (1 << (fitting.max(1.0) as u64).ilog2()).min(MOST_SHARD_RECORDS)
         });
-        Self { records, records_per_shard }
+        let mut of_splits = vec![Vec::<Shard>::new(); plan.content.splits.names().len()];
+        for record in 0..records {
+            let split = sampler.split(record);
+            match of_splits[split].last_mut() {
+                Some(last) if last.records < records_per_shard => last.records += 1,
+                _ => of_splits[split].push(Shard { split, first: record, records: 1 }),
+            }
+        }
+        Self { sampler, records_per_shard, all: of_splits.concat() }
     }
 
     /// Number of shards.
     pub fn count(&self) -> u64 {
-        self.records.div_ceil(self.records_per_shard)
+        self.all.len() as u64
     }
 
-    /// Records of a shard.
+    /// Number of records of all shards.
+    pub fn all_records(&self) -> u64 {
+        self.sampler.records()
+    }
+
+    /// Number of records of a shard, with those that fail.
     ///
     /// # Arguments
     /// * `shard` - its number
-    ///
-    /// ```
-    /// use meshtone_dataset::shard::Shards;
-    ///
-    /// let shards = Shards { records: 10, records_per_shard: 4 };
-    /// assert_eq!((shards.count(), shards.range(2)), (3, 8..10));
-    /// ```
-    pub fn range(&self, shard: u64) -> std::ops::Range<u64> {
-        let start = shard.saturating_mul(self.records_per_shard).min(self.records);
-        start..start.saturating_add(self.records_per_shard).min(self.records)
+    pub fn len(&self, shard: u64) -> u64 {
+        self.all[shard as usize].records
     }
 
-    /// Name of a shard's file, from the data set's directory. More than a thousand of them stand in folders of a thousand each. The
-    /// names sort as their numbers do.
+    /// Numbers of the records of a shard.
     ///
     /// # Arguments
     /// * `shard` - its number
+    pub fn records(&self, shard: u64) -> impl Iterator<Item = u64> {
+        let Shard { split, first, records } = self.all[shard as usize];
+        let of_split = (first..self.all_records()).filter(move |&record| self.sampler.split(record) == split);
+        of_split.take(records as usize)
+    }
+
+    /// Name of a shard's file, from the data set's directory, such as `data/train-000007.parquet`. More than a thousand of them stand in
+    /// folders of a thousand each, `data/000/train-000007.parquet`.
     ///
-    /// ```
-    /// use meshtone_dataset::shard::Shards;
-    ///
-    /// let name = |records| Shards { records, records_per_shard: 10 }.name(7);
-    /// assert_eq!(name(10_000), "data/records-000007.parquet");
-    /// assert_eq!(name(10_001), "data/000/records-000007.parquet");
-    /// assert_eq!(name(10_000_001), "data/0000/records-0000007.parquet");
-    /// ```
+    /// # Arguments
+    /// * `shard` - its number
     pub fn name(&self, shard: u64) -> String {
-        let last = self.count().saturating_sub(1);
-        let digits = last.checked_ilog10().map_or(1, |log| log as usize + 1).max(LEAST_DIGITS);
+        let digits = ((self.count() - 1).max(1).ilog10() as usize + 1).max(LEAST_DIGITS);
+        let file =
+            format!("{}-{shard:0digits$}{ENDING}", self.sampler.split_name(self.all[shard as usize].split));
         if self.is_flat() {
-            return format!("{FOLDER}/{FILE}{shard:0digits$}{ENDING}");
+            return format!("{FOLDER}/{file}");
         }
         let (folder, of_folder) = (shard / FOLDER_SHARDS, digits - FOLDER_DIGITS);
-        format!("{FOLDER}/{folder:0of_folder$}/{FILE}{shard:0digits$}{ENDING}")
+        format!("{FOLDER}/{folder:0of_folder$}/{file}")
     }
 
     /// Returns whether all shards stand in one folder.
-    pub fn is_flat(&self) -> bool {
+    fn is_flat(&self) -> bool {
         self.count() <= FOLDER_SHARDS
     }
 
-    /// A pattern that matches the names of all shards and nothing else.
-    pub fn pattern(&self) -> &'static str {
-        if self.is_flat() { "data/*.parquet" } else { "data/*/*.parquet" }
+    /// A pattern that matches the names of the shards of a split and nothing else.
+    ///
+    /// # Arguments
+    /// * `split` - name of the split, or `*` for all shards
+    pub fn pattern(&self, split: &str) -> String {
+        let folder = if self.is_flat() { "" } else { "*/" };
+        // A number follows, as another split's name may go on with a hyphen.
+        let number = if split == "*" { "" } else { "-[0-9]*" };
+        format!("{FOLDER}/{folder}{split}{number}{ENDING}")
     }
 
     /// The number of the shard of a name; none where no shard has it.
@@ -128,8 +173,7 @@ impl Shards {
 
 /// The digits in a shard's name.
 fn number_in(name: &str) -> Option<&str> {
-    let (_, file) = name.rsplit_once('/')?;
-    let number = file.strip_prefix(FILE)?.strip_suffix(ENDING)?;
+    let (_, number) = name.strip_suffix(ENDING)?.rsplit_once('-')?;
     (!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())).then_some(number)
 }
 
@@ -139,7 +183,6 @@ const FOLDER_SHARDS: u64 = 1000;
 const FOLDER_DIGITS: usize = 3;
 /// Digits of a shard's number in its name.
 const LEAST_DIGITS: usize = 6;
-const FILE: &str = "records-";
 const ENDING: &str = ".parquet";
 /// Folder of the shards.
 pub(crate) const FOLDER: &str = "data";

@@ -55,8 +55,8 @@ pub(crate) fn write(
     let mut records = Vec::new();
     let mut bytes = 0;
     let mut twin: Option<Box<Record>> = None;
-    let mut finished = metadata.records.start;
-    while finished < metadata.records.end {
+    let mut finished = 0;
+    while finished < metadata.records {
         let item = next().ok_or_else(|| io::Error::new(io::ErrorKind::Interrupted, "stopped"))?;
         match item {
             Item::HealthyTwin(record) => {
@@ -80,7 +80,7 @@ pub(crate) fn write(
             }
         }
         finished += 1;
-        let is_last = finished == metadata.records.end;
+        let is_last = finished == metadata.records;
         if !records.is_empty() && (is_last || bytes >= GROUP_BYTES) {
             table.write_rows(columns.iter().map(|column| (column.cells)(&records)).collect())?;
             records.clear();

@@ -4,7 +4,7 @@
 use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use crate::support::{FAST, bytes, differing, plan, run};
+use crate::support::{FAST, SHARDS, bytes, differing, plan, run};
 use meshtone_dataset::DatasetError;
 use meshtone_dataset::generate::{GenerateControl, Part, generate};
 use meshtone_dataset::merge::merge;
@@ -19,7 +19,7 @@ fn jobs_and_parts_do_not_show() {
     let to = |name: &str| Destination::directory(place(name));
     assert!(run(&plan, &to("one"), Part::WHOLE, 1).unwrap().complete);
     let whole = bytes(&place("one"));
-    assert_eq!(whole.keys().filter(|name| name.starts_with("data/")).count(), 8);
+    assert_eq!(whole.keys().filter(|name| name.starts_with("data/")).count(), SHARDS.len());
 
     assert!(run(&plan, &to("three"), Part::WHOLE, 3).unwrap().complete);
     assert_eq!(differing(&whole, &bytes(&place("three"))), [""; 0]);
@@ -31,7 +31,7 @@ fn jobs_and_parts_do_not_show() {
         assert!(!generated.complete && generated.written_shards >= 2);
     }
     let refused = merge(&parts[..2], &to("merged"), Check::Sizes).unwrap_err();
-    assert!(refused.to_string().contains("2 of 8 shards are in none of the parts"), "{refused}");
+    assert!(refused.to_string().contains("3 of 9 shards are in none of the parts"), "{refused}");
     assert!(!place("merged").exists());
     assert!(merge(&parts, &to("merged"), Check::Sizes).unwrap().complete);
     assert_eq!(differing(&whole, &bytes(&place("merged"))), [""; 0]);
@@ -45,7 +45,7 @@ fn jobs_and_parts_do_not_show() {
 
     // Once more there is nothing to do.
     let again = run(&plan, &to("one"), Part::WHOLE, 2).unwrap();
-    assert_eq!((again.kept_shards, again.written_shards, again.complete), (8, 0, true));
+    assert_eq!((again.kept_shards, again.written_shards, again.complete), (9, 0, true));
 }
 
 #[test]
@@ -68,8 +68,8 @@ fn stopped_damaged_and_gone_on_with() {
     }
     // A shard that is no whole file, and what a killed run leaves.
     fs::write(
-        stopped.join("data/records-000001.parquet"),
-        &fs::read(whole.join("data/records-000001.parquet")).unwrap()[..99],
+        stopped.join("data/train-000001.parquet"),
+        &fs::read(whole.join("data/train-000001.parquet")).unwrap()[..99],
     )
     .unwrap();
     fs::write(stopped.join("data/.meshtone-unfinished"), "half a shard").unwrap();

@@ -87,11 +87,11 @@ fn a_data_set_of_a_gearbox_is_resumed_merged_and_verified_as_one_of_a_pair() {
     assert!(run(&plan, &place("whole"), Part::WHOLE, 2).unwrap().complete);
     let whole = bytes(&directory.path().join("whole"));
     assert!(verify(&place("whole"), Check::Bytes).unwrap().is_good());
-    let shard = directory.path().join("whole/data/records-000001.parquet");
+    let shard = directory.path().join("whole/data/train-000001.parquet");
     std::fs::remove_file(&shard).unwrap();
     assert_eq!(verify(&place("whole"), Check::Sizes).unwrap().missing.len(), 1);
     let again = run(&plan, &place("whole"), Part::WHOLE, 1).unwrap();
-    assert_eq!((again.kept_shards, again.written_shards), (2, 1));
+    assert_eq!((again.kept_shards, again.written_shards), (4, 1));
     assert_eq!(differing(&whole, &bytes(&directory.path().join("whole"))), [""; 0]);
     for number in 1..=2 {
         run(&plan, &place(&format!("part{number}")), Part { number, of: 2 }, 2).unwrap();

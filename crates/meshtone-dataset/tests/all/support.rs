@@ -70,6 +70,19 @@ part = 0.2
 when = "operation.pinion_speed_hz > 50"
 "#;
 
+/// The shards of a data set after it.
+pub const SHARDS: [&str; 9] = [
+    "data/train-000000.parquet",
+    "data/train-000001.parquet",
+    "data/train-000002.parquet",
+    "data/train-000003.parquet",
+    "data/validation-000004.parquet",
+    "data/test-000005.parquet",
+    "data/test-000006.parquet",
+    "data/fast-000007.parquet",
+    "data/fast-000008.parquet",
+];
+
 pub fn plan(text: &str) -> Plan {
     Plan::read_text(text.to_owned(), Path::new("plan.toml")).unwrap_or_else(|error| panic!("{error}"))
 }

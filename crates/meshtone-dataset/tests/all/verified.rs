@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use crate::support::{FAST, bytes, differing, plan, run};
+use crate::support::{FAST, SHARDS, bytes, differing, plan, run};
 use meshtone_dataset::DatasetError;
 use meshtone_dataset::generate::{GenerateControl, Part, generate};
 use meshtone_dataset::merge::merge;
@@ -44,13 +44,13 @@ fn every_flipped_bit_of_a_shard_is_found_and_the_shard_made_again() {
     let before = bytes(directory.path());
     assert!(bytes_of(&to).is_good());
     for number in 1..=60 {
-        let name = format!("data/records-{:06}.parquet", number % 8);
+        let name = SHARDS[number as usize % SHARDS.len()].to_owned();
         flip(&directory.path().join(&name), number);
         assert!(verify(&to, Check::Sizes).unwrap().is_good());
         assert_only(&bytes_of(&to), &name, "SHA-256 differs");
         if number % 6 == 0 {
             let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
-            assert_eq!((again.kept_shards, again.written_shards, again.complete), (7, 1, true), "{number}");
+            assert_eq!((again.kept_shards, again.written_shards, again.complete), (8, 1, true), "{number}");
             assert_eq!(again.remade[0].file, name);
             assert!(again.remade[0].reason.contains("SHA-256 differs"));
         } else {
@@ -86,7 +86,7 @@ fn what_is_written_beside_the_shards_is_made_again() {
         fs::remove_file(directory.path().join(name)).unwrap();
         assert_only(&verify(&to, Check::Sizes).unwrap(), name, "it is missing");
         let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
-        assert_eq!((again.kept_shards, again.written_shards, again.complete), (8, 0, true));
+        assert_eq!((again.kept_shards, again.written_shards, again.complete), (9, 0, true));
         assert_eq!(differing(&before, &bytes(directory.path())), [""; 0], "{name}");
         flip(&directory.path().join(name), 5);
         let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
@@ -105,7 +105,7 @@ fn a_changed_manifest_is_made_again() {
     fs::write(&path, text.replacen("CC-BY-4.0", "CC-BY-4.1", 1)).unwrap();
     let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
     assert_eq!(again.remade.iter().map(|remade| &remade.file[..]).collect::<Vec<_>>(), ["manifest.json"]);
-    assert_eq!((again.kept_shards, again.written_shards), (8, 0));
+    assert_eq!((again.kept_shards, again.written_shards), (9, 0));
     assert_eq!(differing(&before, &bytes(directory.path())), [""; 0]);
 }
 
@@ -113,12 +113,12 @@ fn a_changed_manifest_is_made_again() {
 fn names_and_sizes_are_always_looked_at() {
     let (directory, to) = made();
     let path = |name: &str| directory.path().join(name);
-    let (first, extra) = ("data/records-000000.parquet", "data/records-000008.parquet");
+    let (first, extra) = (SHARDS[0], "data/train-000009.parquet");
     fs::copy(path(first), path(extra)).unwrap();
     assert_only(&verify(&to, Check::Sizes).unwrap(), extra, "no manifest or list of a part names it");
     let refused = run(&plan(FAST), &to, Part::WHOLE, 1).unwrap_err();
     assert!(
-        refused.to_string().contains("a shard that is none of this data set: data/records-000008"),
+        refused.to_string().contains("a shard that is none of this data set: data/train-000009"),
         "{refused}"
     );
     fs::remove_file(path(extra)).unwrap();
@@ -129,7 +129,7 @@ fn names_and_sizes_are_always_looked_at() {
     assert_only(&verify(&to, Check::Sizes).unwrap(), first, &problem);
     fs::remove_file(path(first)).unwrap();
     let found = verify(&to, Check::Sizes).unwrap();
-    assert!(found.problems.is_empty() && found.missing == [first] && found.shards.len() == 7, "{found:?}");
+    assert!(found.problems.is_empty() && found.missing == [first] && found.shards.len() == 8, "{found:?}");
 }
 
 #[test]
@@ -141,14 +141,14 @@ fn manifests_that_cannot_be_are_refused() {
         assert!(text.contains(from), "{from}");
         fs::write(&path, text.replacen(from, into, 1)).unwrap();
     };
-    with("\"format_version\": 3", "\"format_version\": 4");
+    with("\"format_version\": 4", "\"format_version\": 5");
     for refused in [
         verify(&to, Check::Sizes).unwrap_err(),
         run(&plan(FAST), &to, Part::WHOLE, 1).unwrap_err(),
         merge(std::slice::from_ref(&to), &to, Check::Sizes).unwrap_err(),
     ] {
         assert!(
-            refused.to_string().contains("has the format 4; this version of Meshtone knows those up to 3"),
+            refused.to_string().contains("has the format 5; this version of Meshtone knows those up to 4"),
             "{refused}"
         );
         let DatasetError::Refused { help, .. } = refused else { unreachable!("{refused}") };
@@ -171,7 +171,7 @@ fn manifests_that_cannot_be_are_refused() {
 
 /// As earlier versions wrote them: hashes that were taken from the disk in the end, no documents, no seal.
 #[test]
-fn a_data_set_of_format_1_is_kept() {
+fn a_data_set_of_format_1_is_verified() {
     let (directory, to) = made();
     let path = directory.path().join("manifest.json");
     let mut manifest: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
@@ -181,28 +181,26 @@ fn a_data_set_of_format_1_is_kept() {
     fs::write(&path, serde_json::to_string_pretty(&manifest).unwrap()).unwrap();
     let found = bytes_of(&to);
     assert!(found.is_good() && found.complete && found.format == 1, "{found:?}");
-    let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
-    assert_eq!((again.kept_shards, again.complete), (8, true));
 }
 
-/// Records of a later format have other columns: none are added to what was begun with fewer.
+/// Later formats have other columns, and other records in a file: none are added to what was begun as an earlier one.
 #[test]
-fn a_data_set_of_format_2_gets_no_more_records() {
+fn a_data_set_of_an_earlier_format_gets_no_more_records() {
     let plan = plan(FAST);
     let directory = tempfile::tempdir().unwrap();
     let to = Destination::directory(directory.path());
     run(&plan, &to, Part { number: 1, of: 2 }, 2).unwrap();
     let path = directory.path().join("manifest.json");
     let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replace("\"format_version\": 3", "\"format_version\": 2")).unwrap();
-    let words = "has the format 2, whose records have other columns";
+    fs::write(&path, text.replace("\"format_version\": 4", "\"format_version\": 2")).unwrap();
+    let words = "has the format 2, whose files or columns are others than those of format 4";
     let refused = run(&plan, &to, Part { number: 2, of: 2 }, 2).unwrap_err().to_string();
     assert!(refused.contains(words), "{refused}");
     // Neither by a merge, which would call them records of this format.
     let (_whole, complete) = made();
     let path = complete.path().unwrap().join("manifest.json");
     let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replace("\"format_version\": 3", "\"format_version\": 2")).unwrap();
+    fs::write(&path, text.replace("\"format_version\": 4", "\"format_version\": 2")).unwrap();
     let elsewhere = tempfile::tempdir().unwrap();
     let other = Destination::directory(elsewhere.path().join("set"));
     let refused = merge(&[complete], &other, Check::Sizes).unwrap_err().to_string();
@@ -217,20 +215,20 @@ fn what_no_list_names_is_made_again() {
     let to = Destination::directory(directory.path());
     run(&plan, &to, Part { number: 1, of: 2 }, 2).unwrap();
     let found = bytes_of(&to);
-    assert!(found.is_good() && !found.complete && found.shards.len() == 4, "{found:?}");
+    assert!(found.is_good() && !found.complete && found.shards.len() == 5, "{found:?}");
     let list = directory.path().join("parts/part-1-2-000000.json");
     let whole = fs::read(&list).unwrap();
     // Among them the highest bit of a byte, which leaves no text.
     for number in 1..=40 {
         flip(&list, number);
         let found = bytes_of(&to);
-        assert_eq!(found.problems.len(), 5, "{number}: {found:?}");
+        assert_eq!(found.problems.len(), 6, "{number}: {found:?}");
         if number < 40 {
             fs::write(&list, &whole).unwrap();
         }
     }
     let again = run(&plan, &to, Part { number: 1, of: 2 }, 2).unwrap();
-    assert_eq!((again.kept_shards, again.remade.len()), (0, 4));
+    assert_eq!((again.kept_shards, again.remade.len()), (0, 5));
     assert!(again.remade[0].reason.contains("no list"), "{:?}", again.remade);
     assert!(run(&plan, &to, Part { number: 2, of: 2 }, 2).unwrap().complete);
     assert!(!directory.path().join("parts").exists());
@@ -246,18 +244,18 @@ fn merging_takes_what_is_as_it_was_written() {
         run(&plan, &to(name), Part { number, of: 2 }, 2).unwrap();
     }
     // One of two copies is damaged.
-    flip(&directory.path().join("b/data/records-000003.parquet"), 11);
+    flip(&directory.path().join("b/data/train-000003.parquet"), 11);
     let refused = merge(&[to("a"), to("b")], &to("merged"), Check::Sizes).unwrap_err();
-    assert!(refused.to_string().contains("data/records-000003.parquet is damaged in"), "{refused}");
+    assert!(refused.to_string().contains("data/train-000003.parquet is damaged in"), "{refused}");
     let merged = merge(&[to("a"), to("b"), to("c")], &to("merged"), Check::Sizes).unwrap();
     // What the merge that failed has copied is kept, because its bytes are right.
-    assert_eq!((merged.kept_shards, merged.written_shards), (3, 5));
+    assert_eq!((merged.kept_shards, merged.written_shards), (3, 6));
     run(&plan, &to("whole"), Part::WHOLE, 2).unwrap();
     let [merged, whole] = ["merged", "whole"].map(|name| bytes(&directory.path().join(name)));
     assert_eq!(differing(&merged, &whole), [""; 0]);
     // In the whole's own place bytes are read where that is asked for.
     run(&plan, &to("b"), Part { number: 1, of: 2 }, 2).unwrap();
-    flip(&directory.path().join("b/data/records-000005.parquet"), 12);
+    flip(&directory.path().join("b/data/test-000005.parquet"), 12);
     let refused = merge(&[to("b")], &to("b"), Check::Bytes).unwrap_err();
     assert!(refused.to_string().contains("is damaged in"), "{refused}");
 }

@@ -160,7 +160,39 @@ impl<R: ChunkReader + 'static> TableReader<R> {
         Ok(texts)
     }
 
-    /// Reads the list of single-precision numbers in one row.
+    /// Number of groups of rows.
+    pub fn groups(&self) -> usize {
+        self.file.num_row_groups()
+    }
+
+    /// Reads the lists of numbers in a group of rows.
+    ///
+    /// # Arguments
+    /// * `column` - of this table
+    /// * `group` - number of the group, from 0
+    ///
+    /// # Errors
+    /// The file cannot be read; the column holds something else; there is no such group.
+    pub fn lists(&self, column: &FoundColumn, group: usize) -> Result<Vec<Vec<f64>>> {
+        if group >= self.groups() {
+            return Err(ParquetError::General(format!(
+                "there are {} groups of rows, not {}",
+                self.groups(),
+                group + 1
+            )));
+        }
+        let group = self.file.get_row_group(group)?;
+        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        match group.get_column_reader(column.leaf)? {
+            ColumnReader::FloatColumnReader(reader) => lists_of(reader, rows, |&number| f64::from(number)),
+            ColumnReader::DoubleColumnReader(reader) => lists_of(reader, rows, |&number| number),
+            ColumnReader::Int32ColumnReader(reader) => lists_of(reader, rows, |&number| f64::from(number)),
+            ColumnReader::Int64ColumnReader(reader) => lists_of(reader, rows, |&number| number as f64),
+            _ => Err(holds(column)),
+        }
+    }
+
+    /// Reads the list of numbers in one row, with those of its group of rows.
     ///
     /// # Arguments
     /// * `column` - of this table
@@ -168,22 +200,15 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     ///
     /// # Errors
     /// The file cannot be read; the column holds something else; there is no such row.
-    pub fn list(&self, column: &FoundColumn, row: usize) -> Result<Vec<f32>> {
+    pub fn list(&self, column: &FoundColumn, row: usize) -> Result<Vec<f64>> {
         let mut row = row;
-        for number in 0..self.file.num_row_groups() {
-            let group = self.file.get_row_group(number)?;
-            let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-            if row >= rows {
-                row -= rows;
-                continue;
+        for (number, group) in self.metadata().row_groups().iter().enumerate() {
+            let rows = usize::try_from(group.num_rows()).unwrap_or(0);
+            if row < rows {
+                let list = self.lists(column, number)?.into_iter().nth(row);
+                return list.ok_or_else(|| ParquetError::General("it ends early".to_owned()));
             }
-            let ColumnReader::FloatColumnReader(mut reader) = group.get_column_reader(column.leaf)? else {
-                return Err(holds(column));
-            };
-            let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
-            reader.skip_records(row)?;
-            reader.read_records(1, Some(&mut definitions), Some(&mut repetitions), &mut values)?;
-            return Ok(values);
+            row -= rows;
         }
         Err(ParquetError::General(format!("there is no row {row} more")))
     }
@@ -267,6 +292,29 @@ fn each_block<T: DataType>(
         block(&values, Levels { rows, definitions: &definitions })?;
         all += rows;
     }
+}
+
+/// Reads the lists of a group of rows. An item that is null is left out.
+fn lists_of<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    rows: usize,
+    number: impl Fn(&T::T) -> f64,
+) -> Result<Vec<Vec<f64>>> {
+    let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
+    let (found, ..) =
+        reader.read_records(rows, Some(&mut definitions), Some(&mut repetitions), &mut values)?;
+    let (mut values, mut lists) = (values.iter().map(number), Vec::with_capacity(found));
+    // A value is there where its definition level is the highest one, and a list begins where the repetition level is 0.
+    let there = definitions.iter().copied().max().unwrap_or(0);
+    for (definition, repetition) in definitions.iter().zip(&repetitions) {
+        if *repetition == 0 {
+            lists.push(Vec::new());
+        }
+        if let (true, Some(list)) = (*definition == there, lists.last_mut()) {
+            list.extend(values.next());
+        }
+    }
+    Ok(lists)
 }
 
 /// (s) A moment since the first one, which is kept.
