@@ -11,6 +11,7 @@ mod croissant;
 pub mod digest;
 pub mod draw;
 mod error;
+pub mod export;
 pub mod expression;
 mod finish;
 pub mod generate;

@@ -15,8 +15,9 @@ const RECORDING: &str = "a recording";
 /// The option that names the column which is processed.
 const CHANNEL: &str = "--channel";
 /// Names of options in the library and on the command line.
-const OPTIONS: [(&str, &str); 9] = [
+const OPTIONS: [(&str, &str); 10] = [
     ("option channels, or variable", "--channel or --variable"),
+    ("option variable", "--variable"),
     ("option channels", CHANNEL),
     ("option sampling_rate_hz", "--sampling-rate-hz"),
     ("option text.decimal_sign", "--decimal-sign"),

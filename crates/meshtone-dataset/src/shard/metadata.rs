@@ -62,7 +62,9 @@ pub(crate) struct ReadShard {
     pub schema: Vec<FoundColumn>,
     numbers: BTreeMap<String, Vec<f64>>,
     texts: BTreeMap<String, Vec<String>>,
-    /// The signals of one row.
+    /// Number of groups of rows.
+    pub groups: usize,
+    /// The signals of one row, or of a group of rows.
     pub signals: Vec<Vec<f64>>,
 }
 
@@ -90,6 +92,13 @@ pub(crate) enum Wanted<'n> {
         /// The row.
         row: usize,
     },
+    /// The signals of a group of rows.
+    Group {
+        /// Name of the column.
+        column: &'n str,
+        /// Number of the group.
+        group: usize,
+    },
 }
 
 /// Reads the metadata of a shard and some of its values.
@@ -110,7 +119,7 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
     let (numbers, texts) = (BTreeMap::new(), BTreeMap::new());
     let schema = table.columns().to_vec();
     let mut read =
-        ReadShard { metadata, rows, schema, numbers, texts, signals: Vec::new() };
+        ReadShard { metadata, rows, schema, numbers, texts, groups: table.groups(), signals: Vec::new() };
     let signals = |name: &str| table.column(name).ok_or_else(|| io::Error::other("has no such column"));
     match wanted {
         Wanted::Columns(names) => {
@@ -127,6 +136,9 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
         }
         Wanted::Signal { column, row } => {
             read.signals = vec![table.list(signals(column)?, row).map_err(into_io)?];
+        }
+        Wanted::Group { column, group } => {
+            read.signals = table.lists(signals(column)?, group).map_err(into_io)?;
         }
     }
     Ok(read)

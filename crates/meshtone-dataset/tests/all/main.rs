@@ -2,6 +2,7 @@
 
 mod drawn;
 mod exact;
+mod exported;
 mod gearbox;
 #[cfg(feature = "objects")]
 mod objects;

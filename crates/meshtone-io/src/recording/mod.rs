@@ -25,6 +25,7 @@ mod parquet_check;
 mod parquet_file;
 mod rate;
 mod selection;
+mod signal_set;
 mod text;
 mod time;
 mod unit;
@@ -119,7 +120,8 @@ impl Recording {
 /// Reads a recording.
 ///
 /// # Arguments
-/// * `path` - the file; or a folder that `meshtone simulate` wrote, whose `signals.parquet` is read
+/// * `path` - the file; or a folder that `meshtone simulate` wrote, whose `signals.parquet` is read; or the folder of a data set in the
+///   schema of the Python package `bearing-datasets`, of which `variable` names the recording
 /// * `options` - what is read, and what the file does not say itself
 ///
 /// The format is known by the file's first bytes, and by its ending where those decide nothing (text). The
@@ -175,6 +177,12 @@ impl Recording {
 pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recording, ReadRecordingError> {
     let inside = path.join(SIGNALS_FILE);
     let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
+    if let Some(folder) = signal_set::folder(path) {
+        let recording = options.check().and_then(|()| signal_set::read(folder, options));
+        let recording =
+            recording.map_err(|problem| problem.of_file(path, RecordingFormat::Parquet.name()))?;
+        return Ok(Recording { source: path.to_path_buf(), ..recording });
+    }
     let opened = options.check().and_then(|()| open(path, options));
     let (file, format) = opened.map_err(|problem| problem.of_file(path, "recording"))?;
     let recording = match format {
@@ -196,8 +204,9 @@ fn open(path: &Path, options: &RecordingOptions) -> Result<(File, RecordingForma
     match &options.variable {
         Some(variable) if !matches!(format, RecordingFormat::Npz | RecordingFormat::Mat) => {
             let path = path.display();
-            let problem =
-                format!("{path}: variable `{variable}` is given, but only NPZ and MAT files hold variables");
+            let problem = format!(
+                "{path}: variable `{variable}` is given, but only NPZ and MAT files and sets of recordings hold variables"
+            );
             Err(Problem::Option(problem))
         }
         _ => Ok((file, format)),

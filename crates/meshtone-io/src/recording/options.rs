@@ -125,7 +125,8 @@ pub struct RecordingOptions {
     /// nor checked, and the recording starts at 0 s.
     pub sampling_rate_hz: Option<f64>,
     /// For NPZ and MAT: the variable that holds the recording, in MAT files as a dotted path such as
-    /// `run.sensors`, `runs(2).data` or `cells{3}`. All arrays of the file where absent.
+    /// `run.sensors`, `runs(2).data` or `cells{3}`. All arrays of the file where absent. Of a data set in the schema of the Python
+    /// package `bearing-datasets`: the `recording_id`.
     pub variable: Option<String>,
     /// Units and sensitivities of the channels.
     pub calibrations: Vec<Calibration>,

@@ -25,7 +25,12 @@ const USUAL_COMPRESSION: u64 = 16;
 /// The `parquet` crate panics where a page contradicts the metadata, which no check finds before it is decoded; so
 /// its panics are caught. Nothing but what is dropped with them has changed by then.
 pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
-    let result = catch_unwind(AssertUnwindSafe(|| decode(file, options)));
+    guarded(|| decode(file, options))
+}
+
+/// Turns a panic of the `parquet` crate into a problem of the file.
+pub(super) fn guarded<T>(decode: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
+    let result = catch_unwind(AssertUnwindSafe(decode));
     result.unwrap_or_else(|panic| {
         let message = panic.downcast_ref::<String>().map(String::as_str);
         let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
@@ -33,11 +38,18 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
     })
 }
 
-fn decode(mut file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+/// Opens a table whose metadata are possible.
+pub(super) fn table(mut file: File) -> Result<TableReader<File>, Problem> {
     let file_bytes = file.metadata()?.len();
     check_depth(&mut file, file_bytes)?;
     let table = TableReader::new(file).map_err(Problem::broken)?;
     check_metadata(table.metadata(), file_bytes).map_err(Problem::Broken)?;
+    Ok(table)
+}
+
+fn decode(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let file_bytes = file.metadata()?.len();
+    let table = table(file)?;
     let head = table.metadata().file_metadata();
     let labels: Vec<Label> = table.columns().iter().map(label).collect();
     let selection = select(&labels, options)?;
