@@ -289,17 +289,17 @@ impl Export<'_> {
     ) -> Vec<MetadataColumn> {
         let (records, channels) = (read.rows as usize, self.channels.len());
         let count = records * channels;
-        let text = |name: &str, of: &dyn Fn(usize, &ChannelFacts) -> String| {
+        let text = |name: &str, meaning: &str, of: &dyn Fn(usize, &ChannelFacts) -> String| {
             let cells = (0..count).map(|row| Some(of(row / channels, &self.channels[row % channels])));
-            column(name, CellType::Text, Cells::Text(cells.collect()))
+            column(name, meaning, CellType::Text, Cells::Text(cells.collect()))
         };
-        let number = |name: &str, of: &dyn Fn(usize) -> f64| {
+        let number = |name: &str, meaning: &str, of: &dyn Fn(usize) -> f64| {
             let cells = (0..count).map(|row| Some(of(row / channels)));
-            column(name, CellType::Float64, Cells::Float64(cells.collect()))
+            column(name, meaning, CellType::Float64, Cells::Float64(cells.collect()))
         };
-        let whole = |name: &str, of: &dyn Fn(usize) -> i64| {
+        let whole = |name: &str, meaning: &str, of: &dyn Fn(usize) -> i64| {
             let cells = (0..count).map(|row| Some(of(row)));
-            column(name, CellType::Int64, Cells::Int64(cells.collect()))
+            column(name, meaning, CellType::Int64, Cells::Int64(cells.collect()))
         };
         let faults: Vec<Vec<ReadFault>> = (0..records).map(|record| faults_of(read, record)).collect();
         let joined = |record: usize, healthy: &str, of: &dyn Fn(&ReadFault) -> String| {
@@ -327,46 +327,80 @@ impl Export<'_> {
         let profile = if self.content.base.is_steady() { "constant" } else { "varying" };
         let place = |row: usize| signals.places[first + row];
         let mut rows = vec![
-            text("dataset", &|_, _| self.name.clone()),
-            text("signal_id", &|record, channel| format!("{}/{}", recording_of(record), channel.name)),
-            text("recording_id", &|record, _| recording_of(record)),
-            text("native_label", &|record, _| label[record].clone()),
-            text("channel", &|_, channel| channel.name.clone()),
-            text("sensor_location", &|_, channel| channel.location.clone()),
-            number("fs", &|record| rate_hz[record]),
-            whole("n_samples", &|row| signals.samples[first + row]),
-            text("fault_type", &|record, _| joined(record, "normal", &|_| "gear".to_owned())),
-            text("fault_location", &|record, _| joined(record, "none", &location)),
-            column("sensor_at_fault", CellType::Boolean, Cells::Boolean(at_fault.collect())),
-            text("signal_file", &|_, _| SIGNAL_FILE.to_owned()),
-            whole("signal_row_group", &|row| place(row)[0]),
-            whole("signal_row", &|row| place(row)[1]),
-            text("quantity", &|_, channel| channel.quantity.to_owned()),
-            text("unit", &|_, channel| channel.unit.to_owned()),
-            text("axis", &|_, channel| channel.axis.to_owned()),
-            text("sensor_mounting", &|_, channel| channel.mounting.to_owned()),
-            number("speed_rpm", &|record| 60.0 * speed_hz[record]),
-            text("speed_profile", &|_, _| profile.to_owned()),
-            number("load", &|record| torque_nm[record]),
-            text("load_unit", &|_, _| "Nm".to_owned()),
-            text("fault_origin", &|record, _| {
+            text("dataset", "name of the data set", &|_, _| self.name.clone()),
+            text("signal_id", "the signal: one channel of one record", &|record, channel| {
+                format!("{}/{}", recording_of(record), channel.name)
+            }),
+            text("recording_id", "the record", &|record, _| recording_of(record)),
+            text("native_label", "the class of the plan", &|record, _| label[record].clone()),
+            text("channel", "column of the channel", &|_, channel| channel.name.clone()),
+            text("sensor_location", "where the sensor sits", &|_, channel| channel.location.clone()),
+            number(
+                "fs",
+                "sampling rate in Hz; of channels over the angle at the speed of the record",
+                &|record| rate_hz[record],
+            ),
+            whole("n_samples", "number of samples", &|row| signals.samples[first + row]),
+            text(
+                "fault_type",
+                "gear for every damaged tooth, '+'-joined; 'normal' if healthy",
+                &|record, _| joined(record, "normal", &|_| "gear".to_owned()),
+            ),
+            text(
+                "fault_location",
+                "where the damaged wheel sits, '+'-joined; 'none' if healthy",
+                &|record, _| joined(record, "none", &location),
+            ),
+            column(
+                "sensor_at_fault",
+                "whether sensor_location is or contains fault_location, or the reverse",
+                CellType::Boolean,
+                Cells::Boolean(at_fault.collect()),
+            ),
+            text("signal_file", "file in signals/ that has the samples", &|_, _| SIGNAL_FILE.to_owned()),
+            whole("signal_row_group", "its group of rows", &|row| place(row)[0]),
+            whole("signal_row", "row in that group", &|row| place(row)[1]),
+            text("quantity", "quantity that is measured", &|_, channel| channel.quantity.to_owned()),
+            text("unit", "unit of the samples", &|_, channel| channel.unit.to_owned()),
+            text("axis", "direction of the measurement", &|_, channel| channel.axis.to_owned()),
+            text("sensor_mounting", "what the sensor is on", &|_, channel| channel.mounting.to_owned()),
+            number("speed_rpm", "speed of the driving shaft, as the record was drawn", &|record| {
+                60.0 * speed_hz[record]
+            }),
+            text("speed_profile", "how the speed changes during the record", &|_, _| profile.to_owned()),
+            number("load", "brake torque on the output shaft, in load_unit", &|record| torque_nm[record]),
+            text("load_unit", "unit of load", &|_, _| "Nm".to_owned()),
+            text("fault_origin", "artificial for every damage; 'none' if healthy", &|record, _| {
                 if faults[record].is_empty() { "none" } else { "artificial" }.to_owned()
             }),
-            text("fault_severity", &|record, _| joined(record, "none", &ReadFault::severity_words)),
-            whole("fault_severity_level", &level),
-            text("fault_kind", &|record, _| joined(record, "none", &|fault| fault.kind.clone())),
-            text("fault_wheel", &|record, _| joined(record, "none", &|fault| fault.wheel.clone())),
+            text(
+                "fault_severity",
+                "severity from 0 to 1 on the scale of the kind of damage, which Meshtone's guide defines; 'none' if healthy",
+                &|record, _| joined(record, "none", &ReadFault::severity_words),
+            ),
+            whole(
+                "fault_severity_level",
+                "grade of the severity, as the plan divides it; 0 if healthy",
+                &level,
+            ),
+            text("fault_kind", "kind of damage of the teeth, '+'-joined; 'none' if healthy", &|record, _| {
+                joined(record, "none", &|fault| fault.kind.clone())
+            }),
+            text("fault_wheel", "the damaged wheel, '+'-joined; 'none' if healthy", &|record, _| {
+                joined(record, "none", &|fault| fault.wheel.clone())
+            }),
         ];
         rows.extend(others.iter().map(|other| {
             let name =
                 RENAMED.iter().find(|(old, _)| *old == other.name).map_or(&other.name[..], |(_, new)| new);
-            let values = read.numbers(&other.name);
-            let cells = match other.cell_type {
-                CellType::Text => text(name, &|record, _| read.texts(&other.name)[record].clone()),
-                CellType::Int32 | CellType::Int64 => whole(name, &|row| values[row / channels] as i64),
-                _ => number(name, &|record| values[record]),
-            };
-            MetadataColumn { meaning: other.description.clone(), ..cells }
+            let (values, meaning) = (read.numbers(&other.name), &other.description);
+            match other.cell_type {
+                CellType::Text => text(name, meaning, &|record, _| read.texts(&other.name)[record].clone()),
+                CellType::Int32 | CellType::Int64 => {
+                    whole(name, meaning, &|row| values[row / channels] as i64)
+                }
+                _ => number(name, meaning, &|record| values[record]),
+            }
         }));
         rows
     }
@@ -380,19 +414,7 @@ impl Export<'_> {
     }
 }
 
-/// A column of the schema, or of the two that Meshtone adds to it.
-fn column(name: &str, cell_type: CellType, cells: Cells<'static>) -> MetadataColumn {
-    let meaning = match name {
-        "speed_rpm" => "speed of the driving shaft, as the record was drawn",
-        "load" => "brake torque on the output shaft, in load_unit",
-        "fault_severity" => {
-            "severity from 0 to 1 on the scale of the kind of damage, as Meshtone's guide defines it; 'none' if healthy"
-        }
-        "fault_severity_level" => "grade of the severity, as the plan divides it; 0 if healthy",
-        "fault_kind" => "kind of damage of the tooth, '+'-joined; 'none' if healthy",
-        "fault_wheel" => "the damaged wheel, '+'-joined; 'none' if healthy",
-        _ => "as the schema of bearing-datasets 0.3.0 defines it",
-    };
+fn column(name: &str, meaning: &str, cell_type: CellType, cells: Cells<'static>) -> MetadataColumn {
     MetadataColumn { name: name.to_owned(), meaning: meaning.to_owned(), cell_type, cells }
 }
 

@@ -32,7 +32,7 @@ const PRINTED: usize = 5;
 #[command(after_help = EXAMPLES)]
 pub struct Indicators {
     /// Recordings, in the order of time: CSV and other text, Parquet, NPY, NPZ, MAT (version 5), WAV, or directories that
-    /// `meshtone simulate` wrote
+    /// `meshtone simulate` wrote or that are sets of the Python package bearing-datasets
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
     /// Directory to write to. [default: <name of the recording>_indicators, for several series_indicators, in the
