@@ -42,11 +42,14 @@ dtype('float32')
 from __future__ import annotations
 
 import errno
+import hashlib
 import json
 import operator
 import os
 import re
 import stat
+import tempfile
+import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
@@ -60,6 +63,7 @@ from . import _core, _display, _progress
 from ._extras import extra
 from ._files import written_whole
 from ._names import hint
+from ._published import PUBLISHED
 from ._warnings import warn
 from .signal import resample
 from .signal._arguments import whole
@@ -76,7 +80,7 @@ if TYPE_CHECKING:
     from .signal.phase import ShaftPhase
     from .signal.train import Machine
 
-__all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets", "verify_dataset"]
+__all__ = ["Dataset", "dataset_template", "generate_dataset", "load", "load_dataset", "merge_datasets", "verify_dataset"]
 
 FloatSignal = npt.NDArray[np.float32]
 
@@ -277,6 +281,66 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
             ]
         )
     return opened
+
+
+def load(name: str, path: str | PathLike[str]) -> Dataset:
+    """Open a published data set after comparing every byte with what was published.
+
+    Parameters
+    ----------
+    name : str
+        'benchmark-1', the benchmark of the book's chapter "Data sets".
+    path : str or path
+        Its archive, ``benchmark-1.zip``, which is unpacked into the folder ``benchmark-1`` beside it unless that exists; or that folder.
+
+    Returns
+    -------
+    Dataset
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file or folder.
+    ValueError
+        No data set of that name is published; a file is not the published one.
+
+    Examples
+    --------
+    ::
+
+        benchmark = datasets.load("benchmark-1", "benchmark-1.zip")
+        train = benchmark.split("train")
+    """
+    if name not in PUBLISHED:
+        raise ValueError(f"no data set '{name}' is published{hint(name, PUBLISHED)}; there is {', '.join(PUBLISHED)}")
+    place = Path(path)
+    folder = place if place.is_dir() else _unpacked(place, name)
+    _check_place(folder, "manifest.json")
+    found = hashlib.sha256((folder / "manifest.json").read_bytes()).hexdigest()
+    if found != PUBLISHED[name]:
+        raise ValueError(
+            f"{folder} is not the published {name}: the SHA-256 of its manifest.json is {found} instead of {PUBLISHED[name]}; fetch it "
+            "again, or open it with load_dataset"
+        )
+    return load_dataset(folder, verify=True)
+
+
+def _unpacked(archive: Path, name: str) -> Path:
+    """The folder of a data set beside its archive. It appears whole or not at all."""
+    folder = archive.parent / name
+    if folder.exists():
+        return folder
+    try:
+        with zipfile.ZipFile(archive) as packed, tempfile.TemporaryDirectory(dir=archive.parent) as unfinished:
+            packed.extractall(unfinished, [member for member in packed.namelist() if member.startswith(f"{name}/")])
+            Path(unfinished, name).rename(folder)
+    except zipfile.BadZipFile as error:
+        raise ValueError(f"{archive} is no whole archive of a data set: {error}; fetch it again") from None
+    except FileNotFoundError as error:
+        if archive.exists():
+            raise ValueError(f"{archive} has no folder {name} in it") from error
+        raise
+    return folder
 
 
 def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:

@@ -93,7 +93,8 @@ def read_recording(
     sampling_rate_hz : float, optional
         (S/s) By default what the file states, or its time column.
     variable : str, optional
-        Of NPZ and MAT files: the variable that holds the recording, ``run.sensors`` for nested ones.
+        Of NPZ and MAT files: the variable that holds the recording, ``run.sensors`` for nested ones. Of the folder of a set of
+        ``bearing-datasets``: the ``recording_id``.
     time : str or int, optional
         The time column; by default the one whose name says so.
     sensitivity_v_per_unit : mapping of channel to float, optional

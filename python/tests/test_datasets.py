@@ -8,8 +8,10 @@ import importlib.util
 import json
 import re
 import shutil
+import subprocess
 import sys
 import types
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,7 @@ import scipy.io
 
 import meshtone
 from meshtone import datasets
+from meshtone._published import PUBLISHED
 
 PLAN = """\
 records = 24
@@ -102,7 +105,8 @@ def test_splits_share_no_unit(gears: datasets.Dataset) -> None:
 def test_signals_are_those_of_the_records(gears: datasets.Dataset) -> None:
     signals = gears.signals("vertical_g")
     records = list(gears.records(["record", "vertical_g"], batch_size=5))
-    assert [record["record"] for record in records] == list(range(24))
+    numbers = [record["record"] for record in records]
+    assert numbers == gears.column("record").tolist() and sorted(numbers) == list(range(24))
     assert all(np.array_equal(record["vertical_g"], signal) for record, signal in zip(records, signals))
     fast = gears.filter(pyarrow.dataset.field("pinion_speed_hz") > 35)
     assert len(fast) == int((gears.column("pinion_speed_hz") > 35).sum())
@@ -326,8 +330,8 @@ def test_names_and_sizes_are_always_looked_at(gears: datasets.Dataset, tmp_path:
     assert len(datasets.load_dataset(path)) == 24
     assert datasets.verify_dataset(path) == {"README.md": "it is missing"}
     manifest = path / "manifest.json"
-    manifest.write_text(manifest.read_text(encoding="utf-8").replace('"format_version": 3', '"format_version": 9'), encoding="utf-8")
-    with pytest.raises(ValueError, match="has the format 9; this version of Meshtone knows those up to 3"):
+    manifest.write_text(manifest.read_text(encoding="utf-8").replace('"format_version": 4', '"format_version": 9'), encoding="utf-8")
+    with pytest.raises(ValueError, match="has the format 9; this version of Meshtone knows those up to 4"):
         datasets.load_dataset(path)
 
 
@@ -518,24 +522,12 @@ def test_columns_that_are_null_in_every_record(gears: datasets.Dataset) -> None:
     assert line.replace("`", "").split(", ") == empty
 
 
-def test_hugging_face(gears: datasets.Dataset, tmp_path: Path) -> None:
-    library = pytest.importorskip("datasets", reason="Hugging Face's datasets is not installed: pip install datasets")
-    for name in ("train", "test"):
-        part = library.load_dataset(str(gears.path), name, cache_dir=str(tmp_path))
-        assert list(part) == [name]
-        assert list(part[name]["record"]) == gears.split(name).column("record").tolist()
-        signal = part[name].with_format("numpy")[0]["average_g"]
-        assert np.array_equal(signal, gears.split(name).signals("average_g")[0])
-    # Without a name it would mix all splits, so that it must be named.
-    with pytest.raises(ValueError, match=r"(?s)Config name is missing.*'train', 'test'"):
-        library.load_dataset(str(gears.path), cache_dir=str(tmp_path))
-
-
 def test_front_matter_of_the_card(gears: datasets.Dataset) -> None:
     card = (gears.path / "README.md").read_text(encoding="utf-8")
     _, head, body = card.split("---\n", 2)
     assert head.startswith('license: "cc-by-4.0"\npretty_name: ') and "\ntags: [vibration, " in head
-    assert re.findall(r'config_name: "(\w+)"', head) == re.findall(r'\["split", "==", "(\w+)"\]', head) == ["train", "test"]
+    files = re.findall(r'^  - split: "(\w+)"\n    path: "(.+)"$', head, re.MULTILINE)
+    assert files == [(name, f"data/{name}-[0-9]*.parquet") for name in ("train", "test")]
     assert "Cite as: " in body
 
 
@@ -545,3 +537,55 @@ def test_object_store_in_a_build_without_them() -> None:
     if "has no object stores" not in str(refused.value):
         pytest.skip("this build has object stores")
     assert "pip install . --config-settings build-args='--features cloud'" in str(refused.value)
+
+
+def test_a_published_set_is_unpacked_and_compared(
+    gears: datasets.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As `cargo xtask benchmark` packs the benchmark."""
+    folder = tmp_path / "made" / "benchmark-1"
+    shutil.copytree(gears.path, folder)
+    script = Path(__file__).parents[2] / "examples" / "datasets" / "publish.py"
+
+    def publish(*arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, str(script), str(folder), *arguments]
+        return subprocess.run(command, capture_output=True, text=True, encoding="utf-8")
+
+    assert publish().returncode == 0
+    archive = folder.with_name("benchmark-1.zip")
+    packed = archive.read_bytes()
+    digest, name = archive.with_name("benchmark-1.zip.sha256").read_text("utf-8").split()
+    assert (digest, name) == (hashlib.sha256(packed).hexdigest(), archive.name)
+    with zipfile.ZipFile(archive) as opened:
+        assert "CC-BY-4.0" in opened.read("LICENSE").decode()
+        sums = [line.split("  ") for line in opened.read("SHA256SUMS").decode().splitlines()]
+        assert {name: digest for digest, name in sums} == {f"benchmark-1/{name}": digest for name, digest in digests(folder).items()}
+    # Another SHA-256 in the package is reported with the line to write, and the archive has the same bytes again.
+    published = tmp_path / "published.py"
+    published.write_text("", encoding="utf-8")
+    other = publish("--published", str(published))
+    line = f'"benchmark-1": "{digests(folder)["manifest.json"]}"'
+    assert other.returncode == 1 and line in other.stderr and archive.read_bytes() == packed
+    published.write_text(line, encoding="utf-8")
+    assert publish("--published", str(published)).returncode == 0
+
+    downloads = tmp_path / "downloads"
+    downloads.mkdir()
+    shutil.copy(archive, downloads)
+    with pytest.raises(ValueError, match=r"is not the published benchmark-1: the SHA-256 of its manifest.json is [0-9a-f]{64} instead"):
+        datasets.load("benchmark-1", downloads / archive.name)
+    monkeypatch.setitem(PUBLISHED, "benchmark-1", digests(folder)["manifest.json"])
+    for place in (archive.name, "benchmark-1"):
+        loaded = datasets.load("benchmark-1", downloads / place)
+        assert loaded.path == downloads / "benchmark-1" and len(loaded) == 24
+    flip(downloads / "benchmark-1" / "data" / "train-000001.parquet", 3)
+    with pytest.raises(ValueError, match=r"train-000001.parquet: its bytes are not those that were written"):
+        datasets.load("benchmark-1", downloads / archive.name)
+    with pytest.raises(ValueError, match="no data set 'benchmark' is published; did you mean 'benchmark-1'"):
+        datasets.load("benchmark", archive)
+    with pytest.raises(FileNotFoundError):
+        datasets.load("benchmark-1", tmp_path / "absent.zip")
+    (tmp_path / "text.zip").write_text("text", encoding="utf-8")
+    with pytest.raises(ValueError, match="is no whole archive of a data set"):
+        datasets.load("benchmark-1", tmp_path / "text.zip")
+    assert not (tmp_path / "benchmark-1").exists()

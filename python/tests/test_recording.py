@@ -85,3 +85,43 @@ def test_places_where_no_file_is(what: str, tmp_path: Path) -> None:
             READERS[what](path)
         assert (refused.value.errno, str(refused.value.filename).removesuffix(".tmp")) == (number, path)
     assert [left.name for left in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_recording_of_a_set_that_bearing_datasets_built(tmp_path: Path) -> None:
+    """Its own writer makes a file for each type of numbers."""
+    build = pytest.importorskip("bearing_datasets.build", reason="bearing-datasets is not installed: pip install bearing-datasets==0.3.0")
+    import pandas
+
+    generator = np.random.default_rng(1)
+    signals: dict[str, np.ndarray[Any, Any]] = {
+        "run 1/acc": generator.normal(size=500),
+        "run 1/tacho": generator.integers(-3000, 3000, 500).astype(np.int16),
+        "run 2/acc": generator.normal(size=300).astype(np.float32),
+        "run 2/slow": generator.normal(size=30),
+    }
+    writer = build.SignalWriter(tmp_path / "signals", row_group_bytes=4000)
+    for name, signal in signals.items():
+        writer.add(name, signal)
+    writer.close()
+    table = pandas.DataFrame.from_dict(writer.locations, orient="index", columns=["signal_file", "signal_row_group", "signal_row"])
+    table["recording_id"], table["channel"] = zip(*(name.split("/") for name in signals))
+    table["fs"] = [10000, 10000, 5000.0, 100.0]
+    table["n_samples"] = [signal.size for signal in signals.values()]
+    table["unit"] = ["m/s^2", "counts", "g", "unknown"]
+    table.to_parquet(tmp_path / "metadata.parquet")
+    for place in (tmp_path, tmp_path / "metadata.parquet"):
+        recording = read_recording(place, variable="run 1")
+        assert recording.sampling_rate_hz == 10000
+        assert list(recording.channels) == ["acc", "tacho"] and recording.units == {"acc": "m/s^2", "tacho": None}
+        for name in recording:
+            assert (recording[name] == signals[f"run 1/{name}"]).all()
+    acc = read_recording(tmp_path, variable="run 2", channels=["acc"])
+    assert acc.sampling_rate_hz == 5000 and (acc["acc"] == signals["run 2/acc"]).all()
+    with pytest.raises(ValueError, match=r"choose those that belong together|states a sampling rate"):
+        read_recording(tmp_path, variable="run 2")
+    with pytest.raises(ValueError, match="choose one by its recording_id .*: run 1, run 2"):
+        read_recording(tmp_path)
+    table["n_samples"] = 7
+    table.to_parquet(tmp_path / "metadata.parquet")
+    with pytest.raises(ValueError, match="acc has 500 samples, and metadata.parquet says 7; build the data set again"):
+        read_recording(tmp_path, variable="run 1")

@@ -15,7 +15,10 @@ simulation = mt.simulate(mt.examples.healthy().copy(sampling_rate_hz=1e4))
 assert simulation.vertical_g.std() > 0
 ";
 
-/// Makes everything that a release carries.
+/// Name of the benchmark's data set, by which the Python package knows it.
+const BENCHMARK: &str = "benchmark-1";
+
+/// Makes everything that a release carries but the benchmark's data set.
 ///
 /// # Errors
 /// The exit code of what failed.
@@ -34,6 +37,24 @@ pub fn make_wheel(row: &StepRunner) -> Result<(), u8> {
     let python = environment::of_checks(row)?;
     report(row, &[wheel(row, &python)?]);
     Ok(())
+}
+
+/// Makes the benchmark's data set, or goes on with it, and packs it as an archive.
+///
+/// # Errors
+/// The exit code of what failed; the Python package has another SHA-256 of the data set, so that it would refuse the archive.
+pub fn benchmark(row: &StepRunner) -> Result<(), u8> {
+    let set = folder(row).join(BENCHMARK);
+    let program = program(row)?;
+    row.step("Data set of the benchmark", || {
+        row.program(
+            Command::new(program).args(["dataset", "examples/datasets/benchmark.toml", "-o"]).arg(&set),
+        )
+    })?;
+    row.step("Archive of the data set", || {
+        let arguments = ["--published", "python/meshtone/_published.py"];
+        row.program(environment::base().arg("examples/datasets/publish.py").arg(&set).args(arguments))
+    })
 }
 
 /// Says what was made, and how large it is.

@@ -29,11 +29,15 @@ fn install(row: &StepRunner) -> Result<PathBuf, u8> {
     if python.exists() && std::fs::read_to_string(&installed).is_ok_and(|text| text == wanted) {
         return Ok(python);
     }
-    let base = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
-    row.program(Command::new(base).args(["-m", "venv", "--clear"]).arg(folder.join("venv")))?;
+    row.program(base().args(["-m", "venv", "--clear"]).arg(folder.join("venv")))?;
     pip_install(row, &python, &python, |pip| pip.arg("--requirement").arg(&requirements))?;
     std::fs::write(&installed, wanted).map_err(|error| row.fail_at(&installed, &error))?;
     Ok(python)
+}
+
+/// The interpreter that makes the environments, which has its standard library alone.
+pub fn base() -> Command {
+    Command::new(std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into()))
 }
 
 /// A new environment with nothing in it but Python; returns its interpreter.

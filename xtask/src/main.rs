@@ -36,6 +36,8 @@ Tasks:
   dist         Make what a release carries, in target/dist: the program, the Python package's wheel
                and its source distribution
   wheel        Of these, only the wheel
+  benchmark    Make the benchmark's data set there, as the archive that a release carries (two minutes on two cores; needs
+               Python), and check that the package has its SHA-256
   generate     Write what follows from the rows of the library's keys: Python's arguments and classes, the guide's tables
   check-rooms  Only the check that no folder of the library imports against the direction of the data
   check-dependencies
@@ -61,6 +63,7 @@ fn main() -> ExitCode {
         ["fuzz", arguments @ ..] => row.cargo(&[&FUZZ[..], arguments].concat(), &[]),
         ["docs"] => docs::build(root),
         ["wheel"] => dist::make_wheel(&row),
+        ["benchmark"] => dist::benchmark(&row),
         ["generate"] => checks::generate(&row),
         ["check-rooms"] => row.check("rooms check", rooms::problems),
         ["check-dependencies"] => row.check("dependencies check", dependencies::problems),
