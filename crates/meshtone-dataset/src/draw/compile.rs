@@ -66,7 +66,8 @@ impl<'a> Sampler<'a> {
         check_severities(content, &classes)?;
         let counts = || content.classes.iter().map(|class| class.count);
         let ends = (1..=content.classes.len()).map(|last| counts().take(last).sum()).collect();
-        Ok(Self { content, group_rules, classes, ends, constraints, shift_levels })
+        let split_counts = content.splits.counts(content.divided());
+        Ok(Self { content, group_rules, classes, ends, split_counts, constraints, shift_levels })
     }
 }
 

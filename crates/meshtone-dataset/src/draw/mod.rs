@@ -10,7 +10,7 @@ use meshtone::scenario::{ScenarioError, ScenarioForm, SensorPath};
 use meshtone_toml::{ReadResult, TomlError};
 
 use crate::expression::{Condition, Expression};
-use crate::plan::{Content, Distribution, Level, Rule, RunPosition, SplitBy};
+use crate::plan::{Content, Distribution, Level, Rule, RunPosition, SplitBy, Splits};
 use crate::sampling::{Points, permuted};
 use compile::ClassRules;
 use values::{Values, of_scenario};
@@ -62,6 +62,8 @@ pub struct Sampler<'a> {
     classes: Vec<ClassRules<'a>>,
     /// Number of the record after the last of each class, in the order before it is shuffled.
     ends: Vec<u64>,
+    /// Number of units, or mountings, of each split.
+    split_counts: Vec<u64>,
     /// Constraints, each with the level whose values decide it.
     constraints: Vec<(Level, &'a Condition)>,
     /// The levels whose values decide each condition of each shift.
@@ -167,7 +169,7 @@ impl Sampler<'_> {
         })
     }
 
-    /// Number of a record's split in [`Splits::names`](crate::plan::Splits::names). Drawing the record takes much longer.
+    /// Number of a record's split in [`Splits::names`]. Drawing the record takes much longer.
     ///
     /// # Arguments
     /// * `index` - number of the record, below [`Self::records`]
@@ -268,12 +270,11 @@ impl Sampler<'_> {
     /// * `unit` - its unit's number
     /// * `mounting` - its mounting's number, of those of all units
     pub fn split_of(&self, unit: u64, mounting: u64) -> usize {
-        let splits = &self.content.splits;
-        let number = match splits.by {
+        let number = match self.content.splits.by {
             SplitBy::Unit => unit,
             SplitBy::Mounting => mounting,
         };
-        splits.split_of(number, self.content.divided(), self.seed(SPLITS))
+        Splits::split_of(&self.split_counts, number, self.content.divided(), self.seed(SPLITS))
     }
 
     fn seed(&self, index: u64) -> u64 {

@@ -112,16 +112,17 @@ impl Splits {
     /// The split of a unit, or a mounting.
     ///
     /// # Arguments
+    /// * `counts` - [how many](Self::counts) each split has
     /// * `unit`, `units` - which of how many
     /// * `seed` - of the division
-    pub fn split_of(&self, unit: u64, units: u64, seed: u64) -> usize {
+    pub fn split_of(counts: &[u64], unit: u64, units: u64, seed: u64) -> usize {
         let place = permuted(unit, units, seed);
         let mut end = 0;
-        let has_unit = |count: u64| {
+        let has_unit = |count: &u64| {
             end += count;
             place < end
         };
-        self.counts(units).into_iter().position(has_unit).unwrap_or(0)
+        counts.iter().position(has_unit).unwrap_or(0)
     }
 }
 
@@ -154,8 +155,9 @@ mod tests {
         };
         for units in [4, 10, 37, 1000] {
             let mut counts = vec![0; 4];
-            (0..units).for_each(|unit| counts[splits.split_of(unit, units, 9)] += 1);
-            assert_eq!(counts, splits.counts(units));
+            let planned = splits.counts(units);
+            (0..units).for_each(|unit| counts[Splits::split_of(&planned, unit, units, 9)] += 1);
+            assert_eq!(counts, planned);
             assert_eq!(counts.iter().sum::<u64>(), units);
             assert!(counts.iter().all(|&count| count > 0));
         }
