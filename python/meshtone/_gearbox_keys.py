@@ -14,6 +14,36 @@ from ._keys import FlankRelief, Profile, WheelInertia
 from ._sensor import SensorPath
 
 
+class Unbalance(TypedDict, total=False):
+    """The table ``unbalance`` of an entry ``[[shaft]]`` of a gearbox.
+
+    Attributes
+    ----------
+    g_mm : float
+        (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
+    angle_deg : float
+        (°) Its direction at the start, from x towards y. Allowed: −360…360.
+    """
+
+    g_mm: float
+    angle_deg: float
+
+
+class Bow(TypedDict, total=False):
+    """The table ``bow`` of an entry ``[[shaft]]`` of a gearbox.
+
+    Attributes
+    ----------
+    middle_um : float
+        (µm) The distance of its middle from the line through its ends, without a load. Allowed: ≥ 0, ≤ 10000.
+    angle_deg : float
+        (°) Its direction at the start, from x towards y. Allowed: −360…360.
+    """
+
+    middle_um: float
+    angle_deg: float
+
+
 class GearboxShaft(TypedDict, total=False):
     """An entry ``[[shaft]]`` of a gearbox.
 
@@ -41,6 +71,10 @@ class GearboxShaft(TypedDict, total=False):
         (N m/rad) The torsional stiffness of that coupling. Allowed: > 0, ≤ 1e15.
     damping_ratio : float
         (-) The damping ratio of the shaft and its coupling. Allowed: ≥ 0, < 1.
+    unbalance : Unbalance
+        The unbalance of the shaft, midway along it.
+    bow : Bow
+        The bow of a shaft that is not straight: half a sine over its length.
     """
 
     name: str
@@ -53,6 +87,23 @@ class GearboxShaft(TypedDict, total=False):
     couples_to: Literal["nothing", "motor", "brake"]
     coupling_stiffness_nm_per_rad: float
     damping_ratio: float
+    unbalance: Unbalance
+    bow: Bow
+
+
+class Unbalance(TypedDict, total=False):
+    """The table ``unbalance`` of an entry ``[[wheel]]`` of a gearbox.
+
+    Attributes
+    ----------
+    g_mm : float
+        (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
+    angle_deg : float
+        (°) Its direction at the start, from x towards y. Allowed: −360…360.
+    """
+
+    g_mm: float
+    angle_deg: float
 
 
 class GearboxWheel(TypedDict, total=False):
@@ -93,6 +144,8 @@ class GearboxWheel(TypedDict, total=False):
         Its material.
     inertia : WheelInertia
         Its mass and inertias, any of the three.
+    unbalance : Unbalance
+        Its unbalance.
     din_grade : int
         The grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
     iso_class : int
@@ -132,6 +185,7 @@ class GearboxWheel(TypedDict, total=False):
     flank_relief: FlankRelief
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float]
     inertia: WheelInertia
+    unbalance: Unbalance
     din_grade: int
     iso_class: int
     tooth_share: float
@@ -210,6 +264,31 @@ class GearboxMesh(TypedDict, total=False):
     damping_ratio: float
 
 
+class Defect(TypedDict, total=False):
+    """An entry of ``defect`` of an entry ``[[bearing]]`` of a gearbox.
+
+    Attributes
+    ----------
+    race : {'outer', 'inner', 'element'}
+        The part with the spall: a race, or one of the balls or rollers.
+    severity : float
+        (-) The width of the spall as a fraction of the diameter of an element. Allowed: > 0, ≤ 1.
+    width_mm : float
+        (mm) The width of the spall along the path of the elements. Allowed: > 0; at most the diameter of an element.
+    depth_um : float
+        (µm) The depth of the spall; an element drops at most until it touches both edges. Allowed: > 0, ≤ 100000.
+    angle_deg : float
+        (°) The angle from the static load of the bearing to the middle of the spall, about z; on the inner race at the
+        start. Allowed: −360…360.
+    """
+
+    race: Literal["outer", "inner", "element"]
+    severity: float
+    width_mm: float
+    depth_um: float
+    angle_deg: float
+
+
 class Seat(TypedDict, total=False):
     """The table ``seat`` of an entry ``[[bearing]]`` of a gearbox.
 
@@ -240,10 +319,31 @@ class GearboxBearing(TypedDict, total=False):
         The name of its shaft.
     at : float
         (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1.
-    kind : {'linear'}
-        The kind of bearing.
+    kind : {'linear', 'ball', 'roller'}
+        The kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact.
+    name : str
+        The name of a rolling bearing whose geometry is published: 6203, 6205, ER-10K, ER-16K, UER204.
+    elements : int
+        The number of balls or rollers. Allowed: whole number 3…200.
+    element_mm : float
+        (mm) The diameter of a ball or roller. Allowed: > 0; room for all elements on the pitch circle.
+    pitch_mm : float
+        (mm) The pitch diameter, of the circle through the centres of the elements. Allowed: > 0.
+    contact_angle_deg : float
+        (°) The contact angle of a ball bearing. Allowed: ≥ 0, < 90.
+    roller_length_mm : float
+        (mm) The length of a roller. Allowed: > 0.
+    clearance_um : float
+        (µm) The diametral clearance of a rolling bearing; negative for an interference. Allowed: −200…1000.
+    preload_n : float
+        (N) The axial preload of a ball bearing with a contact angle. Allowed: ≥ 0, ≤ 1000000.
+    slip_percent : float
+        (%) The random slip of the cage at each pass of an element: its standard deviation, in the spacing of the
+        elements. Allowed: 0…2.
+    defect : sequence of Defect
+        The spalls of a rolling bearing, one by one.
     stiffness_n_per_m : float
-        (N/m) The radial stiffness. Allowed: > 0, ≤ 1e15.
+        (N/m) The radial stiffness of a linear bearing. Allowed: > 0, ≤ 1e15.
     axial_stiffness_n_per_m : float
         (N/m) The axial stiffness; 0 where the shaft may slide. Allowed: ≥ 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
@@ -256,7 +356,17 @@ class GearboxBearing(TypedDict, total=False):
 
     shaft: str
     at: float
-    kind: Literal["linear"]
+    kind: Literal["linear", "ball", "roller"]
+    name: str
+    elements: int
+    element_mm: float
+    pitch_mm: float
+    contact_angle_deg: float
+    roller_length_mm: float
+    clearance_um: float
+    preload_n: float
+    slip_percent: float
+    defect: Sequence[Defect]
     stiffness_n_per_m: float
     axial_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float

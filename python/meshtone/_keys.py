@@ -117,6 +117,36 @@ class WheelInertia(TypedDict, total=False):
     transverse_inertia_kgm2: float
 
 
+class PinionUnbalance(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    g_mm : float
+        (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
+    angle_deg : float
+        (°) Its direction at the start, from x towards y. Allowed: −360…360.
+    """
+
+    g_mm: float
+    angle_deg: float
+
+
+class GearUnbalance(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    g_mm : float
+        (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
+    angle_deg : float
+        (°) Its direction at the start, from x towards y. Allowed: −360…360.
+    """
+
+    g_mm: float
+    angle_deg: float
+
+
 class Support(TypedDict, total=False):
     """A table of a scenario.
 
@@ -204,6 +234,8 @@ SECTION_OF_KEY: dict[str, str] = {
     "gear_shaft": "rig",
     "pinion_inertia": "rig",
     "gear_inertia": "rig",
+    "pinion_unbalance": "rig",
+    "gear_unbalance": "rig",
     "support": "rig",
     "mesh_damping_ratio": "rig",
     "sampling_rate_hz": "solver",
@@ -296,6 +328,8 @@ class ScenarioChanges(TypedDict, total=False):
     gear_shaft: Any
     pinion_inertia: Any
     gear_inertia: Any
+    pinion_unbalance: Any
+    gear_unbalance: Any
     support: Any
     mesh_damping_ratio: Any
     sampling_rate_hz: Any
@@ -370,6 +404,8 @@ class ScenarioKeys:
     gear_shaft: Shaft
     pinion_inertia: WheelInertia | None
     gear_inertia: WheelInertia | None
+    pinion_unbalance: PinionUnbalance | None
+    gear_unbalance: GearUnbalance | None
     support: Support
     mesh_damping_ratio: float
     sampling_rate_hz: float
@@ -446,6 +482,8 @@ class ScenarioKeys:
         gear_shaft: Shaft | None = None,
         pinion_inertia: WheelInertia | None = None,
         gear_inertia: WheelInertia | None = None,
+        pinion_unbalance: PinionUnbalance | None = None,
+        gear_unbalance: GearUnbalance | None = None,
         support: Support | None = None,
         mesh_damping_ratio: float | None = None,
         sampling_rate_hz: float | None = None,
@@ -610,6 +648,8 @@ class ScenarioKeys:
             = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }.
         pinion_inertia, gear_inertia : WheelInertia, optional
             The wheel's mass and inertias, any of the three. Default: those of a solid disc of pitch radius.
+        pinion_unbalance, gear_unbalance : PinionUnbalance, optional
+            The unbalance of the wheel and its shaft. Default: none. Ignored by published.
         support : Support, optional
             The supports of the shafts' bearings. Default: { mass_kg = 2.3, base_hz = 450.0, differential_hz = 2900.0,
             damping_ratio = 0.025 }. Ignored by linear, published.

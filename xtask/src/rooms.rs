@@ -12,7 +12,7 @@ use crate::files;
 const FLOORS: &[&[&str]] = &[
     &["error", "error_table", "random", "interpolation", "simd", "threads", "model", "trace_fields"],
     &["keys"],
-    &["wheel"],
+    &["wheel", "bearing"],
     &["damage"],
     &["operation"],
     &["stiffness"],

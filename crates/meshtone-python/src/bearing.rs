@@ -1,8 +1,7 @@
 //! Bearings: their defect orders and lines, and the tools that bring these out of a recording.
 
-use meshtone::signal::{
-    self as steps, BearingGeometry, FrequencyBand, Kurtogram, NAMED_BEARINGS, SquaredEnvelopeSpectrum,
-};
+use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS};
+use meshtone::signal::{self as steps, FrequencyBand, Kurtogram, SquaredEnvelopeSpectrum};
 use pyo3::prelude::*;
 
 use crate::array::{Array, Signal, array, samples};

@@ -26,6 +26,7 @@
 #![deny(missing_docs)]
 
 pub mod batch;
+pub mod bearing;
 pub mod damage;
 mod error;
 mod error_table;

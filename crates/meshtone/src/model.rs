@@ -85,6 +85,8 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
             "quality.gear_run_out_phase_rad",
             "rig.bearing_stiffness_n_per_m",
             "rig.eccentricity_mm",
+            "rig.pinion_unbalance",
+            "rig.gear_unbalance",
             "rig.mesh_damping_ratio",
         ],
     ),

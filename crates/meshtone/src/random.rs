@@ -76,6 +76,10 @@ pub enum Purpose {
     GearboxWheel = 31,
     /// Seed of the wheels with which a recording of the healthy machine is compared; index: draw.
     PathWheels = 32,
+    /// Angles of the cage and of an element of a rolling bearing at the start; index: bearing.
+    BearingStart = 33,
+    /// Slip of a rolling bearing's cage, pass by pass; index: bearing.
+    BearingSlip = 34,
 }
 
 /// A sequence of random numbers.

@@ -26,6 +26,7 @@ use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::{DecayingMode, Machine, Modes, Train};
 use crate::mesh::{
     Contact, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
+    place_on_face,
 };
 use crate::operation::{CycleGrid, Solver, TimeGrid};
 use crate::published::{self, Published};
@@ -327,7 +328,7 @@ impl MeshOf<'_> {
             overlap: self.sense * gears.hand.sign() * gears.overlap_ratio(),
             face_width_m: width_m,
             gaps_m: (0..slices)
-                .map(|slice| [slice, slice + 1].map(|edge| edge as f64 / slices as f64 - 0.5))
+                .map(|slice| [slice, slice + 1].map(|edge| place_on_face(edge as f64, slices)))
                 .map(|ends| gears.mean_gap_mm(ends) * 1e-3)
                 .collect(),
         };
@@ -347,7 +348,7 @@ impl MeshOf<'_> {
         let width_mm = gears.face_width_mm;
         let of_slice = teeth.with_face_width(width_mm / slices as f64);
         let damaged: Vec<Vec<DamagedTooth>> = (0..slices)
-            .map(|slice| [slice, slice + 1].map(|edge| width_mm * (edge as f64 / slices as f64 - 0.5)))
+            .map(|slice| [slice, slice + 1].map(|edge| width_mm * place_on_face(edge as f64, slices)))
             .map(|ends_mm| damaged.iter().map(|tooth| tooth.slice(ends_mm, width_mm)).collect())
             .collect();
         let sound = Pairs::new(&of_slice, &[], gears.material, &gears.foundation);

@@ -1,9 +1,10 @@
 //! Bearings: the options that name them, and the lines of their defects in a recording.
 
 use clap::Args;
+use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS, NamedBearing};
 use meshtone::signal::{
-    BearingGeometry, BearingRecords, BearingSeparation, BearingSettings, FrequencyBand, NAMED_BEARINGS,
-    NamedBearing, SignalError, TrainBearing, TrainRecording, TrainTurning,
+    BearingRecords, BearingSeparation, BearingSettings, FrequencyBand, SignalError, TrainBearing,
+    TrainRecording, TrainTurning,
 };
 use meshtone_io::indicators::BearingEntry;
 

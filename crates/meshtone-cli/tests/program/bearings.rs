@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fs::File;
 
-use meshtone::signal::NamedBearing;
+use meshtone::bearing::NamedBearing;
 use meshtone_io::table::TableReader;
 use serde_json::Value;
 

@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use meshtone::signal::{DefectKind, DefectLine, FrequencyBand, NamedBearing, TrainBearing};
+use meshtone::bearing::NamedBearing;
+use meshtone::signal::{DefectKind, DefectLine, FrequencyBand, TrainBearing};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 

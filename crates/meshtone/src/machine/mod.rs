@@ -11,10 +11,12 @@ mod rig;
 mod shaft_bending;
 mod support;
 mod train;
+mod turning_force;
 
 pub use body::WheelBody;
 pub use gearbox::{
-    Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft, Housing, MeshLine, Seat,
+    Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft, Housing, MeshLine,
+    PlacedUnbalance, Seat, SeatedBearing,
 };
 pub(crate) use modes::connected_groups;
 pub(crate) use modes::KnownModes;
@@ -25,5 +27,6 @@ pub(crate) use parts::weights;
 pub use parts::{LineOfAction, Spring};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use support::{Support, SupportSprings};
+pub use turning_force::{Bow, TurningForce, Unbalance};
 pub(crate) use train::turn_planes;
 pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, SupportMode, Supports, Train, WHEELS};

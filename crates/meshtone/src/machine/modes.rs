@@ -276,6 +276,8 @@ mod tests {
             turn: DMatrix::identity(20, 20),
             springs: vec![Spring { stiffness, damping_ratio: 0.02 }],
             lines: Vec::new(),
+            bearings: Vec::new(),
+            turning_forces: Vec::new(),
             drives: Vec::new(),
             places: Vec::new(),
             rigid_rotation: DVector::zeros(20),

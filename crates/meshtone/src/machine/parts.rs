@@ -4,6 +4,8 @@ use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::TurningForce;
+
 /// A machine without its meshes, in n coordinates.
 ///
 /// The matrices and vectors are given in *turned* coordinates, `u = turn · u'`. A machine with one mesh turns the plane of its wheels
@@ -21,6 +23,10 @@ pub struct Machine {
     pub springs: Vec<Spring>,
     /// A line of action for each mesh.
     pub lines: Vec<LineOfAction>,
+    /// Of each rolling bearing the displacement of its inner ring against its outer one along x and along y, per unit of each coordinate.
+    pub bearings: Vec<[DVector<f64>; 2]>,
+    /// Forces that turn with the shafts.
+    pub turning_forces: Vec<TurningForce>,
     /// Motors and brakes.
     pub drives: Vec<Drive>,
     /// Where something can be measured.

@@ -7,7 +7,7 @@ use meshtone_toml::{ReadResult, TomlValue};
 use crate::keys::{
     Check, KeyKind, KeyValue, Keys, NumberFiles, Range, KeyRow, Written, below, check_keys, field, row,
 };
-use super::Support;
+use super::{Support, Unbalance};
 use crate::wheel::{Gears, WheelName};
 
 /// Bearings, shafts, brake and wheel bodies.
@@ -35,6 +35,10 @@ pub struct Rig {
     pub pinion_inertia: WheelInertia,
     /// Mass and inertias of the gear, instead of those of a solid disc.
     pub gear_inertia: WheelInertia,
+    /// Unbalance of the pinion and its shaft. Default none.
+    pub pinion_unbalance: Unbalance,
+    /// Unbalance of the gear and its shaft. Default none.
+    pub gear_unbalance: Unbalance,
     /// What each shaft's bearings sit in.
     pub support: Support,
     /// (-) Damping of the contact of two teeth over the critical damping of the wheels' rotation on the mean mesh. Default 0.15.
@@ -54,6 +58,8 @@ impl Default for Rig {
             gear_shaft: Shaft::new(600.0, 10.0),
             pinion_inertia: WheelInertia::default(),
             gear_inertia: WheelInertia::default(),
+            pinion_unbalance: Unbalance::default(),
+            gear_unbalance: Unbalance::default(),
             support: Support::default(),
             mesh_damping_ratio: 0.15,
         }
@@ -125,6 +131,12 @@ impl Keys for Rig {
             row("gear_inertia", "", "the wheel's mass and inertias, any of the three", field!(gear_inertia))
                 .otherwise(DISC)
                 .alternative("{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }"),
+            row("pinion_unbalance", "", "the unbalance of the wheel and its shaft", field!(pinion_unbalance))
+                .otherwise("none")
+                .alternative("{ g_mm = 50.0 }"),
+            row("gear_unbalance", "", "the unbalance of the wheel and its shaft", field!(gear_unbalance))
+                .otherwise("none")
+                .alternative("{ g_mm = 50.0 }"),
             row(
                 "support",
                 "",

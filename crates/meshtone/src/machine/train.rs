@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use super::body::WheelBody;
 use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
 use super::shaft_bending::wheel_flexibility;
-use super::{Rig, Shaft};
+use super::{Rig, Shaft, TurningForce};
 use crate::wheel::{Gears, Teeth, Wheel, WheelName};
 
 /// Names of the coordinates, as in the paper; the last four are those of the supports.
@@ -153,8 +153,20 @@ impl Train {
                     .iter()
                     .map(|spring| spring.turned(&turn))
                     .collect(),
-                turn,
                 lines: vec![line_of_action(gears, teeth, coordinates)],
+                bearings: Vec::new(),
+                turning_forces: {
+                    let along = |coordinate: usize| turn.row(coordinate).transpose();
+                    let of_wheel = |unbalance, rotation: usize, [x, y]: [usize; 2]| {
+                        TurningForce::of_unbalance(unbalance, rigid_rotation[rotation], [along(x), along(y)])
+                    };
+                    let given = [
+                        (&rig.pinion_unbalance, THETA_PINION, [X_PINION, Y_PINION]),
+                        (&rig.gear_unbalance, THETA_GEAR, [X_GEAR, Y_GEAR]),
+                    ];
+                    let given = given.into_iter().filter(|(unbalance, ..)| unbalance.g_mm > 0.0);
+                    given.map(|(unbalance, rotation, plane)| of_wheel(unbalance, rotation, plane)).collect()
+                },
                 drives: vec![
                     Drive::Motor {
                         coordinate: THETA_PINION,
@@ -164,6 +176,7 @@ impl Train {
                     Drive::Brake { coordinate: THETA_BRAKE, torque_share: 1.0 },
                 ],
                 places: places(supports),
+                turn,
                 rigid_rotation,
             },
         }

@@ -6,6 +6,8 @@ use std::ops::RangeInclusive;
 use super::deviations::{Eccentricity, FlankErrors, PairDeviations};
 use super::gear_mesh::{Mesh, PairTable};
 use super::path_table::PairState;
+use crate::bearing::{BearingBlock, BearingTurning};
+use crate::machine::TurningForce;
 use crate::operation::{Motion, TimeGrid};
 use crate::wheel::WheelName;
 
@@ -15,13 +17,15 @@ pub(crate) const PAIRS: usize = 3;
 /// Forcing of successive samples of one simulation.
 #[derive(Debug, Clone, Default)]
 pub struct ForcingBlock {
-    /// How motor and brake differ from their nominal motion; empty while both are steady.
+    /// How motor and brake differ from their nominal motion, empty while both are steady; and what turns with the shafts.
     pub external: ExternalBlock,
     /// The pairs of each mesh.
     pub meshes: Vec<PairsBlock>,
+    /// The elements of each rolling bearing.
+    pub(crate) bearings: Vec<BearingBlock>,
 }
 
-/// How motor and brake differ from the nominal motion at successive samples.
+/// How motor and brake differ from the nominal motion at successive samples, and what turns with the shafts.
 #[derive(Debug, Clone, Default)]
 pub struct ExternalBlock {
     /// (rad) Angle of the motor less that of the rigid rotation at the nominal speed.
@@ -30,10 +34,13 @@ pub struct ExternalBlock {
     pub torque_deviation_nm: Vec<f64>,
     /// (rad/s) Speed of the motor less the nominal one.
     pub speed_deviation_rad_per_s: Vec<f64>,
+    /// Of each force that turns with a shaft: the cosine and the sine of the shaft's angle, times the square of its speed where the force
+    /// grows with it.
+    pub(crate) turning: Vec<Vec<[f64; 2]>>,
 }
 
 impl ExternalBlock {
-    /// All three, in this order.
+    /// The motion of motor and brake, in this order.
     pub(crate) fn parts(&self) -> [&Vec<f64>; 3] {
         [&self.motor_lead_rad, &self.torque_deviation_nm, &self.speed_deviation_rad_per_s]
     }
@@ -93,7 +100,10 @@ pub struct Forcing<'a> {
     nominal_speed_hz: f64,
     nominal_torque_nm: f64,
     meshes: Vec<MeshForcing<'a>>,
-    /// (rev) Rotation of the motor at the samples of a block, where a mesh needs it.
+    bearings: Vec<BearingTurning>,
+    /// Rotation of the shaft of each turning force over that of the motor, and whether the force grows with the square of its speed.
+    turning_forces: Vec<(f64, bool)>,
+    /// (rev) Rotation of the motor at the samples of a block, where a mesh or a bearing needs it.
     revolutions: Vec<f64>,
 }
 
@@ -137,8 +147,28 @@ impl<'a> Forcing<'a> {
             nominal_speed_hz,
             nominal_torque_nm,
             meshes: meshes.collect(),
+            bearings: Vec::new(),
+            turning_forces: Vec::new(),
             revolutions: Vec::new(),
         }
+    }
+
+    /// Returns the forcing with rolling bearings.
+    ///
+    /// # Arguments
+    /// * `bearings` - from the start of the simulation
+    pub(crate) fn with_bearings(self, bearings: Vec<BearingTurning>) -> Self {
+        Self { bearings, ..self }
+    }
+
+    /// Returns the forcing with forces that turn with the shafts.
+    ///
+    /// # Arguments
+    /// * `turning_forces` - of the machine
+    pub(crate) fn with_turning_forces(self, turning_forces: &[TurningForce]) -> Self {
+        let turning_forces =
+            turning_forces.iter().map(|force| (force.speed_ratio, force.of_square_speed)).collect();
+        Self { turning_forces, ..self }
     }
 
     /// Number of springs of each mesh.
@@ -155,7 +185,8 @@ impl<'a> Forcing<'a> {
         self.revolutions.clear();
         if !self.is_steady {
             self.follow_motion(samples, &mut block.external);
-        } else if self.meshes.iter().any(|mesh| mesh.reading != Reading::EveryPoint) {
+        } else if self.follows_shafts() || self.meshes.iter().any(|mesh| mesh.reading != Reading::EveryPoint)
+        {
             let turned = |k: usize| (self.sample + k) as f64 / self.samples_per_revolution;
             self.revolutions.extend((0..samples).map(turned));
         }
@@ -163,7 +194,31 @@ impl<'a> Forcing<'a> {
         for (mesh, pairs) in self.meshes.iter_mut().zip(&mut block.meshes) {
             mesh.next_block(self.sample, samples, &self.revolutions, pairs);
         }
+        block.bearings.resize_with(self.bearings.len(), BearingBlock::default);
+        for (bearing, elements) in self.bearings.iter_mut().zip(&mut block.bearings) {
+            bearing.next_block(&self.revolutions, elements);
+        }
+        self.turn_with_shafts(&mut block.external);
         self.sample += samples;
+    }
+
+    /// Whether bearings or turning forces need the angle of the motor.
+    fn follows_shafts(&self) -> bool {
+        !self.bearings.is_empty() || !self.turning_forces.is_empty()
+    }
+
+    fn turn_with_shafts(&self, block: &mut ExternalBlock) {
+        block.turning.resize_with(self.turning_forces.len(), Vec::new);
+        for (values, &(speed_ratio, of_square_speed)) in block.turning.iter_mut().zip(&self.turning_forces) {
+            values.clear();
+            for (k, motor) in self.revolutions.iter().enumerate() {
+                let deviation_rad_per_s = block.speed_deviation_rad_per_s.get(k).copied().unwrap_or(0.0);
+                let speed_rad_per_s = speed_ratio * (TAU * self.nominal_speed_hz + deviation_rad_per_s);
+                let factor = if of_square_speed { speed_rad_per_s * speed_rad_per_s } else { 1.0 };
+                let (sin, cos) = (TAU * speed_ratio * motor).sin_cos();
+                values.push([factor * cos, factor * sin]);
+            }
+        }
     }
 
     fn follow_motion(&mut self, samples: usize, block: &mut ExternalBlock) {

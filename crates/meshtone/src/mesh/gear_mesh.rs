@@ -9,7 +9,7 @@ use super::law::{Contact, MeshLaw, deflection_at_rest};
 use super::pair::Pairs;
 use super::path_table::{PairState, PairTables, PathEnds, TipShape, share_on_path};
 use super::sequence::{PairKind, PairSequence};
-use super::window::{Integral, Window};
+use super::window::{Integral, Window, place_on_face};
 use crate::machine::ClosedMesh;
 
 /// (base pitches) How far outside its path a pair is looked at: a corner there is some mm away from the flank.
@@ -55,7 +55,7 @@ pub struct Mesh {
     /// (m) How far the nominal load presses sound pairs together at each point of a pitch, counted as those of the tables; none where that
     /// is taken as [`Self::nominal_deflection_m`] throughout.
     pressed_m: Vec<f64>,
-    /// (N/m) Stiffness of a sound pair of helical teeth at each point if its whole face touched there; none of spur wheels.
+    /// (N/m) Stiffness of a sound pair of helical teeth at each point if its whole face touched there; none of spur wheels and of faces in slices.
     of_path_n_per_m: Vec<f64>,
 }
 
@@ -148,7 +148,7 @@ impl Mesh {
         let points = if overlap == 0.0 { points.min(PAIRS * points_per_pitch) } else { points };
         let positions: Vec<f64> =
             (0..points).map(|point| (point as f64 - points_before as f64) / per_pitch).collect();
-        let middle = |slice: usize| (slice as f64 + 0.5) / slices as f64 - 0.5;
+        let middle = |slice: usize| place_on_face(slice as f64 + 0.5, slices);
         let sound = sequence.classes()[0];
         // Slices of sound pairs are alike.
         let along_path = (overlap != 0.0).then(|| tables[0].along_path(&sound));
@@ -175,7 +175,7 @@ impl Mesh {
                 states: (0..slices).flat_map(|slice| of_slice(&kind, slice)).collect(),
             })
             .collect();
-        let of_path_n_per_m = if overlap == 0.0 {
+        let of_path_n_per_m = if overlap == 0.0 || slices > 1 {
             Vec::new()
         } else {
             tables[0].tabulate(&sound, &positions, step).iter().map(|state| state.stiffness_n_per_m).collect()
@@ -325,7 +325,7 @@ impl Mesh {
     /// # Arguments
     /// * `slice` - its number
     pub(super) fn first_flank_point(&self, slice: usize) -> usize {
-        let middle = (slice as f64 + 0.5) / self.slices as f64 - 0.5;
+        let middle = place_on_face(slice as f64 + 0.5, self.slices);
         let ahead = (self.overlap * middle * self.points_per_pitch as f64).round() as i64;
         (self.flank_margin() as i64 + ahead).max(0) as usize
     }

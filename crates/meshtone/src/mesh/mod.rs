@@ -21,8 +21,8 @@ pub(crate) use face_load::FaceSlope;
 pub(crate) use forcing::ForcingBlock;
 #[cfg(feature = "internals")]
 pub use forcing::ForcingBlock;
+pub(crate) use forcing::PAIRS;
 pub use forcing::{Forcing, Turning};
-pub(crate) use forcing::{PAIRS, PairsBlock};
 pub(crate) use gear_mesh::MeshParameters;
 pub use gear_mesh::{Mesh, PairTable};
 pub use law::{Contact, MeshLaw};
@@ -32,3 +32,4 @@ pub use path_table::PairState;
 pub(crate) use path_table::TipShape;
 pub use sequence::{PairKind, PairSequence};
 pub use static_mesh::StaticMesh;
+pub(crate) use window::place_on_face;

@@ -44,6 +44,15 @@ impl Integral {
     }
 }
 
+/// (-) A place along the face, from −½ to ½, after a number of slices from its end at negative z.
+///
+/// # Arguments
+/// * `passed` - how many slices lie before it, of the middle of one a half more
+/// * `slices` - of the whole face
+pub(crate) fn place_on_face(passed: f64, slices: usize) -> f64 {
+    passed / slices as f64 - 0.5
+}
+
 /// The stretch of the path that a slice of the face spans.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Window {

@@ -16,13 +16,14 @@ mod to_toml;
 mod uncertainty;
 mod validate;
 
+pub use crate::bearing::{BearingDefect, DefectPlace};
 pub use crate::damage::kinds::*;
 pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth, PitCircle, damage_kinds};
 pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{
-    Bearing, BearingKind, Coupled, DampingRatio, Foot, GearboxShaft, Housing, Rig, Seat, Shaft, Support,
-    SupportSprings, WheelInertia,
+    Bearing, BearingKind, Bow, Coupled, DampingRatio, Foot, GearboxShaft, Housing, Rig, Seat, Shaft, Support,
+    SupportSprings, Unbalance, WheelInertia,
 };
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};

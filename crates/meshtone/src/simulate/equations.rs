@@ -214,6 +214,7 @@ impl Stages {
         Problem {
             time: &self.time,
             machine: self.modal_machine(train, modes),
+            bearings: Vec::new(),
             laws: self.meshes.iter().map(Mesh::law).collect(),
             forcing: Forcing::new(
                 self.scenario.motion(&self.time),
@@ -221,7 +222,8 @@ impl Stages {
                 [operation.pinion_speed_hz, operation.brake_torque_nm],
                 self.time.first_simulated_sample,
                 self.meshes.iter().map(|mesh| (mesh, deviations())),
-            ),
+            )
+            .with_turning_forces(&train.machine.turning_forces),
             is_steady: self.is_steady(),
             hunting_period_samples: self
                 .is_steady()

@@ -6,10 +6,12 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use super::{Clock, MeshOf, StageTime, start_of_settling};
+use crate::bearing::{BearingTurning, RollingBearing, RollingParts};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::{
-    Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, KnownModes, MeshLine, Modes, WheelBody,
+    Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, KnownModes, MeshLine, Modes, PlacedUnbalance,
+    SeatedBearing, WheelBody,
 };
 use crate::mesh::{Contact, Forcing, Mesh, PairDeviations, Turning};
 use crate::operation::{CycleGrid, Motion, TimeGrid, TorqueHarmonic};
@@ -59,6 +61,8 @@ pub struct GearboxStages {
     pub pairs: Vec<MeshedPair>,
     /// The meshes, in the order of the file.
     pub meshes: Vec<Mesh>,
+    /// The rolling bearings: each with its number in the gearbox.
+    pub bearings: Vec<(usize, RollingBearing)>,
     /// The sensors, listed or by default.
     pub sensors: Vec<GearboxSensor>,
     /// (-) How severe each fault is, from 0 to 1.
@@ -199,7 +203,7 @@ fn stages_with(
         (0..gearbox.meshes.len()).map(|mesh| teeth_of_mesh(gearbox, &layout, mesh)).collect();
     clock.lap("tooth profiles");
     let sensors = gearbox.all_sensors();
-    let (machine, mesh_mass_kg) = machine_of(gearbox, &layout, &teeth, &sensors)?;
+    let MachineAround { machine, mesh_mass_kg, bearings } = machine_of(gearbox, &layout, &teeth, &sensors)?;
     let modes = known.damped_by_springs(&machine.machine);
     let modal_machine =
         |face_reach_m: &[f64]| ModalMachine::new(&machine.machine, &modes, face_reach_m, start(gearbox));
@@ -258,6 +262,7 @@ fn stages_with(
         time: TimeGrid { first_simulated_sample, ..time },
         pairs,
         meshes,
+        bearings,
         sensors,
         fault_severities: severities.into_values().collect(),
         timings: clock.laps,
@@ -365,13 +370,24 @@ fn joined(
     })
 }
 
-/// The machine with the places that outputs read, and (kg) the mass that the wheels' rotation has along each line of action.
+/// The machine around the meshes.
+struct MachineAround {
+    /// With the places that outputs read.
+    machine: GearboxMachine,
+    /// (kg) The mass that the wheels' rotation has along each line of action.
+    mesh_mass_kg: Vec<f64>,
+    /// The rolling bearings: each with its number in the gearbox.
+    bearings: Vec<(usize, RollingBearing)>,
+}
+
+/// Puts the machine together. Rolling bearings have the stiffness of linear ones first, which gives their static loads, and these the
+/// linear springs in their places.
 fn machine_of(
     gearbox: &Gearbox,
     layout: &GearboxLayout,
     teeth: &[Teeth],
     sensors: &[GearboxSensor],
-) -> Result<(GearboxMachine, Vec<f64>), ScenarioError> {
+) -> Result<MachineAround, ScenarioError> {
     let shafts: Vec<_> = gearbox.shafts.iter().zip(layout.positions_m.iter().copied()).collect();
     let discs: Vec<Disc> = (gearbox.wheels.iter().enumerate())
         .map(|(number, wheel)| {
@@ -395,18 +411,42 @@ fn machine_of(
         let both = line.wheels.iter().zip(line.base_radii_m);
         1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
     });
-    let bearings: Vec<_> = layout.shaft_of_bearing.iter().copied().zip(&gearbox.bearings).collect();
+    let mut seated: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(&gearbox.bearings))
+        .map(|(&shaft, bearing)| SeatedBearing::linear(shaft, bearing))
+        .collect();
+    let rolling: Vec<(usize, RollingParts)> = gearbox.rolling_bearings()?;
     let ratios: Vec<f64> = layout.ratios.iter().map(|ratio| ratio.value()).collect();
-    let mut machine = GearboxMachine::new(&GearboxParts {
+    let of_wheels = (gearbox.wheels.iter().zip(&layout.shaft_of_wheel))
+        .map(|(wheel, &shaft)| PlacedUnbalance { shaft, at: wheel.at, unbalance: &wheel.unbalance });
+    let of_shafts = (gearbox.shafts.iter().enumerate()).map(|(shaft, of)| PlacedUnbalance {
+        shaft,
+        at: 0.5,
+        unbalance: &of.unbalance,
+    });
+    let unbalances: Vec<_> = of_wheels.chain(of_shafts).filter(|of| of.unbalance.g_mm > 0.0).collect();
+    let parts = GearboxParts {
         shafts: &shafts,
         speed_ratios: &ratios,
         discs: &discs,
         meshes: &lines,
-        bearings: &bearings,
+        bearings: &[],
         housing: gearbox.housing.as_ref(),
         material: gearbox.material,
+        unbalances: &unbalances,
         brake_inertia_kgm2: gearbox.operation.brake_inertia_kgm2,
-    });
+    };
+    let mut machine = GearboxMachine::new(&GearboxParts { bearings: &seated, ..parts });
+    let mut bearings = Vec::new();
+    if !rolling.is_empty() {
+        let first = GearboxParts { bearings: &seated, ..parts };
+        let loads_n = machine.static_bearing_loads_n(&first, gearbox.operation.drive.brake_torque_nm);
+        for ((number, rolling), load_n) in rolling.into_iter().zip(loads_n) {
+            let bearing = RollingBearing::new(rolling, load_n);
+            seated[number].radial_n_per_m = bearing.spring_n_per_m;
+            bearings.push((number, bearing));
+        }
+        machine = GearboxMachine::new(&GearboxParts { bearings: &seated, ..parts });
+    }
     for (sensor, place) in sensors.iter().zip(gearbox.places(layout)?) {
         machine.add_place(sensor.name(), place);
     }
@@ -416,7 +456,7 @@ fn machine_of(
     for (number, mesh) in gearbox.meshes.iter().enumerate() {
         machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
     }
-    Ok((machine, mass_kg.collect()))
+    Ok(MachineAround { machine, mesh_mass_kg: mass_kg.collect(), bearings })
 }
 
 fn start(gearbox: &Gearbox) -> InitialMotion<'static> {
@@ -476,11 +516,11 @@ impl GearboxStages {
         self.gearbox.operation.is_steady()
     }
 
-    /// Samples after which all teeth and shafts stand again as at the start, where motor and brake are steady.
+    /// Samples after which all teeth and shafts stand again as at the start, where motor and brake are steady and no rolling bearing slips.
     fn cycle_samples(&self) -> Option<usize> {
         let revolutions = usize::try_from(self.layout.cycle_revolutions()).ok()?;
         let samples = revolutions.checked_mul(self.time.samples_per_pinion_revolution)?;
-        self.is_steady().then_some(samples)
+        (self.is_steady() && self.bearings.is_empty()).then_some(samples)
     }
 
     /// The machine around the meshes, and its modes without them.
@@ -634,17 +674,24 @@ impl GearboxStages {
             eccentricity_m: 0.0,
             run_out: pair.run_out,
         };
+        let turning = |(number, bearing): &(usize, RollingBearing)| {
+            let shaft = self.layout.shaft_of_bearing[*number];
+            BearingTurning::new(bearing, self.layout.ratios[shaft].value(), self.gearbox.seed, *number)
+        };
         Problem {
             time: &self.time,
             machine: self.modal.clone(),
             laws: self.meshes.iter().map(Mesh::law).collect(),
+            bearings: self.bearings.iter().map(|(_, bearing)| bearing.clone()).collect(),
             forcing: Forcing::new(
                 self.motion(),
                 &self.time,
                 [drive.pinion_speed_hz, drive.brake_torque_nm],
                 self.time.first_simulated_sample,
                 self.meshes.iter().zip(self.pairs.iter().map(deviations)),
-            ),
+            )
+            .with_bearings(self.bearings.iter().map(turning).collect())
+            .with_turning_forces(&self.machine.machine.turning_forces),
             is_steady: self.is_steady(),
             hunting_period_samples: self.cycle_samples(),
             outputs,

@@ -8,6 +8,7 @@ use super::outputs::{EXTERNALS, Output};
 use super::prepare::Prepared;
 use super::repetition::Repeating;
 use super::step::{Coefficients, MOST_MODES, MOST_STEADY_MODES, Size, State, StepBlock, law_lanes};
+use crate::bearing::RollingBearing;
 use crate::mesh::{Forcing, ForcingBlock, MeshLaw, PAIRS, PairsSample};
 use crate::operation::TimeGrid;
 use crate::simd::{InstructionSet, Lanes};
@@ -92,7 +93,9 @@ pub struct Problem<'a> {
     pub machine: ModalMachine,
     /// The law of each mesh.
     pub laws: Vec<MeshLaw>,
-    /// Motor, brake and the pairs of the meshes, from the first simulated sample on.
+    /// The rolling bearings, in the order of the machine's.
+    pub bearings: Vec<RollingBearing>,
+    /// Motor, brake, the pairs of the meshes and the elements of the bearings, from the first simulated sample on.
     pub forcing: Forcing<'a>,
     /// Whether motor and brake are steady.
     pub is_steady: bool,
@@ -105,11 +108,11 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Whether the steps that are compiled for simulations side by side hold it: one mesh of as many springs as spur wheels have pairs, and
-    /// no more modes than the largest has, all of which are stepped.
+    /// Whether the steps that are compiled for simulations side by side hold it: one mesh of as many springs as spur wheels have pairs, no
+    /// rolling bearings or unbalance, and no more modes than the largest has, all of which are stepped.
     pub(crate) fn fits_a_lane(&self) -> bool {
         let machine = &self.machine;
-        machine.lines.len() == 1 && self.forcing.springs().eq([PAIRS]) && machine.modes() <= MOST_MODES && machine.residual.is_empty()
+        machine.lines.len() == 1 && machine.bearings.is_empty() && machine.turning_forces.is_empty() && self.forcing.springs().eq([PAIRS]) && machine.modes() <= MOST_MODES && machine.residual.is_empty()
     }
 }
 
@@ -204,7 +207,7 @@ fn run<const L: usize, const N: usize, const R: usize>(
     forcing.fill(&mut problems, 1);
     let first = std::array::from_fn(|l| {
         let external = forcing.external[0].map(|external| external.0[l]);
-        prepared[l].first_state(&problems[l].machine, &forcing.blocks[l].meshes, external)
+        prepared[l].first_state(&problems[l].machine, &forcing.blocks[l], external)
     });
     let mut state: State<L, N, R> = coefficients.first_state(&first);
     let mut history = History::<L, N, R>::new();

@@ -19,7 +19,7 @@ mod repetition;
 mod steady_sine;
 mod step;
 
-pub(crate) use coupled::MOST_MESHES;
+pub(crate) use coupled::{MOST_MESHES, MOST_ROLLING_BEARINGS};
 pub use integrate::{Block, Diverged, Problem, Recorder, StepCounts, integrate};
 pub(crate) use integrate::{LANES, integrate_side_by_side};
 #[cfg(feature = "internals")]

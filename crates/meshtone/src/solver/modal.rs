@@ -18,6 +18,10 @@ pub struct ModalMachine {
     pub damping: Vec<f64>,
     /// The line of action of each mesh.
     pub lines: Vec<ModalLine>,
+    /// The stretch of each rolling bearing along x and y, in the modes.
+    pub bearings: Vec<[Vec<f64>; 2]>,
+    /// Forces that turn with the shafts, in the modes.
+    pub turning_forces: Vec<ModalTurningForce>,
     /// Modal force per rad of motor angle.
     pub motor: Vec<f64>,
     /// Modal force per N m of brake torque.
@@ -45,7 +49,7 @@ pub struct Residual {
     stiffness: Vec<f64>,
     /// Their mass-normalised shapes.
     shapes: Vec<DVector<f64>>,
-    /// Their entries in the columns of all lines of action, mesh by mesh.
+    /// Their entries in the columns of all lines of action, mesh by mesh, and then of the bearings.
     columns: Vec<Vec<f64>>,
     /// Their force per rad of motor angle.
     motor: Vec<f64>,
@@ -59,7 +63,7 @@ pub struct Residual {
 pub(super) struct AtRest {
     /// Under the constant loads.
     pub(super) constant: f64,
-    /// (1/N) Per force in each column of the lines of action.
+    /// (1/N) Per force in each column of the lines of action and of the bearings.
     pub(super) of_force: Vec<f64>,
     /// Per rad of the motor's lead and per N m of the brake's torque deviation.
     pub(super) of_drives: [f64; 2],
@@ -103,6 +107,17 @@ impl Residual {
         let of_shape = |shape: &DVector<f64>| entries.iter().map(|&(n, weight)| weight * shape[n]).sum();
         self.at_rest(&self.shapes.iter().map(of_shape).collect::<Vec<f64>>())
     }
+}
+
+/// A force that turns with a shaft, in the modes: see [`TurningForce`](crate::machine::TurningForce).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalTurningForce {
+    /// (-) Rotation of the shaft over that of the motor.
+    pub speed_ratio: f64,
+    /// Whether it grows with the square of the shaft's speed.
+    pub of_square_speed: bool,
+    /// Modal forces where the shaft stands as at the start, and a quarter of a revolution later.
+    pub at: [Vec<f64>; 2],
 }
 
 /// The line of action of a mesh in the modes.
@@ -180,8 +195,13 @@ impl ModalMachine {
                 columns.into_iter().flatten().map(modal).collect()
             })
             .collect();
+        let bearings: Vec<[DVector<f64>; 2]> =
+            machine.bearings.iter().map(|stretch| stretch.each_ref().map(modal)).collect();
+        let turning: Vec<[DVector<f64>; 2]> =
+            machine.turning_forces.iter().map(|force| force.at.each_ref().map(modal)).collect();
         let moved = |n: usize| {
-            [&motor, &brake, &rigid, &velocity].into_iter().chain(lines.iter().flatten()).any(|v| v[n] != 0.0)
+            let columns = lines.iter().flatten().chain(bearings.iter().flatten()).chain(turning.iter().flatten());
+            [&motor, &brake, &rigid, &velocity].into_iter().chain(columns).any(|v| v[n] != 0.0)
         };
         let active: Vec<usize> = (0..machine.coordinates()).filter(|&n| moved(n)).collect();
         let pick = |vector: &DVector<f64>| active.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
@@ -194,6 +214,14 @@ impl ModalMachine {
                     columns: columns.iter().map(pick).collect(),
                     face_reach_m,
                     static_force_n: 0.0,
+                })
+                .collect(),
+            bearings: bearings.iter().map(|stretch| stretch.each_ref().map(pick)).collect(),
+            turning_forces: (machine.turning_forces.iter().zip(&turning))
+                .map(|(force, at)| ModalTurningForce {
+                    speed_ratio: force.speed_ratio,
+                    of_square_speed: force.of_square_speed,
+                    at: at.each_ref().map(pick),
                 })
                 .collect(),
             motor: pick(&motor),
@@ -219,7 +247,10 @@ impl ModalMachine {
         let split = |values: &mut Vec<f64>| take_out(values, &is_stepped);
         self.residual = Residual {
             shapes: take_out(&mut self.shapes, &is_stepped),
-            columns: self.lines.iter_mut().flat_map(|line| &mut line.columns).map(split).collect(),
+            columns: (self.lines.iter_mut().flat_map(|line| &mut line.columns))
+                .chain(self.bearings.iter_mut().flatten())
+                .map(split)
+                .collect(),
             motor: split(&mut self.motor),
             brake: split(&mut self.brake),
             static_displacement: split(&mut self.static_displacement),
@@ -228,6 +259,8 @@ impl ModalMachine {
         for values in [&mut self.damping, &mut self.rigid_velocity, &mut self.initial_velocity] {
             split(values);
         }
+        // What turns with a shaft is far too slow to be felt by what is left out.
+        self.turning_forces.iter_mut().flat_map(|force| &mut force.at).for_each(|values| drop(split(values)));
         self
     }
 

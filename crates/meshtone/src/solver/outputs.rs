@@ -63,7 +63,7 @@ pub(super) struct OutputWeights {
     pub(super) velocity: Vec<f64>,
     /// Of the accelerations times Δt².
     pub(super) acceleration: Vec<f64>,
-    /// Of the force in each column of each mesh's line of action, mesh by mesh.
+    /// Of the force in each column of each mesh's line of action, mesh by mesh, and then in each bearing's.
     pub(super) force: Vec<f64>,
     /// Of the externals, by way of the modes that are not stepped.
     pub(super) external: [f64; EXTERNALS],

@@ -6,9 +6,11 @@ use super::integrate::Problem;
 use super::modal::ModalMachine;
 use super::mode_step::StepOfMode;
 use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
-use crate::mesh::{MeshLaw, PairsBlock, Springs, deflection_at_rest};
+use crate::bearing::RollingBearing;
+use crate::mesh::{ForcingBlock, MeshLaw, Springs, deflection_at_rest};
 
-/// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh.
+/// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh, and then those of the
+/// bearings, along x and y of each.
 pub(super) struct Prepared {
     /// (s) Δt.
     step_s: f64,
@@ -20,16 +22,20 @@ pub(super) struct Prepared {
     pub(super) damp: Vec<f64>,
     /// `Δt² q̈` per unit of each external.
     pub(super) external_push: [Vec<f64>; EXTERNALS],
-    /// Each column of the lines of action.
+    /// `Δt² q̈` per unit of each force that turns with a shaft, see [`ModalTurningForce`](super::modal::ModalTurningForce).
+    pub(super) turning_push: Vec<[Vec<f64>; 2]>,
+    /// Each column.
     pub(super) columns: Vec<Column>,
-    /// Numbers of the columns of each mesh.
-    pub(super) columns_of_mesh: Vec<Range<usize>>,
+    /// Numbers of the columns of each unknown: the deflection of each mesh, and the stretch of each bearing along x and along y.
+    pub(super) columns_of_unknown: Vec<Range<usize>>,
     /// (m/N) G: deflection, with its damping's lead, in each column per force of the step in each.
     pub(super) compliance: Vec<Vec<f64>>,
     /// The outputs.
     pub(super) outputs: Vec<OutputWeights>,
     /// The law of each mesh.
     pub(super) laws: Vec<MeshLaw>,
+    /// The rolling bearings.
+    pub(super) bearings: Vec<RollingBearing>,
     /// (N) Force of each mesh under the constant loads.
     pub(super) static_force_n: Vec<f64>,
 }
@@ -53,6 +59,8 @@ pub(super) struct Column {
     pub(super) of_force: Vec<f64>,
     /// Per external at the step's end.
     pub(super) of_external: [f64; EXTERNALS],
+    /// Per unit of each force that turns with a shaft, at the step's end.
+    pub(super) of_turning: Vec<[f64; 2]>,
 }
 
 /// What a step has of the first sample.
@@ -82,11 +90,15 @@ impl Prepared {
             |(step, force): (&StepOfMode, &f64)| step_s * step_s * step.force_factor * step.yielding() * force;
         let pushed = |force: &[f64]| steps.iter().zip(force).map(yielding).collect::<Vec<f64>>();
         let external_push = external_forces(model).map(|force| pushed(&force));
-        // (-) ℓ of the mesh of each column.
+        let turning_push: Vec<[Vec<f64>; 2]> =
+            model.turning_forces.iter().map(|force| force.at.each_ref().map(|at| pushed(at))).collect();
+        // (-) ℓ of each column; the damping of a bearing is that of its linear spring, in the modes.
+        let of_bearings = model.bearings.iter().flatten().map(|column| (column.as_slice(), 0.0));
         let lines: Vec<(&[f64], f64)> = (model.lines.iter().zip(&problem.laws))
             .flat_map(|(line, law)| {
                 line.columns.iter().map(|column| (column.as_slice(), law.damping_time_s / step_s))
             })
+            .chain(of_bearings)
             .collect();
         let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| pushed(line)).collect();
         let column = |((line, lead), push): (&(&[f64], f64), &Vec<f64>)| {
@@ -101,6 +113,7 @@ impl Prepared {
                 static_deflection: dot(line, &model.static_displacement),
                 of_force: pushes.iter().map(|push| dot(&of_displacement, push) + dot(&of_velocity, push)).collect(),
                 of_external: external_push.each_ref().map(|push| dot(&of_acceleration, push)),
+                of_turning: turning_push.iter().map(|of| of.each_ref().map(|push| dot(&of_acceleration, push))).collect(),
                 of_displacement,
                 of_velocity,
             };
@@ -120,22 +133,25 @@ impl Prepared {
             column.of_external.iter_mut().zip(of_external).for_each(|(external, residual)| *external += residual);
         }
         let mut next = 0;
-        let columns_of_mesh = (model.lines.iter())
-            .map(|line| {
-                next += line.columns.len();
-                next - line.columns.len()..next
+        let of_meshes = model.lines.iter().map(|line| line.columns.len());
+        let columns_of_unknown = (of_meshes.chain(model.bearings.iter().flatten().map(|_| 1)))
+            .map(|count| {
+                next += count;
+                next - count..next
             })
             .collect();
         Self {
             step_s,
             columns,
-            columns_of_mesh,
+            columns_of_unknown,
             compliance,
             outputs: problem.outputs.iter().map(|output| output.weights(model, &steps, step_s)).collect(),
             restore,
             damp,
             external_push,
+            turning_push,
             laws: problem.laws.clone(),
+            bearings: problem.bearings.clone(),
             static_force_n: model.lines.iter().map(|line| line.static_force_n).collect(),
             steps,
         }
@@ -146,15 +162,15 @@ impl Prepared {
     ///
     /// # Arguments
     /// * `model` - the machine
-    /// * `blocks` - of each mesh, whose first sample it is
+    /// * `block` - whose first sample it is
     /// * `external` - the externals at that sample
     pub(super) fn first_state(
         &self,
         model: &ModalMachine,
-        blocks: &[PairsBlock],
+        block: &ForcingBlock,
         external: [f64; EXTERNALS],
     ) -> FirstState {
-        let columns = &self.columns_of_mesh;
+        let (columns, blocks) = (&self.columns_of_unknown, &block.meshes);
         let at_face_centre = |mesh: usize, of: &dyn Fn(usize) -> f64| {
             let z = blocks[mesh].face_centre_m(0);
             let tilted: f64 = columns[mesh].clone().skip(1).map(|column| z * of(column)).sum();
@@ -186,11 +202,18 @@ impl Prepared {
             let z = blocks[mesh].face_centre_m(0);
             force.extend(columns[mesh].clone().skip(1).map(|_| z * (whole - self.static_force_n[mesh])));
         }
+        for ((bearing, places), first) in self.bearings.iter().zip(&block.bearings).zip((force.len()..).step_by(2)) {
+            let stretch_m = [first, first + 1].map(|column| self.columns[column].static_deflection);
+            force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
+        }
         let acceleration: Vec<f64> = (self.steps.iter().enumerate())
             .map(|(n, step)| {
                 let meshes: f64 = self.columns.iter().zip(&force).map(|(column, force)| column.push[n] * force).sum();
                 let driven: f64 = self.external_push.iter().zip(external).map(|(push, external)| push[n] * external).sum();
-                let scaled_force = (meshes + driven) / step.yielding();
+                let turned: f64 = (self.turning_push.iter().zip(&block.external.turning))
+                    .map(|([cos, sin], values)| cos[n] * values[0][0] + sin[n] * values[0][1])
+                    .sum();
+                let scaled_force = (meshes + driven + turned) / step.yielding();
                 step.acceleration(displacement[n], model.initial_velocity[n] * self.step_s, scaled_force)
             })
             .collect();

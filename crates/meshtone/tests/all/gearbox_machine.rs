@@ -7,7 +7,8 @@ use std::fs::File;
 use std::path::PathBuf;
 
 use meshtone::machine::{
-    Bearing, Coupled, Disc, GearboxMachine, GearboxParts, GearboxShaft, Housing, Machine, MeshLine, WheelBody,
+    Bearing, Coupled, Disc, GearboxMachine, GearboxParts, GearboxShaft, Housing, Machine, MeshLine,
+    SeatedBearing, WheelBody,
 };
 use meshtone::scenario::{Material, MaterialConstants};
 use nalgebra::{Complex, DVector};
@@ -95,7 +96,8 @@ impl TwoStages {
                 bearing
             })
             .collect();
-        let bearings: Vec<_> = bearings.iter().enumerate().map(|(n, bearing)| (n / 2, bearing)).collect();
+        let bearings: Vec<_> =
+            bearings.iter().enumerate().map(|(n, bearing)| SeatedBearing::linear(n / 2, bearing)).collect();
         GearboxMachine::new(&GearboxParts {
             shafts: &shafts,
             speed_ratios: &[self.sense, second, third],
@@ -104,6 +106,7 @@ impl TwoStages {
             bearings: &bearings,
             housing,
             material: steel(self.poisson_ratio),
+            unbalances: &[],
             brake_inertia_kgm2: 0.02,
         })
     }

@@ -34,6 +34,7 @@ mod published_model;
 mod published_pitch;
 mod refused_shapes;
 mod repetition;
+mod rolling_bearings;
 mod root_crack;
 mod scenario_faults;
 mod scenario_from_toml;

@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use crate::signal::{noise, relative_rms, wave};
+use meshtone::bearing::NamedBearing;
 use meshtone::signal::*;
 
 const RATE_HZ: f64 = 20_000.0;

@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::body::WheelBody;
 use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
+use super::{TurningForce, Unbalance};
 use crate::wheel::Material;
 use beam::{Beam, PER_NODE};
 pub use parts::{Bearing, BearingKind, Coupled, Foot, GearboxShaft, Housing, Seat};
@@ -27,12 +28,14 @@ pub struct GearboxParts<'a> {
     pub discs: &'a [Disc],
     /// The meshes.
     pub meshes: &'a [MeshLine],
-    /// The bearings, with the number of the shaft of each.
-    pub bearings: &'a [(usize, &'a Bearing)],
+    /// The bearings.
+    pub bearings: &'a [SeatedBearing<'a>],
     /// The housing; none where the seats stand on the ground.
     pub housing: Option<&'a Housing>,
     /// Material of the shafts.
     pub material: Material,
+    /// The unbalances of wheels and shafts.
+    pub unbalances: &'a [PlacedUnbalance<'a>],
     /// (kg m²) Inertia of the brake.
     pub brake_inertia_kgm2: f64,
 }
@@ -46,6 +49,40 @@ pub struct Disc {
     pub at: f64,
     /// Mass and inertias.
     pub body: WheelBody,
+}
+
+/// An unbalance on its shaft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlacedUnbalance<'a> {
+    /// Number of the shaft.
+    pub shaft: usize,
+    /// (-) Where along it.
+    pub at: f64,
+    /// How large, and its direction.
+    pub unbalance: &'a Unbalance,
+}
+
+/// A bearing on its shaft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeatedBearing<'a> {
+    /// Number of the shaft.
+    pub shaft: usize,
+    /// What the scenario says of it.
+    pub bearing: &'a Bearing,
+    /// (N/m) Its stiffness across the shaft, of x and y: of a rolling bearing that of the linear spring in its place.
+    pub radial_n_per_m: [[f64; 2]; 2],
+}
+
+impl<'a> SeatedBearing<'a> {
+    /// A bearing with its linear stiffness.
+    ///
+    /// # Arguments
+    /// * `shaft` - number of the shaft
+    /// * `bearing` - what the scenario says of it
+    pub fn linear(shaft: usize, bearing: &'a Bearing) -> Self {
+        let stiffness = bearing.stiffness_n_per_m;
+        Self { shaft, bearing, radial_n_per_m: [[stiffness, 0.0], [0.0, stiffness]] }
+    }
 }
 
 /// Where two wheels push one another.
@@ -196,7 +233,7 @@ impl GearboxMachine {
         let nodes: Vec<Vec<(f64, usize)>> = (parts.shafts.iter().enumerate())
             .map(|(number, (shaft, _))| {
                 let discs = parts.discs.iter().filter(|disc| disc.shaft == number).map(|disc| disc.at);
-                let bearings = parts.bearings.iter().filter(|(of, _)| *of == number).map(|(_, bearing)| bearing.at);
+                let bearings = parts.bearings.iter().filter(|of| of.shaft == number).map(|of| of.bearing.at);
                 let places = node_places(shaft, discs.chain(bearings));
                 let node = |(n, place): (usize, &f64)| {
                     (place * shaft.length_mm * 1e-3, add_node(&format!("{}_{n}", shaft.name)))
@@ -206,7 +243,7 @@ impl GearboxMachine {
             .collect();
         let housing = parts.housing.map(|_| (add_node("housing"), centre_m(parts.shafts)));
         let seats: Vec<usize> = (parts.bearings.iter())
-            .map(|(shaft, bearing)| add_node(&format!("seat_{}_{}", parts.shafts[*shaft].0.name, bearing.at)))
+            .map(|of| add_node(&format!("seat_{}_{}", parts.shafts[of.shaft].0.name, of.bearing.at)))
             .collect();
         let brake = next;
         names.push("phi_z_brake".into());
@@ -221,6 +258,8 @@ impl GearboxMachine {
                 turn: DMatrix::identity(coordinates, coordinates),
                 springs: Vec::new(),
                 lines: Vec::new(),
+                bearings: Vec::new(),
+                turning_forces: Vec::new(),
                 drives: Vec::new(),
                 places: Vec::new(),
                 rigid_rotation: DVector::zeros(coordinates),
@@ -238,6 +277,8 @@ impl GearboxMachine {
             mass,
             springs,
             lines: parts.meshes.iter().map(|mesh| this.line_of_action(parts, mesh, coordinates)).collect(),
+            bearings: this.rolling_bearings(parts, coordinates),
+            turning_forces: this.turning_forces(parts, coordinates),
             drives: this.drives(parts, brake),
             ..this.machine
         };
@@ -266,13 +307,7 @@ impl GearboxMachine {
     fn add_shafts(&self, parts: &GearboxParts, brake: usize, assembly: &mut Assembly) {
         for (nodes, (shaft, _)) in self.nodes.iter().zip(parts.shafts) {
             for ends in nodes.windows(2) {
-                let middle_m = (ends[0].0 + ends[1].0) / 2.0;
-                let beam = Beam {
-                    length_m: ends[1].0 - ends[0].0,
-                    radius_m: shaft.radius_at_mm(middle_m * 1e3 / shaft.length_mm) * 1e-3,
-                    bore_radius_m: shaft.bore_radius_mm * 1e-3,
-                    material: parts.material,
-                };
+                let beam = beam_between(shaft, [ends[0].0, ends[1].0], parts.material);
                 assembly.add_beam([ends[0].1, ends[1].1], &beam, shaft.damping_ratio);
             }
             let stiffness = shaft.coupling_nm_per_rad();
@@ -293,18 +328,22 @@ impl GearboxMachine {
 
     /// Adds bearings, seats and the housing with its feet.
     fn add_supports(&self, parts: &GearboxParts, assembly: &mut Assembly) {
-        for ((shaft, bearing), &seat) in parts.bearings.iter().zip(&self.seats) {
-            let (of_shaft, [x_m, y_m]) = parts.shafts[*shaft];
+        for (&SeatedBearing { shaft, bearing, radial_n_per_m }, &seat) in parts.bearings.iter().zip(&self.seats) {
+            let (of_shaft, [x_m, y_m]) = parts.shafts[shaft];
             let z_m = bearing.at * of_shaft.length_mm * 1e-3;
-            let node = self.node(*shaft, z_m);
+            let node = self.node(shaft, z_m);
             let Seat { mass_kg, inertia_kgm2, stiffness_n_per_m, tilt_stiffness_nm_per_rad } = bearing.seat;
             assembly.add_body(seat, mass_kg, [inertia_kgm2; 3]);
             let spring = assembly.spring(bearing.damping_ratio);
-            let (radial, tilt) = (bearing.stiffness_n_per_m, bearing.tilt_stiffness_nm_per_rad);
-            let inner = [radial, radial, bearing.axial_stiffness_n_per_m, tilt, tilt];
+            let tilt = bearing.tilt_stiffness_nm_per_rad;
+            let [[xx, xy], [_, yy]] = radial_n_per_m;
+            let inner = [xx, yy, bearing.axial_stiffness_n_per_m, tilt, tilt];
+            let stretch = |coordinate: usize| [(node + coordinate, 1.0), (seat + coordinate, -1.0)];
             for (coordinate, stiffness) in inner.into_iter().enumerate() {
-                spring.resist(&[(node + coordinate, 1.0), (seat + coordinate, -1.0)], stiffness);
+                spring.resist(&stretch(coordinate), stiffness);
             }
+            spring.couple(&stretch(0), &stretch(1), xy);
+            spring.couple(&stretch(1), &stretch(0), xy);
             let held = match self.housing {
                 Some((housing, centre)) => point_of_body(housing, Vector3::new(x_m, y_m, z_m) - centre),
                 None => [Vec::new(), Vec::new(), Vec::new()],
@@ -328,6 +367,87 @@ impl GearboxMachine {
                 }
             }
         }
+    }
+
+    /// The forces of unbalances and of bent shafts. A bent shaft resists being straightened: it pushes with `K u₀`, its stiffness times its
+    /// shape without a load.
+    fn turning_forces(&self, parts: &GearboxParts, coordinates: usize) -> Vec<TurningForce> {
+        let of_unbalance = |of: &PlacedUnbalance| {
+            let motion = self.between_nodes(of.shaft, of.at);
+            let [x, y] = [0, 1].map(|axis| {
+                let mut along = DVector::zeros(coordinates);
+                motion[axis].iter().for_each(|&(coordinate, weight)| along[coordinate] += weight);
+                along
+            });
+            TurningForce::of_unbalance(of.unbalance, parts.speed_ratios[of.shaft], [x, y])
+        };
+        let of_bow = |number: usize| {
+            let (nodes, (shaft, _)) = (&self.nodes[number], parts.shafts[number]);
+            let wave_per_m = std::f64::consts::PI / (shaft.length_mm * 1e-3);
+            let middle_m = shaft.bow.middle_um * 1e-6;
+            let forces = [0, 1].map(|axis| {
+                let mut force = DVector::zeros(coordinates);
+                for ends in nodes.windows(2) {
+                    let beam = beam_between(shaft, [ends[0].0, ends[1].0], parts.material);
+                    let mut shape = DVector::zeros(2 * PER_NODE);
+                    for (node, (z_m, _)) in ends.iter().enumerate() {
+                        let (sin, cos) = (wave_per_m * z_m).sin_cos();
+                        shape[node * PER_NODE + axis] = middle_m * sin;
+                        // Along the shaft x grows with φy, and y falls with φx.
+                        let slope = if axis == 0 { (ABOUT_Y, 1.0) } else { (ABOUT_X, -1.0) };
+                        shape[node * PER_NODE + slope.0] = slope.1 * middle_m * wave_per_m * cos;
+                    }
+                    let pushed = beam.stiffness() * shape;
+                    for (local, value) in pushed.iter().enumerate() {
+                        force[ends[local / PER_NODE].1 + local % PER_NODE] += value;
+                    }
+                }
+                force
+            });
+            TurningForce::new(parts.speed_ratios[number], false, forces, shaft.bow.angle_deg)
+        };
+        let bent = (0..parts.shafts.len()).filter(|&number| parts.shafts[number].0.bow.middle_um > 0.0);
+        parts.unbalances.iter().map(of_unbalance).chain(bent.map(of_bow)).collect()
+    }
+
+    /// Stretch of each rolling bearing along x and y.
+    fn rolling_bearings(&self, parts: &GearboxParts, coordinates: usize) -> Vec<[DVector<f64>; 2]> {
+        let stretch = |(of, seat): (&SeatedBearing, &usize)| {
+            let node = self.node(of.shaft, of.bearing.at * parts.shafts[of.shaft].0.length_mm * 1e-3);
+            [0, 1].map(|axis| {
+                let mut stretch = DVector::zeros(coordinates);
+                stretch[node + axis] = 1.0;
+                stretch[seat + axis] = -1.0;
+                stretch
+            })
+        };
+        let rolling = parts.bearings.iter().zip(&self.seats).filter(|(of, _)| of.bearing.kind != BearingKind::Linear);
+        rolling.map(stretch).collect()
+    }
+
+    /// (N) Static load of each rolling bearing along x and y, with closed meshes; all of a shaft's bearings share it by their springs.
+    ///
+    /// # Arguments
+    /// * `parts` - what the machine is made of
+    /// * `torque_nm` - (N m) of the brake
+    pub fn static_bearing_loads_n(&self, parts: &GearboxParts, torque_nm: f64) -> Vec<[f64; 2]> {
+        const MESH_N_PER_M: f64 = 3e8;
+        let machine = &self.machine;
+        let stiffness = machine.closed_stiffness(&vec![MESH_N_PER_M; machine.lines.len()]);
+        let mut force = DVector::zeros(machine.coordinates());
+        for drive in &machine.drives {
+            if let Drive::Brake { coordinate, torque_share } = drive {
+                force[*coordinate] += torque_share * torque_nm;
+            }
+        }
+        // The coupling of the motor and the supports hold everything.
+        let displacement = stiffness.cholesky().map_or_else(|| force.clone() * 0.0, |factor| factor.solve(&force));
+        let rolling = parts.bearings.iter().filter(|of| of.bearing.kind != BearingKind::Linear);
+        let load = |(of, stretch): (&SeatedBearing, &[DVector<f64>; 2])| {
+            let [x_m, y_m] = stretch.each_ref().map(|stretch| stretch.dot(&displacement));
+            of.radial_n_per_m.map(|[of_x, of_y]| of_x * x_m + of_y * y_m)
+        };
+        rolling.zip(&machine.bearings).map(load).collect()
     }
 
     /// The line of action of a mesh: the driving wheel, which turns in the sense s about z, pushes the other one along
@@ -435,8 +555,26 @@ impl GearboxMachine {
     }
 }
 
-/// Coordinate of a node: the rotation about the shaft.
+/// Coordinates of a node: its rotations about x, about y and about the shaft.
+const ABOUT_X: usize = 3;
+const ABOUT_Y: usize = 4;
 const ABOUT_Z: usize = 5;
+
+/// The beam of a shaft between two nodes.
+///
+/// # Arguments
+/// * `shaft` - the shaft
+/// * `ends_m` - (m) z of the nodes
+/// * `material` - of the shaft
+fn beam_between(shaft: &GearboxShaft, [from_m, to_m]: [f64; 2], material: Material) -> Beam {
+    let middle_m = (from_m + to_m) / 2.0;
+    Beam {
+        length_m: to_m - from_m,
+        radius_m: shaft.radius_at_mm(middle_m * 1e3 / shaft.length_mm) * 1e-3,
+        bore_radius_m: shaft.bore_radius_mm * 1e-3,
+        material,
+    }
+}
 
 /// (m) Centre of the housing: the mean of the shafts' axes, at half the length of the longest.
 fn centre_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> Vector3<f64> {

@@ -2,6 +2,11 @@
 
 use std::ops::Bound::{Excluded, Included};
 
+use super::super::{Bow, Unbalance};
+use crate::bearing::{
+    BearingDefect, BearingGeometry, ElementContact, NAMED_BEARINGS, NamedBearing, RollingElement, RollingParts, Spall,
+};
+use crate::error::ScenarioError;
 use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
 
 /// A round shaft between two ends, with wheels and bearings on it.
@@ -28,6 +33,10 @@ pub struct GearboxShaft {
     pub coupling_stiffness_nm_per_rad: Option<f64>,
     /// (-) Damping ratio of the shaft and its coupling. Default 0.02.
     pub damping_ratio: f64,
+    /// Unbalance midway along the shaft. Default none.
+    pub unbalance: Unbalance,
+    /// Bow of a shaft that is not straight. Default none.
+    pub bow: Bow,
 }
 
 impl GearboxShaft {
@@ -105,6 +114,8 @@ impl Keys for GearboxShaft {
             couples_to: Coupled::Nothing,
             coupling_stiffness_nm_per_rad: None,
             damping_ratio: 0.02,
+            unbalance: Unbalance::default(),
+            bow: Bow::default(),
         }
     }
 
@@ -155,6 +166,12 @@ impl Keys for GearboxShaft {
             .alternative("2000.0"),
             row("damping_ratio", "-", "the damping ratio of the shaft and its coupling", field!(damping_ratio))
                 .range(DAMPING),
+            row("unbalance", "", "the unbalance of the shaft, midway along it", field!(unbalance))
+                .otherwise("none")
+                .alternative("{ g_mm = 50.0 }"),
+            row("bow", "", "the bow of a shaft that is not straight: half a sine over its length", field!(bow))
+                .otherwise("none")
+                .alternative("{ middle_um = 20.0 }"),
         ]
     }
 }
@@ -169,7 +186,27 @@ pub struct Bearing {
     pub at: f64,
     /// The kind of bearing.
     pub kind: BearingKind,
-    /// (N/m) Stiffness across the shaft, in every direction. Default 1.5e8.
+    /// Name of a rolling bearing whose geometry is published, in place of the geometry.
+    pub name: Option<String>,
+    /// Number of its balls or rollers.
+    pub elements: Option<u32>,
+    /// (mm) Their diameter.
+    pub element_mm: Option<f64>,
+    /// (mm) Pitch diameter: of the circle through their centres.
+    pub pitch_mm: Option<f64>,
+    /// (°) Contact angle. Default 0.
+    pub contact_angle_deg: f64,
+    /// (mm) Length of a roller; none for its diameter.
+    pub roller_length_mm: Option<f64>,
+    /// (µm) Diametral clearance of a rolling bearing; negative of an interference. Default 10.
+    pub clearance_um: f64,
+    /// (N) Axial preload of a ball bearing with a contact angle. Default 0.
+    pub preload_n: f64,
+    /// (%) Standard deviation of the cage's slip at each pass of an element, as a part of the spacing of the elements. Default 1.
+    pub slip_percent: f64,
+    /// Spalls of a rolling bearing.
+    pub defect: Vec<BearingDefect>,
+    /// (N/m) Stiffness of a linear bearing across the shaft, in every direction. Default 1.5e8.
     pub stiffness_n_per_m: f64,
     /// (N/m) Stiffness along the shaft. Default 3e7; 0 of a bearing that lets the shaft slide.
     pub axial_stiffness_n_per_m: f64,
@@ -188,9 +225,13 @@ pub enum BearingKind {
     /// A spring of constant stiffness.
     #[default]
     Linear,
+    /// Balls between grooves.
+    Ball,
+    /// Cylindrical rollers between races.
+    Roller,
 }
 
-by_name!(BearingKind, ["linear" => BearingKind::Linear]);
+by_name!(BearingKind, ["linear" => BearingKind::Linear, "ball" => BearingKind::Ball, "roller" => BearingKind::Roller]);
 
 impl Bearing {
     /// A bearing with the rest at its default.
@@ -200,6 +241,122 @@ impl Bearing {
     pub fn new(shaft: &str, at: f64) -> Self {
         Self { shaft: shaft.to_owned(), at, ..Self::start() }
     }
+
+    /// Name of its seat: that of its shaft with its place on it, such as `input:0`.
+    pub fn seat_name(&self) -> String {
+        format!("{}:{}", self.shaft, self.at)
+    }
+
+    /// Kind of its elements; none of a linear bearing.
+    pub fn element(&self) -> Option<RollingElement> {
+        match self.kind {
+            BearingKind::Linear => None,
+            BearingKind::Ball => Some(RollingElement::Ball),
+            BearingKind::Roller => Some(RollingElement::Roller),
+        }
+    }
+
+    /// What a rolling bearing is made of; none of a linear one.
+    ///
+    /// # Errors
+    /// A geometry that is incomplete, given twice, or that no bearing has; keys of rolling bearings at a linear one. The key is that within the bearing.
+    pub fn rolling(&self) -> Result<Option<RollingParts>, ScenarioError> {
+        let Some(element) = self.element() else { return self.check_linear().map(|()| None) };
+        let geometry = match &self.name {
+            Some(name) => self.named_geometry(name, element)?,
+            None => self.own_geometry()?,
+        };
+        let contact = match element {
+            RollingElement::Ball => ElementContact::ball(&geometry),
+            RollingElement::Roller => ElementContact::roller(self.roller_length_mm.unwrap_or(geometry.element_mm)),
+        };
+        if element == RollingElement::Ball && self.roller_length_mm.is_some() {
+            let problem = "given for a ball bearing";
+            return Err(refused("roller_length_mm", problem).with_help("remove it, or set kind = \"roller\""));
+        }
+        if element == RollingElement::Roller && geometry.contact_angle_deg != 0.0 {
+            let problem = "must be 0 of a roller bearing: its rollers are cylindrical";
+            return Err(ScenarioError::new("contact_angle_deg", geometry.contact_angle_deg, problem));
+        }
+        if self.preload_n > 0.0 && geometry.contact_angle_deg == 0.0 {
+            let problem = "needs a contact angle, by which an axial force presses the balls";
+            return Err(ScenarioError::new("preload_n", self.preload_n, problem)
+                .with_help("give contact_angle_deg, or a negative clearance_um, which is an interference"));
+        }
+        let in_defect = |(index, error): (usize, ScenarioError)| {
+            let key = format!("defect[{index}].{}", error.key);
+            ScenarioError { key, ..error }
+        };
+        let spall = |(index, defect)| Spall::new(defect, &geometry).map_err(|error| in_defect((index, error)));
+        Ok(Some(RollingParts::new(
+            geometry,
+            contact,
+            self.clearance_um * 0.5e-6,
+            self.preload_n,
+            self.defect.iter().enumerate().map(spall).collect::<Result<_, _>>()?,
+            self.slip_percent * 1e-2,
+        )))
+    }
+
+    /// Refuses what only a rolling bearing has.
+    fn check_linear(&self) -> Result<(), ScenarioError> {
+        let given = [
+            ("name", self.name.is_some()),
+            ("elements", self.elements.is_some()),
+            ("element_mm", self.element_mm.is_some()),
+            ("pitch_mm", self.pitch_mm.is_some()),
+            ("roller_length_mm", self.roller_length_mm.is_some()),
+            ("preload_n", self.preload_n != 0.0),
+            ("defect", !self.defect.is_empty()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((key, _)) => {
+                let error = refused(key, "given for a linear bearing, which has no balls or rollers");
+                Err(error.with_help("set kind = \"ball\" or kind = \"roller\", or remove it"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn named_geometry(&self, name: &str, element: RollingElement) -> Result<BearingGeometry, ScenarioError> {
+        let Some(named) = NamedBearing::find(name) else {
+            let names = NAMED_BEARINGS.map(|named| named.name).join(", ");
+            return Err(ScenarioError::new("name", format!("{name:?}"), format!("must be one of {names}"))
+                .with_help("give elements, element_mm and pitch_mm for any other bearing"));
+        };
+        if named.element != element {
+            let problem = format!("is a {} bearing; must agree with kind", named.element.name());
+            return Err(ScenarioError::new("name", format!("{name:?}"), problem));
+        }
+        let given = [
+            ("elements", self.elements.is_some()),
+            ("element_mm", self.element_mm.is_some()),
+            ("pitch_mm", self.pitch_mm.is_some()),
+            ("contact_angle_deg", self.contact_angle_deg != 0.0),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((key, _)) => Err(refused(key, "given beside name, which states the geometry").with_help("remove one of the two")),
+            None => Ok(named.geometry),
+        }
+    }
+
+    fn own_geometry(&self) -> Result<BearingGeometry, ScenarioError> {
+        let missing = |key: &str| {
+            refused(key, "missing; a rolling bearing needs elements, element_mm and pitch_mm")
+                .with_help("give these, or the name of a bearing whose geometry is published, as in name = \"6205\"")
+        };
+        let elements = self.elements.ok_or_else(|| missing("elements"))?;
+        let element_mm = self.element_mm.ok_or_else(|| missing("element_mm"))?;
+        let pitch_mm = self.pitch_mm.ok_or_else(|| missing("pitch_mm"))?;
+        BearingGeometry::new(elements, element_mm, pitch_mm, self.contact_angle_deg).map_err(|error| {
+            ScenarioError::new(error.name, error.value, format!("must be {}", error.allowed))
+        })
+    }
+}
+
+/// An error of a key whose value does not matter.
+fn refused(key: &str, problem: &str) -> ScenarioError {
+    ScenarioError::new(key, "", problem)
 }
 
 impl Keys for Bearing {
@@ -210,6 +367,16 @@ impl Keys for Bearing {
             shaft: String::new(),
             at: f64::NAN,
             kind: BearingKind::Linear,
+            name: None,
+            elements: None,
+            element_mm: None,
+            pitch_mm: None,
+            contact_angle_deg: 0.0,
+            roller_length_mm: None,
+            clearance_um: 10.0,
+            preload_n: 0.0,
+            slip_percent: 1.0,
+            defect: Vec::new(),
             stiffness_n_per_m: 1.5e8,
             axial_stiffness_n_per_m: 3e7,
             tilt_stiffness_nm_per_rad: 100.0,
@@ -224,8 +391,44 @@ impl Keys for Bearing {
             row("at", "-", "the position along the shaft, as a fraction of its length from z = 0", field!(at))
                 .required()
                 .range(ALONG),
-            row("kind", "", "the kind of bearing", field!(kind)),
-            row("stiffness_n_per_m", "N/m", "the radial stiffness", field!(stiffness_n_per_m))
+            row("kind", "", "the kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact", field!(kind)),
+            row("name", "", "the name of a rolling bearing whose geometry is published: 6203, 6205, ER-10K, ER-16K, UER204", field!(name))
+                .otherwise("none; the geometry by the keys below")
+                .alternative("\"6205\""),
+            row("elements", "", "the number of balls or rollers", field!(elements))
+                .otherwise("required of a rolling bearing without name")
+                .range(Range::from_to(3.0, 200.0))
+                .alternative("9"),
+            row("element_mm", "mm", "the diameter of a ball or roller", field!(element_mm))
+                .otherwise("required of a rolling bearing without name")
+                .range(Range::positive())
+                .rule("room for all elements on the pitch circle")
+                .alternative("7.94"),
+            row("pitch_mm", "mm", "the pitch diameter, of the circle through the centres of the elements", field!(pitch_mm))
+                .otherwise("required of a rolling bearing without name")
+                .range(Range::positive())
+                .alternative("39.04"),
+            row("contact_angle_deg", "°", "the contact angle of a ball bearing", field!(contact_angle_deg))
+                .range(Range::between(Included(0.0), Excluded(90.0))),
+            row("roller_length_mm", "mm", "the length of a roller", field!(roller_length_mm))
+                .otherwise("its diameter")
+                .range(Range::positive())
+                .alternative("9.0"),
+            row("clearance_um", "µm", "the diametral clearance of a rolling bearing; negative for an interference", field!(clearance_um))
+                .range(Range::from_to(-200.0, 1000.0)),
+            row("preload_n", "N", "the axial preload of a ball bearing with a contact angle", field!(preload_n))
+                .range(Range::not_negative().implausible_above(1e6)),
+            row(
+                "slip_percent",
+                "%",
+                "the random slip of the cage at each pass of an element: its standard deviation, in the spacing of the elements",
+                field!(slip_percent),
+            )
+            .range(Range::from_to(0.0, 2.0)),
+            row("defect", "", "the spalls of a rolling bearing, one by one", field!(defect))
+                .otherwise("none")
+                .alternative("[{ race = \"outer\", width_mm = 1.0 }]"),
+            row("stiffness_n_per_m", "N/m", "the radial stiffness of a linear bearing", field!(stiffness_n_per_m))
                 .range(STIFFNESS),
             row(
                 "axial_stiffness_n_per_m",

@@ -19,6 +19,7 @@ use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable};
 use super::from_toml::{Numbers, ScenarioFiles, located};
 use super::validate::{DrivenSpeed, pitch_line_mm};
 use super::{MemoryLimit, Scenario, ScenarioError, ScenarioWarning, SectionDescription, Sensor, WarningKind};
+use crate::bearing::RollingParts;
 use crate::damage::{Fault, check_faults};
 use crate::keys::{
     KeyRow, Keys, NoFiles, NumberFiles, check_keys, describe, field, read_keys, row, write_keys,
@@ -286,6 +287,7 @@ impl Gearbox {
         check_keys(&self.solver, "solver")?;
         self.check_counts()?;
         self.check_shafts()?;
+        self.rolling_bearings()?;
         self.check_operation()?;
         self.check_length(limit)?;
         let layout = GearboxLayout::new(self)?;
@@ -313,6 +315,29 @@ impl Gearbox {
             return Err(error.with_help("leave out meshes that carry no load"));
         }
         Ok(())
+    }
+
+    /// What the rolling bearings are made of: each with its number.
+    ///
+    /// # Errors
+    /// Those of [`Bearing::rolling`]; too many of them.
+    pub(crate) fn rolling_bearings(&self) -> Result<Vec<(usize, RollingParts)>, ScenarioError> {
+        let entries = self.bearings.len();
+        let rolling = |(number, bearing): (usize, &Bearing)| match bearing.rolling() {
+            Ok(parts) => parts.map(|parts| Ok((number, parts))),
+            Err(error) => {
+                let key = entry_key("bearing", number, entries, &error.key);
+                Some(Err(ScenarioError { key, ..error }))
+            }
+        };
+        let rolling: Vec<_> =
+            self.bearings.iter().enumerate().filter_map(rolling).collect::<Result<_, _>>()?;
+        let most = crate::solver::MOST_ROLLING_BEARINGS;
+        if rolling.len() > most {
+            let problem = format!("there are {} rolling bearings; must be at most {most}", rolling.len());
+            return Err(ScenarioError::new("bearing", "", problem).with_help("let the others be linear"));
+        }
+        Ok(rolling)
     }
 
     fn check_shafts(&self) -> Result<(), ScenarioError> {

@@ -9,7 +9,7 @@ use crate::error::ScenarioWarning;
 use crate::keys::{
     KeyKind, KeyRow, Keys, NumberFiles, Range, documented, field, flatten, load, read_keys, row,
 };
-use crate::machine::{Axis, WheelInertia};
+use crate::machine::{Axis, Unbalance, WheelInertia};
 use crate::operation::{Operation, Solver};
 use crate::sensor::{Sensor, SensorDirection, SensorPath};
 use crate::wheel::quality::{file_deviations, ignored_shares};
@@ -49,6 +49,8 @@ pub struct GearboxWheel {
     pub material: Option<Material>,
     /// Mass and inertias, instead of those of a solid disc.
     pub inertia: WheelInertia,
+    /// Unbalance. Default none.
+    pub unbalance: Unbalance,
     /// Grade of DIN 3961 of its deviations, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,
     /// Class of ISO 1328-1:2013 instead, 1 (best) to 11; 0 for none. Default 0.
@@ -142,6 +144,7 @@ impl Keys for GearboxWheel {
             flank_relief: FlankRelief::default(),
             material: None,
             inertia: WheelInertia::default(),
+            unbalance: Unbalance::default(),
             din_grade: 0,
             iso_class: 0,
             tooth_share: 0.4,
@@ -180,6 +183,7 @@ impl Keys for GearboxWheel {
             row("inertia", "", "its mass and inertias, any of the three", field!(inertia))
                 .otherwise("those of a solid disc of pitch radius")
                 .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
+            row("unbalance", "", "its unbalance", field!(unbalance)).otherwise("none").alternative("{ g_mm = 50.0 }"),
             row("din_grade", "", "the grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade))
                 .range(Range::from_to(0.0, 12.0)),
             row("iso_class", "", "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none", field!(iso_class))

@@ -14,10 +14,7 @@ impl Gearbox {
         if !self.sensors.is_empty() {
             return self.sensors.clone();
         }
-        let on_seat = |bearing: &crate::machine::Bearing| {
-            GearboxSensor::new(&format!("{}:{}", bearing.shaft, bearing.at))
-        };
-        self.bearings.iter().map(on_seat).collect()
+        self.bearings.iter().map(|bearing| GearboxSensor::new(&bearing.seat_name())).collect()
     }
 
     /// The channel of the first of [`Self::all_sensors`].
@@ -91,7 +88,7 @@ impl Gearbox {
 
     fn known_places(&self) -> String {
         let seats: Vec<String> =
-            self.bearings.iter().map(|bearing| format!("\"{}:{}\"", bearing.shaft, bearing.at)).collect();
+            self.bearings.iter().map(|bearing| format!("{:?}", bearing.seat_name())).collect();
         format!("the bearings' seats are {}", seats.join(", "))
     }
 }

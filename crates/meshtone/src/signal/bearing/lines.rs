@@ -1,6 +1,6 @@
 //! The lines of a squared envelope spectrum at the defect orders of a bearing.
 
-use super::DefectOrders;
+use crate::bearing::DefectOrders;
 use crate::signal::SquaredEnvelopeSpectrum;
 
 /// (-) How far slip moves a line, on either side.
@@ -112,7 +112,8 @@ impl DefectLine {
 /// * `shaft` - (of the spectrum's axis) place of order 1 of the bearing's shaft: its speed over that of the spectrum's shaft, or its speed in Hz
 ///
 /// ```
-/// use meshtone::signal::{BearingGeometry, ShaftPhase, defect_lines, squared_envelope_order_spectrum};
+/// use meshtone::bearing::BearingGeometry;
+/// use meshtone::signal::{ShaftPhase, defect_lines, squared_envelope_order_spectrum};
 ///
 /// // A resonance at 3 kHz that rings whenever a ball passes a place of the outer race.
 /// let orders = BearingGeometry::new(9, 7.94, 39.04, 0.0)?.defect_orders();
@@ -126,7 +127,7 @@ impl DefectLine {
 /// let lines = defect_lines(&spectrum, &orders, 1.0);
 /// let over = |name: &str| lines.iter().find(|line| line.name() == name).map(|line| line.over_median);
 /// assert!(over("BPFO") > Some(50.0) && over("BPFI") < Some(10.0));
-/// # Ok::<(), meshtone::signal::SignalError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn defect_lines(
     spectrum: &SquaredEnvelopeSpectrum,
@@ -198,8 +199,8 @@ fn line(
 
 #[cfg(test)]
 mod tests {
-    use super::super::NamedBearing;
     use super::*;
+    use crate::bearing::NamedBearing;
 
     /// A spectrum of 1 everywhere, 50 lines an order, but for some lines.
     fn spectrum(lines: &[(f64, f64)]) -> SquaredEnvelopeSpectrum {

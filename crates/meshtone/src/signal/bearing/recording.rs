@@ -1,6 +1,7 @@
 //! Bearings in a recording of a train: from the channel to the lines of their defects.
 
-use super::{BearingGeometry, DefectLine, defect_lines};
+use super::{DefectLine, defect_lines};
+use crate::bearing::BearingGeometry;
 use crate::signal::{
     FrequencyBand, Kurtogram, KurtogramBand, ShaftPhase, SignalError, SquaredEnvelopeSpectrum,
     TrainRecording, cepstral_prewhitening, check_channel, discrete_random_separation, kurtogram,

@@ -1,6 +1,6 @@
 //! Bearings whose geometry is published.
 
-use super::BearingGeometry;
+use super::{BearingGeometry, RollingElement};
 
 /// A bearing by name.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -8,6 +8,8 @@ use super::BearingGeometry;
 pub struct NamedBearing {
     /// Its designation.
     pub name: &'static str,
+    /// Kind of its elements.
+    pub element: RollingElement,
     /// Its geometry; that of another maker's bearing of the same designation may differ.
     pub geometry: BearingGeometry,
     /// The publication that states the geometry.
@@ -23,7 +25,7 @@ const fn named(
     source: &'static str,
 ) -> NamedBearing {
     let geometry = BearingGeometry { elements, element_mm, pitch_mm, contact_angle_deg };
-    NamedBearing { name, geometry, source }
+    NamedBearing { name, element: RollingElement::Ball, geometry, source }
 }
 
 /// The bearings of public recordings, as far as the publications state their geometry.
@@ -53,11 +55,14 @@ pub const NAMED_BEARINGS: [NamedBearing; 6] = [
         (8, 7.92, 34.55, 0.0),
         "B. Wang, Y. Lei, N. Li, N. Li, IEEE Trans. Reliability 69 (2020) 401–412: LDK UER204",
     ),
-    named(
-        "ZA-2115",
-        (16, 0.331 * INCH, 2.815 * INCH, 15.17),
-        "H. Qiu, J. Lee, J. Lin, G. Yu, J. Sound Vib. 289 (2006) 1066–1090: Rexnord ZA-2115, one of two rows",
-    ),
+    NamedBearing {
+        element: RollingElement::Roller,
+        ..named(
+            "ZA-2115",
+            (16, 0.331 * INCH, 2.815 * INCH, 15.17),
+            "H. Qiu, J. Lee, J. Lin, G. Yu, J. Sound Vib. 289 (2006) 1066–1090: Rexnord ZA-2115, one of two rows",
+        )
+    },
 ];
 
 impl NamedBearing {

@@ -1,0 +1,211 @@
+//! Spalls of a rolling bearing: what the scenario says of them, and by how much an element drops into one.
+
+use super::BearingGeometry;
+use crate::error::ScenarioError;
+use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
+
+/// Part of a bearing that has a defect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DefectPlace {
+    /// The race of the outer ring, which stands still.
+    #[default]
+    Outer,
+    /// The race of the inner ring, which turns with the shaft.
+    Inner,
+    /// One of the balls or rollers.
+    Element,
+}
+
+by_name!(DefectPlace, ["outer" => DefectPlace::Outer, "inner" => DefectPlace::Inner, "element" => DefectPlace::Element]);
+
+impl DefectPlace {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Outer, Self::Inner, Self::Element];
+}
+
+/// A defect of a rolling bearing: a spall.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct BearingDefect {
+    /// Part of the bearing that has it.
+    pub race: DefectPlace,
+    /// (-) Width of the spall as a part of the diameter of an element, in place of `width_mm`.
+    pub severity: Option<f64>,
+    /// (mm) Width of the spall along the path of the elements, or around an element.
+    pub width_mm: Option<f64>,
+    /// (µm) Depth of the spall. Default 100. An element does not drop deeper than the edges of the spall let it.
+    pub depth_um: f64,
+    /// (°) From the direction of the bearing's static load to the middle of the spall, positive about z; of the inner race at the start.
+    pub angle_deg: f64,
+}
+
+impl BearingDefect {
+    /// A defect of a severity.
+    ///
+    /// # Arguments
+    /// * `race` - the part that has it
+    /// * `severity` - (-) width of the spall as a part of the diameter of an element, more than 0, at most 1
+    pub fn new(race: DefectPlace, severity: f64) -> Self {
+        Self { race, severity: Some(severity), ..Self::start() }
+    }
+}
+
+/// (-) A severity that stands for nothing is no defect.
+const SEVERITY: Range = Range::between(std::ops::Bound::Excluded(0.0), std::ops::Bound::Included(1.0));
+
+impl Keys for BearingDefect {
+    fn start() -> Self {
+        Self { race: DefectPlace::Outer, severity: None, width_mm: None, depth_um: 100.0, angle_deg: 0.0 }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        vec![
+            row("race", "", "the part with the spall: a race, or one of the balls or rollers", field!(race)).required(),
+            row("severity", "-", "the width of the spall as a fraction of the diameter of an element", field!(severity))
+                .otherwise("required, unless width_mm is given")
+                .range(SEVERITY)
+                .alternative("0.25"),
+            row("width_mm", "mm", "the width of the spall along the path of the elements", field!(width_mm))
+                .otherwise("required, unless severity is given")
+                .range(Range::positive())
+                .rule("at most the diameter of an element")
+                .alternative("1.0"),
+            row("depth_um", "µm", "the depth of the spall; an element drops at most until it touches both edges", field!(depth_um))
+                .range(Range::positive().implausible_above(1e5)),
+            row(
+                "angle_deg",
+                "°",
+                "the angle from the static load of the bearing to the middle of the spall, about z; on the inner race at the start",
+                field!(angle_deg),
+            )
+            .range(Range::from_to(-360.0, 360.0)),
+        ]
+    }
+}
+
+/// A spall with its sizes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Spall {
+    /// Part of the bearing that has it.
+    pub place: DefectPlace,
+    /// (mm) Width along the path of the elements, or around an element.
+    pub width_mm: f64,
+    /// (µm) By how much an element drops at most: down to the depth, or until it touches both edges.
+    pub drop_um: f64,
+    /// (°) From the direction of the static load to its middle, of the inner race at the start.
+    pub angle_deg: f64,
+    /// (-) Width over the diameter of an element.
+    pub severity: f64,
+}
+
+impl Spall {
+    /// A defect with the sizes that its bearing gives it.
+    ///
+    /// # Arguments
+    /// * `defect` - as the scenario says it
+    /// * `geometry` - of its bearing
+    ///
+    /// # Errors
+    /// Neither or both of width and severity; a spall wider than an element. The key is that within the defect.
+    pub(crate) fn new(defect: &BearingDefect, geometry: &BearingGeometry) -> Result<Self, ScenarioError> {
+        let element_mm = geometry.element_mm;
+        let width_mm = match (defect.width_mm, defect.severity) {
+            (Some(width_mm), None) => width_mm,
+            (None, Some(severity)) => severity * element_mm,
+            (Some(width_mm), Some(_)) => {
+                let problem = "given beside severity, which states the width too";
+                return Err(
+                    ScenarioError::new("width_mm", width_mm, problem).with_help("remove one of the two")
+                );
+            }
+            (None, None) => {
+                let problem = "missing; a spall needs a width_mm, or a severity from 0 to 1";
+                return Err(ScenarioError::new("width_mm", "", problem));
+            }
+        };
+        if width_mm > element_mm {
+            let problem = format!("must be at most {element_mm:?} mm, the diameter of an element");
+            return Err(ScenarioError::new("width_mm", width_mm, problem));
+        }
+        let radius_mm = element_mm / 2.0;
+        let both_edges_mm = radius_mm - (radius_mm * radius_mm - width_mm * width_mm / 4.0).max(0.0).sqrt();
+        Ok(Self {
+            place: defect.race,
+            width_mm,
+            drop_um: defect.depth_um.min(both_edges_mm * 1e3),
+            angle_deg: defect.angle_deg,
+            severity: width_mm / element_mm,
+        })
+    }
+}
+
+/// By how much an element drops into a spall on its way: by a raised cosine over each edge, and flat between them.
+///
+/// An element of radius r leaves an edge on a circle around it, so that it has dropped by e at the distance `√(r² − (r − e)²)`. The raised
+/// cosine of that length replaces the circle. Where the element touches both edges before it touches the bottom, the two meet in the
+/// middle: the shape of N. Sawalhi, R. B. Randall, Mech. Syst. Signal Process. 22 (2008) 1924–1951.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Drop {
+    half_width_m: f64,
+    edge_m: f64,
+    deepest_m: f64,
+}
+
+impl Drop {
+    pub(super) fn new(spall: &Spall, geometry: &BearingGeometry) -> Self {
+        let (radius_m, deepest_m) = (geometry.element_mm * 0.5e-3, spall.drop_um * 1e-6);
+        let half_width_m = spall.width_mm * 0.5e-3;
+        let of_circle_m = (radius_m * radius_m - (radius_m - deepest_m).powi(2)).max(0.0).sqrt();
+        Self { half_width_m, edge_m: of_circle_m.min(half_width_m), deepest_m }
+    }
+
+    /// (m) How deep an element has dropped.
+    ///
+    /// # Arguments
+    /// * `from_middle_m` - (m) its way from the middle of the spall
+    pub(super) fn at_m(&self, from_middle_m: f64) -> f64 {
+        let from_edge_m = self.half_width_m - from_middle_m.abs();
+        if from_edge_m <= 0.0 {
+            0.0
+        } else if from_edge_m >= self.edge_m {
+            self.deepest_m
+        } else {
+            self.deepest_m * 0.5 * (1.0 - (std::f64::consts::PI * from_edge_m / self.edge_m).cos())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spall(width_mm: f64, depth_um: f64) -> Spall {
+        let geometry = BearingGeometry::new(9, 7.94, 39.04, 0.0).unwrap();
+        let defect = BearingDefect { width_mm: Some(width_mm), depth_um, ..BearingDefect::start() };
+        Spall::new(&defect, &geometry).unwrap()
+    }
+
+    /// A ball of 7.94 mm over 1 mm drops by 31.6 µm.
+    #[test]
+    fn narrow_spalls_limit_the_drop() {
+        assert!((spall(1.0, 100.0).drop_um - 31.6).abs() < 0.05);
+        assert_eq!(spall(1.0, 10.0).drop_um, 10.0);
+        assert_eq!(spall(4.0, 100.0).drop_um, 100.0);
+    }
+
+    #[test]
+    fn elements_drop_over_the_edges_and_stay_flat_between_them() {
+        let geometry = BearingGeometry::new(9, 7.94, 39.04, 0.0).unwrap();
+        let wide = Drop::new(&spall(4.0, 50.0), &geometry);
+        assert_eq!([wide.at_m(2e-3), wide.at_m(-3e-3), wide.at_m(0.0)], [0.0, 0.0, 50e-6]);
+        // √(r² − (r − e)²), half-way over the edge.
+        let edge_m = f64::sqrt(3.97e-3f64.powi(2) - (3.97e-3f64 - 50e-6).powi(2));
+        assert!((wide.at_m(2e-3 - edge_m / 2.0) - 25e-6).abs() < 1e-12);
+        assert_eq!(wide.at_m(2e-3 - 1.001 * edge_m), 50e-6);
+        // Of a narrow one e/2 (1 + cos 2πφ/w).
+        let narrow = spall(1.0, 100.0);
+        let drop = Drop::new(&narrow, &geometry);
+        assert!((drop.at_m(0.25e-3) - narrow.drop_um * 0.5e-6).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,228 @@
+//! Where the elements of a rolling bearing are, sample by sample.
+
+use std::f64::consts::{PI, TAU};
+
+use super::defect::Drop;
+use super::{DefectPlace, ElementPlaces, RollingBearing};
+use crate::random::{Draws, Purpose};
+
+/// Where the elements of one bearing are at successive samples.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BearingBlock {
+    /// Cosine and sine of the cage's angle.
+    cage: Vec<[f64; 2]>,
+    /// Number of spalls.
+    spalls: usize,
+    /// The element nearest to each spall and how deep it has dropped, sample by sample.
+    drops: Vec<(usize, f64)>,
+}
+
+impl BearingBlock {
+    /// Where the elements are at a sample.
+    #[inline(always)]
+    pub(crate) fn places(&self, sample: usize) -> ElementPlaces<'_> {
+        let first = sample * self.spalls;
+        ElementPlaces { cage: self.cage[sample], drops: &self.drops[first..first + self.spalls] }
+    }
+}
+
+/// The rotation of a bearing's cage and rings.
+///
+/// The cage turns by FTF times the shaft's angle, without slip, and by a random walk: at each pass of an element its angle gains a normal number
+/// of the stated part of the elements' spacing. A walk makes the lines of a defect wider the higher their order is; an error of each pass
+/// alone would leave them sharp.
+///
+/// Source: J. Antoni, R. B. Randall, J. Vib. Acoust. 125 (2003) 282–289.
+pub(crate) struct BearingTurning {
+    elements: usize,
+    /// (-) Angle of the shaft, of the cage, and of an element's spin, over that of the motor.
+    ratios: [f64; 3],
+    /// (rad) Angles of the cage and of an element's spin at the start.
+    start_rad: [f64; 2],
+    slip: Walk,
+    spalls: Vec<TurningSpall>,
+}
+
+struct TurningSpall {
+    place: DefectPlace,
+    /// (rad) Its middle at the start.
+    angle_rad: f64,
+    /// (m) Radius of what it is on.
+    radius_m: f64,
+    drop: Drop,
+}
+
+/// A random walk of one step at each pass.
+struct Walk {
+    draws: Draws,
+    step_rad: f64,
+    /// Number of the pass that is reached, and its angle and that of the next one.
+    pass: u64,
+    around_rad: [f64; 2],
+}
+
+impl Walk {
+    fn new(draws: Draws, step_rad: f64) -> Self {
+        let mut this = Self { draws, step_rad, pass: 0, around_rad: [0.0; 2] };
+        this.around_rad[1] = this.next_rad(0.0);
+        this
+    }
+
+    fn next_rad(&mut self, from_rad: f64) -> f64 {
+        if self.step_rad > 0.0 { from_rad + self.step_rad * self.draws.normal() } else { 0.0 }
+    }
+
+    /// (rad) The walk at a number of passes, which never falls.
+    fn at_rad(&mut self, passes: f64) -> f64 {
+        while self.step_rad > 0.0 && passes >= (self.pass + 1) as f64 {
+            self.pass += 1;
+            let last_rad = self.around_rad[1];
+            self.around_rad = [last_rad, self.next_rad(last_rad)];
+        }
+        let [before_rad, after_rad] = self.around_rad;
+        before_rad + (after_rad - before_rad) * (passes - self.pass as f64).clamp(0.0, 1.0)
+    }
+}
+
+impl BearingTurning {
+    /// A bearing from the start of a simulation on.
+    ///
+    /// # Arguments
+    /// * `bearing` - the bearing
+    /// * `speed_ratio` - (-) rotation of its shaft over that of the motor
+    /// * `seed` - of the scenario
+    /// * `number` - of the bearing in it
+    pub(crate) fn new(bearing: &RollingBearing, speed_ratio: f64, seed: u64, number: usize) -> Self {
+        let geometry = &bearing.parts.geometry;
+        let orders = geometry.defect_orders();
+        let mut start = Draws::new(seed, Purpose::BearingStart, number as u64);
+        let spacing_rad = TAU / f64::from(geometry.elements);
+        let contact_mm = geometry.element_mm * geometry.contact_angle_deg.to_radians().cos();
+        let spall = |spall: &super::Spall| {
+            let (start_rad, radius_mm) = match spall.place {
+                DefectPlace::Outer => (bearing.load_angle_rad(), (geometry.pitch_mm + contact_mm) / 2.0),
+                DefectPlace::Inner => (bearing.load_angle_rad(), (geometry.pitch_mm - contact_mm) / 2.0),
+                DefectPlace::Element => (0.0, geometry.element_mm / 2.0),
+            };
+            TurningSpall {
+                place: spall.place,
+                angle_rad: start_rad + spall.angle_deg.to_radians(),
+                radius_m: radius_mm * 1e-3,
+                drop: Drop::new(spall, geometry),
+            }
+        };
+        Self {
+            elements: geometry.elements as usize,
+            ratios: [1.0, orders.cage, orders.element_spin].map(|order| order * speed_ratio),
+            start_rad: [start.uniform(PI, PI), start.uniform(PI, PI)],
+            slip: Walk::new(
+                Draws::new(seed, Purpose::BearingSlip, number as u64),
+                bearing.parts.slip * spacing_rad,
+            ),
+            spalls: bearing.parts.spalls.iter().map(spall).collect(),
+        }
+    }
+
+    /// Sets a block to the next samples.
+    ///
+    /// # Arguments
+    /// * `revolutions` - (rev) of the motor, at the samples
+    /// * `block` - is overwritten
+    pub(crate) fn next_block(&mut self, revolutions: &[f64], block: &mut BearingBlock) {
+        block.cage.clear();
+        block.drops.clear();
+        block.spalls = self.spalls.len();
+        let [shaft_ratio, cage_ratio, spin_ratio] = self.ratios;
+        let spacing_rad = TAU / self.elements as f64;
+        for motor in revolutions {
+            let rolled_rad = TAU * cage_ratio * motor;
+            let slipped_rad = self.slip.at_rad(rolled_rad.abs() / spacing_rad) * cage_ratio.signum();
+            let cage_rad = self.start_rad[0] + rolled_rad + slipped_rad;
+            let (sin, cos) = cage_rad.sin_cos();
+            block.cage.push([cos, sin]);
+            for spall in &self.spalls {
+                let nearest = |angle_rad: f64| {
+                    let from_first = (angle_rad - cage_rad) / spacing_rad;
+                    let element = from_first.round();
+                    (
+                        element.rem_euclid(self.elements as f64) as usize % self.elements,
+                        (from_first - element) * spacing_rad,
+                    )
+                };
+                let (element, angle_rad) = match spall.place {
+                    DefectPlace::Outer => nearest(spall.angle_rad),
+                    DefectPlace::Inner => nearest(spall.angle_rad + TAU * shaft_ratio * motor),
+                    DefectPlace::Element => {
+                        // It slips as much as its cage does, and meets a race every half turn.
+                        let spun_rad = self.start_rad[1]
+                            + spall.angle_rad
+                            + (rolled_rad + slipped_rad) * (spin_ratio / cage_ratio);
+                        (0, spun_rad - (spun_rad / PI).round() * PI)
+                    }
+                };
+                block.drops.push((element, spall.drop.at_m(angle_rad * spall.radius_m)));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bearing::{BearingDefect, ElementContact, NamedBearing, RollingParts, Spall};
+
+    fn turning(race: DefectPlace, slip: f64, speed_ratio: f64) -> BearingTurning {
+        let geometry = NamedBearing::find("6205").unwrap().geometry;
+        let spalls = vec![Spall::new(&BearingDefect::new(race, 0.2), &geometry).unwrap()];
+        let parts = RollingParts {
+            contact: ElementContact::ball(&geometry),
+            geometry,
+            radial_clearance_m: 5e-6,
+            preload_n: 0.0,
+            spalls,
+            slip,
+        };
+        BearingTurning::new(&RollingBearing::new(parts, [0.0, -100.0]), speed_ratio, 7, 0)
+    }
+
+    /// Numbers of revolutions of the motor at which an element is deepest in a spall, over some revolutions.
+    fn hits(mut turning: BearingTurning, revolutions: usize) -> Vec<f64> {
+        let per_revolution = 20_000;
+        let motor: Vec<f64> =
+            (0..revolutions * per_revolution).map(|k| k as f64 / per_revolution as f64).collect();
+        let mut block = BearingBlock::default();
+        turning.next_block(&motor, &mut block);
+        let drop = |k: usize| block.drops[k].1;
+        let is_deepest = |&k: &usize| drop(k) > 0.0 && drop(k) > drop(k - 1) && drop(k) >= drop(k + 1);
+        (1..motor.len() - 1).filter(is_deepest).map(|k| motor[k]).collect()
+    }
+
+    /// BPFO, BPFI and 2 BSF of the shaft's revolutions, whichever way it turns.
+    #[test]
+    fn elements_meet_a_spall_at_the_orders_of_the_bearing() {
+        for (place, order) in
+            [(DefectPlace::Outer, 3.58478), (DefectPlace::Inner, 5.41522), (DefectPlace::Element, 4.71350)]
+        {
+            for ratio in [1.0, -0.4] {
+                let hits = hits(turning(place, 0.0, ratio), 20);
+                let count = (hits.len() - 1) as f64;
+                let found = count / (hits[hits.len() - 1] - hits[0]);
+                assert!((found / (order * f64::abs(ratio)) - 1.0).abs() < 2e-3, "{place:?} {ratio}: {found}");
+            }
+        }
+    }
+
+    /// 1 % of a spacing at each pass: the interval of two passes has that standard deviation, and the walk grows with their root.
+    #[test]
+    fn cage_slips_by_a_walk() {
+        let hits = hits(turning(DefectPlace::Outer, 0.01, 1.0), 400);
+        let deviation = |over: usize| {
+            let gaps: Vec<f64> = hits.windows(over + 1).map(|of| of[over] - of[0]).collect();
+            let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
+            (gaps.iter().map(|gap| (gap - mean).powi(2)).sum::<f64>() / gaps.len() as f64).sqrt() * 3.58478
+        };
+        // A pass lies between two steps of the walk: √(2/3) of a step where it is read between them.
+        assert!((0.0075..0.0105).contains(&deviation(1)), "{}", deviation(1));
+        assert!((0.08..0.13).contains(&deviation(100)), "{}", deviation(100));
+    }
+}
