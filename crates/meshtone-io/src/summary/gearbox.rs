@@ -161,8 +161,6 @@ impl BearingSummary {
         let parts = &bearing.parts;
         let orders = parts.geometry.defect_orders();
         let [x_n, y_n] = bearing.static_load_n;
-        let static_load_n = x_n.hypot(y_n);
-        let [_, stiffness_n_per_m, _] = bearing.under_load(static_load_n.max(f64::MIN_POSITIVE));
         let defect = |spall: &Spall| DefectSummary {
             race: spall.place.name(),
             width_mm: spall.width_mm,
@@ -173,8 +171,8 @@ impl BearingSummary {
         Self {
             at,
             kind: parts.contact.element.name(),
-            static_load_n,
-            stiffness_n_per_m,
+            static_load_n: x_n.hypot(y_n),
+            stiffness_n_per_m: bearing.stiffness_n_per_m,
             orders: BearingOrders {
                 ftf: orders.cage,
                 bpfo: orders.outer_race,

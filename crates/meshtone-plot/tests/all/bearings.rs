@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use crate::support::check;
+use meshtone::bearing::NamedBearing;
 use meshtone::signal::*;
 use meshtone_plot::Figure;
 use meshtone_plot::bearings::{BearingsFigure, draw};

@@ -62,7 +62,7 @@ impl ElementContact {
     /// (N, N/m) The load of a ball and its slope.
     ///
     /// # Arguments
-    /// * `deflection_m` - (m) by which it is pressed together; of a free one 0
+    /// * `deflection_m` - (m) by which it is pressed together; 0 of a ball without load
     #[inline(always)]
     pub(super) fn of_ball(&self, deflection_m: f64) -> [f64; 2] {
         let slope = self.stiffness * deflection_m.sqrt();
@@ -72,7 +72,7 @@ impl ElementContact {
     /// (N, N/m) The same of a roller.
     ///
     /// # Arguments
-    /// * `deflection_m` - (m) by which it is pressed together; of a free one 0
+    /// * `deflection_m` - (m) by which it is pressed together; 0 of a roller without load
     #[inline(always)]
     pub(super) fn of_roller(&self, deflection_m: f64) -> [f64; 2] {
         let slope = self.stiffness * deflection_m.cbrt().cbrt();

@@ -68,14 +68,14 @@ impl Keys for BearingDefect {
             row("width_mm", "mm", "the width of the spall along the path of the elements", field!(width_mm))
                 .otherwise("required, unless severity is given")
                 .range(Range::positive())
-                .rule("at most the diameter of an element")
+                .rule("at most the diameter of an element, and on the inner race the spacing of the elements")
                 .alternative("1.0"),
             row("depth_um", "µm", "the depth of the spall; an element drops at most until it touches both edges", field!(depth_um))
                 .range(Range::positive().implausible_above(1e5)),
             row(
                 "angle_deg",
                 "°",
-                "the angle from the static load of the bearing to the middle of the spall, about z; on the inner race at the start",
+                "the angle from the static load of the bearing to the middle of the spall, about z; on the inner race at time 0, before settling",
                 field!(angle_deg),
             )
             .range(Range::from_to(-360.0, 360.0)),
@@ -124,9 +124,22 @@ impl Spall {
                 return Err(ScenarioError::new("width_mm", "", problem));
             }
         };
-        if width_mm > element_mm {
-            let problem = format!("must be at most {element_mm:?} mm, the diameter of an element");
+        // Two elements are never in one spall.
+        let contact_mm = element_mm * geometry.contact_angle_deg.to_radians().cos();
+        let spacing_mm = |race_mm: f64| std::f64::consts::PI * race_mm / f64::from(geometry.elements);
+        let (largest_mm, what) = match defect.race {
+            DefectPlace::Inner if spacing_mm(geometry.pitch_mm - contact_mm) < element_mm => {
+                (spacing_mm(geometry.pitch_mm - contact_mm), "the spacing of the elements on the inner race")
+            }
+            _ => (element_mm, "the diameter of an element"),
+        };
+        if width_mm > largest_mm {
+            let problem = format!("must be at most {largest_mm:?} mm, {what}");
             return Err(ScenarioError::new("width_mm", width_mm, problem));
+        }
+        if defect.race == DefectPlace::Element && defect.angle_deg != 0.0 {
+            let problem = "has no effect on a rolling element, which starts at a random angle";
+            return Err(ScenarioError::new("angle_deg", defect.angle_deg, problem).with_help("remove it"));
         }
         let radius_mm = element_mm / 2.0;
         let both_edges_mm = radius_mm - (radius_mm * radius_mm - width_mm * width_mm / 4.0).max(0.0).sqrt();

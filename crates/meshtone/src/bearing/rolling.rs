@@ -41,25 +41,25 @@ impl RollingParts {
         Self { geometry, contact, radial_clearance_m, preload_n, spalls, slip }
     }
 
-    /// (m) By how much the inner ring moves towards an element before it bears load; negative where it bears load already.
+    /// (m) How far apart the inner ring, an element and the outer ring are while the rings are centred; negative where the element is pressed.
+    /// An axial preload takes up the clearance and presses every element.
     fn gap_m(&self) -> f64 {
         let (sin, cos) = self.geometry.contact_angle_deg.to_radians().sin_cos();
-        let preloaded_m = if self.preload_n > 0.0 {
-            self.contact.deflection_m(self.preload_n / (f64::from(self.geometry.elements) * sin))
+        if self.preload_n > 0.0 {
+            -self.contact.deflection_m(self.preload_n / (f64::from(self.geometry.elements) * sin))
         } else {
-            0.0
-        };
-        self.radial_clearance_m * cos - preloaded_m
+            self.radial_clearance_m * cos
+        }
     }
 }
 
 /// A rolling bearing with two unknowns, the displacement of its inner ring against its outer ring across the shaft.
 ///
-/// Element j at the angle θ_j is pressed together by `δ_j = (x cos θ_j + y sin θ_j − c) cos α + δ_p − Δ_j` with the clearance c, the preload's
-/// deflection δ_p and the drop into a spall Δ_j; where that is positive it pushes with `K δⁿ cos α`.
+/// Element j at the angle θ_j is pressed together by `δ_j = (x cos θ_j + y sin θ_j − c) cos α − Δ_j` with the clearance c and the drop into a spall
+/// Δ_j; where that is positive it pushes with `K δⁿ cos α`. An axial preload takes up the clearance: its deflection stands for `−c cos α`.
 ///
-/// The machine has a linear spring in the bearing's place, the bearing's mean slope under its static load, and the solver adds what the
-/// elements' force differs from that spring's. So the modes, their damping and the static solution are those of the linearised bearing, and
+/// The machine has a linear spring in the bearing's place, the bearing's mean slope under its static load, and the solver adds the
+/// difference between the elements' force and that spring's. So the modes, their damping and the static solution are those of the linearised bearing, and
 /// the solution is that of the elements alone.
 ///
 /// Source: N. Sawalhi, R. B. Randall, Mech. Syst. Signal Process. 22 (2008) 1924–1951.
@@ -70,6 +70,8 @@ pub struct RollingBearing {
     pub parts: RollingParts,
     /// (N) Static load on the outer ring, along x and y.
     pub static_load_n: [f64; 2],
+    /// (N/m) Slope of the load along the static load, averaged over the places of the cage.
+    pub stiffness_n_per_m: f64,
     /// (N/m) The linear spring in its place, of x and y.
     pub spring_n_per_m: [[f64; 2]; 2],
     /// (m) Displacement at which the linear spring is free.
@@ -142,6 +144,7 @@ impl RollingBearing {
             cos_contact_angle: parts.geometry.contact_angle_deg.to_radians().cos(),
             lots: (0..count).step_by(SIDE_BY_SIDE).map(lot).collect(),
             static_load_n,
+            stiffness_n_per_m: 0.0,
             spring_n_per_m: [[0.0; 2]; 2],
             free_m: [0.0; 2],
             parts,
@@ -150,6 +153,7 @@ impl RollingBearing {
         let [cos, sin] = if load_n > 0.0 { static_load_n.map(|load| load / load_n) } else { [0.0, -1.0] };
         let [displacement_m, along, across] = this.under_load(load_n.max(LEAST_LOAD_N));
         let [along, across] = [along, across].map(|stiffness| stiffness.max(LEAST_STIFFNESS));
+        this.stiffness_n_per_m = along;
         let free_m = displacement_m - load_n.max(LEAST_LOAD_N) / along;
         this.free_m = [free_m * cos, free_m * sin];
         let mixed = (along - across) * cos * sin;
@@ -194,7 +198,7 @@ impl RollingBearing {
             let [x, y] = residual(load);
             x.hypot(y)
         };
-        // Enough that the nearest elements bear more than the load.
+        // There the nearest elements bear more than the load.
         let start =
             self.parts.gap_m() / self.cos_contact_angle + 2.0 * self.parts.contact.deflection_m(load_n);
         let mut at_m = [start, 0.0];
@@ -284,7 +288,7 @@ impl RollingBearing {
         }
     }
 
-    /// What the load of the elements differs from that of the linear spring.
+    /// The difference between the load of the elements and that of the linear spring.
     ///
     /// # Arguments
     /// * `stretch_m` - (m) of the linear spring
@@ -345,7 +349,9 @@ mod tests {
         let softened = along(5e-6, 0.0, 0.0) / along(0.0, 0.0, 0.0);
         assert!((0.92..0.96).contains(&softened), "{softened}");
         assert!(along(-5e-6, 0.0, 0.0) > 1.5 * along(0.0, 0.0, 0.0));
+        // A preload takes up the clearance.
         assert!(along(0.0, 300.0, 15.0) > 1.5 * along(0.0, 0.0, 15.0));
+        assert_eq!(along(0.0, 300.0, 15.0), along(5e-6, 300.0, 15.0));
     }
 
     /// A single element in the load's direction: force and slope are those of its contact.

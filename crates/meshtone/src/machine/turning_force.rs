@@ -31,7 +31,8 @@ impl Keys for Unbalance {
         vec![
             row("g_mm", "g mm", "the mass times its distance from the axis", field!(g_mm))
                 .range(Range::not_negative().implausible_above(1e7)),
-            row("angle_deg", "°", "its direction at the start, from x towards y", field!(angle_deg)).range(ANGLE),
+            row("angle_deg", "°", "its direction at time 0, before settling, from x towards y", field!(angle_deg))
+                .range(ANGLE),
         ]
     }
 }
@@ -65,7 +66,8 @@ impl Keys for Bow {
                 field!(middle_um),
             )
             .range(Range::not_negative().implausible_above(1e4)),
-            row("angle_deg", "°", "its direction at the start, from x towards y", field!(angle_deg)).range(ANGLE),
+            row("angle_deg", "°", "its direction at time 0, before settling, from x towards y", field!(angle_deg))
+                .range(ANGLE),
         ]
     }
 }

@@ -261,7 +261,7 @@ impl<'a> Constants<'a> {
             columns: prepared.columns.iter().map(column).collect(),
             turning: prepared.turning_push.iter().map(|of| of.each_ref().map(|push| order.lots(push))).collect(),
             outputs: prepared.outputs.iter().map(output).collect(),
-            midway: all_midway.then(|| prepared.equations(&[])),
+            midway: all_midway.then(|| Equations::new(prepared)),
             prepared,
         }
     }
@@ -278,6 +278,8 @@ struct State {
     /// (m) That of each bearing's unknown two steps and one step earlier.
     before: [[f64; 2]; MOST_UNKNOWNS],
     search: Search,
+    /// The equations of the last step, where loads act beside the middle of their faces.
+    tilted: Equations,
     /// (m) Deflection in each column with its damping's lead, without the step's own force.
     free: Vec<f64>,
     counts: StepCounts,
@@ -301,6 +303,7 @@ impl State {
             deflection,
             before: deflection.map(|at_rest| [at_rest; 2]),
             search: Search::new(),
+            tilted: Equations::new(prepared),
             counts: StepCounts::default(),
         }
     }
@@ -442,12 +445,11 @@ impl Constants<'_> {
         let mut face_centres = [0.0; MOST_UNKNOWNS];
         let centres = sample.springs.iter().map(|springs| springs.face_centre_m(sample.k));
         face_centres.iter_mut().zip(centres).for_each(|(own, centre)| *own = centre);
-        let own;
         let equations = match &self.midway {
             Some(equations) => equations,
             None => {
-                own = prepared.equations(&face_centres);
-                &own
+                prepared.set_equations(&face_centres, &mut state.tilted);
+                &state.tilted
             }
         };
         let mut free = equations.of_static;
@@ -484,11 +486,12 @@ impl Constants<'_> {
 }
 
 impl Prepared {
-    /// The equations of a step without the free deflections.
+    /// Sets the equations of a step without the free deflections.
     ///
     /// # Arguments
     /// * `face_centres` - (m) where along its face the load of each mesh acts; what is missing acts midway
-    fn equations(&self, face_centres: &[f64]) -> Equations {
+    /// * `equations` - of this machine
+    fn set_equations(&self, face_centres: &[f64], equations: &mut Equations) {
         // Each load acts in the one direction g(z̄) = g₀ + z̄ g₁.
         let weights = |unknown: usize| {
             let z = face_centres.get(unknown).copied().unwrap_or(0.0);
@@ -496,15 +499,10 @@ impl Prepared {
             let middle = columns.next().map(|first| (first, 1.0));
             middle.into_iter().chain(columns.map(move |tilt| (tilt, z)))
         };
-        let (count, meshes) = (self.columns_of_unknown.len(), self.laws.len());
-        let mut equations = Equations {
-            count,
-            meshes,
-            compliance: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
-            of_static: [0.0; MOST_UNKNOWNS],
-        };
-        for a in 0..count {
-            for b in 0..count {
+        for a in 0..equations.count {
+            equations.of_static[a] = 0.0;
+            for b in 0..equations.count {
+                equations.compliance[a][b] = 0.0;
                 let static_force_n = self.static_force_n.get(b).copied().unwrap_or(0.0);
                 let from = self.columns_of_unknown[b].start;
                 for (r, of_r) in weights(a) {
@@ -516,7 +514,6 @@ impl Prepared {
                 }
             }
         }
-        equations
     }
 }
 
@@ -604,6 +601,18 @@ struct Equations {
 }
 
 impl Equations {
+    /// The equations of a step in which all loads act midway along their faces, without the free deflections.
+    fn new(prepared: &Prepared) -> Self {
+        let mut this = Self {
+            count: prepared.columns_of_unknown.len(),
+            meshes: prepared.laws.len(),
+            compliance: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
+            of_static: [0.0; MOST_UNKNOWNS],
+        };
+        prepared.set_equations(&[], &mut this);
+        this
+    }
+
     /// Solves the equations.
     ///
     /// # Arguments
@@ -810,8 +819,12 @@ mod tests {
     struct Function<F>(F);
 
     impl<F: Fn(usize, f64) -> [f64; 2]> Law for Function<F> {
-        fn force_and_slope(&self, mesh: usize, deflection_m: f64) -> [f64; 2] {
+        fn of_mesh(&self, mesh: usize, deflection_m: f64) -> [f64; 2] {
             self.0(mesh, deflection_m)
+        }
+
+        fn of_bearing(&self, _: usize, _: [f64; 2]) -> BearingLoad {
+            BearingLoad { force_n: [0.0; 2], slope_n_per_m: [0.0; 3] }
         }
     }
 
@@ -857,6 +870,60 @@ mod tests {
                         .sum();
                     let residual = deflection[row] + pressed - free[row];
                     assert!(residual.abs() < 1e-9 * (1.0 + strength), "{problem}: {residual}");
+                }
+            }
+        }
+    }
+
+    /// A mesh of one spring and a bearing whose force is that of one central spring `K r^1.5`, beside a linear spring that the compliance
+    /// contains.
+    struct MeshAndBearing;
+
+    const SPRING_N_PER_M: f64 = 5e7;
+
+    impl Law for MeshAndBearing {
+        fn of_mesh(&self, _: usize, deflection_m: f64) -> [f64; 2] {
+            if deflection_m > 0.0 { [3e8 * deflection_m, 3e8] } else { [0.0; 2] }
+        }
+
+        fn of_bearing(&self, _: usize, [x_m, y_m]: [f64; 2]) -> BearingLoad {
+            const HERTZ: f64 = 1e10;
+            let r_m = x_m.hypot(y_m).max(1e-12);
+            let over_r = HERTZ * r_m.sqrt();
+            let further = 0.5 * over_r / (r_m * r_m);
+            BearingLoad {
+                force_n: [x_m, y_m].map(|of_m| (over_r - SPRING_N_PER_M) * of_m),
+                slope_n_per_m: [
+                    over_r + further * x_m * x_m - SPRING_N_PER_M,
+                    further * x_m * y_m,
+                    over_r + further * y_m * y_m - SPRING_N_PER_M,
+                ],
+            }
+        }
+    }
+
+    /// The bearing's equations hold to what its tangent leaves, from any start, although the slopes beside the spring are negative near 0.
+    #[test]
+    fn bearings_are_solved_beside_their_linear_springs() {
+        // G = (G₀⁻¹ + K₀)⁻¹ of a machine without the spring, G₀.
+        let mut compliance = [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS];
+        let of_bearing = |without: f64| without / (1.0 + without * SPRING_N_PER_M);
+        compliance[0][0] = 2e-10;
+        (compliance[1][1], compliance[2][2]) = (of_bearing(3e-9), of_bearing(1e-9));
+        (compliance[0][1], compliance[1][0]) = (1e-11, 1e-11);
+        let equations = Equations { count: 3, meshes: 1, compliance, of_static: [0.0; MOST_UNKNOWNS] };
+        for free_m in [[1e-6, 5e-6, -3e-6], [-1e-6, 2e-7, 1e-7], [0.0, 1e-9, 0.0], [2e-6, -4e-5, 6e-5]] {
+            let mut free = [0.0; MOST_UNKNOWNS];
+            free[..3].copy_from_slice(&free_m);
+            for start_m in [0.0, 1e-6, -2e-5] {
+                let mut deflection = [start_m; MOST_UNKNOWNS];
+                equations.solve(&MeshAndBearing, &free, &mut deflection, &mut Search::new());
+                let mut loads = Loads::NONE;
+                equations.set_loads(&MeshAndBearing, &deflection, &mut loads);
+                for row in 0..3 {
+                    let pressed: f64 = (0..3).map(|b| compliance[row][b] * loads.forces[b]).sum();
+                    let residual_m = deflection[row] + pressed - free[row];
+                    assert!(residual_m.abs() < 5e-12, "{free_m:?} {start_m}: {residual_m}");
                 }
             }
         }

@@ -157,6 +157,16 @@ impl Prepared {
         }
     }
 
+    /// The modal displacement under the forces that turn with the shafts, as they stand at the first simulated sample, at rest.
+    fn turned_at_rest(&self, model: &ModalMachine, block: &ForcingBlock) -> Vec<f64> {
+        let forces = || model.turning_forces.iter().zip(&block.external.turning);
+        let of_mode = |(n, stiffness): (usize, &f64)| {
+            let force: f64 = forces().map(|(of, at)| of.at[0][n] * at[0][0] + of.at[1][n] * at[0][1]).sum();
+            if *stiffness > 0.0 { force / stiffness } else { 0.0 }
+        };
+        model.stiffness.iter().enumerate().map(of_mode).collect()
+    }
+
     /// The state at the first simulated sample: with the given velocity, and the meshes closed at rest. All that deforms is then as
     /// under the constant loads, and the shafts that turn freely have turned until the pairs carry the load.
     ///
@@ -176,17 +186,20 @@ impl Prepared {
             let tilted: f64 = columns[mesh].clone().skip(1).map(|column| z * of(column)).sum();
             (of(columns[mesh].start), tilted)
         };
+        let turned = self.turned_at_rest(model, block);
+        let lines: Vec<&Vec<f64>> =
+            model.lines.iter().flat_map(|line| &line.columns).chain(model.bearings.iter().flatten()).collect();
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
                 let force_n = self.static_force_n[mesh].max(0.0);
                 let closed = deflection_at_rest(law.contact, blocks[mesh].springs(0), force_n);
                 let (at_rest, tilted) =
                     at_face_centre(mesh, &|column| self.columns[column].static_deflection);
-                closed - at_rest - tilted
+                closed - at_rest - tilted - dot(lines[columns[mesh].start], &turned)
             })
             .collect();
-        let displacement = model.turned_by(&missing);
-        let lines: Vec<&Vec<f64>> = model.lines.iter().flat_map(|line| &line.columns).collect();
+        let displacement: Vec<f64> =
+            model.turned_by(&missing).iter().zip(&turned).map(|(closing, turned)| closing + turned).collect();
         let mut force = Vec::with_capacity(lines.len());
         for (mesh, law) in self.laws.iter().enumerate() {
             let (deflection, tilted) = at_face_centre(mesh, &|column| {
@@ -203,7 +216,8 @@ impl Prepared {
             force.extend(columns[mesh].clone().skip(1).map(|_| z * (whole - self.static_force_n[mesh])));
         }
         for ((bearing, places), first) in self.bearings.iter().zip(&block.bearings).zip((force.len()..).step_by(2)) {
-            let stretch_m = [first, first + 1].map(|column| self.columns[column].static_deflection);
+            let stretch_m = [first, first + 1]
+                .map(|column| self.columns[column].static_deflection + dot(lines[column], &displacement));
             force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
         }
         let acceleration: Vec<f64> = (self.steps.iter().enumerate())

@@ -49,6 +49,11 @@ pub fn gearbox_trace(simulation: &GearboxSimulation) -> Trace {
             trace.matrix(&name, errors.points(), errors.teeth(), |point, tooth| errors[(point, tooth)]);
         }
     }
+    for (number, bearing) in &stages.bearings {
+        let named = |quantity: &str| format!("{quantity}.{}", stages.gearbox.bearings[*number].seat_name());
+        trace.vector(&named("bearing_load_n"), bearing.static_load_n);
+        trace.vector(&named("bearing_spring_n_per_m"), bearing.spring_n_per_m.into_iter().flatten());
+    }
     stages.trace_machine(&mut trace);
     trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
     for (name, count) in ["steps", "newton_iterations", "most_newton_iterations", "line_searches"]

@@ -262,6 +262,10 @@ impl Bearing {
     /// A geometry that is incomplete, given twice, or that no bearing has; keys of rolling bearings at a linear one. The key is that within the bearing.
     pub fn rolling(&self) -> Result<Option<RollingParts>, ScenarioError> {
         let Some(element) = self.element() else { return self.check_linear().map(|()| None) };
+        if self.stiffness_n_per_m != Self::start().stiffness_n_per_m {
+            let problem = "given for a rolling bearing, whose stiffness follows from its elements";
+            return Err(ScenarioError::new("stiffness_n_per_m", self.stiffness_n_per_m, problem).with_help("remove it"));
+        }
         let geometry = match &self.name {
             Some(name) => self.named_geometry(name, element)?,
             None => self.own_geometry()?,
@@ -306,7 +310,10 @@ impl Bearing {
             ("element_mm", self.element_mm.is_some()),
             ("pitch_mm", self.pitch_mm.is_some()),
             ("roller_length_mm", self.roller_length_mm.is_some()),
+            ("contact_angle_deg", self.contact_angle_deg != 0.0),
+            ("clearance_um", self.clearance_um != Self::start().clearance_um),
             ("preload_n", self.preload_n != 0.0),
+            ("slip_percent", self.slip_percent != Self::start().slip_percent),
             ("defect", !self.defect.is_empty()),
         ];
         match given.into_iter().find(|(_, is_given)| *is_given) {
@@ -393,7 +400,7 @@ impl Keys for Bearing {
                 .range(ALONG),
             row("kind", "", "the kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact", field!(kind)),
             row("name", "", "the name of a rolling bearing whose geometry is published: 6203, 6205, ER-10K, ER-16K, UER204", field!(name))
-                .otherwise("none; the geometry by the keys below")
+                .otherwise("none: the keys below state the geometry")
                 .alternative("\"6205\""),
             row("elements", "", "the number of balls or rollers", field!(elements))
                 .otherwise("required of a rolling bearing without name")
@@ -416,7 +423,7 @@ impl Keys for Bearing {
                 .alternative("9.0"),
             row("clearance_um", "µm", "the diametral clearance of a rolling bearing; negative for an interference", field!(clearance_um))
                 .range(Range::from_to(-200.0, 1000.0)),
-            row("preload_n", "N", "the axial preload of a ball bearing with a contact angle", field!(preload_n))
+            row("preload_n", "N", "the axial preload of a ball bearing with a contact angle; it takes up the clearance", field!(preload_n))
                 .range(Range::not_negative().implausible_above(1e6)),
             row(
                 "slip_percent",
