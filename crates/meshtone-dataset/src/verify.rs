@@ -177,7 +177,11 @@ impl Verified {
         shards: &[(&String, ShardFile)],
         manifest: &ReadManifest,
     ) {
-        let read = |(name, _): &(&String, ShardFile)| place.read_shard(name, Wanted::Columns(&[])).ok();
+        // Of a damaged shard the columns may be others.
+        let read = |(name, file): &(&String, ShardFile)| {
+            place.digest(name).ok().filter(|digest| *digest == file.digest)?;
+            place.read_shard(name, Wanted::Columns(&[])).ok()
+        };
         let schema = shards.iter().find_map(read).map(|read| read.schema).unwrap_or_default();
         let mut counts = Counts::new();
         for some in shards.chunks(SHARDS_AT_A_TIME) {
