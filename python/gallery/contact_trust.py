@@ -30,7 +30,7 @@ for ax, channel, label, shown_ms, instants_s, expected in compared:
     ax.plot(1e3 * instants_s, expected, ".", color=ORANGE, markersize=3, label="ROSS and Runge-Kutta")
     ax.set(xlabel="Time (ms)", ylabel=label, xlim=shown_ms, ylim=np.array([-1.1, 1.4]) * np.abs(expected).max())
     ax.legend(frameon=False, loc="upper right", ncols=2)
-force.set_title("Between drive flanks (positive) and back flanks (negative)")
+force.set_title("Between drive flanks (positive) and coast flanks (negative)")
 acceleration.set_title("The supports' mean vertical acceleration, the same")
 
 missing = mt.examples.healthy().copy(model="contact", fault=mt.MissingTooth())

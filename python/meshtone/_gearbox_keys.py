@@ -10,7 +10,7 @@ from typing import Any, Literal, TypedDict
 
 import numpy.typing as npt
 
-from ._keys import FlankRelief, Profile, WheelInertia
+from ._keys import EndRelief, FlankRelief, Profile, WheelInertia
 from ._sensor import SensorPath
 
 
@@ -196,21 +196,6 @@ class GearboxWheel(TypedDict, total=False):
     run_out_um: float
     run_out_phase_rad: float
     helix_slope_um: float
-
-
-class EndRelief(TypedDict, total=False):
-    """The table ``end_relief`` of an entry ``[[mesh]]`` of a gearbox.
-
-    Attributes
-    ----------
-    length_mm : float
-        (mm) The length from each end of the face. Allowed: > 0; at most half the face width.
-    amount_um : float
-        (µm) How much farther apart the flanks of both wheels are at the ends of the face. Allowed: ≥ 0, ≤ 1000.
-    """
-
-    length_mm: float
-    amount_um: float
 
 
 class GearboxMesh(TypedDict, total=False):

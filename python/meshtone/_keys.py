@@ -19,7 +19,7 @@ Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]
 
 
 class EndRelief(TypedDict, total=False):
-    """A table of a scenario.
+    """The table ``end_relief`` of a scenario.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class EndRelief(TypedDict, total=False):
 
 
 class FlankRelief(TypedDict, total=False):
-    """A table of a scenario.
+    """The table ``flank_relief`` of a scenario.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class FlankRelief(TypedDict, total=False):
 
 
 class Foundation(TypedDict, total=False):
-    """A table of a scenario.
+    """The table ``foundation`` of a scenario.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Foundation(TypedDict, total=False):
 
 
 class Shaft(TypedDict, total=False):
-    """A table of a scenario.
+    """One of the tables ``pinion_shaft``, ``gear_shaft`` of a scenario.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class Shaft(TypedDict, total=False):
 
 
 class WheelInertia(TypedDict, total=False):
-    """A table of a scenario.
+    """One of the tables ``pinion_inertia``, ``gear_inertia`` of a scenario.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ class GearUnbalance(TypedDict, total=False):
 
 
 class Support(TypedDict, total=False):
-    """A table of a scenario.
+    """The table ``support`` of a scenario.
 
     Attributes
     ----------

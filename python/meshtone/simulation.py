@@ -282,9 +282,7 @@ class Simulation:
             try:
                 return self.fields[name]
             except KeyError:
-                if name == "indicators" or name in INDICATORS:
-                    key = "" if name == "indicators" else f'["{name}"]'
-                    raise AttributeError(f"a simulation has no '{name}'; its record has: simulation.process().indicators{key}") from None
+                _refuse_indicator(name, "a simulation has", "its", "simulation")
                 if name in ("save", "to_pandas", "to_csv"):
                     raise AttributeError(f"a simulation has no '{name}'; {_SAVED}") from None
                 near = hint(name, [*self.fields, *self.scenario.channels]) or "; simulation.fields has all"
@@ -584,9 +582,7 @@ class Signals(_Channels):
             try:
                 return self.channels[name]
             except KeyError:
-                if name == "indicators" or name in INDICATORS:
-                    key = "" if name == "indicators" else f'["{name}"]'
-                    raise AttributeError(f"signals have no '{name}'; their record has: signals.process().indicators{key}") from None
+                _refuse_indicator(name, "signals have", "their", "signals")
                 raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
 
     def __dir__(self) -> list[str]:
@@ -630,6 +626,13 @@ class Signals(_Channels):
         channel = next(iter(self.channels))
         rows = {**_facts(self.scenario), "Signal": _length(self.channels[channel].size, self.sampling_rate_hz)}
         return _page(self, channel, {**rows, "Channels": ", ".join(self.channels)}, self.warnings)
+
+
+def _refuse_indicator(name: str, who_has: str, whose: str, variable: str) -> None:
+    """Say where an indicator is to be had, if the name is that of one."""
+    if name == "indicators" or name in INDICATORS:
+        key = "" if name == "indicators" else f'["{name}"]'
+        raise AttributeError(f"{who_has} no '{name}'; {whose} record has: {variable}.process().indicators{key}") from None
 
 
 _SAVED = "numpy.savez('signals.npz', vertical_g=simulation.vertical_g) writes a signal, `meshtone simulate` all results"

@@ -8,7 +8,7 @@ use crate::answer::{
     Answer, AnyDamage, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer, ToothAnswer,
 };
 use crate::any_damage::sentence;
-use crate::features::wheel_features;
+use crate::features::burst_rev;
 use crate::learn::{FeatureRow, Layout, Learned, Question};
 use crate::observation::{Observation, WheelLines, revolution};
 use crate::prior::{DrawnFault, Prior};
@@ -361,11 +361,6 @@ impl<'a> WheelView<'a> {
         };
         order.into_iter().take(EXPLANATIONS).filter_map(explain).collect()
     }
-}
-
-/// (rev) Where the burst of the difference signal is.
-fn burst_rev(wheel: &WheelLines, last: usize) -> f64 {
-    wheel_features(wheel, last, false).burst_rev
 }
 
 /// (g) Rms of the difference signal.

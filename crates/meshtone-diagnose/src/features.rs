@@ -50,10 +50,8 @@ pub(crate) struct WheelFeatures {
 /// * `has_regular_part` - whether the mesh harmonics are in it
 pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: bool) -> WheelFeatures {
     let last = last.min(view.last());
-    let lines: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
-    let points = (2 * last + 1).next_power_of_two().max(64);
-    let difference = Difference { teeth: view.teeth(), values: revolution(&lines, points), lines };
-    let energy = energy_over_tooth(&difference.values, difference.teeth);
+    let difference = Difference::new(view, last);
+    let energy = difference.energy_over_tooth();
     let at = largest_at(&energy);
     let mut shapes = difference.shapes();
     shapes.extend(difference.energy_around_burst(&energy, at));
@@ -62,8 +60,14 @@ pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: b
     WheelFeatures {
         levels: levels(view, &difference, last, has_regular_part),
         shapes,
-        burst_rev: at as f64 / points as f64,
+        burst_rev: at as f64 / difference.points() as f64,
     }
+}
+
+/// (rev) Where the burst of the difference signal is: the field of [`wheel_features`], without the other features.
+pub(crate) fn burst_rev(view: &WheelLines, last: usize) -> f64 {
+    let difference = Difference::new(view, last.min(view.last()));
+    largest_at(&difference.energy_over_tooth()) as f64 / difference.points() as f64
 }
 
 /// (log10 g) Levels over mesh orders, each band from half a mesh order below to half above; with the regular part also of the mesh
@@ -115,6 +119,20 @@ struct Difference {
 }
 
 impl Difference {
+    /// The difference signal up to an order that the lines have.
+    fn new(view: &WheelLines, last: usize) -> Self {
+        let lines: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
+        let points = (2 * last + 1).next_power_of_two().max(64);
+        Self { teeth: view.teeth(), values: revolution(&lines, points), lines }
+    }
+
+    /// The squared envelope, the mean over one tooth around each point.
+    fn energy_over_tooth(&self) -> Vec<f64> {
+        let of = envelope(&self.values).unwrap_or_else(|_| self.values.clone());
+        let square: Vec<f64> = of.iter().map(|value| value * value).collect();
+        moving_mean(&square, self.points() / self.teeth.max(1))
+    }
+
     fn points(&self) -> usize {
         self.values.len()
     }
@@ -191,13 +209,6 @@ impl Difference {
 /// Index at which a sequence is largest.
 fn largest_at(values: &[f64]) -> usize {
     (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0)
-}
-
-/// The squared envelope, the mean over one tooth around each point.
-fn energy_over_tooth(values: &[f64], teeth: usize) -> Vec<f64> {
-    let of = envelope(values).unwrap_or_else(|_| values.to_vec());
-    let square: Vec<f64> = of.iter().map(|value| value * value).collect();
-    moving_mean(&square, values.len() / teeth.max(1))
 }
 
 /// Mean over some values around each, of a periodic sequence.

@@ -39,22 +39,24 @@ fn arguments() -> Vec<Argument> {
     arguments
 }
 
-/// Classes of tables, each once.
+/// Classes of tables, each once: the first sentence names all keys of its kind.
 fn tables() -> String {
-    let mut text = String::new();
-    let mut known: Vec<String> = Vec::new();
-    for section in sections().iter().filter(|section| !LISTS.contains(&section.name)) {
-        for table in &section.keys {
-            let name = class_name(&table.key);
-            let is_table = table.kind == KeyKind::Table;
-            if !is_table || known.contains(&name) {
-                continue;
+    let sections: Vec<_> = sections().into_iter().filter(|section| !LISTS.contains(&section.name)).collect();
+    let mut classes: Vec<(String, Vec<String>, Vec<KeyDescription>)> = Vec::new();
+    for section in &sections {
+        for table in section.keys.iter().filter(|key| key.kind == KeyKind::Table) {
+            let (name, place) = (class_name(&table.key), format!("``{}``", table.key));
+            match classes.iter_mut().find(|(known, ..)| *known == name) {
+                Some((_, places, _)) => places.push(place),
+                None => classes.push((name, vec![place], inside(&section.keys, &table.key))),
             }
-            text.push_str(&table_class(&name, "A table of a scenario.", &inside(&section.keys, &table.key)));
-            known.push(name);
         }
     }
-    text
+    let class = |(name, places, keys): &(String, Vec<String>, Vec<KeyDescription>)| {
+        let tables = if places.len() == 1 { "The table" } else { "One of the tables" };
+        table_class(name, &format!("{tables} {} of a scenario.", places.join(", ")), keys)
+    };
+    classes.iter().map(class).collect()
 }
 
 /// The keys that another scenario is made with: which there are, so that a misspelt one is found where types are checked.
