@@ -16,15 +16,16 @@ __all__ = [
     "ExploreServer",
     "Gearbox",
     "GearboxSimulation",
+    "INDICATORS",
+    "ORDER_MAP_MESH_ORDERS",
     "Observation",
     "Scenario",
     "ShaftPhase",
     "Simulation",
-    "INDICATORS",
-    "ORDER_MAP_MESH_ORDERS",
     "__version__",
     "add_noise",
     "angular_resample",
+    "bearings_of_train",
     "best_band",
     "cepstral_prewhitening",
     "change_duration",
@@ -304,6 +305,16 @@ def squared_envelope_spectrum(
     signal: _Array, sampling_rate_hz: float, band_hz: tuple[float, float] | None, phase: ShaftPhase | None
 ) -> tuple[float, _Array]: ...
 def kurtogram(signal: _Array, sampling_rate_hz: float, most_levels: int) -> list[_Array]: ...
+def bearings_of_train(
+    signal: _Array,
+    phase: ShaftPhase,
+    machine: Scenario | Gearbox | None,
+    sampling_rate_hz: float,
+    shaft: str | None,
+    bearings: Sequence[tuple[tuple[int, float, float, float], str | None]],
+    separation: str,
+    band_hz: tuple[float, float] | None,
+) -> dict[str, Any]: ...
 def best_band(levels: Sequence[_Array], sampling_rate_hz: float, least_width_hz: float) -> tuple[float, float, float] | None: ...
 def spectral_kurtosis(signal: _Array, block_samples: int) -> _Array: ...
 def cepstral_prewhitening(signal: _Array) -> _Array: ...

@@ -315,6 +315,31 @@ def test_a_bearing_behind_a_mesh() -> None:
     assert [line.line for line in constant] == list(lines)
 
 
+def test_bearings_on_the_shafts_of_a_gearbox() -> None:
+    gearbox = meshtone.Gearbox.from_toml(meshtone.gearbox_template())
+    phase = ShaftPhase.constant(30.0, 20_000.0, 60_000)
+    bearing = signal.Bearing.named("ER-10K")
+    output = phase.revolutions / 5  # 32/96 and 48/80 teeth
+    since_s = (output * bearing.defect_orders.outer_race % 1) / (6 * bearing.defect_orders.outer_race)
+    ringing = np.exp(-800 * since_s) * np.sin(2 * np.pi * 4000 * since_s)
+    tone = np.cos(2 * np.pi * 32 * phase.revolutions)
+    recording = signal.TrainRecording(ringing + tone, phase, 20_000.0, gearbox)
+    found = recording.bearings([(bearing, "output"), bearing], separation="none", band_hz=(3000, 5000))
+    assert found.band_hz == (3000, 5000) and found.kurtosis is None and found.warnings == []
+    strength = [{line.line: line.over_median for line in lines}["BPFO"] for lines in found.lines]
+    assert strength[0] > 30 > strength[1]
+    # The output turns 18 times, which is enough; in one second it is not.
+    assert recording.bearings([bearing]).warnings == []
+    short = ShaftPhase.constant(30.0, 20_000.0, 20_000)
+    with pytest.warns(meshtone.MeshtoneWarning, match=r"6\.0 revolutions of shaft output, and an average needs at least 8: its average is not removed"):
+        [warning] = signal.TrainRecording((ringing + tone)[:20_000], short, 20_000.0, gearbox).bearings([bearing]).warnings
+    assert warning.code == "not-averaged" and warning.values["needed"] == 8
+    with pytest.raises(ValueError, match="shaft = 'shaft7': must be one of input, middle, output"):
+        recording.bearings([(bearing, "shaft7")])
+    with pytest.raises(ValueError, match="separation = 'all': must be one of averages"):
+        recording.bearings([bearing], separation="all")  # type: ignore[arg-type]
+
+
 def test_tones_noise_and_velocity() -> None:
     noise = np.random.default_rng(3).standard_normal(100_000)
     tone = 3 * np.cos(0.7 * np.arange(noise.size))

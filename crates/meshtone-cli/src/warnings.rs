@@ -29,6 +29,7 @@ pub fn about_signal(source: &Path, warning: &SignalWarning) -> WarningEntry {
     let options = match warning.code() {
         "varying_speed" => " (--tach, --pulse-times, --speed-channel, --speed-profile or --from-mesh-tone)",
         "nothing-synchronous" => " (--sampling-rate-hz, --shaft-hz, --pulses-per-rev, --teeth, --mate-teeth)",
+        "not-averaged" => " (--bearing-separation)",
         _ => "",
     };
     WarningEntry { kind: Some(warning.clone()), ..about(source, format_args!("{warning}{options}")) }

@@ -1,12 +1,17 @@
 //! Bearings: their defect orders and lines, and the tools that bring these out of a recording.
 
 use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS};
-use meshtone::signal::{self as steps, FrequencyBand, Kurtogram, SquaredEnvelopeSpectrum};
+use meshtone::signal::{
+    self as steps, BearingSeparation, BearingSettings, FrequencyBand, GearTrain, Kurtogram, SquaredEnvelopeSpectrum,
+    TrainBearing, TrainRecording,
+};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
 use crate::phase::ShaftPhase;
+use crate::process::{Machine, shaft_number, turning, typed};
 
 /// Number of elements, their diameter, the pitch diameter, and the contact angle.
 type Geometry = (u32, f64, f64, f64);
@@ -45,12 +50,62 @@ pub fn defect_lines(
 ) -> PyResult<Vec<Line>> {
     let orders = geometry(bearing)?.defect_orders();
     let spectrum = SquaredEnvelopeSpectrum { step, amplitudes: samples(&amplitudes)?.to_vec() };
-    let lines = py.detach(|| steps::defect_lines(&spectrum, &orders, shaft)).into_iter();
-    let line = |of: steps::DefectLine| {
-        let part = of.kind.name();
-        (of.name(), part, of.order, of.found_order, of.amplitude, of.over_median, of.is_beside_shaft_order)
+    Ok(py.detach(|| steps::defect_lines(&spectrum, &orders, shaft)).iter().map(line).collect())
+}
+
+fn line(of: &steps::DefectLine) -> Line {
+    let part = of.kind.name();
+    (of.name(), part, of.order, of.found_order, of.amplitude, of.over_median, of.is_beside_shaft_order)
+}
+
+/// Looks for bearings on the shafts of a machine: the kurtogram, the band and its kurtosis, for each bearing its spectrum and lines, and the
+/// warnings. Without a machine there is one shaft.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are those of the method in Python")]
+pub fn bearings_of_train<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
+    phase: &ShaftPhase,
+    machine: Option<Machine<'py>>,
+    sampling_rate_hz: f64,
+    shaft: Option<&str>,
+    bearings: Vec<(Geometry, Option<String>)>,
+    separation: &str,
+    band_hz: Option<(f64, f64)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let signal = samples(&signal)?;
+    let train = machine.map_or_else(|| Ok(GearTrain::of_shaft("shaft")), |machine| machine.train())?;
+    let turning = turning(&train, phase, shaft)?;
+    let own = shaft.map_or_else(|| Ok(train.input()), |name| shaft_number(&train, name))?;
+    let placed = bearings.into_iter().map(|(of, shaft)| {
+        let shaft = shaft.map_or(Ok(own), |name| shaft_number(&train, &name))?;
+        Ok(TrainBearing { geometry: geometry(of)?, shaft })
+    });
+    let placed = placed.collect::<PyResult<Vec<_>>>()?;
+    let separation = match separation {
+        "averages" => BearingSeparation::Averages,
+        "discrete-random" => BearingSeparation::DiscreteRandom,
+        "prewhitening" => BearingSeparation::Prewhitening,
+        "none" => BearingSeparation::None,
+        other => {
+            let allowed = "averages, discrete-random, prewhitening, none";
+            return Err(value_error(format!("separation = '{other}': must be one of {allowed}")));
+        }
     };
-    Ok(lines.map(line).collect())
+    let settings = BearingSettings { separation, band: frequencies(band_hz) };
+    let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+    let found = py.detach(|| recording.bearings(&placed, &settings)).map_err(value_error)?;
+    let levels = found.kurtogram.levels.into_iter().map(|level| array(py, level));
+    let of_bearing = |(spectrum, lines): (SquaredEnvelopeSpectrum, Vec<steps::DefectLine>)| {
+        (spectrum.step, array(py, spectrum.amplitudes), lines.iter().map(line).collect::<Vec<_>>())
+    };
+    let all = PyDict::new(py);
+    all.set_item("levels", levels.collect::<Vec<_>>())?;
+    all.set_item("band_hz", (found.band.from_hz, found.band.to_hz))?;
+    all.set_item("kurtosis", found.kurtosis)?;
+    all.set_item("bearings", found.bearings.into_iter().map(of_bearing).collect::<Vec<_>>())?;
+    all.set_item("warnings", typed(&found.warnings))?;
+    Ok(all)
 }
 
 fn frequencies(band_hz: Option<(f64, f64)>) -> Option<FrequencyBand> {

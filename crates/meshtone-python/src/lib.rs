@@ -34,9 +34,9 @@ mod _core {
     use crate::{
         batch::simulate_many,
         bearing::{
-            best_band, cepstral_prewhitening, defect_lines, defect_orders, discrete_random_separation,
-            kurtogram, named_bearings, spectral_kurtosis, squared_envelope, squared_envelope_spectrum,
-            synchronous_residual, velocity_rms,
+            bearings_of_train, best_band, cepstral_prewhitening, defect_lines, defect_orders,
+            discrete_random_separation, kurtogram, named_bearings, spectral_kurtosis, squared_envelope,
+            squared_envelope_spectrum, synchronous_residual, velocity_rms,
         },
         dataset::{
             check_plan, dataset_template, generate_dataset, merge_datasets, rows_like, verify_dataset,

@@ -99,6 +99,11 @@ pub enum Machine<'py> {
 }
 
 impl Machine<'_> {
+    /// Its shafts and wheels.
+    pub fn train(&self) -> PyResult<GearTrain> {
+        GearTrain::of_form(&self.form()).map_err(|error| scenario_error(&error))
+    }
+
     /// The scenario as the library has it.
     pub fn form(&self) -> ScenarioForm {
         match self {
@@ -106,6 +111,19 @@ impl Machine<'_> {
             Self::Gearbox(gearbox) => ScenarioForm::Gearbox(gearbox.0.clone()),
         }
     }
+}
+
+/// Number of a shaft by its name.
+pub fn shaft_number(train: &GearTrain, name: &str) -> PyResult<usize> {
+    let names: Vec<&str> = train.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
+    let known = names.iter().position(|known| *known == name);
+    known.ok_or_else(|| value_error(format!("shaft = '{name}': must be one of {}", names.join(", "))))
+}
+
+/// How a train turns by the phase of one shaft, of the input where none is named.
+pub fn turning(train: &GearTrain, phase: &ShaftPhase, shaft: Option<&str>) -> PyResult<TrainTurning> {
+    let shaft = shaft.map_or_else(|| Ok(train.input()), |name| shaft_number(train, name))?;
+    Ok(TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated: StatedTurning::Other })
 }
 
 /// Takes one channel to the indicators of every wheel of a machine: name, shaft, teeth, speed and record of each wheel; the foreign lines; the
@@ -124,14 +142,8 @@ pub fn process_train<'py>(
     shaft_orders: Option<Vec<usize>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let signal = samples(&signal)?;
-    let train = GearTrain::of_form(&machine.form()).map_err(|error| scenario_error(&error))?;
-    let names: Vec<&str> = train.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
-    let number = |name: &str| {
-        let known = names.iter().position(|known| *known == name);
-        known.ok_or_else(|| value_error(format!("shaft = '{name}': must be one of {}", names.join(", "))))
-    };
-    let shaft = shaft.map_or_else(|| Ok(train.input()), number)?;
-    let turning = TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated: StatedTurning::Other };
+    let train = machine.train()?;
+    let turning = turning(&train, phase, shaft)?;
     let separation = separation(1, sidebands, shaft_orders);
     let settings = TrainSettings { separation, ..TrainSettings::default() };
     let processed = py.detach(|| {

@@ -50,12 +50,13 @@ from .random_part import (
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
 from .spectra import envelope, envelope_spectrum, order_spectrum
-from .train import ForeignLine, TrainRecord, process_train
+from .train import BearingRecords, ForeignLine, TrainRecord, TrainRecording, process_train
 
 __all__ = [
     "NAMED_BEARINGS",
     "AngularSignal",
     "Bearing",
+    "BearingRecords",
     "DefectLine",
     "DefectOrders",
     "DiscreteRandomParts",
@@ -72,6 +73,7 @@ __all__ = [
     "SquaredEnvelopeSpectrum",
     "SynchronousResidual",
     "TrainRecord",
+    "TrainRecording",
     "angular_resample",
     "cepstral_prewhitening",
     "check_recording",

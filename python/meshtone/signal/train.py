@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Union
+from typing import Any, Literal, Union
 
+import numpy as np
 import numpy.typing as npt
 
 from .. import _core
@@ -13,6 +14,8 @@ from .._warnings import SignalWarning, typed, warn_of_signal
 from ..gearbox import Gearbox
 from ..scenario import Scenario, native_scenario
 from ._arguments import positive, regular_part, signal_array
+from .bearings import Bearing, DefectLine, SquaredEnvelopeSpectrum
+from .kurtosis import Kurtogram
 from .phase import ShaftPhase, native_phase
 from .record import Record
 
@@ -70,6 +73,126 @@ class TrainRecord:
         if wheel not in self.wheels:
             raise KeyError(f"there is no wheel {wheel!r}; there are {', '.join(self.wheels)}")
         return self.wheels[wheel]
+
+
+@dataclass(frozen=True, eq=False)
+class BearingRecords:
+    """What a recording shows about bearings.
+
+    Attributes
+    ----------
+    kurtogram : Kurtogram
+        Of what was left after the separation.
+    band_hz : (float, float)
+        (Hz) Band of the squared envelope.
+    kurtosis : float or None
+        (-) Kurtosis in it, where the kurtogram chose it.
+    spectra : list of SquaredEnvelopeSpectrum
+        Of each bearing, over the orders of its shaft.
+    lines : list of list of DefectLine
+        The lines of each bearing.
+    warnings : list of SignalWarning
+        ``not-averaged``: shafts with fewer than eight revolutions, whose tones are left.
+    """
+
+    kurtogram: Kurtogram = field(repr=False)
+    band_hz: tuple[float, float]
+    kurtosis: float | None
+    spectra: list[SquaredEnvelopeSpectrum] = field(repr=False)
+    lines: list[list[DefectLine]] = field(repr=False)
+    warnings: list[SignalWarning]
+
+
+@dataclass(frozen=True, eq=False)
+class TrainRecording:
+    """A channel of a recording of a machine, with the phase of one of its shafts, which the tooth counts carry to the others.
+
+    Attributes
+    ----------
+    signal : array_like, shape (samples,)
+        (any unit) The channel.
+    phase : ShaftPhase
+        Of one shaft.
+    sampling_rate_hz : float
+        (S/s) Of the signal.
+    machine : Scenario or Gearbox, optional
+        Its tooth counts are used; without it there is one shaft, and no wheel.
+    shaft : str, optional
+        Name of the shaft that the phase is of; by default the pinion's, or the input of a gearbox.
+    """
+
+    signal: npt.ArrayLike = field(repr=False)
+    phase: ShaftPhase = field(repr=False)
+    sampling_rate_hz: float
+    machine: Machine | None = field(default=None, repr=False)
+    shaft: str | None = None
+
+    def bearings(
+        self,
+        bearings: Sequence[Bearing | tuple[Bearing, str]],
+        *,
+        separation: Literal["averages", "discrete-random", "prewhitening", "none"] = "averages",
+        band_hz: tuple[float, float] | None = None,
+    ) -> BearingRecords:
+        """Look for the defects of bearings, as ``meshtone indicators --bearing`` does.
+
+        Parameters
+        ----------
+        bearings : sequence of Bearing or (Bearing, str)
+            Each with the name of the shaft in its inner ring; by default the shaft that the phase is of.
+        separation : {'averages', 'discrete-random', 'prewhitening', 'none'}
+            What is removed first because it comes from the gears.
+        band_hz : (float, float), optional
+            (Hz) Band of the squared envelope; by default that of the largest kurtosis among those at least three times as wide as the
+            largest BPFI.
+
+        Returns
+        -------
+        BearingRecords
+
+        Raises
+        ------
+        ValueError
+            A shaft that there is not; a band that is empty or reaches beyond half the sampling rate; NaN; a constant signal.
+
+        Examples
+        --------
+        A resonance at 4 kHz that rings whenever a ball passes a place of the outer race, beside a mesh of 19 teeth:
+
+        >>> import numpy as np
+        >>> from meshtone import ShaftPhase
+        >>> from meshtone.signal import Bearing, TrainRecording
+        >>> bearing = Bearing.named("6205")
+        >>> phase = ShaftPhase.constant(30.0, 20_000.0, 60_000)
+        >>> since_s = (phase.revolutions * bearing.defect_orders.outer_race % 1) / (30 * bearing.defect_orders.outer_race)
+        >>> ringing = np.exp(-800 * since_s) * np.sin(2 * np.pi * 4000 * since_s)
+        >>> recording = TrainRecording(ringing + np.cos(2 * np.pi * 19 * phase.revolutions), phase, 20_000.0)
+        >>> found = recording.bearings([bearing])
+        >>> max(found.lines[0], key=lambda line: line.over_median).line
+        'BPFO'
+        """
+        placed = [(of, None) if isinstance(of, Bearing) else of for of in bearings]
+        rate_hz = positive("sampling_rate_hz", self.sampling_rate_hz)
+        parts = _core.bearings_of_train(
+            signal_array(self.signal),
+            native_phase(self.phase),
+            None if self.machine is None else native_machine(self.machine),
+            rate_hz,
+            self.shaft,
+            [(of._native, shaft) for of, shaft in placed],
+            separation,
+            band_hz,
+        )
+        warnings = typed(parts["warnings"])
+        warn_of_signal(warnings)
+        return BearingRecords(
+            kurtogram=Kurtogram(parts["levels"], rate_hz),
+            band_hz=parts["band_hz"],
+            kurtosis=parts["kurtosis"],
+            spectra=[SquaredEnvelopeSpectrum(np.arange(of.size) * step, of) for step, of, _ in parts["bearings"]],
+            lines=[[DefectLine(*line) for line in lines] for _, _, lines in parts["bearings"]],
+            warnings=warnings,
+        )
 
 
 def native_machine(machine: Machine) -> _core.Scenario | _core.Gearbox:

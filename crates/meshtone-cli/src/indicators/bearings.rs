@@ -89,7 +89,9 @@ fn band(text: &str) -> Result<FrequencyBand, String> {
     let ends = text.split_once(',').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
     match ends {
         Some((from_hz, to_hz)) if 0.0 <= from_hz && from_hz < to_hz => Ok(FrequencyBand { from_hz, to_hz }),
-        _ => Err("must be two frequencies in Hz, the lower one first, as in 2000,5500".to_owned()),
+        _ => Err("must be two frequencies in Hz, the lower one first, both from 0 to half the sampling rate, as in 2000,5500; leave \
+                  the option out for the band of the largest kurtosis"
+            .to_owned()),
     }
 }
 
@@ -113,6 +115,21 @@ impl BearingOptions {
         self.bearings.iter().map(name).collect()
     }
 
+    /// Refuses a band that the recording does not have.
+    fn check_band(&self, sampling_rate_hz: f64) -> Result<(), Failure> {
+        let half_hz = 0.5 * sampling_rate_hz;
+        match self.band_hz {
+            Some(FrequencyBand { from_hz, to_hz }) if to_hz > half_hz => {
+                let problem = format!(
+                    "--band-hz {from_hz},{to_hz}: the band ends above {half_hz} Hz, half the sampling rate; must be within 0 to {half_hz} Hz"
+                );
+                let help = "name a band around a resonance, or leave the option out for the band of the largest kurtosis";
+                Failure::refuse(problem, help)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Looks for the bearings in a recording; none where none is named.
     ///
     /// # Arguments
@@ -128,6 +145,7 @@ impl BearingOptions {
         if self.bearings.is_empty() {
             return Ok(None);
         }
+        self.check_band(recording.sampling_rate_hz)?;
         let shafts = &recording.train.shafts;
         let own = match recording.turning {
             TrainTurning::Shaft { shaft, .. } => *shaft,
@@ -137,7 +155,7 @@ impl BearingOptions {
             let shaft = match &of.shaft {
                 Some(name) => {
                     let names = shafts.iter().map(|shaft| shaft.name.clone()).collect();
-                    find(&format!("--bearing {}@: shaft", of.name), name, names)?
+                    find(&format!("--bearing {}@{name}", of.name), "shaft", name, names)?
                 }
                 None => own,
             };

@@ -79,7 +79,9 @@ pub fn process(
     let bearings = bearings.look_for(&recording, input.channel.unit.as_deref(), |error| {
         refuse(&input.source, &of_channel, subject, error)
     })?;
-    let doubtful = records.warnings.iter().map(|warning| about_signal(&input.source, warning));
+    let of_bearings = bearings.iter().flat_map(|found| &found.records.warnings);
+    let doubtful =
+        records.warnings.iter().chain(of_bearings).map(|warning| about_signal(&input.source, warning));
     let warnings = turned.warnings.iter().cloned().chain(doubtful).collect();
     Ok(Processed { turned, records, bearings, warnings })
 }

@@ -230,7 +230,12 @@ impl ShaftOptions {
             return Failure::refuse(problem, "leave it out: the scenario has the tooth counts");
         }
         if let Some(name) = &self.shaft {
-            return find("--shaft", name, train.shafts.iter().map(|shaft| shaft.name.clone()).collect());
+            return find(
+                &format!("--shaft {name}"),
+                "shaft",
+                name,
+                train.shafts.iter().map(|shaft| shaft.name.clone()).collect(),
+            );
         }
         let Some(teeth) = teeth else { return Ok(train.input()) };
         match train.wheels.iter().find(|wheel| wheel.teeth == teeth) {
@@ -247,9 +252,12 @@ impl ShaftOptions {
     /// Number of the mesh whose tone is followed.
     fn mesh(&self, train: &GearTrain, shaft: usize) -> Result<usize, Failure> {
         match &self.mesh {
-            Some(name) => {
-                find("--mesh", name, (0..train.meshes.len()).map(|mesh| train.mesh_name(mesh)).collect())
-            }
+            Some(name) => find(
+                &format!("--mesh {name}"),
+                "mesh",
+                name,
+                (0..train.meshes.len()).map(|mesh| train.mesh_name(mesh)).collect(),
+            ),
             None => {
                 let on_shaft =
                     |mesh: &[usize; 2]| mesh.iter().any(|wheel| train.wheels[*wheel].shaft == shaft);
@@ -260,11 +268,16 @@ impl ShaftOptions {
 }
 
 /// Number of what an option names.
-pub(super) fn find(option: &str, name: &str, names: Vec<String>) -> Result<usize, Failure> {
+///
+/// # Arguments
+/// * `given` - the option as it was written
+/// * `kind` - what it names: a shaft, a mesh
+/// * `name`, `names` - the one that is meant, and all that there are
+pub(super) fn find(given: &str, kind: &str, name: &str, names: Vec<String>) -> Result<usize, Failure> {
     names.iter().position(|known| known == name).map_or_else(
         || {
-            let problem = format!("{option} {name}: is none of the machine's");
-            Failure::refuse(problem, format!("there are {}", names.join(", ")))
+            let problem = format!("{given}: the machine has no {kind} {name}");
+            Failure::refuse(problem, format!("name one of {}", names.join(", ")))
         },
         Ok,
     )

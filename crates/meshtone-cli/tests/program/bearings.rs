@@ -8,7 +8,7 @@ use meshtone_io::table::TableReader;
 use serde_json::Value;
 
 use crate::indicators::{csv, tacho};
-use crate::support::{Workplace, stdout};
+use crate::support::{Workplace, stderr, stdout};
 
 const RATE_HZ: f64 = 20_000.0;
 const SHAFT_HZ: f64 = 30.0;
@@ -130,7 +130,29 @@ fn bearings_of_a_gearbox_are_on_its_shafts() {
     workplace.fails(
         2,
         &command(&["6205@shaft7"]),
-        &["6205@: shaft shaft7: is none of the machine's", "input, middle, output"],
+        &["--bearing 6205@shaft7: the machine has no shaft shaft7", "name one of input, middle, output"],
+    );
+    for (band, words) in [
+        ("3000,12000", "must be within 0 to 10000 Hz"),
+        ("6000,3000", "the lower one first, both from 0 to half the sampling rate"),
+    ] {
+        workplace.fails(
+            2,
+            &[&command(&["6205"])[..], &["--band-hz", band]].concat(),
+            &[words, "leave the option out"],
+        );
+    }
+    // In a second the output turns six times, which is no average.
+    workplace.write("short.csv", csv(RATE_HZ, &recording(1, 1.0, 5.0), tacho(SHAFT_HZ, RATE_HZ)));
+    let mut short = command(&["6205"]);
+    short[1] = "short.csv";
+    let output = workplace.succeeds(&short);
+    assert!(
+        stderr(&output).contains(
+            "5.6 revolutions of shaft output, and an average needs at least 8: its average is not removed"
+        ),
+        "{}",
+        stderr(&output)
     );
     workplace.fails(2, &command(&["6206"]), &["must be one of 6203, 6205, ER-10K"]);
 }

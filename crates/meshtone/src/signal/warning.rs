@@ -92,6 +92,16 @@ pub enum SignalWarning {
         /// Teeth of the wheel.
         teeth: u32,
     },
+    /// The recording is too short for an average over some shafts, or over any: what repeats with them is left beside the lines of bearings.
+    #[error("{}", not_averaged(shafts, *of_all, *needed))]
+    NotAveraged {
+        /// The shafts, and (rev) how often each turns in the recording.
+        shafts: Vec<(String, f64)>,
+        /// Whether these are all shafts, so that nothing is removed.
+        of_all: bool,
+        /// (rev) Fewest revolutions that are averaged.
+        needed: f64,
+    },
     /// Tones that belong to neither shaft make much of the recording.
     #[error("{0}")]
     ForeignTones(ForeignTones),
@@ -109,6 +119,7 @@ impl SignalWarning {
             Self::MeshOrderNearNyquist { .. } => "mesh-order-near-nyquist",
             Self::DoesNotFit(mismatch) => mismatch.alternative.code(),
             Self::NothingSynchronous { .. } => "nothing-synchronous",
+            Self::NotAveraged { .. } => "not-averaged",
             Self::ForeignTones(_) => "foreign-tones",
         }
     }
@@ -143,6 +154,13 @@ impl SignalWarning {
                 ("revolutions", part.revolutions as f64),
                 ("teeth", f64::from(*teeth)),
             ]),
+            Self::NotAveraged { shafts, needed, .. } => {
+                let of_shaft = |(index, (_, turned)): (usize, &(String, f64))| {
+                    (format!("revolutions_{}", index + 1), *turned)
+                };
+                let all = std::iter::once(("needed".to_owned(), *needed));
+                all.chain(shafts.iter().enumerate().map(of_shaft)).collect()
+            }
             Self::ForeignTones(tones) => {
                 let of_tone = |(index, tone): (usize, &ForeignTone)| {
                     let named = |name: &str, value: f64| (format!("{name}_{}", index + 1), value);
@@ -157,4 +175,15 @@ impl SignalWarning {
             }
         }
     }
+}
+
+/// The words of [`SignalWarning::NotAveraged`].
+fn not_averaged(shafts: &[(String, f64)], of_all: bool, needed: f64) -> String {
+    let turned = shafts.iter().map(|(name, turned)| format!("{turned:.1} revolutions of shaft {name}"));
+    let turned = turned.collect::<Vec<_>>().join(" and ");
+    let left = if of_all { "no average is removed" } else { "its average is not removed" };
+    format!(
+        "the recording has {turned}, and an average needs at least {needed}: {left}, so that tones of gears may stand beside the lines of \
+         bearings; record for longer, or take another separation: discrete-random or prewhitening"
+    )
 }

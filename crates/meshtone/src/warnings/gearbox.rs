@@ -8,6 +8,7 @@ use super::{largest_torque, overload, unsettled, words_of};
 use crate::error::{ScenarioWarning, WarningKind};
 use crate::mesh::Mesh;
 use crate::simulate::{GearboxSimulation, GearboxStages};
+use crate::wheel::unused_slices;
 
 /// (-) How near a multiple of a mesh frequency may come to a natural frequency without a warning.
 const NEAR: f64 = 0.01;
@@ -23,7 +24,19 @@ impl GearboxStages {
         let (operation, solver) = (&self.gearbox.operation.drive, &self.gearbox.solver.settings);
         let unsettled = unsettled(&self.slowest_mode, &self.time, operation, solver, words_of);
         let of_scenario = self.warnings_of_scenario.iter().cloned();
-        of_scenario.chain(unsettled).chain(self.overloads()).chain(self.resonances()).collect()
+        of_scenario
+            .chain(self.unused_slices())
+            .chain(unsettled)
+            .chain(self.overloads())
+            .chain(self.resonances())
+            .collect()
+    }
+
+    /// Slices that the faces are not cut into.
+    fn unused_slices(&self) -> impl Iterator<Item = ScenarioWarning> {
+        self.meshes.iter().enumerate().filter_map(|(number, mesh)| {
+            unused_slices(&self.layout.named_gears(&self.gearbox, number), mesh.slices())
+        })
     }
 
     /// Teeth that the load would bend off, mesh by mesh.

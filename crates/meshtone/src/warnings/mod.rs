@@ -15,7 +15,7 @@ use crate::machine::{DecayingMode, Shaft, WheelBody};
 use crate::operation::{Operation, Solver, TimeGrid};
 use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
 use crate::simulate::{Stages, stages_within};
-use crate::wheel::Gears;
+use crate::wheel::{Gears, NamedGears, unused_slices};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
@@ -51,11 +51,14 @@ pub fn stages_and_warnings(
 }
 
 impl Stages {
-    /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, wheels
-    /// whose accelerations, or whose supports', cancel in the channels, a settling too short for the slowest mode, a load that would
+    /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, slices
+    /// that the face is not cut into, wheels whose accelerations, or whose supports', cancel in the channels, a settling too short for the slowest mode, a load that would
     /// break the teeth, and under a linear mesh places at which none meet.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
-        let doubtful = [self.equal_wheels(), self.unsettled(), self.overload(), self.without_contact()];
+        let gears = NamedGears::of_pair(&self.scenario.gears);
+        let unused = self.meshes.first().and_then(|mesh| unused_slices(&gears, mesh.slices()));
+        let doubtful =
+            [unused, self.equal_wheels(), self.unsettled(), self.overload(), self.without_contact()];
         self.warnings_of_scenario.iter().cloned().chain(doubtful.into_iter().flatten()).collect()
     }
 

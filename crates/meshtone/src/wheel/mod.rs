@@ -35,7 +35,7 @@ pub use quality::{
     Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Tolerances, WheelDeviations,
 };
 pub use radii::Wheel;
-pub(crate) use rules::HALF_THICKNESS;
+pub(crate) use rules::{HALF_THICKNESS, unused_slices};
 
 /// Stage 2's result: both wheels with their teeth, ready to mesh.
 #[derive(Debug, Clone, PartialEq)]

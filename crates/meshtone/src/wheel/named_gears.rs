@@ -49,13 +49,15 @@ impl<'a> NamedGears<'a> {
 
     /// A key that both wheels have in common: `gears.module_mm`, `mesh[0].module_mm`, `wheel[0].tip_chamfer_mm`.
     pub(crate) fn key(&self, key: &str) -> String {
-        const OF_MESH: [&str; 6] = [
+        const OF_MESH: [&str; 8] = [
             "module_mm",
             "pressure_angle_deg",
             "helix_angle_deg",
             "centre_distance_mm",
             "backlash_mm",
             "end_relief.length_mm",
+            "hand",
+            "slices",
         ];
         match &self.mesh {
             None => format!("gears.{key}"),

@@ -6,7 +6,7 @@ use super::contact::contact_ratio_of;
 use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
 use super::{Gears, NamedGears, Wheel, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
-use crate::keys::{Check, below, check_keys, refuse, require};
+use crate::keys::{Check, Keys, below, check_keys, refuse, require};
 
 impl Gears {
     /// (-) Contact ratio: how many tooth pairs are in contact, on average.
@@ -95,8 +95,30 @@ impl NamedGears<'_> {
 
     /// Warnings about wheels that can be simulated.
     pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
-        undercut(self).chain(thin_tips(self)).collect()
+        undercut(self).chain(thin_tips(self)).chain(hand_of_spur(self)).collect()
     }
+}
+
+/// The hand of a helix that the wheels do not have.
+fn hand_of_spur(gears: &NamedGears) -> Option<ScenarioWarning> {
+    let is_ignored = gears.hand != Gears::start().hand && !gears.is_helical();
+    is_ignored.then(|| {
+        let message = "has no effect: the wheels are spur; give helix_angle_deg, or remove hand";
+        ScenarioWarning::new(WarningKind::IgnoredKey, gears.key("hand"), message)
+    })
+}
+
+/// The number of slices of a face that is not cut into slices.
+///
+/// # Arguments
+/// * `gears` - the wheels
+/// * `slices` - of the mesh's face: 1 where its gap does not vary along it
+pub(crate) fn unused_slices(gears: &NamedGears, slices: usize) -> Option<ScenarioWarning> {
+    (slices == 1 && gears.slices != Gears::start().slices).then(|| {
+        let message = "has no effect: the gap between the flanks does not vary along the face, which is taken as a whole; give \
+                       lead_crowning_um or end_relief, or remove slices";
+        ScenarioWarning::new(WarningKind::IgnoredKey, gears.key("slices"), message)
+    })
 }
 
 /// Name of [`Gears::half_thickness_mm`] in messages.

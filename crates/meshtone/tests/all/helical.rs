@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 use meshtone::mesh::Mesh;
 use meshtone::scenario::*;
 use meshtone::wheel::{Root, Wheel, tooth_profile};
-use meshtone::{Stages, gearbox_stages, simulate, simulate_gearbox, stages};
+use meshtone::{Stages, gearbox_stages, simulate, simulate_gearbox, stages, stages_and_warnings};
 
 /// A pair of solid steel wheels without chamfers, whose bores are as large a part of the root circle as asked.
 fn pair(teeth: [u32; 2], module_mm: f64, face_width_mm: f64, helix_angle_deg: f64) -> Scenario {
@@ -292,6 +292,39 @@ fn ideal_gearbox() -> Gearbox {
     gearbox.solver.settings.duration_s = Some(0.2);
     gearbox.sensors.clear();
     gearbox
+}
+
+/// A hand without a helix, and slices of a face whose gap does not vary, are warned of.
+#[test]
+fn hand_and_slices_without_effect_are_warned_of() {
+    let keys = |change: &dyn Fn(&mut Scenario)| -> Vec<String> {
+        let mut scenario = Scenario::new(GearPair::example());
+        change(&mut scenario);
+        let (_, warnings) = stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
+        let ignored = warnings.into_iter().filter(|warning| warning.kind == WarningKind::IgnoredKey);
+        ignored.map(|warning| warning.key).collect()
+    };
+    let set = |scenario: &mut Scenario| (scenario.gears.hand, scenario.gears.slices) = (Hand::Left, 11);
+    assert_eq!(keys(&set), ["gears.hand", "gears.slices"]);
+    let helical = |scenario: &mut Scenario| {
+        set(scenario);
+        scenario.gears.helix_angle_deg = 15.0;
+    };
+    assert_eq!(keys(&helical), ["gears.slices"]);
+    let crowned = |scenario: &mut Scenario| {
+        helical(scenario);
+        scenario.gears.lead_crowning_um = 5.0;
+    };
+    assert_eq!(keys(&crowned), [""; 0]);
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    (gearbox.meshes[1].hand, gearbox.meshes[1].slices) = (Hand::Left, 11);
+    let warnings = gearbox_stages(&gearbox).unwrap().warnings();
+    for key in ["mesh[1].hand", "mesh[1].slices"] {
+        assert!(
+            warnings.iter().any(|warning| warning.key == key && warning.kind == WarningKind::IgnoredKey),
+            "{key}"
+        );
+    }
 }
 
 /// Averaged over their width, slices add nothing of their own, however many there are.

@@ -355,12 +355,13 @@ fn keys_out_of_range() {
     ] {
         assert_refused(&with_keys(keys), &format!("gears.{key}"), 6, &[words]);
     }
-    for (keys, key) in [
-        ("gear_profile_shift = 0.1", "gear_profile_shift"),
-        ("centre_distance_mm = 82.6", "centre_distance_mm"),
+    for (keys, key, words) in [
+        ("gear_profile_shift = 0.1", "gear_profile_shift", "only standard wheels"),
+        ("centre_distance_mm = 82.6", "centre_distance_mm", "only standard wheels"),
+        ("helix_angle_deg = 15.0", "helix_angle_deg", "only spur wheels"),
     ] {
         let text = format!("model = \"published\"\n{}", with_keys(keys));
-        assert_refused(&text, &format!("gears.{key}"), 7, &["only standard wheels", "linear"]);
+        assert_refused(&text, &format!("gears.{key}"), 7, &[words, "linear"]);
     }
 }
 

@@ -60,14 +60,16 @@ fn refuse_keys_of_published(scenario: &Scenario) -> Check {
 const OTHER_MODELS_HELP: &str = "set model = \"linear\" or \"contact\" (or leave --model out), which have any number of faults on any teeth";
 const ONLY_STANDARD: &str =
     "the published model supports only standard wheels, without profile shift and at their standard distance";
+const ONLY_SPUR: &str = "the published model supports only spur wheels";
 const STANDARD_HELP: &str =
     "set model = \"linear\" or \"contact\" (or leave --model out), which have any; or remove the key";
 const ONE_PLACE: &str = "the published model supports only one fault, on the gear's first tooth";
 
-/// Refuses other wheels than standard ones, those whose tips the relief takes away, and other faults than one, always on the same tooth.
+/// Refuses helical wheels and other wheels than standard ones, those whose tips the relief takes away, and other faults than one, always on the same tooth.
 fn refuse_unknown_to_published(scenario: &Scenario) -> Check {
     if let Some((key, value)) = scenario.gears.beyond_standard().first() {
-        return Err(ScenarioError::new(*key, format!("{value:?}"), ONLY_STANDARD).with_help(STANDARD_HELP));
+        let problem = if *key == "gears.helix_angle_deg" { ONLY_SPUR } else { ONLY_STANDARD };
+        return Err(ScenarioError::new(*key, format!("{value:?}"), problem).with_help(STANDARD_HELP));
     }
     relief_leaves_tips(&scenario.gears)?;
     let error = match scenario.faults.as_slice() {

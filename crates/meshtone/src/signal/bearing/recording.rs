@@ -3,7 +3,7 @@
 use super::{DefectLine, defect_lines};
 use crate::bearing::BearingGeometry;
 use crate::signal::{
-    FrequencyBand, Kurtogram, KurtogramBand, ShaftPhase, SignalError, SquaredEnvelopeSpectrum,
+    FrequencyBand, Kurtogram, KurtogramBand, ShaftPhase, SignalError, SignalWarning, SquaredEnvelopeSpectrum,
     TrainRecording, cepstral_prewhitening, check_channel, discrete_random_separation, kurtogram,
     squared_envelope_order_spectrum, synchronous_residual,
 };
@@ -62,6 +62,16 @@ pub struct BearingRecords {
     pub kurtosis: Option<f64>,
     /// For each bearing its spectrum over the orders of its shaft, and its lines.
     pub bearings: Vec<(SquaredEnvelopeSpectrum, Vec<DefectLine>)>,
+    /// What is doubtful: shafts whose average was not removed.
+    pub warnings: Vec<SignalWarning>,
+}
+
+/// A recording after a separation.
+struct Separated {
+    /// The sample of the recording that it begins at.
+    first_sample: usize,
+    values: Vec<f64>,
+    warnings: Vec<SignalWarning>,
 }
 
 impl TrainRecording<'_> {
@@ -69,11 +79,11 @@ impl TrainRecording<'_> {
     /// defect lines in the spectrum of the squared envelope over the orders of each bearing's shaft.
     ///
     /// # Arguments
-    /// * `bearings` - the bearings
+    /// * `bearings` - the bearings, any number
     /// * `settings` - how
     ///
     /// # Errors
-    /// No bearing; those of the functions that [`BearingSeparation`] names, of [`kurtogram`] and of [`squared_envelope_order_spectrum`].
+    /// A bearing on a shaft that the train does not have; those of the functions that [`BearingSeparation`] names, of [`kurtogram`] and of [`squared_envelope_order_spectrum`].
     ///
     /// ```
     /// use meshtone::signal::{
@@ -103,9 +113,17 @@ impl TrainRecording<'_> {
         settings: &BearingSettings,
     ) -> Result<BearingRecords, SignalError> {
         check_channel(self.signal)?;
-        let phases: Vec<ShaftPhase> =
-            (0..self.train.shafts.len()).map(|shaft| self.phase(shaft)).collect::<Result<_, _>>()?;
-        let (first_sample, signal) = self.separated(&phases, settings.separation)?;
+        let shafts = self.train.shafts.len();
+        if let Some(of) = bearings.iter().find(|of| of.shaft >= shafts) {
+            return Err(SignalError::parameter(
+                "shaft of a bearing",
+                of.shaft as f64,
+                "the number of a shaft of the train, counted from 0",
+            ));
+        }
+        let phases: Vec<ShaftPhase> = (0..shafts).map(|shaft| self.phase(shaft)).collect::<Result<_, _>>()?;
+        let Separated { first_sample, values: signal, warnings } =
+            self.separated(&phases, settings.separation)?;
         let speed_hz = |shaft: usize| phases[shaft].mean_speed_hz(self.sampling_rate_hz);
         let pass_hz = bearings.iter().map(|of| of.geometry.defect_orders().inner_race * speed_hz(of.shaft));
         let kurtogram = kurtogram(&signal, self.sampling_rate_hz, LEVELS)?;
@@ -123,16 +141,17 @@ impl TrainRecording<'_> {
             Ok((spectrum, lines))
         };
         let bearings = bearings.iter().map(record).collect::<Result<_, SignalError>>()?;
-        Ok(BearingRecords { kurtogram, band, kurtosis: chosen.map(|of| of.kurtosis), bearings })
+        let kurtosis = chosen.map(|of| of.kurtosis);
+        Ok(BearingRecords { kurtogram, band, kurtosis, bearings, warnings })
     }
 
-    /// The recording after the separation, and the sample that it begins at.
+    /// The recording after the separation.
     fn separated(
         &self,
         phases: &[ShaftPhase],
         separation: BearingSeparation,
-    ) -> Result<(usize, Vec<f64>), SignalError> {
-        let whole = |values: Vec<f64>| Ok((0, values));
+    ) -> Result<Separated, SignalError> {
+        let whole = |values| Ok(Separated { first_sample: 0, values, warnings: Vec::new() });
         match separation {
             BearingSeparation::None => whole(self.signal.to_vec()),
             BearingSeparation::Prewhitening => whole(cepstral_prewhitening(self.signal)?),
@@ -142,22 +161,44 @@ impl TrainRecording<'_> {
                 let block = (samples.ceil() as usize).min(self.signal.len() / BLOCK.1);
                 let random = discrete_random_separation(self.signal, block, block)?.random;
                 // At the ends some of the tones is left.
-                Ok((block / 2, random[block / 2..random.len() - block / 2].to_vec()))
+                let values = random[block / 2..random.len() - block / 2].to_vec();
+                Ok(Separated { first_sample: block / 2, values, warnings: Vec::new() })
             }
             BearingSeparation::Averages => {
                 let (_, cycles_per_revolution) = self.train.spacings(0);
                 let mut cycle = phases[0].clone();
                 cycle.revolutions.iter_mut().for_each(|angle| *angle *= cycles_per_revolution);
                 let are_enough = |phase: &ShaftPhase| phase.span_rev() >= FEWEST_REVOLUTIONS;
-                let mut averaged = if are_enough(&cycle) { vec![cycle] } else { phases.to_vec() };
-                averaged.retain(are_enough);
+                let (averaged, warnings) = if are_enough(&cycle) {
+                    (vec![cycle], Vec::new())
+                } else {
+                    let enough = phases.iter().filter(|phase| are_enough(phase)).cloned();
+                    (enough.collect(), self.not_averaged(phases).into_iter().collect())
+                };
                 if averaged.is_empty() {
-                    return whole(self.signal.to_vec());
+                    let values = self.signal.to_vec();
+                    return Ok(Separated { first_sample: 0, values, warnings });
                 }
                 let residual = synchronous_residual(self.signal, &averaged)?;
-                Ok((residual.first_sample, residual.values))
+                Ok(Separated { first_sample: residual.first_sample, values: residual.values, warnings })
             }
         }
+    }
+}
+
+impl TrainRecording<'_> {
+    /// The warning of shafts that turn too few times for an average.
+    fn not_averaged(&self, phases: &[ShaftPhase]) -> Option<SignalWarning> {
+        let named = self.train.shafts.iter().zip(phases);
+        let few = named.filter(|(_, phase)| phase.span_rev() < FEWEST_REVOLUTIONS);
+        let shafts: Vec<(String, f64)> =
+            few.map(|(shaft, phase)| (shaft.name.clone(), phase.span_rev())).collect();
+        let of_all = shafts.len() == phases.len();
+        (!shafts.is_empty()).then_some(SignalWarning::NotAveraged {
+            shafts,
+            of_all,
+            needed: FEWEST_REVOLUTIONS,
+        })
     }
 }
 
@@ -171,5 +212,44 @@ fn within(phase: &ShaftPhase, first_sample: usize, samples: usize) -> ShaftPhase
         revolutions,
         zero: phase.zero,
         warnings: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::{GearTrain, StatedTurning, TrainTurning};
+
+    fn look_for(samples: usize, shaft: usize) -> Result<BearingRecords, SignalError> {
+        let phase = ShaftPhase::constant(30.0, 20_000.0, samples)?;
+        let signal: Vec<f64> = phase.revolutions.iter().map(|angle| (100.0 * angle * angle).sin()).collect();
+        let geometry = BearingGeometry::new(9, 7.94, 39.04, 0.0)?;
+        let turning = TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::Other };
+        let train = GearTrain::of_wheels([("pinion", 20), ("gear", 61)]);
+        let recording =
+            TrainRecording { signal: &signal, sampling_rate_hz: 20_000.0, train: &train, turning: &turning };
+        recording.bearings(&[TrainBearing { geometry, shaft }], &BearingSettings::default())
+    }
+
+    #[test]
+    fn a_shaft_that_there_is_not_is_refused() {
+        let refused = look_for(20_000, 2).unwrap_err().to_string();
+        assert!(refused.starts_with("shaft of a bearing is 2"), "{refused}");
+    }
+
+    #[test]
+    fn shafts_that_are_not_averaged_are_named() {
+        let named = |seconds: f64| {
+            let warnings = look_for((seconds * 20_000.0) as usize, 0).unwrap().warnings;
+            warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+        };
+        // The pinion turns 30 times a second, the gear 9.8 times.
+        assert_eq!(named(2.0), "");
+        assert!(named(0.5).contains("has 4.9 revolutions of shaft gear, and an average needs at least 8: its average is not removed"), "{}", named(0.5));
+        assert!(
+            named(0.2).contains("6.0 revolutions of shaft pinion and 2.0 revolutions of shaft gear"),
+            "{}",
+            named(0.2)
+        );
     }
 }
