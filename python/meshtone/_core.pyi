@@ -84,6 +84,7 @@ __all__ = [
     "tuned_rig",
     "velocity_rms",
     "verify_dataset",
+    "write_signals",
 ]
 
 INDICATORS: tuple[str, ...]
@@ -156,6 +157,9 @@ class Simulation:
     def profile_errors_mm(self) -> tuple[_Array, _Array] | None: ...
     def wheel_deviations(self) -> list[tuple[str, list[float]]]: ...
 
+def write_signals(
+    path: _Path, scenario: Scenario | None, rate_and_start: tuple[float, float], signals: Sequence[tuple[str, _Array]]
+) -> None: ...
 def process_simulated(
     scenario: Scenario, signal: _Array, wheel: str, start_s: float, settings: Mapping[str, object] | None = None
 ) -> dict[str, Any]: ...
@@ -175,6 +179,7 @@ class Gearbox:
 
 @final
 class GearboxSimulation:
+    def save(self, path: _Path) -> None: ...
     @property
     def channels(self) -> dict[str, _Array]: ...
     @property

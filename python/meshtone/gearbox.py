@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
@@ -219,6 +220,22 @@ class GearboxSimulation:
         phase = _core.ShaftPhase.of_simulated_input(self.gearbox._native, self.start_s, values.size)
         parts = _core.process_train(values, phase, self.gearbox._native, self.sampling_rate_hz, None, sidebands)
         return train_record(parts, name)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the signals; the file's ending says the format, as of :meth:`Simulation.save`.
+
+        Parameters
+        ----------
+        path : path-like
+            The file. In a MAT-file the names of the signals have an underscore in place of what MATLAB does not accept:
+            ``force_n_z1_z2``.
+
+        Raises
+        ------
+        ValueError, OSError
+            As :meth:`Simulation.save`.
+        """
+        self._native.save(path)
 
     def summary(self) -> dict[str, Any]:
         """What ``meshtone simulate`` writes to ``summary.json``.

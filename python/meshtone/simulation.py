@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, Union, overload
 
 import numpy as np
@@ -257,6 +258,38 @@ class Simulation:
         own = Signals(self.scenario, self.sampling_rate_hz, self.start_s, channels, self.warnings, self.warning_codes)
         return own if target_rate_hz is None else own.at_rate(target_rate_hz)
 
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the signals; the file's ending says the format. :func:`read_recording` reads all of them.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, which appears whole or not at all. ``.parquet`` contains the scenario too; ``.csv``, ``.npz`` and ``.mat`` (MATLAB,
+            version 5) have ``time_s``, one column or array for each signal and, but for CSV, the number ``sampling_rate_hz``; ``.wav`` has
+            floating point of 32 bits between -1 and 1, with the full scale of each channel in the file's comment.
+
+        Raises
+        ------
+        ValueError
+            Another ending.
+        OSError
+            The file cannot be written, or the format cannot hold so many samples.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile
+        >>> from meshtone import examples, read_recording, simulate
+        >>> simulation = simulate(examples.healthy())
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = pathlib.Path(folder, "signals.mat")
+        ...     simulation.save(path)
+        ...     recording = read_recording(path)
+        >>> bool((recording["vertical_g"] == simulation.vertical_g).all()), recording.sampling_rate_hz, recording.units["vertical_g"]
+        (True, 100640.0, 'g')
+        """
+        signals = [(name, getattr(self, name)) for name in self.scenario.channels]
+        _core.write_signals(path, native_scenario(self.scenario), (self.sampling_rate_hz, self.start_s), signals)
+
     @property
     def computing_time_s(self) -> dict[str, float]:
         """(s) Wall time of each stage."""
@@ -283,7 +316,7 @@ class Simulation:
                 return self.fields[name]
             except KeyError:
                 _refuse_indicator(name, "a simulation has", "its", "simulation")
-                if name in ("save", "to_pandas", "to_csv"):
+                if name in ("to_pandas", "to_csv"):
                     raise AttributeError(f"a simulation has no '{name}'; {_SAVED}") from None
                 near = hint(name, [*self.fields, *self.scenario.channels]) or "; simulation.fields has all"
                 raise AttributeError(f"a simulation has no field '{name}'{near}") from None
@@ -570,6 +603,23 @@ class Signals(_Channels):
         _warn_of_rate(rate_hz, [self.scenario])
         return self._resampled(rate_hz)
 
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the signals as :meth:`Simulation.save` does; the scenario only where they have the simulation's own rate.
+
+        Parameters
+        ----------
+        path : path-like
+            The file.
+
+        Raises
+        ------
+        ValueError, OSError
+            As :meth:`Simulation.save`.
+        """
+        scenario = None if self.is_resampled else native_scenario(self.scenario)
+        signals = [(name, signal.astype(np.float64)) for name, signal in self.channels.items()]
+        _core.write_signals(path, scenario, (self.sampling_rate_hz, self.start_s), signals)
+
     def _resampled(self, rate_hz: float) -> Signals:
         channels = {name: resample(signal, self.sampling_rate_hz, rate_hz).astype(np.float32) for name, signal in self.channels.items()}
         return replace(self, sampling_rate_hz=rate_hz, channels=channels, is_resampled=True)
@@ -635,7 +685,7 @@ def _refuse_indicator(name: str, who_has: str, whose: str, variable: str) -> Non
         raise AttributeError(f"{who_has} no '{name}'; {whose} record has: {variable}.process().indicators{key}") from None
 
 
-_SAVED = "numpy.savez('signals.npz', vertical_g=simulation.vertical_g) writes a signal, `meshtone simulate` all results"
+_SAVED = "simulation.save('signals.csv') writes the signals, `meshtone simulate` all results"
 """How a simulation is kept."""
 
 

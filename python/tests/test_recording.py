@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import io
 
 import meshtone
 from meshtone import hybrid, read_recording
@@ -46,6 +47,44 @@ def test_npz(tmp_path: Path) -> None:
     [samples] = recording.channels.values()
     assert np.array_equal(samples, np.sin(np.arange(100.0)))
     assert isinstance(recording, meshtone.Recording)
+
+
+def test_signals_of_every_format(tmp_path: Path) -> None:
+    """What is saved is read back, and by the programs that the formats are for."""
+    simulation = meshtone.simulate(meshtone.examples.tooth_breakage())
+    signals = simulation.signals(25_000)
+    for ending in ("parquet", "csv", "mat", "npz", "wav"):
+        path = tmp_path / f"signals.{ending}"
+        simulation.save(path)
+        recording = read_recording(path)
+        assert recording.sampling_rate_hz == simulation.sampling_rate_hz and recording.start_s == pytest.approx(simulation.start_s)
+        assert list(recording) == list(simulation.scenario.channels) and recording.units["vertical_g"] == "g"
+        exact = ending != "wav"
+        assert recording["vertical_g"] == pytest.approx(simulation.vertical_g, rel=0, abs=0 if exact else 32 * 2**-24)
+        assert (recording.scenario is not None) == (ending == "parquet")
+    loaded = io.loadmat(tmp_path / "signals.mat")
+    assert np.array_equal(loaded["vertical_g"].ravel(), simulation.vertical_g) and loaded["sampling_rate_hz"] == 100_640
+    assert np.array_equal(np.load(tmp_path / "signals.npz")["time_s"], simulation.time_s)
+    table = np.genfromtxt(tmp_path / "signals.csv", delimiter=",", names=True)
+    assert np.array_equal(table["mesh_force_n"], simulation.mesh_force_n)
+    rate, samples = io.wavfile.read(tmp_path / "signals.wav")
+    assert rate == 100_640 and samples[:, 1] * 32 == pytest.approx(simulation.vertical_g, rel=0, abs=32 * 2**-24)
+    signals.save(tmp_path / "slow.wav")
+    slow = read_recording(tmp_path / "slow.wav")
+    assert slow.sampling_rate_hz == 25_000 and slow["vertical_g"] == pytest.approx(signals.vertical_g)
+    before = sorted(path.name for path in tmp_path.iterdir())
+    with pytest.raises(ValueError, match=r"signals\.xlsx: .* \.parquet, \.csv, \.mat, \.npz, \.wav"):
+        simulation.save(tmp_path / "signals.xlsx")
+    with pytest.raises(OSError, match="cannot write"):
+        simulation.save(tmp_path / "absent" / "signals.csv")
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+
+
+def test_signals_of_a_gearbox(tmp_path: Path) -> None:
+    simulation = meshtone.simulate_gearbox(meshtone.Gearbox.from_toml(meshtone.gearbox_template()))
+    simulation.save(tmp_path / "signals.mat")
+    loaded = io.loadmat(tmp_path / "signals.mat")
+    assert np.array_equal(loaded["force_n_z1_z2"].ravel(), simulation["force_n.z1-z2"])
 
 
 def test_arguments_that_are_refused(tmp_path: Path) -> None:

@@ -87,6 +87,9 @@ mod tests {
     use super::*;
     use crate::results::{PANEL, SIGNALS};
 
+    /// What a run writes that is asked for no other format.
+    const WRITTEN: [&str; 4] = [SUMMARY, SIGNALS, PANEL[0], PANEL[1]];
+
     fn write(directory: &TempDir, name: &str, content: &str) {
         // As a run does it: another file takes the name.
         fs::write(directory.path().join("staged"), content).unwrap();
@@ -125,7 +128,7 @@ mod tests {
         for with_panel in [true, false] {
             for done in 0..=steps().len() {
                 let directory = tempdir().unwrap();
-                let names = if with_panel { &RESULTS[..] } else { &[SIGNALS, SUMMARY] };
+                let names = if with_panel { &WRITTEN[..] } else { &[SIGNALS, SUMMARY] };
                 names.iter().for_each(|name| write(&directory, name, "old"));
                 write(&directory, "notes.txt", "mine");
                 let before = content(&directory);
@@ -141,11 +144,11 @@ mod tests {
     #[test]
     fn a_run_that_is_through_is_not_undone() {
         let directory = tempdir().unwrap();
-        RESULTS.iter().for_each(|name| write(&directory, name, "old"));
+        WRITTEN.iter().for_each(|name| write(&directory, name, "old"));
         steps().iter().for_each(|step| step(&directory));
         write(&directory, SUMMARY, "new");
         assert!(!put_back(directory.path()).unwrap());
-        let expected = RESULTS.map(|name| (name.to_string(), "new".to_string()));
+        let expected = WRITTEN.map(|name| (name.to_string(), "new".to_string()));
         let mut expected = expected.to_vec();
         expected.sort();
         assert_eq!(content(&directory), expected);

@@ -4,11 +4,10 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use meshtone_io::recording::RecordingFormat;
+use meshtone_io::recording::{RecordingFormat, signals_in};
 use meshtone_io::scenario_file::FileKind;
 
 use crate::failure::Failure;
-use crate::results::SIGNALS;
 
 /// A data set's list of its files.
 pub const MANIFEST: &str = "manifest.json";
@@ -43,7 +42,7 @@ fn found(path: &Path) -> Option<(&'static str, Vec<String>)> {
         if inside(MANIFEST).is_some() {
             return Some(("a data set", by(&["meshtone dataset verify"], path)));
         }
-        if inside(SIGNALS).is_some() {
+        if signals_in(path).is_some() {
             let readers = by(&["meshtone indicators", "meshtone panel"], path);
             return Some(("what `meshtone simulate` wrote", readers));
         }
@@ -81,7 +80,7 @@ fn sorted_entries(directory: &Path) -> Vec<PathBuf> {
 
 fn is_recording(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    path.join(SIGNALS).is_file() || path.is_file() && RecordingFormat::of_ending(&ending).is_some()
+    signals_in(path).is_some() || path.is_file() && RecordingFormat::of_ending(&ending).is_some()
 }
 
 fn starts_as_parquet(path: &Path) -> bool {

@@ -3,7 +3,7 @@
 use meshtone::damage::damage_kinds;
 use meshtone::scenario::{GearPair, KeyDescription, Scenario};
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::write_signals;
+use meshtone_io::signals::SignalTable;
 use serde_json::{Map, Value};
 
 use crate::question::memory_limit;
@@ -46,7 +46,8 @@ pub fn export(form: &str, scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> 
         }
         "parquet" => {
             let mut bytes = Vec::new();
-            write_signals(&mut bytes, scenario, &simulated()?.channels)
+            SignalTable::of_pair(scenario, &simulated()?.channels)
+                .write_parquet(&mut bytes)
                 .map_err(|error| Refusal::unfit(format!("the signals cannot be written: {error}")))?;
             Ok(Exported { ending: "parquet", media_type: "application/vnd.apache.parquet", bytes })
         }

@@ -7,12 +7,14 @@ use meshtone::scenario::{self, GearboxRig, ScenarioForm, ScenarioWarning};
 use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::ScenarioFile;
+use meshtone_io::signals::SignalTable;
 use meshtone_io::summary::GearboxSummary;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::array::{array, field};
 use crate::error::{read_error, scenario_error, simulation_error, value_error};
+use crate::signals_file::write;
 use crate::value::table;
 
 /// A gearbox as the library has it.
@@ -136,6 +138,12 @@ impl GearboxSimulation {
         });
         let json = serde_json::to_string(&summary).map_err(value_error)?;
         Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
+    }
+
+    /// Writes the signals in the format that the file's ending says.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let meshtone::GearboxSimulation { stages, channels, .. } = &self.simulation;
+        py.detach(|| write(&path, &SignalTable::of_gearbox(&stages.gearbox, channels)))
     }
 
     /// Every stage's output by name.

@@ -23,6 +23,7 @@ mod recording;
 mod scenario;
 mod sensor_path;
 mod signal;
+mod signals_file;
 mod simulation;
 mod value;
 
@@ -55,6 +56,7 @@ mod _core {
             angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4, order_map,
             order_spectrum, resample, separate, sideband_level_factor, statistics, synchronous_average,
         },
+        signals_file::write_signals,
         simulation::{Simulation, process_simulated, simulate, trace},
     };
 

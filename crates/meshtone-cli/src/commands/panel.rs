@@ -7,15 +7,17 @@ use clap::Args;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::own_file::undisturbed;
+use meshtone_io::recording::signals_in;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::{RecordedGearbox, read_gearbox_signals, read_signals};
 use meshtone_io::summary::read_run;
+use meshtone_plot::panel;
 
 use crate::earlier_results;
 use crate::failure::Failure;
 use crate::other_kind::or_other_kind;
 use crate::output_directory::claim;
-use crate::results::{PANEL, SIGNALS, SUMMARY, stage_gearbox_panel, stage_panel};
+use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
 use crate::terminal::{print_unless, warn};
 
 /// Description of the input of the panel.
@@ -48,6 +50,14 @@ impl Panel {
             ));
         }
         let path = self.directory.join(SIGNALS);
+        if let Some(other) = signals_in(&self.directory).filter(|signals| *signals != path) {
+            let problem =
+                format!("{}: does not contain the scenario, which the panel shows", other.display());
+            return Failure::refuse(
+                problem,
+                "simulate again with `--format parquet`, or with `--format parquet,mat` and alike",
+            );
+        }
         let of_gearbox = read_gearbox_signals(&path).ok().flatten();
         let files = match of_gearbox {
             Some(recorded) => self.panel_of_gearbox(recorded)?,
@@ -75,7 +85,8 @@ impl Panel {
         for (signal, (_, values)) in channels.signals.iter_mut().zip(recorded.signals) {
             signal.values = values;
         }
-        stage_gearbox_panel(&self.directory, recorded.run, &stages.with_channels(channels))
+        let simulation = stages.with_channels(channels);
+        stage_panel(&self.directory, recorded.run, panel::draw_gearbox(&simulation))
     }
 
     fn panel_of_pair(&self, path: &Path) -> Result<Vec<StagedFile>, Failure> {
@@ -92,7 +103,7 @@ impl Panel {
             return Err(ReadResultsError::foreign(path, problem).into());
         }
         self.warn_of_version(&recorded.version);
-        stage_panel(&self.directory, recorded.run, &stages, &recorded.channels)
+        stage_panel(&self.directory, recorded.run, panel::draw(&stages, &recorded.channels))
     }
 
     /// Signals without a summary can be drawn all the same; but a panel is not to make the files of two runs look like

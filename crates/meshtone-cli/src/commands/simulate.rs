@@ -13,14 +13,17 @@ use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FileKind, FilesBeside, ScenarioFile};
+use meshtone_io::signals::{SignalFormat, SignalTable};
 use meshtone_io::summary::{GearboxSummary, Summary};
+use meshtone_plot::panel;
+use serde_json::json;
 
 use crate::check::check;
 use crate::choice::{Choice, one_of};
 use crate::failure::Failure;
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_spinner;
-use crate::results::{self, RESULTS};
+use crate::results::{self, RESULTS, Results};
 use crate::same_file::is_same_file;
 use crate::table::{gearbox_table, table};
 use crate::terminal::{print_unless, warn};
@@ -28,8 +31,8 @@ use crate::warnings;
 
 /// Simulate scenarios: signals, summary and results panel
 ///
-/// Writes signals.parquet, summary.json, panel.svg and panel.png. Files of an earlier run are replaced; every file
-/// is written completely or not at all. Nothing is simulated or written unless all scenarios are valid.
+/// Writes signals.parquet (or .csv, .mat, .npz, .wav), summary.json, panel.svg and panel.png. Files of an earlier run are replaced;
+/// every file is written completely or not at all. Nothing is simulated or written unless all scenarios are valid.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Simulate {
@@ -53,6 +56,10 @@ pub struct Simulate {
     /// Write every stage's output too (one scenario only)
     #[arg(long, value_name = "FILE.npz")]
     trace: Option<PathBuf>,
+    /// Formats of the signals, a file each; several are separated by commas. Only Parquet contains the scenario, which `meshtone panel` and
+    /// other commands take from it
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',', default_value = "parquet", value_parser = one_of(&FORMATS))]
+    format: Vec<SignalFormat>,
     /// Print no table and no progress; warnings and errors are still printed
     #[arg(short, long)]
     quiet: bool,
@@ -65,8 +72,29 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone simulate broken.toml                         into ./broken_results
   meshtone simulate broken.toml -o out --trace all.npz  with every stage's output
+  meshtone simulate broken.toml --format mat            signals for MATLAB
   meshtone simulate healthy.toml broken.toml -o out     into out/healthy and out/broken
   meshtone simulate pit.toml chip.toml --errors-file wheels.npz -o out   both on the same wheels";
+
+const FORMATS: [Choice<SignalFormat>; 5] = [
+    (
+        SignalFormat::Parquet.name(),
+        "Apache Parquet, with the scenario and the unit of each signal",
+        SignalFormat::Parquet,
+    ),
+    (SignalFormat::Csv.name(), "Text: a line of names, a line for each sample", SignalFormat::Csv),
+    (
+        SignalFormat::Mat.name(),
+        "MATLAB, version 5, which SciPy reads too: a column vector for each signal",
+        SignalFormat::Mat,
+    ),
+    (SignalFormat::Npz.name(), "NumPy: an array for each signal", SignalFormat::Npz),
+    (
+        SignalFormat::Wav.name(),
+        "Floating point of 32 bits between -1 and 1; the comment in the file states the full scale of each channel",
+        SignalFormat::Wav,
+    ),
+];
 
 const TRACE_HELP: &str = "name another file with --trace, in a directory that exists";
 
@@ -246,9 +274,15 @@ impl Simulate {
             let all_warnings = [&of_stages[..], &by_signals].concat();
             let run = RunIdentity::of_toml(&file.scenario.to_toml());
             let summary = GearboxSummary::new(&simulation, run, &all_warnings);
-            let trace = self.trace.as_deref();
-            let written =
-                results::write_gearbox(&directory.path, &simulation, &summary, trace, !self.no_panel);
+            let trace = self.trace.as_deref().map(|path| (meshtone::gearbox_trace(&simulation), path));
+            let results = Results {
+                run,
+                signals: SignalTable::of_gearbox(&simulation.stages.gearbox, &simulation.channels),
+                summary: json!(summary),
+                trace: trace.as_ref().map(|(trace, path)| (trace, *path)),
+            };
+            let draw = (!self.no_panel).then_some(|| panel::draw_gearbox(&simulation));
+            let written = results::write(&directory.path, &results, &self.format, draw);
             Ok::<_, Failure>((summary, by_signals, written))
         })?;
         warnings::print(&file, &by_signals);
@@ -279,10 +313,16 @@ impl Simulate {
                 .map_err(|error| not_simulated(&run.file, error))?;
             let by_signals = simulation.warnings_of_signals();
             let all_warnings: Vec<_> = run.warnings.iter().chain(&by_signals).cloned().collect();
-            let summary = Summary::new(&simulation, RunIdentity::of(&run.scenario), &all_warnings);
-            let trace = trace.as_ref().zip(self.trace.as_deref());
-            let written =
-                results::write(&directory.path, &run.scenario, &simulation, &summary, trace, !self.no_panel);
+            let identity = RunIdentity::of(&run.scenario);
+            let summary = Summary::new(&simulation, identity, &all_warnings);
+            let results = Results {
+                run: identity,
+                signals: SignalTable::of_pair(&run.scenario, &simulation.channels),
+                summary: json!(summary),
+                trace: trace.as_ref().zip(self.trace.as_deref()),
+            };
+            let draw = (!self.no_panel).then_some(|| panel::draw(&simulation.stages, &simulation.channels));
+            let written = results::write(&directory.path, &results, &self.format, draw);
             Ok::<_, Failure>((summary, by_signals, written))
         })?;
         warnings::print(&run.file, &by_signals);

@@ -3,6 +3,7 @@
 use std::fs::File;
 
 use crate::support::{Workplace, fast_and, fast_with, stderr, stdout};
+use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::read_scenario;
 use meshtone_io::signals::read_signals;
@@ -27,6 +28,41 @@ fn signals_are_those_of_the_library() {
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     assert_eq!(recorded.scenario, scenario);
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
+}
+
+/// Signals in other formats take the place of Parquet, and a later run leaves none of an earlier one's.
+#[test]
+fn signals_in_other_formats() {
+    let workplace = Workplace::new();
+    let run = |arguments: &[&str]| {
+        workplace.succeeds(&[&["simulate", "fast.toml", "-o", "out", "--no-panel"], arguments].concat());
+    };
+    run(&[]);
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
+    run(&["--format", "mat,wav"]);
+    assert_eq!(workplace.names("out"), ["signals.mat", "signals.wav", "summary.json"]);
+    let recording = read_recording(&workplace.path("out"), &RecordingOptions::default()).unwrap();
+    assert_eq!(recording.source, workplace.path("out/signals.mat"));
+    assert_eq!(recording.channel("vertical_g").unwrap().samples, recorded.channels.vertical_g);
+    let words = ["out/signals.mat: does not contain the scenario", "--format parquet"];
+    workplace.fails(2, &["panel", "out"], &words);
+    workplace.fails(2, &["simulate", "out"], &["is what `meshtone simulate` wrote"]);
+    workplace.succeeds(&[
+        "indicators",
+        "out",
+        "-c",
+        "vertical_g",
+        "-o",
+        "of_folder",
+        "--teeth",
+        "40",
+        "--shaft-hz",
+        "40",
+        "--no-figure",
+    ]);
+    run(&["--format", "parquet"]);
+    assert_eq!(workplace.names("out"), ["signals.parquet", "summary.json"]);
+    workplace.fails(2, &["simulate", "fast.toml", "--format", "xlsx"], &["parquet, csv, mat, npz, wav"]);
 }
 
 #[test]

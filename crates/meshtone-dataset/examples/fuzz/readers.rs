@@ -15,7 +15,7 @@ use meshtone_dataset::verify::{Check, verify};
 use meshtone_io::experiment::{Tuned, read_experiment, read_tuned, write_tuned};
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
-use meshtone_io::signals::{read_signals, write_signals};
+use meshtone_io::signals::{SignalTable, read_signals};
 use meshtone_io::summary::read_run;
 
 /// A reader.
@@ -166,7 +166,8 @@ fn make_others(work: &Path) {
     scenario.solver.sampling_rate_hz = 1e4;
     let simulation = meshtone::simulate(&scenario).expect("an example");
     let mut signals = Vec::new();
-    write_signals(&mut signals, &scenario, &simulation.channels).expect("it can be written");
+    let table = SignalTable::of_pair(&scenario, &simulation.channels);
+    table.write_parquet(&mut signals).expect("it can be written");
     write("signals.parquet", &signals);
     let plan =
         Plan::read_text(PLAN.to_owned(), &work.join("plan.toml")).unwrap_or_else(|error| panic!("{error}"));

@@ -22,7 +22,7 @@ pub enum ReadRecordingError {
     /// Neither the first bytes nor the ending of the file belong to a format that is read.
     #[error(
         "{}: has no known format ({found}); known are CSV, TSV and other separated text (.csv, .tsv, .txt, \
-         .dat, .asc), Parquet (.parquet), NumPy (.npy, .npz), MATLAB version 5 to 7 (.mat) and WAV (.wav)",
+         .dat, .asc), Parquet (.parquet), NumPy (.npy, .npz), MATLAB (.mat), HDF5 (.h5) and WAV (.wav)",
         path.display()
     )]
     UnknownFormat {

@@ -30,36 +30,33 @@ pub enum RecordingFormat {
     Mat,
     /// WAV: PCM or floating point.
     Wav,
+    /// HDF5, which MATLAB's MAT-file of version 7.3 is too.
+    Hdf5,
 }
 
 /// Each format with its name in messages and the endings of its files.
-const FORMATS: [(RecordingFormat, &str, &[&str]); 6] = [
+const FORMATS: [(RecordingFormat, &str, &[&str]); 7] = [
     (RecordingFormat::Text, "text", &["csv", "tsv", "tab", "txt", "dat", "asc"]),
     (RecordingFormat::Parquet, "Parquet", &["parquet", "pq"]),
     (RecordingFormat::Npy, "NPY", &["npy"]),
     (RecordingFormat::Npz, "NPZ", &["npz"]),
     (RecordingFormat::Mat, "MAT", &["mat"]),
     (RecordingFormat::Wav, "WAV", &["wav"]),
+    (RecordingFormat::Hdf5, "HDF5", &["h5", "hdf5", "hdf", "he5"]),
 ];
 
 /// First bytes that only files of one format have.
-const MARKS: [(&[u8], RecordingFormat); 5] = [
+const MARKS: [(&[u8], RecordingFormat); 6] = [
     (b"PAR1", RecordingFormat::Parquet),
     (b"\x93NUMPY", RecordingFormat::Npy),
     (b"PK\x03\x04", RecordingFormat::Npz),
     (b"PK\x05\x06", RecordingFormat::Npz),
     (b"RIFF", RecordingFormat::Wav),
+    (HDF5, RecordingFormat::Hdf5),
 ];
 
 /// First bytes of known formats that are not read: what they are, and how to convert them.
-const TO_CONVERT: [(&[&[u8]], &str, &str); 7] = [
-    (
-        &[b"MATLAB 7.3"],
-        "a MATLAB file of version 7.3 (HDF5)",
-        "save it again in MATLAB with `s = load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, or in Python \
-         with h5py and numpy.savez",
-    ),
-    (&[HDF5], "an HDF5 file", "save its data sets in Python with h5py and numpy.savez, as .npz"),
+const TO_CONVERT: [(&[&[u8]], &str, &str); 5] = [
     (
         &[b"\xff\xfe", b"\xfe\xff"],
         "text in UTF-16",
@@ -142,7 +139,10 @@ fn file_kind(path: &Path, ending: &str) -> Option<FileKind> {
 
 fn by_content(head: &[u8]) -> Option<RecordingFormat> {
     let marked = MARKS.iter().find(|(mark, _)| head.starts_with(mark)).map(|(_, format)| *format);
-    marked.or_else(|| is_mat5(head).then_some(RecordingFormat::Mat))
+    let of_matlab = || head.get(HDF5_OFFSET..).is_some_and(|behind| behind.starts_with(HDF5));
+    marked
+        .or_else(|| is_mat5(head).then_some(RecordingFormat::Mat))
+        .or_else(|| of_matlab().then_some(RecordingFormat::Hdf5))
 }
 
 fn is_mat5(head: &[u8]) -> bool {
@@ -154,9 +154,7 @@ fn is_mat5(head: &[u8]) -> bool {
 
 /// Known formats that are not read: what they are, and how to convert them.
 fn to_convert(head: &[u8]) -> Option<(&'static str, &'static str)> {
-    let is_of_matlab = head.get(HDF5_OFFSET..).is_some_and(|behind| behind.starts_with(HDF5));
     let is_known = |marks: &[&[u8]]| marks.iter().any(|mark| head.starts_with(mark));
-    let known =
-        if is_of_matlab { TO_CONVERT.first() } else { TO_CONVERT.iter().find(|(marks, ..)| is_known(marks)) };
+    let known = TO_CONVERT.iter().find(|(marks, ..)| is_known(marks));
     known.map(|(_, what, how)| (*what, *how))
 }

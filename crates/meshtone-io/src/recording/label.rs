@@ -1,5 +1,7 @@
 //! A column's name and unit, as its header says them.
 
+use meshtone::sensor::Channel;
+
 use super::unit::{is_unit, seconds_in};
 
 /// What a file says about a column before its samples are read.
@@ -25,15 +27,18 @@ impl Label {
     /// From a header such as `acceleration [g]`, `voltage (mV)` or `time_s`.
     pub(super) fn from_header(header: &str) -> Label {
         let raw = header.trim().to_string();
-        let (name, unit) = split_unit(&raw).unwrap_or((&raw, None));
-        let (name, unit) = (name.to_string(), unit.map(str::to_string));
-        Label { name, unit, ..Label::plain(&raw) }
+        let plain = Label::plain(&raw);
+        match split_unit(&raw) {
+            Some((name, unit)) => Label { name: name.to_string(), unit: unit.map(str::to_string), ..plain },
+            None => plain,
+        }
     }
 
-    /// From a name that says no unit.
+    /// From a name without a unit in brackets; that of a [channel](meshtone::sensor::Channel) of Meshtone ends with its unit.
     pub(super) fn plain(name: &str) -> Label {
+        let unit = Channel::named(name).map(|channel| channel.unit().to_owned());
         let (raw, name) = (name.to_string(), name.to_string());
-        Label { raw, name, unit: None, array: None, not_numeric: None, is_zero_twin: false }
+        Label { raw, name, unit, array: None, not_numeric: None, is_zero_twin: false }
     }
 
     /// Of a column that has no name: a word and its number, counted from 1.

@@ -1,7 +1,7 @@
 //! Recordings: measured or simulated signals, out of whatever file they came in.
 //!
 //! [`read_recording`] opens CSV and other separated text, Parquet (also the one that `meshtone simulate`
-//! writes), NumPy's NPY and NPZ, MATLAB's MAT (version 5) and WAV, and gives one [`Recording`] whatever the
+//! writes), NumPy's NPY and NPZ, MATLAB's MAT (version 5 and 7.3), HDF5 and WAV, and gives one [`Recording`] whatever the
 //! format: channels with name, unit and samples, at one sampling rate. What is to be read, and what the file
 //! does not say itself, stands in [`RecordingOptions`].
 //!
@@ -15,6 +15,7 @@ mod assemble;
 mod catalogue;
 mod error;
 mod format;
+mod hdf5;
 mod label;
 mod mat;
 mod memory_need;
@@ -33,6 +34,7 @@ mod warning;
 mod wav;
 
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 pub use error::{ReadRecordingError, names};
@@ -46,9 +48,7 @@ use meshtone::sensor::GRAVITY_M_PER_S2;
 
 use self::error::Problem;
 use crate::input_file::open_ordinary;
-
-/// The file in a folder of results that is read for the folder.
-const SIGNALS_FILE: &str = "signals.parquet";
+use crate::signals::SignalFormat;
 
 /// One channel of a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,8 +120,8 @@ impl Recording {
 /// Reads a recording.
 ///
 /// # Arguments
-/// * `path` - the file; or a folder that `meshtone simulate` wrote, whose `signals.parquet` is read; or the folder of a data set in the
-///   schema of the Python package `bearing-datasets`, of which `variable` names the recording
+/// * `path` - the file; or a folder that `meshtone simulate` wrote, whose signals are read, as Parquet where they are there in several
+///   formats; or the folder of a data set in the schema of the Python package `bearing-datasets`, of which `variable` names the recording
 /// * `options` - what is read, and what the file does not say itself
 ///
 /// The format is known by the file's first bytes, and by its ending where those decide nothing (text). The
@@ -175,10 +175,10 @@ impl Recording {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recording, ReadRecordingError> {
-    let inside = path.join(SIGNALS_FILE);
-    let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
+    let inside = signals_in(path);
+    let path = inside.as_deref().unwrap_or(path);
     if let Some(folder) = signal_set::folder(path) {
-        let recording = options.check().and_then(|()| signal_set::read(folder, options));
+        let recording = options.check().and_then(|()| decoded(|| signal_set::read(folder, options)));
         let recording =
             recording.map_err(|problem| problem.of_file(path, RecordingFormat::Parquet.name()))?;
         return Ok(Recording { source: path.to_path_buf(), ..recording });
@@ -187,14 +187,34 @@ pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recordi
     let (file, format) = opened.map_err(|problem| problem.of_file(path, "recording"))?;
     let recording = match format {
         RecordingFormat::Text => text::read(file, options),
-        RecordingFormat::Parquet => parquet_file::read(file, options),
+        RecordingFormat::Parquet => decoded(|| parquet_file::read(file, options)),
         RecordingFormat::Npy => numpy::read_npy(file, options),
         RecordingFormat::Npz => numpy::read_npz(file, options),
         RecordingFormat::Mat => mat::read(file, options),
         RecordingFormat::Wav => wav::read(file, options),
+        RecordingFormat::Hdf5 => decoded(|| hdf5::read(file, options)),
     };
     let recording = recording.map_err(|problem| problem.of_file(path, format.name()))?;
     Ok(Recording { source: path.to_path_buf(), ..recording })
+}
+
+/// What a reader of another library's gives. Those of Parquet and HDF5 panic where parts of a file contradict each other, which no check finds
+/// before they are decoded; nothing but what is dropped with the panic has changed by then.
+fn decoded(read: impl FnOnce() -> Result<Recording, Problem>) -> Result<Recording, Problem> {
+    let result = catch_unwind(AssertUnwindSafe(read));
+    result.unwrap_or_else(|panic| {
+        let message = panic.downcast_ref::<String>().map(String::as_str);
+        let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
+        Err(Problem::Broken(format!("it cannot be decoded ({message})")))
+    })
+}
+
+/// The file of signals in a folder that `meshtone simulate` wrote, if there is one: the Parquet file where there are several.
+///
+/// # Arguments
+/// * `directory` - the folder
+pub fn signals_in(directory: &Path) -> Option<PathBuf> {
+    SignalFormat::ALL.map(|format| directory.join(format.file_name())).into_iter().find(|path| path.is_file())
 }
 
 /// Opens a file and finds its format.
@@ -202,10 +222,12 @@ fn open(path: &Path, options: &RecordingOptions) -> Result<(File, RecordingForma
     let mut file = open_ordinary(path)?;
     let format = format::detect(path, &mut file, options.format)?;
     match &options.variable {
-        Some(variable) if !matches!(format, RecordingFormat::Npz | RecordingFormat::Mat) => {
+        Some(variable)
+            if !matches!(format, RecordingFormat::Npz | RecordingFormat::Mat | RecordingFormat::Hdf5) =>
+        {
             let path = path.display();
             let problem = format!(
-                "{path}: variable `{variable}` is given, but only NPZ and MAT files and sets of recordings hold variables"
+                "{path}: variable `{variable}` is given, but only NPZ, MAT and HDF5 files and sets of recordings hold variables"
             );
             Err(Problem::Option(problem))
         }

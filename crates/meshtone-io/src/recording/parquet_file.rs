@@ -1,7 +1,6 @@
 //! Parquet, of whatever program; that of `meshtone simulate` states units and rate in its metadata.
 
 use std::fs::File;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use parquet::basic::Compression;
 use parquet::file::metadata::{ColumnChunkMetaData, FileMetaData};
@@ -20,24 +19,6 @@ use crate::table::{FoundColumn, FoundType, TableReader};
 /// Bytes of samples that a byte of a file may well stand for; memory for more is taken only as they come.
 const USUAL_COMPRESSION: u64 = 16;
 
-/// Reads a recording from Parquet.
-///
-/// The `parquet` crate panics where a page contradicts the metadata, which no check finds before it is decoded; so
-/// its panics are caught. Nothing but what is dropped with them has changed by then.
-pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
-    guarded(|| decode(file, options))
-}
-
-/// Turns a panic of the `parquet` crate into a problem of the file.
-pub(super) fn guarded<T>(decode: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
-    let result = catch_unwind(AssertUnwindSafe(decode));
-    result.unwrap_or_else(|panic| {
-        let message = panic.downcast_ref::<String>().map(String::as_str);
-        let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
-        Err(Problem::Broken(format!("its pages cannot be decoded ({message})")))
-    })
-}
-
 /// Opens a table whose metadata are possible.
 pub(super) fn table(mut file: File) -> Result<TableReader<File>, Problem> {
     let file_bytes = file.metadata()?.len();
@@ -47,7 +28,8 @@ pub(super) fn table(mut file: File) -> Result<TableReader<File>, Problem> {
     Ok(table)
 }
 
-fn decode(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+/// Reads a recording from Parquet.
+pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
     let file_bytes = file.metadata()?.len();
     let table = table(file)?;
     let head = table.metadata().file_metadata();

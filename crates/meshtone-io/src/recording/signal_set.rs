@@ -8,7 +8,7 @@ use meshtone_toml::nearest_name;
 use super::assemble::assemble;
 use super::error::{Problem, names};
 use super::label::Label;
-use super::parquet_file::{guarded, table};
+use super::parquet_file::table;
 use super::rate::StatedRate;
 use super::selection::select;
 use super::{Recording, RecordingOptions, memory_need};
@@ -28,17 +28,12 @@ pub(super) fn folder(path: &Path) -> Option<&Path> {
         .filter(is_set)
 }
 
-/// Reads a recording.
+/// Reads a recording: its rows from the table, and of the channels that are chosen as in any file the samples.
 ///
 /// # Arguments
 /// * `folder` - of the data set
 /// * `options` - of the recording; `variable` is its `recording_id`
 pub(super) fn read(folder: &Path, options: &RecordingOptions) -> Result<Recording, Problem> {
-    guarded(|| decode(folder, options))
-}
-
-/// Reads the rows of the recording from the table, chooses channels as in any file, and reads their samples.
-fn decode(folder: &Path, options: &RecordingOptions) -> Result<Recording, Problem> {
     let metadata = table(open_ordinary(&folder.join(METADATA))?)?;
     let ids = texts(&metadata, "recording_id")?;
     let rows = rows_of(&ids, options.variable.as_deref())?;

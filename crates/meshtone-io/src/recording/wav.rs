@@ -4,7 +4,7 @@
 //! samples as those of any other array.
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{self, BufReader, Read};
 
 use super::array::{ArrayLayout, read_channels};
 use super::assemble::assemble;
@@ -15,7 +15,10 @@ use super::rate::StatedRate;
 use super::selection::select;
 use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
+use crate::signals::{WavChannel, WavComment};
 
+/// (bytes) Longest list of texts that is looked at: a comment of Meshtone's with as many channels as a file can have in practice.
+const LONGEST_LIST: u64 = 1 << 20;
 /// Bytes that a format chunk always has, and those of one that states its format behind them.
 const FORMAT_BYTES: usize = 16;
 const EXTENSIBLE_BYTES: usize = 26;
@@ -35,11 +38,11 @@ struct Format {
     full_scale: f64,
 }
 
-/// Reads a recording from WAV. PCM is scaled so that full scale is 1.
+/// Reads a recording from WAV. PCM is scaled so that full scale is 1; a file of Meshtone's states the full scale of each channel.
 pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
     let file_bytes = file.metadata()?.len();
     let mut from = BufReader::new(file);
-    let (format, bytes) = find_samples(&mut from)?;
+    let Samples { format, comment, bytes } = find_samples(&mut from)?;
     if bytes > file_bytes {
         let problem = format!("it announces {bytes} bytes of samples, but ends after {file_bytes}");
         return Err(Problem::Broken(problem));
@@ -52,7 +55,10 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
         )));
     }
     let layout = ArrayLayout { channels, samples: bytes / record_bytes, interleaved: channels > 1 };
-    let labels: Vec<Label> = (1..=channels).map(|number| Label::numbered("channel", number)).collect();
+    let labels: Vec<Label> = match &comment {
+        Some(comment) => comment.channels.iter().map(|channel| channel.label()).collect(),
+        None => (1..=channels).map(|number| Label::numbered("channel", number)).collect(),
+    };
     let selection = select(&labels, options)?;
     memory_need::check(memory::limit(), options, &selection, |_| layout.samples, 0)?;
     let wanted: Vec<bool> = (0..channels).map(|channel| selection.wanted.contains(&channel)).collect();
@@ -61,18 +67,55 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
         let scaled = samples.iter_mut().flatten();
         scaled.for_each(|sample| *sample = (*sample - format.zero) / format.full_scale);
     }
-    let stated = [StatedRate { by: "its header".to_string(), rate_hz: f64::from(format.rate_hz) }];
-    assemble(&labels, &selection, samples, &stated, options)
+    let Some(comment) = comment else {
+        let stated = [StatedRate { by: "its header".to_string(), rate_hz: f64::from(format.rate_hz) }];
+        return assemble(&labels, &selection, samples, &stated, options);
+    };
+    for (&channel, samples) in selection.wanted.iter().zip(&mut samples) {
+        let full_scale = comment.channels[channel].full_scale;
+        samples.iter_mut().for_each(|sample| *sample *= full_scale);
+    }
+    let stated = [StatedRate { by: "its comment".to_string(), rate_hz: comment.sampling_rate_hz }];
+    let recording = assemble(&labels, &selection, samples, &stated, options)?;
+    Ok(Recording { start_s: comment.start_s, ..recording })
 }
 
-/// Goes to the samples, and gives their format and how many bytes they have.
-fn find_samples(from: &mut BufReader<File>) -> Result<(Format, u64), Problem> {
+impl WavChannel {
+    fn label(&self) -> Label {
+        Label { unit: Some(self.unit.clone()), ..Label::plain(&self.name) }
+    }
+}
+
+impl WavComment {
+    /// The comment in a list of texts, if it is one of Meshtone's and fits the format.
+    fn of_list(list: &[u8], format: &Format) -> Option<Self> {
+        let text = list.strip_prefix(b"INFOICMT")?.get(4..)?;
+        let text = text.split(|byte| *byte == 0).next()?;
+        let comment: Self = serde_json::from_slice(text).ok()?;
+        let is_scale = |channel: &WavChannel| channel.full_scale.is_normal() && channel.full_scale > 0.0;
+        let fits = comment.channels.len() == usize::from(format.channels)
+            && comment.channels.iter().all(is_scale)
+            && comment.start_s.is_finite()
+            && (comment.sampling_rate_hz - f64::from(format.rate_hz)).abs() <= 0.5;
+        fits.then_some(comment)
+    }
+}
+
+/// The samples that a file has.
+struct Samples {
+    format: Format,
+    comment: Option<WavComment>,
+    bytes: u64,
+}
+
+/// Goes to the samples.
+fn find_samples(from: &mut BufReader<File>) -> Result<Samples, Problem> {
     let mut riff = [0; 12];
     from.read_exact(&mut riff)?;
     if !(riff.starts_with(b"RIFF") && riff.ends_with(b"WAVE")) {
         return Err(Problem::broken("it does not begin as WAV files do"));
     }
-    let mut format = None;
+    let (mut format, mut comment) = (None, None);
     loop {
         let mut head = [0; 8];
         from.read_exact(&mut head)?;
@@ -86,7 +129,15 @@ fn find_samples(from: &mut BufReader<File>) -> Result<(Format, u64), Problem> {
                 read = chunk.len() as u64;
                 format = Some(format_of(&chunk)?);
             }
-            (b"data", Some(format)) => return Ok((format, length)),
+            (b"LIST", Some(format)) if length <= LONGEST_LIST => {
+                let mut list = Vec::new();
+                read = from.by_ref().take(length).read_to_end(&mut list)? as u64;
+                if read < length {
+                    return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
+                }
+                comment = WavComment::of_list(&list, &format).or(comment);
+            }
+            (b"data", Some(format)) => return Ok(Samples { format, comment, bytes: length }),
             (b"data", None) => return Err(Problem::broken("it has samples, but no format before them")),
             _ => {}
         }

@@ -1,16 +1,19 @@
-//! Signals as Apache Parquet.
+//! Signals of a simulation as files: Apache Parquet, and the formats that other programs read.
 //!
-//! One row per sample, one column of double precision per signal, its unit in its name. What belongs to the
-//! whole file stands in its key-value metadata: the scenario as TOML that needs no other file
+//! [`SignalTable`] holds what is written: the time, one column of double precision per signal with its unit in its name, the sampling
+//! rate. Parquet alone carries the whole question in its key-value metadata: the scenario as TOML that needs no other file
 //! ([`SCENARIO_KEY`]), the version of Meshtone ([`VERSION_KEY`]), the identity of the run ([`RUN_KEY`]) and the
-//! sampling rate ([`RATE_KEY`]). Each column's unit and meaning stand in the metadata of its Arrow field. Nothing depends on when or where the
-//! file is written: the same simulation gives the same bytes.
+//! sampling rate ([`RATE_KEY`]); each column's unit and meaning stand in the metadata of its Arrow field. Nothing depends on when or
+//! where the file is written: the same simulation gives the same bytes.
 
+mod format;
 mod read;
-mod write;
+mod signal_table;
 
+pub use format::SignalFormat;
+pub(crate) use format::wav::{WavChannel, WavComment};
 pub use read::{Recorded, RecordedGearbox, read_gearbox_signals, read_signals};
-pub use write::{write_gearbox_signals, write_signals};
+pub use signal_table::SignalTable;
 
 /// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::Channel), listed sensors
 /// first.
@@ -25,3 +28,5 @@ pub const VERSION_KEY: &str = "meshtone.version";
 pub const RUN_KEY: &str = "meshtone.run";
 /// (S/s) Metadata key of the sampling rate.
 pub const RATE_KEY: &str = "meshtone.sampling_rate_hz";
+/// (S/s) Name of the sampling rate in formats that hold variables.
+const RATE: &str = "sampling_rate_hz";

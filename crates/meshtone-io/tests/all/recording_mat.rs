@@ -83,20 +83,40 @@ fn what_is_no_recording_is_named() {
 fn other_versions_are_answered_with_how_to_convert() {
     let version_4 = refused("old.mat", &bytes("version4.mat"), &RecordingOptions::default());
     assert!(version_4.contains("another version than 5") && version_4.contains("'-v7'"), "{version_4}");
-    let mut hdf5 = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".to_vec();
-    hdf5.resize(512, b' ');
-    hdf5.extend(b"\x89HDF\r\n\x1a\n");
-    let message = refused("new.mat", &hdf5, &RecordingOptions::default());
-    assert_eq!(
-        message,
-        "new.mat: is a MATLAB file of version 7.3 (HDF5), which is not read; save it again in MATLAB with `s = \
-         load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, or in Python with h5py and numpy.savez"
-    );
+}
+
+#[test]
+fn version_7_3_is_read_as_version_5() {
+    let of = |name: &str| read_recording(&fixture("v73.mat"), &variable(name)).unwrap();
+    let acc = of("acc");
+    assert_eq!((acc.sampling_rate_hz, &acc.channels[0].samples), (12_800.0, &one()));
+    let squares: Vec<f64> = (0..50).map(|index| f64::from(index * index)).collect();
+    assert_eq!(of("count").channels[0].samples, squares);
+    let pair = of("run.pair");
+    assert_eq!(names(&pair), ["run.pair 1", "run.pair 2"]);
+    assert_eq!(pair.channels[1].samples, scaled(-2.0));
+    let all =
+        RecordingOptions { channels: vec!["acc".into(), "run.pair".into()], ..RecordingOptions::default() };
+    assert_eq!(read_recording(&fixture("v73.mat"), &all).unwrap().channels.len(), 3);
+    let file = bytes("v73.mat");
+    let message = refused("m.mat", &file, &variable("cell"));
+    assert!(message.contains("cells (1 × 1 a cell array; save its arrays as variables"), "{message}");
+    let text = RecordingOptions { channels: vec!["name".into()], ..rate(1.0) };
+    let message = refused("m.mat", &file, &text);
+    assert!(message.contains("column name holds text; must be real numbers"), "{message}");
+}
+
+#[test]
+fn other_hdf5_is_read() {
+    let recording = read_recording(&fixture("plain.h5"), &variable("bench")).unwrap();
+    assert_eq!((names(&recording), recording.sampling_rate_hz.round()), (vec!["pair 1", "pair 2"], 12_800.0));
+    assert_eq!(recording.channels[0].samples, one());
+    assert_eq!(recording.channels[1].samples, scaled(-2.0));
 }
 
 #[test]
 fn cut_files_are_refused_wherever_they_end() {
-    for name in ["flat.mat", "flat_compressed.mat", "nested_compressed.mat"] {
+    for name in ["flat.mat", "flat_compressed.mat", "nested_compressed.mat", "v73.mat", "plain.h5"] {
         let file = bytes(name);
         for end in (0..file.len()).step_by(7) {
             let result = read("cut.mat", &file[..end], &rate(1.0));

@@ -5,11 +5,12 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::{GearPair, Scenario, Sensor};
+use meshtone::scenario::{GearPair, Gearbox, Scenario, Sensor, gearbox_template};
 use meshtone::sensor::{Channels, SensorSignal};
 use meshtone_io::ReadResultsError;
+use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, read_signals, write_signals};
+use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, SignalFormat, SignalTable, read_signals};
 use meshtone_io::table::{CellType, Cells, TableColumn, TableReader, TableWriter};
 use parquet::basic::{Compression, Encoding};
 use parquet::file::metadata::KeyValue;
@@ -46,11 +47,86 @@ fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
 fn signals_are_read_back_exactly() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
-    write_signals(File::create(&path).unwrap(), &scenario(), &channels()).unwrap();
+    SignalTable::of_pair(&scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
     let recorded = read_signals(&path).unwrap();
     assert_eq!((recorded.scenario, recorded.channels), (scenario(), channels()));
     assert_eq!(recorded.run, RunIdentity::of(&scenario()));
     assert_eq!(recorded.version, env!("CARGO_PKG_VERSION"));
+}
+
+/// What is written is read back: bit by bit, or from WAV within half of the last of 24 bits of the full scale.
+#[test]
+fn signals_of_every_format_are_read_back() {
+    let directory = tempdir().unwrap();
+    let scenario = scenario().with_sensors(vec![Sensor::default()]);
+    let mut channels = channels();
+    // Not the whole number of samples a second that a WAV file's header holds.
+    channels.sampling_rate_hz = 258_400.4;
+    channels.sensors =
+        vec![SensorSignal { name: "pinion_support_vertical".into(), values_g: vec![1.5; 70_000] }];
+    let table = SignalTable::of_pair(&scenario, &channels);
+    for format in SignalFormat::ALL {
+        let path = directory.path().join(format.file_name());
+        assert_eq!(SignalFormat::of_path(&path), Some(format));
+        table.write(File::create(&path).unwrap(), format).unwrap();
+        let recording = read_recording(&path, &RecordingOptions::default()).unwrap();
+        assert!((recording.sampling_rate_hz / channels.sampling_rate_hz - 1.0).abs() < 1e-9, "{format:?}");
+        assert!((recording.start_s - 0.95).abs() < 1e-9, "{format:?}: {}", recording.start_s);
+        assert_eq!(recording.scenario_toml.is_some(), format == SignalFormat::Parquet);
+        let listed = channels.list();
+        assert_eq!(recording.channels.len(), listed.len());
+        for (read, channel) in recording.channels.iter().zip(&listed) {
+            assert_eq!((&*read.name, read.unit.as_deref()), (&*channel.name(), Some(channel.unit())));
+            let written = channels.signal(channel).unwrap();
+            let peak = written.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+            let allowed = if format == SignalFormat::Wav { peak * 2.0_f64.powi(-24) } else { 0.0 };
+            let off = read.samples.iter().zip(written).map(|(read, written)| (read - written).abs());
+            assert!(off.fold(0.0, f64::max) <= allowed, "{format:?} {}", read.name);
+        }
+        fs::remove_file(&path).unwrap();
+    }
+}
+
+/// Another reader finds samples between −1 and 1, and the comment states what 1 means.
+#[test]
+fn wav_files_are_what_players_expect() {
+    let mut file = io::Cursor::new(Vec::new());
+    SignalTable::of_pair(&scenario(), &channels()).write(&mut file, SignalFormat::Wav).unwrap();
+    let bytes = file.into_inner();
+    let length = u32::from_le_bytes(bytes[4..8].try_into().unwrap());
+    assert_eq!(length as usize, bytes.len() - 8);
+    let text = String::from_utf8_lossy(&bytes[..1000]).into_owned();
+    assert!(text.contains(r#"{"name":"pinion_shaft_speed_hz","unit":"Hz","full_scale":64.0}"#), "{text}");
+    let mut reader = hound::WavReader::new(&bytes[..]).unwrap();
+    let spec = reader.spec();
+    assert_eq!((spec.channels, spec.sample_rate, spec.bits_per_sample), (6, 258_400, 32));
+    let samples: Vec<f32> = reader.samples().map(Result::unwrap).collect();
+    assert_eq!(samples.len(), 6 * 70_000);
+    let largest = samples.iter().fold(0.0_f32, |most, sample| most.max(sample.abs()));
+    assert!(largest > 0.9 && largest <= 1.0, "{largest}");
+}
+
+/// The names of a gearbox's signals are none of MATLAB's.
+#[test]
+fn signals_of_a_gearbox_have_names_that_matlab_accepts() {
+    let directory = tempdir().unwrap();
+    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    gearbox.solver.settings.sampling_rate_hz = 2e4;
+    gearbox.solver.settings.duration_s = Some(0.2);
+    let simulation = meshtone::gearbox_stages(&gearbox).unwrap().simulate().unwrap();
+    let table = SignalTable::of_gearbox(&gearbox, &simulation.channels);
+    let names = |format: SignalFormat| -> Vec<String> {
+        let path = directory.path().join(format.file_name());
+        table.write(File::create(&path).unwrap(), format).unwrap();
+        let recording = read_recording(&path, &RecordingOptions::default()).unwrap();
+        recording.channels.into_iter().map(|channel| channel.name).collect()
+    };
+    let written: Vec<String> = simulation.channels.signals.iter().map(|signal| signal.name.clone()).collect();
+    for format in [SignalFormat::Csv, SignalFormat::Npz, SignalFormat::Wav] {
+        assert_eq!(names(format), written, "{format:?}");
+    }
+    let of_matlab = names(SignalFormat::Mat);
+    assert!(of_matlab.contains(&"force_n_z1_z2".to_owned()), "{of_matlab:?}");
 }
 
 #[test]
@@ -79,7 +155,7 @@ fn cut_files_are_refused() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
     let mut bytes = Vec::new();
-    write_signals(&mut bytes, &scenario(), &channels()).unwrap();
+    SignalTable::of_pair(&scenario(), &channels()).write_parquet(&mut bytes).unwrap();
     fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     let error = read_signals(&path).unwrap_err();
     assert!(error.to_string().contains("not a whole Parquet file"), "{error}");
@@ -183,7 +259,7 @@ fn sensors_are_the_first_columns() {
     let mut channels = channels();
     let signal = |name: &str, value: f64| SensorSignal { name: name.into(), values_g: vec![value; 70_000] };
     channels.sensors = vec![signal("pinion_support_vertical", 1.5), signal("casing", -2.5)];
-    write_signals(File::create(&path).unwrap(), &scenario, &channels).unwrap();
+    SignalTable::of_pair(&scenario, &channels).write_parquet(File::create(&path).unwrap()).unwrap();
     let table = TableReader::new(File::open(&path).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names[..4], ["time_s", "pinion_support_vertical_g", "casing_g", "horizontal_g"]);

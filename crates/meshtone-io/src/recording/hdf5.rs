@@ -1,0 +1,175 @@
+//! HDF5: MATLAB's MAT-files of version 7.3, and those of other programs.
+//!
+//! Groups are structs, data sets arrays. MATLAB writes its dimensions in reverse order. Arrays that others refer to, as those of cell
+//! arrays, are not read.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+
+use hdf5_pure::{AttrValue, Dataset, Datatype, DatatypeByteOrder, Group, ReadSeekSource};
+
+use super::array::read_channels;
+use super::catalogue::{ArrayEntry, MAX_ARRAYS, read_arrays};
+use super::error::Problem;
+use super::number::{NumberKind, Numbers};
+use super::{Recording, RecordingOptions};
+
+/// Groups inside each other beyond which a file is none that recordings come in.
+const MAX_DEPTH: usize = 32;
+/// What begins the names of groups in which MATLAB keeps data of its own.
+const OWN_OF_MATLAB: char = '#';
+/// Bytes that a byte of a compressed file may well stand for; memory for more is taken only as they come.
+const USUAL_COMPRESSION: u64 = 16;
+/// Bytes that are read at once, where a row of the array is not longer.
+const BLOCK_BYTES: u64 = 1 << 18;
+/// What begins a file that MATLAB wrote.
+const MATLAB: &[u8] = b"MATLAB";
+
+/// Reads a recording from HDF5.
+pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let file_bytes = file.metadata()?.len();
+    let mut head = [0; MATLAB.len()];
+    file.read_exact(&mut head)?;
+    file.seek(SeekFrom::Start(0))?;
+    let source = ReadSeekSource::new(file).map_err(Problem::broken)?;
+    let opened = hdf5_pure::File::from_source(source).map_err(Problem::broken)?;
+    let mut arrays = Arrays { of_matlab: head == MATLAB, found: Vec::new(), groups: 0 };
+    arrays.collect(&opened.root(), "", 0)?;
+    let (entries, data_sets): (Vec<ArrayEntry>, Vec<Dataset>) = arrays.found.into_iter().unzip();
+    read_arrays(&entries, options, true, |index, layout, numbers, wanted| {
+        let mut rows = Rows::new(&data_sets[index])?;
+        let present = file_bytes.saturating_mul(USUAL_COMPRESSION);
+        Ok(read_channels(&mut rows, layout, numbers, wanted, present)?)
+    })
+}
+
+/// The arrays of a file that have been found.
+struct Arrays {
+    of_matlab: bool,
+    found: Vec<(ArrayEntry, Dataset)>,
+    groups: usize,
+}
+
+impl Arrays {
+    /// Collects the arrays of a group and of those in it.
+    fn collect(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), Problem> {
+        self.groups += 1;
+        if depth > MAX_DEPTH || self.groups.max(self.found.len()) > MAX_ARRAYS {
+            let problem = format!(
+                "it holds more than {MAX_ARRAYS} arrays or groups, or groups nested more than {MAX_DEPTH} deep"
+            );
+            return Err(Problem::Broken(problem));
+        }
+        let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        for name in group.datasets().map_err(Problem::broken)? {
+            let data_set = group.dataset(&name).map_err(Problem::broken)?;
+            let entry = self.entry(within(&name), &data_set)?;
+            self.found.push((entry, data_set));
+        }
+        for name in group.groups().map_err(Problem::broken)? {
+            if !name.starts_with(OWN_OF_MATLAB) {
+                let inner = group.group(&name).map_err(Problem::broken)?;
+                self.collect(&inner, &within(&name), depth + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn entry(&self, name: String, data_set: &Dataset) -> Result<ArrayEntry, Problem> {
+        let mut shape = data_set.shape().map_err(Problem::broken)?;
+        let numbers = numbers_of(data_set)?;
+        let single = match (&numbers, shape.iter().all(|length| *length == 1)) {
+            (Ok(numbers), true) => Some(numbers.read_one(&mut Rows::new(data_set)?)?),
+            _ => None,
+        };
+        if self.of_matlab {
+            shape.reverse();
+        }
+        Ok(ArrayEntry {
+            name,
+            shape,
+            first_runs_fastest: self.of_matlab,
+            type_name: match &numbers {
+                Ok(numbers) => numbers.kind.name().to_owned(),
+                Err(what) => what.clone(),
+            },
+            numbers,
+            single,
+            is_zero_twin: false,
+        })
+    }
+}
+
+/// How the numbers of a data set stand in the file; what it holds instead, if those are not real numbers.
+fn numbers_of(data_set: &Dataset) -> Result<Result<Numbers, String>, Problem> {
+    let attributes = data_set.attrs().map_err(Problem::broken)?;
+    let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str).map(str::trim_end);
+    if let Some("char") = class {
+        return Ok(Err("text".to_owned()));
+    }
+    let kind = match data_set.datatype().map_err(Problem::broken)? {
+        Datatype::FixedPoint { size, byte_order, layout } => {
+            let kind = match (size, layout.signed) {
+                (1, true) => NumberKind::I8,
+                (1, false) => NumberKind::U8,
+                (2, true) => NumberKind::I16,
+                (2, false) => NumberKind::U16,
+                (4, true) => NumberKind::I32,
+                (4, false) => NumberKind::U32,
+                (8, true) => NumberKind::I64,
+                (8, false) => NumberKind::U64,
+                _ => return Ok(Err(format!("integers of {size} bytes"))),
+            };
+            Some((kind, byte_order))
+        }
+        Datatype::FloatingPoint { size: 4, byte_order, .. } => Some((NumberKind::F32, byte_order)),
+        Datatype::FloatingPoint { size: 8, byte_order, .. } => Some((NumberKind::F64, byte_order)),
+        _ => None,
+    };
+    Ok(match (kind, class) {
+        (Some((_, DatatypeByteOrder::Vax)), _) => Err("numbers in VAX order".to_owned()),
+        (Some((kind, order)), _) => Ok(Numbers::plain(kind, order == DatatypeByteOrder::BigEndian)),
+        (None, Some("cell")) => {
+            Err("a cell array; save its arrays as variables, or the file with -v7".to_owned())
+        }
+        (None, _) => Err("no real numbers (text, complex numbers, records or references)".to_owned()),
+    })
+}
+
+/// The bytes of a data set, rows of its first dimension at a time.
+struct Rows<'d> {
+    data_set: &'d Dataset,
+    rows: u64,
+    at_once: u64,
+    next_row: u64,
+    block: Vec<u8>,
+    at: usize,
+}
+
+impl<'d> Rows<'d> {
+    fn new(data_set: &'d Dataset) -> Result<Self, Problem> {
+        let shape = data_set.shape().map_err(Problem::broken)?;
+        let element = data_set.element_size().map_err(Problem::broken)?;
+        let row_bytes = shape.iter().skip(1).fold(element, |bytes, length| bytes.saturating_mul(*length));
+        // A chunk is decompressed as a whole.
+        let chunk = data_set.chunk_shape().map_err(Problem::broken)?.and_then(|shape| shape.first().copied());
+        let at_once = (BLOCK_BYTES / row_bytes.max(1)).max(chunk.unwrap_or(1)).max(1);
+        let rows = shape.first().copied().unwrap_or(1);
+        Ok(Self { data_set, rows, at_once, next_row: 0, block: Vec::new(), at: 0 })
+    }
+}
+
+impl Read for Rows<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        if self.at == self.block.len() && self.next_row < self.rows {
+            self.block =
+                self.data_set.read_raw_rows(self.next_row, self.at_once).map_err(io::Error::other)?;
+            self.next_row = self.next_row.saturating_add(self.at_once);
+            self.at = 0;
+        }
+        let count = to.len().min(self.block.len() - self.at);
+        to[..count].copy_from_slice(&self.block[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
+    }
+}

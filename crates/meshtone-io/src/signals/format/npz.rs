@@ -1,0 +1,17 @@
+//! Signals as an archive of NumPy arrays: each under its name, with the time and the sampling rate.
+
+use std::io::{self, BufWriter, Seek, Write};
+
+use super::super::signal_table::SignalTable;
+use super::super::{RATE, TIME};
+use crate::npz::NpzWriter;
+
+pub fn write(table: &SignalTable, to: impl Write + Seek) -> io::Result<()> {
+    let mut archive = NpzWriter::stored(BufWriter::new(to));
+    archive.add(RATE, &[], &[table.sampling_rate_hz])?;
+    archive.add(TIME, &[table.samples()], &table.times_s())?;
+    for column in &table.columns {
+        archive.add(&column.name, &[column.values.len()], column.values)?;
+    }
+    archive.finish()?.flush()
+}
