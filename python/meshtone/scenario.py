@@ -335,7 +335,7 @@ def _native_of(arguments: Mapping[str, Any]) -> _core.Scenario:
     return _core.Scenario(_sections_of(arguments), pinion, gear)
 
 
-def template(kind: str) -> str:
+def template(kind: str, *, all_keys: bool = False) -> str:
     """A commented scenario file to start from.
 
     Parameters
@@ -343,6 +343,8 @@ def template(kind: str) -> str:
     kind : str
         'healthy', or a kind of fault: 'missing-tooth', 'tooth-breakage', 'root-crack', 'partial-face', 'through-face', 'pits',
         'tooth-destruction', 'wear'.
+    all_keys : bool
+        Whether every key stands in it, with its unit, meaning and default, instead of those that matter.
 
     Returns
     -------
@@ -359,4 +361,4 @@ def template(kind: str) -> str:
     >>> print(template("healthy").splitlines()[0])
     # A Meshtone scenario: a pair of spur gears, its operation, and its damage.
     """
-    return _core.template(kind)
+    return _core.template(kind, all_keys)

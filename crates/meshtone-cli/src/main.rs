@@ -8,6 +8,7 @@ mod choice;
 mod commands;
 mod diagnose;
 mod earlier_results;
+mod experiment_files;
 mod failure;
 mod indicators;
 mod other_kind;

@@ -104,10 +104,11 @@ impl Scenario {
     }
 }
 
-/// A commented scenario file of a kind of fault, or `healthy`.
+/// A scenario file of a kind of fault, or `healthy`, with the keys that matter or with all.
 #[pyfunction]
-pub fn template(kind: &str) -> PyResult<String> {
-    scenario::template(kind).ok_or_else(|| {
+pub fn template(kind: &str, all_keys: bool) -> PyResult<String> {
+    let text = if all_keys { scenario::template_of_all_keys(kind) } else { scenario::template(kind) };
+    text.ok_or_else(|| {
         value_error(format!("kind = {kind}: must be one of {}", scenario::template_kinds().join(", ")))
     })
 }

@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use meshtone::scenario::{GearboxRig, gearbox_template, template, template_kinds};
+use meshtone::scenario::{GearboxRig, gearbox_template, template, template_kinds, template_of_all_keys};
 use meshtone_dataset::plan;
+use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::experiment;
 
+use crate::experiment_files;
 use crate::failure::Failure;
 use crate::replacement::stage_text;
 use crate::terminal;
@@ -25,14 +27,20 @@ const EXPERIMENT: &str = "experiment";
 #[command(after_help = EXAMPLES)]
 pub struct Init {
     /// A healthy pair, or a kind of damage, on the gear's first tooth; a gearbox; the plan of a data set; or an experiment
-    #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT])))]
+    #[arg(default_value = "healthy", value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT])))]
     kind: String,
+    /// Print every key of a scenario of one pair with its meaning, unit and default, instead of those that matter
+    #[arg(long)]
+    all: bool,
     /// Print the published data of a rig with a gearbox; assumptions are marked
     #[arg(long, value_name = "RIG", value_parser = PossibleValuesParser::new(GearboxRig::ALL.map(GearboxRig::name)))]
     rig: Option<String>,
     /// Print the plan of a data set of a gearbox, instead of one pair
     #[arg(long)]
     gearbox: bool,
+    /// Write the files that an experiment names beside it: its scenario, and recordings of a simulated rig
+    #[arg(long, requires = "output")]
+    files: bool,
     /// File to write, instead of standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -43,13 +51,14 @@ pub struct Init {
 
 const EXAMPLES: &str = "\
 Examples:
-  meshtone init healthy
+  meshtone init
+  meshtone init healthy --all
   meshtone init tooth-breakage -o broken.toml
   meshtone init gearbox -o gearbox.toml
   meshtone init gearbox --rig phm2009-spur
   meshtone init dataset -o plan.toml
   meshtone init dataset --gearbox -o plan.toml
-  meshtone init experiment -o experiment.toml";
+  meshtone init experiment --files -o experiment.toml   with recordings, for `meshtone tune experiment.toml`";
 
 impl Init {
     pub fn run(&self) -> Result<(), Failure> {
@@ -58,10 +67,28 @@ impl Init {
             let problem = format!("--rig: given with {}; only a gearbox has published rigs", self.kind);
             return Failure::refuse(problem, "write `meshtone init gearbox --rig RIG`");
         }
+        if self.files && self.kind != EXPERIMENT {
+            let problem = format!("--files: given with {}; only an experiment names files", self.kind);
+            return Failure::refuse(
+                problem,
+                "leave --files out, or write `meshtone init experiment --files`",
+            );
+        }
         if self.gearbox && self.kind != DATASET {
             let problem =
                 format!("--gearbox: given with {}; only a data set is of a pair or of a gearbox", self.kind);
             return Failure::refuse(problem, "write `meshtone init dataset --gearbox`");
+        }
+        if self.all && [GEARBOX, DATASET, EXPERIMENT].contains(&self.kind.as_str()) {
+            let problem =
+                format!("--all: given with {}; only a scenario of one pair has a longer form", self.kind);
+            return Failure::refuse(
+                problem,
+                format!(
+                    "leave --all out; the guide lists every key of the file of `meshtone init {}`",
+                    self.kind
+                ),
+            );
         }
         let rig = GearboxRig::ALL.into_iter().find(|rig| self.rig.as_deref() == Some(rig.name()));
         let text = match self.kind.as_str() {
@@ -69,6 +96,7 @@ impl Init {
             DATASET if self.gearbox => plan::gearbox_template(),
             DATASET => plan::template().to_owned(),
             EXPERIMENT => experiment::template().to_owned(),
+            kind if self.all => template_of_all_keys(kind).ok_or_else(unknown)?,
             kind => template(kind).ok_or_else(unknown)?,
         };
         match &self.output {
@@ -77,15 +105,30 @@ impl Init {
         }
     }
 
+    /// Writes the file, and those that it names where they are asked for: all or none.
     fn write(&self, path: &Path, text: &str) -> Result<(), Failure> {
-        let file = stage_text(path, text)?;
-        if self.force {
-            return Ok(file.commit()?);
+        let directory = path.parent().filter(|_| self.files);
+        let named = directory.into_iter().flat_map(experiment_files::paths);
+        let exists = |path: &PathBuf| !self.force && path.exists();
+        if let Some(earlier) = named.chain([path.to_owned()]).find(exists) {
+            return Err(already_exists(&earlier));
         }
-        file.commit_new().map_err(|error| match error.source.kind() {
-            ErrorKind::AlreadyExists => Failure::bad_input(format!("{} exists already", path.display()))
-                .with_help("name another file with -o, or replace it with --force"),
-            _ => error.into(),
+        let mut staged = directory.map(experiment_files::stage).transpose()?.unwrap_or_default();
+        staged.push(stage_text(path, text)?);
+        if self.force {
+            return Ok(staged.into_iter().try_for_each(StagedFile::commit)?);
+        }
+        staged.into_iter().try_for_each(|file| {
+            let path = file.path.clone();
+            file.commit_new().map_err(|error| match error.source.kind() {
+                ErrorKind::AlreadyExists => already_exists(&path),
+                _ => error.into(),
+            })
         })
     }
+}
+
+fn already_exists(path: &Path) -> Failure {
+    Failure::bad_input(format!("{} exists already", path.display()))
+        .with_help("name another file with -o, or replace it with --force")
 }

@@ -232,6 +232,12 @@ impl Fault {
         [kind, keys, commented_rows(&Self::rows(), self, &Self::at_usual_place(self.damage.clone()))].concat()
     }
 
+    /// The lines of its section that matter, without the header.
+    pub(crate) fn essential(&self) -> String {
+        let place = write_rows(&rows_but(&["severity"]), self);
+        format!("{place}kind = \"{}\"\n{}", self.damage.kind(), self.damage.essential())
+    }
+
     /// Whether it can be, as far as no profile is needed; its keys are named `fault.…`.
     fn check(&self, gears: &NamedGears) -> Check {
         check_keys(self, "fault")?;

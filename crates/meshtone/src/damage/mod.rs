@@ -46,8 +46,8 @@ pub use wear::{load_share, slide_factor};
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::keys::{
-    Check, KeyDescription, Keys, NoFiles, check_rows, commented_rows, describe, read_keys, rows_but,
-    write_rows,
+    Check, KeyDescription, Keys, NoFiles, check_rows, commented_rows, describe, essential_rows, read_keys,
+    rows_but, write_rows,
 };
 use crate::wheel::Gears;
 use severity::SoundTooth;
@@ -141,6 +141,13 @@ macro_rules! kinds {
             fn commented(&self, left_out: &[&str]) -> String {
                 match self {
                     $(Self::$kind(damage) => commented_rows(&rows_but(left_out), damage, &$kind::start()),)+
+                }
+            }
+
+            /// The same of those alone that have no default, each with its meaning.
+            fn essential(&self) -> String {
+                match self {
+                    $(Self::$kind(damage) => essential_rows(&rows_but(&[]), damage, &$kind::start()),)+
                 }
             }
 

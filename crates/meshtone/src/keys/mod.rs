@@ -44,8 +44,8 @@ pub(crate) use names::by_name;
 pub(crate) use range::Range;
 pub(crate) use row::{KeyRow, comment, documented, row, sub_table};
 pub(crate) use table::{
-    Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, read_keys, rows_but,
-    write_keys, write_rows,
+    Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, essential,
+    essential_rows, read_keys, rows_but, write_keys, write_rows,
 };
 pub(crate) use text::array;
 pub(crate) use value::{KeyValue, Written};

@@ -290,6 +290,17 @@ impl<S> KeyRow<S> {
         text
     }
 
+    /// The key in a file of what matters, and its meaning; none where it may be left out.
+    pub(super) fn essential(&self, section: &S, start: &S) -> Option<[String; 2]> {
+        let written = self.cell.write(section)?;
+        let is_default = self.cell.write(start).is_some_and(|default| default == written);
+        if is_default && !self.is_required() {
+            return None;
+        }
+        let line = format!("{} = {}", self.name, self.shown_value(section)?);
+        Some([line, format!("{}{}", self.unit_before(), self.meaning)])
+    }
+
     /// Meaning and default, in sentences.
     fn sentences(&self, start: &S, section: &str) -> String {
         let mut letters = self.meaning.chars();

@@ -98,7 +98,19 @@ pub(crate) fn commented<S: Keys>(section: &S) -> String {
     commented_rows(&S::rows(), section, &S::start())
 }
 
+/// The lines of a section's keys without which it would be another, each with its meaning behind it.
+pub(crate) fn essential<S: Keys>(section: &S) -> String {
+    essential_rows(&S::rows(), section, &S::start())
+}
+
 /// The lines of some keys of a section, likewise, with what `start` has as defaults.
+pub(crate) fn essential_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
+    let keys: Vec<[String; 2]> = rows.iter().filter_map(|row| row.essential(section, start)).collect();
+    let width = keys.iter().map(|[line, _]| line.chars().count()).max().unwrap_or(0);
+    keys.iter().map(|[line, meaning]| format!("{line:width$}  # {meaning}\n")).collect()
+}
+
+/// The lines of some keys of a section with a comment for each, with what `start` has as defaults.
 pub(crate) fn commented_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
     rows.iter().map(|row| row.commented(section, start, S::SECTION)).collect()
 }

@@ -40,7 +40,7 @@ pub use gearbox::{
 };
 pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};
-pub use template::{template, template_kinds};
+pub use template::{template, template_kinds, template_of_all_keys};
 pub use uncertainty::log_deviation;
 pub(crate) use validate::unknown_kind;
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};

@@ -3,15 +3,17 @@
 use super::to_toml::Style;
 use super::{Fault, GearPair, Scenario, Sensor};
 use crate::damage::{PaperRig, damage_kinds};
-use crate::keys::{Keys, comment, commented};
+use crate::keys::{Keys, comment, commented, essential};
 
 const HEALTHY: &str = "healthy";
 
 const HEAD: &str = "\
 # A Meshtone scenario: a pair of spur gears, its operation, and its damage.
 # The pinion, on the motor's shaft, drives the gear, on the brake's shaft.
-# Text after \"# \" is a comment. A key directly after \"#\" is optional: remove the \"#\" to set it.
+";
 
+const HEAD_OF_ALL_KEYS: &str = "\
+# Text after \"# \" is a comment. A key directly after \"#\" is optional: remove the \"#\" to set it.
 ";
 
 const WITHOUT_SENSORS: &str = "\
@@ -34,10 +36,7 @@ pub fn template_kinds() -> Vec<&'static str> {
     std::iter::once(HEALTHY).chain(damage_kinds().into_iter().map(|kind| kind.name)).collect()
 }
 
-/// A commented scenario file: every key with its unit, meaning and default.
-///
-/// Text after `# ` is a comment. Text directly after `#` is a key that may be left out: take the
-/// `#` away to set it.
+/// A scenario file to start from: the keys that matter, each with its meaning. All others have their defaults.
 ///
 /// # Arguments
 /// * `kind` - one of [`template_kinds`]
@@ -54,13 +53,33 @@ pub fn template_kinds() -> Vec<&'static str> {
 /// # Ok::<(), meshtone::scenario::ScenarioError>(())
 /// ```
 pub fn template(kind: &str) -> Option<String> {
-    let scenario = if kind == HEALTHY {
-        of_the_paper(PaperRig::Breakage)
-    } else {
-        let kind = damage_kinds().into_iter().find(|known| known.name == kind)?;
-        Scenario { faults: vec![Fault::at_usual_place(kind.example)], ..of_the_paper(kind.rig) }
-    };
-    Some(format!("{HEAD}{}", scenario.in_sections(&Commented)))
+    let text = scenario_of_kind(kind)?.in_sections(&Essential);
+    let all = format!("# Every other key has its default: `meshtone init {kind} --all` prints them.\n");
+    Some(format!("{HEAD}{all}\n{text}"))
+}
+
+/// The same scenario as a file with every key, its unit, meaning and default.
+///
+/// Text after `# ` is a comment. Text directly after `#` is a key that may be left out: take the
+/// `#` away to set it.
+///
+/// # Arguments
+/// * `kind` - one of [`template_kinds`]
+///
+/// # Returns
+/// The file's text; none for another kind.
+pub fn template_of_all_keys(kind: &str) -> Option<String> {
+    let text = scenario_of_kind(kind)?.in_sections(&Commented);
+    Some(format!("{HEAD}{HEAD_OF_ALL_KEYS}\n{text}"))
+}
+
+/// The scenario of a template.
+fn scenario_of_kind(kind: &str) -> Option<Scenario> {
+    if kind == HEALTHY {
+        return Some(of_the_paper(PaperRig::Breakage));
+    }
+    let kind = damage_kinds().into_iter().find(|known| known.name == kind)?;
+    Some(Scenario { faults: vec![Fault::at_usual_place(kind.example)], ..of_the_paper(kind.rig) })
 }
 
 /// The pairs of the paper's experiments.
@@ -83,6 +102,19 @@ fn of_the_paper(rig: PaperRig) -> Scenario {
     scenario
 }
 
+/// The keys that matter, each with its meaning.
+struct Essential;
+
+impl Style for Essential {
+    fn keys<S: Keys>(&self, section: &S) -> String {
+        essential(section)
+    }
+
+    fn fault(&self, fault: &Fault) -> String {
+        fault.essential()
+    }
+}
+
 /// Every key with a comment; those at their default are commented out.
 struct Commented;
 
@@ -93,11 +125,6 @@ impl Style for Commented {
 
     fn fault(&self, fault: &Fault) -> String {
         fault.commented()
-    }
-
-    /// So that others can be added.
-    fn entry_header(&self, name: &str, _entries: usize) -> String {
-        format!("[[{name}]]")
     }
 
     fn without_faults(&self) -> Option<String> {

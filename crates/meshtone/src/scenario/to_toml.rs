@@ -25,24 +25,29 @@ impl Scenario {
 
     /// The file's text, each section in its own style.
     pub(super) fn in_sections(&self, style: &impl Style) -> String {
+        let section = |name: &str, keys: String| match keys.as_str() {
+            "" => String::new(),
+            keys => format!("[{name}]\n{keys}"),
+        };
         let mut sections = vec![
             style.keys(self),
-            format!("[gears]\n{}", style.keys(&self.gears)),
-            format!("[operation]\n{}", style.keys(&self.operation)),
-            format!("[quality]\n{}", style.keys(&self.quality)),
+            section("gears", style.keys(&self.gears)),
+            section("operation", style.keys(&self.operation)),
+            section("quality", style.keys(&self.quality)),
         ];
         let faults = style.entry_header("fault", self.faults.len());
         sections.extend(self.faults.iter().map(|fault| format!("{faults}\n{}", style.fault(fault))));
         if self.faults.is_empty() {
             sections.extend(style.without_faults());
         }
-        sections.push(format!("[rig]\n{}", style.keys(&self.rig)));
+        sections.push(section("rig", style.keys(&self.rig)));
         let sensors = style.entry_header("sensor", self.sensors.len());
         sections.extend(self.sensors.iter().map(|sensor| format!("{sensors}\n{}", style.keys(sensor))));
         if self.sensors.is_empty() {
             sections.extend(style.without_sensors());
         }
-        sections.push(format!("[solver]\n{}", style.keys(&self.solver)));
+        sections.push(section("solver", style.keys(&self.solver)));
+        sections.retain(|text| !text.is_empty());
         sections.join("\n")
     }
 }
@@ -51,8 +56,10 @@ impl Scenario {
 pub(super) trait Style {
     fn keys<S: Keys>(&self, section: &S) -> String;
     fn fault(&self, fault: &Fault) -> String;
-    /// Header above an entry of a list.
-    fn entry_header(&self, name: &str, entries: usize) -> String;
+    /// Header above an entry of a list, by default one beside which others can be added.
+    fn entry_header(&self, name: &str, _entries: usize) -> String {
+        format!("[[{name}]]")
+    }
     /// Text in place of faults, where nothing is broken.
     fn without_faults(&self) -> Option<String> {
         None

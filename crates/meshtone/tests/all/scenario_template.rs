@@ -1,10 +1,25 @@
 //! The commented scenario files to start from.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use meshtone::scenario::{Damage, DestructionLine, GearPair, PitCircle, Scenario, template, template_kinds};
+use meshtone::scenario::{
+    Damage, DestructionLine, GearPair, PitCircle, Scenario, template, template_kinds, template_of_all_keys,
+};
 
 fn all() -> impl Iterator<Item = (&'static str, String)> {
-    template_kinds().into_iter().map(|kind| (kind, template(kind).unwrap()))
+    template_kinds().into_iter().map(|kind| (kind, template_of_all_keys(kind).unwrap()))
+}
+
+/// What `meshtone init KIND` prints fits a small window, and is the scenario of all keys.
+#[test]
+fn short_templates_have_what_matters() {
+    for (kind, long) in all() {
+        let text = template(kind).unwrap();
+        assert_eq!(Scenario::from_toml(&text).unwrap(), Scenario::from_toml(&long).unwrap(), "{kind}");
+        let keys = text.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
+        assert!(keys.count() <= 18 && text.lines().count() <= 25, "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 140), "{text}");
+        assert!(text.contains(&format!("`meshtone init {kind} --all`")), "{text}");
+    }
 }
 
 /// The file with every key that is commented out as optional set.
@@ -64,7 +79,7 @@ fn keys_that_are_commented_out_show_their_defaults() {
 
 #[test]
 fn keys_whose_default_follows_from_others_are_shown_as_well() {
-    let text = template("healthy").unwrap();
+    let text = template_of_all_keys("healthy").unwrap();
     let set =
         text.replace("# tip_chamfer_mm =", "tip_chamfer_mm =").replace("# backlash_mm =", "backlash_mm =");
     let default = Scenario::from_toml(&text).unwrap();
@@ -93,12 +108,12 @@ fn keys_whose_default_follows_from_others_are_shown_as_well() {
 
 #[test]
 fn alternatives_are_valid_in_place_of_what_they_replace() {
-    let inertias = template("healthy").unwrap().replace("# pinion_inertia", "pinion_inertia");
+    let inertias = template_of_all_keys("healthy").unwrap().replace("# pinion_inertia", "pinion_inertia");
     let rig = Scenario::from_toml(&inertias.replace("# gear_inertia", "gear_inertia")).unwrap().rig;
     assert_eq!((rig.pinion_inertia.mass_kg, rig.gear_inertia.mass_kg), (Some(0.24), Some(1.2)));
 
     for kind in ["partial-face", "through-face"] {
-        let text = template(kind).unwrap();
+        let text = template_of_all_keys(kind).unwrap();
         let fractions = ["start = 0.2\n", "end = 0.8\n", "depth = 0.5\n"];
         let text = fractions.iter().fold(text, |text, line| text.replace(line, ""));
         let text = text.replace("# circle =", "circle =");
@@ -110,7 +125,7 @@ fn alternatives_are_valid_in_place_of_what_they_replace() {
         assert_eq!(pit, PitCircle::Circle { x_mm: 57.5, y_mm: 3.66, radius_mm: 2.5 });
     }
 
-    let text = template("tooth-destruction").unwrap();
+    let text = template_of_all_keys("tooth-destruction").unwrap();
     let text = text.replace("\nend = 0.9286", "").replace("# slope_deg", "slope_deg");
     let Damage::ToothDestruction(destruction) = Scenario::from_toml(&text).unwrap().faults[0].damage else {
         panic!("{text}");
