@@ -2,8 +2,8 @@
 
 use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS};
 use meshtone::signal::{
-    self as steps, BearingSeparation, BearingSettings, FrequencyBand, GearTrain, Kurtogram, SquaredEnvelopeSpectrum,
-    TrainBearing, TrainRecording,
+    self as steps, BearingSeparation, BearingSettings, FrequencyBand, GearTrain, Kurtogram,
+    SquaredEnvelopeSpectrum, TrainBearing, TrainRecording,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

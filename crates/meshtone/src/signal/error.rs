@@ -1,5 +1,6 @@
 //! Errors about a recording.
 
+use crate::bearing::BearingError;
 use thiserror::Error;
 
 /// A recording, a phase or a setting that gives no right result.
@@ -166,6 +167,12 @@ pub enum SignalError {
         /// The allowed values.
         allowed: &'static str,
     },
+}
+
+impl From<BearingError> for SignalError {
+    fn from(BearingError { name, value, allowed }: BearingError) -> Self {
+        Self::parameter(name, value, allowed)
+    }
 }
 
 impl SignalError {

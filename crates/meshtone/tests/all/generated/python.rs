@@ -8,7 +8,7 @@ pub const HEAD: &str =
 const WIDTH: usize = 120;
 
 /// Classes of tables that are not called as their key.
-const TABLE_NAMES: [(&str, &str); 10] = [
+const TABLE_NAMES: [(&str, &str); 13] = [
     ("pinion_shaft", "Shaft"),
     ("gear_shaft", "Shaft"),
     ("pinion_inertia", "WheelInertia"),
@@ -17,6 +17,9 @@ const TABLE_NAMES: [(&str, &str); 10] = [
     ("random", "RandomPits"),
     ("path", "SensorPath"),
     ("inertia", "WheelInertia"),
+    ("pinion_unbalance", "Unbalance"),
+    ("gear_unbalance", "Unbalance"),
+    ("defect", "BearingDefect"),
     ("feet", "Foot"),
     ("torque_ripple", "Ripple"),
 ];
