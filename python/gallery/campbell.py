@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.colors import LogNorm
 
 import meshtone as mt
+from meshtone.plotting import GREY, ORANGE
 
 LIMIT_HZ, BAND_HZ = 5000.0, 50.0
 speeds_hz = np.linspace(10, 60, 101)
@@ -30,14 +31,14 @@ for ax, din_grade, title in zip(axes, (0, 7), ("Ideal teeth", "Teeth of DIN grad
         shown = (frequency_hz > 0) & (frequency_hz < LIMIT_HZ)
         # The spectra have lines of their own: the strongest in each band is shown.
         np.maximum.at(column, (frequency_hz[shown] / BAND_HZ).astype(int), amplitude_g[shown])
-    image = ax.pcolormesh(speeds_hz, centres_hz, levels_g, norm=LogNorm(1e-4, 1), cmap="cividis", shading="nearest")
+    image = ax.pcolormesh(speeds_hz, centres_hz, levels_g, norm=LogNorm(1e-3, 1), cmap="Blues", shading="nearest")
     for harmonic in range(1, 9):
         mesh_hz = harmonic * healthy.pinion_teeth * speeds_hz
-        ax.plot(speeds_hz, mesh_hz, color="white", linewidth=0.7, linestyle=(0, (1, 4)))
+        ax.plot(speeds_hz, mesh_hz, color=GREY, linewidth=0.7, linestyle=(0, (1, 4)))
         if din_grade == 0 and harmonic < 7:
             last = np.flatnonzero(mesh_hz < 0.93 * LIMIT_HZ)[-1]
-            ax.text(speeds_hz[last] - 1, mesh_hz[last] + 40, f"{harmonic}×", color="white", ha="right", fontsize=9)
-    ax.hlines(natural_hz, 10, 60, color="#e69f00", linewidth=0.8)
+            ax.text(speeds_hz[last] - 1, mesh_hz[last] + 40, f"{harmonic}×", ha="right", fontsize=9)
+    ax.hlines(natural_hz, 10, 60, color=ORANGE, linewidth=0.8, linestyle="--")
     ax.set(title=title, xlabel="Pinion speed (rev/s)", xlim=(10, 60), ylim=(0, LIMIT_HZ))
 axes[0].set_ylabel("Frequency (Hz)")
 marks = axes[1].secondary_yaxis("right")

@@ -59,17 +59,20 @@ for (signal, spectrum), (name, wheel, kind) in zip(grid, rows):
         pitches = (np.arange(record.difference.size) / record.difference.size - 0.25) * record.teeth
         turned = np.roll(record.difference, record.difference.size // 4)
         signal.plot(pitches, turned, color=shade, linewidth=0.8, label=f"severity {severity:g}")
-        spectrum.plot(record.envelope_spectrum[: ORDERS + 1], color=shade, linewidth=1.2, marker=".", markersize=4)
+        spectrum.semilogy(record.envelope_spectrum[: ORDERS + 1], color=shade, linewidth=1.2, marker=".", markersize=5)
         most = max(most, record.envelope_spectrum[1 : ORDERS + 1].max())
         if severity == severities[-1]:
             faded = simulation.process("vertical_g", OTHER[wheel]).envelope_spectrum[: ORDERS + 1]
-            spectrum.plot(faded, color=shade, linestyle=":", linewidth=1.2, label=f"in the average over the {OTHER[wheel]}'s shaft")
+            # What is less than can be seen is drawn at the lower edge.
+            shown = np.maximum(faded, 1.5e-4 * most)
+            label = f"in the average over the {OTHER[wheel]}'s shaft, at most"
+            spectrum.semilogy(shown, color=shade, linestyle=":", linewidth=1.2, label=label)
     for severity in severities:
         damaged = mt.simulate(graded.copy(fault=kind(severity=severity, wheel=wheel, tooth=1)))
         table.append(line_of_table(wheel, name.lower(), severity, damaged.process("vertical_g", wheel)))
-    signal.set(title=f"{name}, {wheel}", xlim=(pitches[0], pitches[-1]), ylabel="Difference (g)")
+    signal.set(title=f"{name}, {wheel}", xlim=(pitches[0], pitches[-1]), ylabel="Difference signal (g)")
     signal.set_xlabel(f"Angle of the {wheel} (tooth pitches)")
-    spectrum.set(title=f"Envelope over the {wheel}'s revolution", xlim=(0.5, ORDERS), ylim=(0, 1.15 * most), ylabel="Amplitude (g)")
+    spectrum.set(title=f"Envelope over the {wheel}'s revolution", xlim=(0.5, ORDERS), ylim=(1e-4 * most, 10 * most), ylabel="Amplitude (g)")
     spectrum.set_xlabel(f"Order of the {wheel}'s shaft")
     signal.legend(frameon=False, fontsize=9, loc="upper right")
     spectrum.legend(frameon=False, fontsize=9, loc="upper right")

@@ -1,7 +1,7 @@
 """What each fault does to the gear's difference signal.
 
 One pair of wheels six times: healthy, and with each kind of damage on the first tooth, over a revolution of the gear. The damaged
-tooth enters contact at 0; the pair rings on after it. In grey the healthy pair's signal: what the deviations excite. Mind the
+tooth enters contact at 0; the pair rings on after it. In blue the healthy pair's signal: what the deviations excite. Mind the
 scales: each row has its own.
 """
 
@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import meshtone as mt
-from meshtone.plotting import BLUE, GREY, ORANGE
+from meshtone.plotting import BLUE, ORANGE
 
 healthy = mt.examples.healthy().copy(din_grade=5)
 faults: dict[str, mt.Fault | None] = {
@@ -31,13 +31,14 @@ for ax, (name, fault) in zip(grid.flat, faults.items()):
     # A quarter of the revolution is shown before the damaged tooth.
     turned = record.difference.size // 4
     pitches = (np.arange(record.difference.size) - turned) / record.difference.size * record.teeth
-    ax.plot(pitches, np.roll(record.difference, turned), color=BLUE if fault is None else ORANGE, linewidth=0.7)
     if fault is not None:
-        ax.plot(pitches, np.roll(unbroken, turned), color=GREY, linewidth=0.7)
+        ax.plot(pitches, np.roll(record.difference, turned), color=ORANGE, linewidth=0.7, label="damaged")
+    ax.plot(pitches, np.roll(unbroken, turned), color=BLUE, linewidth=0.7, label="healthy")
     rms_g, kurtosis = record.indicators["difference_rms"], record.indicators["difference_kurtosis"]
     ax.set_title(f"{name}\nrms {rms_g:.1f} g, kurtosis {kurtosis:.0f}", fontsize=11)
     ax.set_xlim(pitches[0], pitches[-1])
     ax.grid(alpha=0.3)
+grid[0, 1].legend(frameon=False, fontsize=9, loc="upper right")
 for ax in grid[-1]:
     ax.set_xlabel("Angle of the gear (tooth pitches)")
 for ax in grid[:, 0]:

@@ -23,10 +23,12 @@ print(f"{wheel}, on the {now.shafts[wheel]} shaft, is damaged: its FM4 is {rise[
 
 figure, axes = plt.subplots(len(rise), 1, figsize=(9, 9), layout="constrained", sharex=True)
 for ax, name in zip(axes, rise, strict=True):
+    # What both have in common is dark: the one shows through the other.
     for record, colour, label in ((now, ORANGE, "now"), (before, BLUE, "healthy")):
         signal_g = record[name].difference
-        ax.plot([360 * point / len(signal_g) for point in range(len(signal_g))], signal_g, color=colour, linewidth=0.6, label=label)
-    ax.set(title=f"{name}: FM4 is {rise[name]:.1f} times that of the healthy gearbox", ylabel="Difference (g)", xlim=(0, 360))
+        angle_deg = [360 * point / len(signal_g) for point in range(len(signal_g))]
+        ax.plot(angle_deg, signal_g, color=colour, linewidth=0.6, alpha=0.7, label=label)
+    ax.set(title=f"{name}: FM4 is {rise[name]:.1f} times that of the healthy gearbox", ylabel="Difference signal (g)", xlim=(0, 360))
 axes[0].legend(loc="upper right")
 axes[-1].set_xlabel("Angle of the wheel (°)")
 figure.savefig(Path(*sys.argv[1:2], "python_gearbox_wheel.png"), dpi=100)

@@ -24,10 +24,10 @@ whole_face_mm = healthy.face_width_mm
 
 
 def stiffness(depth_mm: float, length_mm: float | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Position (base pitches) and stiffness (N/mm) of the pair of the cracked tooth."""
+    """Position (base pitches) and stiffness (N/µm) of the pair of the cracked tooth."""
     trace = mt.trace(healthy.copy(fault=mt.RootCrack(depth_mm=depth_mm, length_mm=length_mm)))
-    pair_n_per_mm = trace["pair_stiffness_faulty_n_per_mm"]
-    return np.linspace(0, trace["contact_ratio"], pair_n_per_mm.size), pair_n_per_mm
+    pair_n_per_um = 1e-3 * trace["pair_stiffness_faulty_n_per_mm"]
+    return np.linspace(0, trace["contact_ratio"], pair_n_per_um.size), pair_n_per_um
 
 
 curves = [stiffness(depth_mm) for depth_mm in depths_mm.tolist()]
@@ -39,10 +39,10 @@ shades = plt.get_cmap("viridis")(np.linspace(0, 0.9, 6))
 for depth_mm, shade in zip((0, 0.5, 1, 2, 3, 4), shades):
     cracked = curves[int(np.argmin(abs(depths_mm - depth_mm)))][1]
     path.plot(position, cracked, color=shade, label=f"{depth_mm:g} mm" if depth_mm else "sound")
-path.set(title="Pair with the cracked tooth", xlabel="Position on the path (base pitches)", ylabel="Stiffness (N/mm)", ylim=(0, None))
+path.set(title="Pair with the cracked tooth", xlabel="Position on the path (base pitches)", ylabel="Stiffness (N/µm)", ylim=(0, None))
 path.legend(title="Crack", frameon=False, ncols=2, loc="lower center")
 
-names = ["tip of the cracked tooth", "begin of single contact", "pitch point", "end of the path"]
+names = ["tip of the cracked tooth", "start of single contact", "pitch point", "end of the path"]
 # The gear's tip begins the path; at the pitch point its flank has the radius of curvature r sin α, r the pitch radius.
 module_mm, alpha = healthy.module_mm, np.radians(20)
 pitch_radius_mm = module_mm * healthy.gear_teeth / 2
@@ -51,7 +51,8 @@ pitch_point = (tip_curvature_mm - pitch_radius_mm * np.sin(alpha)) / (np.pi * mo
 at = [0, position[-1] - 1, pitch_point, position[-1]]
 for name, place, others, shade in zip(names, at, OTHER_PROGRAM.T[1:], plt.get_cmap("viridis")(np.linspace(0, 0.85, 4))):
     places.plot(depths_mm, loss_percent[:, np.argmin(abs(position - place))], color=shade, label=name)
-    places.plot(OTHER_PROGRAM[:, 0], others, "o", color=shade, markersize=4)
+    places.plot(OTHER_PROGRAM[:, 0], others, "o", color=shade, markersize=6, markeredgecolor="black")
+places.plot([], [], "o", color="white", markeredgecolor="black", label="another program")
 places.set(title="Over the whole face", xlabel="Depth (mm)", ylabel="Loss of the pair's stiffness (%)")
 places.legend(frameon=False)
 

@@ -39,6 +39,7 @@ order_ax.plot(orders[shown], order_amplitude_g[shown], color=ORANGE, linewidth=0
 order_ax.set(title="Over order: sharp", xlabel="Order of the pinion (cycles per revolution)", ylabel="Vertical amplitude (g)")
 order_ax.set_xticks(teeth * np.arange(9))
 order_map.plot(teeth, over="speed", ax=map_ax)
+figure.axes[-1].set_ylabel("Vertical amplitude (g)")
 map_ax.set(title="Over order and speed", xlabel="Order of the pinion", ylabel="Pinion speed (rev/s)")
 for ax in (frequency_ax, order_ax):
     ax.margins(x=0)

@@ -1,6 +1,6 @@
-"""What a rig rings at: the spectrum of one support of today's defaults beside those of before, with the modes named.
+"""What a rig rings at: the spectrum of one support of the present defaults beside those of before, with the modes named.
 
-Before: supports of 1.6 kg at 1592 and 4285 Hz, the mean of both, no wall. Today: supports of 2.3 kg at 450 and 2900 Hz, the pinion's
+Before: supports of 1.6 kg at 1592 and 4285 Hz, the mean of both, no wall. Now: supports of 2.3 kg at 450 and 2900 Hz, the pinion's
 support, a wall of 4 kHz under the sensor. The mean of both hides the mode in which they move against each other.
 """
 
@@ -21,7 +21,7 @@ former = today.copy(
 )
 
 figure, axes = plt.subplots(2, 1, figsize=(9, 7), sharex=True, sharey=True, layout="constrained")
-for ax, scenario, name in [(axes[0], former, "Before: mean of both supports"), (axes[1], today, "Today: the pinion's support")]:
+for ax, scenario, name in [(axes[0], former, "Before: mean of both supports"), (axes[1], today, "Now: the pinion's support")]:
     simulation = mt.simulate(scenario)
     [signal] = simulation.sensors.values()
     amplitude_g = 2 * np.abs(np.fft.rfft(signal)) / signal.size
@@ -35,10 +35,10 @@ for ax, scenario, name in [(axes[0], former, "Before: mean of both supports"), (
         # Both directions often ring at nearly one frequency.
         if energy[GEAR_SUPPORT + PINION_SUPPORT].sum() > energy.sum() / 6 and (not named or frequency_hz > 1.15 * named[-1]):
             named.append(frequency_hz)
-            words = "alike" if shape[GEAR_SUPPORT] @ shape[PINION_SUPPORT] > 0 else "against"
+            words = "in phase" if shape[GEAR_SUPPORT] @ shape[PINION_SUPPORT] > 0 else "in opposition"
             ax.axvline(frequency_hz / 1e3, color=GREY, linestyle="--", linewidth=0.8)
             ax.text(frequency_hz / 1e3 + 0.03, 1.4, f"{frequency_hz:.0f} Hz, {words}", rotation=90, va="bottom", fontsize=8)
-    ax.set(ylabel="Amplitude (g)", ylim=(1e-4, 1e3))
+    ax.set(ylabel="Amplitude (g)", ylim=(1e-4, 1e4))
     ax.set_title(name, loc="right")
     ax.grid(alpha=0.3)
 axes[1].set_xlabel("Frequency (kHz)")

@@ -162,9 +162,9 @@ def plot_mesh_stiffness(
     if not 0 <= first < last:
         raise ValueError(f"pitches = {pitches}: must be from 0 or more to more than that")
     ax = _axes(ax)
-    stiffness = simulation._native.mesh_stiffness_n_per_mm(first, last - first)
+    stiffness = 1e-3 * simulation._native.mesh_stiffness_n_per_mm(first, last - first)
     ax.plot(first + np.arange(stiffness.size) / stiffness.size * (last - first), stiffness, color=BLUE, linewidth=1.2)
-    ax.set(xlabel="Angle of the gear (tooth pitches; tooth 1 enters contact at 0)", ylabel="Mesh stiffness (N/mm)")
+    ax.set(xlabel="Angle of the gear (tooth pitches; tooth 1 enters contact at 0)", ylabel="Mesh stiffness (N/µm)")
     ax.set_xlim(first, last)
     # Room for the legend above the curve.
     ax.set_ylim(0, 1.3 * stiffness.max())
@@ -467,7 +467,7 @@ def plot_order_map(order_map: OrderMap, teeth: int | None = None, *, over: str =
     bottom = min(max(1.5 * float(np.median(amplitude)), 1e-3 * top), 0.5 * top)
     norm = LogNorm(bottom, top)
     mesh = ax.pcolormesh(orders, places[over], np.maximum(amplitude, bottom), norm=norm, cmap="Blues", rasterized=True)
-    ax.figure.colorbar(mesh, ax=ax, label="Amplitude")
+    ax.figure.colorbar(mesh, ax=ax, label="Amplitude (unit of the signal)")
     ylabel = "Time (s)" if over == "time" else "Speed of the shaft (rev/s)"
     ax.set(xlabel="Order of the shaft", ylabel=ylabel)
     return ax
@@ -602,6 +602,8 @@ def plot_indicators(
         for number, group in enumerate(groups):
             colour, marker = LINES[number % len(LINES)]
             style = "-" if number < len(LINES) else "--"
+            # Where lines coincide, the larger markers of the first ones show around those of the last.
+            size = min(4 + 2 * (len(groups) - 1 - number), 12)
             chosen = np.ones(columns[x].size, bool) if group is None else columns[by or x] == group
             places, values = columns[x][chosen], columns[name][chosen]
             levels = np.unique(places)
@@ -611,7 +613,7 @@ def plot_indicators(
             else:
                 values = values[np.argsort(places, kind="stable")]
                 style = style if _is_stepped(levels) else "none"
-            ax.plot(levels, values, color=colour, marker=marker, linestyle=style, markersize=4, label=str(group))
+            ax.plot(levels, values, color=colour, marker=marker, linestyle=style, markersize=size, label=str(group))
         ax.set(xlabel=x, ylabel=name)
         ax.grid(alpha=0.3)
         if by:

@@ -86,12 +86,13 @@ for low, high in zip(bins, bins[1:]):
     if within.sum() >= 5:
         axes[0].plot(np.average(damaged[within], weights=weights[within]), np.average(~healthy[within], weights=weights[within]), "o", color=BLUE, markersize=3 + within.sum() ** 0.5 / 2)
 axes[0].plot([0, 1], [0, 1], color="grey", linewidth=0.8)
-axes[0].set(xlabel="Probability of damage, as said (-)", ylabel="Part that is damaged (-)", title="Reliability (area: recordings)")
+axes[0].set(xlabel="Probability of damage, as stated (-)", ylabel="Part that is damaged (-)", title="Reliability (area: recordings)")
 axes[1].bar(range(6), ranks / ranks.sum(), color=BLUE, label="found")
 axes[1].hlines(SHARES, np.arange(6) - 0.45, np.arange(6) + 0.45, color=ORANGE, linewidth=2, label="expected")
-axes[1].set_xticks(range(6), ["0–5", "5–25", "25–50", "50–75", "75–95", "95–100"], fontsize=9)
+axes[1].set_xticks(range(6), ["0–5", "5–25", "25–50", "50–75", "75–95", "95–100"], fontsize=8)
 axes[1].set(xlabel="Where the true severity is in the posterior (%)", ylabel="Part of the recordings (-)", title="Ranks of the severity")
-axes[1].legend(loc="lower center")
+axes[1].legend(loc="upper left", fontsize="small")
+axes[1].set_ylim(0, 0.33)
 for name in kinds:
     if name != "missing-tooth":
         axes[2].plot((edges[1:] + edges[:-1]) / 2, detection[name], "o-", markersize=4, linewidth=1, label=name)

@@ -149,6 +149,6 @@ for ax, name in zip(axes, RIGS):
     ax.set_ylim(-1.2, places[-1] + 0.5)
     ax.set_title(f"{name.capitalize()}: rank correlation {correlation:.2f}", fontsize=10)
     ax.grid(alpha=0.3)
-axes[0].set_ylabel("How far: number of the case (-)\nbelow: probability of damage (-)")
+axes[0].set_ylabel("Number of the case (-)\nbelow: probability of damage (-)")
 axes[0].legend(fontsize="small", loc="upper left")
 figure.savefig(Path(*sys.argv[1:2], "diagnosis_rigs.png"), dpi=100)

@@ -1,7 +1,8 @@
 //! The main numbers of a run, for reading.
 
 use meshtone_io::summary::{
-    ChannelSummary, FaultSummary, GearboxSummary, HelixSummary, MeshForce, Summary, SummaryEnd, SummaryHead,
+    ChannelSummary, FaultSummary, GearboxSummary, HelixSummary, MeshForce, MeshStiffness, Summary,
+    SummaryEnd, SummaryHead,
 };
 
 /// The table of one run.
@@ -60,10 +61,7 @@ pub fn gearbox_table(summary: &GearboxSummary) -> String {
                     contact_ratio(mesh.contact_ratio, mesh.helix)
                 ),
             ),
-            (
-                "mesh stiffness, N/mm".to_owned(),
-                range([stiffness.min_n_per_mm, stiffness.mean_n_per_mm, stiffness.max_n_per_mm]),
-            ),
+            ("mesh stiffness, N/µm".to_owned(), range(per_um(stiffness))),
             ("mesh force, N".to_owned(), range([force.min_n, force.mean_n, force.max_n]) + &touching(force)),
             ("transmission error, µm".to_owned(), range([error.min, error.mean, error.max])),
         ]
@@ -89,6 +87,11 @@ fn contact_ratio(transverse: f64, helix: Option<HelixSummary>) -> String {
     )
 }
 
+/// (N/µm) Least, mean and largest stiffness.
+fn per_um(stiffness: &MeshStiffness) -> [f64; 3] {
+    [stiffness.min_n_per_mm, stiffness.mean_n_per_mm, stiffness.max_n_per_mm].map(|of_mm| 1e-3 * of_mm)
+}
+
 /// `min 1, mean 2, max 3`.
 fn range(values: [f64; 3]) -> String {
     let [min, mean, max] = values.map(short);
@@ -99,14 +102,14 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     let (stiffness, force) = (&summary.mesh_stiffness, &summary.mesh_force);
     let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
     let [model, sampling, time] = common_rows(&summary.head, &summary.end);
-    let stiffness = range([stiffness.min_n_per_mm, stiffness.mean_n_per_mm, stiffness.max_n_per_mm]);
+    let stiffness = range(per_um(stiffness));
     let forces = range([force.min_n, force.mean_n, force.max_n]);
     [
         model,
         ("fault", faults(&summary.faults)),
         sampling,
         ("contact ratio", contact_ratio(summary.contact_ratio, summary.helix) + &along_the_face(summary)),
-        ("mesh stiffness, N/mm", stiffness),
+        ("mesh stiffness, N/µm", stiffness),
         ("mesh force, N", forces + &touching(force)),
         ("natural frequencies, Hz", frequencies.join(" ")),
         time,
@@ -140,7 +143,7 @@ fn touching(force: &MeshForce) -> String {
         return tension.unwrap_or_default();
     };
     let hits = match contact.back_flank_hits {
-        0 => "no back flank hits".to_string(),
+        0 => "no coast flank hits".to_string(),
         1 => format!("1 hit of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
         hits => format!("{hits} hits of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
     };

@@ -129,7 +129,7 @@ fn kurtogram(canvas: &mut Canvas, of: &Kurtogram, band: FrequencyBand, kurtosis:
     axes.frame(canvas);
     let ends: Vec<String> =
         (1..shades).map(|shade| number(two_decimals(largest * shade as f64 / shades as f64))).collect();
-    bands::bar(canvas, KURTOGRAM, "kurtosis", &ends);
+    bands::bar(canvas, KURTOGRAM, "Kurtosis (–)", (&bands::COLOURS, &ends));
 }
 
 /// A squared envelope spectrum on a linear scale, behind it an upright line at each defect order.

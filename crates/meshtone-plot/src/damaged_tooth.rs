@@ -108,6 +108,15 @@ fn standing_out<K: Ord>(damaged: Vec<(DamagedTooth, K)>, teeth: u32) -> Vec<Dama
     damaged.iter().filter(|(_, alike)| !is_background(alike)).map(|(tooth, _)| *tooth).collect()
 }
 
+/// The damaged teeth whose turns are marked: all of them, but none where the wheel has no others.
+///
+/// # Arguments
+/// * `damaged` - the wheel's damaged teeth
+/// * `teeth` - how many teeth it has
+pub(crate) fn marked(damaged: &[DamagedTooth], teeth: u32) -> &[DamagedTooth] {
+    if damaged.len() < teeth as usize { damaged } else { &[] }
+}
+
 /// Tints the parts of a wheel's revolution in which its damaged teeth are in contact, or would be.
 ///
 /// # Arguments

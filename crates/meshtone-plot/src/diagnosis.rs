@@ -136,7 +136,7 @@ fn recording(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     axes.legend(canvas, &entries);
     let turned = format!("Pitches that the {} has turned", figure.wheel);
     axes.x_axis(canvas, &teeth, &format!("{turned} (tooth k: from k – 1 to k)"));
-    axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "Acceleration (g)", NAME_LEFT);
+    axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "Difference signal (g)", NAME_LEFT);
     tooth(canvas, &axes, figure);
     let [low, high] = figure.band_g.map(|end| axes.along_x(over(axes.x, end)));
     let around: Vec<_> = low.into_iter().chain(high.into_iter().rev()).collect();
@@ -254,7 +254,7 @@ fn explanations(canvas: &mut Canvas, figure: &DiagnosisFigure) {
         } else {
             axes.x_grid(canvas, &teeth);
         }
-        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 3), "(g)", NAME_LEFT);
+        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 3), "Signal (g)", NAME_LEFT);
         tooth(canvas, &axes, figure);
         axes.line(canvas, over(axes.x, figure.difference_g), BEHIND);
         axes.line(canvas, over(axes.x, signal), EXPLAINED);

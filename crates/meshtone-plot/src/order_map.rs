@@ -21,8 +21,8 @@ const EDGE: f64 = 17.0;
 const COLUMN: f64 = 2.0;
 /// (px) So much rectangles overlap, lest lines show between them.
 const OVERLAP: f64 = 0.3;
-/// (px) Room for the unit above the bar of the bands.
-const UNIT_WIDTH: f64 = 100.0;
+/// (px) Room for the quantity above the bar of the bands.
+const QUANTITY_WIDTH: f64 = 100.0;
 const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.5);
 
 /// Content of the figure.
@@ -62,8 +62,9 @@ pub struct OrderMapFigure<'a> {
 /// ```
 pub fn draw(figure: &OrderMapFigure) -> Figure {
     let OrderMapFigure { title, facts, wheel, teeth, map, .. } = *figure;
-    let unit = figure.unit.filter(|unit| !unit.is_empty()).unwrap_or("unit not stated");
-    let unit = TextStyle::TICK.fitted(unit, UNIT_WIDTH);
+    let unit = figure.unit.filter(|unit| !unit.is_empty());
+    let quantity = unit.map_or_else(|| "Amplitude".to_owned(), |unit| format!("Amplitude ({unit})"));
+    let quantity = TextStyle::TICK.fitted(&quantity, QUANTITY_WIDTH);
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     canvas.heading(EDGE, f64::from(WIDTH) - 2.0 * EDGE, (36.0, title), (61.0, &facts.join(BETWEEN_FACTS)));
     let times_s: Vec<f64> = map.times_s.iter().map(|time_s| figure.start_s + time_s).collect();
@@ -87,7 +88,7 @@ pub fn draw(figure: &OrderMapFigure) -> Figure {
     axes.y_axis(&mut canvas, &seconds, "Time (s)", NAME_LEFT);
     axes.frame(&mut canvas);
     let words: Vec<String> = ends.iter().map(|end| crate::drawing::number(*end)).collect();
-    bands::bar(&mut canvas, MAP, &unit, &words);
+    bands::bar(&mut canvas, MAP, &quantity, (&bands::COLOURS, &words));
     speed(&mut canvas, wheel, (time, &seconds), &times_s, &map.speeds_hz);
     let description = format!(
         "Amplitudes of a recording over the order of the {wheel}’s shaft and over time, and the shaft’s speed. {}.",

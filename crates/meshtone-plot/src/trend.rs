@@ -126,10 +126,10 @@ pub fn draw(figure: &TrendFigure) -> Figure {
 fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigure) {
     let y = axes::range(trend.values.iter().flatten().filter_map(|value| *value), MARGIN);
     let (x, ticks, along) = figure.along.axis();
-    let axes = Axes::titled(canvas, area, x, y, &trend.name);
+    let unit = if trend.unit.is_empty() { "–" } else { &trend.unit };
+    let axes = Axes::titled(canvas, area, x, y, &format!("{} ({unit})", trend.name));
     axes.x_axis(canvas, &ticks, along);
-    let name = if trend.unit.is_empty() { "(–)".to_owned() } else { format!("({})", trend.unit) };
-    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &name, NAME_LEFT);
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "", NAME_LEFT);
     if trend.values.iter().flatten().all(Option::is_none) {
         axes.note(canvas, "not defined for these records");
     }

@@ -173,7 +173,7 @@ impl GearboxState {
         vec![
             (of_mesh("mesh frequency"), tones.meshes[self.mesh].frequency_hz, "Hz"),
             (of_mesh("contact ratio"), pair.teeth.path.contact_ratio, ""),
-            (of_mesh("mean stiffness"), mesh.mean_stiffness_n_per_m * 1e-3, "N/mm"),
+            (of_mesh("mean stiffness"), mesh.mean_stiffness_n_per_m * 1e-6, "N/µm"),
             (of_mesh("static force"), pair.static_force_n, "N"),
             (of_mesh("largest force"), largest_n, "N"),
             (of_mesh("teeth apart"), 100.0 * apart, "% of the time"),

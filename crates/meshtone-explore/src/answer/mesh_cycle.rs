@@ -20,10 +20,10 @@ const STIFFNESS_POINTS: usize = 40;
 pub struct MeshCycle {
     /// (pitches) Step of the stiffness over the gear's revolution, from pitch 0.
     pub stiffness_step: f64,
-    /// (N/mm) Stiffness of all pairs in contact.
-    pub stiffness_n_per_mm: Vec<f64>,
-    /// (N/mm) Of sound wheels, over a pitch, at the same step.
-    pub healthy_n_per_mm: Vec<f64>,
+    /// (N/µm) Stiffness of all pairs in contact.
+    pub stiffness_n_per_um: Vec<f64>,
+    /// (N/µm) Of sound wheels, over a pitch, at the same step.
+    pub healthy_n_per_um: Vec<f64>,
     /// (pitches) First place of the forces, and their step.
     pub forces_from: f64,
     /// (pitches) Their step.
@@ -45,14 +45,15 @@ impl MeshCycle {
             (curve.stiffness_n_per_mm, curve.healthy_stiffness_n_per_mm)
         });
         let stride = per_pitch.div_ceil(STIFFNESS_POINTS);
-        let every = |values: Vec<f64>| values.into_iter().step_by(stride).collect();
+        let every =
+            |of_mm: Vec<f64>| of_mm.into_iter().step_by(stride).map(|stiffness| 1e-3 * stiffness).collect();
         let shown = shown(stages);
         let stride_of_forces = per_pitch.div_ceil(FORCE_POINTS);
         let pairs = stages.pair_forces_n(shown.clone()).into_iter();
         Self {
             stiffness_step: stride as f64 / per_pitch as f64,
-            stiffness_n_per_mm: every(mesh),
-            healthy_n_per_mm: every(healthy),
+            stiffness_n_per_um: every(mesh),
+            healthy_n_per_um: every(healthy),
             forces_from: shown.start as f64,
             forces_step: stride_of_forces as f64 / per_pitch as f64,
             pairs: pairs
@@ -68,8 +69,8 @@ impl MeshCycle {
             .collect();
         json!({
             "stiffness_step": self.stiffness_step,
-            "stiffness_n_per_mm": packet.array(self.stiffness_n_per_mm.iter().copied()),
-            "healthy_n_per_mm": packet.array(self.healthy_n_per_mm.iter().copied()),
+            "stiffness_n_per_um": packet.array(self.stiffness_n_per_um.iter().copied()),
+            "healthy_n_per_um": packet.array(self.healthy_n_per_um.iter().copied()),
             "forces_from": self.forces_from,
             "forces_step": self.forces_step,
             "pairs": pairs,

@@ -213,7 +213,7 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
         ]);
     }
     let curves = stages.mesh_curves().into_iter();
-    figures.extend(curves.map(|curve| ("mean mesh stiffness", curve.mean_stiffness_n_per_mm, "N/mm")));
+    figures.extend(curves.map(|curve| ("mean mesh stiffness", 1e-3 * curve.mean_stiffness_n_per_mm, "N/µm")));
     figures
         .extend([("static mesh force", stages.static_force_n(), "N"), ("largest mesh force", largest, "N")]);
     figures.extend(

@@ -174,10 +174,10 @@ function showProblem(error) {
 
 const plot = (id, options) => new Plot(byId(id), options);
 const plots = {
-  waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "g" }),
-  spectrum: plot("spectrum", { title: "Spectrum: harmonics of the mesh that is looked at dashed", x: "frequency (Hz)", y: "g" }),
-  average: plot("average", { title: "Average of the signal", x: "angle (°)", y: "g" }),
-  force: plot("force", { title: "Force", x: "time (s)", y: "N" }),
+  waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "signal (g)" }),
+  spectrum: plot("spectrum", { title: "Spectrum: harmonics of the mesh that is looked at dashed", x: "frequency (Hz)", y: "amplitude (g)" }),
+  average: plot("average", { title: "Average of the signal", x: "angle (°)", y: "signal (g)" }),
+  force: plot("force", { title: "Force", x: "time (s)", y: "force (N)" }),
 };
 const train = new Train(byId("front"), byId("above"), (wheel) => look({ wheel }), (mesh) => look({ mesh }));
 
@@ -197,7 +197,7 @@ function drawSpectrum({ signal, spectrum, lines, train: { meshes }, mesh }) {
   const { frequency_hz: hz } = meshes.find(({ name }) => name === mesh.name);
   const most = spectrum.step_hz * (spectrum.values.length - 1);
   const marks = Array.from({ length: Math.floor(most / hz) }, (_, index) => (index + 1) * hz);
-  plots.spectrum.set([line(signal.name, spectrum.values, 0, spectrum.step_hz)], { y: signal.unit, marks, isLog: byId("logarithmic").checked });
+  plots.spectrum.set([line(signal.name, spectrum.values, 0, spectrum.step_hz)], { y: `amplitude (${signal.unit})`, marks, isLog: byId("logarithmic").checked });
   const head = element("thead", {}, element("tr", {}, ...["line", "frequency, Hz", `amplitude, ${signal.unit}`].map((title) => element("th", { scope: "col" }, title))));
   const rows = lines.map(([frequency, amplitude, name]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, shown(frequency, 5)), element("td", {}, shown(amplitude, 3))));
   rows.forEach((row, index) => row.addEventListener("click", () => plots.spectrum.zoom([Math.max(lines[index][0] - 0.3 * hz, 0), lines[index][0] + 0.3 * hz])));
@@ -219,12 +219,12 @@ function show(answer, asked) {
   train.show(parts, wheel.name, mesh.name);
   const step = 1 / signal.sampling_rate_hz;
   const seen = [signal.start_s, signal.start_s + Math.min(SEEN_REVOLUTIONS / parts.shafts[0].speed_hz, signal.values.length * step)];
-  plots.waveform.set([line(signal.name, signal.values, signal.start_s, step)], { y: signal.unit, range: seen });
+  plots.waveform.set([line(signal.name, signal.values, signal.start_s, step)], { y: `signal (${signal.unit})`, range: seen });
   drawSpectrum(answer);
   const { average } = wheel;
   byId("wheel-title").textContent = `Over a revolution of ${wheel.name}, ${wheel.teeth} teeth`;
   plots.average.set(average ? [line(signal.name, average.values, 0, 360 / average.values.length)] : [],
-    { y: signal.unit, title: average ? `Average over ${average.revolutions} revolutions` : "Average", empty: "needs a steady speed and a whole revolution" });
+    { y: `signal (${signal.unit})`, title: average ? `Average over ${average.revolutions} revolutions` : "Average", empty: "needs a steady speed and a whole revolution" });
   byId("mesh-title").textContent = `Force of mesh ${mesh.name}`;
   plots.force.set([line(mesh.name, mesh.force, signal.start_s, step, "second")], { range: seen });
   if (document.activeElement !== byId("toml")) byId("toml").value = answer.toml;

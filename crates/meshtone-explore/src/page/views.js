@@ -35,13 +35,13 @@ export class Views {
   constructor(askSeverity) {
     const plot = (id, options) => new Plot(byId(id), options);
     this.#plots = {
-      forces: plot("forces", { title: "Force of each pair", x: "pitches", y: "N" }),
-      stiffness: plot("stiffness", { title: "Mesh stiffness over a gear revolution", x: "pitches", y: "N/mm" }),
-      waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "g" }),
-      average: plot("average", { title: "Average", x: "angle (°)", y: "g" }),
-      difference: plot("difference", { title: "Difference and its envelope", x: "angle (°)", y: "g" }),
-      spectrum: plot("spectrum", { title: "Spectrum of the average: mesh orders dashed, ▾ modes", x: "order of the shaft", y: "g" }),
-      envelopeSpectrum: plot("envelope-spectrum", { title: "Spectrum of the envelope", x: "order of the shaft", y: "g" }),
+      forces: plot("forces", { title: "Force of each pair", x: "pitches", y: "force (N)" }),
+      stiffness: plot("stiffness", { title: "Mesh stiffness over a gear revolution", x: "pitches", y: "stiffness (N/µm)" }),
+      waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "signal (g)" }),
+      average: plot("average", { title: "Average", x: "angle (°)", y: "signal (g)" }),
+      difference: plot("difference", { title: "Difference and its envelope", x: "angle (°)", y: "signal (g)" }),
+      spectrum: plot("spectrum", { title: "Spectrum of the average: mesh orders dashed, ▾ modes", x: "order of the shaft", y: "amplitude (g)" }),
+      envelopeSpectrum: plot("envelope-spectrum", { title: "Spectrum of the envelope", x: "order of the shaft", y: "amplitude (g)" }),
       severity: plot("severity", { title: "Indicator against severity", x: "severity", y: "", kind: "points" }),
     };
     this.#askSeverity = askSeverity;
@@ -173,11 +173,11 @@ export class Views {
     this.#plots.forces.set(pairs, { range, bands, empty: "the published model shares no load among pairs" });
     const gearTeeth = teeth.wheels[1].teeth;
     const perPitch = Math.round(1 / mesh.stiffness_step);
-    const repeated = Float32Array.from({ length: gearTeeth * mesh.healthy_n_per_mm.length },
-      (_, k) => mesh.healthy_n_per_mm[k % mesh.healthy_n_per_mm.length]);
-    const lines = [line("this pair", mesh.stiffness_n_per_mm, 0, mesh.stiffness_step)];
+    const repeated = Float32Array.from({ length: gearTeeth * mesh.healthy_n_per_um.length },
+      (_, k) => mesh.healthy_n_per_um[k % mesh.healthy_n_per_um.length]);
+    const lines = [line("this pair", mesh.stiffness_n_per_um, 0, mesh.stiffness_step)];
     if (bands.length) lines.unshift(line("sound", repeated, 0, 1 / perPitch, "held", [4, 3]));
-    if (held) lines.unshift(line("held", held.stiffness_n_per_mm, 0, held.stiffness_step, "held"));
+    if (held) lines.unshift(line("held", held.stiffness_n_per_um, 0, held.stiffness_step, "held"));
     this.#plots.stiffness.set(lines, { bands, range: [0, gearTeeth] });
   }
 
@@ -206,7 +206,7 @@ export class Views {
     if (this.#held) lines.unshift(of("held", this.#held.signal, "held"));
     if (this.#recording) lines.push(of("recording", this.#recording.signal, "recorded", start));
     const unit = signal.channel.unit;
-    this.#plots.waveform.set(lines, { range: [start, end], title: signal.channel.meaning ?? signal.channel.name, y: unit });
+    this.#plots.waveform.set(lines, { range: [start, end], title: signal.channel.meaning ?? signal.channel.name, y: `signal (${unit})` });
   }
 
   #revolution() {
@@ -227,18 +227,18 @@ export class Views {
     const over = (key, look) => all.map(([label, drawn, own]) => line(label, drawn[key], 0, 360 / drawn[key].length, look ?? own));
     const empty = now.problem ?? "";
     const degrees = [0, 360];
-    this.#plots.average.set(over("average"), { bands, range: degrees, y: unit, empty,
+    this.#plots.average.set(over("average"), { bands, range: degrees, y: `signal (${unit})`, empty,
       title: now.revolutions ? `Average of ${now.revolutions} ${name} revolutions` : "Average" });
     const envelopes = now.envelope ? [line("envelope", now.envelope, 0, 360 / now.envelope.length, "second")] : [];
-    this.#plots.difference.set([...over("difference"), ...envelopes], { bands, range: degrees, y: unit, empty });
+    this.#plots.difference.set([...over("difference"), ...envelopes], { bands, range: degrees, y: `signal (${unit})`, empty });
     const orders = (key) => all.map(([label, drawn, look]) => line(label, drawn[key].subarray(1), 1, 1, look));
     const last = (key, most) => [0, Math.min(most, now[key]?.length ?? most)];
     const marks = Array.from({ length: Math.min(MARKED_HARMONICS, Math.floor((now.spectrum?.length ?? 0) / now.teeth)) }, (_, k) => (k + 1) * now.teeth);
     const isLog = byId("logarithmic").checked;
     const modes = this.#modes(wheel);
     const triangles = modes.flatMap(([, places]) => places);
-    this.#plots.spectrum.set(orders("spectrum"), { range: last("spectrum", SEEN_HARMONICS * now.teeth), marks, triangles, isLog, y: unit, empty });
-    this.#plots.envelopeSpectrum.set(orders("envelope_spectrum"), { range: last("envelope_spectrum", 2 * now.teeth), marks, isLog, y: unit, empty });
+    this.#plots.spectrum.set(orders("spectrum"), { range: last("spectrum", SEEN_HARMONICS * now.teeth), marks, triangles, isLog, y: `amplitude (${unit})`, empty });
+    this.#plots.envelopeSpectrum.set(orders("envelope_spectrum"), { range: last("envelope_spectrum", 2 * now.teeth), marks, isLog, y: `amplitude (${unit})`, empty });
     const tinted = bands.length ? `Tinted: damaged ${name} ${now.damaged.length > 1 ? "teeth" : "tooth"} ${now.damaged.join(", ")} in contact.` : "";
     const problem = this.#recording?.wheels[wheel].problem;
     const named = modes.map(([what, , hertz]) => `${what} ${hertz.map((hz) => shown(hz, 3)).join(", ")}`);
@@ -325,7 +325,7 @@ export class Views {
       return;
     }
     const step = curve.severities[1] - curve.severities[0];
-    plot.set([line(words, found.values, 0, step)], { range: [-0.03, 1.03], title: `${words} of the ${curve.wheel} against severity`, y: found.unit === "-" ? words : found.unit });
+    plot.set([line(words, found.values, 0, step)], { range: [-0.03, 1.03], title: `${words} of the ${curve.wheel} against severity`, y: found.unit === "-" ? words : `${words} (${found.unit})` });
     note.textContent = "The line marks what is set; the simulations are as short as those while a control moves.";
   }
 }

@@ -26,12 +26,12 @@ const WIDTH: f64 = 16.0;
 /// # Arguments
 /// * `canvas`, `area` - where the axes are
 /// * `title` - the quantity
-/// * `ends` - values between two bands, the palest first
-pub(crate) fn bar(canvas: &mut Canvas, area: Area, title: &str, ends: &[String]) {
+/// * `bands` - the colours, and the values between two of them, from the bottom up
+pub(crate) fn bar(canvas: &mut Canvas, area: Area, title: &str, (colours, ends): (&[Colour], &[String])) {
     let left = area.right() + GAP;
-    let height = area.height / COLOURS.len() as f64;
+    let height = area.height / colours.len() as f64;
     let style = TextStyle::TICK.anchored(Anchor::Start);
-    for (band, &colour) in COLOURS.iter().enumerate() {
+    for (band, &colour) in colours.iter().enumerate() {
         let bottom = area.bottom() - band as f64 * height;
         canvas.rectangle((left, bottom), (left + WIDTH, bottom - height), Fill::solid(colour));
         if let Some(end) = ends.get(band) {

@@ -30,7 +30,9 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
     let y = axes::range(values, MARGIN);
     for (column, (values, revolutions)) in averages.iter().enumerate() {
         let wheel = WheelName::BOTH[column];
+        let teeth = stages.teeth.wheel(wheel).teeth;
         let damaged = DamagedTooth::of_stages(stages, wheel);
+        let marked = damaged_tooth::marked(&damaged, teeth);
         let name = wheel.name();
         let title = match revolutions {
             0 => format!("Average over the {name}’s revolutions"),
@@ -38,11 +40,10 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
             count => format!("Average of {count} {name} revolutions"),
         };
         let axes = Axes::titled(canvas, areas[column], [0.0, 360.0], y, &title);
-        if let Some(text) = damaged_tooth::in_words(&[(name, &damaged)]) {
+        if let Some(text) = damaged_tooth::in_words(&[(name, marked)]) {
             axes.legend(canvas, &[(Sample::Area(damaged_tooth::TINT), &text)]);
         }
-        let teeth = stages.teeth.wheel(wheel).teeth;
-        damaged_tooth::tint(canvas, &axes, &damaged, teeth, 360.0 / f64::from(teeth.max(1)));
+        damaged_tooth::tint(canvas, &axes, marked, teeth, 360.0 / f64::from(teeth.max(1)));
         let since =
             format!("{} angle since its {} (°)", capitalised(name), damage::start_of_revolution(&damaged));
         axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since);

@@ -1,4 +1,4 @@
-//! The tooth's face: the working flank seen along the normal of the tooth's plane of symmetry.
+//! The tooth's face: the drive flank seen along the normal of the tooth's plane of symmetry.
 //!
 //! z is that of the equations of motion: a fault that reaches from one end of the face reaches from positive z
 //! ([`meshtone::mesh::PairState`]).
@@ -15,7 +15,7 @@ pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, &[7.0, 3.0
 const CONTACT_LINE: Stroke = Stroke::solid(colour::GREEN, 0.8);
 /// Where the tip relief and the chamfer start.
 pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, &[2.0, 2.5]);
-const CONTACT_NAME: &str = "contact start";
+const CONTACT_NAME: &str = "start of active profile";
 /// (px) From a line to the baseline of its name.
 const ABOVE: f64 = -5.0;
 const BELOW: f64 = 15.0;

@@ -105,6 +105,9 @@ fn facts(stages: &GearboxStages) -> Vec<String> {
         .collect()
 }
 
+/// (px) From the axis of a shaft to the edge of a bearing.
+const BEARING_PX: f64 = 9.0;
+
 /// A wheel on the drawing.
 struct DrawnWheel<'a> {
     name: &'a str,
@@ -187,7 +190,8 @@ fn draw_above(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &
             to => format!(", {to}"),
         };
         let style = TextStyle::NOTE.coloured(colour::MUTED).with_halo();
-        let at = axes.at(-0.11 * longest, x + 1.6 * radius);
+        // Above the bearings.
+        let at = (axes.px(-0.11 * longest), axes.py(x) - BEARING_PX - 5.0);
         canvas.text(at, &format!("{}{coupled}", shaft.name), style);
     }
     for wheel in wheels {
@@ -200,7 +204,8 @@ fn draw_above(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &
     for (bearing, shaft) in gearbox.bearings.iter().zip(&layout.shaft_of_bearing) {
         let (shaft, [x_m, _]) = (&gearbox.shafts[*shaft], layout.positions_m[*shaft]);
         let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
-        let corners = [(x - 5.0, y - 9.0), (x + 5.0, y - 9.0), (x + 5.0, y + 9.0), (x - 5.0, y + 9.0)];
+        let (top, bottom) = (y - BEARING_PX, y + BEARING_PX);
+        let corners = [(x - 5.0, top), (x + 5.0, top), (x + 5.0, bottom), (x - 5.0, bottom)];
         canvas.outlined(&corners, OUTLINE, Fill::hatch(colour::INK));
     }
     axes.frame(canvas);
@@ -303,22 +308,24 @@ impl<'a> Wheels<'a> {
 fn tint(canvas: &mut Canvas, axes: &Axes, stages: &GearboxStages, wheel: usize, pitch: f64) {
     let Some((mesh, side)) = stages.layout.mesh_of(wheel) else { return };
     let pair = &stages.pairs[mesh];
-    let damaged = DamagedTooth::of_teeth(&pair.teeth, &pair.damaged, side);
-    damaged_tooth::tint(canvas, axes, &damaged, stages.gearbox.wheels[wheel].teeth, pitch);
+    let (damaged, teeth) =
+        (DamagedTooth::of_teeth(&pair.teeth, &pair.damaged, side), stages.gearbox.wheels[wheel].teeth);
+    damaged_tooth::tint(canvas, axes, damaged_tooth::marked(&damaged, teeth), teeth, pitch);
 }
 
 fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usize) {
     let (gearbox, layout) = (&stages.gearbox, &stages.layout);
     let Some((mesh, _)) = layout.mesh_of(wheel) else { return };
     let (tables, teeth) = (&stages.meshes[mesh], gearbox.wheels[wheel].teeth as usize);
-    let stiffness = tables.stiffness_n_per_mm(0..teeth);
+    let stiffness: Vec<f64> = tables.stiffness_n_per_mm(0..teeth).iter().map(|of_mm| 1e-3 * of_mm).collect();
     let y = axes::range(stiffness.iter().copied(), 0.08);
     let title =
         format!("Stiffness of {} over a turn of {}", gearbox.meshes[mesh].name(), gearbox.wheels[wheel].name);
     let axes = Axes::titled(canvas, area, [0.0, teeth as f64], y, &title);
     tint(canvas, &axes, stages, wheel, 1.0);
-    axes.x_axis(canvas, &Ticks::whole(0.0, teeth as f64, 8), "Pitches");
-    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Stiffness (N/mm)", NAME_LEFT);
+    let name = format!("Pitches since the first tooth of {} enters contact", gearbox.wheels[wheel].name);
+    axes.x_axis(canvas, &Ticks::whole(0.0, teeth as f64, 8), &name);
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Stiffness (N/µm)", NAME_LEFT);
     axes.line(canvas, over(axes.x, &stiffness), CURVE);
     axes.frame(canvas);
 }

@@ -121,7 +121,7 @@ impl<'a> Side<'a> {
         self.profile.x_mm[self.contact_index]
     }
 
-    /// (mm) Point of the sound flank; `side` is 1 for the working and −1 for the back flank.
+    /// (mm) Point of the sound flank; `side` is 1 for the drive and −1 for the coast flank.
     pub(super) fn flank(&self, index: usize, side: f64) -> (f64, f64) {
         (side * self.profile.y_mm[index], self.profile.x_mm[index])
     }

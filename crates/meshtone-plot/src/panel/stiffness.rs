@@ -38,7 +38,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
     let start = damage::start_of_revolution(&damage.wheels[1].1);
     let name = format!("Pitches since the gear’s {start}");
     whole.x_axis(canvas, &Ticks::whole(whole.x[0], whole.x[1], 20), &name);
-    whole.y_axis(canvas, &ticks, "Stiffness (N/mm)", super::NAME_LEFT);
+    whole.y_axis(canvas, &ticks, "Stiffness (N/µm)", super::NAME_LEFT);
     enlarged.title(canvas, &damage.title_of_enlarged());
     enlarged.x_axis(canvas, &Ticks::nice(enlarged.x[0], enlarged.x[1], 8), "Pitches");
     enlarged.y_grid(canvas, &ticks);
@@ -75,13 +75,21 @@ impl DamagedPairs {
         start..start + gear_teeth
     }
 
-    /// (pitches) The parts of a window in which one of them is in contact.
+    /// (pitches) The parts of a window in which one of them is in contact; none where a wheel has no other teeth.
     fn turns(&self, window: [f64; 2]) -> Vec<[f64; 2]> {
+        if !self.are_some() {
+            return Vec::new();
+        }
         let damaged = self.wheels.iter().flat_map(|(_, damaged)| damaged).next();
         let contact = damaged.map_or([0.0; 2], |tooth| tooth.contact_pitches);
         damaged_tooth::turns(window, contact, |pair| {
             self.wheels.iter().any(|(teeth, damaged)| damaged_tooth::is_of_pair(damaged, *teeth, pair))
         })
+    }
+
+    /// Whether the damaged teeth are but some of their wheels'.
+    fn are_some(&self) -> bool {
+        self.wheels.iter().all(|(teeth, damaged)| (damaged.len() as i64) < *teeth)
     }
 
     fn title_of_enlarged(&self) -> String {
@@ -105,11 +113,9 @@ impl DamagedPairs {
             [] => ["this gear", "healthy gear"],
             _ => ["this pair", "healthy pair"],
         };
-        let entries = [
-            (Sample::Line(MESH), this),
-            (Sample::Line(HEALTHY), healthy),
-            (Sample::Area(damaged_tooth::TINT), &text),
-        ];
+        let tint = (Sample::Area(damaged_tooth::TINT), &*text);
+        let curves = [(Sample::Line(MESH), this), (Sample::Line(HEALTHY), healthy)];
+        let entries: Vec<_> = curves.into_iter().chain(self.are_some().then_some(tint)).collect();
         axes.legend(canvas, &entries);
     }
 }
@@ -117,10 +123,10 @@ impl DamagedPairs {
 /// Stiffness of the mesh.
 struct Mesh {
     /// From pitch `first_pitch` on, and a pitch more than is shown.
-    mesh_n_per_mm: Vec<f64>,
+    mesh_n_per_um: Vec<f64>,
     first_pitch: i64,
     /// Of a pitch.
-    healthy_n_per_mm: Vec<f64>,
+    healthy_n_per_um: Vec<f64>,
 }
 
 impl Mesh {
@@ -128,36 +134,37 @@ impl Mesh {
     fn new(stages: &Stages, pitches: Range<i64>) -> Self {
         let first_pitch = pitches.start;
         let curve = stages.mesh_curves_over(first_pitch..pitches.end + 1).into_iter().next();
-        let (mesh_n_per_mm, healthy_n_per_mm) = curve.map_or_else(Default::default, |curve| {
-            (curve.stiffness_n_per_mm, curve.healthy_stiffness_n_per_mm)
+        let per_um = |of_mm: Vec<f64>| of_mm.into_iter().map(|stiffness| 1e-3 * stiffness).collect();
+        let (mesh_n_per_um, healthy_n_per_um) = curve.map_or_else(Default::default, |curve| {
+            (per_um(curve.stiffness_n_per_mm), per_um(curve.healthy_stiffness_n_per_mm))
         });
-        Self { mesh_n_per_mm, first_pitch, healthy_n_per_mm }
+        Self { mesh_n_per_um, first_pitch, healthy_n_per_um }
     }
 
     fn values(&self) -> impl Iterator<Item = f64> {
-        self.mesh_n_per_mm.iter().chain(&self.healthy_n_per_mm).copied()
+        self.mesh_n_per_um.iter().chain(&self.healthy_n_per_um).copied()
     }
 
     /// Draws the mesh, and over the damaged `turns` the healthy one; also elsewhere, unless the two are the same there.
     fn draw(&self, canvas: &mut Canvas, axes: &Axes, turns: &[[f64; 2]]) {
-        if self.mesh_n_per_mm.is_empty() || self.healthy_n_per_mm.is_empty() {
+        if self.mesh_n_per_um.is_empty() || self.healthy_n_per_um.is_empty() {
             axes.note(canvas, "no mesh stiffness");
             return;
         }
         let whole = [axes.x];
         let healthy = if self.differs_outside(turns, axes.x) { &whole } else { turns };
         for &part in healthy {
-            axes.line(canvas, self.curve(&self.healthy_n_per_mm, 0, part), HEALTHY);
+            axes.line(canvas, self.curve(&self.healthy_n_per_um, 0, part), HEALTHY);
         }
-        axes.line(canvas, self.curve(&self.mesh_n_per_mm, self.first_pitch, axes.x), MESH);
+        axes.line(canvas, self.curve(&self.mesh_n_per_um, self.first_pitch, axes.x), MESH);
     }
 
     /// Returns whether it differs from the healthy one outside the turns of the damaged teeth that stand out, as where all others are worn.
     fn differs_outside(&self, turns: &[[f64; 2]], window: [f64; 2]) -> bool {
         // At the ends of a turn one point of each may hold a part of a pair.
         const PART: f64 = 0.1;
-        let healthy = self.curve(&self.healthy_n_per_mm, 0, window);
-        let of_both = self.curve(&self.mesh_n_per_mm, self.first_pitch, window).zip(healthy);
+        let healthy = self.curve(&self.healthy_n_per_um, 0, window);
+        let of_both = self.curve(&self.mesh_n_per_um, self.first_pitch, window).zip(healthy);
         let outside: Vec<bool> = of_both
             .filter(|((pitch, _), _)| !turns.iter().any(|[from, to]| (*from..=*to).contains(pitch)))
             .map(|((_, this), (_, healthy))| (this - healthy).abs() > 1e-3 * healthy)
@@ -165,7 +172,7 @@ impl Mesh {
         outside.iter().filter(|differs| **differs).count() as f64 > PART * outside.len() as f64
     }
 
-    /// (pitches, N/mm) Values of a window.
+    /// (pitches, N/µm) Values of a window.
     ///
     /// Where a pair enters or leaves contact, a point holds a part of that pair; to the window's edges reach the values beside them.
     fn curve<'a>(
@@ -174,7 +181,7 @@ impl Mesh {
         first_pitch: i64,
         [from, to]: [f64; 2],
     ) -> impl Iterator<Item = (f64, f64)> + use<'a> {
-        let points_per_pitch = self.healthy_n_per_mm.len();
+        let points_per_pitch = self.healthy_n_per_um.len();
         let per_pitch = points_per_pitch as f64;
         let first_point = first_pitch * points_per_pitch as i64;
         let (first, last) = ((from * per_pitch).ceil() as i64, (to * per_pitch).floor() as i64);
@@ -193,8 +200,8 @@ mod tests {
     fn a_window_has_no_parts_of_pairs_at_its_edges() {
         let pitch: Vec<f64> =
             (0..10).map(|k| [1.5e3, 2e3, 1e3][if k == 0 { 0 } else { 1 + k / 5 }]).collect();
-        let mesh = Mesh { mesh_n_per_mm: pitch.repeat(4), first_pitch: -1, healthy_n_per_mm: pitch.clone() };
-        let of = |window| mesh.curve(&mesh.mesh_n_per_mm, mesh.first_pitch, window).collect::<Vec<_>>();
+        let mesh = Mesh { mesh_n_per_um: pitch.repeat(4), first_pitch: -1, healthy_n_per_um: pitch.clone() };
+        let of = |window| mesh.curve(&mesh.mesh_n_per_um, mesh.first_pitch, window).collect::<Vec<_>>();
         let whole = of([0.0, 2.0]);
         assert_eq!((whole[0], whole[1]), ((0.0, 2e3), (0.1, 2e3)));
         assert_eq!((whole[20], whole[19]), ((2.0, 1e3), (1.9, 1e3)));

@@ -327,12 +327,12 @@ impl Drawing<'_> {
         let area = self.axes.area;
         let middle = self.axes.py((wheel.pitch_radius_mm + wheel.tip_radius_mm) / 2.0);
         let line = 1.2 * TextStyle::NOTE.size;
-        let working = TextStyle::NOTE.coloured(colour::BLUE).anchored(Anchor::End).bold().with_halo();
-        let back = TextStyle::NOTE.coloured(colour::MUTED).bold().with_halo();
-        for (row, [left, right]) in [["back", "working"], ["flank", "flank"]].into_iter().enumerate() {
+        let drive = TextStyle::NOTE.coloured(colour::BLUE).anchored(Anchor::End).bold().with_halo();
+        let coast = TextStyle::NOTE.coloured(colour::MUTED).bold().with_halo();
+        for (row, [left, right]) in [["coast", "drive"], ["flank", "flank"]].into_iter().enumerate() {
             let y = middle + line * row as f64;
-            canvas.text((area.left + 10.0, y), left, back);
-            canvas.text((area.right() - 10.0, y), right, working);
+            canvas.text((area.left + 10.0, y), left, coast);
+            canvas.text((area.right() - 10.0, y), right, drive);
         }
     }
 }

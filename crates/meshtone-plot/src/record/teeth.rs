@@ -28,12 +28,13 @@ pub(super) fn draw(
     curves: &[Curve],
 ) {
     let axes = Axes::titled(canvas, area, [0.0, f64::from(wheel.teeth)], y, title);
-    let damaged = damaged_tooth::in_words(&[(wheel.name, wheel.damaged_teeth)]);
+    let damaged =
+        damaged_tooth::in_words(&[(wheel.name, damaged_tooth::marked(wheel.damaged_teeth, wheel.teeth))]);
     let named = curves.iter().filter_map(|(name, _, stroke)| Some((Sample::Line(*stroke), (*name)?)));
     let damaged = damaged.as_deref().map(|text| (Sample::Area(damaged_tooth::TINT), text));
     axes.legend(canvas, &damaged.into_iter().chain(named).collect::<Vec<Entry>>());
     teeth_axis(canvas, &axes, wheel);
-    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("Amplitude ({unit})"), NAME_LEFT);
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("Signal ({unit})"), NAME_LEFT);
     for (_, values, stroke) in curves {
         axes.line(canvas, over(axes.x, values), *stroke);
     }
@@ -42,7 +43,8 @@ pub(super) fn draw(
 
 /// Numbers of the teeth in the middle of their pitches, lines between them; the turns of damaged ones are tinted.
 fn teeth_axis(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
-    damaged_tooth::tint(canvas, axes, wheel.damaged_teeth, wheel.teeth, 1.0);
+    let marked = damaged_tooth::marked(wheel.damaged_teeth, wheel.teeth);
+    damaged_tooth::tint(canvas, axes, marked, wheel.teeth, 1.0);
     let pitch = axes.area.width / f64::from(wheel.teeth.max(1));
     let step = |least: f64| {
         let steps = [1u32, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];

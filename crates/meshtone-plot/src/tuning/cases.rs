@@ -57,12 +57,12 @@ struct CasesPlot {
 
 impl CasesPlot {
     /// Draws title, vertical axis and a line between neighbouring cases.
-    fn new(canvas: &mut Canvas, area: Area, cases: usize, y: [f64; 2], title: &str, unit: &str) -> Self {
+    fn new(canvas: &mut Canvas, area: Area, cases: usize, y: [f64; 2], title: &str) -> Self {
         let axes = Axes::titled(canvas, area, range_of(cases), y, title);
         let numbers = (area.height / PER_NUMBER) as usize;
         let most = (area.height / LEAST_PER_NUMBER) as usize;
         let ticks = Ticks::nice(y[0], y[1], numbers.clamp(2, 6)).thinned(most);
-        axes.y_axis(canvas, &ticks, unit, super::NAME_LEFT);
+        axes.y_axis(canvas, &ticks, "", super::NAME_LEFT);
         for case in 1..cases {
             let x = axes.px(case as f64 - 0.5);
             canvas.line((x, area.top), (x, area.bottom()), NAMES);
@@ -137,7 +137,7 @@ fn indicator(canvas: &mut Canvas, area: Area, data: &Data, j: usize, indicator: 
     let spread = data.spread.iter().flat_map(|of_case| &of_case[j]);
     let records = (0..cases).flat_map(|case| measured.records(case, j));
     let y = axes::range(simulated.chain(spread).chain(records).copied(), MARGIN);
-    let plot = CasesPlot::new(canvas, area, cases, y, &title(indicator), "(–)");
+    let plot = CasesPlot::new(canvas, area, cases, y, &format!("{} (–)", title(indicator)));
     for case in 0..cases {
         plot.dots(canvas, case, measured.records(case, j), every_nth(data));
     }
@@ -164,7 +164,7 @@ fn error(canvas: &mut Canvas, area: Area, data: &Data) {
         Series { values: errors(&tuning.enhanced), at: 0.0, symbol: ENHANCED },
     ];
     let [_, high] = axes::range(series.iter().flat_map(|series| series.values.iter().copied()), MARGIN);
-    let plot = CasesPlot::new(canvas, area, cases, [0.0, high], "Mean error of the case", "(σ)");
+    let plot = CasesPlot::new(canvas, area, cases, [0.0, high], "Mean error of the case (σ)");
     plot.connected(canvas, &series);
     for case in 0..cases {
         plot.level(canvas, case, 0.0, measured.case_scatter(case));

@@ -4,10 +4,10 @@ use super::data::Data;
 use super::symbols::{ENHANCED_CURVE, MEASURED_CURVE, ORIGINAL_CURVE};
 use crate::drawing::{Anchor, Area, Axes, Canvas, Stroke, TextStyle, Ticks, axes, capitalised};
 
-const ORIGINAL_TITLE: &str = "Original simulation";
-const ENHANCED_TITLE: &str = "Enhanced, one draw of the noise";
-const MEASURED_TITLE: &str = "Measured, of each case the record that is the nearest to the medians";
-const UNIT: &str = "(healthy rms)";
+const ORIGINAL_TITLE: &str = "Original simulation (over the healthy rms)";
+const ENHANCED_TITLE: &str = "Enhanced, one draw of the noise (over the healthy rms)";
+const MEASURED_TITLE: &str =
+    "Measured, of each case the record that is the nearest to the medians (over the healthy rms)";
 /// (px) Numbers left of each plot, and the gap right of it.
 const NUMBERS: f64 = 33.0;
 const GAP: f64 = 7.0;
@@ -67,8 +67,6 @@ pub(super) fn draw(canvas: &mut Canvas, areas: &[Area], data: &Data) {
     let Some(&lowest) = areas.last() else { return };
     for (number, (row, &area)) in rows_of(data).iter().zip(areas).enumerate() {
         canvas.text((area.left + NUMBERS, area.top - axes::TITLE_ABOVE), row.title, TextStyle::AXES_TITLE);
-        let unit_at = (area.left - super::NAME_LEFT + 19.0, area.middle().1);
-        canvas.text(unit_at, UNIT, TextStyle::AXIS.upwards());
         let slot = area.width / shown.len() as f64;
         for (column, &case) in shown.iter().enumerate() {
             let left = area.left + column as f64 * slot;

@@ -37,14 +37,17 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     axes.y_axis(canvas, &Ticks::of_logarithms(y[0], y[1]), "Noise level ν (–)", super::NAME_LEFT);
     let grid = Grid::new(data, &axes)?;
     let base = data.tuning.enhanced_error.max(LEAST_BASE);
-    canvas.rectangle((area.left, area.top), (area.right(), area.bottom()), Fill::solid(bands::COLOURS[0]));
+    // The good places are few: they are dark on a pale ground.
+    let mut colours = bands::COLOURS;
+    colours.reverse();
+    canvas.rectangle((area.left, area.top), (area.right(), area.bottom()), Fill::solid(colours[0]));
     for (band, factor) in BANDS.iter().enumerate() {
-        canvas.rectangles(&grid.above(area, factor * base), Fill::solid(bands::COLOURS[band + 1]));
+        canvas.rectangles(&grid.above(area, factor * base), Fill::solid(colours[band + 1]));
     }
     marks(canvas, &axes, data);
     axes.frame(canvas);
     let ends: Vec<String> = BANDS.iter().map(|factor| short(factor * base)).collect();
-    bands::bar(canvas, area, "Error (σ)", &ends);
+    bands::bar(canvas, area, "Error (σ)", (&colours, &ends));
     let entries = [
         (Sample::Marker(None, ENHANCED.marker), "chosen"),
         (Sample::Line(INTERVAL), "95 % intervals"),

@@ -38,9 +38,13 @@ fn a_run_up_has_mesh_orders_and_its_speed() {
     };
     let map = order_map(&signal, &phase, 1e4, &settings).unwrap();
     let figure = drawn(&map, Some("g"), 19);
-    for word in
-        ["Order of the wheel’s shaft (mesh orders 19, 38, …)", "Speed of the wheel (Hz)", "114", "15", "g"]
-    {
+    for word in [
+        "Order of the wheel’s shaft (mesh orders 19, 38, …)",
+        "Speed of the wheel (Hz)",
+        "114",
+        "15",
+        "Amplitude (g)",
+    ] {
         assert!(figure.labels().iter().any(|label| label.text == word), "{word}");
     }
 }

@@ -45,13 +45,13 @@ const EVERY_PANEL: [&str; 22] = [
     "Error (µm)",
     "Vertical acceleration (g)",
     "Mesh stiffness over a gear revolution",
-    "Stiffness (N/mm)",
-    "working",
-    "back",
+    "Stiffness (N/µm)",
+    "drive",
+    "coast",
     "root",
     "pitch",
     "tip",
-    "contact start",
+    "start of active profile",
     "chamfer",
     "module 3 mm",
     "contact model",
@@ -94,7 +94,7 @@ fn panels_of_the_gallery_show_what_they_should() {
             "pits",
             &["Pits: 3 pits, ", "% of the flank (moderate)", "hatched: lost over part of the face width"],
         ),
-        ("wear", &["Wear: up to 30 µm deep", "flank worn", "38 damaged gear teeth in contact"]),
+        ("wear", &["Wear: up to 30 µm deep", "flank worn", "38 teeth damaged", "healthy gear"]),
     ];
     for ((name, scenario), (expected_name, words)) in crate::support::gallery().iter().zip(expected) {
         assert_eq!(*name, expected_name);
@@ -506,7 +506,7 @@ fn of_several_damaged_teeth_the_one_that_is_drawn_is_named_and_so_are_the_others
 fn the_edge_of_a_pit_does_not_cross_the_name_of_the_contact_start() {
     let mut scenario = of_example(None);
     let names = |figure: &Figure| {
-        let names = figure.labels().iter().filter(|label| label.text == "contact start");
+        let names = figure.labels().iter().filter(|label| label.text == "start of active profile");
         names.map(|label| label.top).collect::<Vec<_>>()
     };
     let healthy = names(&drawn(&scenario));

@@ -73,8 +73,8 @@ fn seven_cases_with_long_names() {
         "A rig",
         "healthy",
         "F5",
-        "Kurtosis, decadic logarithm",
-        "Original simulation",
+        "Kurtosis, decadic logarithm (–)",
+        "Original simulation (over the healthy rms)",
         "Noise level ν (–)",
         "Width ratio w (–)",
     ] {
@@ -119,7 +119,10 @@ fn measured_difference_signals_stand_below_the_enhanced_ones() {
     let figure = tuning_figure(&experiment, &result(&experiment), "A rig").unwrap();
     check(&figure, LARGEST);
     assert_eq!(figure.size_px(), (1600, 1136));
-    assert!(has(&figure, "Measured, of each case the record that is the nearest to the medians"));
+    assert!(has(
+        &figure,
+        "Measured, of each case the record that is the nearest to the medians (over the healthy rms)"
+    ));
 
     // The largest case's burst lies in the middle, wherever its records begin; all are relative to the healthy ones.
     let typical = experiment.measured.typical_difference(3).unwrap();
@@ -149,7 +152,7 @@ fn the_shaft_that_is_averaged_over_is_named() {
 #[test]
 fn every_indicator() {
     let figure = drawn(&experiment(&LABELS, &TuningIndicator::ALL), "All");
-    assert!(has(&figure, "Skewness of the envelope"));
+    assert!(has(&figure, "Skewness of the envelope (–)"));
 }
 
 #[test]
