@@ -6,7 +6,10 @@ use meshtone::scenario::{ScenarioForm, ScenarioNumber, split_key};
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::{SEVERITY, fault_of_severity};
-use super::{FAULT_SEVERITY, NOISE_KEYS, PATH_KEYS, Sampler, is_of_plan, shift_key};
+use super::{
+    CLASSES, FAULT_SEVERITY, NOISE_KEYS, ORDER, PATH_KEYS, SPLITS, Sampler, design_seed, is_of_plan,
+    shift_key,
+};
 use crate::expression::{Condition, Expression, derived_names, underlying};
 use crate::plan::{Content, Level, Rule, Severity, SplitBy, kinds, list_and_entry, refused, with_faults};
 
@@ -67,7 +70,20 @@ impl<'a> Sampler<'a> {
         let counts = || content.classes.iter().map(|class| class.count);
         let ends = (1..=content.classes.len()).map(|last| counts().take(last).sum()).collect();
         let split_counts = content.splits.counts(content.divided());
-        Ok(Self { content, group_rules, classes, ends, split_counts, constraints, shift_levels })
+        let order_seeds = [ORDER, SPLITS].map(|index| design_seed(content, index));
+        let of_class = |class: u64| [0, 1].map(|which| design_seed(content, CLASSES + 2 * class + which));
+        let class_seeds = (0..content.classes.len() as u64).map(of_class).collect();
+        Ok(Self {
+            content,
+            group_rules,
+            classes,
+            ends,
+            split_counts,
+            order_seeds,
+            class_seeds,
+            constraints,
+            shift_levels,
+        })
     }
 }
 

@@ -64,6 +64,10 @@ pub struct Sampler<'a> {
     ends: Vec<u64>,
     /// Number of units, or mountings, of each split.
     split_counts: Vec<u64>,
+    /// Seeds of the order of all records, and of the division of units into splits.
+    order_seeds: [u64; 2],
+    /// Seeds of each class's design and of its order of units.
+    class_seeds: Vec<[u64; 2]>,
     /// Constraints, each with the level whose values decide it.
     constraints: Vec<(Level, &'a Condition)>,
     /// The levels whose values decide each condition of each shift.
@@ -144,7 +148,7 @@ impl Sampler<'_> {
     /// No values were found that meet the constraints: about the key in the plan of the condition that was broken most often.
     pub fn record(&self, index: u64) -> ReadResult<DrawnRecord> {
         let (class, number) = self.class_and_number(index);
-        let [design_seed, unit_seed] = self.class_seeds(class);
+        let [design_seed, unit_seed] = self.class_seeds[class];
         let place = self.place(class, number, unit_seed);
         let split = self.split_of(place.unit, place.mounting);
         let mut before = self.mounting_values(&place, split)?;
@@ -175,7 +179,7 @@ impl Sampler<'_> {
     /// * `index` - number of the record, below [`Self::records`]
     pub fn split(&self, index: u64) -> usize {
         let (class, number) = self.class_and_number(index);
-        let [_, unit_seed] = self.class_seeds(class);
+        let [_, unit_seed] = self.class_seeds[class];
         let place = self.place(class, number, unit_seed);
         self.split_of(place.unit, place.mounting)
     }
@@ -190,15 +194,10 @@ impl Sampler<'_> {
 
     /// The class of a record, and its number in the class.
     fn class_and_number(&self, index: u64) -> (usize, u64) {
-        let place = permuted(index, self.records(), self.seed(ORDER));
+        let place = permuted(index, self.records(), self.order_seeds[0]);
         let class = self.ends.iter().position(|&end| place < end).unwrap_or(0);
         let start = class.checked_sub(1).map_or(0, |before| self.ends[before]);
         (class, place - start)
-    }
-
-    /// Seeds of the design of a class and of its order of units.
-    fn class_seeds(&self, class: usize) -> [u64; 2] {
-        [0, 1].map(|which| self.seed(CLASSES + 2 * class as u64 + which))
     }
 
     /// The position of a record among the records of its class.
@@ -274,17 +273,14 @@ impl Sampler<'_> {
             SplitBy::Unit => unit,
             SplitBy::Mounting => mounting,
         };
-        Splits::split_of(&self.split_counts, number, self.content.divided(), self.seed(SPLITS))
-    }
-
-    fn seed(&self, index: u64) -> u64 {
-        Draws::new(self.content.seed, Purpose::DatasetDesign, index).bits()
+        Splits::split_of(&self.split_counts, number, self.content.divided(), self.order_seeds[1])
     }
 
     /// The values that the records of a mounting have in common: those of its unit, then its own.
     fn mounting_values(&self, place: &UnitPosition, split: usize) -> ReadResult<Vec<(String, f64)>> {
         let Content { design, units, ref splits, .. } = *self.content;
-        let points = |seed, purpose, count| Points { design, seed: self.seed(seed), purpose, count };
+        let points =
+            |seed, purpose, count| Points { design, seed: design_seed(self.content, seed), purpose, count };
         let of_unit = self.suitable(Drawn {
             level: Level::Unit,
             class: 0,
@@ -369,6 +365,11 @@ impl Sampler<'_> {
             }
         })
     }
+}
+
+/// The seed of an order or a design of a plan.
+fn design_seed(content: &Content, index: u64) -> u64 {
+    Draws::new(content.seed, Purpose::DatasetDesign, index).bits()
 }
 
 fn shift_key(shift: usize) -> String {
