@@ -8,6 +8,7 @@ use meshtone::scenario::{Model, ScenarioFiles, WheelName};
 use meshtone::sensor::{Channel, ChannelKind};
 use meshtone::tuning::Enhancement;
 use meshtone_dataset::draw::Sampler;
+use meshtone_dataset::export::export_bearing_datasets;
 use meshtone_dataset::generate::{GenerateControl, Part, generate};
 use meshtone_dataset::plan::Plan;
 use meshtone_dataset::store::Destination;
@@ -121,6 +122,12 @@ pub fn readers(work: &Path) -> Vec<Reader> {
         reader("manifest", "manifest of a data set", &["set/manifest.json"], Box::new(verified)),
         reader("parts", "list of a part", &["part/parts/part-1-2-000000.json"], Box::new(verified)),
         reader("shard", "shard of a data set", &["set/data/train-000000.parquet"], Box::new(verified)),
+        reader(
+            "exported",
+            "recording of an exported data set",
+            &["exported/metadata.parquet", "exported/signals/part-float32.parquet"],
+            Box::new(of_exported_set),
+        ),
     ]
 }
 
@@ -176,6 +183,8 @@ fn make_others(work: &Path) {
         generate(&plan, &Destination::directory(work.join(name)), part, &control)
             .unwrap_or_else(|error| panic!("{error}"));
     }
+    export_bearing_datasets(&Destination::directory(work.join("set")), &work.join("exported"))
+        .unwrap_or_else(|error| panic!("{error}"));
 }
 
 /// A small data set.
@@ -262,6 +271,14 @@ fn read_errors(path: &Path) -> bool {
 fn beside(path: &Path, read: impl Fn(&FilesBeside, &str) -> bool) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     read(&FilesBeside::new(path.parent().unwrap_or(Path::new(""))), &name)
+}
+
+/// A recording of the exported data set that a file belongs to.
+fn of_exported_set(path: &Path) -> bool {
+    let is_one = |folder: &&Path| folder.join("metadata.parquet").exists();
+    let folder = path.ancestors().skip(1).find(is_one).unwrap_or(path);
+    let options = RecordingOptions { variable: Some("record-1".to_owned()), ..RecordingOptions::default() };
+    read_recording(folder, &options).is_ok()
 }
 
 /// The data set that a file belongs to.

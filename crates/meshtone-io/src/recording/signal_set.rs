@@ -1,6 +1,7 @@
 //! A recording of a data set in the schema of the Python package `bearing-datasets`, version 2: the table `metadata.parquet` has a row for
 //! each signal, and says in which row of which file of the folder `signals` the samples are.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use meshtone_toml::nearest_name;
@@ -14,10 +15,12 @@ use super::selection::select;
 use super::{Recording, RecordingOptions, memory_need};
 use crate::input_file::open_ordinary;
 use crate::memory;
-use crate::table::TableReader;
+use crate::table::{FoundColumn, TableReader};
 
 const METADATA: &str = "metadata.parquet";
 const SIGNALS: &str = "signals";
+/// (bytes) Memory for a value of a group of rows while it is read, with its levels and its copy in a list.
+const VALUE_BYTES: u64 = 20;
 /// Units of numbers whose scale is unknown.
 const UNKNOWN_UNITS: [&str; 3] = ["unknown", "counts", "normalized"];
 
@@ -54,11 +57,21 @@ pub(super) fn read(folder: &Path, options: &RecordingOptions) -> Result<Recordin
     });
     let labels: Vec<Label> = labels.collect();
     let selection = select(&labels, options)?;
-    memory_need::check(memory::limit(), options, &selection, |index| samples[index] as u64, 0)?;
-    let read = |&index: &usize| {
+    let open = |&index: &usize| {
         let signals = table(open_ordinary(&file_of(folder, &files[index])?)?)?;
-        let column = signals.column("signal").ok_or_else(|| lacks(&files[index], "signal"))?;
-        let lists = signals.lists(column, groups[index] as usize).map_err(Problem::broken)?;
+        let column = signals.column("signal").ok_or_else(|| lacks(&files[index], "signal"))?.clone();
+        Ok((index, signals, column))
+    };
+    let opened = selection.wanted.iter().map(open).collect::<Result<Vec<_>, Problem>>()?;
+    // All signals of a group of rows are read at once.
+    let values_of_group = opened.iter().filter_map(|(index, signals, column)| {
+        let chunk = signals.chunks(column).nth(groups[*index] as usize)?;
+        u64::try_from(chunk.num_values()).ok()
+    });
+    let group_bytes = values_of_group.max().unwrap_or(0).saturating_mul(VALUE_BYTES);
+    memory_need::check(memory::limit(), options, &selection, |index| samples[index] as u64, group_bytes)?;
+    let read = |(index, signals, column): (usize, TableReader<File>, FoundColumn)| {
+        let lists = signals.lists(&column, groups[index] as usize).map_err(Problem::broken)?;
         let list = lists.into_iter().nth(places[index] as usize).unwrap_or_default();
         if list.len() as f64 == samples[index] {
             return Ok(list);
@@ -68,7 +81,7 @@ pub(super) fn read(folder: &Path, options: &RecordingOptions) -> Result<Recordin
             "{channel} has {found} samples, and {METADATA} says {stated}; build the data set again"
         )))
     };
-    let read = selection.wanted.iter().map(read).collect::<Result<_, _>>()?;
+    let read = opened.into_iter().map(read).collect::<Result<_, _>>()?;
     let rate =
         |&index: &usize| StatedRate { by: format!("fs of {}", channels[index]), rate_hz: rates[index] };
     let stated: Vec<StatedRate> = selection.wanted.iter().map(rate).collect();
@@ -101,13 +114,13 @@ fn file_of(folder: &Path, name: &str) -> Result<PathBuf, Problem> {
     Ok(folder.join(SIGNALS).join(name))
 }
 
-fn texts(table: &TableReader<std::fs::File>, name: &str) -> Result<Vec<String>, Problem> {
+fn texts(table: &TableReader<File>, name: &str) -> Result<Vec<String>, Problem> {
     let column = table.column(name).ok_or_else(|| lacks(METADATA, name))?;
     let texts = table.texts(column).map_err(Problem::broken)?;
     Ok(texts.into_iter().map(Option::unwrap_or_default).collect())
 }
 
-fn numbers(table: &TableReader<std::fs::File>, name: &str) -> Result<Vec<f64>, Problem> {
+fn numbers(table: &TableReader<File>, name: &str) -> Result<Vec<f64>, Problem> {
     let column = table.column(name).ok_or_else(|| lacks(METADATA, name))?;
     Ok(table.numbers(column, 0).map_err(Problem::broken)?.values)
 }
