@@ -10,23 +10,8 @@ from typing import Any, Literal, TypedDict
 
 import numpy.typing as npt
 
-from ._keys import EndRelief, FlankRelief, Profile, WheelInertia
+from ._keys import EndRelief, FlankRelief, Profile, Unbalance, WheelInertia
 from ._sensor import SensorPath
-
-
-class Unbalance(TypedDict, total=False):
-    """The table ``unbalance`` of an entry ``[[shaft]]`` of a gearbox.
-
-    Attributes
-    ----------
-    g_mm : float
-        (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
-    angle_deg : float
-        (°) Its direction at the start, from x towards y. Allowed: −360…360.
-    """
-
-    g_mm: float
-    angle_deg: float
 
 
 class Bow(TypedDict, total=False):
@@ -37,7 +22,7 @@ class Bow(TypedDict, total=False):
     middle_um : float
         (µm) The distance of its middle from the line through its ends, without a load. Allowed: ≥ 0, ≤ 10000.
     angle_deg : float
-        (°) Its direction at the start, from x towards y. Allowed: −360…360.
+        (°) Its direction at time 0, before settling, from x towards y. Allowed: −360…360.
     """
 
     middle_um: float
@@ -89,21 +74,6 @@ class GearboxShaft(TypedDict, total=False):
     damping_ratio: float
     unbalance: Unbalance
     bow: Bow
-
-
-class Unbalance(TypedDict, total=False):
-    """The table ``unbalance`` of an entry ``[[wheel]]`` of a gearbox.
-
-    Attributes
-    ----------
-    g_mm : float
-        (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
-    angle_deg : float
-        (°) Its direction at the start, from x towards y. Allowed: −360…360.
-    """
-
-    g_mm: float
-    angle_deg: float
 
 
 class GearboxWheel(TypedDict, total=False):
@@ -249,7 +219,7 @@ class GearboxMesh(TypedDict, total=False):
     damping_ratio: float
 
 
-class Defect(TypedDict, total=False):
+class BearingDefect(TypedDict, total=False):
     """An entry of ``defect`` of an entry ``[[bearing]]`` of a gearbox.
 
     Attributes
@@ -259,12 +229,13 @@ class Defect(TypedDict, total=False):
     severity : float
         (-) The width of the spall as a fraction of the diameter of an element. Allowed: > 0, ≤ 1.
     width_mm : float
-        (mm) The width of the spall along the path of the elements. Allowed: > 0; at most the diameter of an element.
+        (mm) The width of the spall along the path of the elements. Allowed: > 0; at most the diameter of an element,
+        and on the inner race the spacing of the elements.
     depth_um : float
         (µm) The depth of the spall; an element drops at most until it touches both edges. Allowed: > 0, ≤ 100000.
     angle_deg : float
-        (°) The angle from the static load of the bearing to the middle of the spall, about z; on the inner race at the
-        start. Allowed: −360…360.
+        (°) The angle from the static load of the bearing to the middle of the spall, about z; on the inner race at time
+        0, before settling. Allowed: −360…360.
     """
 
     race: Literal["outer", "inner", "element"]
@@ -321,11 +292,12 @@ class GearboxBearing(TypedDict, total=False):
     clearance_um : float
         (µm) The diametral clearance of a rolling bearing; negative for an interference. Allowed: −200…1000.
     preload_n : float
-        (N) The axial preload of a ball bearing with a contact angle. Allowed: ≥ 0, ≤ 1000000.
+        (N) The axial preload of a ball bearing with a contact angle; it takes up the clearance. Allowed: ≥ 0, ≤
+        1000000.
     slip_percent : float
         (%) The random slip of the cage at each pass of an element: its standard deviation, in the spacing of the
         elements. Allowed: 0…2.
-    defect : sequence of Defect
+    defect : sequence of BearingDefect
         The spalls of a rolling bearing, one by one.
     stiffness_n_per_m : float
         (N/m) The radial stiffness of a linear bearing. Allowed: > 0, ≤ 1e15.
@@ -351,7 +323,7 @@ class GearboxBearing(TypedDict, total=False):
     clearance_um: float
     preload_n: float
     slip_percent: float
-    defect: Sequence[Defect]
+    defect: Sequence[BearingDefect]
     stiffness_n_per_m: float
     axial_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float

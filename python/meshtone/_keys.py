@@ -117,30 +117,15 @@ class WheelInertia(TypedDict, total=False):
     transverse_inertia_kgm2: float
 
 
-class PinionUnbalance(TypedDict, total=False):
-    """A table of a scenario.
+class Unbalance(TypedDict, total=False):
+    """One of the tables ``pinion_unbalance``, ``gear_unbalance`` of a scenario.
 
     Attributes
     ----------
     g_mm : float
         (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
     angle_deg : float
-        (°) Its direction at the start, from x towards y. Allowed: −360…360.
-    """
-
-    g_mm: float
-    angle_deg: float
-
-
-class GearUnbalance(TypedDict, total=False):
-    """A table of a scenario.
-
-    Attributes
-    ----------
-    g_mm : float
-        (g mm) The mass times its distance from the axis. Allowed: ≥ 0, ≤ 10000000.
-    angle_deg : float
-        (°) Its direction at the start, from x towards y. Allowed: −360…360.
+        (°) Its direction at time 0, before settling, from x towards y. Allowed: −360…360.
     """
 
     g_mm: float
@@ -404,8 +389,8 @@ class ScenarioKeys:
     gear_shaft: Shaft
     pinion_inertia: WheelInertia | None
     gear_inertia: WheelInertia | None
-    pinion_unbalance: PinionUnbalance | None
-    gear_unbalance: GearUnbalance | None
+    pinion_unbalance: Unbalance | None
+    gear_unbalance: Unbalance | None
     support: Support
     mesh_damping_ratio: float
     sampling_rate_hz: float
@@ -482,8 +467,8 @@ class ScenarioKeys:
         gear_shaft: Shaft | None = None,
         pinion_inertia: WheelInertia | None = None,
         gear_inertia: WheelInertia | None = None,
-        pinion_unbalance: PinionUnbalance | None = None,
-        gear_unbalance: GearUnbalance | None = None,
+        pinion_unbalance: Unbalance | None = None,
+        gear_unbalance: Unbalance | None = None,
         support: Support | None = None,
         mesh_damping_ratio: float | None = None,
         sampling_rate_hz: float | None = None,
@@ -648,7 +633,7 @@ class ScenarioKeys:
             = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }.
         pinion_inertia, gear_inertia : WheelInertia, optional
             The wheel's mass and inertias, any of the three. Default: those of a solid disc of pitch radius.
-        pinion_unbalance, gear_unbalance : PinionUnbalance, optional
+        pinion_unbalance, gear_unbalance : Unbalance, optional
             The unbalance of the wheel and its shaft. Default: none. Ignored by published.
         support : Support, optional
             The supports of the shafts' bearings. Default: { mass_kg = 2.3, base_hz = 450.0, differential_hz = 2900.0,

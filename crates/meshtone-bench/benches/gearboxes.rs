@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use meshtone::scenario::{Gearbox, gearbox_template};
+use meshtone::scenario::{BearingKind, Gearbox, gearbox_template};
 use meshtone::{GearboxSimulation, StepJudgement, gearbox_stages, simulate_gearbox, simulate_gearboxes};
 
 /// Time that this thread had the processor.
@@ -66,6 +66,13 @@ fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
     group.bench_function("stages", |bencher| bencher.iter(|| gearbox_stages(black_box(&gearbox))));
     let stages = gearbox_stages(&gearbox).expect("the template is valid");
     group.bench_function("time loop", |bencher| bencher.iter(|| black_box(&stages).clone().simulate()));
+    let mut with_ball_bearing = gearbox.clone();
+    with_ball_bearing.bearings[0].kind = BearingKind::Ball;
+    with_ball_bearing.bearings[0].name = Some("ER-10K".to_owned());
+    let with_ball_bearing = gearbox_stages(&with_ball_bearing).expect("the bearing is valid");
+    group.bench_function("time loop, one ball bearing", |bencher| {
+        bencher.iter(|| black_box(&with_ball_bearing).clone().simulate());
+    });
     group.bench_function("alone", |bencher| {
         bencher.iter(|| {
             let simulation = simulate_gearbox(black_box(&gearbox)).expect("the template is valid");
