@@ -44,10 +44,12 @@ def main() -> int:
     texts = {"LICENSE": LICENCE.format(title=manifest["title"], licence=licence, url=url, name=folder.name)}
     texts["SHA256SUMS"] = "".join(f"{sha256(file.read_bytes())}  {name}\n" for name, file in files.items())
     archive = folder.with_name(folder.name + ".zip")
-    # Parquet is compressed already; and no dates of files, so that the bytes are always the same.
+    # Parquet is compressed already; and no dates and modes of files nor the system, so that the bytes are the same on every machine.
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as packed:
         for name, content in [*texts.items(), *files.items()]:
-            packed.writestr(zipfile.ZipInfo(name), content.encode() if isinstance(content, str) else content.read_bytes())
+            member = zipfile.ZipInfo(name)
+            member.create_system, member.external_attr = 3, 0o644 << 16
+            packed.writestr(member, content.encode() if isinstance(content, str) else content.read_bytes())
     archive.with_suffix(".zip.sha256").write_text(f"{sha256(archive.read_bytes())}  {archive.name}\n", "utf-8")
     line = f'"{folder.name}": "{sha256((folder / "manifest.json").read_bytes())}"'
     print(f"{archive}: {archive.stat().st_size / 1e6:.1f} MB, {len(names)} files; {line}")

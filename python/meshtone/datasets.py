@@ -314,33 +314,46 @@ def load(name: str, path: str | PathLike[str]) -> Dataset:
     if name not in PUBLISHED:
         raise ValueError(f"no data set '{name}' is published{hint(name, PUBLISHED)}; there is {', '.join(PUBLISHED)}")
     place = Path(path)
-    folder = place if place.is_dir() else _unpacked(place, name)
+    folder = place if place.is_dir() else place.parent / name
+    if not folder.exists():
+        _unpack(place, name, folder)
     _check_place(folder, "manifest.json")
-    found = hashlib.sha256((folder / "manifest.json").read_bytes()).hexdigest()
-    if found != PUBLISHED[name]:
-        raise ValueError(
-            f"{folder} is not the published {name}: the SHA-256 of its manifest.json is {found} instead of {PUBLISHED[name]}; fetch it "
-            "again, or open it with load_dataset"
-        )
+    _check_published(folder, name, (folder / "manifest.json").read_bytes(), "remove it and load the archive")
     return load_dataset(folder, verify=True)
 
 
-def _unpacked(archive: Path, name: str) -> Path:
-    """The folder of a data set beside its archive. It appears whole or not at all."""
-    folder = archive.parent / name
-    if folder.exists():
-        return folder
+def _check_published(place: Path, name: str, manifest: bytes, remedy: str) -> None:
+    """Refuse a manifest that is not the published one."""
+    found = hashlib.sha256(manifest).hexdigest()
+    if found != PUBLISHED[name]:
+        raise ValueError(
+            f"{place} is not the published {name}: the SHA-256 of its manifest.json is {found} instead of {PUBLISHED[name]}; {remedy}, or open "
+            "it with load_dataset"
+        )
+
+
+def _unpack(archive: Path, name: str, folder: Path) -> None:
+    """Unpack a published data set.
+
+    The manifest is compared first with what was published, and every file that it names with the size and the SHA-256 there; other files of
+    the archive are not read. The folder appears whole or not at all.
+    """
     try:
         with zipfile.ZipFile(archive) as packed, tempfile.TemporaryDirectory(dir=archive.parent) as unfinished:
-            packed.extractall(unfinished, [member for member in packed.namelist() if member.startswith(f"{name}/")])
-            Path(unfinished, name).rename(folder)
-    except zipfile.BadZipFile as error:
-        raise ValueError(f"{archive} is no whole archive of a data set: {error}; fetch it again") from None
-    except FileNotFoundError as error:
-        if archive.exists():
-            raise ValueError(f"{archive} has no folder {name} in it") from error
-        raise
-    return folder
+            manifest = packed.read(f"{name}/manifest.json")
+            _check_published(archive, name, manifest, "fetch it again, or unpack it")
+            whole, stated = Path(unfinished, name), json.loads(manifest)
+            for file in [*stated["documents"], *stated["files"]]:
+                member = packed.getinfo(f"{name}/{file['name']}")
+                content = packed.read(member) if member.file_size == file["bytes"] else b""
+                if hashlib.sha256(content).hexdigest() != file["sha256"]:
+                    raise ValueError(f"{archive} is not the published {name}: {file['name']} in it has other bytes; fetch it again")
+                (whole / file["name"]).parent.mkdir(parents=True, exist_ok=True)
+                (whole / file["name"]).write_bytes(content)
+            (whole / "manifest.json").write_bytes(manifest)
+            whole.rename(folder)
+    except (zipfile.BadZipFile, KeyError) as error:
+        raise ValueError(f"{archive} is no whole archive of {name}: {error.args[0]}; fetch it again") from None
 
 
 def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:

@@ -557,6 +557,8 @@ def test_a_published_set_is_unpacked_and_compared(
     digest, name = archive.with_name("benchmark-1.zip.sha256").read_text("utf-8").split()
     assert (digest, name) == (hashlib.sha256(packed).hexdigest(), archive.name)
     with zipfile.ZipFile(archive) as opened:
+        # The bytes do not depend on the system.
+        assert {(member.create_system, member.external_attr >> 16) for member in opened.infolist()} == {(3, 0o644)}
         assert "CC-BY-4.0" in opened.read("LICENSE").decode()
         sums = [line.split("  ") for line in opened.read("SHA256SUMS").decode().splitlines()]
         assert {name: digest for digest, name in sums} == {f"benchmark-1/{name}": digest for name, digest in digests(folder).items()}
@@ -574,7 +576,23 @@ def test_a_published_set_is_unpacked_and_compared(
     shutil.copy(archive, downloads)
     with pytest.raises(ValueError, match=r"is not the published benchmark-1: the SHA-256 of its manifest.json is [0-9a-f]{64} instead"):
         datasets.load("benchmark-1", downloads / archive.name)
+    # Nothing of a wrong archive stays, so that another one can be fetched.
+    assert [file.name for file in downloads.iterdir()] == [archive.name]
     monkeypatch.setitem(PUBLISHED, "benchmark-1", digests(folder)["manifest.json"])
+    changed = downloads / "changed.zip"
+    with zipfile.ZipFile(archive) as opened, zipfile.ZipFile(changed, "w") as rewritten:
+        for member in opened.namelist():
+            other_bytes = b"x" if member.endswith("train-000001.parquet") else opened.read(member)
+            rewritten.writestr(member, other_bytes)
+        rewritten.writestr("benchmark-1/more.txt", "more")
+    with pytest.raises(ValueError, match=r"is not the published benchmark-1: data/train-000001.parquet in it has other bytes; fetch it again"):
+        datasets.load("benchmark-1", changed)
+    with zipfile.ZipFile(archive) as opened, zipfile.ZipFile(changed, "w") as rewritten:
+        rewritten.writestr("benchmark-1/manifest.json", opened.read("benchmark-1/manifest.json"))
+    with pytest.raises(ValueError, match="is no whole archive of benchmark-1: There is no item named"):
+        datasets.load("benchmark-1", changed)
+    changed.unlink()
+    assert [file.name for file in downloads.iterdir()] == [archive.name]
     for place in (archive.name, "benchmark-1"):
         loaded = datasets.load("benchmark-1", downloads / place)
         assert loaded.path == downloads / "benchmark-1" and len(loaded) == 24
@@ -586,6 +604,6 @@ def test_a_published_set_is_unpacked_and_compared(
     with pytest.raises(FileNotFoundError):
         datasets.load("benchmark-1", tmp_path / "absent.zip")
     (tmp_path / "text.zip").write_text("text", encoding="utf-8")
-    with pytest.raises(ValueError, match="is no whole archive of a data set"):
+    with pytest.raises(ValueError, match="is no whole archive of benchmark-1"):
         datasets.load("benchmark-1", tmp_path / "text.zip")
     assert not (tmp_path / "benchmark-1").exists()
