@@ -55,7 +55,7 @@ pub struct Exported {
 /// The manifest is written last. The same data set gives the same bytes.
 ///
 /// # Errors
-/// The data set is not complete, not as it was written, or keeps no raw channel; the folder has files in it; or a file cannot be read or
+/// The data set is not complete, not as it was written, or keeps no raw channel; a bearing of its base scenario has a spall; the folder has files in it; or a file cannot be read or
 /// written.
 pub fn export_bearing_datasets(from: &Destination, to: &Path) -> Result<Exported, DatasetError> {
     let manifest = manifest::read_begun(from)?;
@@ -95,6 +95,21 @@ struct Export<'a> {
     columns: Vec<Column>,
     /// What is known of each raw channel.
     channels: Vec<ChannelFacts>,
+}
+
+/// Refuses a base scenario whose bearings have spalls, because its healthy records would be exported as `normal`.
+fn refuse_spalls(base: &ScenarioForm) -> Result<(), DatasetError> {
+    let ScenarioForm::Gearbox(gearbox) = base else { return Ok(()) };
+    let Some(bearing) = gearbox.bearings.iter().find(|bearing| !bearing.defect.is_empty()) else {
+        return Ok(());
+    };
+    Err(DatasetError::refused(
+        format!(
+            "bearing[{}] of the base scenario has a spall, and healthy records would be exported as \"normal\"",
+            bearing.seat_name()
+        ),
+        "export a data set whose bearings have no defect: only faults of gears are labelled",
+    ))
 }
 
 /// The columns of a raw channel.
@@ -156,6 +171,7 @@ impl<'a> Export<'a> {
                 format!("the data set in {from} keeps no raw channels, which are the signals of this schema");
             return Err(DatasetError::refused(problem, "name some in keep.channels of the plan"));
         }
+        refuse_spalls(&content.base)?;
         Ok(Self {
             from,
             to: Destination::directory(to),
@@ -560,5 +576,24 @@ impl std::fmt::Display for Exported {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { recordings, signals } = *self;
         write!(formatter, "{} of {}", counted(signals, "signal"), counted(recordings, "record"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use meshtone::scenario::{Bearing, BearingDefect, DefectPlace, GearboxOperation};
+
+    #[test]
+    fn records_with_a_spall_are_not_exported_as_normal() {
+        let mut bearing = Bearing::new("input", 0.5);
+        let base = |bearing: &Bearing| {
+            let operation = GearboxOperation::new(25.0, 10.0);
+            ScenarioForm::Gearbox(Gearbox::new(vec![], vec![], vec![], vec![bearing.clone()], operation))
+        };
+        assert!(refuse_spalls(&base(&bearing)).is_ok());
+        bearing.defect.push(BearingDefect::new(DefectPlace::Outer, 0.2));
+        let refused = refuse_spalls(&base(&bearing)).unwrap_err().to_string();
+        assert!(refused.contains("bearing[input:0.5] of the base scenario has a spall"), "{refused}");
     }
 }

@@ -141,7 +141,8 @@ impl Prior {
                 gearbox.sensors.is_empty()
             }
         };
-        let deviations = base.numbers().into_iter().map(|number| (log_deviation(&number.key), number.key));
+        let deviations =
+            base.numbers().into_iter().map(|number| (log_deviation(&base, &number.key), number.key));
         let spreads = deviations.filter_map(|(deviation, key)| Some(Spread { key, deviation: deviation? }));
         Ok(Self {
             spreads: spreads.collect(),

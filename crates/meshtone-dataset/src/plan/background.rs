@@ -40,7 +40,8 @@ impl Background {
     /// * `to_hz` - (S/s) the data set's
     ///
     /// # Errors
-    /// Those of the separation: a constant signal, or one of fewer than some 300 samples.
+    /// Those of the separation: a constant signal, or one of fewer than some 300 samples. A signal that is too short for a single sample at
+    /// the data set's rate, or whose noise has no finite level above 0.
     pub fn of_recording(signal: &[f64], from_hz: f64, to_hz: f64) -> Result<Self, SignalError> {
         let block = (signal.len() / BLOCKS).min((LONGEST_BLOCK_S * from_hz) as usize);
         let random = discrete_random_separation(signal, block, block)?.random;
@@ -48,8 +49,15 @@ impl Background {
         let step = from_hz / to_hz;
         let filter = AntiAliasing::steep(from_hz, to_hz)?;
         let count = (inner.len() as f64 / step) as usize;
+        if count == 0 {
+            let what = "samples at keep.sampling_rate_hz";
+            return Err(SignalError::TooFew { what, given: count, needed: 1 });
+        }
         let samples = filter.read_double(inner, (0..count).map(|i| i as f64 * step), Edge::Reflect);
         let deviation = standard_deviation(&samples);
+        if !(deviation > 0.0 && deviation.is_finite()) {
+            return Err(SignalError::Constant { value: samples[0], samples: count });
+        }
         Ok(Self { samples: samples.iter().map(|sample| (sample / deviation) as f32).collect() })
     }
 
@@ -58,13 +66,32 @@ impl Background {
         self.samples.iter().map(|sample| format!("{sample:?}\n")).collect()
     }
 
-    /// Reads that text; none where it is another.
+    /// Reads that text; none where it is another, or has a number that is not finite.
     pub(crate) fn from_text(text: &str) -> Option<Self> {
-        let samples: Arc<[f32]> = text.lines().map(|line| line.parse().ok()).collect::<Option<_>>()?;
+        let finite = |line: &str| line.parse().ok().filter(|sample: &f32| sample.is_finite());
+        let samples: Arc<[f32]> = text.lines().map(finite).collect::<Option<_>>()?;
         (!samples.is_empty()).then_some(Self { samples })
     }
 
-    /// Adds a random piece of it to a signal. A signal that is longer than the recording goes on at its beginning.
+    /// Refuses records that are longer: in those the noise would repeat, as lines at the rate of repetition.
+    ///
+    /// # Arguments
+    /// * `samples` - number of samples of a record
+    /// * `rate_hz` - (S/s) the data set's
+    pub(crate) fn check_length(&self, samples: usize, rate_hz: f64) -> Result<(), String> {
+        if samples <= self.samples.len() {
+            return Ok(());
+        }
+        let [given_s, record_s] = [self.samples.len(), samples].map(|count| count as f64 / rate_hz);
+        // A block in all is left out of the recording.
+        let needed_s = record_s + (record_s / (BLOCKS - 1) as f64).min(LONGEST_BLOCK_S);
+        Err(format!(
+            "gives {given_s:.3} s of noise, but a record lasts {record_s:.3} s; must be a recording of at least {:.2} s",
+            (needed_s * 100.0).ceil() / 100.0 + 0.01
+        ))
+    }
+
+    /// Adds a random piece of it to a signal. A piece that reaches the end of the recording goes on at its beginning.
     ///
     /// # Arguments
     /// * `draws` - decide where the piece begins
@@ -100,7 +127,23 @@ mod tests {
         let neighbours = samples.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / samples.len() as f64;
         assert!((neighbours - 0.5).abs() < 0.1, "{neighbours}");
         assert_eq!(Background::from_text(&background.to_text()), Some(background));
-        assert_eq!(Background::from_text("1\nx\n"), None);
+        for text in ["", "1\nx\n", "1\nNaN\n", "1\ninf\n"] {
+            assert_eq!(Background::from_text(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn recordings_without_noise_at_the_rate_of_the_data_are_refused() {
+        let mut draws = Draws::new(3, Purpose::RecordNoise, 0);
+        let white: Vec<f64> = (0..200).flat_map(|_| draws.normals()).collect();
+        let refused = |signal: &[f64], to_hz: f64| Background::of_recording(signal, 25e3, to_hz).unwrap_err();
+        assert!(
+            matches!(refused(&white, 50.0), SignalError::TooFew { given: 0, .. }),
+            "{:?}",
+            refused(&white, 50.0)
+        );
+        assert!(matches!(refused(&[white, vec![f64::NAN]].concat(), 25e3), SignalError::NotFinite { .. }));
+        assert!(matches!(refused(&[1.0; 400], 25e3), SignalError::Constant { .. }));
     }
 
     #[test]

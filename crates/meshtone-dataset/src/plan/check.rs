@@ -334,8 +334,8 @@ fn refuse_value(
     refused
 }
 
-/// Refuses a record that lasts longer than a speed profile, channels over the angle of an unsteady motion, and averages over too few
-/// revolutions.
+/// Refuses a record that lasts longer than a speed profile or the background, channels over the angle of an unsteady motion, and averages
+/// over too few revolutions.
 fn refuse_length(content: &Content, scenario: &ScenarioForm) -> ReadResult<()> {
     let Keep { over_angle, duration_s, wheel, .. } = &content.keep;
     let (operation, is_steady) = (scenario.operation(), scenario.is_steady());
@@ -372,6 +372,11 @@ fn refuse_length(content: &Content, scenario: &ScenarioForm) -> ReadResult<()> {
             (&*format!("scenario.solver.{}", length.name), length.value, length.change, simulated_s)
         }
     };
+    if let Some(background) = &content.background {
+        let rate_hz = content.keep.sampling_rate_hz;
+        let checked = background.check_length((seconds * rate_hz) as usize, rate_hz);
+        checked.map_err(|problem| TomlError::new("background", "", problem))?;
+    }
     let revolutions = seconds * slowest.speed_hz - before;
     // A whole number of revolutions may come out a rounding error below it.
     if content.keep.is_analysed() && is_steady && revolutions + 1e-6 < FEWEST_REVOLUTIONS as f64 {

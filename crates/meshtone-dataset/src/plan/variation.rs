@@ -62,9 +62,9 @@ impl Variation {
                 }
                 // One of the two is 0: the other one counts.
                 (_, "din_grade" | "iso_class") if is_unknown_rig && value > 0.0 => {
-                    Some((Level::Unit, neighbours(number)))
+                    Some((Level::Unit, neighbours(base, number)))
                 }
-                _ => log_deviation(key)
+                _ => log_deviation(base, key)
                     .filter(|_| is_unknown_rig)
                     .map(|deviation| (Level::Unit, about((HALF_RANGE * deviation).exp()))),
             };
@@ -89,10 +89,53 @@ fn one(key: &str, level: Level, distribution: Distribution) -> Rule {
     Rule { keys: vec![key.to_owned()], level, distribution, times: None, plus: None }
 }
 
-/// A grade, the next finer one and the next coarser one.
-fn neighbours(grade: &ScenarioNumber) -> Distribution {
-    let rows: Vec<Vec<f64>> =
-        [-1.0, 0.0, 1.0].map(|step| vec![(grade.value + step).clamp(1.0, 11.0)]).to_vec();
+/// A grade, the next finer one and the next coarser one; itself instead of one that the key does not allow, and of 0, which is no grade.
+fn neighbours(base: &ScenarioForm, grade: &ScenarioNumber) -> Distribution {
+    let is_allowed = |value: f64| value >= 1.0 && base.with_numbers(&[(&grade.key, value)]).is_ok();
+    let rows: Vec<Vec<f64>> = [-1.0, 0.0, 1.0]
+        .map(|step| grade.value + step)
+        .map(|value| vec![if is_allowed(value) { value } else { grade.value }])
+        .to_vec();
     let weights = vec![1.0; rows.len()];
     Distribution::Choice { rows, weights }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use meshtone::scenario::{Bearing, BearingKind, GearPair, Gearbox, GearboxOperation, Scenario};
+
+    /// Springs vary by their stiffness; balls and rollers, which have no such key in effect, vary by their clearance.
+    #[test]
+    fn rolling_bearings_vary_by_their_clearance() {
+        let mut bearings: Vec<Bearing> = [0.0, 1.0, 1.0].map(|at| Bearing::new("input", at)).to_vec();
+        bearings[0].kind = BearingKind::Ball;
+        bearings[2].kind = BearingKind::Roller;
+        let operation = GearboxOperation::new(25.0, 10.0);
+        let base = ScenarioForm::Gearbox(Gearbox::new(vec![], vec![], vec![], bearings, operation));
+        let rules = Variation::UnknownRig.rules(&base);
+        let of = |end: &str| -> Vec<&str> {
+            let keys = rules.iter().map(|rule| rule.keys[0].as_str());
+            keys.filter(|key| key.starts_with("bearing[") && key.ends_with(end) && !key.contains("seat"))
+                .collect()
+        };
+        // Two bearings at one place have their numbers as names.
+        assert_eq!(of("].clearance_um"), ["bearing[input:0].clearance_um", "bearing[2].clearance_um"]);
+        assert_eq!(of("].stiffness_n_per_m"), ["bearing[1].stiffness_n_per_m"]);
+        assert_eq!(of("].damping_ratio").len(), 3);
+    }
+
+    #[test]
+    fn grades_stay_within_the_range_of_their_key() {
+        let of = |key: &str, value: f64| {
+            let base =
+                ScenarioForm::Pair(Scenario::new(GearPair::example()).with_number(key, value).unwrap());
+            let number = base.numbers().into_iter().find(|number| number.key == key).unwrap();
+            neighbours(&base, &number).rows().concat()
+        };
+        assert_eq!(of("quality.din_grade", 12.0), [11.0, 12.0, 12.0]);
+        assert_eq!(of("quality.iso_class", 11.0), [10.0, 11.0, 11.0]);
+        assert_eq!(of("quality.din_grade", 1.0), [1.0, 1.0, 2.0]);
+        assert_eq!(of("quality.iso_class", 6.0), [5.0, 6.0, 7.0]);
+    }
 }

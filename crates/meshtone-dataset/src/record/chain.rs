@@ -222,7 +222,8 @@ impl<'a> View<'a> {
         }
         for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
             if kind.is_acceleration() {
-                noise::add(&record.drawn, content.background.as_ref(), number as u64, channel);
+                let (background, rate_hz) = (content.background.as_ref(), keep.sampling_rate_hz);
+                noise::add(&record.drawn, background, number as u64, rate_hz, channel)?;
             }
         }
         self.chain(&self.simulated.train())?.fill(&mut record, analysed, channels)?;

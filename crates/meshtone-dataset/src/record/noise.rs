@@ -11,24 +11,36 @@ use crate::plan::Background;
 /// * `drawn` - the record
 /// * `background` - of the plan; none for white noise
 /// * `channel` - number of the channel
+/// * `rate_hz` - (S/s) the sampling rate
 /// * `signal` - (g) its samples
-pub(super) fn add(drawn: &DrawnRecord, background: Option<&Background>, channel: u64, signal: &mut [f32]) {
+///
+/// # Errors
+/// The background is shorter than the signal.
+pub(super) fn add(
+    drawn: &DrawnRecord,
+    background: Option<&Background>,
+    channel: u64,
+    rate_hz: f64,
+    signal: &mut [f32],
+) -> Result<(), String> {
     let [relative_db, level_g] = NOISE_KEYS.map(|key| drawn.value(key));
     let deviation = match (relative_db, level_g) {
         (Some(ratio_db), _) => standard_deviation(signal) * libm::pow(10.0, -ratio_db / 20.0),
         (None, Some(level)) => level,
-        (None, None) => return,
+        (None, None) => return Ok(()),
     };
     let mut draws = Draws::new(drawn.seed, Purpose::RecordNoise, channel);
     if let Some(background) = background {
+        background.check_length(signal.len(), rate_hz).map_err(|problem| format!("background: {problem}"))?;
         background.add(&mut draws, deviation, signal);
-        return;
+        return Ok(());
     }
     for pair in signal.chunks_mut(2) {
         for (sample, normal) in pair.iter_mut().zip(draws.normals()) {
             *sample = (f64::from(*sample) + deviation * normal) as f32;
         }
     }
+    Ok(())
 }
 
 fn standard_deviation(signal: &[f32]) -> f64 {

@@ -76,7 +76,11 @@ impl<'a> Shards<'a> {
                     Some((bytes / SHARD_BYTES).max(samples * sample_s / SHARD_S))
                 })
                 .collect();
-            let fitting = parts.len() as f64 / parts.iter().sum::<f64>();
+            // A plan whose first records cannot be drawn is not divided into files of one record.
+            let fitting = match parts.len() {
+                0 => f64::INFINITY,
+                count => count as f64 / parts.iter().sum::<f64>(),
+            };
             // A power of two is a rounder number of records.
             (1 << (fitting.max(1.0) as u64).ilog2()).min(MOST_SHARD_RECORDS)
         });
@@ -125,7 +129,7 @@ impl<'a> Shards<'a> {
     /// # Arguments
     /// * `shard` - its number
     pub fn name(&self, shard: u64) -> String {
-        let digits = ((self.count() - 1).max(1).ilog10() as usize + 1).max(LEAST_DIGITS);
+        let digits = self.digits();
         let file =
             format!("{}-{shard:0digits$}{ENDING}", self.sampler.split_name(self.all[shard as usize].split));
         if self.is_flat() {
@@ -133,6 +137,11 @@ impl<'a> Shards<'a> {
         }
         let (folder, of_folder) = (shard / FOLDER_SHARDS, digits - FOLDER_DIGITS);
         format!("{FOLDER}/{folder:0of_folder$}/{file}")
+    }
+
+    /// Number of digits of a shard's number in its name.
+    fn digits(&self) -> usize {
+        ((self.count() - 1).max(1).ilog10() as usize + 1).max(LEAST_DIGITS)
     }
 
     /// Returns whether all shards stand in one folder.
@@ -146,8 +155,8 @@ impl<'a> Shards<'a> {
     /// * `split` - name of the split, or `*` for all shards
     pub fn pattern(&self, split: &str) -> String {
         let folder = if self.is_flat() { "" } else { "*/" };
-        // A number follows, as another split's name may go on with a hyphen.
-        let number = if split == "*" { "" } else { "-[0-9]*" };
+        // All digits are listed, because the name of another split may be `test-2` beside `test`.
+        let number = if split == "*" { String::new() } else { format!("-{}", "[0-9]".repeat(self.digits())) };
         format!("{FOLDER}/{folder}{split}{number}{ENDING}")
     }
 

@@ -13,6 +13,7 @@ use meshtone::signal::{
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
 use meshtone_dataset::plan::Plan;
+use meshtone_dataset::shard::Shards;
 use meshtone_dataset::store::Destination;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
@@ -148,12 +149,33 @@ fn a_file_has_records_of_one_split_by_their_numbers() {
     assert!(records.into_iter().eq(0..60));
 }
 
+/// Also where the name of a split goes on with a number, as of the files of another split.
+#[test]
+fn patterns_match_the_files_of_one_split() {
+    let plan = plan(&FAST.replace("\"fast\"", "\"test-2\""));
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let shards = Shards::new(&plan, &sampler);
+    assert_eq!(shards.pattern("test"), "data/test-[0-9][0-9][0-9][0-9][0-9][0-9].parquet");
+    let matches = |pattern: &str, name: &str| {
+        name.replace(|c: char| c.is_ascii_digit(), "#") == pattern.replace("[0-9]", "#").replace("-2-", "-#-")
+    };
+    let names: Vec<String> = (0..shards.count()).map(|shard| shards.name(shard)).collect();
+    for (split, count) in [("train", 4), ("validation", 1), ("test", 2), ("test-2", 2)] {
+        let pattern = shards.pattern(split);
+        assert_eq!(
+            names.iter().filter(|name| matches(&pattern, name)).count(),
+            count,
+            "{pattern}: {names:?}"
+        );
+    }
+}
+
 /// A run that is killed loses the shard that it was writing. A core took 13 and 180 ms for a record of these plans (2026-11).
 #[test]
 fn a_killed_run_loses_less_than_a_minute() {
     let per_shard = |plan: &Plan| {
         let sampler = Sampler::new(&plan.content).unwrap();
-        meshtone_dataset::shard::Shards::new(plan, &sampler).records_per_shard
+        Shards::new(plan, &sampler).records_per_shard
     };
     let read = |name: &str| Plan::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap();
     let gearbox = meshtone_dataset::plan::gearbox_template()

@@ -1,10 +1,16 @@
 //! Plans that are wrong, and what is said about them.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use std::collections::BTreeSet;
+use std::fs;
 use std::path::Path;
 
-use crate::support::{FAST, plan};
+use crate::support::{FAST, plan, run};
+use meshtone::random::{Draws, Purpose};
+use meshtone_dataset::generate::Part;
 use meshtone_dataset::plan::Plan;
+use meshtone_dataset::shard::FailedRecord;
+use meshtone_dataset::store::Destination;
 
 /// Asserts that a plan is refused with all of `words`.
 #[track_caller]
@@ -155,6 +161,13 @@ fn keys_that_are_none() {
     );
     refused_with("kind = \"missing-tooth\"", "kind = \"missing\"", &["did you mean \"missing-tooth\"?"]);
     refused_with("[split]", "[splits]", &["splits", "did you mean `split`?"]);
+    let another = |name: &str| {
+        let shift = "[[split.shift]]\npart = 0.1\nwhen = \"operation.pinion_speed_hz > 55\"";
+        format!("{}\n{shift}\nname = \"{name}\"\n", FAST.replace("\"fast\"", "\"fast-1\""))
+    };
+    for name in ["test", "fast-1", "fast_1"] {
+        refused(&another(name), &["split.shift[1].name", "is the name of another split"]);
+    }
 }
 
 #[test]
@@ -252,6 +265,35 @@ fn more_than_is_simulated() {
     let some = plan(&FAST.replace("uniform = [1.0, 5.0]", "uniform = [5.0, 7.5]")).foreseen_failures();
     assert!(!some.is_empty() && some.len() < 20, "{}", some.len());
     assert!(some.iter().all(|failed| failed.reason.contains("fault.chip_height_mm")), "{some:?}");
+}
+
+/// In a record that is longer than the background its noise would repeat.
+#[test]
+fn a_background_that_is_shorter_than_a_record() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("healthy.csv");
+    let mut draws = Draws::new(3, Purpose::RecordNoise, 0);
+    let numbers = (0..4000).flat_map(|_| draws.normals()).map(|number| format!("{number}\n"));
+    fs::write(&file, format!("noise_g\n{}", numbers.collect::<String>())).unwrap();
+    let with = |keep: &str| {
+        let text = FAST.replacen("[keep]", keep, 1);
+        format!("background = {{ file = '{}', sampling_rate_hz = 8e3 }}\n{text}", file.display())
+    };
+    // One second, of which a sixteenth is left out.
+    let words =
+        ["background", "gives 0.938 s of noise", "a record lasts 2.000 s", "a recording of at least 2.15 s"];
+    refused(&with("[keep]\nduration_s = 2.0"), &words);
+    assert_eq!(plan(&with("[keep]\nduration_s = 0.9")).foreseen_failures(), []);
+    // Records of 40 revolutions of the pinion at 30 to 60 Hz: those that are foreseen to fail are those that do.
+    let some = plan(&with("[keep]"));
+    let foreseen = some.foreseen_failures();
+    assert!(!foreseen.is_empty() && foreseen.len() < 60, "{}", foreseen.len());
+    let set = Destination::directory(directory.path().join("set"));
+    let failed = run(&some, &set, Part::WHOLE, 2).unwrap().failures;
+    let records =
+        |failures: &[FailedRecord]| failures.iter().map(|failed| failed.record).collect::<BTreeSet<_>>();
+    assert_eq!(records(&failed), records(&foreseen));
+    assert!(failed[0].reason.starts_with("background: gives 0.938 s of noise"), "{}", failed[0].reason);
 }
 
 /// A value of a choice that no other value can save is reported before anything is made.

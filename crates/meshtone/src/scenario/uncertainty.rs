@@ -1,21 +1,26 @@
 //! How well the numbers of a rig are known.
 
+use super::ScenarioForm;
+
 /// (-) Standard deviation of the logarithm of a number of the scenario file that is not known well of a rig whose drawings are at hand:
-/// stiffnesses, frequencies, masses, spans, dampings, tip chamfer and backlash; none of the others.
+/// stiffnesses, frequencies, masses, spans, dampings, tip chamfer, backlash and the clearance of rolling bearings, which have no stiffness of
+/// their own; none of the others.
 ///
 /// They are wide enough for the difference signals of the three rigs of arXiv:2410.05073 to be among those that are simulated; 15 % of the
 /// stiffnesses alone are not.
 ///
 /// # Arguments
+/// * `base` - the rig's scenario
 /// * `key` - dotted, as in the scenario file
 ///
 /// ```
-/// use meshtone::scenario::log_deviation;
+/// use meshtone::scenario::{GearPair, Scenario, ScenarioForm, log_deviation};
 ///
-/// assert_eq!(log_deviation("rig.support.base_hz"), Some(0.3));
-/// assert_eq!(log_deviation("gears.module_mm"), None);
+/// let base = ScenarioForm::Pair(Scenario::new(GearPair::example()));
+/// assert_eq!(log_deviation(&base, "rig.support.base_hz"), Some(0.3));
+/// assert_eq!(log_deviation(&base, "gears.module_mm"), None);
 /// ```
-pub fn log_deviation(key: &str) -> Option<f64> {
+pub fn log_deviation(base: &ScenarioForm, key: &str) -> Option<f64> {
     const OF_PAIR: [(&str, f64); 14] = [
         ("rig.bearing_stiffness_n_per_m", 0.3),
         // A rig is given by these frequencies or by the stiffnesses; the others it does not have.
@@ -38,7 +43,11 @@ pub fn log_deviation(key: &str) -> Option<f64> {
     }
     let is_of = |sections: &[&str]| sections.iter().any(|section| key.starts_with(section));
     match key.rsplit('.').next().unwrap_or(key) {
-        "stiffness_n_per_m" if is_of(&["bearing["]) && !key.contains("].seat") => Some(0.3),
+        "stiffness_n_per_m" if is_of(&["bearing["]) && !key.contains("].seat") => {
+            (!is_of_rolling_bearing(base, key)).then_some(0.3)
+        }
+        // A clearance class of ISO 5753-1 goes from about half to twice its middle.
+        "clearance_um" => is_of_rolling_bearing(base, key).then_some(0.4),
         "stiffness_n_per_m" if is_of(&["bearing[", "housing"]) => Some(0.6),
         "coupling_stiffness_nm_per_rad" => Some(0.6),
         "mass_kg" if is_of(&["bearing[", "housing"]) => Some(0.3),
@@ -46,4 +55,17 @@ pub fn log_deviation(key: &str) -> Option<f64> {
         "backlash_mm" if is_of(&["mesh"]) => Some(0.2),
         _ => None,
     }
+}
+
+/// Returns whether a key is that of a bearing with balls or rollers.
+fn is_of_rolling_bearing(base: &ScenarioForm, key: &str) -> bool {
+    let ScenarioForm::Gearbox(gearbox) = base else { return false };
+    let Some((name, _)) = key.strip_prefix("bearing[").and_then(|rest| rest.split_once(']')) else {
+        return false;
+    };
+    let bearing = match name.parse::<usize>() {
+        Ok(number) => gearbox.bearings.get(number),
+        Err(_) => gearbox.bearings.iter().find(|bearing| bearing.seat_name() == name),
+    };
+    bearing.is_some_and(|bearing| bearing.element().is_some())
 }

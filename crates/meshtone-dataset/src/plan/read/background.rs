@@ -31,7 +31,7 @@ pub(super) fn read(value: &TomlValue<'_>, keep: &Keep, reading: &mut Reading) ->
     let background = if reading.is_copy {
         let text = read_text(&path).map_err(|error| in_another_file(value, error, reading))?;
         let read = Background::from_text(&text);
-        read.ok_or_else(|| value.error(format!("{}: has lines that are no numbers", path.display())))?
+        read.ok_or_else(|| value.error(format!("{}: has lines that are no finite numbers", path.display())))?
     } else {
         recorded(value, &path, channel, rate_hz, keep)?
     };
