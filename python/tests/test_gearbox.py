@@ -154,7 +154,9 @@ def test_a_recording_shows_every_shaft() -> None:
     of_pinion = mt.ShaftPhase.constant(40.0, pair.sampling_rate_hz, pair.vertical_g.size)
     both = mt.signal.process_train(pair.vertical_g, of_pinion, pair.scenario, pair.sampling_rate_hz)
     alone = mt.process_channel(pair.vertical_g, of_pinion, 17)
-    assert both["pinion"].indicators == alone.indicators and both.shafts["gear"] == "gear"
+    # Octaves that the sampling rate does not show are NaN.
+    assert both["pinion"].indicators == pytest.approx(alone.indicators, rel=0, abs=0, nan_ok=True)
+    assert both.shafts["gear"] == "gear"
 
 
 def test_a_path_of_a_gearbox_is_found() -> None:

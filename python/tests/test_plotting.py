@@ -30,7 +30,7 @@ def test_axes_of_ones_own(broken: meshtone.Simulation) -> None:
 
 def test_each_figure(broken: meshtone.Simulation) -> None:
     stiffness = broken.plot_mesh_stiffness()
-    assert stiffness.get_ylabel() == "Mesh stiffness (N/mm)"
+    assert stiffness.get_ylabel() == "Mesh stiffness (N/µm)"
     spectrum = broken.plot_spectrum()
     assert "680 Hz" in legend(spectrum)[1]
     tooth = broken.plot_tooth()
@@ -159,7 +159,7 @@ def test_all_damaged_teeth_are_marked_where_they_mesh() -> None:
         # The last tooth is still in contact when the first one enters.
         assert tinted(axes[f"{part}, gear shaft"]) == rounded([[0, contact - 1], [1, 1 + contact], [37, 38]])
         assert legend(axes[f"{part}, gear shaft"]) == ["in contact: gear teeth 2 and 38"]
-    [stiffness] = [ax for ax in panel.axes if ax.get_ylabel() == "Mesh stiffness (N/mm)"]
+    [stiffness] = [ax for ax in panel.axes if ax.get_ylabel() == "Mesh stiffness (N/µm)"]
     # The pinion's tooth comes round in every 17th pair, and from the gear's 2nd tooth to the pinion's 3rd it is one part.
     assert stiffness.get_xlim() == (0, 38)
     assert tinted(stiffness) == rounded([[0, contact - 1], [1, 2 + contact], [19, 19 + contact], [36, 38]])

@@ -59,6 +59,12 @@ fn spalls_shake_the_seat_as_in_an_independent_solution() {
     }
     let load_n = gearbox_stages(&rig(GearboxRig::Phm2009Helical, "")).unwrap().bearings[0].1.static_load_n;
     assert!((load_n[0].hypot(load_n[1]) - 124.7).abs() < 0.1, "{load_n:?}");
+    // A shaft that may slide along itself has the same loads across it.
+    let mut sliding = rig(GearboxRig::Phm2009Spur, "");
+    let held_n = gearbox_stages(&sliding).unwrap().bearings[0].1.static_load_n;
+    sliding.bearings.iter_mut().for_each(|bearing| bearing.axial_stiffness_n_per_m = 0.0);
+    let sliding_n = gearbox_stages(&sliding).unwrap().bearings[0].1.static_load_n;
+    assert!(held_n.iter().zip(sliding_n).all(|(held, sliding)| (held - sliding).abs() < 1e-4 * held.abs()));
 }
 
 /// Largest line of the squared envelope spectrum within 0.04 orders of a place, over the median of the lines below 8 orders.

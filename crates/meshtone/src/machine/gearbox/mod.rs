@@ -440,8 +440,8 @@ impl GearboxMachine {
                 force[*coordinate] += torque_share * torque_nm;
             }
         }
-        // The coupling of the motor and the supports hold everything but a shaft that may slide: a billionth of the largest stiffness does.
-        let held = DMatrix::identity(stiffness.nrows(), stiffness.nrows()) * (1e-9 * stiffness.diagonal().amax());
+        // The coupling of the motor and the supports hold everything but a shaft that may slide, which a billionth of its own stiffness holds.
+        let held = DMatrix::from_diagonal(&(stiffness.diagonal() * 1e-9));
         let displacement = (stiffness + held).cholesky().map_or_else(|| force.clone() * 0.0, |factor| factor.solve(&force));
         let rolling = parts.bearings.iter().filter(|of| of.bearing.kind != BearingKind::Linear);
         let load = |(of, stretch): (&SeatedBearing, &[DVector<f64>; 2])| {
