@@ -334,9 +334,13 @@ mod tests {
     fn stiffness_under_load_is_that_of_the_prototype() {
         for (name, table) in [("6205", [4.95e7, 7.14e7, 1.07e8]), ("ER-10K", [4.58e7, 6.60e7, 9.86e7])] {
             let bearing = bearing(name, 0.0, 0.0, 0.0, [100.0, 0.0]);
-            for (load_n, stiffness) in [100.0, 300.0, 1000.0].into_iter().zip(table) {
+            // Half of the last digit of each.
+            let half_digits = table.map(|stiffness| if stiffness < 1e8 { 5e4 } else { 5e5 });
+            for ((load_n, stiffness), half_digit) in
+                [100.0, 300.0, 1000.0].into_iter().zip(table).zip(half_digits)
+            {
                 let found = bearing.under_load(load_n)[1];
-                assert!((found / stiffness - 1.0).abs() < 2e-3, "{name} {load_n}: {found}");
+                assert!((found - stiffness).abs() <= half_digit, "{name} {load_n}: {found}");
             }
         }
     }
@@ -365,7 +369,7 @@ mod tests {
             lots: bearing
                 .lots
                 .iter()
-                .map(|lot| Elements { gap_m: lot.gap_m.map(|_| 10e-6), ..*lot })
+                .map(|lot| Elements { gap_m: lot.gap_m.map(|gap_m| gap_m.max(10e-6)), ..*lot })
                 .collect(),
             ..bearing
         };
