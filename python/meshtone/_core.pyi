@@ -19,6 +19,7 @@ __all__ = [
     "INDICATORS",
     "ORDER_MAP_MESH_ORDERS",
     "Observation",
+    "PLAN_FILES",
     "Scenario",
     "ShaftPhase",
     "Simulation",
@@ -89,6 +90,7 @@ __all__ = [
 
 INDICATORS: tuple[str, ...]
 ORDER_MAP_MESH_ORDERS: float
+PLAN_FILES: tuple[str, ...]
 __version__: str
 
 @final

@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 Channels = Union[npt.ArrayLike, Mapping[str, npt.ArrayLike]]
 """The analysed channel, or several by the data set's names."""
 
-COPIED = ("plan.toml", "scenario.toml", "tuned.toml", "background.csv")
-"""The plan beside the data, and the files that it names."""
-
 
 def table_like(
     dataset: Dataset,
@@ -52,10 +49,10 @@ def table_like(
     named = [(_channels(channels), native_phase(of)) for channels, of in zip(several, phases)]
     rate_hz = positive("sampling_rate_hz", sampling_rate_hz)
     with TemporaryDirectory() as folder:
-        for name in COPIED:
+        for name in _core.PLAN_FILES:
             if (text := dataset._beside(name)) is not None:
                 Path(folder, name).write_bytes(text)
-        rows, doubts = _core.rows_like(Path(folder, COPIED[0]), named, native_machine(machine), rate_hz, shaft)
+        rows, doubts = _core.rows_like(Path(folder, _core.PLAN_FILES[0]), named, native_machine(machine), rate_hz, shaft)
     warn_of_signal(typed(doubts))
     found = pyarrow.parquet.read_table(pyarrow.BufferReader(rows))
     schema, conditions = dataset.arrow.schema, set(dataset.condition_columns)

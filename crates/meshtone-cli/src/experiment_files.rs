@@ -14,7 +14,7 @@ use crate::failure::Failure;
 const SCENARIO: &str = "rig.toml";
 /// The torque of the template, and one under which teeth do not part, so that small changes of the rig change little.
 const TORQUES: [&str; 2] = ["brake_torque_nm = 10.0 ", "brake_torque_nm = 150.0"];
-/// What the rig has that the scenario does not say: other supports, and a sensor with noise; and the length of the recordings.
+/// The difference between the rig and the scenario, which has other supports and no sensor with noise; and the length of the recordings.
 const RIG: &str = "
 [rig]
 support = { base_hz = 520.0 }
@@ -36,7 +36,7 @@ const RECORDINGS: [(&str, Option<f64>); 4] = [
 /// (S/s) Sampling rate of the recordings.
 const SAMPLING_RATE_HZ: f64 = 25e3;
 
-/// Where they are to be.
+/// The places of these files.
 ///
 /// # Arguments
 /// * `directory` - of the experiment
@@ -45,7 +45,7 @@ pub fn paths(directory: &Path) -> Vec<PathBuf> {
     [&[SCENARIO], &recordings[..]].concat().into_iter().map(|name| directory.join(name)).collect()
 }
 
-/// Writes them beside the experiment, to be committed.
+/// Writes these files beside the experiment, where they appear once they are committed.
 ///
 /// # Arguments
 /// * `directory` - of the experiment
@@ -67,7 +67,7 @@ pub fn stage(directory: &Path) -> Result<Vec<StagedFile>, Failure> {
     Ok(staged)
 }
 
-/// What the sensor on a rig shows, as Parquet.
+/// The recording of the sensor on a rig, as Parquet.
 fn recording(scenario: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let channels = meshtone::simulate(&Scenario::from_toml(scenario)?)?.channels;
     let (_, simulated) = channels.leading();

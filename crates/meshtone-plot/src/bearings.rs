@@ -50,8 +50,9 @@ pub struct BearingsFigure<'a> {
 /// * `figure` - what it shows
 ///
 /// ```
+/// use meshtone::bearing::NamedBearing;
 /// use meshtone::signal::{
-///     BearingSettings, GearTrain, NamedBearing, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning,
+///     BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning,
 /// };
 /// use meshtone_plot::bearings::{self, BearingsFigure};
 ///

@@ -68,6 +68,7 @@ mod _core {
         module.add("ORDER_MAP_MESH_ORDERS", meshtone::signal::OrderMapSettings::MESH_ORDERS)?;
         let indicators = meshtone::signal::Indicators::default().table("");
         module.add("INDICATORS", PyTuple::new(module.py(), indicators.into_iter().map(|of| of.name))?)?;
+        module.add("PLAN_FILES", PyTuple::new(module.py(), meshtone_dataset::plan::PlanFile::NAMES)?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -61,7 +61,7 @@ impl SignalsFile<'_> {
     }
 }
 
-/// Reads what [`super::write_gearbox_signals`] wrote.
+/// Reads what a [`super::SignalTable::of_gearbox`] wrote.
 ///
 /// # Arguments
 /// * `path` - the Parquet file
@@ -82,7 +82,7 @@ pub fn read_gearbox_signals(path: &Path) -> Result<Option<RecordedGearbox>, Read
     Ok(Some(RecordedGearbox { gearbox, sampling_rate_hz, signals, version, run }))
 }
 
-/// Reads what [`super::write_signals`] wrote.
+/// Reads what a [`super::SignalTable::of_pair`] wrote.
 ///
 /// # Arguments
 /// * `path` - the Parquet file

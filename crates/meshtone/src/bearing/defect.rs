@@ -18,11 +18,6 @@ pub enum DefectPlace {
 
 by_name!(DefectPlace, ["outer" => DefectPlace::Outer, "inner" => DefectPlace::Inner, "element" => DefectPlace::Element]);
 
-impl DefectPlace {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Outer, Self::Inner, Self::Element];
-}
-
 /// A defect of a rolling bearing: a spall.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]

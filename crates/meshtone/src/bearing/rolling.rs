@@ -26,21 +26,6 @@ pub struct RollingParts {
 }
 
 impl RollingParts {
-    /// A rolling bearing.
-    ///
-    /// # Arguments
-    /// They are the fields, in their order.
-    pub fn new(
-        geometry: BearingGeometry,
-        contact: ElementContact,
-        radial_clearance_m: f64,
-        preload_n: f64,
-        spalls: Vec<Spall>,
-        slip: f64,
-    ) -> Self {
-        Self { geometry, contact, radial_clearance_m, preload_n, spalls, slip }
-    }
-
     /// (m) How far apart the inner ring, an element and the outer ring are while the rings are centred; negative where the element is pressed.
     /// An axial preload takes up the clearance and presses every element.
     fn gap_m(&self) -> f64 {

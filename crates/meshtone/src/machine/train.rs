@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use super::body::WheelBody;
 use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
 use super::shaft_bending::wheel_flexibility;
-use super::{Rig, Shaft, TurningForce};
+use super::{Rig, Shaft, TurningForce, Unbalance};
 use crate::wheel::{Gears, Teeth, Wheel, WheelName};
 
 /// Names of the coordinates, as in the paper; the last four are those of the supports.
@@ -155,18 +155,7 @@ impl Train {
                     .collect(),
                 lines: vec![line_of_action(gears, teeth, coordinates)],
                 bearings: Vec::new(),
-                turning_forces: {
-                    let along = |coordinate: usize| turn.row(coordinate).transpose();
-                    let of_wheel = |unbalance, rotation: usize, [x, y]: [usize; 2]| {
-                        TurningForce::of_unbalance(unbalance, rigid_rotation[rotation], [along(x), along(y)])
-                    };
-                    let given = [
-                        (&rig.pinion_unbalance, THETA_PINION, [X_PINION, Y_PINION]),
-                        (&rig.gear_unbalance, THETA_GEAR, [X_GEAR, Y_GEAR]),
-                    ];
-                    let given = given.into_iter().filter(|(unbalance, ..)| unbalance.g_mm > 0.0);
-                    given.map(|(unbalance, rotation, plane)| of_wheel(unbalance, rotation, plane)).collect()
-                },
+                turning_forces: unbalances(rig, &turn, &rigid_rotation),
                 drives: vec![
                     Drive::Motor {
                         coordinate: THETA_PINION,
@@ -181,6 +170,24 @@ impl Train {
             },
         }
     }
+}
+
+/// The forces of the wheels' unbalances.
+///
+/// # Arguments
+/// * `turn` - unit vectors of the turned coordinates
+/// * `rigid_rotation` - of all coordinates per unit rotation of the motor
+fn unbalances(rig: &Rig, turn: &DMatrix<f64>, rigid_rotation: &DVector<f64>) -> Vec<TurningForce> {
+    let wheels = [
+        (&rig.pinion_unbalance, THETA_PINION, [X_PINION, Y_PINION]),
+        (&rig.gear_unbalance, THETA_GEAR, [X_GEAR, Y_GEAR]),
+    ];
+    let unbalanced = wheels.into_iter().filter(|(unbalance, ..)| unbalance.g_mm > 0.0);
+    let force = |(unbalance, rotation, plane): (&Unbalance, usize, [usize; 2])| {
+        let motion = plane.map(|coordinate| turn.row(coordinate).transpose());
+        TurningForce::of_unbalance(unbalance, rigid_rotation[rotation], motion)
+    };
+    unbalanced.map(force).collect()
 }
 
 /// (kg, kg m²) Mass or moment of inertia of each coordinate.

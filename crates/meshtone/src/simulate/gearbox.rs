@@ -411,7 +411,7 @@ fn machine_of(
         let both = line.wheels.iter().zip(line.base_radii_m);
         1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
     });
-    let mut seated: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(&gearbox.bearings))
+    let linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(&gearbox.bearings))
         .map(|(&shaft, bearing)| SeatedBearing::linear(shaft, bearing))
         .collect();
     let rolling: Vec<(usize, RollingParts)> = gearbox.rolling_bearings()?;
@@ -424,28 +424,28 @@ fn machine_of(
         unbalance: &of.unbalance,
     });
     let unbalances: Vec<_> = of_wheels.chain(of_shafts).filter(|of| of.unbalance.g_mm > 0.0).collect();
-    let parts = GearboxParts {
+    let mut parts = GearboxParts {
         shafts: &shafts,
         speed_ratios: &ratios,
         discs: &discs,
         meshes: &lines,
-        bearings: &[],
+        bearings: &linear,
         housing: gearbox.housing.as_ref(),
         material: gearbox.material,
         unbalances: &unbalances,
         brake_inertia_kgm2: gearbox.operation.brake_inertia_kgm2,
     };
-    let mut machine = GearboxMachine::new(&GearboxParts { bearings: &seated, ..parts });
-    let mut bearings = Vec::new();
+    let mut machine = GearboxMachine::new(&parts);
+    let (mut seated, mut bearings) = (linear.clone(), Vec::new());
     if !rolling.is_empty() {
-        let first = GearboxParts { bearings: &seated, ..parts };
-        let loads_n = machine.static_bearing_loads_n(&first, gearbox.operation.drive.brake_torque_nm);
+        let loads_n = machine.static_bearing_loads_n(&parts, gearbox.operation.drive.brake_torque_nm);
         for ((number, rolling), load_n) in rolling.into_iter().zip(loads_n) {
             let bearing = RollingBearing::new(rolling, load_n);
             seated[number].radial_n_per_m = bearing.spring_n_per_m;
             bearings.push((number, bearing));
         }
-        machine = GearboxMachine::new(&GearboxParts { bearings: &seated, ..parts });
+        parts.bearings = &seated;
+        machine = GearboxMachine::new(&parts);
     }
     for (sensor, place) in sensors.iter().zip(gearbox.places(layout)?) {
         machine.add_place(sensor.name(), place);

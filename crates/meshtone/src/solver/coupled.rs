@@ -221,8 +221,8 @@ struct Constants<'a> {
     columns: Vec<Vec<LotColumn>>,
     turning: Vec<[Vec<Lot>; 2]>,
     outputs: Vec<OutputOfModes<'a>>,
-    /// The equations of a step where all loads act midway along their faces, without the free deflections.
-    midway: Option<Equations>,
+    /// Whether all loads act midway along their faces.
+    all_midway: bool,
 }
 
 /// An output: the weights of each number of a [`LotState`], and of what has no modes.
@@ -255,13 +255,12 @@ impl<'a> Constants<'a> {
             damp: damp[n].0,
             external_push: external_push.each_ref().map(|push| push[n].0),
         };
-        let all_midway = prepared.columns_of_unknown.iter().all(|columns| columns.len() == 1);
         Self {
             lots: (0..restore.len()).map(lot).collect(),
             columns: prepared.columns.iter().map(column).collect(),
             turning: prepared.turning_push.iter().map(|of| of.each_ref().map(|push| order.lots(push))).collect(),
             outputs: prepared.outputs.iter().map(output).collect(),
-            midway: all_midway.then(|| Equations::new(prepared)),
+            all_midway: prepared.columns_of_unknown.iter().all(|columns| columns.len() == 1),
             prepared,
         }
     }
@@ -278,8 +277,8 @@ struct State {
     /// (m) That of each bearing's unknown two steps and one step earlier.
     before: [[f64; 2]; MOST_UNKNOWNS],
     search: Search,
-    /// The equations of the last step, where loads act beside the middle of their faces.
-    tilted: Equations,
+    /// The equations of the last step, without the free deflections.
+    equations: Equations,
     /// (m) Deflection in each column with its damping's lead, without the step's own force.
     free: Vec<f64>,
     counts: StepCounts,
@@ -291,9 +290,9 @@ impl State {
         let numbers = [displacement, velocity, acceleration].map(|values| order.lots(&values));
         // The search for the first step's solution begins where the bearings are at rest.
         let mut deflection = [0.0; MOST_UNKNOWNS];
-        let at_rest = prepared.columns.iter().skip(prepared.columns_of_unknown[..prepared.laws.len()].iter().map(Range::len).sum());
-        for (deflection, column) in deflection[prepared.laws.len()..].iter_mut().zip(at_rest) {
-            *deflection = column.static_deflection;
+        let columns = prepared.columns_of_unknown.iter().enumerate();
+        for (unknown, columns) in columns.skip(prepared.laws.len()) {
+            deflection[unknown] = prepared.columns[columns.start].static_deflection;
         }
         Self {
             lots: (0..numbers[0].len()).map(|n| LotState(numbers.each_ref().map(|lots| lots[n].0))).collect(),
@@ -303,7 +302,7 @@ impl State {
             deflection,
             before: deflection.map(|at_rest| [at_rest; 2]),
             search: Search::new(),
-            tilted: Equations::new(prepared),
+            equations: Equations::new(prepared),
             counts: StepCounts::default(),
         }
     }
@@ -445,13 +444,10 @@ impl Constants<'_> {
         let mut face_centres = [0.0; MOST_UNKNOWNS];
         let centres = sample.springs.iter().map(|springs| springs.face_centre_m(sample.k));
         face_centres.iter_mut().zip(centres).for_each(|(own, centre)| *own = centre);
-        let equations = match &self.midway {
-            Some(equations) => equations,
-            None => {
-                prepared.set_equations(&face_centres, &mut state.tilted);
-                &state.tilted
-            }
-        };
+        if !self.all_midway {
+            prepared.set_equations(&face_centres, &mut state.equations);
+        }
+        let equations = &state.equations;
         let mut free = equations.of_static;
         for (unknown, free) in free.iter_mut().enumerate().take(equations.count) {
             let mut columns = prepared.columns_of_unknown[unknown].clone();

@@ -421,7 +421,7 @@ impl GearboxMachine {
                 stretch
             })
         };
-        let rolling = parts.bearings.iter().zip(&self.seats).filter(|(of, _)| of.bearing.kind != BearingKind::Linear);
+        let rolling = parts.bearings.iter().zip(&self.seats).filter(|(of, _)| of.bearing.element().is_some());
         rolling.map(stretch).collect()
     }
 
@@ -443,7 +443,7 @@ impl GearboxMachine {
         // The coupling of the motor and the supports hold everything but a shaft that may slide, which a billionth of its own stiffness holds.
         let held = DMatrix::from_diagonal(&(stiffness.diagonal() * 1e-9));
         let displacement = (stiffness + held).cholesky().map_or_else(|| force.clone() * 0.0, |factor| factor.solve(&force));
-        let rolling = parts.bearings.iter().filter(|of| of.bearing.kind != BearingKind::Linear);
+        let rolling = parts.bearings.iter().filter(|of| of.bearing.element().is_some());
         let load = |(of, stretch): (&SeatedBearing, &[DVector<f64>; 2])| {
             let [x_m, y_m] = stretch.each_ref().map(|stretch| stretch.dot(&displacement));
             of.radial_n_per_m.map(|[of_x, of_y]| of_x * x_m + of_y * y_m)

@@ -287,19 +287,18 @@ impl Bearing {
             return Err(ScenarioError::new("preload_n", self.preload_n, problem)
                 .with_help("give contact_angle_deg, or a negative clearance_um, which is an interference"));
         }
-        let in_defect = |(index, error): (usize, ScenarioError)| {
-            let key = format!("defect[{index}].{}", error.key);
-            ScenarioError { key, ..error }
+        let spall = |(index, defect)| {
+            Spall::new(defect, &geometry)
+                .map_err(|error| ScenarioError { key: format!("defect[{index}].{}", error.key), ..error })
         };
-        let spall = |(index, defect)| Spall::new(defect, &geometry).map_err(|error| in_defect((index, error)));
-        Ok(Some(RollingParts::new(
+        Ok(Some(RollingParts {
             geometry,
             contact,
-            self.clearance_um * 0.5e-6,
-            self.preload_n,
-            self.defect.iter().enumerate().map(spall).collect::<Result<_, _>>()?,
-            self.slip_percent * 1e-2,
-        )))
+            radial_clearance_m: self.clearance_um * 0.5e-6,
+            preload_n: self.preload_n,
+            spalls: self.defect.iter().enumerate().map(spall).collect::<Result<_, _>>()?,
+            slip: self.slip_percent * 1e-2,
+        }))
     }
 
     /// Refuses what only a rolling bearing has.

@@ -86,8 +86,9 @@ impl TrainRecording<'_> {
     /// A bearing on a shaft that the train does not have; those of the functions that [`BearingSeparation`] names, of [`kurtogram`] and of [`squared_envelope_order_spectrum`].
     ///
     /// ```
+    /// use meshtone::bearing::NamedBearing;
     /// use meshtone::signal::{
-    ///     BearingSettings, GearTrain, NamedBearing, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning,
+    ///     BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning,
     /// };
     ///
     /// // A resonance at 4 kHz that rings whenever a ball passes a place of the outer race, and a mesh of 19 teeth.

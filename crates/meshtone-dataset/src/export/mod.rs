@@ -4,12 +4,13 @@
 //! Names and vocabularies are those of the package's module `schema`. It knows every damage of a tooth as `gear` only, so that the kind
 //! stands in a column of its own. No cell may be empty: of the data set's other columns, those that every record has are kept.
 
+mod place;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::Path;
 
-use meshtone::scenario::{Coupled, Gearbox, Model, ScenarioForm, Sensor, SensorPlace};
-use meshtone::sensor::{Channel, ChannelKind};
+use meshtone::scenario::ScenarioForm;
 use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::properties::WriterProperties;
@@ -25,6 +26,7 @@ use crate::shard::{self, Column, ReadShard, Topic, Wanted};
 use crate::store::Destination;
 use crate::verify::{Check, verify};
 use crate::words::counted;
+use place::{ChannelFacts, facts, is_at, wheel_location};
 
 /// Version of the schema.
 const SCHEMA_VERSION: u32 = 2;
@@ -93,7 +95,7 @@ struct Export<'a> {
     shards: Vec<&'a str>,
     /// Columns of the data set.
     columns: Vec<Column>,
-    /// What is known of each raw channel.
+    /// The facts about each raw channel.
     channels: Vec<ChannelFacts>,
 }
 
@@ -112,17 +114,7 @@ fn refuse_spalls(base: &ScenarioForm) -> Result<(), DatasetError> {
     ))
 }
 
-/// The columns of a raw channel.
-struct ChannelFacts {
-    name: String,
-    location: String,
-    mounting: &'static str,
-    quantity: &'static str,
-    unit: &'static str,
-    axis: &'static str,
-}
-
-/// What is known of the signals after they have been written.
+/// The facts about the signals that have been written.
 #[derive(Default)]
 struct WrittenSignals {
     /// Group of rows and row of each signal, in the order of the records and their channels.
@@ -477,101 +469,6 @@ fn properties() -> io::Result<WriterProperties> {
     Ok(WriterProperties::builder().set_compression(compression).build())
 }
 
-/// The damaged part's place in the schema's words. The pinion of a pair is on the input shaft.
-fn wheel_location(wheel: &str, base: &ScenarioForm) -> String {
-    let stage = match base {
-        ScenarioForm::Gearbox(gearbox) => {
-            let shaft =
-                gearbox.wheels.iter().find(|other| other.name == wheel).map_or("", |wheel| &wheel.shaft);
-            stage(gearbox, shaft)
-        }
-        _ if wheel == "pinion" => "input",
-        _ => "output",
-    };
-    format!("gearbox_gear_{stage}")
-}
-
-/// The stage of a gearbox that a shaft is, in the schema's words.
-fn stage(gearbox: &Gearbox, shaft: &str) -> &'static str {
-    match gearbox.shafts.iter().find(|other| other.name == shaft).map(|shaft| shaft.couples_to) {
-        Some(Coupled::Motor) => "input",
-        Some(Coupled::Brake) => "output",
-        _ => "intermediate",
-    }
-}
-
-/// Returns whether one of two places is or contains the other, as the package compares them.
-fn is_at(sensor: &str, fault: &str) -> bool {
-    let contains = |a: &str, b: &str| a == b || b.strip_prefix(a).is_some_and(|rest| rest.starts_with('_'));
-    contains(sensor, fault) || contains(fault, sensor)
-}
-
-/// What the schema says of a channel: where and how it is measured.
-fn facts(channel: &Channel, base: &ScenarioForm) -> ChannelFacts {
-    let name = channel.name().into_owned();
-    let facts = |location: &str, mounting, quantity, axis| ChannelFacts {
-        name: name.clone(),
-        location: location.to_owned(),
-        mounting,
-        quantity,
-        unit: channel.unit(),
-        axis,
-    };
-    match channel {
-        Channel::Fixed(kind) => match kind {
-            ChannelKind::PinionShaftSpeed => facts("gearbox_shaft_input", "none", "speed", "none"),
-            ChannelKind::GearShaftSpeed => facts("gearbox_shaft_output", "none", "speed", "none"),
-            ChannelKind::MeshForce => facts("gearbox_gear", "none", "force", "none"),
-            ChannelKind::Axial => facts("gearbox", "unknown", "acceleration", "axial"),
-            kind => {
-                let axis = if *kind == ChannelKind::Horizontal { "horizontal" } else { "vertical" };
-                match base {
-                    ScenarioForm::Pair(pair) if Model::teeth_part(pair.model) => {
-                        facts("gearbox_bearing_input", "pedestal", "acceleration", axis)
-                    }
-                    _ => facts("gearbox", "unknown", "acceleration", axis),
-                }
-            }
-        },
-        _ => {
-            let (location, mounting, axis) = sensor_facts(&name, base);
-            facts(&location, mounting, "acceleration", axis)
-        }
-    }
-}
-
-/// Place, mounting and direction of a listed sensor.
-fn sensor_facts(channel: &str, base: &ScenarioForm) -> (String, &'static str, &'static str) {
-    match base {
-        ScenarioForm::Gearbox(gearbox) => {
-            let sensors = gearbox.all_sensors();
-            let Some(sensor) = sensors.iter().find(|sensor| sensor.channel() == channel) else {
-                return ("unknown".to_owned(), "unknown", "unknown");
-            };
-            let axis = sensor.sensor.direction.name();
-            match sensor.at.split(':').collect::<Vec<_>>()[..] {
-                ["shaft", shaft, _] => (format!("gearbox_shaft_{}", stage(gearbox, shaft)), "shaft", axis),
-                ["housing", ..] => ("gearbox".to_owned(), "casing", axis),
-                [shaft, ..] => (format!("gearbox_bearing_{}", stage(gearbox, shaft)), "casing", axis),
-                [] => ("gearbox".to_owned(), "unknown", axis),
-            }
-        }
-        ScenarioForm::Pair(pair) => {
-            let is_meant = |sensor: &&Sensor| Channel::Sensor(sensor.name()).name() == channel;
-            let Some(sensor) = pair.sensors.iter().find(is_meant) else {
-                return ("unknown".to_owned(), "unknown", "unknown");
-            };
-            let (location, mounting) = match sensor.at {
-                SensorPlace::Support => ("gearbox", "pedestal"),
-                SensorPlace::PinionSupport => ("gearbox_bearing_input", "pedestal"),
-                SensorPlace::GearSupport => ("gearbox_bearing_output", "pedestal"),
-                SensorPlace::Wheels => ("gearbox_gear", "unknown"),
-            };
-            (location.to_owned(), mounting, sensor.direction.name())
-        }
-    }
-}
-
 impl std::fmt::Display for Exported {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { recordings, signals } = *self;
@@ -582,7 +479,7 @@ impl std::fmt::Display for Exported {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use meshtone::scenario::{Bearing, BearingDefect, DefectPlace, GearboxOperation};
+    use meshtone::scenario::{Bearing, BearingDefect, DefectPlace, Gearbox, GearboxOperation};
 
     #[test]
     fn records_with_a_spall_are_not_exported_as_normal() {
