@@ -430,13 +430,17 @@ class Dataset:
     """
 
     def __init__(
-        self, place: str, native: pyarrow.dataset.Dataset, expression: pyarrow.dataset.Expression | None
+        self,
+        place: str,
+        native: pyarrow.dataset.Dataset,
+        expression: pyarrow.dataset.Expression | None,
+        empty_columns: list[str] | None = None,
     ) -> None:
         self.place = place
         self._native = native
         self._filter = expression
         self._length: int | None = None
-        self._empty: list[str] | None = None
+        self._empty = empty_columns
         self._rows: Rows | None = None
 
     @property
@@ -565,7 +569,7 @@ class Dataset:
             ``pyarrow.dataset.field("pinion_speed_hz") > 30``.
         """
         both = expression if self._filter is None else self._filter & expression
-        return Dataset(self.place, self._native, both)
+        return Dataset(self.place, self._native, both, self._empty)
 
     def split(self, name: str) -> Dataset:
         """The records of a split.
@@ -582,7 +586,9 @@ class Dataset:
         """
         import pyarrow.dataset
 
-        known = sorted(set(self.column("split").tolist()))
+        known = sorted(set(self.column("split").tolist()) - {None})
+        if not known:
+            raise ValueError("records made of recordings belong to no split")
         if name not in known:
             raise ValueError(f"there is no split '{name}', but {', '.join(known)}")
         return self.filter(pyarrow.dataset.field("split") == name)
@@ -990,10 +996,8 @@ class Dataset:
         from ._like import table_like
 
         table = table_like(self, recordings, phase, machine, sampling_rate_hz, shaft)
-        made = Dataset(self.place, pyarrow.dataset.dataset(table), None)
-        # Columns that the data set fills are there for a learner, whatever a recording tells.
-        made._empty = self.empty_columns
-        return made
+        # Columns that the data set fills are there for a learner, whatever is known about a recording.
+        return Dataset(self.place, pyarrow.dataset.dataset(table), None, self.empty_columns)
 
     def to_mat(self, file: str | PathLike[str], columns: Sequence[str] | None = None) -> None:
         """Write the records as a MATLAB v5 file: a struct array ``records`` with a field for each column.

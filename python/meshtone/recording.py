@@ -1,4 +1,4 @@
-"""Recordings of a rig, or what ``meshtone simulate`` wrote: CSV, TSV, Parquet, NPY, NPZ, MATLAB v5, WAV."""
+"""Recordings of a rig, or what ``meshtone simulate`` wrote: CSV, TSV, Parquet, NPY, NPZ, MAT, HDF5, WAV."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def read_recording(
     sampling_rate_hz : float, optional
         (S/s) By default what the file states, or its time column.
     variable : str, optional
-        Of NPZ and MAT files: the variable that holds the recording, ``run.sensors`` for nested ones. Of the folder of a set of
+        Of NPZ, MAT and HDF5 files: the variable that holds the recording, ``run.sensors`` for nested ones. Of the folder of a set of
         ``bearing-datasets``: the ``recording_id``.
     time : str or int, optional
         The time column; by default the one whose name says so.

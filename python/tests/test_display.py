@@ -125,6 +125,16 @@ def test_names_and_keys_are_completed() -> None:
         assert expected in offered, typed
 
 
+def test_the_notebook_that_takes_minutes_fits_the_package(tmp_path: Path) -> None:
+    content = nbformat.read(Path(__file__).parents[1] / "validation" / "unknown_rig.ipynb", as_version=4)
+    assert all(not cell.get("outputs") for cell in content.cells)
+    code = tmp_path / "unknown_rig.py"
+    code.write_text("\n".join(cell.source for cell in content.cells if cell.cell_type == "code"), "utf-8")
+    types = [sys.executable, "-m", "mypy", "--config-file=", "--check-untyped-defs", "--ignore-missing-imports", str(code)]
+    checked = subprocess.run(types, capture_output=True, text=True, check=False)
+    assert checked.returncode == 0, checked.stdout
+
+
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook(notebook: Path) -> None:
     content = nbformat.read(notebook, as_version=4)

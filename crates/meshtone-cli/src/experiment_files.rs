@@ -51,7 +51,10 @@ pub fn paths(directory: &Path) -> Vec<PathBuf> {
 /// * `directory` - of the experiment
 pub fn stage(directory: &Path) -> Result<Vec<StagedFile>, Failure> {
     let healthy = template("healthy").ok_or_else(|| Failure::failed("there is no scenario of the rig"))?;
-    let scenario = healthy.replace(TORQUES[0], TORQUES[1]);
+    let (before, after) = healthy
+        .split_once(TORQUES[0])
+        .ok_or_else(|| Failure::failed(format!("the scenario of the rig has no '{}'", TORQUES[0])))?;
+    let scenario = [before, TORQUES[1], after].concat();
     let write = |name: &str, bytes: &[u8]| {
         StagedFile::write(&directory.join(name), |file| std::io::Write::write_all(file, bytes))
     };
@@ -74,6 +77,6 @@ fn recording(scenario: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let measured = resample_to(simulated, channels.sampling_rate_hz, SAMPLING_RATE_HZ, Edge::Reflect)?;
     let named = [(Channel::Fixed(ChannelKind::Vertical), &measured[..])];
     let mut file = Vec::new();
-    SignalTable::of_channels(None, [SAMPLING_RATE_HZ, 0.0], named).write_parquet(&mut file)?;
+    SignalTable::of_channels(None, [SAMPLING_RATE_HZ, 0.0], named)?.write_parquet(&mut file)?;
     Ok(file)
 }

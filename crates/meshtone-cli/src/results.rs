@@ -1,5 +1,6 @@
 //! The files that a run writes.
 
+use std::fs;
 use std::path::Path;
 use std::thread;
 
@@ -23,6 +24,8 @@ pub const SIGNALS: &str = SignalFormat::Parquet.file_name();
 pub const SUMMARY: &str = "summary.json";
 /// The panel's files.
 pub const PANEL: [&str; 2] = ["panel.svg", "panel.png"];
+/// The key of the summary that states the names of the other files of the run.
+const FILES: &str = "files";
 /// All files that may stand in a run's directory, the summary first.
 pub const RESULTS: [&str; 8] = [
     SUMMARY,
@@ -47,8 +50,9 @@ pub struct Results<'a> {
 
 /// Writes all files, each whole or not at all.
 ///
-/// All are complete beside their targets before the first takes its name. What an earlier run left is
-/// removed where this run writes no such file: it would show something else.
+/// All are complete beside their targets before the first takes its name. What an earlier run wrote is
+/// removed where this run writes no such file: it would show something else. The summary states which files a run wrote, so that a
+/// file of another origin with such a name, as a measured `signals.csv`, stays.
 ///
 /// # Arguments
 /// * `directory` - where to
@@ -79,10 +83,12 @@ pub fn write(
     };
     let mut staged = signals?;
     let trace = results.trace.map(traced).transpose()?;
-    let summary = StagedFile::write(&directory.join(SUMMARY), |file| write_json(&results.summary, file))?;
     // What has been computed is kept even where the picture of it fails.
     let drawn = panel.map(|panel| staged.extend(panel));
-    // The trace may lie elsewhere; it carries the run's identity, as every file does.
+    let mut summary = results.summary.clone();
+    summary[FILES] = staged.iter().filter_map(|file| file.path.file_name()?.to_str()).collect();
+    let summary = StagedFile::write(&directory.join(SUMMARY), |file| write_json(&summary, file))?;
+    // The trace may lie elsewhere; it carries the run's identity.
     trace.map(StagedFile::commit).transpose()?;
     undisturbed(|| replace_earlier(directory, staged, summary))?;
     drawn.map_err(|failure| failure.with_help("the other results are written; see --no-panel"))
@@ -100,6 +106,18 @@ pub fn stage_panel(
     staged.map_err(|failure| Failure { help: None, ..failure })
 }
 
+/// The files of an earlier run in a directory, the summary first: those that its summary states, and the panel, which
+/// `meshtone panel` may have drawn since.
+fn earlier_files(directory: &Path) -> Vec<&'static str> {
+    let text = fs::read(directory.join(SUMMARY)).unwrap_or_default();
+    let summary: Value = serde_json::from_slice(&text).unwrap_or_default();
+    let Some(files) = summary[FILES].as_array() else {
+        return vec![SUMMARY];
+    };
+    let is_listed = |name: &&str| files.iter().any(|file| file == name);
+    RESULTS.into_iter().filter(|name| *name == SUMMARY || PANEL.contains(name) || is_listed(name)).collect()
+}
+
 /// Gives the files their names; where that fails, the results of the earlier run are put back.
 fn replace_earlier(
     directory: &Path,
@@ -107,7 +125,7 @@ fn replace_earlier(
     summary: StagedFile,
 ) -> Result<(), WriteFileError> {
     earlier_results::keep(directory);
-    let named = replace(directory, &RESULTS, staged, summary);
+    let named = replace(directory, &earlier_files(directory), staged, summary);
     if named.is_ok() {
         earlier_results::forget(directory);
     } else {

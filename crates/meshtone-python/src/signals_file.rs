@@ -26,7 +26,9 @@ pub fn write_signals(
     });
     let named = named.collect::<PyResult<Vec<_>>>()?;
     let scenario = scenario.map(|scenario| &scenario.0);
-    py.detach(|| write(&path, &SignalTable::of_channels(scenario, rate_and_start, named)))
+    let table = SignalTable::of_channels(scenario, rate_and_start, named);
+    let table = table.map_err(|error| value_error(error.to_string()))?;
+    py.detach(|| write(&path, &table))
 }
 
 /// Writes a file whole or not at all.

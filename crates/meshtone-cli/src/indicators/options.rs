@@ -22,7 +22,7 @@ pub struct ReadingOptions {
     /// Column of the time, by its name or number, or `none`. [default: the one that is named as time]
     #[arg(long, value_name = "CHANNEL")]
     pub time_column: Option<String>,
-    /// Variable of an NPZ or MAT file that holds the recording, such as `run.sensors`; of a bearing-datasets folder the recording_id
+    /// Variable of an NPZ, MAT or HDF5 file that holds the recording, such as `run.sensors`; of a bearing-datasets folder the recording_id
     #[arg(long, value_name = "NAME")]
     pub variable: Option<String>,
     /// (mV/unit) Sensitivity of the sensor: the channel holds volts and is divided by it

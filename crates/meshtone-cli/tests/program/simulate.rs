@@ -66,7 +66,7 @@ fn signals_in_other_formats() {
 }
 
 #[test]
-fn every_file_carries_the_runs_identity() {
+fn parquet_panel_and_summary_carry_the_runs_identity() {
     let workplace = Workplace::new();
     let runs = ["linear", "published"].map(|model| {
         workplace.succeeds(&["simulate", "fast.toml", "--model", model, "-o", "out"]);
@@ -81,6 +81,18 @@ fn every_file_carries_the_runs_identity() {
         run
     });
     assert_ne!(runs[0], runs[1]);
+}
+
+#[test]
+fn files_of_another_origin_stay() {
+    let workplace = Workplace::new();
+    std::fs::create_dir(workplace.path("out")).unwrap();
+    workplace.write("out/signals.csv", "measured");
+    workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--format", "mat", "--no-panel"]);
+    assert_eq!(summary(&workplace, "out")["files"], serde_json::json!(["signals.mat"]));
+    workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
+    assert_eq!(workplace.names("out"), ["signals.csv", "signals.parquet", "summary.json"]);
+    assert_eq!(workplace.read("out/signals.csv"), b"measured");
 }
 
 #[test]

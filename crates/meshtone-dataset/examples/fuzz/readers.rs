@@ -93,9 +93,10 @@ pub fn readers(work: &Path) -> Vec<Reader> {
         reader(
             "mat",
             "recording: MATLAB",
-            &["flat.mat", "flat_compressed.mat", "nested.mat", "nested_compressed.mat"],
+            &["flat.mat", "flat_compressed.mat", "nested.mat", "nested_compressed.mat", "v73.mat"],
             Box::new(recording),
         ),
+        reader("hdf5", "recording: HDF5", &["plain.h5"], Box::new(recording)),
         reader("npy", "recording: NPY", &["a.npy"], Box::new(recording)),
         reader("npz", "recording: NPZ", &["wheels.npz"], Box::new(recording)),
         reader("parquet", "recording: Parquet", &parquet, Box::new(recording)),

@@ -8,7 +8,7 @@ mod place;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Component, Path};
 
 use meshtone::scenario::ScenarioForm;
 use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
@@ -99,6 +99,20 @@ struct Export<'a> {
     channels: Vec<ChannelFacts>,
 }
 
+/// The name of a folder, also of one that is named by its place, such as `.`; none of the root.
+fn name_of(folder: &Path) -> Option<String> {
+    let whole = std::path::absolute(folder).ok()?;
+    Some(
+        whole
+            .components()
+            .next_back()
+            .filter(|last| matches!(last, Component::Normal(_)))?
+            .as_os_str()
+            .to_string_lossy()
+            .into_owned(),
+    )
+}
+
 /// Refuses a base scenario whose bearings have spalls, because its healthy records would be exported as `normal`.
 fn refuse_spalls(base: &ScenarioForm) -> Result<(), DatasetError> {
     let ScenarioForm::Gearbox(gearbox) = base else { return Ok(()) };
@@ -167,7 +181,11 @@ impl<'a> Export<'a> {
         Ok(Self {
             from,
             to: Destination::directory(to),
-            name: to.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            name: name_of(to).ok_or_else(|| {
+                let problem =
+                    format!("the folder {} has no name, which is the name of the data set", to.display());
+                DatasetError::refused(problem, "name another folder")
+            })?,
             content,
             shards: manifest.files.iter().map(|file| file.name.as_str()).collect(),
             columns: shard::columns(plan),

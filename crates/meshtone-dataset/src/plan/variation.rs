@@ -49,7 +49,7 @@ impl Variation {
                 ("operation.brake_torque_nm", _) => {
                     Some((Level::Record, about(if is_unknown_rig { 1.5 } else { 1.05 })))
                 }
-                ("rig.eccentricity_mm", _) | (_, "eccentricity_mm") => {
+                ("rig.eccentricity_mm", _) => {
                     Some((Level::Mounting, Distribution::Uniform([value, value + 0.02])))
                 }
                 ("rig.misalignment_um", _) => {

@@ -14,6 +14,10 @@ use crate::memory;
 
 /// Arrays beyond which a file is none that recordings come in; each costs memory.
 pub(super) const MAX_ARRAYS: usize = 10_000;
+/// Structs, cells or groups inside each other beyond which a file is none that recordings come in.
+pub(super) const MAX_DEPTH: usize = 32;
+/// Bytes of samples that a compressed byte may well stand for; memory for more is taken only as they come.
+pub(super) const USUAL_COMPRESSION: u64 = 16;
 /// Columns of all arrays together, likewise.
 const MAX_COLUMNS: usize = 100_000;
 
@@ -56,18 +60,22 @@ impl ArrayEntry {
 /// * `entries` - the file's arrays
 /// * `options` - of the recording
 /// * `units_in_names` - whether a name such as `acc [g]` says the unit
+/// * `beside_bytes` - (bytes) what reading the array with an index takes beside the samples
 /// * `read` - reads the wanted channels of the array with an index
 pub(super) fn read_arrays(
     entries: &[ArrayEntry],
     options: &RecordingOptions,
     units_in_names: bool,
+    beside_bytes: impl Fn(usize) -> u64,
     read: impl FnMut(usize, ArrayLayout, Numbers, &[bool]) -> Result<Vec<Vec<f64>>, Problem>,
 ) -> Result<Recording, Problem> {
     let catalogue = Catalogue::new(entries, options, units_in_names)?;
     let Catalogue { labels, stated, .. } = &catalogue;
     let selection = select(labels, options)?;
     let samples = |column: usize| catalogue.layout(column).map_or(0, |layout| layout.samples);
-    memory_need::check(memory::limit(), options, &selection, samples, 0)?;
+    let of_wanted = selection.wanted.iter().filter_map(|column| catalogue.places.get(*column));
+    let beside_bytes = of_wanted.map(|(array, _)| beside_bytes(*array)).max().unwrap_or_default();
+    memory_need::check(memory::limit(), options, &selection, samples, beside_bytes)?;
     let samples = catalogue.read(&selection.wanted, read)?;
     let single = |entry: &ArrayEntry| Some(format!("{} = {}", entry.name, entry.single?));
     let singles: Vec<String> = entries.iter().filter_map(single).collect();

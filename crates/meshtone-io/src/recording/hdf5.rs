@@ -9,17 +9,13 @@ use std::io::{self, Read, Seek, SeekFrom};
 use hdf5_pure::{AttrValue, Dataset, Datatype, DatatypeByteOrder, Group, ReadSeekSource};
 
 use super::array::read_channels;
-use super::catalogue::{ArrayEntry, MAX_ARRAYS, read_arrays};
+use super::catalogue::{ArrayEntry, MAX_ARRAYS, MAX_DEPTH, USUAL_COMPRESSION, read_arrays};
 use super::error::Problem;
 use super::number::{NumberKind, Numbers};
 use super::{Recording, RecordingOptions};
 
-/// Groups inside each other beyond which a file is none that recordings come in.
-const MAX_DEPTH: usize = 32;
 /// What begins the names of groups in which MATLAB keeps data of its own.
 const OWN_OF_MATLAB: char = '#';
-/// Bytes that a byte of a compressed file may well stand for; memory for more is taken only as they come.
-const USUAL_COMPRESSION: u64 = 16;
 /// Bytes that are read at once, where a row of the array is not longer.
 const BLOCK_BYTES: u64 = 1 << 18;
 /// What begins a file that MATLAB wrote.
@@ -36,7 +32,8 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     let mut arrays = Arrays { of_matlab: head == MATLAB, found: Vec::new(), groups: 0 };
     arrays.collect(&opened.root(), "", 0)?;
     let (entries, data_sets): (Vec<ArrayEntry>, Vec<Dataset>) = arrays.found.into_iter().unzip();
-    read_arrays(&entries, options, true, |index, layout, numbers, wanted| {
+    let beside_bytes = |index: usize| Rows::new(&data_sets[index]).map_or(0, |rows| rows.block_bytes);
+    read_arrays(&entries, options, true, beside_bytes, |index, layout, numbers, wanted| {
         let mut rows = Rows::new(&data_sets[index])?;
         let present = file_bytes.saturating_mul(USUAL_COMPRESSION);
         Ok(read_channels(&mut rows, layout, numbers, wanted, present)?)
@@ -54,34 +51,46 @@ impl Arrays {
     /// Collects the arrays of a group and of those in it.
     fn collect(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), Problem> {
         self.groups += 1;
-        if depth > MAX_DEPTH || self.groups.max(self.found.len()) > MAX_ARRAYS {
-            let problem = format!(
-                "it holds more than {MAX_ARRAYS} arrays or groups, or groups nested more than {MAX_DEPTH} deep"
-            );
-            return Err(Problem::Broken(problem));
-        }
         let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
-        for name in group.datasets().map_err(Problem::broken)? {
-            let data_set = group.dataset(&name).map_err(Problem::broken)?;
-            let entry = self.entry(within(&name), &data_set)?;
+        let is_sparse =
+            self.of_matlab && group.attrs().map_err(Problem::broken)?.contains_key("MATLAB_sparse");
+        for (name, data_set) in group.iter_datasets().map_err(Problem::broken)? {
+            let mut entry = self.entry(within(&name), &data_set)?;
+            if is_sparse {
+                entry.numbers = Err("a sparse array; save it with full(…)".to_owned());
+            }
             self.found.push((entry, data_set));
+            self.check_size(depth)?;
         }
-        for name in group.groups().map_err(Problem::broken)? {
+        for (name, inner) in group.iter_groups().map_err(Problem::broken)? {
             if !name.starts_with(OWN_OF_MATLAB) {
-                let inner = group.group(&name).map_err(Problem::broken)?;
+                self.check_size(depth + 1)?;
                 self.collect(&inner, &within(&name), depth + 1)?;
             }
         }
         Ok(())
     }
 
+    fn check_size(&self, depth: usize) -> Result<(), Problem> {
+        if depth > MAX_DEPTH || self.groups.max(self.found.len()) > MAX_ARRAYS {
+            let problem = format!(
+                "it holds more than {MAX_ARRAYS} arrays or groups, or groups nested more than {MAX_DEPTH} deep"
+            );
+            return Err(Problem::Broken(problem));
+        }
+        Ok(())
+    }
+
     fn entry(&self, name: String, data_set: &Dataset) -> Result<ArrayEntry, Problem> {
         let mut shape = data_set.shape().map_err(Problem::broken)?;
-        let numbers = numbers_of(data_set)?;
-        let single = match (&numbers, shape.iter().all(|length| *length == 1)) {
-            (Ok(numbers), true) => Some(numbers.read_one(&mut Rows::new(data_set)?)?),
-            _ => None,
-        };
+        let mut numbers = numbers_of(data_set)?;
+        let mut single = None;
+        if let (Ok(kind), true) = (&numbers, shape.iter().all(|length| *length == 1)) {
+            match Rows::new(data_set).and_then(|mut rows| Ok(kind.read_one(&mut rows)?)) {
+                Ok(number) => single = Some(number),
+                Err(_) => numbers = Err("a number that cannot be read".to_owned()),
+            }
+        }
         if self.of_matlab {
             shape.reverse();
         }
@@ -106,6 +115,10 @@ fn numbers_of(data_set: &Dataset) -> Result<Result<Numbers, String>, Problem> {
     let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str).map(str::trim_end);
     if let Some("char") = class {
         return Ok(Err("text".to_owned()));
+    }
+    // Instead of an empty array MATLAB writes its dimensions.
+    if attributes.contains_key("MATLAB_empty") {
+        return Ok(Err("an empty array".to_owned()));
     }
     let kind = match data_set.datatype().map_err(Problem::broken)? {
         Datatype::FixedPoint { size, byte_order, layout } => {
@@ -141,6 +154,8 @@ struct Rows<'d> {
     data_set: &'d Dataset,
     rows: u64,
     at_once: u64,
+    /// (bytes) The largest block.
+    block_bytes: u64,
     next_row: u64,
     block: Vec<u8>,
     at: usize,
@@ -155,7 +170,8 @@ impl<'d> Rows<'d> {
         let chunk = data_set.chunk_shape().map_err(Problem::broken)?.and_then(|shape| shape.first().copied());
         let at_once = (BLOCK_BYTES / row_bytes.max(1)).max(chunk.unwrap_or(1)).max(1);
         let rows = shape.first().copied().unwrap_or(1);
-        Ok(Self { data_set, rows, at_once, next_row: 0, block: Vec::new(), at: 0 })
+        let block_bytes = row_bytes.saturating_mul(at_once.min(rows));
+        Ok(Self { data_set, rows, at_once, block_bytes, next_row: 0, block: Vec::new(), at: 0 })
     }
 }
 

@@ -42,7 +42,7 @@ impl<'a> SignalTable<'a> {
         let signals: Vec<_> =
             listed.filter_map(|channel| Some((channels.signal(&channel)?, channel))).collect();
         let named = signals.into_iter().map(|(values, channel)| (channel, values));
-        Self::of_channels(Some(scenario), [channels.sampling_rate_hz, channels.start_s], named)
+        Self::of_equally_long(Some(scenario), [channels.sampling_rate_hz, channels.start_s], named)
     }
 
     /// Some signals of a pair, at any rate.
@@ -51,12 +51,30 @@ impl<'a> SignalTable<'a> {
     /// * `scenario` - what was simulated; none where the signals are not what a simulation of it gives
     /// * `rate_and_start` - (S/s, s) sampling rate, and time of the first sample
     /// * `signals` - the channels and their samples
+    ///
+    /// # Errors
+    /// Two channels of different lengths.
     pub fn of_channels(
         scenario: Option<&Scenario>,
         rate_and_start: [f64; 2],
         signals: impl IntoIterator<Item = (Channel, &'a [f64])>,
+    ) -> io::Result<Self> {
+        let columns: Vec<(Channel, &[f64])> = signals.into_iter().collect();
+        let unequal = columns.windows(2).find(|pair| pair[0].1.len() != pair[1].1.len());
+        if let Some(pair) = unequal {
+            let of =
+                |(channel, values): &(Channel, &[f64])| format!("{} has {}", channel.name(), values.len());
+            let problem = format!("signals must be equally long: {} samples, {}", of(&pair[0]), of(&pair[1]));
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+        }
+        Ok(Self::of_equally_long(scenario, rate_and_start, columns))
+    }
+
+    fn of_equally_long(
+        scenario: Option<&Scenario>,
+        [sampling_rate_hz, start_s]: [f64; 2],
+        signals: impl IntoIterator<Item = (Channel, &'a [f64])>,
     ) -> Self {
-        let [sampling_rate_hz, start_s] = rate_and_start;
         let column = |(channel, values): (Channel, &'a [f64])| SignalColumn {
             name: channel.name(),
             unit: channel.unit(),

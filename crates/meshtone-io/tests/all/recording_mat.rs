@@ -101,9 +101,18 @@ fn version_7_3_is_read_as_version_5() {
     let file = bytes("v73.mat");
     let message = refused("m.mat", &file, &variable("cell"));
     assert!(message.contains("cells (1 × 1 a cell array; save its arrays as variables"), "{message}");
-    let text = RecordingOptions { channels: vec!["name".into()], ..rate(1.0) };
-    let message = refused("m.mat", &file, &text);
-    assert!(message.contains("column name holds text; must be real numbers"), "{message}");
+    for (name, what) in [
+        ("name", "column name holds text; must be real numbers"),
+        ("empty", "column empty holds an empty array; must be real numbers"),
+        (
+            "sparse.data",
+            "column sparse.data holds a sparse array; save it with full(…); must be real numbers",
+        ),
+    ] {
+        let chosen = RecordingOptions { channels: vec![name.into()], ..rate(1.0) };
+        let message = refused("m.mat", &file, &chosen);
+        assert!(message.contains(what), "{message}");
+    }
 }
 
 #[test]
@@ -125,6 +134,11 @@ fn cut_files_are_refused_wherever_they_end() {
                 assert!(recording.channels.iter().all(|channel| channel.samples.len() == 50), "{name} {end}");
             }
         }
+    }
+    // The first data of HDF5 stand behind the index, so that half of a file is none.
+    for name in ["v73.mat", "plain.h5"] {
+        let file = bytes(name);
+        refused("cut.mat", &file[..file.len() / 2], &rate(1.0));
     }
     let file = bytes("flat.mat");
     let message = refused("cut.mat", &file[..400], &rate(1.0));

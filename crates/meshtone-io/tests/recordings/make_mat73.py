@@ -33,6 +33,15 @@ with h5py.File(HERE / "v73.mat", "w", userblock_size=512) as file:
     run = file.create_group("run")
     run.attrs["MATLAB_class"] = np.bytes_("struct")
     variable(run, "pair", PAIR.astype(np.float32), "single")
+    # MATLAB writes the dimensions of an empty array in its place, and a sparse array as a group.
+    empty = file.create_dataset("empty", data=np.array([0, 0], np.uint64))
+    empty.attrs["MATLAB_class"] = np.bytes_("double")
+    empty.attrs["MATLAB_empty"] = np.uint8(1)
+    sparse = file.create_group("sparse")
+    sparse.attrs["MATLAB_class"] = np.bytes_("double")
+    sparse.attrs["MATLAB_sparse"] = np.uint64(2)
+    for name, values in {"data": [1.0, 2.0], "ir": np.uint64([0, 1]), "jc": np.uint64([0, 1, 2])}.items():
+        sparse.create_dataset(name, data=values)
     refs = file.create_group("#refs#")
     variable(refs, "a", ONE.reshape(-1, 1), "double")
     cells = file.create_dataset("cells", data=np.array([[refs["a"].ref]], dtype=h5py.ref_dtype), dtype=h5py.ref_dtype)

@@ -15,7 +15,7 @@ use std::io::{self, Read};
 use self::source::{Source, Variable, invalid, padding};
 use self::walk::{ArrayLocation, MATRIX, Walk};
 use super::array::read_channels;
-use super::catalogue::{ArrayEntry, read_arrays};
+use super::catalogue::{ArrayEntry, USUAL_COMPRESSION, read_arrays};
 use super::error::Problem;
 use super::{Recording, RecordingOptions};
 
@@ -24,30 +24,34 @@ const TAG_BYTES: u64 = 8;
 /// The type of an element that is a compressed array.
 const COMPRESSED: u32 = 15;
 
-/// Bytes of samples that a compressed byte may well stand for; memory for more is taken only as they come.
-const USUAL_COMPRESSION: u64 = 16;
-
 /// Reads a recording from a MAT-file.
 pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
     let Walk { big_endian, arrays, .. } = walk(&file)?;
     let (mut entries, places): (Vec<ArrayEntry>, Vec<ArrayLocation>) = arrays.into_iter().unzip();
     mark_zero_twins(&file, big_endian, &mut entries, &places)?;
     let mut open: Option<(Variable, Source)> = None;
-    let recording = read_arrays(&entries, options, false, |index, layout, numbers, channels| {
-        let ArrayLocation { variable, offset, bytes } = places[index];
-        let mut source = match open.take() {
-            Some((same, source)) if same == variable && source.at <= offset => source,
-            other => {
-                other.map_or(Ok(()), |(_, done)| done.finish())?;
-                Source::open(&file, variable, big_endian)?
-            }
-        };
-        source.skip_to(offset)?;
-        let present = if variable.compressed { bytes.min(USUAL_COMPRESSION * variable.bytes) } else { bytes };
-        let samples = read_channels(&mut source, layout, numbers, channels, present)?;
-        open = Some((variable, source));
-        Ok(samples)
-    })?;
+    let recording = read_arrays(
+        &entries,
+        options,
+        false,
+        |_| 0,
+        |index, layout, numbers, channels| {
+            let ArrayLocation { variable, offset, bytes } = places[index];
+            let mut source = match open.take() {
+                Some((same, source)) if same == variable && source.at <= offset => source,
+                other => {
+                    other.map_or(Ok(()), |(_, done)| done.finish())?;
+                    Source::open(&file, variable, big_endian)?
+                }
+            };
+            source.skip_to(offset)?;
+            let present =
+                if variable.compressed { bytes.min(USUAL_COMPRESSION * variable.bytes) } else { bytes };
+            let samples = read_channels(&mut source, layout, numbers, channels, present)?;
+            open = Some((variable, source));
+            Ok(samples)
+        },
+    )?;
     open.map_or(Ok(()), |(_, done)| done.finish())?;
     Ok(recording)
 }

@@ -2,14 +2,12 @@
 
 use std::io;
 
-use super::super::catalogue::{ArrayEntry, MAX_ARRAYS};
+use super::super::catalogue::{ArrayEntry, MAX_ARRAYS, MAX_DEPTH};
 use super::super::number::{NumberKind, Numbers};
 use super::source::{Source, Variable, invalid, padding};
 
 /// The type of an element that is an array.
 pub(super) const MATRIX: u32 = 14;
-/// Structs and cells inside each other beyond which a file is none that recordings come in.
-const MAX_DEPTH: usize = 32;
 const MAX_DIMENSIONS: u64 = 32;
 const MAX_NAME_BYTES: u64 = 4096;
 /// Bytes of all field names of one struct.
