@@ -154,7 +154,7 @@ fn bearing_names(gearbox: &Gearbox) -> Vec<String> {
     seats.iter().enumerate().map(name).collect()
 }
 
-/// The base with the teeth's faults of a class.
+/// The base with the faults of a class.
 ///
 /// # Arguments
 /// * `base` - healthy

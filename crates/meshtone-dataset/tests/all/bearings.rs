@@ -3,12 +3,13 @@
 
 use std::collections::BTreeSet;
 use std::fs::File;
+use std::path::Path;
 
 use meshtone::scenario::{DefectPlace, GearboxRig, ScenarioForm, gearbox_template};
 use meshtone::signal::{FrequencyBand, ShaftPhase, squared_envelope_order_spectrum};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::export::export_bearing_datasets;
-use meshtone_dataset::plan::Plan;
+use meshtone_dataset::plan::{Plan, gearbox_template as gearbox_plan};
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
 use meshtone_io::table::TableReader;
@@ -174,6 +175,20 @@ choice = [7, 9]
         assert_eq!((own.race, own.severity), (DefectPlace::Element, Some(record.values[0].1)));
         assert_eq!(gearbox.faults[0].fault.tooth.only().map(f64::from), Some(record.values[1].1));
     }
+}
+
+/// What the template comments can be used after its comment signs are taken away.
+#[test]
+fn the_example_of_the_template_is_a_class() {
+    let text = gearbox_plan();
+    let (before, rest) = text.split_once("#[[class]]\n#label = \"outer-race\"").unwrap();
+    let (example, after) = rest.split_once("\n\n").unwrap();
+    let class = format!("[[class]]\nlabel = \"outer-race\"{}", example.replace("\n#", "\n"));
+    let place = "shaft = \"input\"\nat = 1.0\n";
+    let before = before.replacen(place, &format!("{place}kind = \"ball\"\nname = \"ER-10K\"\n"), 1);
+    let plan = Plan::read_text(format!("{before}{class}\n\n{after}"), Path::new("plan.toml")).unwrap();
+    let class = plan.content.classes.iter().find(|class| class.label == "outer-race").unwrap();
+    assert_eq!(class.faults[0].kind(), "outer-race");
 }
 
 #[test]
