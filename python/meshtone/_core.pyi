@@ -318,7 +318,7 @@ def bearings_of_train(
     machine: Scenario | Gearbox | None,
     sampling_rate_hz: float,
     shaft: str | None,
-    bearings: Sequence[tuple[tuple[int, float, float, float], str | None]],
+    bearings: Sequence[tuple[tuple[int, float, float, float], str | None]] | None,
     separation: str,
     band_hz: tuple[float, float] | None,
 ) -> dict[str, Any]: ...

@@ -339,6 +339,13 @@ def test_bearings_on_the_shafts_of_a_gearbox() -> None:
         recording.bearings([(bearing, "shaft7")])
     with pytest.raises(ValueError, match="separation = 'all': must be one of averages"):
         recording.bearings([bearing], separation="all")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="bearings: missing, and the machine has no rolling bearing"):
+        recording.bearings()
+    place = 'shaft = "output"\nat = 1.0\n'
+    machine = meshtone.Gearbox.from_toml(meshtone.gearbox_template().replace(place, f'{place}kind = "ball"\nname = "ER-10K"\n'))
+    assert machine != gearbox
+    found = signal.TrainRecording(ringing + tone, phase, 20_000.0, machine).bearings(separation="none", band_hz=(3000, 5000))
+    assert found.bearings == [(bearing, "output")]
 
 
 def test_tones_noise_and_velocity() -> None:

@@ -8,7 +8,7 @@ use crate::croissant::citation;
 use crate::finish::Finished;
 use crate::manifest::PREVIEW;
 use crate::plan::{
-    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, Wheel, wheel_words,
+    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, ToothFault, Wheel, wheel_words,
 };
 use crate::sampling::Design;
 use crate::shard::{Column, Topic, WARNINGS, column_name, varied_keys};
@@ -161,9 +161,12 @@ fn warnings(set: &Finished) -> String {
 }
 
 fn classes(set: &Finished) -> String {
-    let fault = |ClassFault { wheel, fault }: &ClassFault| match wheel {
-        Wheel::OfPair(_) => fault.damage.kind().to_owned(),
-        Wheel::OfGearbox(name) => format!("{} of {name}", fault.damage.kind()),
+    let fault = |fault: &ClassFault| match fault {
+        ClassFault::Teeth(ToothFault { wheel: Wheel::OfPair(_), .. }) => fault.kind().to_owned(),
+        ClassFault::Teeth(ToothFault { wheel: Wheel::OfGearbox(name), .. })
+        | ClassFault::Bearing { bearing: name, .. } => {
+            format!("{} of {name}", fault.kind())
+        }
     };
     let row = |class: &Class| {
         let fault = match &class.faults[..] {

@@ -22,14 +22,14 @@ fn geometry((elements, element_mm, pitch_mm, contact_angle_deg): Geometry) -> Py
     BearingGeometry::new(elements, element_mm, pitch_mm, contact_angle_deg).map_err(value_error)
 }
 
+fn numbers(of: BearingGeometry) -> Geometry {
+    (of.elements, of.element_mm, of.pitch_mm, of.contact_angle_deg)
+}
+
 /// Name, geometry and source of the bearings by name.
 #[pyfunction]
 pub fn named_bearings() -> Vec<(&'static str, Geometry, &'static str)> {
-    let named = NAMED_BEARINGS.iter().map(|named| {
-        let of = named.geometry;
-        (named.name, (of.elements, of.element_mm, of.pitch_mm, of.contact_angle_deg), named.source)
-    });
-    named.collect()
+    NAMED_BEARINGS.iter().map(|named| (named.name, numbers(named.geometry), named.source)).collect()
 }
 
 /// FTF, BPFO, BPFI and BSF.
@@ -58,8 +58,8 @@ fn line(of: &steps::DefectLine) -> Line {
     (of.name(), part, of.order, of.found_order, of.amplitude, of.over_median, of.is_beside_shaft_order)
 }
 
-/// Looks for bearings on the shafts of a machine: the kurtogram, the band and its kurtosis, for each bearing its spectrum and lines, and the
-/// warnings. Without a machine there is one shaft.
+/// Looks for bearings on the shafts of a machine: the kurtogram, the band and its kurtosis, for each bearing its spectrum and lines, the
+/// warnings, and the bearings with their shafts: of the machine, where none are given. Without a machine there is one shaft.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they are those of the method in Python")]
 pub fn bearings_of_train<'py>(
@@ -69,7 +69,7 @@ pub fn bearings_of_train<'py>(
     machine: Option<Machine<'py>>,
     sampling_rate_hz: f64,
     shaft: Option<&str>,
-    bearings: Vec<(Geometry, Option<String>)>,
+    bearings: Option<Vec<(Geometry, Option<String>)>>,
     separation: &str,
     band_hz: Option<(f64, f64)>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -77,11 +77,18 @@ pub fn bearings_of_train<'py>(
     let train = machine.map_or_else(|| Ok(GearTrain::of_shaft("shaft")), |machine| machine.train())?;
     let turning = turning(&train, phase, shaft)?;
     let own = shaft.map_or_else(|| Ok(train.input()), |name| shaft_number(&train, name))?;
-    let placed = bearings.into_iter().map(|(of, shaft)| {
+    let place = |(of, shaft): (Geometry, Option<String>)| -> PyResult<TrainBearing> {
         let shaft = shaft.map_or(Ok(own), |name| shaft_number(&train, &name))?;
         Ok(TrainBearing { geometry: geometry(of)?, shaft })
-    });
-    let placed = placed.collect::<PyResult<Vec<_>>>()?;
+    };
+    let placed = match bearings {
+        Some(bearings) => bearings.into_iter().map(place).collect::<PyResult<Vec<_>>>()?,
+        None if train.bearings.is_empty() => {
+            let problem = "bearings: missing, and the machine has no rolling bearing; name some, as [Bearing.named(\"6205\")]";
+            return Err(value_error(problem));
+        }
+        None => train.bearings.clone(),
+    };
     let separation = match separation {
         "averages" => BearingSeparation::Averages,
         "discrete-random" => BearingSeparation::DiscreteRandom,
@@ -99,7 +106,9 @@ pub fn bearings_of_train<'py>(
     let of_bearing = |(spectrum, lines): (SquaredEnvelopeSpectrum, Vec<steps::DefectLine>)| {
         (spectrum.step, array(py, spectrum.amplitudes), lines.iter().map(line).collect::<Vec<_>>())
     };
+    let of_train = |bearing: &TrainBearing| (numbers(bearing.geometry), &train.shafts[bearing.shaft].name);
     let all = PyDict::new(py);
+    all.set_item("placed", placed.iter().map(of_train).collect::<Vec<_>>())?;
     all.set_item("levels", levels.collect::<Vec<_>>())?;
     all.set_item("band_hz", (found.band.from_hz, found.band.to_hz))?;
     all.set_item("kurtosis", found.kurtosis)?;

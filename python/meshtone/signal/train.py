@@ -87,6 +87,8 @@ class BearingRecords:
         (Hz) Band of the squared envelope.
     kurtosis : float or None
         (-) Kurtosis in it, where the kurtogram chose it.
+    bearings : list of (Bearing, str)
+        The bearings that were looked for, each with the name of its shaft.
     spectra : list of SquaredEnvelopeSpectrum
         Of each bearing, over the orders of its shaft.
     lines : list of list of DefectLine
@@ -98,6 +100,7 @@ class BearingRecords:
     kurtogram: Kurtogram = field(repr=False)
     band_hz: tuple[float, float]
     kurtosis: float | None
+    bearings: list[tuple[Bearing, str]]
     spectra: list[SquaredEnvelopeSpectrum] = field(repr=False)
     lines: list[list[DefectLine]] = field(repr=False)
     warnings: list[SignalWarning]
@@ -116,7 +119,7 @@ class TrainRecording:
     sampling_rate_hz : float
         (S/s) Of the signal.
     machine : Scenario or Gearbox, optional
-        Its tooth counts are used; without it there is one shaft, and no wheel.
+        Its tooth counts and its rolling bearings are used; without it there is one shaft, and no wheel.
     shaft : str, optional
         Name of the shaft that the phase is of; by default the pinion's, or the input of a gearbox.
     """
@@ -129,17 +132,18 @@ class TrainRecording:
 
     def bearings(
         self,
-        bearings: Sequence[Bearing | tuple[Bearing, str]],
+        bearings: Sequence[Bearing | tuple[Bearing, str]] | None = None,
         *,
         separation: Literal["averages", "discrete-random", "prewhitening", "none"] = "averages",
         band_hz: tuple[float, float] | None = None,
     ) -> BearingRecords:
-        """Look for the defects of bearings, as ``meshtone indicators --bearing`` does.
+        """Look for the defects of bearings, as ``meshtone indicators`` does.
 
         Parameters
         ----------
-        bearings : sequence of Bearing or (Bearing, str)
-            Each with the name of the shaft in its inner ring; by default the shaft that the phase is of.
+        bearings : sequence of Bearing or (Bearing, str), optional
+            Each with the name of the shaft in its inner ring, by default the shaft that the phase is of. Without it, the rolling bearings of
+            the machine, each geometry on a shaft once.
         separation : {'averages', 'discrete-random', 'prewhitening', 'none'}
             What is removed first because it comes from the gears.
         band_hz : (float, float), optional
@@ -153,7 +157,7 @@ class TrainRecording:
         Raises
         ------
         ValueError
-            A shaft that there is not; a band that is empty or reaches beyond half the sampling rate; NaN; a constant signal.
+            No bearing, and a machine without rolling ones; a shaft that there is not; a band that is empty or reaches beyond half the sampling rate; NaN; a constant signal.
 
         Examples
         --------
@@ -171,7 +175,7 @@ class TrainRecording:
         >>> max(found.lines[0], key=lambda line: line.amplitude).line
         'BPFO'
         """
-        placed = [(of, None) if isinstance(of, Bearing) else of for of in bearings]
+        placed = None if bearings is None else [(of, None) if isinstance(of, Bearing) else of for of in bearings]
         rate_hz = positive("sampling_rate_hz", self.sampling_rate_hz)
         parts = _core.bearings_of_train(
             signal_array(self.signal),
@@ -179,7 +183,7 @@ class TrainRecording:
             None if self.machine is None else native_machine(self.machine),
             rate_hz,
             self.shaft,
-            [(of._native, shaft) for of, shaft in placed],
+            None if placed is None else [(of._native, shaft) for of, shaft in placed],
             separation,
             band_hz,
         )
@@ -189,6 +193,7 @@ class TrainRecording:
             kurtogram=Kurtogram(parts["levels"], rate_hz),
             band_hz=parts["band_hz"],
             kurtosis=parts["kurtosis"],
+            bearings=[(Bearing(*geometry), shaft) for geometry, shaft in parts["placed"]],
             spectra=[SquaredEnvelopeSpectrum(np.arange(of.size) * step, of) for step, of, _ in parts["bearings"]],
             lines=[[DefectLine(*line) for line in lines] for _, _, lines in parts["bearings"]],
             warnings=warnings,

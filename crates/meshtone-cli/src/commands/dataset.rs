@@ -114,7 +114,8 @@ struct Scenario {
 /// Write the raw channels of a data set in the schema of another library
 ///
 /// `bearing-datasets` is the schema, version 2, of the Python package of that name, 0.3.0: the table metadata.parquet has a row for each
-/// signal, and signals/ has the samples. Every tooth fault is `gear` there; our kind of damage stands in the column fault_kind.
+/// signal, and signals/ has the samples. Every tooth fault is `gear` there, a spall of a bearing by its place; our kind of damage stands in the
+/// column fault_kind.
 #[derive(Debug, Args)]
 struct Export {
     /// Directory or URL of the data set

@@ -26,8 +26,8 @@ const PRINTED: usize = 5;
 /// Averages a channel over the revolutions of a shaft, separates the average into its parts, and writes indicators.json,
 /// indicators.parquet and a figure of the recording, or of the last one (indicators.svg, .png). Several recordings, or
 /// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png). Of a
-/// run-up the amplitudes over order and time are drawn too (order_map.svg, .png), and of bearings that are named the defect
-/// lines (bearings.parquet, .svg, .png). Nothing is written unless all recordings are valid.
+/// run-up the amplitudes over order and time are drawn too (order_map.svg, .png), and of bearings that are named or that the
+/// scenario has the defect lines (bearings.parquet, .svg, .png). Nothing is written unless all recordings are valid.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Indicators {
@@ -47,8 +47,8 @@ pub struct Indicators {
     no_figure: bool,
     #[command(flatten)]
     reading: ReadingOptions,
-    /// The machine, a pair or a gearbox: its tooth counts give the phase of all shafts from that of one, and every wheel is
-    /// processed
+    /// The machine, a pair or a gearbox: its tooth counts give the phase of all shafts from that of one, every wheel is
+    /// processed, and the defect lines of its rolling bearings are looked for
     #[arg(long, value_name = "SCENARIO.toml", conflicts_with_all = ["teeth", "mate_teeth"])]
     scenario: Option<PathBuf>,
     #[command(flatten)]
@@ -90,10 +90,15 @@ impl Indicators {
             })?;
         }
         series.finish()?;
-        let source = series.latest.as_ref().map_or("", |latest| &latest.turned.source).to_owned();
         let scenario = self.scenario.as_deref();
-        series.results.settings =
-            settings(&self.phase, &self.shafts, scenario, &source, &self.processing, &self.bearings);
+        series.results.settings = settings(
+            &self.phase,
+            &self.shafts,
+            scenario,
+            series.latest.as_ref(),
+            &self.processing,
+            &self.bearings,
+        );
         if let Some(message) = order_of_names(&self.recordings) {
             series.results.warnings.push(WarningEntry { source: None, message, kind: None });
         }

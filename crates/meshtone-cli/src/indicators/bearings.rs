@@ -3,7 +3,7 @@
 use clap::Args;
 use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS, NamedBearing};
 use meshtone::signal::{
-    BearingRecords, BearingSeparation, BearingSettings, FrequencyBand, SignalError, TrainBearing,
+    BearingRecords, BearingSeparation, BearingSettings, FrequencyBand, GearTrain, SignalError, TrainBearing,
     TrainRecording, TrainTurning,
 };
 use meshtone_io::indicators::BearingEntry;
@@ -18,15 +18,15 @@ use crate::failure::Failure;
 pub struct BearingOptions {
     /// Rolling bearing whose defect lines are looked for, and the shaft in its inner ring: by its name, or by the number of its elements, their
     /// diameter, the pitch diameter (mm) and the contact angle (°), such as 6205, ER-10K@output or 9,7.94,39.04,0@pinion. May be repeated.
-    /// [default shaft: the one that speed or pulses are of]
+    /// [default: the rolling bearings of the scenario; default shaft: the one that speed or pulses are of]
     #[arg(long = "bearing", value_name = "BEARING[@SHAFT]", value_parser = bearing)]
     pub bearings: Vec<NamedChoice>,
     /// (Hz) Band of the squared envelope. [default: that of the largest kurtosis, at least three times as wide as the largest BPFI]
-    #[arg(long, value_name = "FROM,TO", requires = "bearings", value_parser = band)]
+    #[arg(long, value_name = "FROM,TO", value_parser = band)]
     pub band_hz: Option<FrequencyBand>,
-    /// What is removed from the recording first
-    #[arg(long, requires = "bearings", default_value = "averages", value_parser = one_of(&SEPARATIONS))]
-    pub bearing_separation: BearingSeparation,
+    /// What is removed from the recording first [default: averages]
+    #[arg(long, value_parser = one_of(&SEPARATIONS))]
+    pub bearing_separation: Option<BearingSeparation>,
 }
 
 /// A bearing as the command line names it.
@@ -35,6 +35,20 @@ pub struct NamedChoice {
     name: String,
     geometry: BearingGeometry,
     shaft: Option<String>,
+}
+
+impl NamedChoice {
+    /// A bearing of a scenario, as the command line would name it.
+    fn of_train(TrainBearing { geometry, shaft }: &TrainBearing, train: &GearTrain) -> Self {
+        let BearingGeometry { elements, element_mm, pitch_mm, contact_angle_deg } = *geometry;
+        let named = NAMED_BEARINGS.iter().find(|named| named.geometry == *geometry);
+        let name = match named {
+            Some(named) => named.name.to_owned(),
+            None if contact_angle_deg == 0.0 => format!("{elements},{element_mm},{pitch_mm}"),
+            None => format!("{elements},{element_mm},{pitch_mm},{contact_angle_deg}"),
+        };
+        Self { name, geometry: *geometry, shaft: Some(train.shafts[*shaft].name.clone()) }
+    }
 }
 
 /// Ways to separate a recording.
@@ -96,23 +110,34 @@ fn band(text: &str) -> Result<FrequencyBand, String> {
 }
 
 impl BearingOptions {
-    /// The settings that the options state.
-    fn settings(&self) -> BearingSettings {
-        BearingSettings { separation: self.bearing_separation, band: self.band_hz }
+    /// What is removed first.
+    fn removed(&self) -> BearingSeparation {
+        self.bearing_separation.unwrap_or_default()
     }
 
-    /// Name of the separation, where a bearing is looked for.
+    /// Name of the separation.
     pub fn separation(&self) -> Option<&'static str> {
-        name_of(&SEPARATIONS, self.bearing_separation).filter(|_| !self.bearings.is_empty())
+        name_of(&SEPARATIONS, self.removed())
     }
 
-    /// The bearings as they are named on the command line.
-    pub fn names(&self) -> Vec<String> {
+    /// The bearings that are looked for: those that are named, or those of the machine's scenario.
+    fn chosen(&self, train: &GearTrain) -> Vec<NamedChoice> {
+        if !self.bearings.is_empty() {
+            return self.bearings.clone();
+        }
+        train.bearings.iter().map(|bearing| NamedChoice::of_train(bearing, train)).collect()
+    }
+
+    /// The bearings that are looked for, as the command line names them.
+    ///
+    /// # Arguments
+    /// * `train` - the machine
+    pub fn names(&self, train: &GearTrain) -> Vec<String> {
         let name = |of: &NamedChoice| match &of.shaft {
             Some(shaft) => format!("{}@{shaft}", of.name),
             None => of.name.clone(),
         };
-        self.bearings.iter().map(name).collect()
+        self.chosen(train).iter().map(name).collect()
     }
 
     /// Refuses a band that the recording does not have.
@@ -130,7 +155,19 @@ impl BearingOptions {
         }
     }
 
-    /// Looks for the bearings in a recording; none where none is named.
+    /// Refuses options of a search where there is no bearing.
+    fn check_needless(&self) -> Result<(), Failure> {
+        let option = match (self.band_hz, self.bearing_separation) {
+            (Some(_), _) => "--band-hz",
+            (None, Some(_)) => "--bearing-separation",
+            (None, None) => return Ok(()),
+        };
+        let problem =
+            format!("{option}: no bearing is looked for: none is named, and no scenario has a rolling one");
+        Failure::refuse(problem, "name one with --bearing, or leave the option out")
+    }
+
+    /// Looks for the bearings in a recording; none where none is named and the machine has none.
     ///
     /// # Arguments
     /// * `recording` - the channel and how the shafts turned
@@ -142,8 +179,9 @@ impl BearingOptions {
         unit: Option<&str>,
         refuse: impl Fn(&SignalError) -> Failure,
     ) -> Result<Option<FoundBearings>, Failure> {
-        if self.bearings.is_empty() {
-            return Ok(None);
+        let chosen = self.chosen(recording.train);
+        if chosen.is_empty() {
+            return self.check_needless().map(|()| None);
         }
         self.check_band(recording.sampling_rate_hz)?;
         let shafts = &recording.train.shafts;
@@ -161,13 +199,14 @@ impl BearingOptions {
             };
             Ok(TrainBearing { geometry: of.geometry, shaft })
         };
-        let placed = self.bearings.iter().map(place).collect::<Result<Vec<_>, _>>()?;
-        let records = recording.bearings(&placed, &self.settings()).map_err(|error| refuse(&error))?;
+        let placed = chosen.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+        let settings = BearingSettings { separation: self.removed(), band: self.band_hz };
+        let records = recording.bearings(&placed, &settings).map_err(|error| refuse(&error))?;
         let is_plain = |unit: &str| unit.chars().all(char::is_alphanumeric);
         let squared = |unit: &str| if is_plain(unit) { format!("{unit}²") } else { format!("({unit})²") };
-        let unit = unit.filter(|_| self.bearing_separation != BearingSeparation::Prewhitening).map(squared);
+        let unit = unit.filter(|_| self.removed() != BearingSeparation::Prewhitening).map(squared);
         let mut entries = Vec::new();
-        for ((of, bearing), (_, lines)) in self.bearings.iter().zip(placed).zip(&records.bearings) {
+        for ((of, bearing), (_, lines)) in chosen.iter().zip(placed).zip(&records.bearings) {
             let phase = recording.phase(bearing.shaft).map_err(|error| refuse(&error))?;
             entries.push(BearingEntry {
                 recording: 0,

@@ -116,7 +116,7 @@ pub fn of_order_map(series: &Series, latest: &LatestRecords) -> Option<Figure> {
     }))
 }
 
-/// The figure of the last recording's bearings, where any are named.
+/// The figure of the last recording's bearings, where any are looked for.
 ///
 /// # Arguments
 /// * `separation` - what was removed from the recording, as the option names it

@@ -39,7 +39,7 @@ pub struct Processed {
     pub turned: Turned,
     /// What the recording shows.
     pub records: TrainRecords,
-    /// What it shows about bearings, where any are named.
+    /// What it shows about bearings, where any are looked for.
     pub bearings: Option<FoundBearings>,
     /// Warnings.
     pub warnings: Vec<WarningEntry>,

@@ -23,7 +23,7 @@ pub struct LatestRecords {
     pub wheels: Vec<(Wheel, f64, Record)>,
     /// The machine, and how it turned in the recording.
     pub turned: Turned,
-    /// What the recording shows about bearings, where any are named.
+    /// What the recording shows about bearings, where any are looked for.
     pub bearings: Option<BearingRecords>,
 }
 
@@ -161,19 +161,26 @@ fn velocity_rms_mm_per_s(input: &Input) -> Option<f64> {
 }
 
 /// Settings of the command line, with its defaults.
+///
+/// # Arguments
+/// * `latest` - of the last recording: the source of its phase, and its machine
+/// * the others - the options
 pub fn settings(
     phase: &PhaseOptions,
     shafts: &ShaftOptions,
     scenario: Option<&Path>,
-    source: &str,
+    latest: Option<&LatestRecords>,
     processing: &ProcessingOptions,
     bearings: &BearingOptions,
 ) -> Map<String, Value> {
     let file = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
     let has_pulses = phase.tach.is_some() || phase.pulse_times.is_some();
     let edge = phase.tach.as_ref().and_then(|_| name_of(&EDGES, phase.edge));
+    let turned = latest.map(|latest| &latest.turned);
+    let looked_for = turned.map_or_else(Vec::new, |turned| bearings.names(&turned.train));
+    let separation = bearings.separation().filter(|_| !looked_for.is_empty());
     let settings = [
-        ("phase", json!(source)),
+        ("phase", json!(turned.map_or("", |turned| &turned.source))),
         ("scenario", json!(scenario.map(|path| path.display().to_string()))),
         ("shaft", json!(shafts.shaft)),
         ("mesh", json!(shafts.mesh)),
@@ -192,9 +199,9 @@ pub fn settings(
         ("low_orders", json!(processing.low_orders)),
         ("revolutions_of_a_segment", json!(processing.revolutions)),
         ("interpolation", json!(name_of(&INTERPOLATIONS, processing.interpolation))),
-        ("bearings", json!(bearings.names())),
+        ("bearings", json!(looked_for)),
         ("band_hz", json!(bearings.band_hz.map(|band| [band.from_hz, band.to_hz]))),
-        ("bearing_separation", json!(bearings.separation())),
+        ("bearing_separation", json!(separation)),
     ];
     settings.into_iter().map(|(name, setting)| (name.to_owned(), setting)).collect()
 }

@@ -155,4 +155,26 @@ fn bearings_of_a_gearbox_are_on_its_shafts() {
         stderr(&output)
     );
     workplace.fails(2, &command(&["6206"]), &["must be one of 6203, 6205, ER-10K"]);
+    // The bearings of this gearbox are linear.
+    workplace.fails(
+        2,
+        &[&command(&[])[..], &["--band-hz", "3000,6000"]].concat(),
+        &["--band-hz: no bearing is looked for"],
+    );
+    // Two of one geometry on the input have the same lines; another one is on the output.
+    let own = "elements = 9\nelement_mm = 7.94\npitch_mm = 39.04\nkind = \"ball\"";
+    let text = String::from_utf8(workplace.read("gearbox.toml")).unwrap();
+    let mut sections = text.split("[[bearing]]\n");
+    let head = sections.next().unwrap().to_owned();
+    let kinds = ["kind = \"ball\"\nname = \"6205\"", own, "", "", "kind = \"ball\"\nname = \"ER-10K\"", ""];
+    let rolling = sections.zip(kinds).map(|(section, kind)| format!("[[bearing]]\n{kind}\n{section}"));
+    workplace.write("gearbox.toml", head + &rolling.collect::<String>());
+    workplace.succeeds(&command(&[]));
+    let all = results(&workplace);
+    assert_eq!(all["settings"]["bearings"], serde_json::json!(["6205@input", "ER-10K@output"]));
+    assert_eq!(all["settings"]["bearing_separation"], "averages");
+    assert_eq!(all["bearings"].as_array().unwrap().len(), 2);
+    assert!(over_median(&all["bearings"][0], "BPFO") > 10.0, "{}", all["bearings"][0]);
+    workplace.succeeds(&command(&["ER-16K"]));
+    assert_eq!(results(&workplace)["settings"]["bearings"], serde_json::json!(["ER-16K"]));
 }

@@ -11,7 +11,7 @@ use super::{
     shift_key,
 };
 use crate::expression::{Condition, Expression, derived_names, underlying};
-use crate::plan::{Content, Level, Rule, Severity, SplitBy, kinds, list_and_entry, refused, with_faults};
+use crate::plan::{Content, FaultyBase, Level, Rule, Severity, SplitBy, kinds, list_and_entry, refused};
 
 /// Keys that cannot be varied, and why.
 const OWN: [(&str, &str); 3] = [
@@ -24,7 +24,7 @@ const OWN: [(&str, &str); 3] = [
 #[derive(Debug, Clone)]
 pub(super) struct ClassRules<'a> {
     /// The base scenario with the class's faults.
-    pub base: ScenarioForm,
+    pub base: FaultyBase,
     /// All numbers of that scenario by their keys.
     pub numbers: BTreeMap<String, f64>,
     /// Rules for records. Rules that others depend on come first.
@@ -39,7 +39,7 @@ impl ClassRules<'_> {
 
     /// Returns whether a key is the severity of a fault that is given by its sizes or otherwise.
     fn computes_severity(&self, key: &str) -> bool {
-        fault_of_severity(key, self.base.fault_count()).is_some()
+        fault_of_severity(key, self.base.places.len()).is_some()
     }
 }
 
@@ -89,7 +89,7 @@ impl<'a> Sampler<'a> {
 
 /// Checks the rules that concern a class, and puts those for its records in order.
 fn class_rules(content: &Content, class: usize) -> ReadResult<ClassRules<'_>> {
-    let base = with_faults(&content.base, &content.classes[class].faults);
+    let base = FaultyBase::new(&content.base, &content.classes[class].faults);
     let known = base.numbers();
     let mut own = content.class_rules(class);
     if let Some((rule, place)) = own.find(|(rule, _)| rule.level != Level::Record) {

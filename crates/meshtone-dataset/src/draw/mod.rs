@@ -13,7 +13,7 @@ use crate::expression::{Condition, Expression};
 use crate::plan::{Content, Distribution, Level, Rule, RunPosition, SplitBy, Splits};
 use crate::sampling::{Points, permuted};
 use compile::ClassRules;
-use values::{Values, of_scenario};
+use values::Values;
 
 /// Largest number of attempts to draw values that meet all constraints.
 const MOST_ATTEMPTS: u32 = 10_000;
@@ -238,7 +238,7 @@ impl Sampler<'_> {
                 return Err(ScenarioError::new(*key, value, "must not be negative"));
             }
         }
-        let mut scenario = self.classes[record.class].base.with_numbers(&of_scenario(&record.values))?;
+        let mut scenario = self.classes[record.class].base.with_values(&record.values)?;
         match &mut scenario {
             ScenarioForm::Pair(pair) => {
                 pair.seed = record.seed;

@@ -3,16 +3,14 @@
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
-use meshtone::scenario::ScenarioForm;
-
-use super::is_of_plan;
 use crate::expression::derived;
+use crate::plan::FaultyBase;
 
 /// Name of the severity in conditions.
 pub(super) const SEVERITY: &str = "severity";
 
 pub(super) struct Values<'a> {
-    base: &'a ScenarioForm,
+    base: &'a FaultyBase,
     /// The numbers of `base`.
     numbers: &'a BTreeMap<String, f64>,
     /// Keys and values that have been drawn so far.
@@ -29,7 +27,7 @@ impl<'a> Values<'a> {
     /// # Arguments
     /// * `base` - the scenario
     /// * `numbers` - all its numbers, by their keys
-    pub fn new(base: &'a ScenarioForm, numbers: &'a BTreeMap<String, f64>) -> Self {
+    pub fn new(base: &'a FaultyBase, numbers: &'a BTreeMap<String, f64>) -> Self {
         Self { base, numbers, drawn: Vec::new(), severity: None, severities_by_sizes: OnceCell::new() }
     }
 
@@ -46,8 +44,8 @@ impl<'a> Values<'a> {
 
     /// The severity of a fault that is given by its sizes.
     fn severity_by_sizes(&self, key: &str) -> Option<f64> {
-        let fault = fault_of_severity(key, self.base.fault_count())?;
-        let of_drawn = || self.base.with_numbers(&of_scenario(&self.drawn)).ok()?.fault_severities().ok();
+        let fault = fault_of_severity(key, self.base.places.len())?;
+        let of_drawn = || self.base.severities(&self.base.with_values(&self.drawn).ok()?);
         self.severities_by_sizes.get_or_init(of_drawn).as_ref()?.get(fault).copied()
     }
 
@@ -55,12 +53,6 @@ impl<'a> Values<'a> {
         self.severities_by_sizes.take();
         self.drawn.push((key.to_owned(), value));
     }
-}
-
-/// The values at keys of the scenario.
-pub(super) fn of_scenario(values: &[(String, f64)]) -> Vec<(&str, f64)> {
-    let of_scenario = values.iter().filter(|(key, _)| !is_of_plan(key));
-    of_scenario.map(|(key, value)| (key.as_str(), *value)).collect()
 }
 
 /// Finds the number of the fault, from 0, whose severity a key is: `fault.severity`, or of several `fault[1].severity`.

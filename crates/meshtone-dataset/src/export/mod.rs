@@ -2,7 +2,7 @@
 //! their samples in `signals/`, and a manifest.
 //!
 //! Names and vocabularies are those of the package's module `schema`. It knows every damage of a tooth as `gear` only, so that the kind
-//! stands in a column of its own. No cell may be empty: of the data set's other columns, those that every record has are kept.
+//! stands in a column of its own; spalls of bearings have its words. No cell may be empty: of the data set's other columns, those that every record has are kept.
 
 mod place;
 
@@ -21,12 +21,12 @@ use crate::digest::{Digest, Hashing};
 use crate::error::DatasetError;
 use crate::manifest::{self, ReadManifest};
 use crate::merge::plan_of;
-use crate::plan::{Content, Plan, column_part};
+use crate::plan::{Class, Content, Plan, column_part};
 use crate::shard::{self, Column, ReadShard, Topic, Wanted};
 use crate::store::Destination;
 use crate::verify::{Check, verify};
 use crate::words::counted;
-use place::{ChannelFacts, facts, is_at, wheel_location};
+use place::{ChannelFacts, bearing_location, facts, is_at, wheel_location};
 
 /// Version of the schema.
 const SCHEMA_VERSION: u32 = 2;
@@ -57,7 +57,7 @@ pub struct Exported {
 /// The manifest is written last. The same data set gives the same bytes.
 ///
 /// # Errors
-/// The data set is not complete, not as it was written, or keeps no raw channel; a bearing of its base scenario has a spall; the folder has files in it; or a file cannot be read or
+/// The data set is not complete, not as it was written, or keeps no raw channel; a bearing of its base scenario has a spall, which no class labels; the folder has files in it; or a file cannot be read or
 /// written.
 pub fn export_bearing_datasets(from: &Destination, to: &Path) -> Result<Exported, DatasetError> {
     let manifest = manifest::read_begun(from)?;
@@ -124,7 +124,7 @@ fn refuse_spalls(base: &ScenarioForm) -> Result<(), DatasetError> {
             "bearing[{}] of the base scenario has a spall, and healthy records would be exported as \"normal\"",
             bearing.seat_name()
         ),
-        "export a data set whose bearings have no defect: only faults of gears are labelled",
+        "export a data set whose bearings have spalls in its classes alone, where they are labels: fault = { bearing = … }",
     ))
 }
 
@@ -332,7 +332,8 @@ impl Export<'_> {
             let parts: Vec<String> = faults[record].iter().map(of).collect();
             if parts.is_empty() { healthy.to_owned() } else { parts.join("+") }
         };
-        let location = |fault: &ReadFault| wheel_location(&fault.wheel, &self.content.base);
+        let location = |fault: &ReadFault| fault.location(&self.content.base);
+        let or_none = |part: &Option<String>| part.clone().unwrap_or_else(|| "none".to_owned());
         let at_fault = (0..count).map(|row| {
             let sensor = &self.channels[row % channels].location;
             faults[row / channels].iter().any(|fault| is_at(sensor, &location(fault)))
@@ -369,12 +370,12 @@ impl Export<'_> {
             whole("n_samples", "number of samples", &|row| signals.samples[first + row]),
             text(
                 "fault_type",
-                "gear for every damaged tooth, '+'-joined; 'normal' if healthy",
-                &|record, _| joined(record, "normal", &|_| "gear".to_owned()),
+                "gear for every damaged tooth; outer, inner or rolling_element of a bearing, '+'-joined; 'normal' if healthy",
+                &|record, _| joined(record, "normal", &|fault| fault.schema_type().to_owned()),
             ),
             text(
                 "fault_location",
-                "where the damaged wheel sits, '+'-joined; 'none' if healthy",
+                "where the damaged wheel or bearing sits, '+'-joined; 'none' if healthy",
                 &|record, _| joined(record, "none", &location),
             ),
             column(
@@ -409,13 +410,22 @@ impl Export<'_> {
                 "grade of the severity, as the plan divides it; 0 if healthy",
                 &level,
             ),
-            text("fault_kind", "kind of damage of the teeth, '+'-joined; 'none' if healthy", &|record, _| {
+            text("fault_kind", "kind of damage, '+'-joined; 'none' if healthy", &|record, _| {
                 joined(record, "none", &|fault| fault.kind.clone())
             }),
-            text("fault_wheel", "the damaged wheel, '+'-joined; 'none' if healthy", &|record, _| {
-                joined(record, "none", &|fault| fault.wheel.clone())
-            }),
+            text(
+                "fault_wheel",
+                "the damaged wheel, '+'-joined; 'none' if healthy, and of a bearing",
+                &|record, _| joined(record, "none", &|fault| or_none(&fault.wheel)),
+            ),
         ];
+        if self.content.classes.iter().any(Class::has_damaged_bearing) {
+            let meaning =
+                "the damaged bearing by its shaft and place, '+'-joined; 'none' if healthy, and of a wheel";
+            rows.push(text("fault_bearing", meaning, &|record, _| {
+                joined(record, "none", &|fault| or_none(&fault.bearing))
+            }));
+        }
         rows.extend(others.iter().map(|other| {
             let name =
                 RENAMED.iter().find(|(old, _)| *old == other.name).map_or(&other.name[..], |(_, new)| new);
@@ -447,11 +457,30 @@ fn column(name: &str, meaning: &str, cell_type: CellType, cells: Cells<'static>)
 /// A fault of a record.
 struct ReadFault {
     kind: String,
-    wheel: String,
+    wheel: Option<String>,
+    bearing: Option<String>,
     severity: f64,
 }
 
 impl ReadFault {
+    /// The schema's word for its kind.
+    fn schema_type(&self) -> &'static str {
+        match self.kind.as_str() {
+            "outer-race" => "outer",
+            "inner-race" => "inner",
+            "rolling-element" => "rolling_element",
+            _ => "gear",
+        }
+    }
+
+    /// Where the damaged part sits, in the schema's words.
+    fn location(&self, base: &ScenarioForm) -> String {
+        match (&self.wheel, &self.bearing) {
+            (_, Some(bearing)) => bearing_location(bearing, base),
+            (wheel, None) => wheel_location(wheel.as_deref().unwrap_or_default(), base),
+        }
+    }
+
     fn severity_words(&self) -> String {
         if self.severity.is_nan() { "not graded".to_owned() } else { format!("{:.3}", self.severity) }
     }
@@ -462,10 +491,14 @@ fn faults_of(read: &ReadShard, record: usize) -> Vec<ReadFault> {
     let prefixes =
         (1..).map(|number| if number == 1 { "fault".to_owned() } else { format!("fault_{number}") });
     let fault = |prefix: String| {
-        let text = |name: &str| read.texts(&format!("{prefix}_{name}")).get(record).cloned();
+        let text = |name: &str| {
+            let texts = read.texts(&format!("{prefix}_{name}"));
+            texts.get(record).filter(|text| !text.is_empty()).cloned()
+        };
         let severity = read.numbers(&format!("{prefix}_severity")).get(record).copied();
-        let kind = text("kind").filter(|kind| !kind.is_empty())?;
-        Some(ReadFault { kind, wheel: text("wheel")?, severity: severity.unwrap_or(f64::NAN) })
+        let kind = text("kind")?;
+        let severity = severity.unwrap_or(f64::NAN);
+        Some(ReadFault { kind, wheel: text("wheel"), bearing: text("bearing"), severity })
     };
     prefixes.map_while(fault).collect()
 }

@@ -13,7 +13,7 @@ pub(super) struct ChannelFacts {
     pub(super) axis: &'static str,
 }
 
-/// The damaged part's place in the schema's words. The pinion of a pair is on the input shaft.
+/// A damaged wheel's place in the schema's words. The pinion of a pair is on the input shaft.
 pub(super) fn wheel_location(wheel: &str, base: &ScenarioForm) -> String {
     let stage = match base {
         ScenarioForm::Gearbox(gearbox) => {
@@ -25,6 +25,15 @@ pub(super) fn wheel_location(wheel: &str, base: &ScenarioForm) -> String {
         _ => "output",
     };
     format!("gearbox_gear_{stage}")
+}
+
+/// The same of a damaged bearing, by its shaft and place.
+pub(super) fn bearing_location(bearing: &str, base: &ScenarioForm) -> String {
+    let shaft = bearing.split_once(':').map_or("", |(shaft, _)| shaft);
+    match base {
+        ScenarioForm::Gearbox(gearbox) => format!("gearbox_bearing_{}", stage(gearbox, shaft)),
+        _ => "gearbox_bearing".to_owned(),
+    }
 }
 
 /// The stage of a gearbox that a shaft is, in the schema's words.

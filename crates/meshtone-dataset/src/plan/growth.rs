@@ -32,7 +32,7 @@ pub struct Growth {
     pub start: f64,
     /// (-) Severity at failure.
     pub failure: f64,
-    /// (rev) Turns of the damaged wheel from start to failure.
+    /// (rev) Turns of the damaged wheel, or of the damaged bearing's shaft, from start to failure.
     pub life_rev: Distribution,
     /// (-) Part of the runs that are stopped before failure, at any part of their life from a fifth on.
     pub censored: f64,

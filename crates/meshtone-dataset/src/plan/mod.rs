@@ -5,6 +5,7 @@
 mod background;
 mod check;
 mod class;
+mod fault;
 mod growth;
 mod keep;
 mod question;
@@ -24,14 +25,16 @@ use meshtone_toml::TomlError;
 pub use background::Background;
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
+pub use fault::{ClassFault, ToothFault};
+pub(crate) use fault::{FaultPlace, FaultyBase, kind_of_spall, with_faults};
 pub use growth::{Growth, Law, RunPosition};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
 pub use variation::Variation;
-pub use wheel::{AveragedWheels, ClassFault, Wheel};
-pub(crate) use wheel::{column_part, wheel_words, with_faults};
+pub use wheel::{AveragedWheels, Wheel};
+pub(crate) use wheel::{column_part, wheel_words};
 
 use crate::digest::Digest;
 use crate::expression::Condition;

@@ -5,9 +5,9 @@ use super::Class;
 /// A question that a data set asks of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Question {
-    /// Whether the gears are damaged.
+    /// Whether there is damage.
     Detection,
-    /// What kind of damage there is, and on which wheel.
+    /// What kind of damage there is, and where.
     Diagnosis,
     /// How severe the damage is.
     Severity,

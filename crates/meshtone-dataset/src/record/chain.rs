@@ -16,9 +16,9 @@ use meshtone::{GearboxSimulation, GearboxStages, Stages, StepJudgement};
 
 use super::kept::KeptChain;
 use super::window::Window;
-use super::{Record, RecordFault, RecordWheel, TurningWheel, noise, path, start};
+use super::{Record, RecordFault, RecordSpall, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{ClassFault, Content, Keep, Wheel};
+use crate::plan::{Content, FaultPlace, FaultyBase, Keep, ToothFault, Wheel, kind_of_spall};
 
 /// Makes a record of the simulation of a pair.
 pub(super) fn record(
@@ -73,7 +73,7 @@ pub(super) fn twin(
     let view = View::new(content, window, Simulated::Pair(stages));
     let simulated = content.keep.simulated();
     let samples = view.before_linear_sensors(stages, recorder);
-    let mut record = view.empty(drawn);
+    let mut record = view.empty(content, drawn);
     if let Some(analysed) = simulated.iter().position(|channel| *channel == content.keep.analysed) {
         let only = analysed..analysed + 1;
         let channels = view.passed(&record.drawn, &simulated[only.clone()], &samples[only])?;
@@ -141,19 +141,35 @@ impl<'a> Simulated<'a> {
         }
     }
 
-    /// The faults, each with its severity.
-    fn faults(self) -> Vec<(ClassFault, f64)> {
-        let (faults, severities): (Vec<ClassFault>, _) = match self {
+    /// A fault of teeth, with its severity; none where there is no such fault.
+    ///
+    /// # Arguments
+    /// * `number` - of the fault
+    fn fault_of_teeth(self, number: usize) -> Option<(ToothFault, f64)> {
+        let (fault, severities) = match self {
             Self::Pair(stages) => {
-                let faults = stages.scenario.faults.iter().cloned().map(ClassFault::of_pair);
-                (faults.collect(), &stages.fault_severities)
+                let fault = stages.scenario.faults.get(number).cloned();
+                (fault.map(ToothFault::of_pair), &stages.fault_severities)
             }
             Self::Gearbox(stages) => {
-                let faults = stages.gearbox.faults.iter().cloned().map(ClassFault::of_gearbox);
-                (faults.collect(), &stages.fault_severities)
+                let fault = stages.gearbox.faults.get(number).cloned();
+                (fault.map(ToothFault::of_gearbox), &stages.fault_severities)
             }
         };
-        faults.into_iter().zip(severities.iter().copied()).collect()
+        fault.zip(severities.get(number).copied())
+    }
+
+    /// A spall of a bearing; none where there is no such spall.
+    ///
+    /// # Arguments
+    /// * `bearing` - number of the bearing
+    /// * `number` - of the spall among those of its bearing
+    fn spall(self, bearing: usize, number: usize) -> Option<RecordSpall> {
+        let Self::Gearbox(stages) = self else { return None };
+        let (_, rolling) = stages.bearings.iter().find(|(other, _)| *other == bearing)?;
+        let sizes = *rolling.parts.spalls.get(number)?;
+        let order = rolling.parts.geometry.defect_orders().of_defect(sizes.place);
+        Some(RecordSpall { bearing: stages.gearbox.bearings[bearing].seat_name(), sizes, order })
     }
 
     /// The damaged teeth of all meshes.
@@ -211,7 +227,7 @@ impl<'a> View<'a> {
         }
         let mut channels = self.passed(&drawn, &simulated, samples)?;
         let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
-        let mut record = Record { slack_fractions, ..self.empty(drawn) };
+        let mut record = Record { slack_fractions, ..self.empty(content, drawn) };
         for warning in warnings {
             if !record.warnings.contains(&warning.kind) {
                 record.warnings.push(warning.kind);
@@ -240,18 +256,39 @@ impl<'a> View<'a> {
         &self.window.turning.wheels[self.window.turning.number(wheel)]
     }
 
-    fn empty(&self, drawn: DrawnRecord) -> Record {
-        let damaged = self.simulated.damaged();
-        let fault = |(number, (fault, severity)): (usize, (ClassFault, f64))| RecordFault {
-            kind: fault.fault.damage.kind(),
-            wheel: fault.wheel.name().to_owned(),
-            tooth: start::tooth(&fault, &self.window.turning, &self.window.counted_from),
-            severity,
-            area_percent: (damaged.iter().flat_map(|damaged| damages_of_fault(damaged, number)))
-                .flat_map(|(_, damage)| damage.numbers("area_percent"))
-                .reduce(f64::max),
-        };
-        let faults = self.simulated.faults().into_iter().enumerate();
+    /// The fault at a place; none of a healthy twin.
+    fn fault(&self, place: FaultPlace) -> Option<RecordFault> {
+        match place {
+            FaultPlace::Teeth(number) => {
+                let (fault, severity) = self.simulated.fault_of_teeth(number)?;
+                let damaged = self.simulated.damaged();
+                Some(RecordFault {
+                    kind: fault.fault.damage.kind(),
+                    wheel: Some(fault.wheel.name().to_owned()),
+                    tooth: start::tooth(&fault, &self.window.turning, &self.window.counted_from),
+                    severity,
+                    area_percent: (damaged.iter().flat_map(|damaged| damages_of_fault(damaged, number)))
+                        .flat_map(|(_, damage)| damage.numbers("area_percent"))
+                        .reduce(f64::max),
+                    spall: None,
+                })
+            }
+            FaultPlace::Spall { bearing, number } => {
+                let spall = self.simulated.spall(bearing, number)?;
+                Some(RecordFault {
+                    kind: kind_of_spall(spall.sizes.place),
+                    wheel: None,
+                    tooth: None,
+                    severity: spall.sizes.severity,
+                    area_percent: None,
+                    spall: Some(spall),
+                })
+            }
+        }
+    }
+
+    fn empty(&self, content: &Content, drawn: DrawnRecord) -> Record {
+        let places = FaultyBase::new(&content.base, &content.classes[drawn.class].faults).places;
         let turning = &self.window.turning;
         let starts_at_tooth = self.is_steady() && turning.enter_together;
         let wheel = |(number, wheel): (usize, &TurningWheel)| RecordWheel {
@@ -265,7 +302,7 @@ impl<'a> View<'a> {
         };
         Record {
             drawn,
-            faults: faults.map(fault).collect(),
+            faults: places.into_iter().filter_map(|place| self.fault(place)).collect(),
             wheels: turning.wheels.iter().enumerate().map(wheel).collect(),
             input_speed_hz: operation.pinion_speed_hz,
             brake_torque_nm: operation.brake_torque_nm,

@@ -15,6 +15,7 @@ pub(crate) use turning::{Turning, TurningWheel};
 pub(crate) use window::{Window, simulated_scenario};
 
 use meshtone::batch::{Keep as BatchKeep, KeepObserved, ObservedRecorder, Output};
+use meshtone::bearing::Spall;
 use meshtone::operation::TimeGrid;
 use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
 use meshtone::signal::{IndicatorValue, SignalWarning};
@@ -91,17 +92,30 @@ pub struct RecordWheel {
 /// A fault of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordFault {
-    /// Kind of damage, by its name in the scenario file.
+    /// Kind of damage: of teeth by its name in the scenario file, of a bearing `outer-race`, `inner-race` or `rolling-element`.
     pub kind: &'static str,
-    /// Name of the damaged wheel.
-    pub wheel: String,
+    /// Name of the damaged wheel; none of a bearing.
+    pub wheel: Option<String>,
     /// Number of the damaged tooth, counted from 1 in the order in which its wheel's teeth come into contact from the start of
     /// the record on; none where it is several.
     pub tooth: Option<u32>,
-    /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
+    /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows; of a bearing the width over the diameter of an element.
     pub severity: f64,
     /// (%) Part of the worst tooth's flank that pits cover; none for other kinds of damage.
     pub area_percent: Option<f64>,
+    /// The spall of a bearing; none of teeth.
+    pub spall: Option<RecordSpall>,
+}
+
+/// A spall of a record's bearing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordSpall {
+    /// Name of the bearing: its shaft and place, such as `input:0`.
+    pub bearing: String,
+    /// Its sizes.
+    pub sizes: Spall,
+    /// Order of the first line of the defect in revolutions of the bearing's shaft, without slip.
+    pub order: f64,
 }
 
 /// The purpose of a simulation.

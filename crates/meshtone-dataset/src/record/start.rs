@@ -4,7 +4,7 @@ use meshtone::random::{Draws, Purpose};
 
 use super::Turning;
 use crate::draw::DrawnRecord;
-use crate::plan::{ClassFault, Keep};
+use crate::plan::{Keep, ToothFault};
 
 /// Where a record begins, in revolutions of the input.
 pub(super) struct Start {
@@ -18,19 +18,19 @@ pub(super) struct Start {
 /// Where a record begins: at the mark on its unit's marked wheel, in some revolution.
 ///
 /// A rig's tachometer does not know the damaged tooth, so the mark is at any tooth, the same for all records of a unit. Where records are
-/// aligned, they begin when a damaged tooth comes into contact: that of the first fault, and of a healthy record the first tooth of the
-/// marked wheel.
+/// aligned, they begin when a damaged tooth comes into contact: that of the first fault of teeth, and of a record without one the first
+/// tooth of the marked wheel.
 ///
 /// # Arguments
 /// * `keep` - what is kept of the record
 /// * `drawn` - the record
-/// * `faults` - of the record
+/// * `faults` - of the record's teeth
 /// * `turning` - how its wheels turn
 /// * `is_steady` - whether motor and brake are steady; if not, teeth are counted from the first time that the mark passes
 pub(super) fn start(
     keep: &Keep,
     drawn: &DrawnRecord,
-    faults: &[ClassFault],
+    faults: &[ToothFault],
     turning: &Turning,
     is_steady: bool,
 ) -> Start {
@@ -81,7 +81,7 @@ pub(super) fn counted_from(turning: &Turning, input_rev: f64, tolerance_rev: f64
 /// * `fault` - which
 /// * `turning` - how the wheels turn
 /// * `counted_from` - of [`counted_from`]
-pub(super) fn tooth(fault: &ClassFault, turning: &Turning, counted_from: &[i64]) -> Option<u32> {
+pub(super) fn tooth(fault: &ToothFault, turning: &Turning, counted_from: &[i64]) -> Option<u32> {
     let index = i64::from(fault.fault.tooth.only()?.saturating_sub(1));
     let number = turning.number(&fault.wheel);
     let teeth = i64::from(turning.wheels[number].teeth.max(1));

@@ -3,7 +3,7 @@
 use meshtone::operation::greatest_common_divisor;
 use meshtone::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioError, ScenarioForm, WheelName};
 
-use crate::plan::{ClassFault, Wheel};
+use crate::plan::{ToothFault, Wheel};
 
 /// How the wheels of a scenario turn.
 ///
@@ -118,7 +118,7 @@ impl Turning {
     ///
     /// # Arguments
     /// * `fault` - of a record
-    pub fn place_of(&self, fault: &ClassFault) -> (usize, u64) {
+    pub fn place_of(&self, fault: &ToothFault) -> (usize, u64) {
         (self.number(&fault.wheel), fault.fault.tooth_index() as u64)
     }
 }

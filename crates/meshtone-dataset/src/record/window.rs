@@ -9,7 +9,7 @@ use meshtone::signal::{AntiAliasing, SignalError};
 
 use super::{Turning, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{ClassFault, Keep};
+use crate::plan::{Keep, ToothFault};
 
 /// (samples) How far a whole number of samples may come out beside it.
 const ROUNDING: f64 = 1e-6;
@@ -45,7 +45,7 @@ pub(crate) fn simulated_scenario(
     let (time, is_steady) = (scenario.time_grid(), scenario.is_steady());
     let turning = Turning::of(&scenario)?;
     let per_revolution = time.samples_per_pinion_revolution as f64;
-    let start = start::start(keep, drawn, &ClassFault::all_of(&scenario), &turning, is_steady);
+    let start = start::start(keep, drawn, &ToothFault::all_of(&scenario), &turning, is_steady);
     let margin = if is_steady { margin(keep, drawn, &scenario, &turning, &time)? } else { 0 };
     let mut first = time.first_kept_sample;
     let counted_from = if is_steady {

@@ -1,16 +1,16 @@
 //! The columns of a data set: names, units, meanings, and the cells of each record.
 
-use meshtone::scenario::{Gearbox, Model, ScenarioForm, WheelName, split_key};
+use meshtone::scenario::{DefectPlace, Gearbox, Model, ScenarioForm, WheelName, split_key};
 use meshtone::signal::Indicators;
 use meshtone_io::table::{CellType, Cells, TableColumn};
 use meshtone_plot::without_unit;
 
 use crate::draw::{NOISE_KEYS, PATH_KEYS, is_of_plan};
 use crate::plan::{
-    AveragedWheels, ClassFault, Content, Keep, OverAngle, Plan, Rule, Wheel, column_part, list_and_entry,
-    wheel_words,
+    AveragedWheels, Class, ClassFault, Content, Keep, OverAngle, Plan, Rule, Wheel, column_part,
+    list_and_entry, wheel_words,
 };
-use crate::record::Record;
+use crate::record::{Record, RecordSpall};
 
 /// Name of the column of warnings' codes.
 pub(crate) const WARNINGS: &str = "warnings";
@@ -170,7 +170,7 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
     let wheel = &wheel_words(keep.wheel.all()[0].name());
     let mut columns = of_record(&plan.content);
     if classes.iter().any(|class| class.growth.is_some()) {
-        columns.extend(of_run());
+        columns.extend(of_run(classes));
     }
     if let Some(points) = keep.over_angle.map(|angle| angle.points_per_revolution as u32) {
         let meaning = format!("values in a revolution of the {wheel}, of channels, average and difference");
@@ -239,9 +239,21 @@ fn of_record(content: &Content) -> Vec<Column> {
     let most_faults = content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
     let wheels = Wheel::all(&content.base);
     for number in 0..most_faults.max(1) {
-        columns.extend(of_fault(number, &wheels));
-        let has_area = |fault: &ClassFault| fault.fault.damage.has_area();
-        if content.classes.iter().any(|class| class.faults.get(number).is_some_and(has_area)) {
+        let any = |is: &dyn Fn(&ClassFault) -> bool| {
+            content.classes.iter().any(|class| class.faults.get(number).is_some_and(is))
+        };
+        let is_of_bearing = |fault: &ClassFault| fault.teeth().is_none();
+        let [kind, wheel, tooth, severity] = of_fault(number, &wheels, any(&is_of_bearing));
+        columns.push(kind);
+        if any(&|fault| fault.teeth().is_some()) || !any(&is_of_bearing) {
+            columns.extend([wheel, tooth]);
+        }
+        columns.push(severity);
+        if any(&is_of_bearing) {
+            columns.extend(of_spall(number));
+        }
+        let has_area = |fault: &ClassFault| fault.teeth().is_some_and(|of| of.fault.damage.has_area());
+        if any(&has_area) {
             let name = format!("{}_area_percent", name_in_list("fault", number));
             let column = Column::float64(&name, "%", move |r| r.faults.get(number)?.area_percent);
             let meaning = "part of the flank's contact part that the pits take, of the worst tooth";
@@ -356,12 +368,19 @@ fn of_simulation(base: &ScenarioForm) -> Vec<Column> {
 }
 
 /// Lists the columns of where a record is in its unit's run to failure.
-fn of_run() -> [Column; 3] {
-    let left = "turns of the damaged wheel to failure; where `censored` is 1 to the end of the run, at least so many were left";
+///
+/// # Arguments
+/// * `classes` - of the plan
+fn of_run(classes: &[Class]) -> [Column; 3] {
+    let mut of_bearing = classes.iter().filter(|class| class.growth.is_some() && class.has_damaged_bearing());
+    let part = if of_bearing.next().is_some() { "wheel or bearing" } else { "wheel" };
+    let left = format!(
+        "turns of the damaged {part} to failure; where `censored` is 1 to the end of the run, at least so many were left"
+    );
     [
         Column::float64("age_rev", "rev", |r| Some(r.drawn.age?.age_rev))
             .about(Topic::Drawn)
-            .meaning("turns of the damaged wheel since its run began"),
+            .meaning(format!("turns of the damaged {part} since its run began")),
         Column::float64("remaining_rev", "rev", |r| Some(r.drawn.age?.remaining_rev)).meaning(left),
         Column::int32("censored", |r| Some(r.drawn.age?.is_censored.into()))
             .meaning("1 where the run was stopped before failure, else 0"),
@@ -414,24 +433,61 @@ fn of_revolution(keep: &Keep, number: usize) -> Vec<Column> {
     columns
 }
 
+/// Bearing and sizes of a spall.
+fn of_spall(number: usize) -> [Column; 5] {
+    let named = |last: &str| format!("{}_{last}", name_in_list("fault", number));
+    let spall = move |r: &Record| r.faults.get(number)?.spall.clone();
+    let size = |last: &str, unit: &str, value: fn(&RecordSpall) -> Option<f64>| {
+        Column::float64(&named(last), unit, move |r| value(&spall(r)?))
+    };
+    [
+        Column::text(&named("bearing"), move |r| Some(spall(r)?.bearing))
+            .meaning("the damaged bearing: its shaft, and its place on it as a part of the length"),
+        size("spall_width_mm", "mm", |of| Some(of.sizes.width_mm))
+            .meaning("width of the spall along the path of the rolling elements, or around an element"),
+        size("spall_drop_um", "µm", |of| Some(of.sizes.drop_um))
+            .meaning("how deep an element drops into the spall: to its depth, or until it touches both edges"),
+        size("spall_angle_deg", "°", |of| (of.sizes.place != DefectPlace::Element).then_some(of.sizes.angle_deg)).meaning(
+            "angle from the static load of the bearing to the middle of the spall, of the inner race at time 0 before settling; null of a \
+             rolling element, which starts at a random angle",
+        ),
+        size("spall_order", "-", |of| Some(of.order)).meaning(
+            "order of the spall's first line over the revolutions of the bearing's shaft, without slip: BPFO, BPFI or twice BSF",
+        ),
+    ]
+    .map(Column::nullable)
+}
+
 /// Kind, place and severity of a fault.
-fn of_fault(number: usize, wheels: &[Wheel]) -> [Column; 4] {
+///
+/// # Arguments
+/// * `number` - of the fault in its class, from 0
+/// * `wheels` - of the machine
+/// * `with_bearings` - whether some class has a spall as this fault
+fn of_fault(number: usize, wheels: &[Wheel], with_bearings: bool) -> [Column; 4] {
+    let (of_kind, of_severity) = match with_bearings {
+        true => (
+            ", of a bearing outer-race, inner-race or rolling-element",
+            "; of a bearing the width of the spall over the diameter of an element",
+        ),
+        false => ("", ""),
+    };
     let named = |last: &str| format!("{}_{last}", name_in_list("fault", number));
     let names: Vec<String> = wheels.iter().map(|wheel| wheel.name().to_owned()).collect();
     [
         Column::text(&named("kind"), move |r| Some(r.faults.get(number)?.kind.to_owned()))
-            .meaning("kind of damage"),
-        Column::text(&named("wheel"), move |r| Some(r.faults.get(number)?.wheel.clone()))
+            .meaning(format!("kind of damage{of_kind}")),
+        Column::text(&named("wheel"), move |r| r.faults.get(number)?.wheel.clone())
             .meaning(format!("the damaged wheel: {}", names.join(" or "))),
         Column::int32(&named("tooth"), move |r| r.faults.get(number)?.tooth).meaning(
             "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
              start of the record on, null where it is several; in the plan and the scenario teeth are counted from where \
              the first two meet",
         ),
-        Column::float64(&named("severity"), "-", move |r| Some(r.faults.get(number)?.severity)).meaning(
+        Column::float64(&named("severity"), "-", move |r| Some(r.faults.get(number)?.severity)).meaning(format!(
             "severity of the damage, from 0, none, to 1, the largest that the tooth allows; each kind's \
-             scale is in the guide",
-        ),
+             scale is in the guide{of_severity}"
+        )),
     ]
     .map(Column::nullable)
 }

@@ -1,5 +1,6 @@
 //! The library, used as its users use it. One test program, because each is linked with all libraries.
 
+mod bearings;
 mod drawn;
 mod exact;
 mod exported;

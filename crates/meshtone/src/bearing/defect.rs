@@ -1,8 +1,10 @@
 //! Spalls of a rolling bearing: what the scenario says of them, and by how much an element drops into one.
 
+use meshtone_toml::{ReadResult, TomlTable};
+
 use super::BearingGeometry;
 use crate::error::ScenarioError;
-use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
+use crate::keys::{KeyRow, Keys, NoFiles, Range, by_name, field, read_keys, row};
 
 /// Part of a bearing that has a defect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,6 +44,18 @@ impl BearingDefect {
     /// * `severity` - (-) width of the spall as a part of the diameter of an element, more than 0, at most 1
     pub fn new(race: DefectPlace, severity: f64) -> Self {
         Self { race, severity: Some(severity), ..Self::start() }
+    }
+
+    /// Reads a defect; its sizes are checked with its bearing.
+    ///
+    /// # Arguments
+    /// * `table` - its section
+    ///
+    /// # Errors
+    /// A missing key, a value of the wrong type.
+    pub fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
+        let mut defect = Self::start();
+        read_keys(&mut defect, table, &NoFiles).map(|()| defect)
     }
 }
 

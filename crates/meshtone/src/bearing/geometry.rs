@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::DefectPlace;
+
 /// Fewest and most rolling elements.
 const ELEMENTS: [u32; 2] = [3, 200];
 
@@ -30,6 +32,20 @@ pub struct DefectOrders {
     pub inner_race: f64,
     /// Ball spin frequency (BSF): an element turns about itself. A place on it meets a race twice a turn, so that its line is at 2 BSF.
     pub element_spin: f64,
+}
+
+impl DefectOrders {
+    /// Order of the first line of a defect: BPFO, BPFI, or of an element 2 BSF.
+    ///
+    /// # Arguments
+    /// * `place` - the part that has the defect
+    pub fn of_defect(&self, place: DefectPlace) -> f64 {
+        match place {
+            DefectPlace::Outer => self.outer_race,
+            DefectPlace::Inner => self.inner_race,
+            DefectPlace::Element => 2.0 * self.element_spin,
+        }
+    }
 }
 
 /// A geometry that no bearing has.

@@ -163,22 +163,19 @@ impl Fault {
         table.tables("fault")?.into_iter().map(|table| table.read(Self::from_table)).collect()
     }
 
-    /// The same of wheels that have names of their own, each with the name.
+    /// Reads a fault of a wheel that has a name of its own, with the name.
     ///
     /// # Arguments
-    /// * `table` - what the sections are in
+    /// * `table` - its section
     ///
     /// # Errors
     /// As [`Self::list_from_table`]; a fault that names no wheel.
-    pub(crate) fn list_on_named_wheels(table: &TomlTable<'_>) -> ReadResult<Vec<(String, Self)>> {
-        let read = |table: &TomlTable<'_>| {
-            let wheel = table.required("wheel", "the name of the damaged wheel")?.string()?.to_owned();
-            let mut fault = Self::at_usual_place(Damage::start_of(table)?);
-            let rows = rows_but::<Self>(&["wheel"]);
-            rows.iter().try_for_each(|row| row.read(&mut fault, table, &NoFiles))?;
-            fault.read_damage(table).map(|fault| (wheel, fault))
-        };
-        table.tables("fault")?.into_iter().map(|table| table.read(read)).collect()
+    pub(crate) fn on_named_wheel(table: &TomlTable<'_>) -> ReadResult<(String, Self)> {
+        let wheel = table.required("wheel", "the name of the damaged wheel")?.string()?.to_owned();
+        let mut fault = Self::at_usual_place(Damage::start_of(table)?);
+        let rows = rows_but::<Self>(&["wheel"]);
+        rows.iter().try_for_each(|row| row.read(&mut fault, table, &NoFiles))?;
+        fault.read_damage(table).map(|fault| (wheel, fault))
     }
 
     fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {

@@ -1,6 +1,6 @@
 //! The shafts of a machine by their tooth counts: what turns how fast, and which lines its wheels make.
 
-use super::{SeparationSettings, ShaftPhase, SignalError};
+use super::{SeparationSettings, ShaftPhase, SignalError, TrainBearing};
 use crate::error::ScenarioError;
 use crate::scenario::{Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
 use crate::wheel::WheelName;
@@ -27,7 +27,7 @@ pub struct TrainWheel {
     pub start_rev: f64,
 }
 
-/// Shafts, wheels and meshes of a machine, as far as a recording shows them: a pair, or a gearbox of any number of shafts.
+/// Shafts, wheels, meshes and rolling bearings of a machine, as far as a recording shows them: a pair, or a gearbox of any number of shafts.
 ///
 /// ```
 /// use meshtone::scenario::{Gearbox, gearbox_template};
@@ -48,6 +48,8 @@ pub struct GearTrain {
     pub wheels: Vec<TrainWheel>,
     /// Numbers of the two wheels of each mesh, the driving one first.
     pub meshes: Vec<[usize; 2]>,
+    /// The rolling bearings that its scenario has. Those of one geometry on one shaft, whose defects show at the same orders, are there once.
+    pub bearings: Vec<TrainBearing>,
     /// Number of the shaft that the ratios are of: the pinion's, or the one that the motor turns.
     input: usize,
 }
@@ -73,6 +75,7 @@ impl GearTrain {
             shafts: wheels.iter().map(shaft).collect(),
             wheels: wheels.iter().enumerate().map(wheel).collect(),
             meshes: (1..N).map(|mate| [0, mate]).collect(),
+            bearings: Vec::new(),
             input: 0,
         }
     }
@@ -128,6 +131,7 @@ impl GearTrain {
             shafts: shafts.collect(),
             wheels: wheels.collect(),
             meshes: layout.wheels_of_mesh.clone(),
+            bearings: bearings(gearbox),
         }
     }
 
@@ -268,4 +272,16 @@ impl GearTrain {
         let hunting = ratios.iter().copied().fold(ratios[of], Ratio::common_measure);
         (ratios.iter().map(|ratio| ratio.value()).collect(), hunting.value())
     }
+}
+
+/// The rolling bearings of a gearbox that can be simulated, each geometry on a shaft once.
+fn bearings(gearbox: &Gearbox) -> Vec<TrainBearing> {
+    let mut bearings = Vec::new();
+    for bearing in &gearbox.bearings {
+        let shaft = gearbox.shafts.iter().position(|shaft| shaft.name == bearing.shaft);
+        let parts = bearing.rolling().ok().flatten();
+        let placed = shaft.zip(parts).map(|(shaft, parts)| TrainBearing { geometry: parts.geometry, shaft });
+        bearings.extend(placed.filter(|placed| !bearings.contains(placed)));
+    }
+    bearings
 }

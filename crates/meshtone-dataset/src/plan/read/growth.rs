@@ -15,18 +15,18 @@ const LARGEST_EXPONENT: f64 = 10.0;
 const KEYS: [&str; 7] = ["law", "exponent", "count", "start", "failure", "life_rev", "censored"];
 
 pub(super) fn read(value: &TomlValue<'_>, faults: &[ClassFault]) -> ReadResult<Growth> {
-    if faults.len() != 1 {
+    let [fault] = faults else {
         let count = faults.len();
         return Err(value.error(format!("is of a class with {count} faults; must be one, which grows")));
-    }
-    value.table()?.read(growth)
+    };
+    value.table()?.read(|table| growth(table, fault))
 }
 
 /// Reads how a damage grows.
 ///
 /// The law is read first, because the keys that it has and their defaults depend on it. Start and failure are checked against each other
 /// and against the law: a crack does not grow from nothing, and a life that starts beyond its end would have no records.
-fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
+fn growth(table: &TomlTable<'_>, fault: &ClassFault) -> ReadResult<Growth> {
     // An unknown key is reported before the key that is missing because of it.
     table.refuse_unknown(&KEYS)?;
     let names = Law::NAMES.map(|name| (name, name));
@@ -49,6 +49,9 @@ fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
     if start == 0.0 && matches!(law, Law::Paris { .. }) {
         return Err(table.error("start", "is 0; a crack grows by Paris's law from more than that"));
     }
+    if start == 0.0 && fault.teeth().is_none() {
+        return Err(table.error("start", "is 0; a spall of a bearing grows from a width of more than that"));
+    }
     let failure = part("failure")?.unwrap_or(1.0);
     if failure <= start {
         let problem = format!("must be more than start, {start:?}: the severity at which it has failed");
@@ -56,7 +59,7 @@ fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
     }
     let life = table.required(
         "life_rev",
-        "turns of the damaged wheel from start to failure, as { log_uniform = [1e6, 1e7] }",
+        "turns of the damaged wheel, or of the damaged bearing's shaft, from start to failure, as { log_uniform = [1e6, 1e7] }",
     )?;
     let life_rev = match &life {
         value if value.is_table() => value.table()?.read(|table| distribution(table, 1))?,

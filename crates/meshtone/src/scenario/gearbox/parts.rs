@@ -459,8 +459,18 @@ impl GearboxFault {
     /// # Errors
     /// An unknown or missing key, a value that is not allowed.
     pub fn list_from_table(table: &TomlTable<'_>) -> ReadResult<Vec<Self>> {
-        let faults = Fault::list_on_named_wheels(table)?.into_iter();
-        Ok(faults.map(|(wheel, fault)| Self { wheel, fault }).collect())
+        table.tables("fault")?.into_iter().map(|table| table.read(Self::from_table)).collect()
+    }
+
+    /// Reads one fault.
+    ///
+    /// # Arguments
+    /// * `table` - its section
+    ///
+    /// # Errors
+    /// As [`Self::list_from_table`].
+    pub fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
+        Fault::on_named_wheel(table).map(|(wheel, fault)| Self { wheel, fault })
     }
 }
 

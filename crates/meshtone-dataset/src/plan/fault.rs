@@ -1,0 +1,298 @@
+//! The faults of a class: damaged teeth and spalls of rolling bearings, and where the scenarios of its records have them.
+
+use std::fmt::{self, Debug, Formatter};
+
+use meshtone::scenario::{
+    BearingDefect, DefectPlace, Fault, Gearbox, GearboxFault, ScenarioError, ScenarioForm, ScenarioNumber,
+};
+use meshtone_toml::{ReadResult, TomlTable};
+
+use super::Wheel;
+use crate::draw::is_of_plan;
+
+/// Damage to teeth of a wheel.
+#[derive(Clone, PartialEq)]
+pub struct ToothFault {
+    /// The damaged wheel.
+    pub wheel: Wheel,
+    /// What is wrong with which of its teeth; on a gearbox the wheel that it names itself does not count.
+    pub fault: Fault,
+}
+
+/// A fault of a class, before its varied keys are drawn.
+#[derive(Clone, PartialEq)]
+pub enum ClassFault {
+    /// Damage to teeth.
+    Teeth(ToothFault),
+    /// A spall of a rolling bearing of a gearbox.
+    Bearing {
+        /// Name of the bearing, as it stands in the brackets of its keys: `input:0`.
+        bearing: String,
+        /// The spall.
+        defect: BearingDefect,
+    },
+}
+
+/// Shows the fault and, on a gearbox, its wheel, for the same reason as [`Wheel`] does.
+impl Debug for ClassFault {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Teeth(ToothFault { wheel: Wheel::OfPair(_), fault }) => fault.fmt(formatter),
+            Self::Teeth(ToothFault { wheel: Wheel::OfGearbox(name), fault }) => (name, fault).fmt(formatter),
+            Self::Bearing { bearing, defect } => (bearing, defect).fmt(formatter),
+        }
+    }
+}
+
+impl ToothFault {
+    /// A fault of a pair.
+    pub(crate) fn of_pair(fault: Fault) -> Self {
+        Self { wheel: Wheel::OfPair(fault.wheel), fault }
+    }
+
+    /// A fault of a gearbox.
+    pub(crate) fn of_gearbox(fault: GearboxFault) -> Self {
+        Self { wheel: Wheel::OfGearbox(fault.wheel), fault: fault.fault }
+    }
+
+    /// The damaged teeth of a scenario.
+    ///
+    /// # Arguments
+    /// * `scenario` - of a record
+    pub(crate) fn all_of(scenario: &ScenarioForm) -> Vec<Self> {
+        match scenario {
+            ScenarioForm::Pair(scenario) => scenario.faults.iter().cloned().map(Self::of_pair).collect(),
+            ScenarioForm::Gearbox(gearbox) => gearbox.faults.iter().cloned().map(Self::of_gearbox).collect(),
+        }
+    }
+}
+
+/// The name of a spall's place among the kinds of damage.
+///
+/// # Arguments
+/// * `place` - the part of the bearing
+pub(crate) fn kind_of_spall(place: DefectPlace) -> &'static str {
+    match place {
+        DefectPlace::Outer => "outer-race",
+        DefectPlace::Inner => "inner-race",
+        DefectPlace::Element => "rolling-element",
+    }
+}
+
+impl ClassFault {
+    /// Its kind of damage, as the columns of records have it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Teeth(of) => of.fault.damage.kind(),
+            Self::Bearing { defect, .. } => kind_of_spall(defect.race),
+        }
+    }
+
+    /// The damage to teeth; none of a bearing's.
+    pub(crate) fn teeth(&self) -> Option<&ToothFault> {
+        match self {
+            Self::Teeth(of) => Some(of),
+            Self::Bearing { .. } => None,
+        }
+    }
+
+    /// Reads the faults of a class.
+    ///
+    /// # Arguments
+    /// * `table` - the class
+    /// * `base` - the scenario whose wheels and bearings are damaged
+    pub(super) fn read_all(table: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<Vec<Self>> {
+        let ScenarioForm::Gearbox(gearbox) = base else {
+            let faults = Fault::list_from_table(table)?.into_iter();
+            return Ok(faults.map(|fault| Self::Teeth(ToothFault::of_pair(fault))).collect());
+        };
+        let read = |of: &TomlTable<'_>| match of.optional("bearing") {
+            Some(_) => Self::of_bearing(of, gearbox),
+            None => Ok(Self::Teeth(ToothFault::of_gearbox(GearboxFault::from_table(of)?))),
+        };
+        let faults: Vec<Self> =
+            table.tables("fault")?.into_iter().map(|of| of.read(read)).collect::<Result<_, _>>()?;
+        let wheels = Wheel::all(base);
+        match faults.iter().filter_map(Self::teeth).find(|fault| !wheels.contains(&fault.wheel)) {
+            None => Ok(faults),
+            Some(fault) => {
+                let names: Vec<&str> = wheels.iter().map(Wheel::name).collect();
+                let problem = format!(
+                    "is on the wheel {:?}, which does not exist; must be one of {}",
+                    fault.wheel.name(),
+                    names.join(", ")
+                );
+                Err(table.error("fault", problem))
+            }
+        }
+    }
+
+    /// Reads a spall of a bearing.
+    fn of_bearing(table: &TomlTable<'_>, gearbox: &Gearbox) -> ReadResult<Self> {
+        let value =
+            table.required("bearing", "the name of the damaged bearing: its shaft and place, as input:0")?;
+        let (bearing, names) = (value.string()?.to_owned(), bearing_names(gearbox));
+        let Some(number) = names.iter().position(|name| *name == bearing) else {
+            return Err(value.error(format!("does not exist; must be one of {}", names.join(", "))));
+        };
+        if gearbox.bearings[number].element().is_none() {
+            let help = format!(
+                "set kind = \"ball\" or kind = \"roller\" of bearing[{bearing}] of the base scenario"
+            );
+            return Err(value.error("is a linear bearing, without balls or rollers").with_help(help));
+        }
+        Ok(Self::Bearing { bearing, defect: BearingDefect::from_table(table)? })
+    }
+}
+
+/// The names of a gearbox's bearings in the keys of a plan: shaft and place, or the number where two are at one place.
+fn bearing_names(gearbox: &Gearbox) -> Vec<String> {
+    let seats: Vec<String> = gearbox.bearings.iter().map(|bearing| bearing.seat_name()).collect();
+    let is_only = |seat: &String| seats.iter().filter(|other| *other == seat).count() == 1;
+    let name =
+        |(number, seat): (usize, &String)| if is_only(seat) { seat.clone() } else { number.to_string() };
+    seats.iter().enumerate().map(name).collect()
+}
+
+/// The base with the faults of a class.
+///
+/// # Arguments
+/// * `base` - healthy
+/// * `faults` - of the class
+pub(crate) fn with_faults(base: &ScenarioForm, faults: &[ClassFault]) -> ScenarioForm {
+    FaultyBase::new(base, faults).scenario
+}
+
+/// Where the scenario of a record has a fault of its class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FaultPlace {
+    /// The number among the faults of teeth.
+    Teeth(usize),
+    /// Numbers of a bearing, and of the spall among all that it has.
+    Spall { bearing: usize, number: usize },
+}
+
+/// The base scenario with the faults of a class.
+///
+/// The keys of a fault begin with `fault`, or of several with `fault[1]`, whatever part of the machine has it; in the scenario those of a spall
+/// are its bearing's.
+#[derive(Debug, Clone)]
+pub(crate) struct FaultyBase {
+    /// The scenario.
+    pub scenario: ScenarioForm,
+    /// Where it has each fault.
+    pub places: Vec<FaultPlace>,
+    /// The beginnings of each fault's keys in the plan and in the scenario.
+    sections: Vec<[String; 2]>,
+}
+
+impl FaultyBase {
+    /// Puts faults into the base scenario.
+    ///
+    /// # Arguments
+    /// * `base` - in which no tooth is damaged; spalls that it has are no faults of the class
+    /// * `faults` - of the class
+    pub fn new(base: &ScenarioForm, faults: &[ClassFault]) -> Self {
+        let mut scenario = base.clone();
+        let of_teeth = faults.iter().filter_map(ClassFault::teeth);
+        let places: Vec<FaultPlace> = match &mut scenario {
+            ScenarioForm::Pair(pair) => {
+                pair.faults = of_teeth.map(|of| of.fault.clone()).collect();
+                (0..pair.faults.len()).map(FaultPlace::Teeth).collect()
+            }
+            ScenarioForm::Gearbox(gearbox) => {
+                gearbox.faults.clear();
+                let names = bearing_names(gearbox);
+                faults.iter().filter_map(|fault| put_into(gearbox, &names, fault)).collect()
+            }
+        };
+        let sections = sections(&scenario, &places);
+        Self { scenario, places, sections }
+    }
+
+    /// All numbers of the scenario, by the plan's keys.
+    pub fn numbers(&self) -> Vec<ScenarioNumber> {
+        let mut numbers = self.scenario.numbers();
+        for number in &mut numbers {
+            number.key = renamed(&number.key, self.sections.iter().map(|[plan, scenario]| [scenario, plan]));
+        }
+        numbers
+    }
+
+    /// The scenario with the values of a record; those of keys of the plan alone are left out.
+    ///
+    /// # Arguments
+    /// * `values` - by the plan's keys
+    ///
+    /// # Errors
+    /// Values that the scenario does not allow.
+    pub fn with_values(&self, values: &[(String, f64)]) -> Result<ScenarioForm, ScenarioError> {
+        let of_scenario = values.iter().filter(|(key, _)| !is_of_plan(key));
+        let sections = || self.sections.iter().map(|[plan, scenario]| [plan, scenario]);
+        let renamed: Vec<(String, f64)> =
+            of_scenario.map(|(key, value)| (renamed(key, sections()), *value)).collect();
+        let numbers: Vec<(&str, f64)> = renamed.iter().map(|(key, value)| (key.as_str(), *value)).collect();
+        self.scenario.with_numbers(&numbers)
+    }
+
+    /// (-) How severe each fault is in a scenario of [`Self::with_values`]; none where that cannot be.
+    pub fn severities(&self, scenario: &ScenarioForm) -> Option<Vec<f64>> {
+        let of_teeth = scenario.fault_severities().ok()?;
+        let severity = |place: &FaultPlace| match (*place, scenario) {
+            (FaultPlace::Teeth(number), _) => of_teeth.get(number).copied(),
+            (FaultPlace::Spall { bearing, number }, ScenarioForm::Gearbox(gearbox)) => {
+                let parts = gearbox.bearings.get(bearing)?.rolling().ok()??;
+                parts.spalls.get(number).map(|spall| spall.severity)
+            }
+            _ => None,
+        };
+        self.places.iter().map(severity).collect()
+    }
+}
+
+/// Puts a fault into a gearbox. Returns where; none of a bearing that there is not.
+fn put_into(gearbox: &mut Gearbox, bearings: &[String], fault: &ClassFault) -> Option<FaultPlace> {
+    match fault {
+        ClassFault::Teeth(ToothFault { wheel, fault }) => {
+            gearbox.faults.push(GearboxFault { wheel: wheel.name().to_owned(), fault: fault.clone() });
+            Some(FaultPlace::Teeth(gearbox.faults.len() - 1))
+        }
+        ClassFault::Bearing { bearing, defect } => {
+            let bearing = bearings.iter().position(|name| name == bearing)?;
+            let defects = &mut gearbox.bearings[bearing].defect;
+            defects.push(defect.clone());
+            Some(FaultPlace::Spall { bearing, number: defects.len() - 1 })
+        }
+    }
+}
+
+/// The beginnings of the keys of faults in the plan and in the scenario.
+fn sections(scenario: &ScenarioForm, places: &[FaultPlace]) -> Vec<[String; 2]> {
+    let of_list = |number: usize, entries: usize| match entries {
+        1 => "fault".to_owned(),
+        _ => format!("fault[{number}]"),
+    };
+    let of_scenario = |place: &FaultPlace| match (*place, scenario) {
+        (FaultPlace::Spall { bearing, number }, ScenarioForm::Gearbox(gearbox)) => {
+            format!("bearing[{}].defect[{number}]", bearing_names(gearbox)[bearing])
+        }
+        (FaultPlace::Teeth(number) | FaultPlace::Spall { number, .. }, _) => {
+            of_list(number, scenario.fault_count())
+        }
+    };
+    let both = |(number, place)| [of_list(number, places.len()), of_scenario(place)];
+    places.iter().enumerate().map(both).collect()
+}
+
+/// A key whose beginning is replaced.
+///
+/// # Arguments
+/// * `key` - dotted
+/// * `sections` - beginnings, each with what stands in place of it
+fn renamed<'s>(key: &str, sections: impl Iterator<Item = [&'s String; 2]>) -> String {
+    let replaced = |[old, new]: [&String; 2]| {
+        let rest = key.strip_prefix(old.as_str())?.strip_prefix('.')?;
+        Some(format!("{new}.{rest}"))
+    };
+    { sections }.find_map(replaced).unwrap_or_else(|| key.to_owned())
+}
