@@ -90,8 +90,12 @@ def test_a_longer_recording_at_another_rate_has_several_windows(gears: Dataset) 
     of_gear = gears.like(signal, phase.of_mate(17, 38), RIG, rate_hz, shaft="gear")
     np.testing.assert_allclose(of_gear.matrix(["average_rms_g"]), like.matrix(["average_rms_g"]), rtol=1e-3)
     # As a network takes it.
-    X, y = like.filter(pyarrow.dataset.field("record") < 2).arrays(["average_g"], points=256)
+    first = like.filter(pyarrow.dataset.field("record") < 2)
+    X, y = first.arrays(["average_g"], points=256)
     assert X.shape == (2, 1, 256) and set(y) == {None}
+    np.testing.assert_array_equal(first.matrix(["average_rms_g"]), like.matrix(["average_rms_g"])[:2])
+    with pytest.raises(ValueError, match="belong to no split"):
+        like.split("train")
 
 
 def test_what_does_not_fit_is_refused_in_words(gears: Dataset) -> None:

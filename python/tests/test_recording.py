@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,10 @@ def test_signals_of_every_format(tmp_path: Path) -> None:
     rate, samples = io.wavfile.read(tmp_path / "signals.wav")
     assert rate == 100_640 and samples[:, 1] * 32 == pytest.approx(simulation.vertical_g, rel=0, abs=32 * 2**-24)
     signals.save(tmp_path / "slow.wav")
+    name = next(iter(signals.channels))
+    uneven = replace(signals, channels={**signals.channels, name: signals.channels[name][:-1]})
+    with pytest.raises(ValueError, match="must be equally long"):
+        uneven.save(tmp_path / "uneven.wav")
     slow = read_recording(tmp_path / "slow.wav")
     assert slow.sampling_rate_hz == 25_000 and slow["vertical_g"] == pytest.approx(signals.vertical_g)
     before = sorted(path.name for path in tmp_path.iterdir())
