@@ -140,7 +140,7 @@ export class Control {
   #field(id) {
     const { kind, names, default: otherwise } = this.description;
     if (kind === "name") {
-      const field = element("select", { id }, ...names.map((name) => element("option", { value: name }, name)));
+      const field = element("select", { id }, ...names.map((name) => element("option", { value: name }, name || "none")));
       field.addEventListener("change", () => this.controls.set(this.path, field.value, "full"));
       return field;
     }
