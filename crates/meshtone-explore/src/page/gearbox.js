@@ -176,7 +176,11 @@ class GearboxControls {
       ...this.#fields(["bearing", index, "defect", number], inside.filter(({ key }) => key !== "angle_deg" || race !== "element")),
       button("Remove", `Remove defect ${number + 1} of this bearing`, () => change(number, 1))));
     // A spall in the load zone, of a usual width.
-    const add = button("Add defect", "Add a defect to this bearing", () => change(defects.length, 0, { race: "outer", width_mm: 1 }));
+    const add = button("Add defect", "Add a defect to this bearing", () => {
+      const { shaft, at } = this.tree.bearing[index];
+      chosen.bearing = `${shaft}:${at}`;
+      change(defects.length, 0, { race: "outer", width_mm: 1 });
+    });
     return [...sets, add];
   }
 
@@ -286,7 +290,7 @@ function drawBearing({ signal, bearing, train: { bearings } }) {
   if (!bearing) return;
   select("bearing", bearings.filter(({ rolling }) => rolling).map(({ name }) => name), bearing.name);
   const lines = bearing.lines ?? [];
-  const unit = `${signal.unit}²`;
+  const unit = /^\p{L}+$/u.test(signal.unit) ? `${signal.unit}²` : `(${signal.unit})²`;
   const labels = lines.map(([name, order]) => [order, name]);
   const band = bearing.band_hz?.map((hz) => shown(hz)).join(" to ");
   plots.envelope.set(bearing.spectrum ? [line(bearing.name, bearing.spectrum, 0, bearing.step)] : [], { x: `order of shaft ${bearing.shaft}`, y: `amplitude (${unit})`,
@@ -308,7 +312,10 @@ function show(answer, asked) {
   select("mesh", parts.meshes.map(({ name }) => name), mesh.name);
   byId("figures").replaceChildren(...answer.figures.map(([name, value, unit]) => element("div", {}, element("dt", {}, name), element("dd", {}, `${shown(value)} ${unit}`))));
   byId("warnings").replaceChildren(...answer.warnings.map(({ key, message }) => element("li", {}, `${key}: ${message}`)));
-  train.show(parts, { wheel: wheel.name, mesh: mesh.name, bearing: answer.bearing?.name ?? chosen.bearing });
+  const isFull = answer.detail === "full";
+  // While a control moves, too little is simulated for it.
+  if (isFull) drawBearing(answer);
+  train.show(parts, { wheel: wheel.name, mesh: mesh.name, bearing: byId("bearing").value });
   const step = 1 / signal.sampling_rate_hz;
   const seen = [signal.start_s, signal.start_s + Math.min(SEEN_REVOLUTIONS / parts.shafts[0].speed_hz, signal.values.length * step)];
   plots.waveform.set([line(signal.name, signal.values, signal.start_s, step)], { y: `signal (${signal.unit})`, range: seen });
@@ -320,9 +327,6 @@ function show(answer, asked) {
   byId("mesh-title").textContent = `Force of mesh ${mesh.name}`;
   plots.force.set([line(mesh.name, mesh.force, signal.start_s, step, "second")], { range: seen });
   if (document.activeElement !== byId("toml")) byId("toml").value = answer.toml;
-  const isFull = answer.detail === "full";
-  // While a control moves, too little is simulated for it.
-  if (isFull) drawBearing(answer);
   status(`${shown(performance.now() - asked, 3)} ms${isFull ? "" : ", a quarter of a second"}`);
   showProblem(null);
   window.meshtone.drawn += isFull ? 1 : 0;
