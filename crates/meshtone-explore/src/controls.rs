@@ -36,13 +36,15 @@ fn bearing_json(named: &NamedBearing) -> Option<Value> {
         (bearing.kind, bearing.name) = (*kind, Some((*name).to_owned()));
         bearing.rolling().is_ok()
     })?;
+    // Sizes of inches would have the last digits of floating point.
+    let rounded = |mm: f64| (mm * 1e6).round() / 1e6;
     Some(json!({
         "name": name,
         "kind": if kind == BearingKind::Ball { "ball" } else { "roller" },
         "sizes": {
             "elements": geometry.elements,
-            "element_mm": geometry.element_mm,
-            "pitch_mm": geometry.pitch_mm,
+            "element_mm": rounded(geometry.element_mm),
+            "pitch_mm": rounded(geometry.pitch_mm),
             "contact_angle_deg": geometry.contact_angle_deg,
         },
     }))

@@ -1,6 +1,8 @@
 //! What a signal of a gearbox shows of one of its rolling bearings.
 
-use meshtone::signal::{BearingSettings, DefectLine, SignalError, TrainBearing, TrainRecording};
+use meshtone::signal::{
+    BearingSettings, DefectLine, FrequencyBand, SignalError, TrainBearing, TrainRecording,
+};
 use serde_json::{Value, json};
 
 use crate::packet::Packet;
@@ -27,8 +29,12 @@ impl LookedAtBearing {
     /// * `recording` - the channel that is looked at, and how the shafts turned; or why it cannot be processed
     /// * `packet` - takes the arrays up
     pub fn json(&self, recording: Result<TrainRecording<'_>, SignalError>, packet: &mut Packet) -> Value {
-        let found =
-            recording.and_then(|recording| recording.bearings(&[self.placed], &BearingSettings::default()));
+        let found = recording.and_then(|recording| {
+            // A simulation has no noise: the most impulsive band is one in which there is next to nothing.
+            let band = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * recording.sampling_rate_hz };
+            let settings = BearingSettings { band: Some(band), ..BearingSettings::default() };
+            recording.bearings(&[self.placed], &settings)
+        });
         let mut said = json!({ "name": self.name, "shaft": self.shaft });
         let records = match found {
             Ok(records) => records,
@@ -37,7 +43,6 @@ impl LookedAtBearing {
                 return said;
             }
         };
-        said["band_hz"] = json!([records.band.from_hz, records.band.to_hz]);
         said["warnings"] = records.warnings.iter().map(ToString::to_string).collect();
         for (spectrum, lines) in &records.bearings {
             let sent = SENT_ORDERS * self.placed.geometry.defect_orders().inner_race / spectrum.step;

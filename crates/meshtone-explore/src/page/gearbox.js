@@ -149,7 +149,9 @@ class GearboxControls {
     const title = (list === "bearing" ? null : entry.name) ?? entry.wheels?.join("–") ?? (entry.shaft ? `${entry.shaft} at ${entry.at}` : entry.at);
     const group = this.#group(`${list}[${index}]`, title + what);
     const used = list === "bearing" ? keys.filter(({ key }) => !this.#unused(entry).includes(key)).map((key) => this.#named(key, entry)) : keys;
-    group.append(...this.#fields([list, index], used), ...(isRolling ? this.#defects(index, defects, keys) : []));
+    const before = isRolling ? used.findIndex(({ key }) => key === "defect") : used.length;
+    group.append(...this.#fields([list, index], used.slice(0, before)), ...(isRolling ? this.#defects(index, defects, keys) : []),
+      ...this.#fields([list, index], used.slice(before)));
     return group;
   }
 
@@ -166,7 +168,11 @@ class GearboxControls {
       if (!bearing.defect.length) delete bearing.defect;
       this.#changed("full");
     };
-    const inside = keys.filter(({ key }) => key.startsWith("defect.")).map((description) => ({ ...description, key: description.key.slice("defect.".length) }));
+    const otherwise = { width_mm: "by severity", severity: "by width" };
+    const inside = keys.filter(({ key }) => key.startsWith("defect.")).map((description) => {
+      const key = description.key.slice("defect.".length);
+      return { ...description, key, default: otherwise[key] ?? description.default };
+    });
     const button = (text, said, act) => {
       const made = element("button", { type: "button", "aria-label": said }, text);
       made.addEventListener("click", act);
@@ -292,9 +298,8 @@ function drawBearing({ signal, bearing, train: { bearings } }) {
   const lines = bearing.lines ?? [];
   const unit = /^\p{L}+$/u.test(signal.unit) ? `${signal.unit}²` : `(${signal.unit})²`;
   const labels = lines.map(([name, order]) => [order, name]);
-  const band = bearing.band_hz?.map((hz) => shown(hz)).join(" to ");
   plots.envelope.set(bearing.spectrum ? [line(bearing.name, bearing.spectrum, 0, bearing.step)] : [], { x: `order of shaft ${bearing.shaft}`, y: `amplitude (${unit})`,
-    title: band ? `Squared envelope of ${signal.name}, ${band} Hz` : "Squared envelope", labels, empty: bearing.problem ?? "" });
+    title: `Squared envelope of ${signal.name}`, labels, empty: bearing.problem ?? "" });
   const head = element("thead", {}, element("tr", {}, ...["line", "order", "found at", `amplitude, ${unit}`, "over the median"].map((title) => element("th", { scope: "col" }, title))));
   const rows = lines.map(([name, ...numbers]) => element("tr", {}, element("th", { scope: "row" }, name), ...numbers.map((number) => element("td", {}, shown(number)))));
   rows.forEach((row, index) => row.addEventListener("click", () => plots.envelope.zoom([Math.max(lines[index][1] - 1, 0), lines[index][1] + 1])));
