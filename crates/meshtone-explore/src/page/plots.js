@@ -311,10 +311,10 @@ export class Plot {
     ctx.stroke();
     ctx.fillStyle = colour("muted");
     ctx.font = `${11 * devicePixelRatio}px system-ui`;
-    [ctx.textAlign, ctx.textBaseline] = ["right", "bottom"];
+    [ctx.textAlign, ctx.textBaseline] = ["right", "top"];
     for (const [place, name] of this.#labels) {
       ctx.save();
-      ctx.translate(plot.valToPos(place, "x", true) - 2 * devicePixelRatio, bbox.top + 3 * devicePixelRatio);
+      ctx.translate(plot.valToPos(place, "x", true) + 2 * devicePixelRatio, bbox.top + 3 * devicePixelRatio);
       ctx.rotate(-Math.PI / 2);
       ctx.fillText(name, 0, 0);
       ctx.restore();
