@@ -589,3 +589,39 @@ def test_damage_is_added_to_a_wheel_and_a_file_opened(train_page: Page, train: m
     assert train.gearbox == start
     page.drop("pair.toml", fast().to_toml().encode())
     page.wait(lambda: "pair.toml" in changes_words(page.browser), "the refusal of a pair")
+
+
+def test_a_bearing_becomes_a_rolling_one_with_a_defect(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+
+    def bearing() -> str:
+        """The section of the first bearing."""
+        return train.gearbox.to_toml().split("[[bearing]]")[1]
+
+    hidden = "return document.getElementById('bearing-card').hidden"
+    click = "document.querySelector(`#controls [aria-label^='${arguments[0]}']`).click()"
+    assert page.run(hidden)
+    assert page.enter("bearing[0].stiffness_n_per_m", "2e8") == ""
+    assert page.enter("bearing[0].kind", "ball") == ""
+    assert not page.run(hidden)
+    # The stiffness of a rolling bearing follows from its elements.
+    assert 'kind = "ball"' in bearing() and 'name = "6203"' in bearing() and "stiffness_n_per_m = 2" not in bearing()
+    assert page.enter("bearing[0].name", "ER-10K") == ""
+    assert page.settled(lambda: page.run(click, "Add a defect"), "a defect") == ""
+    assert 'race = "outer"' in bearing() and "width_mm = 1" in bearing()
+    assert page.enter("bearing[0].defect[0].width_mm", "9").endswith("must be at most 7.9375 mm, the diameter of an element")
+    assert page.run("return document.getElementById('key-bearing[0].defect[0].width_mm').getAttribute('aria-invalid')") == "true"
+    assert page.enter("bearing[0].defect[0].severity", "0.2") == ""
+    assert "severity = 0.2" in bearing() and "width_mm = 1" not in bearing()
+    assert page.enter("bearing[0].defect[0].race", "inner") == ""
+    lines = page.run("return [...document.querySelectorAll('#defect-lines tbody th')].map((cell) => cell.textContent)")
+    assert {"FTF", "BPFO", "2 BPFO", "BPFI", "2 BSF"} <= set(lines)
+    assert page.run("return document.querySelectorAll('#above .rolling.damaged').length") == 1
+    assert page.settled(lambda: page.run(click, "Remove defect 1"), "no defect") == ""
+    assert "defect" not in bearing()
+    # Rollers have the sizes of the balls before them, since none is known by name.
+    assert page.enter("bearing[0].kind", "roller") == ""
+    assert "elements = 8" in bearing() and "element_mm = 7.9375" in bearing() and "name" not in bearing()
+    assert page.enter("bearing[0].kind", "linear") == ""
+    assert page.run(hidden)
+    assert "element" not in bearing()

@@ -1,8 +1,10 @@
 //! The source of the page's controls: the same rows as the guide's tables, the commented files and Python's signatures.
 
+use meshtone::bearing::{NAMED_BEARINGS, NamedBearing};
 use meshtone::damage::{DamageKind, damage_kinds};
 use meshtone::scenario::{
-    Fault, KeyDescription, KeyKind, Scenario, SectionDescription, gearbox_sections, sections,
+    Bearing, BearingKind, Fault, KeyDescription, KeyKind, Scenario, SectionDescription, gearbox_sections,
+    sections,
 };
 use serde_json::{Value, json};
 
@@ -13,15 +15,39 @@ fn section_json(SectionDescription { name, keys, .. }: &SectionDescription) -> V
     json!({ "name": name, "keys": keys.iter().map(key_json).collect::<Vec<_>>() })
 }
 
-/// Sections and keys of a gearbox and of a fault on one of its wheels, and the kinds of damage.
+/// Sections and keys of a gearbox and of a fault on one of its wheels, the kinds of damage, and the bearings by name.
 pub fn gearbox_controls() -> Value {
     let mut listed: Vec<Value> = gearbox_sections().iter().map(section_json).collect();
     listed.extend(sections().iter().filter(|section| section.name == "fault").map(section_json));
     json!({
         "sections": listed,
         "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
+        "bearings": NAMED_BEARINGS.iter().filter_map(bearing_json).collect::<Vec<_>>(),
         "version": env!("CARGO_PKG_VERSION"),
     })
+}
+
+/// A named bearing with the kind and the sizes that a scenario gives it; none of one that a scenario cannot have.
+fn bearing_json(named: &NamedBearing) -> Option<Value> {
+    let NamedBearing { name, geometry, .. } = named;
+    let kinds = [BearingKind::Ball, BearingKind::Roller];
+    let kind = kinds.into_iter().find(|kind| {
+        let mut bearing = Bearing::new("", 0.0);
+        (bearing.kind, bearing.name) = (*kind, Some((*name).to_owned()));
+        bearing.rolling().is_ok()
+    })?;
+    // Sizes of inches would have the last digits of floating point.
+    let rounded = |mm: f64| (mm * 1e6).round() / 1e6;
+    Some(json!({
+        "name": name,
+        "kind": if kind == BearingKind::Ball { "ball" } else { "roller" },
+        "sizes": {
+            "elements": geometry.elements,
+            "element_mm": rounded(geometry.element_mm),
+            "pitch_mm": rounded(geometry.pitch_mm),
+            "contact_angle_deg": geometry.contact_angle_deg,
+        },
+    }))
 }
 
 /// Sections and keys, kinds of damage, and scenarios to start from.
@@ -101,5 +127,17 @@ mod tests {
         assert_eq!(controls["presets"].as_array().unwrap().len(), presets().len());
         let breakage = &controls["kinds"][1];
         assert_eq!(breakage["sizes"], json!(["chip_height_mm", "chip_width_mm", "tip_loss_mm"]));
+    }
+
+    #[test]
+    fn named_bearings_are_of_the_kind_that_a_scenario_gives_them() {
+        let controls = gearbox_controls();
+        let bearings = controls["bearings"].as_array().unwrap();
+        let names: Vec<&str> = bearings.iter().map(|bearing| bearing["name"].as_str().unwrap()).collect();
+        // The rollers of a ZA-2115 stand at an angle, which cylindrical ones do not.
+        assert_eq!(names, ["6203", "6205", "ER-10K", "ER-16K", "UER204"]);
+        assert!(bearings.iter().all(|bearing| bearing["kind"] == "ball"));
+        let sizes = json!({ "elements": 9, "element_mm": 7.94, "pitch_mm": 39.04, "contact_angle_deg": 0.0 });
+        assert_eq!(bearings[1]["sizes"], sizes);
     }
 }

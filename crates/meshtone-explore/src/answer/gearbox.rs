@@ -1,10 +1,13 @@
 //! From a gearbox to everything that its page draws.
 
 use meshtone::scenario::{Gearbox, ScenarioForm, ScenarioWarning};
-use meshtone::signal::{AngularSettings, GearTrain, TrainRecording, TrainTurning, revolution_average};
+use meshtone::signal::{
+    AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainTurning, revolution_average,
+};
 use meshtone::{GearboxSimulation, StepJudgement};
 use serde_json::{Map, Value, json};
 
+use super::bearing::LookedAtBearing;
 use super::lines::{Spectrum, SpectrumLine, Tones};
 use super::{AnswerOptions, Detail, wanted};
 use crate::packet::Packet;
@@ -30,6 +33,8 @@ pub struct GearboxState {
     wheel: usize,
     /// Number of the mesh that is looked at.
     mesh: usize,
+    /// The rolling bearing that is looked at, where there is one.
+    bearing: Option<LookedAtBearing>,
 }
 
 /// Simulates a gearbox and prepares all that the page draws.
@@ -78,11 +83,25 @@ pub fn gearbox_answer(
         ),
         wheel,
         mesh: number(mesh, gearbox.meshes.iter().map(|mesh| mesh.name()).collect()),
+        bearing: looked_at(&simulation, options.bearing.as_deref()),
         gearbox: gearbox.clone(),
         options: options.clone(),
         warnings,
         simulation,
     })
+}
+
+/// The rolling bearing of a name; where there is none of it the first with a defect, or else the first.
+fn looked_at(simulation: &GearboxSimulation, name: Option<&str>) -> Option<LookedAtBearing> {
+    let GearboxSimulation { stages, .. } = simulation;
+    let (bearings, rolling) = (&stages.gearbox.bearings, &stages.bearings);
+    let named = rolling.iter().find(|(number, _)| Some(bearings[*number].seat_name().as_str()) == name);
+    let damaged = || rolling.iter().find(|(_, bearing)| !bearing.parts.spalls.is_empty());
+    let (number, bearing) = named.or_else(damaged).or(rolling.first())?;
+    let of = &bearings[*number];
+    let shaft = stages.layout.shaft_of_bearing[*number];
+    let placed = TrainBearing { geometry: bearing.parts.geometry, shaft };
+    Some(LookedAtBearing { name: of.seat_name(), shaft: of.shaft.clone(), placed })
 }
 
 /// The sections of a gearbox, as the page sets them.
@@ -112,7 +131,23 @@ impl GearboxState {
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
         let force_name = format!("force_n.{}", self.gearbox.meshes[self.mesh].name());
         let force = channels.signal(&force_name).unwrap_or_default();
-        let average = self.average(&signal.values);
+        let train = GearTrain::of_layout(&self.gearbox, &stages.layout);
+        let form = ScenarioForm::Gearbox(self.gearbox.clone());
+        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.values.len());
+        let recording = || {
+            let turning = turning.as_ref().map_err(Clone::clone)?;
+            let sampling_rate_hz = channels.sampling_rate_hz;
+            Ok::<_, SignalError>(TrainRecording {
+                signal: &signal.values,
+                sampling_rate_hz,
+                train: &train,
+                turning,
+            })
+        };
+        let average = recording().ok().and_then(|recording| self.average(&recording));
+        // What is kept while a control moves is too short for averages.
+        let bearing = self.bearing.as_ref().filter(|_| self.options.detail == Detail::Full);
+        let bearing = bearing.map(|bearing| bearing.json(recording(), &mut packet));
         let wheel = &self.gearbox.wheels[self.wheel];
         let average = average.map(
             |(values, revolutions)| json!({ "values": packet.array(values), "revolutions": revolutions }),
@@ -138,6 +173,7 @@ impl GearboxState {
             },
             "lines": lines.iter().map(line).collect::<Vec<_>>(),
             "wheel": { "name": wheel.name, "teeth": wheel.teeth, "average": average },
+            "bearing": bearing,
             "mesh": { "name": self.gearbox.meshes[self.mesh].name(), "force": packet.array(force.iter().copied()) },
         });
         if let Value::Object(entries) = &mut said {
@@ -148,13 +184,7 @@ impl GearboxState {
 
     /// The average of a signal over the revolutions of the wheel that is looked at, and the number of revolutions; none where there is not
     /// one.
-    fn average(&self, signal: &[f64]) -> Option<(Vec<f64>, usize)> {
-        let GearboxSimulation { stages, channels, .. } = &self.simulation;
-        let train = GearTrain::of_layout(&self.gearbox, &stages.layout);
-        let form = ScenarioForm::Gearbox(self.gearbox.clone());
-        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len()).ok()?;
-        let sampling_rate_hz = channels.sampling_rate_hz;
-        let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+    fn average(&self, recording: &TrainRecording<'_>) -> Option<(Vec<f64>, usize)> {
         let angular = recording.angular(self.wheel, &AngularSettings::default()).ok()?;
         let revolutions = angular.revolutions();
         let average = revolution_average(&angular.values, angular.points_per_revolution);
@@ -216,7 +246,15 @@ impl GearboxState {
             })
         };
         let mesh = |(number, mesh): (usize, &super::lines::MeshTone)| json!({ "name": mesh.name, "wheels": layout.wheels_of_mesh[number], "frequency_hz": mesh.frequency_hz });
-        let bearing = |(bearing, &shaft): (&meshtone::scenario::Bearing, &usize)| json!({ "shaft": shaft, "z_mm": bearing.at * gearbox.shafts[shaft].length_mm });
+        let bearing = |(bearing, &shaft): (&meshtone::scenario::Bearing, &usize)| {
+            json!({
+                "name": bearing.seat_name(),
+                "shaft": shaft,
+                "z_mm": bearing.at * gearbox.shafts[shaft].length_mm,
+                "rolling": bearing.element().is_some(),
+                "damaged": !bearing.defect.is_empty(),
+            })
+        };
         json!({
             "shafts": gearbox.shafts.iter().enumerate().map(shaft).collect::<Vec<_>>(),
             "wheels": gearbox.wheels.iter().enumerate().map(wheel).collect::<Vec<_>>(),

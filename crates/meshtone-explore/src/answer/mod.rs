@@ -1,5 +1,6 @@
 //! From a scenario to everything that the page draws.
 
+mod bearing;
 mod diagnosis;
 mod gearbox;
 mod healthy;
@@ -89,6 +90,9 @@ pub struct AnswerOptions {
     pub wheel: Option<String>,
     /// The mesh of a gearbox that is looked at, likewise.
     pub mesh: Option<String>,
+    /// The rolling bearing of a gearbox that is looked at, by the name of its seat, such as `input:0`; where there is none of it, the
+    /// first with a defect, or else the first.
+    pub bearing: Option<String>,
 }
 
 /// Everything that the page draws of a scenario.

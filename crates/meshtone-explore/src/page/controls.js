@@ -11,7 +11,7 @@ const SECTIONS = [
   { name: "solver", title: "Solver", first: ["sampling_rate_hz", "pinion_revolutions", "settle_fraction"] },
   { name: "", title: "Model", first: ["model", "seed"] },
 ];
-const UNIT_ENDING = /_(mm|um|deg|rad|hz|nm|g|s|n_per_m|nm_per_rad|kgm2|kg|per_cent)$/;
+const UNIT_ENDING = /_(mm|um|deg|rad|hz|nm|g|s|n|n_per_m|nm_per_rad|kgm2|kg|percent|per_cent)$/;
 /** From here on a slider goes by powers of ten. */
 const LARGE = 1e3;
 /** The keys that a profile over time begins from, and rows of it that are shown. */
@@ -140,7 +140,7 @@ export class Control {
   #field(id) {
     const { kind, names, default: otherwise } = this.description;
     if (kind === "name") {
-      const field = element("select", { id }, ...names.map((name) => element("option", { value: name }, name)));
+      const field = element("select", { id }, ...names.map((name) => element("option", { value: name }, name || "none")));
       field.addEventListener("change", () => this.controls.set(this.path, field.value, "full"));
       return field;
     }

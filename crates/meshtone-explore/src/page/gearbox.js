@@ -12,13 +12,16 @@ const SECTIONS = [["operation", "Operation", true], ["fault", "Damage", true], [
 const LISTS = ["shaft", "wheel", "mesh", "bearing", "fault", "sensor"];
 /** Kinds of keys that have a control; the rest is in the scenario as text. */
 const SHOWN_KINDS = ["number", "whole", "name", "text", "teeth"];
+/** Keys of a bearing that state its size, and all that only rolling bearings have. */
+const BEARING_SIZES = ["elements", "element_mm", "pitch_mm", "contact_angle_deg"];
+const OF_ROLLING = ["name", ...BEARING_SIZES, "roller_length_mm", "clearance_um", "preload_n", "slip_percent", "defect"];
 /** Revolutions of the input that are seen of a signal at first. */
 const SEEN_REVOLUTIONS = 3;
 
 /** For tests and measurements: how many pictures were drawn. */
 window.meshtone = { drawn: 0, coarse: 0, last: null };
 
-let chosen = { channel: null, wheel: null, mesh: null };
+let chosen = { channel: null, wheel: null, mesh: null, bearing: null };
 let now = null;
 
 class GearboxControls {
@@ -48,18 +51,57 @@ class GearboxControls {
   }
 
   set(path, value, detail) {
-    if (typeof path[1] === "number" && !this.tree[path[0]][path[1]]) return;
     let part = this.tree;
-    for (const key of path.slice(0, -1)) part = part[key] ??= {};
+    for (const key of path.slice(0, -1)) {
+      // A control of what has been removed stands until the answer to that comes.
+      if (typeof key === "number" && !part[key]) return;
+      part = part[key] ??= {};
+    }
     const last = path.at(-1);
+    const before = part[last];
     if (value === undefined) delete part[last];
     else part[last] = value;
+    if (path[0] === "bearing" && path.length === 3) this.#settleBearing(part, last, before);
+    if (path[2] === "defect") this.#settleDefect(part, last);
     this.#changed(detail);
+  }
+
+  /** Keys that a bearing of this kind cannot have. */
+  #unused({ kind, name }) {
+    if (kind === "linear") return OF_ROLLING;
+    const ofKind = kind === "ball" ? ["roller_length_mm"] : ["contact_angle_deg", "preload_n"];
+    return ["stiffness_n_per_m", ...ofKind, ...(name ? BEARING_SIZES : []), ...(this.#namesOf(kind).length ? [] : ["name"])];
+  }
+
+  #namesOf(kind) {
+    return this.#catalogue.bearings.filter((known) => known.kind === kind).map(({ name }) => name);
+  }
+
+  /** A bearing has the keys of its kind, and a name or sizes. */
+  #settleBearing(bearing, changed, before) {
+    if (!["kind", "name"].includes(changed)) return;
+    const { bearings } = this.#catalogue;
+    const names = this.#namesOf(bearing.kind);
+    const had = changed === "name" ? before : bearing.name ?? (bearing.elements ? null : bearings[0].name);
+    if (changed === "kind" && names.includes(had)) bearing.name = had;
+    else if (!names.includes(bearing.name)) {
+      // Of a name that it no longer has, the sizes stay.
+      Object.assign(bearing, bearings.find(({ name }) => name === had)?.sizes);
+      delete bearing.name;
+    }
+    this.#unused(bearing).forEach((key) => delete bearing[key]);
+  }
+
+  /** A defect has a width or a severity, and one of an element no place. */
+  #settleDefect(defect, changed) {
+    if (changed === "width_mm") delete defect.severity;
+    if (changed === "severity") delete defect.width_mm;
+    if (defect.race === "element") delete defect.angle_deg;
   }
 
   show(full) {
     const entries = (list) => [full[list] ?? []].flat();
-    const shape = JSON.stringify(LISTS.map((list) => entries(list).map(({ name, kind, wheels, severity }) => [name, kind, wheels, severity === undefined])));
+    const shape = JSON.stringify(LISTS.map((list) => entries(list).map(({ name, kind, wheels, severity, defect }) => [name, kind, wheels, severity === undefined, defect?.map(({ race }) => race)])));
     const listed = { ...full, ...Object.fromEntries(LISTS.map((list) => [list, entries(list)])) };
     if (shape !== this.#shape) this.#build(listed);
     this.#shape = shape;
@@ -101,10 +143,51 @@ class GearboxControls {
   }
 
   #entry(list, index, entry, keys) {
-    const title = entry.name ?? entry.wheels?.join("–") ?? (entry.shaft ? `${entry.shaft} at ${entry.at}` : entry.at);
-    const group = this.#group(`${list}[${index}]`, title);
-    group.append(...this.#fields([list, index], keys));
+    const isRolling = list === "bearing" && entry.kind !== "linear";
+    const defects = isRolling ? (entry.defect ?? []) : [];
+    const what = isRolling ? [`: ${entry.name ?? entry.kind}`, ...defects.map(({ race }) => `defect ${race}`)].join(", ") : "";
+    const title = (list === "bearing" ? null : entry.name) ?? entry.wheels?.join("–") ?? (entry.shaft ? `${entry.shaft} at ${entry.at}` : entry.at);
+    const group = this.#group(`${list}[${index}]`, title + what);
+    const used = list === "bearing" ? keys.filter(({ key }) => !this.#unused(entry).includes(key)).map((key) => this.#named(key, entry)) : keys;
+    const before = isRolling ? used.findIndex(({ key }) => key === "defect") : used.length;
+    group.append(...this.#fields([list, index], used.slice(0, before)), ...(isRolling ? this.#defects(index, defects, keys) : []),
+      ...this.#fields([list, index], used.slice(before)));
     return group;
+  }
+
+  /** The name of a bearing as a choice. */
+  #named(description, { kind, name = "" }) {
+    if (description.key !== "name") return description;
+    return { ...description, kind: "name", names: [...new Set(["", ...this.#namesOf(kind), name])] };
+  }
+
+  #defects(index, defects, keys) {
+    const change = (...splice) => {
+      const bearing = this.tree.bearing[index];
+      (bearing.defect ??= []).splice(...splice);
+      if (!bearing.defect.length) delete bearing.defect;
+      this.#changed("full");
+    };
+    const otherwise = { width_mm: "by severity", severity: "by width" };
+    const inside = keys.filter(({ key }) => key.startsWith("defect.")).map((description) => {
+      const key = description.key.slice("defect.".length);
+      return { ...description, key, default: otherwise[key] ?? description.default };
+    });
+    const button = (text, said, act) => {
+      const made = element("button", { type: "button", "aria-label": said }, text);
+      made.addEventListener("click", act);
+      return made;
+    };
+    const sets = defects.map(({ race }, number) => element("fieldset", {}, element("legend", {}, `Defect ${number + 1}`),
+      ...this.#fields(["bearing", index, "defect", number], inside.filter(({ key }) => key !== "angle_deg" || race !== "element")),
+      button("Remove", `Remove defect ${number + 1} of this bearing`, () => change(number, 1))));
+    // A spall in the load zone, of a usual width.
+    const add = button("Add defect", "Add a defect to this bearing", () => {
+      const { shaft, at } = this.tree.bearing[index];
+      chosen.bearing = `${shaft}:${at}`;
+      change(defects.length, 0, { race: "outer", width_mm: 1 });
+    });
+    return [...sets, add];
   }
 
   #fields(base, keys) {
@@ -177,11 +260,12 @@ const plots = {
   waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "signal (g)" }),
   spectrum: plot("spectrum", { title: "Spectrum: harmonics of the mesh that is looked at dashed", x: "frequency (Hz)", y: "amplitude (g)" }),
   average: plot("average", { title: "Average of the signal", x: "angle (°)", y: "signal (g)" }),
+  envelope: plot("envelope", { title: "Squared envelope", x: "order of the shaft", y: "amplitude (g²)" }),
   force: plot("force", { title: "Force", x: "time (s)", y: "force (N)" }),
 };
-const train = new Train(byId("front"), byId("above"), (wheel) => look({ wheel }), (mesh) => look({ mesh }));
+const train = new Train(byId("front"), byId("above"), (wheel) => look({ wheel }), (mesh) => look({ mesh }), (bearing) => look({ bearing }));
 
-/** Looks at another channel, wheel or mesh. */
+/** Looks at another channel, wheel, mesh or bearing. */
 function look(other) {
   chosen = { ...chosen, ...other };
   change("full");
@@ -206,17 +290,37 @@ function drawSpectrum({ signal, spectrum, lines, train: { meshes }, mesh }) {
     : "Lines have names where speed and load are steady.";
 }
 
+/** The envelope of a rolling bearing; none where the gearbox has none of these. */
+function drawBearing({ signal, bearing, train: { bearings } }) {
+  byId("bearing-card").hidden = !bearing;
+  if (!bearing) return;
+  select("bearing", bearings.filter(({ rolling }) => rolling).map(({ name }) => name), bearing.name);
+  const lines = bearing.lines ?? [];
+  const unit = /^\p{L}+$/u.test(signal.unit) ? `${signal.unit}²` : `(${signal.unit})²`;
+  const labels = lines.map(([name, order]) => [order, name]);
+  plots.envelope.set(bearing.spectrum ? [line(bearing.name, bearing.spectrum, 0, bearing.step)] : [], { x: `order of shaft ${bearing.shaft}`, y: `amplitude (${unit})`,
+    title: `Squared envelope of ${signal.name}`, labels, empty: bearing.problem ?? "" });
+  const head = element("thead", {}, element("tr", {}, ...["line", "order", "found at", `amplitude, ${unit}`, "over the median"].map((title) => element("th", { scope: "col" }, title))));
+  const rows = lines.map(([name, ...numbers]) => element("tr", {}, element("th", { scope: "row" }, name), ...numbers.map((number) => element("td", {}, shown(number)))));
+  rows.forEach((row, index) => row.addEventListener("click", () => plots.envelope.zoom([Math.max(lines[index][1] - 1, 0), lines[index][1] + 1])));
+  byId("defect-lines").replaceChildren(...(rows.length ? [head, element("tbody", {}, ...rows)] : []));
+  byId("bearing-warnings").replaceChildren(...(bearing.warnings ?? []).map((warning) => element("li", {}, warning)));
+}
+
 function show(answer, asked) {
   now = answer;
   const { signal, wheel, mesh, train: parts } = answer;
-  chosen = { channel: signal.name, wheel: wheel.name, mesh: mesh.name };
+  chosen = { ...chosen, channel: signal.name, wheel: wheel.name, mesh: mesh.name };
   controls.show(answer.scenario);
   select("channel", answer.channels, signal.name);
   select("wheel", parts.wheels.map(({ name }) => name), wheel.name);
   select("mesh", parts.meshes.map(({ name }) => name), mesh.name);
   byId("figures").replaceChildren(...answer.figures.map(([name, value, unit]) => element("div", {}, element("dt", {}, name), element("dd", {}, `${shown(value)} ${unit}`))));
   byId("warnings").replaceChildren(...answer.warnings.map(({ key, message }) => element("li", {}, `${key}: ${message}`)));
-  train.show(parts, wheel.name, mesh.name);
+  const isFull = answer.detail === "full";
+  // While a control moves, too little is simulated for it.
+  if (isFull) drawBearing(answer);
+  train.show(parts, { wheel: wheel.name, mesh: mesh.name, bearing: byId("bearing").value });
   const step = 1 / signal.sampling_rate_hz;
   const seen = [signal.start_s, signal.start_s + Math.min(SEEN_REVOLUTIONS / parts.shafts[0].speed_hz, signal.values.length * step)];
   plots.waveform.set([line(signal.name, signal.values, signal.start_s, step)], { y: `signal (${signal.unit})`, range: seen });
@@ -228,7 +332,6 @@ function show(answer, asked) {
   byId("mesh-title").textContent = `Force of mesh ${mesh.name}`;
   plots.force.set([line(mesh.name, mesh.force, signal.start_s, step, "second")], { range: seen });
   if (document.activeElement !== byId("toml")) byId("toml").value = answer.toml;
-  const isFull = answer.detail === "full";
   status(`${shown(performance.now() - asked, 3)} ms${isFull ? "" : ", a quarter of a second"}`);
   showProblem(null);
   window.meshtone.drawn += isFull ? 1 : 0;
@@ -272,7 +375,7 @@ function setTheme(theme) {
 }
 
 function listen() {
-  for (const name of ["channel", "wheel", "mesh"]) byId(name).addEventListener("change", ({ target }) => look({ [name]: target.value }));
+  for (const name of ["channel", "wheel", "mesh", "bearing"]) byId(name).addEventListener("change", ({ target }) => look({ [name]: target.value }));
   byId("logarithmic").addEventListener("change", () => now && drawSpectrum(now));
   byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
   byId("file").addEventListener("change", ({ target }) => take(target.files[0]));

@@ -80,6 +80,7 @@ export class Plot {
   #lines = [];
   #bands = [];
   #marks = [];
+  #labels = [];
   #triangles = [];
   #isLog = false;
   #mark = null;
@@ -130,16 +131,19 @@ export class Plot {
    * Draws lines; what was zoomed stays so.
    * @param range shown where nothing is zoomed
    * @param marks places on the axis that a line is drawn at, such as mesh orders
+   * @param labels places and names: a line is drawn at each, with its name along it
    * @param triangles places that small triangles at the top point to, such as natural frequencies
    * @param isLog whether y goes by powers of ten
    */
-  set(lines, { range = null, bands = [], marks = [], triangles = [], isLog = false, title = null, y = null, empty = "" } = {}) {
+  set(lines, { range = null, bands = [], marks = [], labels = [], triangles = [], isLog = false, title = null, x = null, y = null, empty = "" } = {}) {
     this.#lines = lines.filter(({ y: values }) => values?.length);
     this.#bands = bands;
-    this.#marks = marks;
+    this.#marks = [...marks, ...labels.map(([place]) => place)];
+    this.#labels = labels;
     this.#triangles = triangles;
     this.#isLog = isLog;
     if (title) this.#head(title);
+    if (x) this.#options.x = x;
     if (y) this.#options.y = y;
     const least = Math.min(...this.#lines.map(({ from }) => from));
     const most = Math.max(...this.#lines.map(lastX));
@@ -185,7 +189,7 @@ export class Plot {
     this.#describing = setTimeout(() => this.#describe(), 200);
     this.#isWaiting = !this.#isSeen;
     if (this.#isWaiting) return;
-    const builtAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.y + this.#isLog;
+    const builtAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.x + this.#options.y + this.#isLog;
     if (!this.#plot || builtAs !== this.#builtAs) this.#build();
     this.#builtAs = builtAs;
     const view = this.view;
@@ -197,7 +201,7 @@ export class Plot {
       if (this.#buffers[index]?.length !== count) this.#buffers[index] = new Array(count);
       return this.#buffers[index];
     };
-    const framedAs = [view, this.#bands, this.#marks, this.#triangles, columns, builtAs].join();
+    const framedAs = [view, this.#bands, this.#marks, this.#labels, this.#triangles, columns, builtAs].join();
     let isOther = framedAs !== this.#framedAs;
     this.#framedAs = framedAs;
     const xs = buffer(0);
@@ -305,6 +309,16 @@ export class Plot {
       ctx.lineTo(x, bbox.top + bbox.height);
     }
     ctx.stroke();
+    ctx.fillStyle = colour("muted");
+    ctx.font = `${11 * devicePixelRatio}px system-ui`;
+    [ctx.textAlign, ctx.textBaseline] = ["right", "top"];
+    for (const [place, name] of this.#labels) {
+      ctx.save();
+      ctx.translate(plot.valToPos(place, "x", true) + 2 * devicePixelRatio, bbox.top + 3 * devicePixelRatio);
+      ctx.rotate(-Math.PI / 2);
+      ctx.fillText(name, 0, 0);
+      ctx.restore();
+    }
     const size = 5 * devicePixelRatio;
     ctx.fillStyle = colour("second");
     ctx.beginPath();

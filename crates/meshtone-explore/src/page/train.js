@@ -39,18 +39,19 @@ export class Train {
   #above;
   #chooseWheel;
   #chooseMesh;
+  #chooseBearing;
 
-  /** @param chooseWheel, chooseMesh called with a name */
-  constructor(front, above, chooseWheel, chooseMesh) {
-    [this.#front, this.#above, this.#chooseWheel, this.#chooseMesh] = [front, above, chooseWheel, chooseMesh];
+  /** @param chooseWheel, chooseMesh, chooseBearing called with a name */
+  constructor(front, above, chooseWheel, chooseMesh, chooseBearing) {
+    [this.#front, this.#above, this.#chooseWheel, this.#chooseMesh, this.#chooseBearing] = [front, above, chooseWheel, chooseMesh, chooseBearing];
   }
 
-  /** @param train as the program says it; names of the wheel and of the mesh that are looked at */
-  show(train, wheel, mesh) {
+  /** @param train as the program says it; names of the wheel, the mesh and the rolling bearing that are looked at */
+  show(train, { wheel, mesh, bearing }) {
     // What has the focus keeps it: its place is drawn anew.
     const focused = document.activeElement?.closest?.(".train g")?.getAttribute("aria-label");
     this.#fromTheFront(train, wheel, mesh);
-    this.#fromAbove(train, wheel);
+    this.#fromAbove(train, wheel, bearing);
     if (focused) [...document.querySelectorAll(".train g")].find((group) => group.getAttribute("aria-label") === focused)?.focus();
   }
 
@@ -89,13 +90,15 @@ export class Train {
     fit(this.#front, corners, [...order.map((index) => circles[index]), ...axes, ...points]);
   }
 
-  #fromAbove({ shafts, wheels, bearings }, chosen) {
+  #fromAbove({ shafts, wheels, bearings }, chosen, chosenBearing) {
     const size = Math.max(...shafts.map(({ length_mm: length }) => length));
     const lines = shafts.map(({ name, x_mm: x, radius_mm: radius, length_mm: length }) =>
       made("g", { class: "shaft" }, made("rect", { x: 0, y: x - radius, width: length, height: 2 * radius }), textAt(length / 2, x, size * 0.035, name)));
-    const supports = bearings.map(({ shaft, z_mm: z }) => {
+    const supports = bearings.map(({ name, shaft, z_mm: z, rolling, damaged }) => {
       const { x_mm: x, radius_mm: radius } = shafts[shaft];
-      return made("rect", { class: "bearing", x: z - radius * 0.5, y: x - radius * 1.6, width: radius, height: radius * 3.2 });
+      const square = made("rect", { class: "bearing", x: z - radius * 0.5, y: x - radius * 1.6, width: radius, height: radius * 3.2 });
+      if (!rolling) return square;
+      return choosable(`rolling${damaged ? " damaged" : ""}`, name === chosenBearing, `rolling bearing ${name}${damaged ? ", damaged" : ""}`, () => this.#chooseBearing(name), square);
     });
     const faces = wheels.map(({ name, shaft, damaged, teeth, z_mm: z, face_width_mm: width, pitch_radius_mm: radius }) => {
       const x = shafts[shaft].x_mm;

@@ -86,6 +86,7 @@ impl AskedRequest {
                 channel: named("channel"),
                 wheel: named("wheel"),
                 mesh: named("mesh"),
+                bearing: named("bearing"),
             },
             fault: usize::try_from(number("fault")).unwrap_or(usize::MAX),
             fields,

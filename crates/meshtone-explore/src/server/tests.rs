@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use meshtone::damage::damage_kinds;
-use meshtone::scenario::{Fault, GearPair, Model, Scenario};
+use meshtone::scenario::{Fault, GearPair, Gearbox, Model, Scenario, gearbox_template};
 use serde_json::{Value, json};
 
 use super::*;
@@ -347,4 +347,82 @@ fn a_diagnosis_ends_with_its_connection_and_others_are_answered_meanwhile() {
     let last = waiting.last().unwrap();
     assert!(last["answer"]["summary"].is_string(), "{last}");
     assert_eq!(room.available_permits(), 1);
+}
+
+/// The two-stage gearbox with a ball bearing at the input.
+fn geared(defect: &str) -> String {
+    let bearing =
+        format!("[[bearing]]\nshaft = \"input\"\nat = 0.0\nkind = \"ball\"\nname = \"ER-10K\"\n{defect}");
+    let template = gearbox_template(None).replace("[[bearing]]\nshaft = \"input\"\nat = 0.0\n", &bearing);
+    let mut gearbox = Gearbox::from_toml(&template).unwrap();
+    gearbox.faults.clear();
+    gearbox.solver.settings.sampling_rate_hz = 2e4;
+    gearbox.solver.settings.duration_s = Some(2.0);
+    gearbox.to_toml()
+}
+
+#[test]
+fn the_envelope_of_a_rolling_bearing_shows_its_defect() {
+    let server = server();
+    let asked = |toml: &str, detail: &str| {
+        let question =
+            json!({ "page": "a", "detail": detail, "toml": toml, "channel": "input_0_vertical_g" });
+        server.post("gearbox", &question).packet().0
+    };
+    let amplitude = |said: &Value, name: &str| {
+        let lines = said["bearing"]["lines"].as_array().unwrap();
+        lines.iter().find(|line| line[0] == name).unwrap()[3].as_f64().unwrap()
+    };
+    let healthy = asked(&geared(""), "full");
+    let spalled = asked(&geared("defect = [{ race = \"outer\", width_mm = 2.0 }]\n"), "full");
+    assert!(
+        amplitude(&spalled, "BPFO") > 10.0 * amplitude(&healthy, "BPFO"),
+        "{} {}",
+        spalled["bearing"],
+        healthy["bearing"]
+    );
+    for other in ["FTF", "BPFI", "2 BSF"] {
+        assert!(
+            amplitude(&spalled, "BPFO") > 2.0 * amplitude(&spalled, other),
+            "{other}: {}",
+            spalled["bearing"]
+        );
+    }
+    assert_eq!(
+        (&spalled["bearing"]["name"], &spalled["bearing"]["shaft"]),
+        (&json!("input:0"), &json!("input"))
+    );
+    assert_eq!(spalled["train"]["bearings"][0]["damaged"], true);
+    // As far as a little beyond the third harmonic of the inner race: 4.948 of an ER-10K.
+    let bearing = &spalled["bearing"];
+    let most = bearing["spectrum"]["length"].as_f64().unwrap() * bearing["step"].as_f64().unwrap();
+    assert!((16.0..17.0).contains(&most), "{most}");
+    // Too little is simulated while a control moves, and linear bearings have no such lines.
+    assert_eq!(asked(&geared(""), "coarse")["bearing"], Value::Null);
+    assert_eq!(asked(&gearbox_template(None), "coarse")["bearing"], Value::Null);
+}
+
+#[test]
+fn a_defect_that_does_not_fit_is_refused_at_its_key() {
+    let server = server();
+    for (defect, key, problem) in [
+        (
+            "{ race = \"outer\", width_mm = 9.0 }",
+            "bearing[0].defect[0].width_mm",
+            "at most 7.9375 mm, the diameter of an element",
+        ),
+        ("{ race = \"outer\", width_mm = -1.0 }", "bearing[0].defect[0].width_mm", "must be more than 0"),
+        ("{ race = \"outer\", severity = 1.5 }", "bearing[0].defect[0].severity", "at most 1"),
+    ] {
+        let wrong = geared("").replacen(
+            "name = \"ER-10K\"\n",
+            &format!("name = \"ER-10K\"\ndefect = [{defect}]\n"),
+            1,
+        );
+        let scenario: Value = serde_json::to_value(wrong.parse::<toml::Table>().unwrap()).unwrap();
+        let refused = server.post("gearbox", &json!({ "page": "a", "scenario": scenario }));
+        let error = &refused.json()["error"];
+        assert_eq!((refused.status, &error["key"]), (422, &json!(key)), "{error}");
+        assert!(error["problem"].as_str().unwrap().contains(problem), "{error}");
+    }
 }
