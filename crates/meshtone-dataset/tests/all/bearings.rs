@@ -12,12 +12,18 @@ use meshtone_dataset::export::export_bearing_datasets;
 use meshtone_dataset::plan::{Plan, gearbox_template as gearbox_plan};
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
+use meshtone_io::scenario_file::ReadScenarioError;
 use meshtone_io::table::TableReader;
 use parquet::record::Field;
 
 use crate::records::made;
 
 const CLASSES: &str = r#"
+questions = ["detection", "diagnosis", "severity"]
+# A sound bearing has lines too, much weaker ones, as its stiffness varies with the places of its balls.
+[[vary]]
+key = "noise.level_g"
+fixed = 0.5
 [[class]]
 label = "healthy"
 
@@ -47,11 +53,16 @@ fn plan(bearing: &str, classes: &str) -> Result<Plan, String> {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("gearbox.toml"), scenario.to_toml()).unwrap();
     let text = format!(
-        "records = 6\nunits = 2\nscenario = \"gearbox.toml\"\nquestions = [\"detection\", \"diagnosis\", \"severity\"]\n{classes}\n\
+        "records = 6\nunits = 2\nscenario = \"gearbox.toml\"\n{classes}\n\
          [keep]\nsampling_rate_hz = 25e3\nduration_s = 0.8\nwheel = \"z3\"\nchannels = [\"input_0_vertical_g\"]\n\
          [split]\ntrain = 1.0\n"
     );
-    Plan::read_text(text, &directory.path().join("plan.toml")).map_err(|error| error.to_string())
+    Plan::read_text(text, &directory.path().join("plan.toml")).map_err(|error| match error {
+        ReadScenarioError::Invalid { error, .. } => {
+            format!("{error} ({})", error.help.clone().unwrap_or_default())
+        }
+        other => other.to_string(),
+    })
 }
 
 const BALL: &str = "kind = \"ball\"\nname = \"ER-10K\"\nslip_percent = 0.0";
