@@ -1,8 +1,8 @@
 //! The shafts of a machine by their tooth counts: what turns how fast, and which lines its wheels make.
 
-use super::{SeparationSettings, ShaftPhase, SignalError};
+use super::{SeparationSettings, ShaftPhase, SignalError, TrainBearing};
 use crate::error::ScenarioError;
-use crate::scenario::{Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
+use crate::scenario::{Bearing, Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
 use crate::wheel::WheelName;
 
 /// A shaft of a train.
@@ -48,6 +48,8 @@ pub struct GearTrain {
     pub wheels: Vec<TrainWheel>,
     /// Numbers of the two wheels of each mesh, the driving one first.
     pub meshes: Vec<[usize; 2]>,
+    /// The ball and roller bearings, each with its name: shaft and place, such as `input:0`.
+    pub bearings: Vec<(String, TrainBearing)>,
     /// Number of the shaft that the ratios are of: the pinion's, or the one that the motor turns.
     input: usize,
 }
@@ -73,6 +75,7 @@ impl GearTrain {
             shafts: wheels.iter().map(shaft).collect(),
             wheels: wheels.iter().enumerate().map(wheel).collect(),
             meshes: (1..N).map(|mate| [0, mate]).collect(),
+            bearings: Vec::new(),
             input: 0,
         }
     }
@@ -123,11 +126,18 @@ impl GearTrain {
                 .mesh_of(number)
                 .map_or(0.0, |(mesh, _)| layout.phases[mesh] / f64::from(wheel.teeth)),
         });
+        // Those of a valid gearbox are complete.
+        let bearing = |bearing: &Bearing| {
+            let geometry = bearing.rolling().ok()??.geometry;
+            let shaft = gearbox.shafts.iter().position(|shaft| shaft.name == bearing.shaft)?;
+            Some((bearing.seat_name(), TrainBearing { geometry, shaft }))
+        };
         Self {
             input: gearbox.shafts.iter().position(|of| of.couples_to == Coupled::Motor).unwrap_or(0),
             shafts: shafts.collect(),
             wheels: wheels.collect(),
             meshes: layout.wheels_of_mesh.clone(),
+            bearings: gearbox.bearings.iter().filter_map(bearing).collect(),
         }
     }
 
