@@ -1,11 +1,11 @@
 //! How often defects of bearings are found, and named rightly, in simulated recordings of a gearbox with six ball bearings.
 //!
 //! ```text
-//! cargo run --release -p meshtone-diagnose --example bearing_defects -- 240 races.csv
+//! cargo run --release -p meshtone-diagnose --example bearing_defects -- 48 races.csv
 //! ```
 //!
-//! Simulates so many recordings: every other one has a spall in one race of one bearing, half of either kind have damaged teeth. Wheels, structure, speed, load,
-//! path and the seat with the sensor are drawn as for the reference set. Writes a row for each recording, and prints a table by race and size.
+//! Simulates so many rigs, each recorded on all six seats: every other one has a spall in one race of one bearing, half of either kind have damaged teeth. Wheels,
+//! structure, speed, load and path are drawn as for the reference set. Writes a row for each recording, and prints a table by race and size.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
@@ -42,6 +42,7 @@ const NOISE_PART: f64 = 0.05;
 const SEED: u64 = 2647;
 
 /// What a recording is of.
+#[derive(Clone)]
 struct Truth {
     has_damaged_teeth: bool,
     /// The bearing, the race and the size of the spall.
@@ -57,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let asked = (0..count.parse()?)
         .into_par_iter()
         .map(|number| ask(&prior, number).map_err(|error| error.to_string()));
-    let asked: Vec<(Truth, BearingDefects)> = asked.collect::<Result<_, _>>()?;
+    let asked: Vec<(Truth, BearingDefects)> = asked.collect::<Result<Vec<_>, _>>()?.concat();
     let mut rows = String::from("recording,teeth,bearing,race,size,on_seat,found,p,over_median,of_true\n");
     for (number, (truth, found)) in asked.iter().enumerate() {
         let (bearing, race, size) = truth.defect.unwrap_or((9, 9, 0.0));
@@ -98,32 +99,47 @@ fn rig() -> Result<Gearbox, Box<dyn Error>> {
     Ok(gearbox)
 }
 
-/// Simulates a recording, and looks for defects in it.
-fn ask(prior: &Prior, number: u64) -> Result<(Truth, BearingDefects), Box<dyn Error>> {
+/// Simulates a rig, and looks for defects in what the sensor on each of its seats records.
+fn ask(prior: &Prior, number: u64) -> Result<Vec<(Truth, BearingDefects)>, Box<dyn Error>> {
     let mut draws = Draws::new(SEED, Purpose::DiagnosisNoise, number);
-    let (is_damaged, has_damaged_teeth) = (number % 2 == 1, number / 2 % 2 == 1);
+    // Every race on every bearing, with sound and with damaged teeth.
+    let (is_damaged, turn) = (number % 2 == 1, number / 2);
+    let has_damaged_teeth = (turn + turn / 6) % 2 == 1;
     let drawn = prior.draw(8 * number + if has_damaged_teeth { 2 + number / 4 % 6 } else { 1 })?;
     let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else { return Err("of a pair".into()) };
+    gearbox.sensors.clear();
     gearbox.solver.settings.sampling_rate_hz = RATE_HZ;
     gearbox.solver.settings.duration_s = Some(DURATION_S);
-    gearbox.solver.settings.input_revolutions = None;
+    gearbox.solver.settings.pinion_revolutions = None;
     let size = SIZES[0] * (SIZES[3] / SIZES[0]).powf(draws.uniform(0.5, 0.5));
-    let turn = (number / 4) as usize;
-    let defect = is_damaged.then_some((turn % 6, turn / 6 % 3, size));
+    let defect = is_damaged.then_some(((turn % 6) as usize, ((turn + turn / 6) % 3) as usize, size));
     if let Some((bearing, race, size)) = defect {
         gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
     }
-    let seat = gearbox.all_sensors().first().map(|sensor| sensor.at.to_string()).unwrap_or_default();
-    let is_on_seat = defect.is_some_and(|(bearing, ..)| seat == gearbox.bearings[bearing].seat_name());
-    let found = look(&gearbox, &drawn, &mut draws)?;
-    Ok((Truth { has_damaged_teeth, defect, is_on_seat }, found))
+    let channels = meshtone::simulate_gearbox(&gearbox)?.channels;
+    let form = ScenarioForm::Gearbox(gearbox.clone());
+    let train = GearTrain::of_form(&form)?;
+    let turning = TrainTurning::of_simulated(&form, channels.start_s, channels.len())?;
+    let bearings: Vec<_> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
+    let on_seat = |seat: usize| {
+        let mut of_seat = gearbox.clone();
+        of_seat.sensors = gearbox.all_sensors()[seat..=seat].to_vec();
+        let simulated = channels.signal(&of_seat.leading_channel()).ok_or("no such channel")?;
+        let signal = recorded(simulated, channels.sampling_rate_hz, &drawn, &mut draws);
+        let recording = TrainRecording {
+            signal: &signal,
+            sampling_rate_hz: channels.sampling_rate_hz,
+            train: &train,
+            turning: &turning,
+        };
+        let is_on_seat = defect.is_some_and(|(bearing, ..)| bearing == seat);
+        Ok((Truth { has_damaged_teeth, defect, is_on_seat }, recording.bearing_defects(&bearings)?))
+    };
+    (0..BEARINGS.len()).map(on_seat).collect()
 }
 
-/// Looks for defects in the simulated signal behind the path to the sensor, with noise.
-fn look(gearbox: &Gearbox, drawn: &Drawn, draws: &mut Draws) -> Result<BearingDefects, Box<dyn Error>> {
-    let channels = meshtone::simulate_gearbox(gearbox)?.channels;
-    let sampling_rate_hz = channels.sampling_rate_hz;
-    let (_, simulated) = channels.leading();
+/// A simulated signal behind the path to the sensor, with noise.
+fn recorded(simulated: &[f64], sampling_rate_hz: f64, drawn: &Drawn, draws: &mut Draws) -> Vec<f64> {
     let mut spectrum = real_spectrum(simulated);
     let per_line = sampling_rate_hz / simulated.len() as f64;
     let gains = drawn.path_gains((0..spectrum.len()).map(|line| line as f64 * per_line));
@@ -131,12 +147,7 @@ fn look(gearbox: &Gearbox, drawn: &Drawn, draws: &mut Draws) -> Result<BearingDe
     let mut signal = from_real_spectrum(spectrum, simulated.len());
     let rms = meshtone::signal::rms(&signal);
     signal.iter_mut().for_each(|value| *value += NOISE_PART * rms * draws.normal());
-    let form = ScenarioForm::Gearbox(gearbox.clone());
-    let train = GearTrain::of_form(&form)?;
-    let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len())?;
-    let recording = TrainRecording { signal: &signal, sampling_rate_hz, train: &train, turning: &turning };
-    let bearings: Vec<_> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
-    Ok(recording.bearing_defects(&bearings)?)
+    signal
 }
 
 fn is_true(truth: &Truth, test: &RaceTest) -> bool {
