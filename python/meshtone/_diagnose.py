@@ -44,6 +44,9 @@ class Diagnosis:
         ``tooth_probability``, ``angle_deg``. A tooth is None where nothing says from where to count, as after a mesh tone.
     any_damage : dict or None
         The same of a damage whatever its kind: ``severity``, ``wheel``, ``tooth`` and their probabilities, ``one_tooth_probability``.
+    bearings : list of dict
+        Of a gearbox with ball or roller bearings every race, those with a defect first: ``bearings``, the names of those that it may be of, ``race``,
+        ``is_detected``, ``false_alarm_probability``, ``order``, ``found_order``, ``over_median``. No severity is estimated.
     summary : str
         What it comes to, in a sentence.
     damaged : float
@@ -65,6 +68,7 @@ class Diagnosis:
 
     kinds: dict[str, dict[str, Any]] = field(repr=False)
     any_damage: dict[str, Any] | None = field(repr=False)
+    bearings: list[dict[str, Any]] = field(repr=False)
     summary: str
     damaged: float
     outside_model: float
@@ -197,6 +201,7 @@ def diagnose(
     return Diagnosis(
         kinds=report["kinds"],
         any_damage=report["any_damage"],
+        bearings=report["bearings"],
         summary=report["summary"],
         damaged=report["damaged"],
         outside_model=report["outside_model"],

@@ -3,6 +3,7 @@
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 
+use crate::bearings::BearingAnswer;
 use crate::diagnose::OUTSIDE;
 use crate::observation::SignalKind;
 use crate::warnings::DiagnosisWarning;
@@ -111,7 +112,9 @@ pub struct Answer {
     /// Meaning of tooth 1 of each wheel; none where teeth cannot be counted: after a mesh tone, or in several
     /// recordings without a mark in common.
     pub counted_from: Vec<Option<AngleZero>>,
-    /// Summary, in a sentence.
+    /// The bearings, race by race: those with a defect first, then the others, the strongest first. Empty of a rig without ball or roller bearings.
+    pub bearings: Vec<BearingAnswer>,
+    /// Summary: a sentence about bearings where one is damaged, and one about the teeth.
     pub summary: String,
     /// Answer about a damage, whatever its kind, given that there is one.
     pub any_damage: Option<AnyDamage>,
@@ -174,6 +177,11 @@ impl Answer {
     /// Returns whether several damages at once are likelier than any single one.
     pub fn has_likely_several(&self) -> bool {
         self.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL)
+    }
+
+    /// The strongest defect of a bearing that is detected.
+    pub fn damaged_bearing(&self) -> Option<&BearingAnswer> {
+        self.bearings.first().filter(|of| of.is_detected())
     }
 
     /// The likeliest damage.

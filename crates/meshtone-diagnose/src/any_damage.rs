@@ -118,13 +118,16 @@ fn likely_wheels(answer: &Answer) -> String {
     format!("the wheels {}", likely.join(" and "))
 }
 
-/// Summary of an answer, in a sentence.
+/// What is said of the teeth, in a sentence.
 ///
 /// # Arguments
 /// * `answer` - all but the summary
 pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
-        return "Nothing can be said: the recordings are unlike what was simulated.".to_owned();
+        let why = answer.damaged_bearing().map_or("", |_| ", likely because of the bearing");
+        return format!(
+            "Nothing can be said of the teeth: the recordings are unlike what was simulated{why}."
+        );
     }
     let ([unseen, seen], damaged) = (DECIDED, answer.damaged());
     match &answer.any_damage {
@@ -176,6 +179,7 @@ mod tests {
             wheels: ["pinion", "gear"].map(str::to_owned).into(),
             wheel_probabilities: vec![0.0, 1.0],
             counted_from: vec![None; 2],
+            bearings: Vec::new(),
             summary: String::new(),
             any_damage,
             simulated_records: 0,
@@ -225,7 +229,9 @@ mod tests {
             said(0.99),
             "The gear is damaged, heavily (1.0 of 1, 90 %: 1.0 to 1.0); look at tooth 8 of the gear."
         );
-        assert!(said_of("missing-tooth", Some(8), 0.99, 0.001).starts_with("Nothing can be said"));
+        assert!(
+            said_of("missing-tooth", Some(8), 0.99, 0.001).starts_with("Nothing can be said of the teeth")
+        );
         assert!(said(0.6).starts_with("Damage is likely, but not sure"));
         assert!(said(0.3).contains("not excluded"));
         assert!(said(0.05).starts_with("No damage is seen"));

@@ -8,6 +8,7 @@ use crate::answer::{
     Answer, AnyDamage, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer, ToothAnswer,
 };
 use crate::any_damage::sentence;
+use crate::bearings;
 use crate::features::burst_rev;
 use crate::learn::{FeatureRow, Layout, Learned, Question};
 use crate::observation::{Observation, WheelLines, revolution};
@@ -102,6 +103,7 @@ pub fn diagnose(
         wheels: wheels.iter().map(|wheel| wheel.name.clone()).collect(),
         wheel_probabilities: of_wheels.iter().map(|of| of / of_any).collect(),
         shown_wheel,
+        bearings: bearings::answers(&learned.reference.prior.train, question.now),
         summary: String::new(),
         any_damage,
         simulated_records: learned.reference.records.len(),
@@ -119,7 +121,8 @@ pub fn diagnose(
         severity_draws: severity_draws.map_or_else(Vec::new, |(_, draws)| spread(draws)),
     };
     answer.warnings = warnings(&answer, learned, question);
-    answer.summary = sentence(&answer);
+    let of_bearings = bearings::sentence(&answer.bearings);
+    answer.summary = of_bearings.into_iter().chain([sentence(&answer)]).collect::<Vec<_>>().join(" ");
     Ok(answer)
 }
 

@@ -4,6 +4,7 @@ use meshtone::signal::AngleZero;
 use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, AnyDamage, Explanation, Interval, KindAnswer};
+use crate::bearings::BearingAnswer;
 use crate::warnings::DiagnosisWarning;
 
 /// Version of the layout; it is raised where a key changes its meaning.
@@ -28,6 +29,7 @@ impl Answer {
             "damaged": self.damaged(),
             "teeth_counted_from": counted_from,
             "summary": self.summary,
+            "bearings": self.bearings.iter().map(bearing).collect::<Vec<_>>(),
             "any_damage": self.any_damage.as_ref().map(|any| any_damage(any, wheels)),
             "kinds": kinds,
             "outside_model": self.outside_model,
@@ -43,6 +45,18 @@ impl Answer {
 
 fn warning(warning: &DiagnosisWarning) -> Value {
     json!({ "code": warning.kind.code(), "message": warning.message })
+}
+
+fn bearing(of: &BearingAnswer) -> Value {
+    json!({
+        "bearings": of.bearings,
+        "race": of.race.name(),
+        "is_detected": of.is_detected(),
+        "false_alarm_probability": of.false_alarm_probability,
+        "order": of.order,
+        "found_order": of.found_order,
+        "over_median": of.over_median,
+    })
 }
 
 fn any_damage(any: &AnyDamage, wheels: &[String]) -> Value {

@@ -2,11 +2,13 @@
 //!
 //! A [`Prior`] says what may be: kinds of damage and their sizes, and everything that differs from rig to rig. A
 //! [`ReferenceSet`] holds simulations of it, as averages over the revolutions of each wheel. An [`Observation`] is what a recording
-//! shows; [`diagnose`] says what it may be, by what it learns from the reference set.
+//! shows; [`diagnose`] says what it may be, by what it learns from the reference set. A [`BearingAnswer`] needs no simulation: it is a test of
+//! the recording alone.
 #![deny(missing_docs)]
 
 mod answer;
 mod any_damage;
+mod bearings;
 mod consistency;
 mod diagnose;
 mod error;
@@ -36,6 +38,7 @@ pub use answer::{
     Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer,
     ToothAnswer, p_in_words,
 };
+pub use bearings::BearingAnswer;
 pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};

@@ -1,9 +1,9 @@
 //! Features of the wheels in a recording or a simulation.
 
 use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, GearTrain, MeanPart, Mismatch, SeparationSettings, ShaftPhase,
-    SignalError, StatedFacts, StatedTurning, SynchronousAverage, angular_resample, check_channel,
-    find_mismatch,
+    Alternative, AngleZero, AngularSettings, BearingDefects, GearTrain, MeanPart, Mismatch,
+    SeparationSettings, ShaftPhase, SignalError, StatedFacts, StatedTurning, SynchronousAverage,
+    angular_resample, check_channel, find_mismatch,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -138,6 +138,8 @@ pub struct Observation {
     pub mismatch: Option<String>,
     /// Other warnings about it.
     pub doubts: Vec<String>,
+    /// What it shows about the bearings of the rig; nothing in a single revolution.
+    pub bearings: BearingDefects,
 }
 
 impl Observation {
@@ -197,6 +199,7 @@ impl Observation {
             noise: vec![Vec::new(); 2],
             mismatch: None,
             doubts: beyond_a_revolution(values_g, gear_teeth).into_iter().collect(),
+            bearings: BearingDefects::default(),
         })
     }
 }

@@ -1,10 +1,10 @@
 //! Observation of recordings by the angles of the shafts.
 
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, ForeignTones, GearTrain, LinesOffShafts, Mismatch, ShaftPhase,
-    SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage, TrainRecording, TrainTurning,
-    TrainWheel, find_train_mismatch, foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation,
-    synchronous_average, synchronous_part,
+    AngleZero, AngularSettings, AngularSignal, BearingDefects, ForeignTones, GearTrain, LinesOffShafts,
+    Mismatch, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage,
+    TrainBearing, TrainRecording, TrainTurning, TrainWheel, find_train_mismatch, foreign_tones, kurtosis,
+    lines_off_shafts, rms, standard_deviation, synchronous_average, synchronous_part,
 };
 use meshtone::wheel::WheelName;
 use meshtone_fourier::{Complex64, from_real_spectrum};
@@ -121,7 +121,9 @@ impl Observation {
         };
         let against = mismatch(recording, &angular)?;
         let observed = Self::of_angles(train, &angular, input_speed_hz)?;
-        let observed = Self { zero, ..observed };
+        let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
+        let bearings = recording.bearing_defects(&bearings)?;
+        let observed = Self { zero, bearings, ..observed };
         Ok(match against {
             Some(against) => observed.with_mismatch(against),
             None => observed,
@@ -167,6 +169,7 @@ impl Observation {
             noise: noise.collect(),
             mismatch,
             doubts: shaft.too_short().into_iter().collect(),
+            bearings: BearingDefects::default(),
         })
     }
 }

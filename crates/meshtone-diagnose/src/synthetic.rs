@@ -2,7 +2,7 @@
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{DamageKind, GearPair, Gearbox, Scenario, ScenarioForm};
-use meshtone::signal::AngleZero;
+use meshtone::signal::{AngleZero, BearingDefects};
 use meshtone_fourier::Complex64;
 
 use crate::observation::{Observation, SignalKind, WheelLines, separations};
@@ -110,5 +110,6 @@ pub fn observed(record: &ReferenceRecord) -> Observation {
         noise: vec![vec![NOISE_G]; record.wheels.len()],
         mismatch: None,
         doubts: Vec::new(),
+        bearings: BearingDefects::default(),
     }
 }

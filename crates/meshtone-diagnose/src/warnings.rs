@@ -9,7 +9,7 @@ use crate::answer::{Answer, p_in_words};
 use crate::diagnose::{OUTSIDE, diagnose};
 use crate::learn::{Learned, Question};
 use crate::prior::Prior;
-use crate::{consistency, level, speed};
+use crate::{bearings, consistency, level, speed};
 
 /// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
 const SURELY: f64 = 0.9;
@@ -26,6 +26,8 @@ pub enum DiagnosisWarningKind {
     Mismatch,
     /// Something else about a recording is doubtful.
     Doubt,
+    /// Nothing is said about a bearing.
+    Bearing,
     /// The speed is beside those of the simulations.
     Speed,
     /// The recording is unlike what was simulated.
@@ -52,6 +54,7 @@ impl DiagnosisWarningKind {
             Self::IdealWheels => "ideal-wheels",
             Self::Mismatch => "mismatch",
             Self::Doubt => "doubt",
+            Self::Bearing => "bearing",
             Self::Speed => "speed",
             Self::Outside => "outside",
             Self::HealthyOutside => "healthy-outside",
@@ -94,7 +97,7 @@ impl Question<'_> {
     /// # Arguments
     /// * `prior` - what may be about the rig
     pub fn warnings(&self, prior: &Prior) -> Vec<DiagnosisWarning> {
-        use DiagnosisWarningKind::{Doubt, IdealWheels, Mismatch, NoHealthy, SeveralStates, Speed};
+        use DiagnosisWarningKind::{Bearing, Doubt, IdealWheels, Mismatch, NoHealthy, SeveralStates, Speed};
 
         let mut warnings: Vec<DiagnosisWarning> = Vec::new();
         let mut warn = |kind, message: String| {
@@ -113,6 +116,10 @@ impl Question<'_> {
         }
         self.all().filter_map(|asked| asked.mismatch.clone()).for_each(|said| warn(Mismatch, said));
         self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn(Doubt, said));
+        self.now
+            .iter()
+            .flat_map(|asked| bearings::doubts(&prior.train, asked))
+            .for_each(|said| warn(Bearing, said));
         speed::doubts(self, prior).into_iter().for_each(|said| warn(Speed, said));
         consistency::levels_apart(self).into_iter().for_each(|said| warn(SeveralStates, said));
         if self.healthy.is_empty() {
@@ -149,11 +156,13 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     use DiagnosisWarningKind::{Contradiction, HealthyOutside, Level, NotSimulated, Outside};
 
     let outside = answer.is_recording_outside().then(|| {
-        format!(
-            "the recording is unlike what was simulated ({}): what is wrong may be none of the kinds that are known here, or the scenario \
-             is not this rig",
-            p_in_words(answer.outside_model)
-        )
+        let why = match answer.damaged_bearing() {
+            Some(_) => "the damaged bearing is the likely reason, since the simulations have none",
+            None => {
+                "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
+            }
+        };
+        format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });
     let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
     let healthy = healthy.map(|p| of_healthy(p, learned, question));

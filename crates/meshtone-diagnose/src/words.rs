@@ -3,6 +3,7 @@
 use meshtone::signal::AngleZero;
 
 use crate::answer::{Answer, PlaceAnswer, ToothAnswer, p_in_words};
+use crate::bearings;
 use crate::observation::SignalKind;
 
 /// (-) Probability below which kinds are only counted.
@@ -13,7 +14,7 @@ const PROBABILITY: &str = "probabilities are given the scenario; before the reco
 /// An answer in words. Where nothing can be said it has no probabilities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnswerInWords {
-    /// Summary, in a sentence.
+    /// Summary, in a sentence or two.
     pub summary: String,
     /// Probability that something is damaged; none where nothing can be said.
     pub damaged: Option<String>,
@@ -24,7 +25,7 @@ pub struct AnswerInWords {
     pub kinds: Vec<[String; 4]>,
     /// Number of the unlikely kinds with their probability together; none where there are none.
     pub others: Option<String>,
-    /// Notes: what probabilities mean, from where teeth are counted, how many simulations were learnt from.
+    /// Notes: what the bearings show, what probabilities mean, from where teeth are counted, how many simulations were learnt from.
     pub notes: Vec<String>,
 }
 
@@ -37,8 +38,9 @@ impl Answer {
     /// The answer in words.
     pub fn in_words(&self) -> AnswerInWords {
         let (summary, likeness, learnt) = (self.summary.clone(), likeness(self), learnt(self));
+        let bearings = bearings::notes(&self.bearings);
         if self.is_outside() {
-            let (kinds, notes) = (Vec::new(), vec![learnt]);
+            let (kinds, notes) = (Vec::new(), [bearings, vec![learnt]].concat());
             return AnswerInWords { summary, damaged: None, likeness, kinds, others: None, notes };
         }
         let (shown, others): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.probability >= SHOWN);
@@ -60,9 +62,9 @@ impl Answer {
             likeness,
             kinds: kinds.collect(),
             others: counted,
-            notes: [Some(PROBABILITY.to_owned()), counted_from(self), Some(learnt)]
+            notes: bearings
                 .into_iter()
-                .flatten()
+                .chain([Some(PROBABILITY.to_owned()), counted_from(self), Some(learnt)].into_iter().flatten())
                 .collect(),
         }
     }

@@ -87,7 +87,7 @@ pub fn bearings_of_train<'py>(
             let problem = "bearings: missing, and the machine has no rolling bearing; name some, as [Bearing.named(\"6205\")]";
             return Err(value_error(problem));
         }
-        None => train.bearings.clone(),
+        None => train.distinct_bearings(),
     };
     let separation = match separation {
         "averages" => BearingSeparation::Averages,

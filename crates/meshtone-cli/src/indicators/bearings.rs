@@ -125,7 +125,7 @@ impl BearingOptions {
         if !self.bearings.is_empty() {
             return self.bearings.clone();
         }
-        train.bearings.iter().map(|bearing| NamedChoice::of_train(bearing, train)).collect()
+        train.distinct_bearings().iter().map(|bearing| NamedChoice::of_train(bearing, train)).collect()
     }
 
     /// The bearings that are looked for, as the command line names them.

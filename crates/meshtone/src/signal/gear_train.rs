@@ -2,7 +2,7 @@
 
 use super::{SeparationSettings, ShaftPhase, SignalError, TrainBearing};
 use crate::error::ScenarioError;
-use crate::scenario::{Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
+use crate::scenario::{Bearing, Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
 use crate::wheel::WheelName;
 
 /// A shaft of a train.
@@ -48,8 +48,8 @@ pub struct GearTrain {
     pub wheels: Vec<TrainWheel>,
     /// Numbers of the two wheels of each mesh, the driving one first.
     pub meshes: Vec<[usize; 2]>,
-    /// The rolling bearings that its scenario has. Those of one geometry on one shaft, whose defects show at the same orders, are there once.
-    pub bearings: Vec<TrainBearing>,
+    /// The ball and roller bearings, each with its name: shaft and place, such as `input:0`.
+    pub bearings: Vec<(String, TrainBearing)>,
     /// Number of the shaft that the ratios are of: the pinion's, or the one that the motor turns.
     input: usize,
 }
@@ -126,12 +126,18 @@ impl GearTrain {
                 .mesh_of(number)
                 .map_or(0.0, |(mesh, _)| layout.phases[mesh] / f64::from(wheel.teeth)),
         });
+        // Those of a valid gearbox are complete.
+        let bearing = |bearing: &Bearing| {
+            let geometry = bearing.rolling().ok()??.geometry;
+            let shaft = gearbox.shafts.iter().position(|shaft| shaft.name == bearing.shaft)?;
+            Some((bearing.seat_name(), TrainBearing { geometry, shaft }))
+        };
         Self {
             input: gearbox.shafts.iter().position(|of| of.couples_to == Coupled::Motor).unwrap_or(0),
             shafts: shafts.collect(),
             wheels: wheels.collect(),
             meshes: layout.wheels_of_mesh.clone(),
-            bearings: bearings(gearbox),
+            bearings: gearbox.bearings.iter().filter_map(bearing).collect(),
         }
     }
 
@@ -272,16 +278,15 @@ impl GearTrain {
         let hunting = ratios.iter().copied().fold(ratios[of], Ratio::common_measure);
         (ratios.iter().map(|ratio| ratio.value()).collect(), hunting.value())
     }
-}
 
-/// The rolling bearings of a gearbox that can be simulated, each geometry on a shaft once.
-fn bearings(gearbox: &Gearbox) -> Vec<TrainBearing> {
-    let mut bearings = Vec::new();
-    for bearing in &gearbox.bearings {
-        let shaft = gearbox.shafts.iter().position(|shaft| shaft.name == bearing.shaft);
-        let parts = bearing.rolling().ok().flatten();
-        let placed = shaft.zip(parts).map(|(shaft, parts)| TrainBearing { geometry: parts.geometry, shaft });
-        bearings.extend(placed.filter(|placed| !bearings.contains(placed)));
+    /// The rolling bearings, of those with one geometry on one shaft, whose defects show at the same orders, the first.
+    pub fn distinct_bearings(&self) -> Vec<TrainBearing> {
+        let mut distinct = Vec::new();
+        for (_, bearing) in &self.bearings {
+            if !distinct.contains(bearing) {
+                distinct.push(*bearing);
+            }
+        }
+        distinct
     }
-    bearings
 }

@@ -49,7 +49,11 @@ impl Kurtogram {
         let bands = self.levels.iter().flat_map(|kurtosis| {
             let width = half / kurtosis.len() as f64;
             kurtosis.iter().enumerate().map(move |(number, value)| KurtogramBand {
-                band: FrequencyBand { from_hz: number as f64 * width, to_hz: (number + 1) as f64 * width },
+                // The last one ends at half the rate, whatever the rounding.
+                band: FrequencyBand {
+                    from_hz: number as f64 * width,
+                    to_hz: ((number + 1) as f64 * width).min(half),
+                },
                 bands: kurtosis.len(),
                 kurtosis: *value,
             })

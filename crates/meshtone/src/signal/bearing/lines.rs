@@ -4,7 +4,7 @@ use crate::bearing::DefectOrders;
 use crate::signal::SquaredEnvelopeSpectrum;
 
 /// (-) How far slip moves a line, on either side.
-const SLIP: f64 = 0.015;
+pub(super) const SLIP: f64 = 0.015;
 /// (lines) A line of the spectrum with a Hann window is so wide on either side.
 const WIDTH: f64 = 2.0;
 /// Lines on either side, and shaft orders if these are more lines, whose median a line is compared with.

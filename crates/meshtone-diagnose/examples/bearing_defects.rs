@@ -1,0 +1,199 @@
+//! How often defects of bearings are found, and named rightly, in simulated recordings of a gearbox with six ball bearings.
+//!
+//! ```text
+//! cargo run --release -p meshtone-diagnose --example bearing_defects -- 48 races.csv
+//! ```
+//!
+//! Simulates so many rigs, each recorded on all six seats: every other one has a spall in one race of one bearing, half of either kind have damaged teeth. Wheels,
+//! structure, speed, load and path are drawn as for the reference set. Writes a row for each recording, and prints a table by race and size.
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+use std::fmt::Write;
+use std::fs;
+
+use meshtone::random::{Draws, Purpose};
+use meshtone::scenario::{Bearing, BearingDefect, BearingKind, DefectPlace, Gearbox, ScenarioForm};
+use meshtone::signal::{BearingDefects, DefectKind, GearTrain, RaceTest, TrainRecording, TrainTurning};
+use meshtone_diagnose::{Drawn, Prior};
+use meshtone_fourier::{from_real_spectrum, real_spectrum};
+use rayon::prelude::*;
+
+/// Bearings of the input, the middle and the output shaft. Those of the input have the same orders.
+const BEARINGS: [(&str, f64, &str); 6] = [
+    ("input", 0.0, "ER-10K"),
+    ("input", 1.0, "ER-10K"),
+    ("middle", 0.0, "6203"),
+    ("middle", 1.0, "6205"),
+    ("output", 0.0, "ER-16K"),
+    ("output", 1.0, "UER204"),
+];
+const RACES: [(DefectPlace, DefectKind); 3] = [
+    (DefectPlace::Outer, DefectKind::OuterRace),
+    (DefectPlace::Inner, DefectKind::InnerRace),
+    (DefectPlace::Element, DefectKind::Element),
+];
+/// (-) Smallest and largest size of a spall, and limits of the rows of the table: its width over the diameter of an element.
+const SIZES: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
+const DURATION_S: f64 = 5.0;
+const RATE_HZ: f64 = 25_600.0;
+/// (-) Noise, as a part of the rms.
+const NOISE_PART: f64 = 0.05;
+const SEED: u64 = 2647;
+
+/// What a recording is of.
+#[derive(Clone)]
+struct Truth {
+    has_damaged_teeth: bool,
+    /// The bearing, the race and the size of the spall.
+    defect: Option<(usize, usize, f64)>,
+    /// Whether the sensor is on the seat of the bearing.
+    is_on_seat: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let [_, count, output] = &arguments[..] else { return Err("needs COUNT OUTPUT.csv".into()) };
+    let prior = Prior { seed: SEED, ..Prior::new(&ScenarioForm::Gearbox(rig()?))? };
+    let asked = (0..count.parse()?)
+        .into_par_iter()
+        .map(|number| ask(&prior, number).map_err(|error| error.to_string()));
+    let asked: Vec<(Truth, BearingDefects)> = asked.collect::<Result<Vec<_>, _>>()?.concat();
+    let mut rows = String::from("recording,teeth,bearing,race,size,on_seat,found,p,over_median,of_true\n");
+    for (number, (truth, found)) in asked.iter().enumerate() {
+        let (bearing, race, size) = truth.defect.unwrap_or((9, 9, 0.0));
+        let detected: Vec<String> = found
+            .races
+            .iter()
+            .filter(|of| of.is_detected())
+            .map(|of| format!("{} {:?}", of.race.name(), of.bearings))
+            .collect();
+        let of_true = found.races.iter().find(|of| is_true(truth, of));
+        writeln!(
+            rows,
+            "{number},{},{bearing},{race},{size:.3},{},{},{:.2e},{:.1},{:.2e}",
+            truth.has_damaged_teeth,
+            truth.is_on_seat,
+            detected.join(" + ").replace(',', ";"),
+            found.races.first().map_or(f64::NAN, |of| of.false_alarm_probability),
+            found.races.first().map_or(f64::NAN, |of| of.over_median),
+            of_true.map_or(f64::NAN, |of| of.false_alarm_probability),
+        )?;
+    }
+    fs::write(output, rows)?;
+    print!("{}", table(&asked)?);
+    Ok(())
+}
+
+/// The gearbox of the examples, on ball bearings.
+fn rig() -> Result<Gearbox, Box<dyn Error>> {
+    let mut gearbox = Gearbox::from_toml(include_str!("../../../examples/gearbox.toml"))?;
+    let bearing = |(shaft, at, name): (&str, f64, &str)| {
+        let mut bearing = Bearing::new(shaft, at);
+        bearing.kind = BearingKind::Ball;
+        bearing.name = Some(name.to_owned());
+        bearing
+    };
+    gearbox.bearings = BEARINGS.map(bearing).into();
+    gearbox.sensors.clear();
+    Ok(gearbox)
+}
+
+/// Simulates a rig, and looks for defects in what the sensor on each of its seats records.
+fn ask(prior: &Prior, number: u64) -> Result<Vec<(Truth, BearingDefects)>, Box<dyn Error>> {
+    let mut draws = Draws::new(SEED, Purpose::DiagnosisNoise, number);
+    // Every race on every bearing, with sound and with damaged teeth.
+    let (is_damaged, turn) = (number % 2 == 1, number / 2);
+    let has_damaged_teeth = (turn + turn / 6) % 2 == 1;
+    let drawn = prior.draw(8 * number + if has_damaged_teeth { 2 + number / 4 % 6 } else { 1 })?;
+    let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else { return Err("of a pair".into()) };
+    gearbox.sensors.clear();
+    gearbox.solver.settings.sampling_rate_hz = RATE_HZ;
+    gearbox.solver.settings.duration_s = Some(DURATION_S);
+    gearbox.solver.settings.pinion_revolutions = None;
+    let size = SIZES[0] * (SIZES[3] / SIZES[0]).powf(draws.uniform(0.5, 0.5));
+    let defect = is_damaged.then_some(((turn % 6) as usize, ((turn + turn / 6) % 3) as usize, size));
+    if let Some((bearing, race, size)) = defect {
+        gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
+    }
+    let channels = meshtone::simulate_gearbox(&gearbox)?.channels;
+    let form = ScenarioForm::Gearbox(gearbox.clone());
+    let train = GearTrain::of_form(&form)?;
+    let turning = TrainTurning::of_simulated(&form, channels.start_s, channels.len())?;
+    let bearings: Vec<_> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
+    let on_seat = |seat: usize| {
+        let mut of_seat = gearbox.clone();
+        of_seat.sensors = gearbox.all_sensors()[seat..=seat].to_vec();
+        let simulated = channels.signal(&of_seat.leading_channel()).ok_or("no such channel")?;
+        let signal = recorded(simulated, channels.sampling_rate_hz, &drawn, &mut draws);
+        let recording = TrainRecording {
+            signal: &signal,
+            sampling_rate_hz: channels.sampling_rate_hz,
+            train: &train,
+            turning: &turning,
+        };
+        let is_on_seat = defect.is_some_and(|(bearing, ..)| bearing == seat);
+        Ok((Truth { has_damaged_teeth, defect, is_on_seat }, recording.bearing_defects(&bearings)?))
+    };
+    (0..BEARINGS.len()).map(on_seat).collect()
+}
+
+/// A simulated signal behind the path to the sensor, with noise.
+fn recorded(simulated: &[f64], sampling_rate_hz: f64, drawn: &Drawn, draws: &mut Draws) -> Vec<f64> {
+    let mut spectrum = real_spectrum(simulated);
+    let per_line = sampling_rate_hz / simulated.len() as f64;
+    let gains = drawn.path_gains((0..spectrum.len()).map(|line| line as f64 * per_line));
+    spectrum.iter_mut().zip(gains).for_each(|(value, gain)| *value *= gain);
+    let mut signal = from_real_spectrum(spectrum, simulated.len());
+    let rms = meshtone::signal::rms(&signal);
+    signal.iter_mut().for_each(|value| *value += NOISE_PART * rms * draws.normal());
+    signal
+}
+
+fn is_true(truth: &Truth, test: &RaceTest) -> bool {
+    truth
+        .defect
+        .is_some_and(|(bearing, race, _)| test.race == RACES[race].1 && test.bearings.contains(&bearing))
+}
+
+/// Counts by race and size.
+fn table(asked: &[(Truth, BearingDefects)]) -> Result<String, Box<dyn Error>> {
+    let mut table = String::from(
+        "| | recordings | something is detected | the first is the right bearing | and race | the others are right |\n|---|--:|--:|--:|--:|--:|\n",
+    );
+    let mut row = |name: &str, is_of: &dyn Fn(&Truth) -> bool| {
+        let of: Vec<_> = asked.iter().filter(|(truth, _)| is_of(truth)).collect();
+        let first = |of: &&&(Truth, BearingDefects)| of.1.races.first().is_some_and(RaceTest::is_detected);
+        let bearing = |(truth, found): &(Truth, BearingDefects)| {
+            truth.defect.is_some_and(|(bearing, ..)| found.races[0].bearings.contains(&bearing))
+        };
+        let detected: Vec<_> = of.iter().filter(first).collect();
+        let alone = |of: &(Truth, BearingDefects)| {
+            of.1.races.iter().filter(|of| of.is_detected()).all(|race| is_true(&of.0, race))
+        };
+        writeln!(
+            table,
+            "| {name} | {} | {} | {} | {} | {} |",
+            of.len(),
+            detected.len(),
+            detected.iter().filter(|of| bearing(of)).count(),
+            detected.iter().filter(|of| is_true(&of.0, &of.1.races[0])).count(),
+            detected.iter().filter(|of| alone(of)).count(),
+        )
+    };
+    row("no defect, sound teeth", &|of| of.defect.is_none() && !of.has_damaged_teeth)?;
+    row("no defect, damaged teeth", &|of| of.defect.is_none() && of.has_damaged_teeth)?;
+    for (race, (_, kind)) in RACES.iter().enumerate() {
+        for size in SIZES.windows(2) {
+            let is_of = |of: &Truth| {
+                of.defect.is_some_and(|(_, at, of)| at == race && (size[0]..size[1]).contains(&of))
+            };
+            row(&format!("{}, {} to {}", kind.name(), size[0], size[1]), &is_of)?;
+        }
+    }
+    row("defect, sensor on its seat", &|of| of.is_on_seat)?;
+    row("defect, sensor on another seat", &|of| of.defect.is_some() && !of.is_on_seat)?;
+    row("defect, damaged teeth", &|of| of.defect.is_some() && of.has_damaged_teeth)?;
+    row("defect, sound teeth", &|of| of.defect.is_some() && !of.has_damaged_teeth)?;
+    Ok(table)
+}

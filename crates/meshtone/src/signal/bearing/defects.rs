@@ -1,0 +1,360 @@
+//! Whether a recording shows a defect of a bearing: the lines of a race together, against the same lines at orders of no bearing.
+
+use std::f64::consts::PI;
+
+use super::lines::{DefectKind, SLIP};
+use super::{BearingSettings, TrainBearing};
+use crate::signal::{FrequencyBand, SignalError, SignalWarning, SquaredEnvelopeSpectrum, TrainRecording};
+
+/// Harmonics of a race that are looked at together.
+const HARMONICS: u32 = 3;
+/// Harmonics and sidebands of a defect that was found, in which no other is looked for.
+const EXPLAINED: (i32, i32) = (12, 4);
+/// (lines) A line of a spectrum with a Hann window, and a shaft's whole order, reach so far on either side.
+const WIDTH: f64 = 2.5;
+/// (-) Random slip widens a line by so much of its order on either side.
+const WIDENED: f64 = 0.005;
+/// (lines) Shafts whose whole orders are closer leave nothing between them.
+const CLOSEST: f64 = 4.0 * WIDTH;
+/// (-) Largest ratio of a decoy's order to that of the race, and the inverse of the smallest.
+const FARTHEST: f64 = 2.0;
+/// Fewest decoys from which a false alarm's probability is estimated.
+const FEWEST_DECOYS: usize = 20;
+/// (lines) Half the least width in which the median of the lines is taken, and in orders of the fastest shaft.
+const BESIDE: (f64, f64) = (24.0, 0.5);
+/// (rev) Fewest turns of a cage.
+const FEWEST_CAGE_TURNS: f64 = 12.0;
+/// (-) Score of a line that cannot be read: about the mean of noise, ln(1 + the largest of three exponential numbers of mean 1).
+const UNREAD: f64 = 1.0;
+/// Euler's constant: (mean - mode) / scale of a Gumbel distribution.
+const EULER: f64 = 0.577_215_664_901_532_9;
+
+/// Races in which a defect is looked for.
+const RACES: [DefectKind; 3] = [DefectKind::OuterRace, DefectKind::InnerRace, DefectKind::Element];
+
+/// Whether one race of a bearing has a defect.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct RaceTest {
+    /// The race.
+    pub race: DefectKind,
+    /// The bearings that it may be of, by their places: several where they have the same orders.
+    pub bearings: Vec<usize>,
+    /// (orders of the bearing's shaft) Its first line without slip.
+    pub order: f64,
+    /// (orders of the bearing's shaft) Its first line where its lines are strongest together, within 1.5 % of that.
+    pub found_order: f64,
+    /// (-) Amplitude over the median beside it, geometric mean of the harmonics.
+    pub over_median: f64,
+    /// (-) Probability that any race of a machine without defects looks like this one, at most 1: times the number of races.
+    pub false_alarm_probability: f64,
+}
+
+impl RaceTest {
+    /// (-) Probability of a false alarm below which a defect is said to be there.
+    pub const DETECTED: f64 = 0.01;
+
+    /// Returns whether a defect is said to be there.
+    pub fn is_detected(&self) -> bool {
+        self.false_alarm_probability < Self::DETECTED
+    }
+}
+
+/// What a recording shows about defects of bearings.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct BearingDefects {
+    /// The races that were looked at: those with a defect in the order in which they were found, then the others, the strongest first.
+    pub races: Vec<RaceTest>,
+    /// Bearings, by their places, about which the recording says nothing, because their cages turn too few times: how many times, and how many are needed.
+    pub too_short: Vec<(usize, f64, f64)>,
+    /// Bearings whose lines lie beyond the frequencies of the recording, or cannot be separated from the orders of shafts.
+    pub unresolved: Vec<usize>,
+    /// The band of the squared envelope.
+    pub band: Option<FrequencyBand>,
+    /// What is doubtful about the recording.
+    pub warnings: Vec<SignalWarning>,
+}
+
+/// A race with its lines, in orders of one shaft of the machine.
+struct Comb {
+    race: DefectKind,
+    bearings: Vec<usize>,
+    /// Order of the bearing's shaft.
+    shaft: f64,
+    order: f64,
+    /// Distance of the sidebands; none without sidebands.
+    beside: Option<f64>,
+}
+
+impl Comb {
+    /// Lines at harmonics and sidebands, where the race's order is `order`: the harmonic, the sideband, the order.
+    fn lines(&self, order: f64, harmonics: i32, sidebands: i32) -> impl Iterator<Item = (i32, i32, f64)> {
+        let (beside, sidebands) = self.beside.map_or((0.0, 0), |beside| (beside, sidebands));
+        (1..=harmonics).flat_map(move |harmonic| {
+            (-sidebands..=sidebands)
+                .map(move |side| (harmonic, side, f64::from(harmonic) * order + f64::from(side) * beside))
+        })
+    }
+}
+
+/// A spectrum by how far its lines stand out, without those that are explained.
+#[derive(Clone)]
+struct Standing {
+    step: f64,
+    /// Power over its median beside each line, of exponential noise with a mean of 1; NaN where the line is explained.
+    powers: Vec<f64>,
+}
+
+impl Standing {
+    fn new(spectrum: &SquaredEnvelopeSpectrum, last_order: f64) -> Self {
+        let step = spectrum.step;
+        let count = spectrum.amplitudes.len().min((last_order / step) as usize);
+        let half = BESIDE.0.max(BESIDE.1 / step) as usize;
+        let squares: Vec<f64> = spectrum.amplitudes.iter().map(|amplitude| amplitude * amplitude).collect();
+        let power = |line: usize| {
+            let mut beside =
+                squares[line.saturating_sub(half).max(1)..(line + half + 1).min(squares.len())].to_vec();
+            let middle = beside.len() / 2;
+            let median = *beside.select_nth_unstable_by(middle, f64::total_cmp).1;
+            std::f64::consts::LN_2 * squares[line] / median.max(f64::MIN_POSITIVE)
+        };
+        let mut powers = vec![f64::NAN; 1];
+        powers.extend((1..count).map(power));
+        Self { step, powers }
+    }
+
+    fn explain(&mut self, order: f64, reach: f64) {
+        let from = ((order - reach) / self.step).ceil().max(0.0) as usize;
+        let end = (((order + reach) / self.step).floor() + 1.0).max(0.0) as usize;
+        let end = end.min(self.powers.len());
+        self.powers[from.min(end)..end].fill(f64::NAN);
+    }
+
+    /// Takes the whole orders of shafts away, as far as something is left between them.
+    fn explain_shafts(&mut self, shafts: &[f64]) {
+        let (step, reach) = (self.step, WIDTH * self.step);
+        for shaft in shafts.iter().filter(|shaft| **shaft / step >= CLOSEST) {
+            let last = (self.powers.len() as f64 * step / shaft) as usize;
+            (1..=last).for_each(|whole| self.explain(whole as f64 * shaft, reach));
+        }
+    }
+
+    /// Takes the lines of a defect away.
+    fn explain_comb(&mut self, comb: &Comb, order: f64) {
+        let (harmonics, sidebands) = EXPLAINED;
+        for (harmonic, _, at) in comb.lines(order, harmonics, sidebands) {
+            self.explain(at, WIDTH * self.step + WIDENED * f64::from(harmonic) * order);
+        }
+    }
+
+    /// Power of the line at an order, or of one beside it; none where all are explained or beyond the spectrum.
+    fn power(&self, order: f64) -> Option<f64> {
+        let line = (order / self.step).round() as usize;
+        let three = self.powers.get(line.saturating_sub(1)..line + 2)?;
+        three.iter().copied().filter(|power| !power.is_nan()).reduce(f64::max)
+    }
+
+    /// The largest score of a race whose order is within slip of a place, and its order; none where fewer than half of its lines can be read.
+    ///
+    /// The score is the sum of ln(1 + power) over the harmonics and their nearest sidebands: a single strong line counts little.
+    fn best(&self, comb: &Comb, place: f64) -> Option<(f64, f64)> {
+        let step = 0.5 * self.step / f64::from(HARMONICS);
+        let tried = (SLIP * place / step).ceil().max(1.0) as i32;
+        let orders = (-tried..=tried).map(|at| place * (1.0 + SLIP * f64::from(at) / f64::from(tried)));
+        let score = |order: f64| {
+            let powers = comb.lines(order, HARMONICS as i32, 1).map(|(.., at)| self.power(at));
+            let (mut score, mut read, mut all) = (0.0, 0, 0);
+            for power in powers {
+                all += 1;
+                read += usize::from(power.is_some());
+                score += power.map_or(UNREAD, f64::ln_1p);
+            }
+            (2 * read > all).then_some((score, order))
+        };
+        orders.filter_map(score).max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The score of a race with its order, and the probability that noise reaches it.
+    ///
+    /// The decoys are the same comb at other orders, each with the same room for slip, in the spectrum without the race's own lines. A Gumbel distribution,
+    /// which is that of maxima, has their mean and standard deviation.
+    fn test(&self, comb: &Comb) -> Option<(f64, f64)> {
+        let (score, order) = self.best(comb, comb.order)?;
+        let mut without = self.clone();
+        without.explain_comb(comb, order);
+        let apart = ((1.0 + SLIP) / (1.0 - SLIP)).ln();
+        let each_side = (FARTHEST.ln() / apart) as i32;
+        let places = (-each_side..=each_side).filter(|at| at.abs() > 1);
+        let decoys: Vec<f64> = places
+            .filter_map(|at| Some(without.best(comb, comb.order * (f64::from(at) * apart).exp())?.0))
+            .collect();
+        if decoys.len() < FEWEST_DECOYS {
+            return None;
+        }
+        let count = decoys.len() as f64;
+        let mean = decoys.iter().sum::<f64>() / count;
+        let variance = decoys.iter().map(|decoy| (decoy - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        let scale = (6.0 * variance).sqrt() / PI;
+        let beyond = (score - (mean - EULER * scale)) / scale.max(f64::MIN_POSITIVE);
+        Some((order, -f64::exp_m1(-(-beyond).exp())))
+    }
+}
+
+impl TrainRecording<'_> {
+    /// Tests for a defect of each race of each bearing, in the spectrum of the squared envelope after the gears' averages are removed.
+    ///
+    /// A race's lines (three harmonics, of an inner race with the sidebands of its shaft, of an element with those of its cage) are looked at together, within 1.5 % of
+    /// their place for slip, and compared with the same lines at orders from half to twice as high. Whole orders of all shafts are left out. The race that noise
+    /// explains least is named first, and the others are tested without its lines, as long as one is detected.
+    ///
+    /// # Arguments
+    /// * `bearings` - the bearings of the machine, all of them: they are distinguished from each other
+    ///
+    /// # Errors
+    /// Those of [`Self::bearings`].
+    pub fn bearing_defects(&self, bearings: &[TrainBearing]) -> Result<BearingDefects, SignalError> {
+        let mut found = BearingDefects::default();
+        let Some(first) = bearings.first() else { return Ok(found) };
+        let records = self.bearings(bearings, &BearingSettings::default())?;
+        (found.band, found.warnings) = (Some(records.band), records.warnings);
+        let ratio = |shaft: usize| self.train.speed_ratio(shaft, first.shaft).value();
+        let Some((spectrum, _)) = records.bearings.first() else { return Ok(found) };
+        let speed_hz = self.phase(first.shaft)?.mean_speed_hz(self.sampling_rate_hz);
+        let width = (records.band.to_hz - records.band.from_hz) / speed_hz;
+        let mut combs: Vec<Comb> = Vec::new();
+        for (place, of) in bearings.iter().enumerate() {
+            let (orders, shaft) = (of.geometry.defect_orders(), ratio(of.shaft));
+            let cage_turns = orders.cage * shaft / spectrum.step;
+            if cage_turns < FEWEST_CAGE_TURNS {
+                found.too_short.push((place, cage_turns, FEWEST_CAGE_TURNS));
+                continue;
+            }
+            for race in RACES {
+                let order = race.order(&orders) * shaft;
+                let is_same =
+                    |comb: &&mut Comb| comb.race == race && comb.shaft == shaft && comb.order == order;
+                if let Some(same) = combs.iter_mut().find(is_same) {
+                    same.bearings.push(place);
+                    continue;
+                }
+                let beside = match race {
+                    DefectKind::InnerRace => Some(shaft),
+                    DefectKind::Element => Some(orders.cage * shaft),
+                    _ => None,
+                };
+                combs.push(Comb { race, bearings: vec![place], shaft, order, beside });
+            }
+        }
+        let mut standing = Standing::new(spectrum, width);
+        let shafts: Vec<f64> = (0..self.train.shafts.len()).map(ratio).collect();
+        standing.explain_shafts(&shafts);
+        let whole = standing.clone();
+        let asked = combs.len() as f64;
+        let mut is_first = true;
+        loop {
+            let tested = combs.iter().enumerate().map(|(at, comb)| Some((at, standing.test(comb)?)));
+            let mut tested: Vec<(usize, RaceTest)> = tested
+                .flatten()
+                .map(|(at, (order, p))| {
+                    let comb = &combs[at];
+                    let harmonics = (1..=HARMONICS).filter_map(|of| whole.power(f64::from(of) * order));
+                    let logs: Vec<f64> =
+                        harmonics.map(|power| (power / std::f64::consts::LN_2).ln()).collect();
+                    let test = RaceTest {
+                        race: comb.race,
+                        bearings: comb.bearings.clone(),
+                        order: comb.order / comb.shaft,
+                        found_order: order / comb.shaft,
+                        over_median: (0.5 * logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp(),
+                        false_alarm_probability: (asked * p).min(1.0),
+                    };
+                    (at, test)
+                })
+                .collect();
+            tested.sort_by(|a, b| a.1.false_alarm_probability.total_cmp(&b.1.false_alarm_probability));
+            if is_first {
+                let is_tested = |at: usize| tested.iter().any(|(of, _)| *of == at);
+                let unresolved = (0..combs.len()).filter(|at| !is_tested(*at));
+                found.unresolved = unresolved.flat_map(|at| combs[at].bearings.clone()).collect();
+                found.unresolved.sort_unstable();
+                found.unresolved.dedup();
+                is_first = false;
+            }
+            match tested.first() {
+                Some((at, strongest)) if strongest.is_detected() => {
+                    standing.explain_comb(&combs[*at], strongest.found_order * combs[*at].shaft);
+                    found.races.push(strongest.clone());
+                    combs.remove(*at);
+                }
+                _ => {
+                    found.races.extend(tested.into_iter().map(|(_, test)| test));
+                    return Ok(found);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bearing::NamedBearing;
+    use crate::random::{Draws, Purpose};
+    use crate::signal::{GearTrain, ShaftPhase, StatedTurning, TrainTurning};
+
+    const RATE_HZ: f64 = 20_000.0;
+
+    fn bearing(name: &str, shaft: usize) -> TrainBearing {
+        TrainBearing { geometry: NamedBearing::find(name).unwrap().geometry, shaft }
+    }
+
+    /// A resonance that rings at each pass of a race's order, in noise, beside a mesh; the passes are 1 % later than without slip.
+    fn look_for(order: Option<f64>, seconds: f64, seed: u64, bearings: &[TrainBearing]) -> BearingDefects {
+        let train = GearTrain::of_wheels([("pinion", 20), ("gear", 61)]);
+        let samples = (seconds * RATE_HZ) as usize;
+        let phase = ShaftPhase::constant(30.0, RATE_HZ, samples).unwrap();
+        let mut draws = Draws::new(seed, Purpose::RecordNoise, 0);
+        let mut value = |angle: f64| {
+            let ringing = order.map_or(0.0, |order| {
+                let order = 0.99 * order;
+                let since_s = (angle * order).fract() / (30.0 * order);
+                (-800.0 * since_s).exp() * (2.0 * PI * 4000.0 * since_s).sin()
+            });
+            0.5 * ringing + 2.0 * (2.0 * PI * 20.0 * angle).cos() + 0.3 * draws.normal()
+        };
+        let signal: Vec<f64> = phase.revolutions.iter().map(|angle| value(*angle)).collect();
+        let turning = TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::Other };
+        let recording =
+            TrainRecording { signal: &signal, sampling_rate_hz: RATE_HZ, train: &train, turning: &turning };
+        recording.bearing_defects(bearings).unwrap()
+    }
+
+    #[test]
+    fn the_race_that_rings_is_found_and_no_other() {
+        let bearings = [bearing("6205", 0), bearing("ER-10K", 1), bearing("6205", 0)];
+        let orders = bearings[0].geometry.defect_orders();
+        for (race, order) in
+            [(DefectKind::OuterRace, orders.outer_race), (DefectKind::InnerRace, orders.inner_race)]
+        {
+            let found = look_for(Some(order), 4.0, 1, &bearings);
+            let detected: Vec<&RaceTest> = found.races.iter().filter(|of| of.is_detected()).collect();
+            assert_eq!(detected.len(), 1, "{found:#?}");
+            assert_eq!((detected[0].race, &detected[0].bearings), (race, &vec![0, 2]));
+            assert!((detected[0].found_order / order - 0.99).abs() < 0.002 && detected[0].over_median > 5.0);
+            assert!(found.too_short.is_empty());
+        }
+    }
+
+    #[test]
+    fn noise_is_no_defect_and_a_short_recording_says_nothing() {
+        let bearings = [bearing("6205", 0), bearing("ER-10K", 1)];
+        for seed in 0..4 {
+            let found = look_for(None, 4.0, seed, &bearings);
+            assert!(!found.races.iter().any(RaceTest::is_detected), "{found:#?}");
+        }
+        let short = look_for(None, 0.9, 0, &bearings);
+        assert_eq!(short.too_short.iter().map(|of| of.0).collect::<Vec<_>>(), [0, 1]);
+        assert!(short.races.is_empty());
+    }
+}
