@@ -20,7 +20,9 @@ use std::fs;
 use meshtone::batch::Control;
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::ScenarioForm;
-use meshtone::signal::{AngleZero, BearingDefects, GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
+use meshtone::signal::{
+    AngleZero, BearingDefects, GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainTurning,
+};
 use meshtone_diagnose::{
     Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceRecord, ReferenceSet, ReferenceStore,
     SEVERAL, SignalKind, WheelLines, diagnose, refine,
