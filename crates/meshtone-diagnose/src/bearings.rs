@@ -17,12 +17,12 @@ pub struct BearingAnswer {
     pub found_order: f64,
     /// (-) Amplitude of its harmonics over the median beside them, their geometric mean. It is no severity.
     pub over_median: f64,
-    /// (-) Probability that any race of a rig with sound bearings looks like this one, over all races and recordings.
+    /// (-) Probability that lines without those of any race look like this one, over all races and recordings.
     pub false_alarm_probability: f64,
 }
 
 impl BearingAnswer {
-    /// Returns whether a defect is said to be there.
+    /// Returns whether its lines are there. Those of an outer race can be of a sound bearing, too.
     pub fn is_detected(&self) -> bool {
         self.false_alarm_probability < RaceTest::DETECTED
     }
@@ -104,11 +104,25 @@ pub(crate) fn doubts(train: &GearTrain, asked: &Observation) -> Vec<String> {
     short.chain(unresolved).chain(warnings.iter().map(ToString::to_string)).collect()
 }
 
-/// The sentence that a summary begins with; none where no defect is detected.
+/// The sentences that a summary begins with; none where nothing is detected.
+///
+/// Elements that pass the outer race of a sound bearing under load excite the same lines as a defect there, so that only the other races
+/// are said to be damaged.
 pub(crate) fn sentence(answers: &[BearingAnswer]) -> Option<String> {
-    let detected = answers.iter().filter(|of| of.is_detected()).map(BearingAnswer::named);
-    let detected: Vec<String> = detected.collect();
-    (!detected.is_empty()).then(|| format!("A bearing is damaged: {}.", detected.join("; ")))
+    let named = |is_outer: bool| {
+        let detected = answers.iter().filter(|of| of.is_detected());
+        let of_race = detected.filter(|of| (of.race == DefectKind::OuterRace) == is_outer);
+        let named: Vec<String> = of_race.map(BearingAnswer::named).collect();
+        (!named.is_empty()).then(|| named.join("; "))
+    };
+    let damaged = named(false).map(|named| format!("A bearing is damaged: {named}."));
+    let passed = named(true).map(|named| {
+        format!(
+            "A bearing may be damaged: {named}; the elements of a sound bearing can cause the same lines."
+        )
+    });
+    let sentences: Vec<String> = damaged.into_iter().chain(passed).collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
 /// Notes about the bearings: the detected defects, or that there are none.
@@ -152,7 +166,7 @@ mod tests {
         let answers = [both, answer(&["output:0"], DefectKind::Element, 0.3)];
         assert_eq!(
             sentence(&answers).unwrap(),
-            "A bearing is damaged: the outer race of bearing input:0 or input:1."
+            "A bearing may be damaged: the outer race of bearing input:0 or input:1; the elements of a sound bearing can cause the same lines."
         );
         let notes = notes(&answers);
         assert_eq!(notes.len(), 2);

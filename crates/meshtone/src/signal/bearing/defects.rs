@@ -48,15 +48,16 @@ pub struct RaceTest {
     pub found_order: f64,
     /// (-) Amplitude over the median beside it, geometric mean of the harmonics.
     pub over_median: f64,
-    /// (-) Probability that any race of a machine without defects looks like this one, at most 1: times the number of races.
+    /// (-) Probability that lines without those of any race look like this one, at most 1: times the number of races.
     pub false_alarm_probability: f64,
 }
 
 impl RaceTest {
-    /// (-) Probability of a false alarm below which a defect is said to be there.
+    /// (-) Probability of a false alarm below which the lines of a race are said to be there.
     pub const DETECTED: f64 = 0.01;
 
-    /// Returns whether a defect is said to be there.
+    /// Returns whether the lines of a race are said to be there. Those of an inner race or an element are of a defect; elements that pass the outer race
+    /// of a sound bearing under load excite its lines, too.
     pub fn is_detected(&self) -> bool {
         self.false_alarm_probability < Self::DETECTED
     }
