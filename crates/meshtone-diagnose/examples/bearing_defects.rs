@@ -35,7 +35,8 @@ const RACES: [(DefectPlace, DefectKind); 3] = [
 ];
 /// (-) Smallest and largest size of a spall, and limits of the rows of the table: its width over the diameter of an element.
 const SIZES: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
-const DURATION_S: f64 = 5.0;
+/// (s) At the slowest speed that is drawn, the cages of the output shaft turn the 12 times that are needed in 5.8 s.
+const DURATION_S: f64 = 6.0;
 const RATE_HZ: f64 = 25_600.0;
 /// (-) Noise, as a part of the rms.
 const NOISE_PART: f64 = 0.05;
@@ -116,7 +117,9 @@ fn ask(prior: &Prior, number: u64) -> Result<Vec<(Truth, BearingDefects)>, Box<d
     if let Some((bearing, race, size)) = defect {
         gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
     }
-    let channels = meshtone::simulate_gearbox(&gearbox)?.channels;
+    // With some draws of damping and damage the motion grows without bound.
+    let Ok(simulation) = meshtone::simulate_gearbox(&gearbox) else { return Ok(Vec::new()) };
+    let channels = simulation.channels;
     let form = ScenarioForm::Gearbox(gearbox.clone());
     let train = GearTrain::of_form(&form)?;
     let turning = TrainTurning::of_simulated(&form, channels.start_s, channels.len())?;
@@ -159,27 +162,22 @@ fn is_true(truth: &Truth, test: &RaceTest) -> bool {
 /// Counts by race and size.
 fn table(asked: &[(Truth, BearingDefects)]) -> Result<String, Box<dyn Error>> {
     let mut table = String::from(
-        "| | recordings | something is detected | the first is the right bearing | and race | the others are right |\n|---|--:|--:|--:|--:|--:|\n",
+        "| | recordings | the race is detected | another outer race | another inner race or element |\n|---|--:|--:|--:|--:|\n",
     );
     let mut row = |name: &str, is_of: &dyn Fn(&Truth) -> bool| {
         let of: Vec<_> = asked.iter().filter(|(truth, _)| is_of(truth)).collect();
-        let first = |of: &&&(Truth, BearingDefects)| of.1.races.first().is_some_and(RaceTest::is_detected);
-        let bearing = |(truth, found): &(Truth, BearingDefects)| {
-            truth.defect.is_some_and(|(bearing, ..)| found.races[0].bearings.contains(&bearing))
+        let count = |is_counted: &dyn Fn(&Truth, &RaceTest) -> bool| {
+            let detects = |(truth, found): &&&(Truth, BearingDefects)| {
+                found.races.iter().any(|race| race.is_detected() && is_counted(truth, race))
+            };
+            of.iter().filter(detects).count()
         };
-        let detected: Vec<_> = of.iter().filter(first).collect();
-        let alone = |of: &(Truth, BearingDefects)| {
-            of.1.races.iter().filter(|of| of.is_detected()).all(|race| is_true(&of.0, race))
-        };
-        writeln!(
-            table,
-            "| {name} | {} | {} | {} | {} | {} |",
-            of.len(),
-            detected.len(),
-            detected.iter().filter(|of| bearing(of)).count(),
-            detected.iter().filter(|of| is_true(&of.0, &of.1.races[0])).count(),
-            detected.iter().filter(|of| alone(of)).count(),
-        )
+        let is_other_outer =
+            |truth: &Truth, race: &RaceTest| race.race == DefectKind::OuterRace && !is_true(truth, race);
+        let is_other =
+            |truth: &Truth, race: &RaceTest| race.race != DefectKind::OuterRace && !is_true(truth, race);
+        let counts = [count(&is_true), count(&is_other_outer), count(&is_other)];
+        writeln!(table, "| {name} | {} | {} | {} | {} |", of.len(), counts[0], counts[1], counts[2])
     };
     row("no defect, sound teeth", &|of| of.defect.is_none() && !of.has_damaged_teeth)?;
     row("no defect, damaged teeth", &|of| of.defect.is_none() && of.has_damaged_teeth)?;

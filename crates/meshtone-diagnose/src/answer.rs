@@ -179,8 +179,8 @@ impl Answer {
         self.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL)
     }
 
-    /// The strongest defect of a bearing that is detected.
-    pub fn damaged_bearing(&self) -> Option<&BearingAnswer> {
+    /// The bearing whose lines are detected as the strongest.
+    pub fn detected_bearing(&self) -> Option<&BearingAnswer> {
         self.bearings.first().filter(|of| of.is_detected())
     }
 

@@ -7,7 +7,7 @@ use crate::observation::Observation;
 /// Answer about one race, or the rolling elements, of one bearing, or of several that cannot be told apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BearingAnswer {
-    /// Names of the bearings that the defect may be of: shaft and place, such as `input:0`; several where their orders are the same.
+    /// Names of the bearings that the defect may be of: shaft and place, such as `input:0`; several where their orders differ by less than slip does.
     pub bearings: Vec<String>,
     /// The race.
     pub race: DefectKind,
@@ -17,12 +17,12 @@ pub struct BearingAnswer {
     pub found_order: f64,
     /// (-) Amplitude of its harmonics over the median beside them, their geometric mean. It is no severity.
     pub over_median: f64,
-    /// (-) Probability that any race of a rig with sound bearings looks like this one, over all races and recordings.
+    /// (-) Probability that lines without those of any race look like this one, over all races and recordings.
     pub false_alarm_probability: f64,
 }
 
 impl BearingAnswer {
-    /// Returns whether a defect is said to be there.
+    /// Returns whether its lines are there. Those of an outer race can be of a sound bearing, too.
     pub fn is_detected(&self) -> bool {
         self.false_alarm_probability < RaceTest::DETECTED
     }
@@ -39,7 +39,11 @@ impl BearingAnswer {
 
     /// Place and strength of its lines.
     fn in_words(&self) -> String {
-        let alike = if self.bearings.len() > 1 { "; these bearings have the same orders" } else { "" };
+        let alike = if self.bearings.len() > 1 {
+            "; the orders of these bearings differ by less than slip"
+        } else {
+            ""
+        };
         format!(
             "{}: lines at order {:.3} of its shaft ({:.3} without slip), {:.1} times the median, false alarm {}{alike}",
             self.named(),
@@ -51,15 +55,15 @@ impl BearingAnswer {
     }
 }
 
-/// The races over all recordings of a state, those with a defect first, in the order in which they were found.
+/// The races over all recordings of a state, the most certain defect first.
 ///
 /// # Arguments
 /// * `train` - of the rig
 /// * `now` - the recordings
 pub(crate) fn answers(train: &GearTrain, now: &[Observation]) -> Vec<BearingAnswer> {
-    let mut all: Vec<(usize, BearingAnswer)> = Vec::new();
+    let mut all: Vec<BearingAnswer> = Vec::new();
     for BearingDefects { races, .. } in now.iter().map(|asked| &asked.bearings) {
-        for (rank, race) in races.iter().enumerate() {
+        for race in races {
             let answer = BearingAnswer {
                 bearings: race.bearings.iter().map(|place| train.bearings[*place].0.clone()).collect(),
                 race: race.race,
@@ -68,18 +72,17 @@ pub(crate) fn answers(train: &GearTrain, now: &[Observation]) -> Vec<BearingAnsw
                 over_median: race.over_median,
                 false_alarm_probability: (now.len() as f64 * race.false_alarm_probability).min(1.0),
             };
-            let is_same = |(_, of): &&mut (usize, BearingAnswer)| {
-                (of.race, &of.bearings) == (answer.race, &answer.bearings)
-            };
+            let is_same =
+                |of: &&mut BearingAnswer| (of.race, &of.bearings) == (answer.race, &answer.bearings);
             match all.iter_mut().find(is_same) {
-                Some(known) if known.1.false_alarm_probability <= answer.false_alarm_probability => {}
-                Some(known) => *known = (rank, answer),
-                None => all.push((rank, answer)),
+                Some(known) if known.false_alarm_probability <= answer.false_alarm_probability => {}
+                Some(known) => *known = answer,
+                None => all.push(answer),
             }
         }
     }
-    all.sort_by_key(|(rank, answer)| (!answer.is_detected(), *rank));
-    all.into_iter().map(|(_, answer)| answer).collect()
+    all.sort_by(|one, other| one.false_alarm_probability.total_cmp(&other.false_alarm_probability));
+    all
 }
 
 /// What a recording says nothing about, in words.
@@ -101,11 +104,25 @@ pub(crate) fn doubts(train: &GearTrain, asked: &Observation) -> Vec<String> {
     short.chain(unresolved).chain(warnings.iter().map(ToString::to_string)).collect()
 }
 
-/// The sentence that a summary begins with; none where no defect is detected.
+/// The sentences that a summary begins with; none where nothing is detected.
+///
+/// Elements that pass the outer race of a sound bearing under load excite the same lines as a defect there, so that only the other races
+/// are said to be damaged.
 pub(crate) fn sentence(answers: &[BearingAnswer]) -> Option<String> {
-    let detected = answers.iter().filter(|of| of.is_detected()).map(BearingAnswer::named);
-    let detected: Vec<String> = detected.collect();
-    (!detected.is_empty()).then(|| format!("A bearing is damaged: {}.", detected.join("; ")))
+    let named = |is_outer: bool| {
+        let detected = answers.iter().filter(|of| of.is_detected());
+        let of_race = detected.filter(|of| (of.race == DefectKind::OuterRace) == is_outer);
+        let named: Vec<String> = of_race.map(BearingAnswer::named).collect();
+        (!named.is_empty()).then(|| named.join("; "))
+    };
+    let damaged = named(false).map(|named| format!("A bearing is damaged: {named}."));
+    let passed = named(true).map(|named| {
+        format!(
+            "A bearing may be damaged: {named}; the elements of a sound bearing can cause the same lines."
+        )
+    });
+    let sentences: Vec<String> = damaged.into_iter().chain(passed).collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
 /// Notes about the bearings: the detected defects, or that there are none.
@@ -149,12 +166,12 @@ mod tests {
         let answers = [both, answer(&["output:0"], DefectKind::Element, 0.3)];
         assert_eq!(
             sentence(&answers).unwrap(),
-            "A bearing is damaged: the outer race of bearing input:0 or input:1."
+            "A bearing may be damaged: the outer race of bearing input:0 or input:1; the elements of a sound bearing can cause the same lines."
         );
         let notes = notes(&answers);
         assert_eq!(notes.len(), 2);
         assert!(
-            notes[0].contains("false alarm p < 0.001; these bearings have the same orders"),
+            notes[0].contains("false alarm p < 0.001; the orders of these bearings differ by less than slip"),
             "{}",
             notes[0]
         );

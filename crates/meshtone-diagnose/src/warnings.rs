@@ -156,8 +156,8 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     use DiagnosisWarningKind::{Contradiction, HealthyOutside, Level, NotSimulated, Outside};
 
     let outside = answer.is_recording_outside().then(|| {
-        let why = match answer.damaged_bearing() {
-            Some(_) => "the damaged bearing is the likely reason, since the simulations have none",
+        let why = match answer.detected_bearing() {
+            Some(_) => "a damaged bearing may be the reason, since no simulation has one",
             None => {
                 "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
             }

@@ -20,8 +20,10 @@ const CLOSEST: f64 = 4.0 * WIDTH;
 const FARTHEST: f64 = 2.0;
 /// Fewest decoys from which a false alarm's probability is estimated.
 const FEWEST_DECOYS: usize = 20;
-/// (lines) Half the least width in which the median of the lines is taken, and in orders of the fastest shaft.
+/// (lines) Half the least width in which the median of the lines is taken, and in orders of the first bearing's shaft.
 const BESIDE: (f64, f64) = (24.0, 0.5);
+/// Medians in half that width: from one to the next they hardly change, and one for each line would take long.
+const MEDIANS: usize = 8;
 /// (rev) Fewest turns of a cage.
 const FEWEST_CAGE_TURNS: f64 = 12.0;
 /// (-) Score of a line that cannot be read: about the mean of noise, ln(1 + the largest of three exponential numbers of mean 1).
@@ -38,23 +40,24 @@ const RACES: [DefectKind; 3] = [DefectKind::OuterRace, DefectKind::InnerRace, De
 pub struct RaceTest {
     /// The race.
     pub race: DefectKind,
-    /// The bearings that it may be of, by their places: several where they have the same orders.
+    /// The bearings that it may be of, by their places: several where their orders differ by less than slip does.
     pub bearings: Vec<usize>,
-    /// (orders of the bearing's shaft) Its first line without slip.
+    /// (orders of the first bearing's shaft) Its first line without slip.
     pub order: f64,
-    /// (orders of the bearing's shaft) Its first line where its lines are strongest together, within 1.5 % of that.
+    /// (orders of the first bearing's shaft) Its first line where its lines are strongest together, within 1.5 % of that.
     pub found_order: f64,
     /// (-) Amplitude over the median beside it, geometric mean of the harmonics.
     pub over_median: f64,
-    /// (-) Probability that any race of a machine without defects looks like this one, at most 1: times the number of races.
+    /// (-) Probability that lines without those of any race look like this one, at most 1: times the number of races.
     pub false_alarm_probability: f64,
 }
 
 impl RaceTest {
-    /// (-) Probability of a false alarm below which a defect is said to be there.
+    /// (-) Probability of a false alarm below which the lines of a race are said to be there.
     pub const DETECTED: f64 = 0.01;
 
-    /// Returns whether a defect is said to be there.
+    /// Returns whether the lines of a race are said to be there. Those of an inner race or an element are of a defect; elements that pass the outer race
+    /// of a sound bearing under load excite its lines, too.
     pub fn is_detected(&self) -> bool {
         self.false_alarm_probability < Self::DETECTED
     }
@@ -80,7 +83,7 @@ pub struct BearingDefects {
 struct Comb {
     race: DefectKind,
     bearings: Vec<usize>,
-    /// Order of the bearing's shaft.
+    /// Order of the first bearing's shaft.
     shaft: f64,
     order: f64,
     /// Distance of the sidebands; none without sidebands.
@@ -88,6 +91,12 @@ struct Comb {
 }
 
 impl Comb {
+    /// The last order that is read, of the farthest decoy.
+    fn last_order(&self) -> f64 {
+        let farthest = FARTHEST * (1.0 + SLIP) * self.order;
+        f64::from(HARMONICS + 1) * farthest + self.beside.unwrap_or_default()
+    }
+
     /// Lines at harmonics and sidebands, where the race's order is `order`: the harmonic, the sideband, the order.
     fn lines(&self, order: f64, harmonics: i32, sidebands: i32) -> impl Iterator<Item = (i32, i32, f64)> {
         let (beside, sidebands) = self.beside.map_or((0.0, 0), |beside| (beside, sidebands));
@@ -96,6 +105,11 @@ impl Comb {
                 .map(move |side| (harmonic, side, f64::from(harmonic) * order + f64::from(side) * beside))
         })
     }
+}
+
+/// Whether two orders are the same for all that slip allows.
+fn is_near(one: f64, other: f64) -> bool {
+    (one / other - 1.0).abs() <= 2.0 * SLIP
 }
 
 /// A spectrum by how far its lines stand out, without those that are explained.
@@ -112,13 +126,15 @@ impl Standing {
         let count = spectrum.amplitudes.len().min((last_order / step) as usize);
         let half = BESIDE.0.max(BESIDE.1 / step) as usize;
         let squares: Vec<f64> = spectrum.amplitudes.iter().map(|amplitude| amplitude * amplitude).collect();
-        let power = |line: usize| {
+        let stride = (half / MEDIANS).max(1);
+        let median = |line: usize| {
             let mut beside =
                 squares[line.saturating_sub(half).max(1)..(line + half + 1).min(squares.len())].to_vec();
             let middle = beside.len() / 2;
-            let median = *beside.select_nth_unstable_by(middle, f64::total_cmp).1;
-            std::f64::consts::LN_2 * squares[line] / median.max(f64::MIN_POSITIVE)
+            beside.select_nth_unstable_by(middle, f64::total_cmp).1.max(f64::MIN_POSITIVE)
         };
+        let medians: Vec<f64> = (1..count).step_by(stride).map(median).collect();
+        let power = |line: usize| std::f64::consts::LN_2 * squares[line] / medians[(line - 1) / stride];
         let mut powers = vec![f64::NAN; 1];
         powers.extend((1..count).map(power));
         Self { step, powers }
@@ -232,21 +248,25 @@ impl TrainRecording<'_> {
             }
             for race in RACES {
                 let order = race.order(&orders) * shaft;
-                let is_same =
-                    |comb: &&mut Comb| comb.race == race && comb.shaft == shaft && comb.order == order;
-                if let Some(same) = combs.iter_mut().find(is_same) {
-                    same.bearings.push(place);
-                    continue;
-                }
                 let beside = match race {
                     DefectKind::InnerRace => Some(shaft),
                     DefectKind::Element => Some(orders.cage * shaft),
                     _ => None,
                 };
+                let is_alike = |comb: &&mut Comb| {
+                    comb.race == race
+                        && is_near(comb.order, order)
+                        && comb.beside.zip(beside).is_none_or(|(one, other)| is_near(one, other))
+                };
+                if let Some(alike) = combs.iter_mut().find(is_alike) {
+                    alike.bearings.push(place);
+                    continue;
+                }
                 combs.push(Comb { race, bearings: vec![place], shaft, order, beside });
             }
         }
-        let mut standing = Standing::new(spectrum, width);
+        let last_read = combs.iter().map(Comb::last_order).fold(0.0, f64::max);
+        let mut standing = Standing::new(spectrum, width.min(last_read));
         let shafts: Vec<f64> = (0..self.train.shafts.len()).map(ratio).collect();
         standing.explain_shafts(&shafts);
         let whole = standing.clone();
@@ -344,6 +364,16 @@ mod tests {
             assert!((detected[0].found_order / order - 0.99).abs() < 0.002 && detected[0].over_median > 5.0);
             assert!(found.too_short.is_empty());
         }
+    }
+
+    #[test]
+    fn bearings_whose_orders_differ_by_less_than_slip_are_both_named() {
+        let bearings = [bearing("ER-10K", 0), bearing("6203", 0), bearing("6205", 0)];
+        let order = bearings[1].geometry.defect_orders().outer_race;
+        let found = look_for(Some(order), 4.0, 2, &bearings);
+        let detected: Vec<&RaceTest> = found.races.iter().filter(|of| of.is_detected()).collect();
+        assert_eq!(detected.len(), 1, "{found:#?}");
+        assert_eq!((detected[0].race, &detected[0].bearings), (DefectKind::OuterRace, &vec![0, 1]));
     }
 
     #[test]
