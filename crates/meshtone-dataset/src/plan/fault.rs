@@ -4,6 +4,7 @@ use std::fmt::{self, Debug, Formatter};
 
 use meshtone::scenario::{
     BearingDefect, DefectPlace, Fault, Gearbox, GearboxFault, ScenarioError, ScenarioForm, ScenarioNumber,
+    names_or_numbers,
 };
 use meshtone_toml::{ReadResult, TomlTable};
 
@@ -147,11 +148,9 @@ impl ClassFault {
 
 /// The names of a gearbox's bearings in the keys of a plan: shaft and place, or the number where two are at one place.
 fn bearing_names(gearbox: &Gearbox) -> Vec<String> {
-    let seats: Vec<String> = gearbox.bearings.iter().map(|bearing| bearing.seat_name()).collect();
-    let is_only = |seat: &String| seats.iter().filter(|other| *other == seat).count() == 1;
-    let name =
-        |(number, seat): (usize, &String)| if is_only(seat) { seat.clone() } else { number.to_string() };
-    seats.iter().enumerate().map(name).collect()
+    let seats: Vec<Option<String>> =
+        gearbox.bearings.iter().map(|bearing| Some(bearing.seat_name())).collect();
+    names_or_numbers(&seats)
 }
 
 /// The base with the faults of a class.

@@ -35,6 +35,8 @@ pub(super) struct ArrayEntry {
     pub type_name: String,
     /// Its number, if it holds only one.
     pub single: Option<f64>,
+    /// (bytes) What reading it takes beside the samples.
+    pub beside_bytes: u64,
     /// Whether it is 0 throughout and another array has its name.
     pub is_zero_twin: bool,
 }
@@ -60,13 +62,11 @@ impl ArrayEntry {
 /// * `entries` - the file's arrays
 /// * `options` - of the recording
 /// * `units_in_names` - whether a name such as `acc [g]` says the unit
-/// * `beside_bytes` - (bytes) what reading the array with an index takes beside the samples
 /// * `read` - reads the wanted channels of the array with an index
 pub(super) fn read_arrays(
     entries: &[ArrayEntry],
     options: &RecordingOptions,
     units_in_names: bool,
-    beside_bytes: impl Fn(usize) -> u64,
     read: impl FnMut(usize, ArrayLayout, Numbers, &[bool]) -> Result<Vec<Vec<f64>>, Problem>,
 ) -> Result<Recording, Problem> {
     let catalogue = Catalogue::new(entries, options, units_in_names)?;
@@ -74,7 +74,7 @@ pub(super) fn read_arrays(
     let selection = select(labels, options)?;
     let samples = |column: usize| catalogue.layout(column).map_or(0, |layout| layout.samples);
     let of_wanted = selection.wanted.iter().filter_map(|column| catalogue.places.get(*column));
-    let beside_bytes = of_wanted.map(|(array, _)| beside_bytes(*array)).max().unwrap_or_default();
+    let beside_bytes = of_wanted.map(|(array, _)| entries[*array].beside_bytes).max().unwrap_or_default();
     memory_need::check(memory::limit(), options, &selection, samples, beside_bytes)?;
     let samples = catalogue.read(&selection.wanted, read)?;
     let single = |entry: &ArrayEntry| Some(format!("{} = {}", entry.name, entry.single?));

@@ -32,8 +32,7 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     let mut arrays = Arrays { of_matlab: head == MATLAB, found: Vec::new(), groups: 0 };
     arrays.collect(&opened.root(), "", 0)?;
     let (entries, data_sets): (Vec<ArrayEntry>, Vec<Dataset>) = arrays.found.into_iter().unzip();
-    let beside_bytes = |index: usize| Rows::new(&data_sets[index]).map_or(0, |rows| rows.block_bytes);
-    read_arrays(&entries, options, true, beside_bytes, |index, layout, numbers, wanted| {
+    read_arrays(&entries, options, true, |index, layout, numbers, wanted| {
         let mut rows = Rows::new(&data_sets[index])?;
         let present = file_bytes.saturating_mul(USUAL_COMPRESSION);
         Ok(read_channels(&mut rows, layout, numbers, wanted, present)?)
@@ -85,8 +84,10 @@ impl Arrays {
         let mut shape = data_set.shape().map_err(Problem::broken)?;
         let mut numbers = numbers_of(data_set)?;
         let mut single = None;
+        let rows = Rows::new(data_set);
+        let beside_bytes = rows.as_ref().map_or(0, |rows| rows.block_bytes);
         if let (Ok(kind), true) = (&numbers, shape.iter().all(|length| *length == 1)) {
-            match Rows::new(data_set).and_then(|mut rows| Ok(kind.read_one(&mut rows)?)) {
+            match rows.and_then(|mut rows| Ok(kind.read_one(&mut rows)?)) {
                 Ok(number) => single = Some(number),
                 Err(_) => numbers = Err("a number that cannot be read".to_owned()),
             }
@@ -104,6 +105,7 @@ impl Arrays {
             },
             numbers,
             single,
+            beside_bytes,
             is_zero_twin: false,
         })
     }

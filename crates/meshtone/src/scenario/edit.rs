@@ -49,10 +49,23 @@ fn entry_names(list: &str, entries: &[Value]) -> Vec<String> {
         return vec![String::new()];
     }
     let names: Vec<Option<String>> = entries.iter().map(name).collect();
+    names_or_numbers(&names).into_iter().map(|name| format!("[{name}]")).collect()
+}
+
+/// The names of the entries of a list in keys: each entry's own name where no other entry has it, or else its number from 0.
+///
+/// # Arguments
+/// * `names` - the entries' own names
+///
+/// ```
+/// let own = ["input:0", "input:0", "input:1"].map(|name| Some(name.to_owned()));
+/// assert_eq!(meshtone::scenario::names_or_numbers(&own), ["0", "1", "input:1"]);
+/// ```
+pub fn names_or_numbers(names: &[Option<String>]) -> Vec<String> {
     let is_only = |name: &Option<String>| names.iter().filter(|other| *other == name).count() == 1;
     let shown = |(number, name): (usize, &Option<String>)| match name {
-        Some(own) if is_only(name) => format!("[{own}]"),
-        _ => format!("[{number}]"),
+        Some(own) if is_only(name) => own.clone(),
+        _ => number.to_string(),
     };
     names.iter().enumerate().map(shown).collect()
 }

@@ -32,7 +32,7 @@ pub use crate::wheel::{
     ERROR_POINTS, EndRelief, FlankRelief, FoundationCoefficients, Gears, Hand, Material, MaterialConstants,
     ProfileErrors, Quality, ReliefShape, WheelDeviations, WheelName,
 };
-pub use edit::{ScenarioNumber, split_key};
+pub use edit::{ScenarioNumber, names_or_numbers, split_key};
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use gearbox::{
     Gearbox, GearboxFault, GearboxLayout, GearboxMesh, GearboxOperation, GearboxRig, GearboxSensor,

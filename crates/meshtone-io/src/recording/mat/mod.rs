@@ -30,28 +30,21 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
     let (mut entries, places): (Vec<ArrayEntry>, Vec<ArrayLocation>) = arrays.into_iter().unzip();
     mark_zero_twins(&file, big_endian, &mut entries, &places)?;
     let mut open: Option<(Variable, Source)> = None;
-    let recording = read_arrays(
-        &entries,
-        options,
-        false,
-        |_| 0,
-        |index, layout, numbers, channels| {
-            let ArrayLocation { variable, offset, bytes } = places[index];
-            let mut source = match open.take() {
-                Some((same, source)) if same == variable && source.at <= offset => source,
-                other => {
-                    other.map_or(Ok(()), |(_, done)| done.finish())?;
-                    Source::open(&file, variable, big_endian)?
-                }
-            };
-            source.skip_to(offset)?;
-            let present =
-                if variable.compressed { bytes.min(USUAL_COMPRESSION * variable.bytes) } else { bytes };
-            let samples = read_channels(&mut source, layout, numbers, channels, present)?;
-            open = Some((variable, source));
-            Ok(samples)
-        },
-    )?;
+    let recording = read_arrays(&entries, options, false, |index, layout, numbers, channels| {
+        let ArrayLocation { variable, offset, bytes } = places[index];
+        let mut source = match open.take() {
+            Some((same, source)) if same == variable && source.at <= offset => source,
+            other => {
+                other.map_or(Ok(()), |(_, done)| done.finish())?;
+                Source::open(&file, variable, big_endian)?
+            }
+        };
+        source.skip_to(offset)?;
+        let present = if variable.compressed { bytes.min(USUAL_COMPRESSION * variable.bytes) } else { bytes };
+        let samples = read_channels(&mut source, layout, numbers, channels, present)?;
+        open = Some((variable, source));
+        Ok(samples)
+    })?;
     open.map_or(Ok(()), |(_, done)| done.finish())?;
     Ok(recording)
 }

@@ -224,6 +224,7 @@ impl Walk {
             numbers: numbers.map_err(str::to_owned),
             type_name: type_name.to_string(),
             single,
+            beside_bytes: 0,
             is_zero_twin: false,
         };
         self.arrays.push((entry, ArrayLocation { variable: inside.variable, offset, bytes }));

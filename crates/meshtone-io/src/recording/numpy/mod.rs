@@ -29,16 +29,10 @@ pub(super) fn read_npy(file: File, options: &RecordingOptions) -> Result<Recordi
     let header = NpyHeader::read(&mut from)?;
     check_size(&header, file_bytes)?;
     let entries: Vec<ArrayEntry> = entries("", &header, None).collect();
-    read_arrays(
-        &entries,
-        options,
-        true,
-        |_| 0,
-        |_, layout, numbers, wanted| {
-            from.seek(SeekFrom::Start(header.length))?;
-            Ok(read_channels(&mut from, layout, numbers, wanted, file_bytes)?)
-        },
-    )
+    read_arrays(&entries, options, true, |_, layout, numbers, wanted| {
+        from.seek(SeekFrom::Start(header.length))?;
+        Ok(read_channels(&mut from, layout, numbers, wanted, file_bytes)?)
+    })
 }
 
 /// Reads an archive; its arrays' names are its columns'.
@@ -51,26 +45,20 @@ pub(super) fn read_npz(file: File, options: &RecordingOptions) -> Result<Recordi
         all.extend(entries(&array.name, &array.header, array.single));
         array_of.resize(all.len(), index);
     }
-    read_arrays(
-        &all,
-        options,
-        true,
-        |_| 0,
-        |index, layout, numbers, wanted| {
-            let array = &arrays[array_of[index]];
-            let mut from = archive.by_index(array.file).map_err(zip_failed)?;
-            check_size(&array.header, from.size())?;
-            let present =
-                from.compressed_size().min(file_bytes).saturating_mul(USUAL_COMPRESSION).min(from.size());
-            if NpyHeader::read(&mut from)? != array.header {
-                return Err(Problem::broken("it changes while it is read"));
-            }
-            let samples = read_channels(&mut from, layout, numbers, wanted, present);
-            // The checksum is compared at the end of the array.
-            let whole = samples.and_then(|samples| io::copy(&mut from, &mut io::sink()).map(|_| samples));
-            whole.map_err(|error| in_array(&array.name, error))
-        },
-    )
+    read_arrays(&all, options, true, |index, layout, numbers, wanted| {
+        let array = &arrays[array_of[index]];
+        let mut from = archive.by_index(array.file).map_err(zip_failed)?;
+        check_size(&array.header, from.size())?;
+        let present =
+            from.compressed_size().min(file_bytes).saturating_mul(USUAL_COMPRESSION).min(from.size());
+        if NpyHeader::read(&mut from)? != array.header {
+            return Err(Problem::broken("it changes while it is read"));
+        }
+        let samples = read_channels(&mut from, layout, numbers, wanted, present);
+        // The checksum is compared at the end of the array.
+        let whole = samples.and_then(|samples| io::copy(&mut from, &mut io::sink()).map(|_| samples));
+        whole.map_err(|error| in_array(&array.name, error))
+    })
 }
 
 /// An array of an archive.
@@ -139,6 +127,7 @@ fn entries<'a>(
         },
         type_name: field.type_name.clone(),
         single,
+        beside_bytes: 0,
         is_zero_twin: false,
     })
 }
