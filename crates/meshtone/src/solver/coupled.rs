@@ -10,6 +10,7 @@
 //! theory it can go round in a circle; after [`MOST_PLAIN_ITERATIONS`] each iterate goes only as far towards Newton's as makes the residual
 //! smaller.
 
+use std::array::from_fn;
 use std::ops::Range;
 
 use super::integrate::{Block, Diverged, Problem, Recorder, StepCounts, is_bounded};
@@ -274,8 +275,8 @@ struct State {
     external: [f64; EXTERNALS],
     /// (m) D of each unknown.
     deflection: OfUnknowns,
-    /// (m) That of each bearing's unknown two steps and one step earlier.
-    before: [[f64; 2]; MOST_UNKNOWNS],
+    /// (m) What the forces took from the free deflection of each bearing's unknown, two steps and one step earlier.
+    pressed: [[f64; 2]; MOST_UNKNOWNS],
     search: Search,
     /// The equations of the last step, without the free deflections.
     equations: Equations,
@@ -300,7 +301,7 @@ impl State {
             force,
             external,
             deflection,
-            before: deflection.map(|at_rest| [at_rest; 2]),
+            pressed: [[0.0; 2]; MOST_UNKNOWNS],
             search: Search::new(),
             equations: Equations::new(prepared),
             counts: StepCounts::default(),
@@ -456,13 +457,16 @@ impl Constants<'_> {
         }
         let law = ContactLaw { laws: &prepared.laws, bearings: &prepared.bearings, sample };
         for unknown in equations.meshes..equations.count {
-            // A bearing moves on along the parabola through its last three places.
-            let ([first, second], last) = (state.before[unknown], state.deflection[unknown]);
-            state.deflection[unknown] = first + 3.0 * (last - second);
-            state.before[unknown] = [second, last];
+            // G f of a bearing is a small part of D and changes smoothly.
+            let [before, last] = state.pressed[unknown];
+            state.deflection[unknown] = free[unknown] - (2.0 * last - before);
         }
         let Found { loads, iterations, searched } =
             equations.solve(&law, &free, &mut state.deflection, &mut state.search);
+        for unknown in equations.meshes..equations.count {
+            let [_, last] = state.pressed[unknown];
+            state.pressed[unknown] = [last, free[unknown] - state.deflection[unknown]];
+        }
         let forces = &state.search.loads[loads].forces;
         state.counts.steps += 1;
         state.counts.iterations += iterations;
@@ -617,13 +621,13 @@ impl Equations {
     /// * `deflection` - (m) where to begin; set to the solution
     #[inline(always)]
     fn solve(&self, law: &impl Law, free: &OfUnknowns, deflection: &mut OfUnknowns, search: &mut Search) -> Found {
-        let Search { loads, matrix, next } = search;
+        let Search { loads, next } = search;
         self.set_loads(law, deflection, &mut loads[0]);
         for iteration in 0..MOST_ITERATIONS {
             // The loads of two iterates take turns.
             let [even, odd] = loads;
             let (now, new) = if iteration % 2 == 0 { (even, odd) } else { (odd, even) };
-            self.newton(free, deflection, now, matrix, next);
+            self.newton(free, deflection, now, next);
             self.set_next_loads(law, [deflection, next], now, new);
             let same = self.is_same(now, new, deflection, next);
             if !same && iteration >= MOST_PLAIN_ITERATIONS {
@@ -689,38 +693,39 @@ impl Equations {
         loads.cross_slopes[a..a + 2].fill(xy);
     }
 
-    /// The other unknown of a bearing's one.
-    fn partner(&self, unknown: usize) -> usize {
-        self.meshes + ((unknown - self.meshes) ^ 1)
+    /// Sets `next` to the solution if the slopes at `deflection` K went on, `(1 + G K) D = D₀ − G (f − K D)`.
+    #[inline(always)]
+    fn newton(&self, free: &OfUnknowns, deflection: &OfUnknowns, loads: &Loads, next: &mut OfUnknowns) {
+        // Loops of a known length are compiled to fewer instructions. G is 0 beyond the machine's unknowns.
+        match self.count {
+            0..=2 => next[..2].copy_from_slice(&self.newton_of::<2>(free, deflection, loads)),
+            3..=4 => next[..4].copy_from_slice(&self.newton_of::<4>(free, deflection, loads)),
+            5..=8 => next[..8].copy_from_slice(&self.newton_of::<8>(free, deflection, loads)),
+            9..=16 => next[..16].copy_from_slice(&self.newton_of::<16>(free, deflection, loads)),
+            _ => *next = self.newton_of(free, deflection, loads),
+        }
     }
 
-    /// Sets `right` to the solution if the slopes at `deflection` K went on, `(1 + G K) D = D₀ − G (f − K D)`.
+    /// [`Self::newton`] with at most `N` unknowns.
     #[inline(always)]
-    fn newton(
-        &self,
-        free: &OfUnknowns,
-        deflection: &OfUnknowns,
-        loads: &Loads,
-        matrix: &mut Matrix,
-        right: &mut OfUnknowns,
-    ) {
-        right[..self.count].copy_from_slice(&free[..self.count]);
-        for b in 0..self.count {
-            for a in 0..self.count {
-                let share = self.compliance[a][b];
-                matrix[a][b] = share * loads.slopes[b] + f64::from(a == b);
-                right[a] -= share * (loads.forces[b] - loads.slopes[b] * deflection[b]);
+    fn newton_of<const N: usize>(&self, free: &OfUnknowns, deflection: &OfUnknowns, loads: &Loads) -> [f64; N] {
+        let mut matrix: [[f64; N]; N] =
+            from_fn(|a| from_fn(|b| self.compliance[a][b] * loads.slopes[b] + f64::from(a == b)));
+        let mut constant: [f64; N] = from_fn(|b| loads.forces[b] - loads.slopes[b] * deflection[b]);
+        for first in (self.meshes..self.count.min(N)).step_by(2) {
+            let cross = loads.cross_slopes[first];
+            for (b, other) in [(first, first + 1), (first + 1, first)] {
+                constant[b] -= cross * deflection[other];
+                for (row, compliance) in matrix.iter_mut().zip(&self.compliance) {
+                    row[b] += compliance[other] * cross;
+                }
             }
         }
-        for b in self.meshes..self.count {
-            let partner = self.partner(b);
-            for a in 0..self.count {
-                let coupled = self.compliance[a][partner] * loads.cross_slopes[b];
-                matrix[a][b] += coupled;
-                right[a] += coupled * deflection[b];
-            }
-        }
-        solve_linear(self.count, matrix, right);
+        let mut right: [f64; N] = from_fn(|a| {
+            free[a] - self.compliance[a].iter().zip(&constant).map(|(share, constant)| share * constant).sum::<f64>()
+        });
+        eliminate(&mut matrix, &mut right);
+        right
     }
 
     /// Goes from `from` towards `to`, Newton's iterate, as far as makes the residual smaller: up to the next pair that touches or leaves the
@@ -739,7 +744,7 @@ impl Equations {
         let before = residual(from);
         let mut part = 1.0;
         for _ in 0..HALVINGS {
-            let between = std::array::from_fn(|a| from[a] + part * (to[a] - from[a]));
+            let between = from_fn(|a| from[a] + part * (to[a] - from[a]));
             if residual(&between) < before {
                 return between;
             }
@@ -753,14 +758,12 @@ impl Equations {
 struct Search {
     /// At the last two iterates.
     loads: [Loads; 2],
-    matrix: Matrix,
     next: OfUnknowns,
 }
 
 impl Search {
     fn new() -> Self {
-        let zeros = [0.0; MOST_UNKNOWNS];
-        Self { loads: [Loads::NONE; 2], matrix: [zeros; MOST_UNKNOWNS], next: zeros }
+        Self { loads: [Loads::NONE; 2], next: [0.0; MOST_UNKNOWNS] }
     }
 }
 
@@ -776,33 +779,31 @@ struct Found {
 /// Halvings of the way until only rounding is left of it.
 const HALVINGS: usize = 60;
 
-/// Solves a few linear equations by elimination with pivots from the column.
+/// Solves `(1 + G K) x = right` by elimination without a search for pivots, since they are all positive: each is the ratio of two
+/// determinants of leading parts of `1 + G K`, that is of machines with some of the springs. With meshes alone they are at least 1.
 ///
 /// # Arguments
-/// * `count` - number of equations
 /// * `matrix` - by rows; is overwritten
 /// * `right` - the right-hand side; set to the solution
 #[inline(always)]
-fn solve_linear(count: usize, matrix: &mut Matrix, right: &mut OfUnknowns) {
-    for column in 0..count {
-        let pivot = (column..count)
-            .max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))
-            .unwrap_or(column);
-        if pivot != column {
-            matrix.swap(column, pivot);
-            right.swap(column, pivot);
-        }
-        for row in column + 1..count {
-            let factor = matrix[row][column] / matrix[column][column];
-            for k in column..count {
-                matrix[row][k] -= factor * matrix[column][k];
+fn eliminate<const N: usize>(matrix: &mut [[f64; N]; N], right: &mut [f64; N]) {
+    let mut over_pivot = [0.0; N];
+    for column in 0..N {
+        let pivot_row = matrix[column];
+        over_pivot[column] = 1.0 / pivot_row[column];
+        for row in column + 1..N {
+            let factor = matrix[row][column] * over_pivot[column];
+            for k in column + 1..N {
+                matrix[row][k] -= factor * pivot_row[k];
             }
             right[row] -= factor * right[column];
         }
     }
-    for row in (0..count).rev() {
-        let known: f64 = (row + 1..count).map(|k| matrix[row][k] * right[k]).sum();
-        right[row] = (right[row] - known) / matrix[row][row];
+    for row in (0..N).rev() {
+        for k in row + 1..N {
+            right[row] -= matrix[row][k] * right[k];
+        }
+        right[row] *= over_pivot[row];
     }
 }
 
@@ -843,14 +844,14 @@ mod tests {
                 })
             };
             // S = A Aᵀ.
-            let a: Matrix = std::array::from_fn(|_| std::array::from_fn(|_| draws.uniform(0.0, 1.0)));
+            let a: Matrix = from_fn(|_| from_fn(|_| draws.uniform(0.0, 1.0)));
             let mut equations = Equations {
                 count,
                 meshes: count,
                 compliance: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
                 of_static: [0.0; MOST_UNKNOWNS],
             };
-            let free: OfUnknowns = std::array::from_fn(|_| draws.uniform(0.0, 3.0));
+            let free: OfUnknowns = from_fn(|_| draws.uniform(0.0, 3.0));
             for row in 0..count {
                 for column in 0..count {
                     equations.compliance[row][column] =
@@ -940,9 +941,9 @@ mod tests {
         equations.solve(&law, &free, &mut exact, &mut Search::new());
         let mut searched = [-4.0; MOST_UNKNOWNS];
         for _ in 0..20 {
-            let Search { loads: [mut loads, _], mut matrix, next: mut newton } = Search::new();
+            let Search { loads: [mut loads, _], next: mut newton } = Search::new();
             equations.set_loads(&law, &searched, &mut loads);
-            equations.newton(&free, &searched, &loads, &mut matrix, &mut newton);
+            equations.newton(&free, &searched, &loads, &mut newton);
             searched = equations.towards(&law, &free, &searched, &newton);
         }
         assert!((searched[0] - exact[0]).abs() < 1e-12 && (searched[1] - exact[1]).abs() < 1e-12, "{searched:?}");
