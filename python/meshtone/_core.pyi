@@ -362,10 +362,12 @@ def enhance(scenario: Scenario, tuned: _Path, draws: int, seed: int) -> tuple[_A
 @final
 class Observation:
     @staticmethod
-    def of_simulated(machine: Scenario | Gearbox, signal: _Array, start_s: float) -> Observation: ...
+    def of_simulated(
+        machine: Scenario | Gearbox, signal: _Array, start_s: float, other: Observation | None
+    ) -> Observation: ...
     @staticmethod
     def of_measured(
-        signal: _Array, sampling_rate_hz: float, phase: ShaftPhase, machine: Scenario | Gearbox
+        signal: _Array, sampling_rate_hz: float, phase: ShaftPhase, machine: Scenario | Gearbox, other: Observation | None
     ) -> Observation: ...
     @staticmethod
     def of_revolution(values: _Array, gear_teeth: int, signal: str) -> Observation: ...

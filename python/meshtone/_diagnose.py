@@ -46,7 +46,8 @@ class Diagnosis:
         The same of a damage whatever its kind: ``severity``, ``wheel``, ``tooth`` and their probabilities, ``one_tooth_probability``.
     bearings : list of dict
         Of a gearbox with ball or roller bearings every race, those with a defect first: ``bearings``, the names of those that it may be of, ``race``,
-        ``is_detected``, ``false_alarm_probability``, ``order``, ``found_order``, ``over_median``. No severity is estimated.
+        ``is_defect``, ``is_detected`` (lines that a sound bearing can have, too), ``false_alarm_probability``, ``order``, ``found_order``,
+        ``over_median``, ``healthy_over_median``. No severity is estimated.
     summary : str
         What it comes to, in a sentence.
     damaged : float
@@ -189,7 +190,7 @@ def diagnose(
     if tuned is not None and isinstance(rig, _core.Scenario):
         rig = _core.tuned_rig(rig, tuned)
     now = _observations("recordings", recordings, scenario, signal)
-    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal)
+    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal, now[0])
     count = _records(records)
     known = typed((code, message, []) for code, message in _core.check_diagnosis(rig, now, before))
     warn_of_signal(known)
@@ -222,31 +223,41 @@ def _records(records: int) -> int:
 
 
 def _observations(
-    name: str, given: Recorded | Sequence[Recorded], scenario: Scenario | Gearbox, signal: str
+    name: str,
+    given: Recorded | Sequence[Recorded],
+    scenario: Scenario | Gearbox,
+    signal: str,
+    other: _core.Observation | None = None,
 ) -> list[_core.Observation]:
     several: Sequence[Any] = given if isinstance(given, list) else [given]
     if not several:
         raise ValueError(f"{name}: must be at least one")
-    return [_observation(name, one, scenario, signal) for one in several]
+    observed: list[_core.Observation] = []
+    for one in several:
+        # All in the band of the first one, in which the lines of bearings are compared.
+        observed.append(_observation(name, one, scenario, signal, other or next(iter(observed), None)))
+    return observed
 
 
-def _observation(name: str, one: Any, scenario: Scenario | Gearbox, signal: str) -> _core.Observation:
+def _observation(
+    name: str, one: Any, scenario: Scenario | Gearbox, signal: str, other: _core.Observation | None
+) -> _core.Observation:
     if signal != "recording" and isinstance(scenario, Scenario):
         return _core.Observation.of_revolution(finite_signal(one), scenario.gear_teeth, signal)
     if isinstance(one, Simulation):
         values = getattr(one, chosen_channel(one.scenario, None))
-        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
+        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s, other)
     if isinstance(one, Recording) and one.scenario is not None:
         values = one[chosen_channel(one.scenario, None)]
-        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
+        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s, other)
     gearbox = one.gearbox if isinstance(one, (GearboxSimulation, Recording)) else None
     if gearbox is not None:
         values = one[gearbox._native.leading_channel()]
-        return _core.Observation.of_simulated(gearbox._native, values, one.start_s)
+        return _core.Observation.of_simulated(gearbox._native, values, one.start_s, other)
     if isinstance(one, tuple) and len(one) == 3:
         values, rate_hz, phase = one
         rate_hz = positive("sampling_rate_hz", rate_hz)
-        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), native_machine(scenario))
+        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), native_machine(scenario), other)
     raise TypeError(
         f"{name}: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
     )

@@ -5,17 +5,22 @@
 //! ```
 //!
 //! Simulates so many rigs, each recorded on all six seats: every other one has a spall in one race of one bearing, half of either kind have damaged teeth. Wheels,
-//! structure, speed, load and path are drawn as for the reference set. Writes a row for each recording, and prints a table by race and size.
+//! structure, speed, load and path are drawn as for the reference set; a recording of the same rig without damage is the healthy one. Writes a row for each recording
+//! and race, and prints a table by race and size.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;
 
+use meshtone::GearboxSimulation;
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{Bearing, BearingDefect, BearingKind, DefectPlace, Gearbox, ScenarioForm};
-use meshtone::signal::{BearingDefects, DefectKind, GearTrain, RaceTest, TrainRecording, TrainTurning};
-use meshtone_diagnose::{Drawn, Prior};
+use meshtone::signal::{
+    BearingDefects, BearingSettings, DefectKind, FrequencyBand, GearTrain, RaceTest, TrainRecording,
+    TrainTurning,
+};
+use meshtone_diagnose::{BearingAnswer, Drawn, Prior};
 use meshtone_fourier::{from_real_spectrum, real_spectrum};
 use rayon::prelude::*;
 
@@ -52,6 +57,9 @@ struct Truth {
     is_on_seat: bool,
 }
 
+/// A recording with what is said of its bearings.
+type Asked = (Truth, Vec<BearingAnswer>);
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, count, output] = &arguments[..] else { return Err("needs COUNT OUTPUT.csv".into()) };
@@ -59,27 +67,26 @@ fn main() -> Result<(), Box<dyn Error>> {
     let asked = (0..count.parse()?)
         .into_par_iter()
         .map(|number| ask(&prior, number).map_err(|error| error.to_string()));
-    let asked: Vec<(Truth, BearingDefects)> = asked.collect::<Result<Vec<_>, _>>()?.concat();
-    let mut rows = String::from("recording,teeth,bearing,race,size,on_seat,found,p,over_median,of_true\n");
+    let asked: Vec<Asked> = asked.collect::<Result<Vec<_>, _>>()?.concat();
+    let mut rows = String::from(
+        "recording,teeth,bearing,race,size,on_seat,tested_bearings,tested_race,is_true,p,over_median,healthy_over_median\n",
+    );
     for (number, (truth, found)) in asked.iter().enumerate() {
         let (bearing, race, size) = truth.defect.unwrap_or((9, 9, 0.0));
-        let detected: Vec<String> = found
-            .races
-            .iter()
-            .filter(|of| of.is_detected())
-            .map(|of| format!("{} {:?}", of.race.name(), of.bearings))
-            .collect();
-        let of_true = found.races.iter().find(|of| is_true(truth, of));
-        writeln!(
-            rows,
-            "{number},{},{bearing},{race},{size:.3},{},{},{:.2e},{:.1},{:.2e}",
-            truth.has_damaged_teeth,
-            truth.is_on_seat,
-            detected.join(" + ").replace(',', ";"),
-            found.races.first().map_or(f64::NAN, |of| of.false_alarm_probability),
-            found.races.first().map_or(f64::NAN, |of| of.over_median),
-            of_true.map_or(f64::NAN, |of| of.false_alarm_probability),
-        )?;
+        for BearingAnswer { bearings, test, healthy_over_median } in found {
+            writeln!(
+                rows,
+                "{number},{},{bearing},{race},{size:.3},{},{},{},{},{:.2e},{:.2},{:.2}",
+                truth.has_damaged_teeth,
+                truth.is_on_seat,
+                bearings.join(" "),
+                test.race.name(),
+                is_true(truth, test),
+                test.false_alarm_probability,
+                test.over_median,
+                healthy_over_median.unwrap_or(f64::NAN),
+            )?;
+        }
     }
     fs::write(output, rows)?;
     print!("{}", table(&asked)?);
@@ -100,45 +107,95 @@ fn rig() -> Result<Gearbox, Box<dyn Error>> {
     Ok(gearbox)
 }
 
-/// Simulates a rig, and looks for defects in what the sensor on each of its seats records.
-fn ask(prior: &Prior, number: u64) -> Result<Vec<(Truth, BearingDefects)>, Box<dyn Error>> {
+/// Simulates a rig and the same rig without damage, and looks for defects in what the sensor on each of its seats records.
+fn ask(prior: &Prior, number: u64) -> Result<Vec<Asked>, Box<dyn Error>> {
     let mut draws = Draws::new(SEED, Purpose::DiagnosisNoise, number);
     // Every race on every bearing, with sound and with damaged teeth.
     let (is_damaged, turn) = (number % 2 == 1, number / 2);
     let has_damaged_teeth = (turn + turn / 6) % 2 == 1;
-    let drawn = prior.draw(8 * number + if has_damaged_teeth { 2 + number / 4 % 6 } else { 1 })?;
-    let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else { return Err("of a pair".into()) };
-    gearbox.sensors.clear();
-    gearbox.solver.settings.sampling_rate_hz = RATE_HZ;
-    gearbox.solver.settings.duration_s = Some(DURATION_S);
-    gearbox.solver.settings.pinion_revolutions = None;
     let size = SIZES[0] * (SIZES[3] / SIZES[0]).powf(draws.uniform(0.5, 0.5));
     let defect = is_damaged.then_some(((turn % 6) as usize, ((turn + turn / 6) % 3) as usize, size));
-    if let Some((bearing, race, size)) = defect {
-        gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
-    }
+    let record = if has_damaged_teeth { 2 + number / 4 % 6 } else { 1 };
     // With some draws of damping and damage the motion grows without bound.
-    let Ok(simulation) = meshtone::simulate_gearbox(&gearbox) else { return Ok(Vec::new()) };
-    let channels = simulation.channels;
-    let form = ScenarioForm::Gearbox(gearbox.clone());
-    let train = GearTrain::of_form(&form)?;
-    let turning = TrainTurning::of_simulated(&form, channels.start_s, channels.len())?;
-    let bearings: Vec<_> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
+    let Some(now) = Simulated::new(prior, 8 * number + record, defect)? else {
+        return Ok(Vec::new());
+    };
+    let Some(healthy) = Simulated::new(prior, 8 * number, None)? else {
+        return Ok(Vec::new());
+    };
     let on_seat = |seat: usize| {
-        let mut of_seat = gearbox.clone();
-        of_seat.sensors = gearbox.all_sensors()[seat..=seat].to_vec();
+        let now = now.defects(seat, None, &mut draws)?;
+        let healthy = healthy.defects(seat, now.band, &mut draws)?;
+        let answer = |test: &RaceTest| {
+            let is_same = |of: &&RaceTest| (of.race, &of.bearings) == (test.race, &test.bearings);
+            BearingAnswer {
+                bearings: test.bearings.iter().map(usize::to_string).collect(),
+                test: test.clone(),
+                healthy_over_median: healthy.races.iter().find(is_same).map(|of| of.over_median),
+            }
+        };
+        let is_on_seat = defect.is_some_and(|(bearing, ..)| bearing == seat);
+        Ok((Truth { has_damaged_teeth, defect, is_on_seat }, now.races.iter().map(answer).collect()))
+    };
+    (0..BEARINGS.len()).map(on_seat).collect()
+}
+
+/// A simulated rig.
+struct Simulated {
+    drawn: Drawn,
+    gearbox: Gearbox,
+    form: ScenarioForm,
+    simulation: GearboxSimulation,
+}
+
+impl Simulated {
+    /// The rig of a record, with a spall: the bearing, the race and the size; none where its motion grows without bound.
+    fn new(
+        prior: &Prior,
+        record: u64,
+        defect: Option<(usize, usize, f64)>,
+    ) -> Result<Option<Self>, Box<dyn Error>> {
+        let drawn = prior.draw(record)?;
+        let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else {
+            return Err("of a pair".into());
+        };
+        gearbox.sensors.clear();
+        gearbox.solver.settings.sampling_rate_hz = RATE_HZ;
+        gearbox.solver.settings.duration_s = Some(DURATION_S);
+        gearbox.solver.settings.pinion_revolutions = None;
+        if let Some((bearing, race, size)) = defect {
+            gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
+        }
+        let Ok(simulation) = meshtone::simulate_gearbox(&gearbox) else { return Ok(None) };
+        let form = ScenarioForm::Gearbox(gearbox.clone());
+        Ok(Some(Self { drawn, gearbox, form, simulation }))
+    }
+
+    /// What the sensor on a seat shows in a band.
+    fn defects(
+        &self,
+        seat: usize,
+        band: Option<FrequencyBand>,
+        draws: &mut Draws,
+    ) -> Result<BearingDefects, Box<dyn Error>> {
+        let channels = &self.simulation.channels;
+        let band =
+            band.map(|band| FrequencyBand { to_hz: band.to_hz.min(0.5 * channels.sampling_rate_hz), ..band });
+        let train = GearTrain::of_form(&self.form)?;
+        let turning = TrainTurning::of_simulated(&self.form, channels.start_s, channels.len())?;
+        let bearings: Vec<_> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
+        let mut of_seat = self.gearbox.clone();
+        of_seat.sensors = self.gearbox.all_sensors()[seat..=seat].to_vec();
         let simulated = channels.signal(&of_seat.leading_channel()).ok_or("no such channel")?;
-        let signal = recorded(simulated, channels.sampling_rate_hz, &drawn, &mut draws);
+        let signal = recorded(simulated, channels.sampling_rate_hz, &self.drawn, draws);
         let recording = TrainRecording {
             signal: &signal,
             sampling_rate_hz: channels.sampling_rate_hz,
             train: &train,
             turning: &turning,
         };
-        let is_on_seat = defect.is_some_and(|(bearing, ..)| bearing == seat);
-        Ok((Truth { has_damaged_teeth, defect, is_on_seat }, recording.bearing_defects(&bearings)?))
-    };
-    (0..BEARINGS.len()).map(on_seat).collect()
+        Ok(recording.bearing_defects(&bearings, &BearingSettings { band, ..BearingSettings::default() })?)
+    }
 }
 
 /// A simulated signal behind the path to the sensor, with noise.
@@ -160,24 +217,25 @@ fn is_true(truth: &Truth, test: &RaceTest) -> bool {
 }
 
 /// Counts by race and size.
-fn table(asked: &[(Truth, BearingDefects)]) -> Result<String, Box<dyn Error>> {
+fn table(asked: &[Asked]) -> Result<String, Box<dyn Error>> {
     let mut table = String::from(
-        "| | recordings | the race is detected | another outer race | another inner race or element |\n|---|--:|--:|--:|--:|\n",
+        "| | recordings | the race: lines | a defect | another outer race: lines | a defect | another inner race or element |\n|---|--:|--:|--:|--:|--:|--:|\n",
     );
     let mut row = |name: &str, is_of: &dyn Fn(&Truth) -> bool| {
         let of: Vec<_> = asked.iter().filter(|(truth, _)| is_of(truth)).collect();
-        let count = |is_counted: &dyn Fn(&Truth, &RaceTest) -> bool| {
-            let detects = |(truth, found): &&&(Truth, BearingDefects)| {
-                found.races.iter().any(|race| race.is_detected() && is_counted(truth, race))
-            };
-            of.iter().filter(detects).count()
+        let count = |is_counted: &dyn Fn(&Truth, &BearingAnswer) -> bool| {
+            let counts = |(truth, found): &&&Asked| found.iter().any(|of| is_counted(truth, of));
+            of.iter().filter(counts).count()
         };
-        let is_other_outer =
-            |truth: &Truth, race: &RaceTest| race.race == DefectKind::OuterRace && !is_true(truth, race);
-        let is_other =
-            |truth: &Truth, race: &RaceTest| race.race != DefectKind::OuterRace && !is_true(truth, race);
-        let counts = [count(&is_true), count(&is_other_outer), count(&is_other)];
-        writeln!(table, "| {name} | {} | {} | {} | {} |", of.len(), counts[0], counts[1], counts[2])
+        let is_outer = |of: &BearingAnswer| of.test.race == DefectKind::OuterRace;
+        let counts = [
+            count(&|truth, of| is_true(truth, &of.test) && of.test.is_detected()),
+            count(&|truth, of| is_true(truth, &of.test) && of.is_defect()),
+            count(&|truth, of| !is_true(truth, &of.test) && is_outer(of) && of.test.is_detected()),
+            count(&|truth, of| !is_true(truth, &of.test) && is_outer(of) && of.is_defect()),
+            count(&|truth, of| !is_true(truth, &of.test) && !is_outer(of) && of.is_defect()),
+        ];
+        writeln!(table, "| {name} | {} | {} |", of.len(), counts.map(|count| count.to_string()).join(" | "))
     };
     row("no defect, sound teeth", &|of| of.defect.is_none() && !of.has_damaged_teeth)?;
     row("no defect, damaged teeth", &|of| of.defect.is_none() && of.has_damaged_teeth)?;

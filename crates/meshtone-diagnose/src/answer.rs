@@ -112,7 +112,7 @@ pub struct Answer {
     /// Meaning of tooth 1 of each wheel; none where teeth cannot be counted: after a mesh tone, or in several
     /// recordings without a mark in common.
     pub counted_from: Vec<Option<AngleZero>>,
-    /// The bearings, race by race: those with a defect first, then the others, the strongest first. Empty of a rig without ball or roller bearings.
+    /// The bearings, race by race: those with a defect first, then the others, the most certain lines first. Empty of a rig without ball or roller bearings.
     pub bearings: Vec<BearingAnswer>,
     /// Summary: a sentence about bearings where one is damaged, and one about the teeth.
     pub summary: String,
@@ -179,9 +179,9 @@ impl Answer {
         self.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL)
     }
 
-    /// The bearing whose lines are detected as the strongest.
-    pub fn detected_bearing(&self) -> Option<&BearingAnswer> {
-        self.bearings.first().filter(|of| of.is_detected())
+    /// Returns whether the lines of a bearing's race are detected, whether or not they are of a defect.
+    pub fn has_bearing_lines(&self) -> bool {
+        self.bearings.iter().any(|of| of.test.is_detected())
     }
 
     /// The likeliest damage.

@@ -124,8 +124,8 @@ fn likely_wheels(answer: &Answer) -> String {
 /// * `answer` - all but the summary
 pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
-        let bearing = answer.detected_bearing().filter(|_| answer.is_recording_outside());
-        let why = bearing.map_or("", |_| ", perhaps because of the bearing");
+        let is_of_bearing = answer.is_recording_outside() && answer.has_bearing_lines();
+        let why = if is_of_bearing { ", perhaps because of the bearing" } else { "" };
         return format!(
             "Nothing can be said of the teeth: the recordings are unlike what was simulated{why}."
         );

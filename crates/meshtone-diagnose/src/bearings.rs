@@ -2,6 +2,7 @@
 
 use meshtone::signal::{BearingDefects, DefectKind, GearTrain, RaceTest};
 
+use crate::learn::Question;
 use crate::observation::Observation;
 
 /// Answer about one race, or the rolling elements, of one bearing, or of several that cannot be told apart.
@@ -9,79 +10,91 @@ use crate::observation::Observation;
 pub struct BearingAnswer {
     /// Names of the bearings that the defect may be of: shaft and place, such as `input:0`; several where their orders differ by less than slip does.
     pub bearings: Vec<String>,
-    /// The race.
-    pub race: DefectKind,
-    /// (orders of the bearing's shaft) Its first line without slip.
-    pub order: f64,
-    /// (orders of the bearing's shaft) Where its lines are strongest together.
-    pub found_order: f64,
-    /// (-) Amplitude of its harmonics over the median beside them, their geometric mean. It is no severity.
-    pub over_median: f64,
-    /// (-) Probability that lines without those of any race look like this one, over all races and recordings.
-    pub false_alarm_probability: f64,
+    /// What the recording with the least false-alarm probability shows; that probability is over all races and recordings. The strength is no severity.
+    pub test: RaceTest,
+    /// (-) The largest [`RaceTest::over_median`] of the same lines in a healthy recording; none without one in which they can be read.
+    pub healthy_over_median: Option<f64>,
 }
 
 impl BearingAnswer {
-    /// Returns whether its lines are there. Those of an outer race can be of a sound bearing, too.
-    pub fn is_detected(&self) -> bool {
-        self.false_alarm_probability < RaceTest::DETECTED
+    /// (-) Strength of the lines over that in a healthy recording, from which on they are of a defect.
+    pub const RISE: f64 = 2.0;
+
+    /// Returns whether the race is said to have a defect: its lines are there, and at least [`Self::RISE`] times as strong as in a healthy recording. Without one
+    /// those of an outer race are of no defect, because elements that pass the outer race of a sound bearing under load excite the same lines.
+    pub fn is_defect(&self) -> bool {
+        let has_risen = match self.healthy_over_median {
+            Some(healthy) => self.test.over_median >= Self::RISE * healthy,
+            None => self.test.race != DefectKind::OuterRace,
+        };
+        self.test.is_detected() && has_risen
+    }
+
+    /// Returns whether its lines are there, and no healthy recording says whether a sound outer race excites them.
+    fn may_be_defect(&self) -> bool {
+        self.test.is_detected() && !self.is_defect() && self.healthy_over_median.is_none()
     }
 
     /// `the outer race of bearing input:0 or input:1`.
     fn named(&self) -> String {
-        let part = if self.race == DefectKind::Element {
+        let part = if self.test.race == DefectKind::Element {
             "a rolling element".to_owned()
         } else {
-            format!("the {}", self.race.name())
+            format!("the {}", self.test.race.name())
         };
         format!("{part} of bearing {}", self.bearings.join(" or "))
     }
 
     /// Place and strength of its lines.
     fn in_words(&self) -> String {
+        let RaceTest { order, found_order, over_median, false_alarm_probability, .. } = &self.test;
+        let healthy =
+            self.healthy_over_median.map(|healthy| format!(" ({healthy:.1} in the healthy recording)"));
         let alike = if self.bearings.len() > 1 {
             "; the orders of these bearings differ by less than slip"
         } else {
             ""
         };
         format!(
-            "{}: lines at order {:.3} of its shaft ({:.3} without slip), {:.1} times the median, false alarm {}{alike}",
+            "{}: lines at order {found_order:.3} of its shaft ({order:.3} without slip), {over_median:.1} times the median{}, false alarm {}{alike}",
             self.named(),
-            self.found_order,
-            self.order,
-            self.over_median,
-            crate::p_in_words(self.false_alarm_probability)
+            healthy.unwrap_or_default(),
+            crate::p_in_words(*false_alarm_probability)
         )
     }
 }
 
-/// The races over all recordings of a state, the most certain defect first.
+/// The races over all recordings of a state: defects first, then the most certain lines.
 ///
 /// # Arguments
 /// * `train` - of the rig
-/// * `now` - the recordings
-pub(crate) fn answers(train: &GearTrain, now: &[Observation]) -> Vec<BearingAnswer> {
+/// * `question` - the recordings
+pub(crate) fn answers(train: &GearTrain, question: &Question) -> Vec<BearingAnswer> {
+    let of_race = |recordings: &[Observation], test: &RaceTest| -> Vec<RaceTest> {
+        let races = recordings.iter().flat_map(|asked| &asked.bearings.races);
+        races.filter(|of| (of.race, &of.bearings) == (test.race, &test.bearings)).cloned().collect()
+    };
     let mut all: Vec<BearingAnswer> = Vec::new();
-    for BearingDefects { races, .. } in now.iter().map(|asked| &asked.bearings) {
-        for race in races {
-            let answer = BearingAnswer {
-                bearings: race.bearings.iter().map(|place| train.bearings[*place].0.clone()).collect(),
-                race: race.race,
-                order: race.order,
-                found_order: race.found_order,
-                over_median: race.over_median,
-                false_alarm_probability: (now.len() as f64 * race.false_alarm_probability).min(1.0),
-            };
-            let is_same =
-                |of: &&mut BearingAnswer| (of.race, &of.bearings) == (answer.race, &answer.bearings);
-            match all.iter_mut().find(is_same) {
-                Some(known) if known.false_alarm_probability <= answer.false_alarm_probability => {}
-                Some(known) => *known = answer,
-                None => all.push(answer),
+    for asked in question.now {
+        for test in &asked.bearings.races {
+            let bearings = test.bearings.iter().map(|place| train.bearings[*place].0.clone()).collect();
+            if all.iter().any(|known| (known.test.race, &known.bearings) == (test.race, &bearings)) {
+                continue;
             }
+            let tests = of_race(question.now, test).into_iter();
+            let likeliest =
+                tests.min_by(|a, b| a.false_alarm_probability.total_cmp(&b.false_alarm_probability));
+            let mut test = likeliest.unwrap_or_else(|| test.clone());
+            test.false_alarm_probability =
+                (question.now.len() as f64 * test.false_alarm_probability).min(1.0);
+            let healthy = of_race(question.healthy, &test).into_iter().map(|of| of.over_median);
+            all.push(BearingAnswer { bearings, healthy_over_median: healthy.reduce(f64::max), test });
         }
     }
-    all.sort_by(|one, other| one.false_alarm_probability.total_cmp(&other.false_alarm_probability));
+    all.sort_by(|one, other| {
+        let p = |of: &BearingAnswer| of.test.false_alarm_probability;
+        other.is_defect().cmp(&one.is_defect()).then(p(one).total_cmp(&p(other)))
+    });
     all
 }
 
@@ -105,68 +118,82 @@ pub(crate) fn doubts(train: &GearTrain, asked: &Observation) -> Vec<String> {
 }
 
 /// The sentences that a summary begins with; none where nothing is detected.
-///
-/// Elements that pass the outer race of a sound bearing under load excite the same lines as a defect there, so that only the other races
-/// are said to be damaged.
 pub(crate) fn sentence(answers: &[BearingAnswer]) -> Option<String> {
-    let named = |is_outer: bool| {
-        let detected = answers.iter().filter(|of| of.is_detected());
-        let of_race = detected.filter(|of| (of.race == DefectKind::OuterRace) == is_outer);
-        let named: Vec<String> = of_race.map(BearingAnswer::named).collect();
+    let named = |is_named: fn(&BearingAnswer) -> bool| {
+        let named: Vec<String> = answers.iter().filter(|of| is_named(of)).map(BearingAnswer::named).collect();
         (!named.is_empty()).then(|| named.join("; "))
     };
-    let damaged = named(false).map(|named| format!("A bearing is damaged: {named}."));
-    let passed = named(true).map(|named| {
+    let damaged = named(BearingAnswer::is_defect).map(|named| format!("A bearing is damaged: {named}."));
+    let perhaps = named(BearingAnswer::may_be_defect).map(|named| {
         format!(
-            "A bearing may be damaged: {named}; the elements of a sound bearing can cause the same lines."
+            "A bearing may be damaged: {named}; the elements of a sound bearing can cause the same lines, so state a healthy recording."
         )
     });
-    let sentences: Vec<String> = damaged.into_iter().chain(passed).collect();
+    let sentences: Vec<String> = damaged.into_iter().chain(perhaps).collect();
     (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
-/// Notes about the bearings: the detected defects, or that there are none.
+/// Notes about the bearings: the detected lines, or that there are none.
 pub(crate) fn notes(answers: &[BearingAnswer]) -> Vec<String> {
-    let detected: Vec<String> =
-        answers.iter().filter(|of| of.is_detected()).map(BearingAnswer::in_words).collect();
+    let detected: Vec<&BearingAnswer> = answers.iter().filter(|of| of.test.is_detected()).collect();
+    let mut notes: Vec<String> = detected
+        .iter()
+        .map(|of| {
+            let is_as_healthy = !of.is_defect() && of.healthy_over_median.is_some();
+            let healthy =
+                if is_as_healthy { "; as in the healthy recording, so no sign of a defect" } else { "" };
+            format!("{}{healthy}", of.in_words())
+        })
+        .collect();
     match answers.first() {
-        None => Vec::new(),
-        Some(strongest) if detected.is_empty() => {
-            vec![format!(
-                "no defect of a bearing is detected in {} races; strongest: {}",
-                answers.len(),
-                strongest.in_words()
-            )]
-        }
-        Some(_) => detected
-            .into_iter()
-            .chain(["the severity of a bearing's defect is not estimated".to_owned()])
-            .collect(),
+        Some(strongest) if detected.is_empty() => notes.push(format!(
+            "no defect of a bearing is detected in {} races; strongest: {}",
+            answers.len(),
+            strongest.in_words()
+        )),
+        Some(_) => notes.push("the severity of a bearing's defect is not estimated".to_owned()),
+        None => {}
     }
+    notes
 }
 
 #[cfg(test)]
 mod tests {
+    use meshtone::random::{Draws, Purpose};
+    use meshtone::scenario::{BearingDefect, BearingKind, DefectPlace, Gearbox, ScenarioForm};
+    use meshtone::signal::{TrainRecording, TrainTurning};
+
     use super::*;
 
-    fn answer(bearings: &[&str], race: DefectKind, p: f64) -> BearingAnswer {
-        BearingAnswer {
-            bearings: bearings.iter().map(|name| (*name).to_owned()).collect(),
+    fn answer(
+        bearings: &[&str],
+        race: DefectKind,
+        p: f64,
+        healthy_over_median: Option<f64>,
+    ) -> BearingAnswer {
+        let test = RaceTest {
             race,
+            bearings: (0..bearings.len()).collect(),
             order: 3.052,
             found_order: 3.049,
             over_median: 41.0,
             false_alarm_probability: p,
+        };
+        BearingAnswer {
+            bearings: bearings.iter().map(|name| (*name).to_owned()).collect(),
+            test,
+            healthy_over_median,
         }
     }
 
     #[test]
     fn bearings_of_the_same_orders_are_both_named() {
-        let both = answer(&["input:0", "input:1"], DefectKind::OuterRace, 1e-5);
-        let answers = [both, answer(&["output:0"], DefectKind::Element, 0.3)];
+        let both = answer(&["input:0", "input:1"], DefectKind::OuterRace, 1e-5, None);
+        let answers = [both, answer(&["output:0"], DefectKind::Element, 0.3, None)];
         assert_eq!(
             sentence(&answers).unwrap(),
-            "A bearing may be damaged: the outer race of bearing input:0 or input:1; the elements of a sound bearing can cause the same lines."
+            "A bearing may be damaged: the outer race of bearing input:0 or input:1; the elements of a sound bearing can cause the same lines, \
+             so state a healthy recording."
         );
         let notes = notes(&answers);
         assert_eq!(notes.len(), 2);
@@ -177,5 +204,54 @@ mod tests {
         );
         assert!(notes[1].contains("severity"));
         assert_eq!(sentence(&answers[1..]), None);
+    }
+
+    #[test]
+    fn lines_are_of_a_defect_where_they_have_risen() {
+        let outer = |healthy| answer(&["input:0"], DefectKind::OuterRace, 1e-5, healthy);
+        assert!(outer(Some(20.0)).is_defect() && !outer(Some(21.0)).is_defect() && !outer(None).is_defect());
+        assert_eq!(sentence(&[outer(Some(21.0))]), None);
+        assert!(
+            notes(&[outer(Some(21.0))])[0].contains("41.0 times the median (21.0 in the healthy recording)")
+        );
+        // An inner race needs no comparison, but is compared where it can be.
+        let inner = |healthy| answer(&["input:0"], DefectKind::InnerRace, 1e-5, healthy);
+        assert!(inner(None).is_defect() && inner(Some(20.0)).is_defect() && !inner(Some(21.0)).is_defect());
+    }
+
+    /// From the simulation of a gearbox on ball bearings to the answer: a spall on the outer race is a defect beside the recording of the sound bearing, and
+    /// the sound bearing beside itself has none.
+    #[test]
+    fn spall_of_a_simulated_bearing_is_a_defect_and_a_sound_bearing_is_none() {
+        let observed = |spall: Option<BearingDefect>, other: Option<&Observation>| {
+            let mut gearbox = Gearbox::from_toml(include_str!("../../../examples/gearbox.toml")).unwrap();
+            gearbox.bearings[0].kind = BearingKind::Ball;
+            gearbox.bearings[0].name = Some("ER-10K".to_owned());
+            gearbox.bearings[0].defect = spall.into_iter().collect();
+            gearbox.solver.settings.sampling_rate_hz = 25_600.0;
+            gearbox.solver.settings.duration_s = Some(3.0);
+            let channels = meshtone::simulate_gearbox(&gearbox).unwrap().channels;
+            let form = ScenarioForm::Gearbox(gearbox.clone());
+            let train = GearTrain::of_form(&form).unwrap();
+            let turning = TrainTurning::of_simulated(&form, channels.start_s, channels.len()).unwrap();
+            let mut draws = Draws::new(1, Purpose::DiagnosisNoise, u64::from(other.is_none()));
+            let signal = channels.signal(&gearbox.leading_channel()).unwrap();
+            let signal: Vec<f64> = signal.iter().map(|value| value + 0.1 * draws.normal()).collect();
+            let sampling_rate_hz = channels.sampling_rate_hz;
+            let recording =
+                TrainRecording { signal: &signal, sampling_rate_hz, train: &train, turning: &turning };
+            (Observation::of_recording(&recording, other).unwrap(), train)
+        };
+        let defects = |spall: Option<BearingDefect>| {
+            let (now, train) = observed(spall, None);
+            let healthy = [observed(None, Some(&now)).0];
+            assert_eq!(healthy[0].bearings.band, now.bearings.band);
+            let question = Question { now: &[now], healthy: &healthy };
+            let defects = answers(&train, &question).into_iter().filter(BearingAnswer::is_defect);
+            defects.map(|of| (of.bearings.concat(), of.test.race)).collect::<Vec<_>>()
+        };
+        assert_eq!(defects(None), []);
+        let spall = BearingDefect::new(DefectPlace::Outer, 0.2);
+        assert_eq!(defects(Some(spall)), [("input:0".to_owned(), DefectKind::OuterRace)]);
     }
 }

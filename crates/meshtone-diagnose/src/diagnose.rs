@@ -103,7 +103,7 @@ pub fn diagnose(
         wheels: wheels.iter().map(|wheel| wheel.name.clone()).collect(),
         wheel_probabilities: of_wheels.iter().map(|of| of / of_any).collect(),
         shown_wheel,
-        bearings: bearings::answers(&learned.reference.prior.train, question.now),
+        bearings: bearings::answers(&learned.reference.prior.train, question),
         summary: String::new(),
         any_damage,
         simulated_records: learned.reference.records.len(),

@@ -50,12 +50,14 @@ fn warning(warning: &DiagnosisWarning) -> Value {
 fn bearing(of: &BearingAnswer) -> Value {
     json!({
         "bearings": of.bearings,
-        "race": of.race.name(),
-        "is_detected": of.is_detected(),
-        "false_alarm_probability": of.false_alarm_probability,
-        "order": of.order,
-        "found_order": of.found_order,
-        "over_median": of.over_median,
+        "race": of.test.race.name(),
+        "is_defect": of.is_defect(),
+        "is_detected": of.test.is_detected(),
+        "false_alarm_probability": of.test.false_alarm_probability,
+        "order": of.test.order,
+        "found_order": of.test.found_order,
+        "over_median": of.test.over_median,
+        "healthy_over_median": of.healthy_over_median,
     })
 }
 

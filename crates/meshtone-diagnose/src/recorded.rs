@@ -1,10 +1,11 @@
 //! Observation of recordings by the angles of the shafts.
 
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, BearingDefects, ForeignTones, GearTrain, LinesOffShafts,
-    Mismatch, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage,
-    TrainBearing, TrainRecording, TrainTurning, TrainWheel, find_train_mismatch, foreign_tones, kurtosis,
-    lines_off_shafts, rms, standard_deviation, synchronous_average, synchronous_part,
+    AngleZero, AngularSettings, AngularSignal, BearingDefects, BearingSettings, ForeignTones, FrequencyBand,
+    GearTrain, LinesOffShafts, Mismatch, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning,
+    SynchronousAverage, TrainBearing, TrainRecording, TrainTurning, TrainWheel, find_train_mismatch,
+    foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
+    synchronous_part,
 };
 use meshtone::wheel::WheelName;
 use meshtone_fourier::{Complex64, from_real_spectrum};
@@ -104,10 +105,11 @@ impl Observation {
     ///
     /// # Arguments
     /// * `recording` - a channel, in g, with the rig's shafts and how they turned
+    /// * `other` - an observation that this one is compared with: bearings are looked for in its band, and not at all where this recording does not reach it
     ///
     /// # Errors
     /// Fewer than two whole revolutions of a shaft; those of [`meshtone::signal::angular_resample`].
-    pub fn of_recording(recording: &TrainRecording) -> Result<Self, SignalError> {
+    pub fn of_recording(recording: &TrainRecording, other: Option<&Self>) -> Result<Self, SignalError> {
         let TrainRecording { train, sampling_rate_hz, turning, .. } = *recording;
         let settings = AngularSettings::default();
         let angular = (0..train.wheels.len()).map(|wheel| recording.angular(wheel, &settings));
@@ -122,7 +124,13 @@ impl Observation {
         let against = mismatch(recording, &angular)?;
         let observed = Self::of_angles(train, &angular, input_speed_hz)?;
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
-        let bearings = recording.bearing_defects(&bearings)?;
+        let band = other.and_then(|other| other.bearings.band);
+        let band = band.map(|band| FrequencyBand { to_hz: band.to_hz.min(0.5 * sampling_rate_hz), ..band });
+        let bearings = match band {
+            Some(band) if band.from_hz >= band.to_hz => BearingDefects::default(),
+            _ => recording
+                .bearing_defects(&bearings, &BearingSettings { band, ..BearingSettings::default() })?,
+        };
         let observed = Self { zero, bearings, ..observed };
         Ok(match against {
             Some(against) => observed.with_mismatch(against),

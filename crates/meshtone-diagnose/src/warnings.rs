@@ -156,11 +156,10 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     use DiagnosisWarningKind::{Contradiction, HealthyOutside, Level, NotSimulated, Outside};
 
     let outside = answer.is_recording_outside().then(|| {
-        let why = match answer.detected_bearing() {
-            Some(_) => "a damaged bearing may be the reason, since no simulation has one",
-            None => {
-                "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
-            }
+        let why = if answer.has_bearing_lines() {
+            "a damaged bearing may be the reason, since no simulation has one"
+        } else {
+            "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
         };
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });

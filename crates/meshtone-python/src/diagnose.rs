@@ -25,13 +25,14 @@ pub struct Observation(Observed);
 
 #[pymethods]
 impl Observation {
-    /// Of a simulated signal, in g.
+    /// Of a simulated signal, in g, in the band of another observation that it is compared with.
     #[staticmethod]
     fn of_simulated(
         py: Python<'_>,
         machine: Machine<'_>,
         signal: Signal<'_>,
         start_s: f64,
+        other: Option<&Self>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
         let form = machine.form();
@@ -40,12 +41,12 @@ impl Observation {
             let turning = TrainTurning::of_simulated(&form, start_s, signal.len())?;
             let sampling_rate_hz = form.time_grid().sampling_rate_hz;
             let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
-            Observed::of_recording(&recording)
+            Observed::of_recording(&recording, other.map(|other| &other.0))
         };
         py.detach(observe).map(Self).map_err(value_error)
     }
 
-    /// Of a measured signal, in g, with the phase of the pinion's shaft or of the input.
+    /// Of a measured signal, in g, with the phase of the pinion's shaft or of the input, in the band of another observation that it is compared with.
     #[staticmethod]
     fn of_measured(
         py: Python<'_>,
@@ -53,6 +54,7 @@ impl Observation {
         sampling_rate_hz: f64,
         phase: &ShaftPhase,
         machine: Machine<'_>,
+        other: Option<&Self>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
         let form = machine.form();
@@ -63,7 +65,8 @@ impl Observation {
         };
         let turning = TrainTurning::Shaft { shaft: train.input(), phase: phase.0.clone(), stated };
         let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
-        py.detach(|| Observed::of_recording(&recording)).map(Self).map_err(value_error)
+        let other = other.map(|other| &other.0);
+        py.detach(|| Observed::of_recording(&recording, other)).map(Self).map_err(value_error)
     }
 
     /// Of one revolution of the gear, in g.

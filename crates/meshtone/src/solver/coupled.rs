@@ -446,7 +446,8 @@ impl Constants<'_> {
         let centres = sample.springs.iter().map(|springs| springs.face_centre_m(sample.k));
         face_centres.iter_mut().zip(centres).for_each(|(own, centre)| *own = centre);
         if !self.all_midway {
-            prepared.set_equations(&face_centres, &mut state.equations);
+            let meshes = 0..state.equations.meshes;
+            prepared.set_equations(&face_centres, meshes, &mut state.equations);
         }
         let equations = &state.equations;
         let mut free = equations.of_static;
@@ -490,8 +491,9 @@ impl Prepared {
     ///
     /// # Arguments
     /// * `face_centres` - (m) where along its face the load of each mesh acts; what is missing acts midway
+    /// * `moved` - the unknowns whose loads act elsewhere than before
     /// * `equations` - of this machine
-    fn set_equations(&self, face_centres: &[f64], equations: &mut Equations) {
+    fn set_equations(&self, face_centres: &[f64], moved: Range<usize>, equations: &mut Equations) {
         // Each load acts in the one direction g(z̄) = g₀ + z̄ g₁.
         let weights = |unknown: usize| {
             let z = face_centres.get(unknown).copied().unwrap_or(0.0);
@@ -500,17 +502,16 @@ impl Prepared {
             middle.into_iter().chain(columns.map(move |tilt| (tilt, z)))
         };
         for a in 0..equations.count {
-            equations.of_static[a] = 0.0;
-            for b in 0..equations.count {
-                equations.compliance[a][b] = 0.0;
-                let static_force_n = self.static_force_n.get(b).copied().unwrap_or(0.0);
+            // The static force acts midway along the face.
+            let of_static = |(b, force_n): (usize, &f64)| {
                 let from = self.columns_of_unknown[b].start;
-                for (r, of_r) in weights(a) {
-                    // The static force acts midway along the face.
-                    equations.of_static[a] += of_r * self.compliance[r][from] * static_force_n;
-                    for (s, of_s) in weights(b) {
-                        equations.compliance[a][b] += of_r * self.compliance[r][s] * of_s;
-                    }
+                weights(a).map(|(r, of_r)| of_r * self.compliance[r][from] * force_n).sum::<f64>()
+            };
+            equations.of_static[a] = self.static_force_n.iter().enumerate().map(of_static).sum();
+            for b in 0..equations.count {
+                if moved.contains(&a) || moved.contains(&b) {
+                    let of_r = |(r, of_r): (usize, f64)| weights(b).map(move |(s, of_s)| of_r * self.compliance[r][s] * of_s);
+                    equations.compliance[a][b] = weights(a).flat_map(of_r).sum();
                 }
             }
         }
@@ -609,7 +610,7 @@ impl Equations {
             compliance: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
             of_static: [0.0; MOST_UNKNOWNS],
         };
-        prepared.set_equations(&[], &mut this);
+        prepared.set_equations(&[], 0..this.count, &mut this);
         this
     }
 

@@ -1,5 +1,6 @@
 //! Whether a recording shows a defect of a bearing: the lines of a race together, against the same lines at orders of no bearing.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use super::lines::{DefectKind, SLIP};
@@ -36,7 +37,6 @@ const RACES: [DefectKind; 3] = [DefectKind::OuterRace, DefectKind::InnerRace, De
 
 /// Whether one race of a bearing has a defect.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct RaceTest {
     /// The race.
     pub race: DefectKind,
@@ -46,7 +46,7 @@ pub struct RaceTest {
     pub order: f64,
     /// (orders of the first bearing's shaft) Its first line where its lines are strongest together, within 1.5 % of that.
     pub found_order: f64,
-    /// (-) Amplitude over the median beside it, geometric mean of the harmonics.
+    /// (-) Amplitude over the median beside it, geometric mean of three harmonics and their nearest sidebands, as far as they can be read.
     pub over_median: f64,
     /// (-) Probability that lines without those of any race look like this one, at most 1: times the number of races.
     pub false_alarm_probability: f64,
@@ -191,7 +191,7 @@ impl Standing {
         orders.filter_map(score).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The score of a race with its order, and the probability that noise reaches it.
+    /// The order of a race at which its lines stand out most, and the probability that noise reaches as much.
     ///
     /// The decoys are the same comb at other orders, each with the same room for slip, in the spectrum without the race's own lines. A Gumbel distribution,
     /// which is that of maxima, has their mean and standard deviation.
@@ -215,6 +215,51 @@ impl Standing {
         let beyond = (score - (mean - EULER * scale)) / scale.max(f64::MIN_POSITIVE);
         Some((order, -f64::exp_m1(-(-beyond).exp())))
     }
+
+    /// Amplitude of a race's lines over the median, the geometric mean of those that can be read.
+    fn over_median(&self, comb: &Comb, order: f64) -> f64 {
+        let powers = comb.lines(order, HARMONICS as i32, 1).filter_map(|(.., at)| self.power(at));
+        let logs: Vec<f64> = powers.map(|power| (power / std::f64::consts::LN_2).ln()).collect();
+        (0.5 * logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
+    }
+
+    /// Tests each race, that which noise explains least first, and the others without the lines of those that are detected. Returns the tests, and the races of
+    /// which too few lines can be read.
+    fn races(mut self, mut combs: Vec<Comb>) -> (Vec<RaceTest>, Vec<Comb>) {
+        let whole = self.clone();
+        let asked = combs.len() as f64;
+        let mut races = Vec::new();
+        loop {
+            let tested = |(at, comb): (usize, &Comb)| {
+                let (order, p) = self.test(comb)?;
+                let test = RaceTest {
+                    race: comb.race,
+                    bearings: comb.bearings.clone(),
+                    order: comb.order / comb.shaft,
+                    found_order: order / comb.shaft,
+                    over_median: whole.over_median(comb, order),
+                    false_alarm_probability: (asked * p).min(1.0),
+                };
+                Some((at, test))
+            };
+            let mut tested: Vec<(usize, RaceTest)> = combs.iter().enumerate().filter_map(tested).collect();
+            tested.sort_by(|a, b| a.1.false_alarm_probability.total_cmp(&b.1.false_alarm_probability));
+            match tested.first() {
+                Some((at, strongest)) if strongest.is_detected() => {
+                    let comb = combs.remove(*at);
+                    self.explain_comb(&comb, strongest.found_order * comb.shaft);
+                    races.push(strongest.clone());
+                }
+                _ => {
+                    let is_tested = |at: usize| tested.iter().any(|(of, _)| *of == at);
+                    let unread = combs.into_iter().enumerate().filter(|(at, _)| !is_tested(*at));
+                    let unread = unread.map(|(_, comb)| comb).collect();
+                    races.extend(tested.into_iter().map(|(_, test)| test));
+                    return (races, unread);
+                }
+            }
+        }
+    }
 }
 
 impl TrainRecording<'_> {
@@ -226,94 +271,75 @@ impl TrainRecording<'_> {
     ///
     /// # Arguments
     /// * `bearings` - the bearings of the machine, all of them: they are distinguished from each other
+    /// * `settings` - what is removed, and the band
     ///
     /// # Errors
     /// Those of [`Self::bearings`].
-    pub fn bearing_defects(&self, bearings: &[TrainBearing]) -> Result<BearingDefects, SignalError> {
-        let mut found = BearingDefects::default();
-        let Some(first) = bearings.first() else { return Ok(found) };
-        let records = self.bearings(bearings, &BearingSettings::default())?;
-        (found.band, found.warnings) = (Some(records.band), records.warnings);
+    pub fn bearing_defects(
+        &self,
+        bearings: &[TrainBearing],
+        settings: &BearingSettings,
+    ) -> Result<BearingDefects, SignalError> {
+        let Some(first) = bearings.first() else { return Ok(BearingDefects::default()) };
+        let records = self.bearings(bearings, settings)?;
         let ratio = |shaft: usize| self.train.speed_ratio(shaft, first.shaft).value();
-        let Some((spectrum, _)) = records.bearings.first() else { return Ok(found) };
+        let spectrum = &records.bearings[0].0;
         let speed_hz = self.phase(first.shaft)?.mean_speed_hz(self.sampling_rate_hz);
         let width = (records.band.to_hz - records.band.from_hz) / speed_hz;
-        let mut combs: Vec<Comb> = Vec::new();
-        for (place, of) in bearings.iter().enumerate() {
-            let (orders, shaft) = (of.geometry.defect_orders(), ratio(of.shaft));
-            let cage_turns = orders.cage * shaft / spectrum.step;
-            if cage_turns < FEWEST_CAGE_TURNS {
-                found.too_short.push((place, cage_turns, FEWEST_CAGE_TURNS));
-                continue;
-            }
-            for race in RACES {
-                let order = race.order(&orders) * shaft;
-                let beside = match race {
-                    DefectKind::InnerRace => Some(shaft),
-                    DefectKind::Element => Some(orders.cage * shaft),
-                    _ => None,
-                };
-                let is_alike = |comb: &&mut Comb| {
-                    comb.race == race
-                        && is_near(comb.order, order)
-                        && comb.beside.zip(beside).is_none_or(|(one, other)| is_near(one, other))
-                };
-                if let Some(alike) = combs.iter_mut().find(is_alike) {
-                    alike.bearings.push(place);
-                    continue;
-                }
-                combs.push(Comb { race, bearings: vec![place], shaft, order, beside });
-            }
-        }
+        let (combs, too_short) = combs(bearings, ratio, spectrum.step);
         let last_read = combs.iter().map(Comb::last_order).fold(0.0, f64::max);
         let mut standing = Standing::new(spectrum, width.min(last_read));
         let shafts: Vec<f64> = (0..self.train.shafts.len()).map(ratio).collect();
         standing.explain_shafts(&shafts);
-        let whole = standing.clone();
-        let asked = combs.len() as f64;
-        let mut is_first = true;
-        loop {
-            let tested = combs.iter().enumerate().map(|(at, comb)| Some((at, standing.test(comb)?)));
-            let mut tested: Vec<(usize, RaceTest)> = tested
-                .flatten()
-                .map(|(at, (order, p))| {
-                    let comb = &combs[at];
-                    let harmonics = (1..=HARMONICS).filter_map(|of| whole.power(f64::from(of) * order));
-                    let logs: Vec<f64> =
-                        harmonics.map(|power| (power / std::f64::consts::LN_2).ln()).collect();
-                    let test = RaceTest {
-                        race: comb.race,
-                        bearings: comb.bearings.clone(),
-                        order: comb.order / comb.shaft,
-                        found_order: order / comb.shaft,
-                        over_median: (0.5 * logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp(),
-                        false_alarm_probability: (asked * p).min(1.0),
-                    };
-                    (at, test)
-                })
-                .collect();
-            tested.sort_by(|a, b| a.1.false_alarm_probability.total_cmp(&b.1.false_alarm_probability));
-            if is_first {
-                let is_tested = |at: usize| tested.iter().any(|(of, _)| *of == at);
-                let unresolved = (0..combs.len()).filter(|at| !is_tested(*at));
-                found.unresolved = unresolved.flat_map(|at| combs[at].bearings.clone()).collect();
-                found.unresolved.sort_unstable();
-                found.unresolved.dedup();
-                is_first = false;
-            }
-            match tested.first() {
-                Some((at, strongest)) if strongest.is_detected() => {
-                    standing.explain_comb(&combs[*at], strongest.found_order * combs[*at].shaft);
-                    found.races.push(strongest.clone());
-                    combs.remove(*at);
-                }
-                _ => {
-                    found.races.extend(tested.into_iter().map(|(_, test)| test));
-                    return Ok(found);
-                }
+        let (races, unread) = standing.races(combs);
+        let unresolved: BTreeSet<usize> = unread.into_iter().flat_map(|comb| comb.bearings).collect();
+        Ok(BearingDefects {
+            races,
+            too_short,
+            unresolved: unresolved.into_iter().collect(),
+            band: Some(records.band),
+            warnings: records.warnings,
+        })
+    }
+}
+
+/// The races with their lines, in orders of one shaft, and the bearings whose cages turn too few times.
+///
+/// # Arguments
+/// * `ratio` - speed of a shaft over that of the one shaft
+/// * `step` - distance of the lines of the spectrum, one over the turns of the one shaft
+fn combs(
+    bearings: &[TrainBearing],
+    ratio: impl Fn(usize) -> f64,
+    step: f64,
+) -> (Vec<Comb>, Vec<(usize, f64, f64)>) {
+    let (mut combs, mut too_short): (Vec<Comb>, _) = (Vec::new(), Vec::new());
+    for (place, of) in bearings.iter().enumerate() {
+        let (orders, shaft) = (of.geometry.defect_orders(), ratio(of.shaft));
+        let cage_turns = orders.cage * shaft / step;
+        if cage_turns < FEWEST_CAGE_TURNS {
+            too_short.push((place, cage_turns, FEWEST_CAGE_TURNS));
+            continue;
+        }
+        for race in RACES {
+            let order = race.order(&orders) * shaft;
+            let beside = match race {
+                DefectKind::InnerRace => Some(shaft),
+                DefectKind::Element => Some(orders.cage * shaft),
+                _ => None,
+            };
+            let is_alike = |comb: &&mut Comb| {
+                comb.race == race
+                    && is_near(comb.order, order)
+                    && comb.beside.zip(beside).is_none_or(|(one, other)| is_near(one, other))
+            };
+            match combs.iter_mut().find(is_alike) {
+                Some(alike) => alike.bearings.push(place),
+                None => combs.push(Comb { race, bearings: vec![place], shaft, order, beside }),
             }
         }
     }
+    (combs, too_short)
 }
 
 #[cfg(test)]
@@ -347,7 +373,7 @@ mod tests {
         let turning = TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::Other };
         let recording =
             TrainRecording { signal: &signal, sampling_rate_hz: RATE_HZ, train: &train, turning: &turning };
-        recording.bearing_defects(bearings).unwrap()
+        recording.bearing_defects(bearings, &BearingSettings::default()).unwrap()
     }
 
     #[test]
