@@ -126,13 +126,10 @@ fn ask(prior: &Prior, number: u64) -> Result<Vec<Asked>, Box<dyn Error>> {
     let on_seat = |seat: usize| {
         let now = now.defects(seat, None, &mut draws)?;
         let healthy = healthy.defects(seat, now.band, &mut draws)?;
-        let answer = |test: &RaceTest| {
-            let is_same = |of: &&RaceTest| (of.race, &of.bearings) == (test.race, &test.bearings);
-            BearingAnswer {
-                bearings: test.bearings.iter().map(usize::to_string).collect(),
-                test: test.clone(),
-                healthy_over_median: healthy.races.iter().find(is_same).map(|of| of.over_median),
-            }
+        let answer = |test: &RaceTest| BearingAnswer {
+            bearings: test.bearings.iter().map(usize::to_string).collect(),
+            test: test.clone(),
+            healthy_over_median: healthy.over_median_of(test, now.revolutions),
         };
         let is_on_seat = defect.is_some_and(|(bearing, ..)| bearing == seat);
         Ok((Truth { has_damaged_teeth, defect, is_on_seat }, now.races.iter().map(answer).collect()))

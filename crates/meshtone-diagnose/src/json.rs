@@ -50,7 +50,7 @@ fn warning(warning: &DiagnosisWarning) -> Value {
 fn bearing(of: &BearingAnswer) -> Value {
     json!({
         "bearings": of.bearings,
-        "race": of.test.race.name(),
+        "race": of.test.race.name().replace(' ', "-"),
         "is_defect": of.is_defect(),
         "is_detected": of.test.is_detected(),
         "false_alarm_probability": of.test.false_alarm_probability,

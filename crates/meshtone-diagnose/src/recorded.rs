@@ -100,6 +100,9 @@ fn nothing_synchronous(
 /// (-) Level of the quietest revolution over that of the loudest, below which the sensor did not measure all the time.
 const QUIETEST: f64 = 1.0 / 30.0;
 
+/// (-) By so much two sampling rates may differ and are the same to the band of an envelope: those of simulations have a whole number of samples a revolution.
+const NEARLY: f64 = 0.02;
+
 impl Observation {
     /// Observes the wheels of a rig in a recording, with what speaks against the statements about it.
     ///
@@ -125,11 +128,16 @@ impl Observation {
         let observed = Self::of_angles(train, &angular, input_speed_hz)?;
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
         let band = other.and_then(|other| other.bearings.band);
-        let band = band.map(|band| FrequencyBand { to_hz: band.to_hz.min(0.5 * sampling_rate_hz), ..band });
+        let highest_hz = 0.5 * sampling_rate_hz;
         let bearings = match band {
-            Some(band) if band.from_hz >= band.to_hz => BearingDefects::default(),
-            _ => recording
-                .bearing_defects(&bearings, &BearingSettings { band, ..BearingSettings::default() })?,
+            Some(band) if band.to_hz > (1.0 + NEARLY) * highest_hz => BearingDefects::default(),
+            _ => recording.bearing_defects(
+                &bearings,
+                &BearingSettings {
+                    band: band.map(|band| FrequencyBand { to_hz: band.to_hz.min(highest_hz), ..band }),
+                    ..BearingSettings::default()
+                },
+            )?,
         };
         let observed = Self { zero, bearings, ..observed };
         Ok(match against {

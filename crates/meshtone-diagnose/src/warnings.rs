@@ -116,10 +116,7 @@ impl Question<'_> {
         }
         self.all().filter_map(|asked| asked.mismatch.clone()).for_each(|said| warn(Mismatch, said));
         self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn(Doubt, said));
-        self.now
-            .iter()
-            .flat_map(|asked| bearings::doubts(&prior.train, asked))
-            .for_each(|said| warn(Bearing, said));
+        bearings::doubts(&prior.train, self).into_iter().for_each(|said| warn(Bearing, said));
         speed::doubts(self, prior).into_iter().for_each(|said| warn(Speed, said));
         consistency::levels_apart(self).into_iter().for_each(|said| warn(SeveralStates, said));
         if self.healthy.is_empty() {

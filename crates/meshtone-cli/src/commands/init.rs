@@ -108,9 +108,16 @@ impl Init {
     /// Writes the file, and those that it names where they are asked for: all or none.
     fn write(&self, path: &Path, text: &str) -> Result<(), Failure> {
         let directory = path.parent().filter(|_| self.files);
-        let named = directory.into_iter().flat_map(experiment_files::paths);
+        let named: Vec<PathBuf> = directory.into_iter().flat_map(experiment_files::paths).collect();
+        if named.iter().any(|file| file == path) {
+            let problem = format!("-o {}: is the name of a file that the experiment needs", path.display());
+            return Failure::refuse(
+                problem,
+                "write the experiment under another name, such as experiment.toml",
+            );
+        }
         let exists = |path: &PathBuf| !self.force && path.exists();
-        if let Some(earlier) = named.chain([path.to_owned()]).find(exists) {
+        if let Some(earlier) = named.into_iter().chain([path.to_owned()]).find(exists) {
             return Err(already_exists(&earlier));
         }
         let mut staged = directory.map(experiment_files::stage).transpose()?.unwrap_or_default();

@@ -91,6 +91,8 @@ fn what_is_no_scenario_is_refused_with_what_reads_it() {
 fn an_experiment_to_start_from_is_tuned_to_its_files() {
     let workplace = Workplace::new();
     workplace.fails(2, &["init", "healthy", "--files", "-o", "a.toml"], &["only an experiment names files"]);
+    let command = ["init", "experiment", "--files", "-o", "rig.toml", "--force"];
+    workplace.fails(2, &command, &["rig.toml: is the name of a file that the experiment needs"]);
     workplace.write("rig.toml", "mine");
     let command = ["init", "experiment", "--files", "-o", "experiment.toml"];
     workplace.fails(2, &command, &["rig.toml exists already", "--force"]);

@@ -129,7 +129,7 @@ impl Spall {
                 );
             }
             (None, None) => {
-                let problem = "missing; a spall needs a width_mm, or a severity from 0 to 1";
+                let problem = "missing; a spall needs a width_mm, or a severity above 0 and up to 1";
                 return Err(ScenarioError::new("width_mm", "", problem));
             }
         };
@@ -143,8 +143,19 @@ impl Spall {
             _ => (element_mm, "the diameter of an element"),
         };
         if width_mm > largest_mm {
-            let problem = format!("must be at most {largest_mm:?} mm, {what}");
-            return Err(ScenarioError::new("width_mm", width_mm, problem));
+            let largest_mm = (1e3 * largest_mm).floor() / 1e3;
+            return Err(match defect.severity {
+                Some(severity) => {
+                    let most = (1e3 * largest_mm / element_mm).floor() / 1e3;
+                    let problem = format!("must be at most {most}, which is {largest_mm} mm, {what}");
+                    ScenarioError::new("severity", severity, problem)
+                }
+                None => ScenarioError::new(
+                    "width_mm",
+                    width_mm,
+                    format!("must be at most {largest_mm} mm, {what}"),
+                ),
+            });
         }
         if defect.race == DefectPlace::Element && defect.angle_deg != 0.0 {
             let problem = "has no effect on a rolling element, which starts at a random angle";

@@ -253,11 +253,14 @@ impl RollingBearing {
             }
         }
         let mut sums = sums.map(|[a, b, c, d, e, f, g, h]| ((a + b) + (c + d)) + ((e + f) + (g + h)));
-        for &(element, drop_m) in places.drops {
+        for (spall, &(element, drop_m)) in places.drops.iter().enumerate() {
             if drop_m > 0.0 {
+                // In several spalls at once an element drops by their sum.
+                let earlier = places.drops[..spall].iter().filter(|(of, _)| *of == element);
+                let earlier_m: f64 = earlier.map(|(_, drop_m)| drop_m).sum();
                 let (lot, lane) = (&self.lots[element / SIDE_BY_SIDE], element % SIDE_BY_SIDE);
                 let [cos, sin] = lot.direction(lane, places.cage);
-                let pressed_m = x_m * cos + y_m * sin - lot.gap_m[lane];
+                let pressed_m = x_m * cos + y_m * sin - lot.gap_m[lane] - earlier_m;
                 let sound = of_element(pressed_m.max(0.0));
                 let dropped = of_element((pressed_m - drop_m).max(0.0));
                 let [force, slope] = [dropped[0] - sound[0], dropped[1] - sound[1]];
@@ -390,13 +393,19 @@ mod tests {
     #[test]
     fn slopes_are_the_derivatives_of_the_force_also_in_a_spall() {
         let bearing = bearing("6205", 2e-6, 0.0, 10.0, [50.0, 80.0]);
-        let drops = [(0, 3e-6), (1, 0.0)];
+        let drops = [(0, 3e-6), (1, 0.0), (0, 1e-6)];
         let places = ElementPlaces { cage: [f64::cos(0.7), f64::sin(0.7)], drops: &drops };
         let (at_m, step_m) = ([6e-6, 9e-6], 1e-11);
         let load = bearing.load(at_m, &places);
         let moved =
             |x: f64, y: f64| bearing.load([at_m[0] + x * step_m, at_m[1] + y * step_m], &places).force_n;
         let slope = |x, y, of: usize| (moved(x, y)[of] - moved(-x, -y)[of]) / (2.0 * step_m);
+        // Two spalls under one element are one of both depths: it never pulls.
+        let both = bearing.load(at_m, &ElementPlaces { drops: &[(0, 4e-6)], ..places });
+        assert!((both.force_n[0] / load.force_n[0] - 1.0).abs() < 1e-12);
+        let deep = |drops: &[(usize, f64)]| bearing.load(at_m, &ElementPlaces { drops, ..places }).force_n;
+        let (one, two) = (deep(&[(0, 1e-3)]), deep(&[(0, 1e-3), (0, 1e-3)]));
+        assert!(one.iter().zip(two).all(|(one, two)| (one / two - 1.0).abs() < 1e-12), "{one:?} {two:?}");
         for (found, expected) in
             load.slope_n_per_m.into_iter().zip([slope(1.0, 0.0, 0), slope(1.0, 0.0, 1), slope(0.0, 1.0, 1)])
         {

@@ -289,18 +289,12 @@ impl State {
     fn new(first: FirstState, external: [f64; EXTERNALS], prepared: &Prepared, order: &Order) -> Self {
         let FirstState { displacement, velocity, acceleration, force } = first;
         let numbers = [displacement, velocity, acceleration].map(|values| order.lots(&values));
-        // The search for the first step's solution begins where the bearings are at rest.
-        let mut deflection = [0.0; MOST_UNKNOWNS];
-        let columns = prepared.columns_of_unknown.iter().enumerate();
-        for (unknown, columns) in columns.skip(prepared.laws.len()) {
-            deflection[unknown] = prepared.columns[columns.start].static_deflection;
-        }
         Self {
             lots: (0..numbers[0].len()).map(|n| LotState(numbers.each_ref().map(|lots| lots[n].0))).collect(),
             free: vec![0.0; force.len()],
             force,
             external,
-            deflection,
+            deflection: [0.0; MOST_UNKNOWNS],
             pressed: [[0.0; 2]; MOST_UNKNOWNS],
             search: Search::new(),
             equations: Equations::new(prepared),
@@ -438,7 +432,7 @@ impl Constants<'_> {
     ///
     /// # Arguments
     /// * `sample` - what touches at the step's end
-    /// * `state` - has the free deflections, and each unknown's deflection at the step's start, which is set to that at its end
+    /// * `state` - has the free deflections, and the deflection of each mesh at the step's start; those of all unknowns are set to those at its end
     #[inline(always)]
     fn contact_forces(&self, sample: &ContactSample, state: &mut State) {
         let prepared = self.prepared;
@@ -458,7 +452,7 @@ impl Constants<'_> {
         }
         let law = ContactLaw { laws: &prepared.laws, bearings: &prepared.bearings, sample };
         for unknown in equations.meshes..equations.count {
-            // G f of a bearing is a small part of D and changes smoothly.
+            // The search begins at D₀ − G f with G f, a small part of D, as of the last two steps.
             let [before, last] = state.pressed[unknown];
             state.deflection[unknown] = free[unknown] - (2.0 * last - before);
         }
@@ -580,13 +574,14 @@ const MOST_PLAIN_ITERATIONS: usize = 12;
 /// Most iterations of all: beyond, rounding decides between two sets of pairs that are as good.
 const MOST_ITERATIONS: usize = 50;
 /// (m) Move of a bearing in an iteration up to which its load is read off the tangent, and not computed anew. Of elements that are pressed
-/// together by 1 µm the tangent is wrong by 3e-4 N.
+/// together by 1 µm the tangent is wrong by 3e-4 N, at their first touch by 1e-2 N.
 const BEARING_MOVES_M: f64 = 1e-8;
 
 /// Whether an unknown of a bearing moves more than its tangent allows.
 #[inline(always)]
 fn moves(from: &OfUnknowns, to: &OfUnknowns, unknown: usize) -> bool {
-    (to[unknown] - from[unknown]).abs() > BEARING_MOVES_M
+    let move_m = (to[unknown] - from[unknown]).abs();
+    move_m > BEARING_MOVES_M || move_m.is_nan()
 }
 
 /// The equations of a step, `D + G f(D) = D₀`.
@@ -697,35 +692,50 @@ impl Equations {
     /// Sets `next` to the solution if the slopes at `deflection` K went on, `(1 + G K) D = D₀ − G (f − K D)`.
     #[inline(always)]
     fn newton(&self, free: &OfUnknowns, deflection: &OfUnknowns, loads: &Loads, next: &mut OfUnknowns) {
-        // Loops of a known length are compiled to fewer instructions. G is 0 beyond the machine's unknowns.
+        // Short loops of a known length are compiled to fewer instructions. G is 0 beyond the machine's unknowns.
         match self.count {
-            0..=2 => next[..2].copy_from_slice(&self.newton_of::<2>(free, deflection, loads)),
-            3..=4 => next[..4].copy_from_slice(&self.newton_of::<4>(free, deflection, loads)),
-            5..=8 => next[..8].copy_from_slice(&self.newton_of::<8>(free, deflection, loads)),
-            9..=16 => next[..16].copy_from_slice(&self.newton_of::<16>(free, deflection, loads)),
-            _ => *next = self.newton_of(free, deflection, loads),
+            0..=2 => next[..2].copy_from_slice(&self.newton_of::<2>(2, free, deflection, loads)),
+            3..=4 => next[..4].copy_from_slice(&self.newton_of::<4>(4, free, deflection, loads)),
+            5..=8 => next[..8].copy_from_slice(&self.newton_of::<8>(8, free, deflection, loads)),
+            9..=16 => {
+                next[..16].copy_from_slice(&self.newton_of::<16>(self.count, free, deflection, loads));
+            }
+            _ => *next = self.newton_of(self.count, free, deflection, loads),
         }
     }
 
-    /// [`Self::newton`] with at most `N` unknowns.
+    /// [`Self::newton`] of `count` of at most `N` unknowns.
     #[inline(always)]
-    fn newton_of<const N: usize>(&self, free: &OfUnknowns, deflection: &OfUnknowns, loads: &Loads) -> [f64; N] {
-        let mut matrix: [[f64; N]; N] =
-            from_fn(|a| from_fn(|b| self.compliance[a][b] * loads.slopes[b] + f64::from(a == b)));
-        let mut constant: [f64; N] = from_fn(|b| loads.forces[b] - loads.slopes[b] * deflection[b]);
+    fn newton_of<const N: usize>(
+        &self,
+        count: usize,
+        free: &OfUnknowns,
+        deflection: &OfUnknowns,
+        loads: &Loads,
+    ) -> [f64; N] {
+        let mut matrix = [[0.0; N]; N];
+        let mut constant = [0.0; N];
+        for b in 0..count {
+            for a in 0..count {
+                matrix[a][b] = self.compliance[a][b] * loads.slopes[b] + f64::from(a == b);
+            }
+            constant[b] = loads.forces[b] - loads.slopes[b] * deflection[b];
+        }
         for first in (self.meshes..self.count.min(N)).step_by(2) {
             let cross = loads.cross_slopes[first];
             for (b, other) in [(first, first + 1), (first + 1, first)] {
                 constant[b] -= cross * deflection[other];
-                for (row, compliance) in matrix.iter_mut().zip(&self.compliance) {
-                    row[b] += compliance[other] * cross;
+                for a in 0..count {
+                    matrix[a][b] += self.compliance[a][other] * cross;
                 }
             }
         }
-        let mut right: [f64; N] = from_fn(|a| {
-            free[a] - self.compliance[a].iter().zip(&constant).map(|(share, constant)| share * constant).sum::<f64>()
-        });
-        eliminate(&mut matrix, &mut right);
+        let mut right = [0.0; N];
+        for a in 0..count {
+            let pressed = (0..count).map(|b| self.compliance[a][b] * constant[b]).sum::<f64>();
+            right[a] = free[a] - pressed;
+        }
+        eliminate(count, &mut matrix, &mut right);
         right
     }
 
@@ -780,28 +790,29 @@ struct Found {
 /// Halvings of the way until only rounding is left of it.
 const HALVINGS: usize = 60;
 
-/// Solves `(1 + G K) x = right` by elimination without a search for pivots, since they are all positive: each is the ratio of two
-/// determinants of leading parts of `1 + G K`, that is of machines with some of the springs. With meshes alone they are at least 1.
+/// Solves `(1 + G K) x = right` by elimination without a search for pivots. Those of meshes are at least 1, since G is positive and no slope of a mesh is
+/// negative. Those of bearings are near 1, since the compliance G within a step is small beside that of the bearing's linear spring.
 ///
 /// # Arguments
+/// * `count` - number of equations
 /// * `matrix` - by rows; is overwritten
 /// * `right` - the right-hand side; set to the solution
 #[inline(always)]
-fn eliminate<const N: usize>(matrix: &mut [[f64; N]; N], right: &mut [f64; N]) {
+fn eliminate<const N: usize>(count: usize, matrix: &mut [[f64; N]; N], right: &mut [f64; N]) {
     let mut over_pivot = [0.0; N];
-    for column in 0..N {
+    for column in 0..count {
         let pivot_row = matrix[column];
         over_pivot[column] = 1.0 / pivot_row[column];
-        for row in column + 1..N {
+        for row in column + 1..count {
             let factor = matrix[row][column] * over_pivot[column];
-            for k in column + 1..N {
+            for k in column + 1..count {
                 matrix[row][k] -= factor * pivot_row[k];
             }
             right[row] -= factor * right[column];
         }
     }
-    for row in (0..N).rev() {
-        for k in row + 1..N {
+    for row in (0..count).rev() {
+        for k in row + 1..count {
             right[row] -= matrix[row][k] * right[k];
         }
         right[row] *= over_pivot[row];

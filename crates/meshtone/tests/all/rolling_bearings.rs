@@ -208,6 +208,8 @@ fn impossible_bearings_say_what_is_allowed() {
         ("kind = \"ball\"", "bearing[0].elements", "missing"),
         ("kind = \"ball\"\nname = \"6999\"", "bearing[0].name", "must be one of 6203, 6205"),
         ("kind = \"roller\"\nname = \"6205\"", "bearing[0].name", "is a ball bearing"),
+        ("kind = \"roller\"\nname = \"6999\"", "bearing[0].name", "no roller bearing is known by a name"),
+        ("kind = \"roller\"\nname = \"ZA-2115\"", "bearing[0].name", "only cylindrical rollers"),
         ("kind = \"ball\"\nname = \"6205\"\nelements = 9", "bearing[0].elements", "beside name"),
         ("name = \"6205\"", "bearing[0].name", "linear"),
         ("kind = \"ball\"\nname = \"6205\"\npreload_n = 50.0", "bearing[0].preload_n", "contact angle"),

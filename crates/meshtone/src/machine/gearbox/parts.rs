@@ -326,10 +326,20 @@ impl Bearing {
 
     fn named_geometry(&self, name: &str, element: RollingElement) -> Result<BearingGeometry, ScenarioError> {
         let Some(named) = NamedBearing::find(name) else {
-            let names = NAMED_BEARINGS.map(|named| named.name).join(", ");
-            return Err(ScenarioError::new("name", format!("{name:?}"), format!("must be one of {names}"))
+            let of_kind = NAMED_BEARINGS.iter().filter(|named| is_simulated(named) && named.element == element);
+            let names = of_kind.map(|named| named.name).collect::<Vec<_>>().join(", ");
+            let problem = if names.is_empty() {
+                format!("no {} bearing is known by a name", element.name())
+            } else {
+                format!("must be one of {names}")
+            };
+            return Err(ScenarioError::new("name", format!("{name:?}"), problem)
                 .with_help("give elements, element_mm and pitch_mm for any other bearing"));
         };
+        if !is_simulated(named) {
+            let problem = "has rollers at a contact angle; only cylindrical rollers are simulated";
+            return Err(ScenarioError::new("name", format!("{name:?}"), problem));
+        }
         if named.element != element {
             let problem = format!("is a {} bearing; must agree with kind", named.element.name());
             return Err(ScenarioError::new("name", format!("{name:?}"), problem));
@@ -361,6 +371,11 @@ impl Bearing {
 }
 
 /// An error of a key whose value does not matter.
+/// Whether the step knows the elements of a bearing with a published geometry.
+fn is_simulated(named: &NamedBearing) -> bool {
+    named.element == RollingElement::Ball || named.geometry.contact_angle_deg == 0.0
+}
+
 fn refused(key: &str, problem: &str) -> ScenarioError {
     ScenarioError::new(key, "", problem)
 }
