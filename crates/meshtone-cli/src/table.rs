@@ -38,7 +38,18 @@ pub fn gearbox_table(summary: &GearboxSummary) -> String {
             fault.wheel
         )
     });
-    let faults: Vec<_> = faults.collect();
+    let spalls = summary.bearings.iter().flat_map(|bearing| {
+        bearing.defects.iter().map(|of| {
+            format!(
+                "spall of {} mm ({}, severity {:.3}) on bearing {}",
+                short(of.width_mm),
+                of.race,
+                of.severity,
+                bearing.at
+            )
+        })
+    });
+    let faults: Vec<_> = faults.chain(spalls).collect();
     let [model, sampling, time] = common_rows(&summary.head, &summary.end);
     let whole = [
         model,

@@ -109,7 +109,8 @@ impl Init {
     fn write(&self, path: &Path, text: &str) -> Result<(), Failure> {
         let directory = path.parent().filter(|_| self.files);
         let named: Vec<PathBuf> = directory.into_iter().flat_map(experiment_files::paths).collect();
-        if named.iter().any(|file| file == path) {
+        let of_experiment = path.parent().filter(|_| self.kind == EXPERIMENT).into_iter();
+        if of_experiment.flat_map(experiment_files::paths).any(|file| file == *path) {
             let problem = format!("-o {}: is the name of a file that the experiment needs", path.display());
             return Failure::refuse(
                 problem,

@@ -219,7 +219,7 @@ fn unknown(
     error.with_help(match nearest_name(key, keys(known).chain(NOISE_KEYS).chain(PATH_KEYS)) {
         Some(nearest) => meant(key, nearest),
         None => {
-            "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
+            "`meshtone init KIND --all` prints every key of a kind of fault; sections are part of a key, as in \
              `operation.pinion_speed_hz`"
                 .to_owned()
         }

@@ -3,7 +3,7 @@
 use std::fmt::{self, Debug, Formatter};
 
 use meshtone::scenario::{
-    BearingDefect, DefectPlace, Fault, Gearbox, GearboxFault, ScenarioError, ScenarioForm, ScenarioNumber,
+    BearingDefect, Fault, Gearbox, GearboxFault, ScenarioError, ScenarioForm, ScenarioNumber,
     names_or_numbers,
 };
 use meshtone_toml::{ReadResult, TomlTable};
@@ -68,24 +68,12 @@ impl ToothFault {
     }
 }
 
-/// The name of a spall's place among the kinds of damage.
-///
-/// # Arguments
-/// * `place` - the part of the bearing
-pub(crate) fn kind_of_spall(place: DefectPlace) -> &'static str {
-    match place {
-        DefectPlace::Outer => "outer-race",
-        DefectPlace::Inner => "inner-race",
-        DefectPlace::Element => "rolling-element",
-    }
-}
-
 impl ClassFault {
     /// Its kind of damage, as the columns of records have it.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Teeth(of) => of.fault.damage.kind(),
-            Self::Bearing { defect, .. } => kind_of_spall(defect.race),
+            Self::Bearing { defect, .. } => defect.race.kind(),
         }
     }
 

@@ -26,7 +26,7 @@ pub use background::Background;
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
 pub use fault::{ClassFault, ToothFault};
-pub(crate) use fault::{FaultPlace, FaultyBase, kind_of_spall, with_faults};
+pub(crate) use fault::{FaultPlace, FaultyBase, with_faults};
 pub use growth::{Growth, Law, RunPosition};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;

@@ -18,7 +18,7 @@ use super::kept::KeptChain;
 use super::window::Window;
 use super::{Record, RecordFault, RecordSpall, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{Content, FaultPlace, FaultyBase, Keep, ToothFault, Wheel, kind_of_spall};
+use crate::plan::{Content, FaultPlace, FaultyBase, Keep, ToothFault, Wheel};
 
 /// Makes a record of the simulation of a pair.
 pub(super) fn record(
@@ -276,7 +276,7 @@ impl<'a> View<'a> {
             FaultPlace::Spall { bearing, number } => {
                 let spall = self.simulated.spall(bearing, number)?;
                 Some(RecordFault {
-                    kind: kind_of_spall(spall.sizes.place),
+                    kind: spall.sizes.place.kind(),
                     wheel: None,
                     tooth: None,
                     severity: spall.sizes.severity,

@@ -67,10 +67,17 @@ pub(crate) fn records(
     let ratio = |shaft: usize| train.speed_ratio(shaft, reference).value();
     let windows = windows(&phase, &length(content, recording.machine, ratio(train.input())));
     if windows.is_empty() {
-        let turned = phase.span_rev();
+        let needed = match length(content, recording.machine, ratio(train.input())) {
+            Length::Revolutions(revolutions) => format!("{revolutions:.3} revolutions and a sample more"),
+            Length::Samples(samples) => {
+                format!("{:.3} s from its first whole revolution on", samples as f64 / rate_hz)
+            }
+        };
         return Err(format!(
-            "it turns {turned:.2} revolutions of the {}: a record of the data set needs more",
-            keep.wheel.all()[0].name()
+            "it turns {:.3} revolutions of the {} in {:.3} s; a record of the data set needs {needed}",
+            phase.span_rev(),
+            keep.wheel.all()[0].name(),
+            phase.revolutions.len() as f64 / rate_hz
         ));
     }
     let record = |(window, (start_rev, from, to)): (u64, (f64, usize, usize))| {

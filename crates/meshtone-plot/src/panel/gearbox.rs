@@ -77,7 +77,14 @@ fn title(stages: &GearboxStages) -> String {
         let kind = of.fault.damage.kind().replace('-', " ");
         format!("{kind} on {} of {}", of.fault.tooth.in_words(), of.wheel)
     });
-    let faults = crate::drawing::capitalised(&faults.collect::<Vec<_>>().join(", "));
+    let spalls = stages.gearbox.bearings.iter().flat_map(|bearing| {
+        let at = bearing.seat_name();
+        bearing
+            .defect
+            .iter()
+            .map(move |of| format!("{} spall on bearing {at}", of.race.kind().replace('-', " ")))
+    });
+    let faults = crate::drawing::capitalised(&faults.chain(spalls).collect::<Vec<_>>().join(", "));
     if faults.is_empty() { "Healthy gearbox".to_owned() } else { faults }
 }
 

@@ -20,6 +20,17 @@ pub enum DefectPlace {
 
 by_name!(DefectPlace, ["outer" => DefectPlace::Outer, "inner" => DefectPlace::Inner, "element" => DefectPlace::Element]);
 
+impl DefectPlace {
+    /// The name of a spall there among the kinds of damage.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Outer => "outer-race",
+            Self::Inner => "inner-race",
+            Self::Element => "rolling-element",
+        }
+    }
+}
+
 /// A defect of a rolling bearing: a spall.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]

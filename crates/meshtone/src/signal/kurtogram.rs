@@ -13,8 +13,8 @@ use super::{FrequencyBand, SignalError};
 const FEWEST_LINES: usize = 256;
 /// (bandwidths) A band falls from 1 to 0 over so much on either side of its ends.
 const TRANSITION: f64 = 0.125;
-/// (-) Part of a signal's power below which a band holds nothing but what a recorder or a filter leaves.
-const NOTHING: f64 = 1e-7;
+/// (-) Part of a signal's power below which a band holds nothing but what a recorder, a filter, or the end of a simulation's modes leaves.
+const NOTHING: f64 = 1e-5;
 /// Blocks that begin within the length of one.
 const OVERLAPPING: usize = 4;
 
@@ -69,7 +69,7 @@ impl Kurtogram {
 ///
 /// With c the complex envelope in a band it is `⟨|c|⁴⟩/⟨|c|²⟩² − 2`: 0 in Gaussian noise, −1 of a tone, large where bursts stand out. The bands are
 /// those of the original's binary and ternary tree; here each is cut out of the spectrum of the whole signal, with half its power at its ends and
-/// a cosine's flank about them (0 where it has less than 10⁻⁷ of the whole power), and its inverse transform is the envelope at the band's own low rate. So values differ slightly from those
+/// a cosine's flank about them (0 where it has less than 10⁻⁵ of the whole power), and its inverse transform is the envelope at the band's own low rate. So values differ slightly from those
 /// of the original's short filters.
 ///
 /// # Arguments

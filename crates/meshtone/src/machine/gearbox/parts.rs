@@ -341,8 +341,9 @@ impl Bearing {
             return Err(ScenarioError::new("name", format!("{name:?}"), problem));
         }
         if named.element != element {
-            let problem = format!("is a {} bearing; must agree with kind", named.element.name());
-            return Err(ScenarioError::new("name", format!("{name:?}"), problem));
+            let kind = named.element.name();
+            return Err(ScenarioError::new("name", format!("{name:?}"), format!("is a {kind} bearing; must agree with kind"))
+                .with_help(format!("set kind = {kind:?}")));
         }
         let given = [
             ("elements", self.elements.is_some()),
