@@ -72,8 +72,11 @@ pub struct Prior {
     /// (-) Speed: the largest logarithm of its ratio to the rig's, either way. Seven tenths of it are the pair's, the rest is the
     /// record's, each uniform.
     pub speed_spread: f64,
-    /// (-) Load, likewise.
+    /// (-) Load of a pair: the largest logarithm of its ratio to the rig's, either way, uniform.
     pub load_spread: f64,
+    /// (-) Load of a record: the largest logarithm of its ratio to the pair's, either way. The logarithm is this times the fourth power of a uniform
+    /// number: half of the records are within 15 % of the pair's load, and one in five is beyond a factor of 2.7.
+    pub load_change: f64,
     /// (dB) Standard deviation of the sensor path's gain.
     pub gain_db: f64,
     /// States that the rig names no sensor and has supports, so that the sensor may be on the support of either shaft, or on the seat of any
@@ -151,7 +154,8 @@ impl Prior {
             has_any_sensor,
             grade_steps: 1,
             speed_spread: 0.1,
-            load_spread: 0.4,
+            load_spread: 0.28,
+            load_change: 2.3,
             gain_db: 6.0,
             seed: 1,
             focus: None,
@@ -242,12 +246,14 @@ impl Prior {
         let (path, gain_db) = (self.draw_path(&mut common), self.gain_db * common.normal());
         let place = common.uniform(0.5, 0.5);
         let seed = common.bits() >> 1;
-        // A pair runs at about its own load and speed.
-        let mut about =
-            |spread: f64| (spread * (0.7 * common.uniform(0.0, 1.0) + 0.3 * own.uniform(0.0, 1.0))).exp();
+        // A pair runs at about its own speed and load.
+        let speed = self.speed_spread * (0.7 * common.uniform(0.0, 1.0) + 0.3 * own.uniform(0.0, 1.0));
+        let uniform = own.uniform(0.0, 1.0);
+        let change = self.load_change * uniform * uniform.abs().powi(3);
+        let load = self.load_spread * common.uniform(0.0, 1.0) + change;
         let operation = self.base.operation();
-        let speed_hz = operation.pinion_speed_hz * about(self.speed_spread);
-        let load_nm = operation.brake_torque_nm * about(self.load_spread);
+        let speed_hz = operation.pinion_speed_hz * speed.exp();
+        let load_nm = operation.brake_torque_nm * load.exp();
         let mut scenario = self.base.with_numbers(&numbers)?;
         let operation = scenario.operation_mut();
         (operation.pinion_speed_hz, operation.brake_torque_nm) = (speed_hz, load_nm);
@@ -470,6 +476,19 @@ mod tests {
         let [first, second] = [0, 1].map(|number| prior.draw(number).unwrap());
         let seeds = [&first, &second].map(|drawn| drawn.scenario.number("seed"));
         assert_eq!((seeds[0], first.path), (seeds[1], second.path));
+    }
+
+    // A healthy recording and the one in question are of about one load, or of quite another one.
+    #[test]
+    fn loads_of_a_pair_are_near_each_other_or_far_apart() {
+        let prior = prior();
+        let load = |number| prior.draw_among(&[], number).unwrap().scenario.operation().brake_torque_nm;
+        let apart: Vec<f64> = (0..1000).map(|unit| (load(8 * unit + 1) / load(8 * unit)).ln()).collect();
+        let part = |least: f64, most: f64| {
+            apart.iter().filter(|apart| (least..most).contains(*apart)).count() as f64 / 1000.0
+        };
+        let [near, higher, lower] = [part(-0.25, 0.25), part(1.0, 4.6), part(-4.6, -1.0)];
+        assert!(near > 0.3 && higher > 0.13 && lower > 0.13, "{near} {higher} {lower}");
     }
 
     #[test]
