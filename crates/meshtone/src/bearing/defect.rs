@@ -154,7 +154,8 @@ impl Spall {
             _ => (element_mm, "the diameter of an element"),
         };
         if width_mm > largest_mm {
-            let largest_mm = (1e3 * largest_mm).floor() / 1e3;
+            // Rounded down, but not by what a number of four decimals is off in binary.
+            let largest_mm = (1e4 * largest_mm + 1e-6).floor() / 1e4;
             return Err(match defect.severity {
                 Some(severity) => {
                     let most = (1e3 * largest_mm / element_mm).floor() / 1e3;
