@@ -166,8 +166,11 @@ pub(crate) fn notes(answers: &[BearingAnswer]) -> Vec<String> {
         .iter()
         .map(|of| {
             let is_as_healthy = !of.is_defect() && of.healthy_over_median.is_some();
-            let healthy =
-                if is_as_healthy { "; as in the healthy recording, so no sign of a defect" } else { "" };
+            let healthy = if is_as_healthy {
+                "; less than twice as strong as in the healthy recording, so no defect is stated"
+            } else {
+                ""
+            };
             format!("{}{healthy}", of.in_words())
         })
         .collect();

@@ -371,12 +371,12 @@ impl Bearing {
     }
 }
 
-/// An error of a key whose value does not matter.
-/// Whether the step knows the elements of a bearing with a published geometry.
+/// Returns whether the elements of a bearing with a published geometry can be simulated: balls, and rollers without a contact angle.
 fn is_simulated(named: &NamedBearing) -> bool {
     named.element == RollingElement::Ball || named.geometry.contact_angle_deg == 0.0
 }
 
+/// An error of a key whose value does not matter.
 fn refused(key: &str, problem: &str) -> ScenarioError {
     ScenarioError::new(key, "", problem)
 }
