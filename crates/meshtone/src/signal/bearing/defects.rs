@@ -242,15 +242,14 @@ impl Standing {
 
     /// Tests each race, that which noise explains least first, and the others without the lines of those that are detected. Returns the tests, the races of
     /// which too few lines can be read, and those of which they lie within the lines of a detected race.
-    fn races(mut self, combs: Vec<Comb>) -> (Vec<RaceTest>, Vec<Comb>, Vec<Comb>) {
+    fn races(mut self, mut combs: Vec<Comb>) -> (Vec<RaceTest>, Vec<Comb>, Vec<Comb>) {
         let whole = self.clone();
-        let (mut combs, unread): (Vec<Comb>, Vec<Comb>) =
-            combs.into_iter().partition(|comb| self.test(comb).is_some());
-        let asked = combs.len() as f64;
-        let mut races = Vec::new();
+        let (mut races, mut readable) = (Vec::new(), None);
         loop {
-            let tested = |(at, comb): (usize, &Comb)| {
-                let (order, p) = self.test(comb)?;
+            let found = combs.iter().enumerate().filter_map(|(at, comb)| Some((at, comb, self.test(comb)?)));
+            let found: Vec<_> = found.collect();
+            let asked = *readable.get_or_insert(found.len()) as f64;
+            let test = |(at, comb, (order, p)): (usize, &Comb, (f64, f64))| {
                 let test = RaceTest {
                     race: comb.race,
                     bearings: comb.bearings.clone(),
@@ -259,9 +258,9 @@ impl Standing {
                     over_median: whole.over_median(comb, order),
                     false_alarm_probability: (asked * p).min(1.0),
                 };
-                Some((at, test))
+                (at, test)
             };
-            let mut tested: Vec<(usize, RaceTest)> = combs.iter().enumerate().filter_map(tested).collect();
+            let mut tested: Vec<(usize, RaceTest)> = found.into_iter().map(test).collect();
             tested.sort_by(|a, b| a.1.false_alarm_probability.total_cmp(&b.1.false_alarm_probability));
             match tested.first() {
                 Some((at, strongest)) if strongest.is_detected() => {
@@ -271,8 +270,9 @@ impl Standing {
                 }
                 _ => {
                     let is_tested = |at: usize| tested.iter().any(|(of, _)| *of == at);
-                    let hidden = combs.into_iter().enumerate().filter(|(at, _)| !is_tested(*at));
-                    let hidden = hidden.map(|(_, comb)| comb).collect();
+                    let untested = combs.into_iter().enumerate().filter(|(at, _)| !is_tested(*at));
+                    let (hidden, unread) =
+                        untested.map(|(_, comb)| comb).partition(|comb| whole.test(comb).is_some());
                     races.extend(tested.into_iter().map(|(_, test)| test));
                     return (races, unread, hidden);
                 }
