@@ -21,7 +21,7 @@ class SignalWarning:
     ----------
     code : str
         What it is about: ``nothing-synchronous``, ``foreign-tones``, ``missing-pulses``, ``doubled-pulse``, ``profile-ends-early``,
-        ``mesh-tone-fades``, ``stronger-neighbour``, ``mesh-order-near-nyquist``, ``not-averaged``, or a quantity that is stated wrongly, as
+        ``mesh-tone-fades``, ``stronger-neighbour``, ``mesh-order-near-nyquist``, ``not-averaged``, ``wheel-without-average``, or a quantity that is stated wrongly, as
         :class:`~meshtone.signal.Mismatch` names it; of a diagnosis ``outside``, ``mismatch`` and others.
     message : str
         In words.

@@ -159,7 +159,8 @@ pub fn process_train<'py>(
     let line = |tone: &ForeignTone| (tone.frequency_hz, tone.order, tone.amplitude, tone.part);
     let all = PyDict::new(py);
     all.set_item("wheels", wheels.collect::<PyResult<Vec<_>>>()?)?;
-    all.set_item("foreign", foreign.map(|tones| tones.iter().map(line).collect::<Vec<_>>()))?;
+    all.set_item("own_orders_part", foreign.as_ref().map(|found| found.own_part))?;
+    all.set_item("foreign", foreign.map(|found| found.tones.iter().map(line).collect::<Vec<_>>()))?;
     all.set_item("warnings", typed(&warnings))?;
     Ok(all)
 }

@@ -51,7 +51,7 @@ class TrainRecord:
     Attributes
     ----------
     wheels : dict of str to Record
-        By the wheels' names. Wheels on one shaft have the same average and difference; their tooth counts differ.
+        By the wheels' names, of those that turn often enough for an average. Wheels on one shaft have the same average and difference; their tooth counts differ.
     shafts : dict of str to str
         The shaft of each wheel.
     mean_speeds_hz : dict of str to float
@@ -59,6 +59,9 @@ class TrainRecord:
     foreign_lines : list of ForeignLine or None
         Lines that belong to no shaft and no mesh, the strongest first; None where they were not looked for: over a run-up, where a stated value
         does not fit, in fewer than six revolutions.
+    own_orders_part : float or None
+        (-) Part of all orders at which a line is taken to be of a shaft or a mesh: foreign lines among them are not found. It falls with the length of
+        the recording.
     warnings : list of SignalWarning
         What is doubtful.
     """
@@ -67,6 +70,7 @@ class TrainRecord:
     shafts: dict[str, str]
     mean_speeds_hz: dict[str, float]
     foreign_lines: list[ForeignLine] | None
+    own_orders_part: float | None
     warnings: list[SignalWarning]
 
     def __getitem__(self, wheel: str) -> Record:
@@ -281,5 +285,6 @@ def train_record(parts: dict[str, Any], name: str) -> TrainRecord:
         shafts={wheel: shaft for wheel, shaft, *_ in wheels},
         mean_speeds_hz={shaft: speed_hz for _, shaft, _, speed_hz, _ in wheels},
         foreign_lines=None if foreign is None else [ForeignLine(*line) for line in foreign],
+        own_orders_part=parts["own_orders_part"],
         warnings=warnings,
     )

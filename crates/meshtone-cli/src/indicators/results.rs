@@ -54,11 +54,13 @@ impl Series {
             samples: input.channel.samples.len(),
             start_s: input.start_s,
             velocity_rms_mm_per_s: velocity_rms_mm_per_s(&input),
-            foreign_lines: records.foreign,
+            own_orders_part: records.foreign.as_ref().map(|found| found.own_part),
+            foreign_lines: records.foreign.map(|found| found.tones),
         });
         self.results.warnings.extend(warnings);
         let mut last = Vec::new();
-        for (place, of_wheel) in records.wheels.into_iter().enumerate() {
+        for of_wheel in records.wheels {
+            let place = of_wheel.wheel;
             let wheel = &turned.wheels[place];
             let length_s = input.channel.samples.len() as f64 / input.sampling_rate_hz;
             let before = (self.results.recordings.len() - 1) as f64;
@@ -149,7 +151,8 @@ impl Series {
 
     /// Returns whether there are several records, so that there is a trend.
     pub fn is_series(&self) -> bool {
-        self.results.records.len() > self.wheels.len()
+        let is_later = |record: &RecordEntry| record.recording > 1 || record.segment > Some(1);
+        self.results.records.iter().any(is_later)
     }
 }
 

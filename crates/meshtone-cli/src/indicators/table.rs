@@ -13,6 +13,8 @@ const OF_GEARS: [&str; 7] = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", 
 
 /// Foreign lines that are printed; the others are counted.
 const LINES: usize = 10;
+/// (-) Part of the orders that are the machine's own from which on the table says that a longer recording distinguishes more.
+const MOST_OWN: f64 = 0.5;
 
 /// The table of one record or of a series.
 pub fn table(series: &Series) -> String {
@@ -81,7 +83,8 @@ fn velocities(series: &Series) -> String {
 
 /// The lines of the last recording that belong to no shaft and no mesh, where they were looked for.
 fn foreign_lines(series: &Series, unit: &str) -> String {
-    let Some(RecordingEntry { source, foreign_lines: Some(lines), .. }) = series.results.recordings.last()
+    let Some(RecordingEntry { source, foreign_lines: Some(lines), own_orders_part: Some(own), .. }) =
+        series.results.recordings.last()
     else {
         return String::new();
     };
@@ -91,7 +94,11 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
         String::new()
     };
     if lines.is_empty() {
-        return format!("\n  every prominent line{of} belongs to a shaft or a mesh\n");
+        let own = 100.0 * own;
+        return format!(
+            "\n  every prominent line{of} is at an order of a shaft or a mesh; these are {own:.0} % of all orders{}\n",
+            if own > MOST_OWN { ": a longer recording distinguishes more" } else { "" }
+        );
     }
     let on = if series.wheels.len() > 2 { "the input" } else { "the shaft" };
     let mut text = format!("\n  lines{of} that belong to no shaft and no mesh\n");

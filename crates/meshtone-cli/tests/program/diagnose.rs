@@ -276,4 +276,15 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     workplace.write("pair.toml", pair);
     let asked = [&["diagnose", "gone", "--scenario", "pair.toml"][..], &asked].concat();
     workplace.fails(2, &asked, &["20/50, 20/60 teeth, but the scenario has 20/50"]);
+
+    // The files do not say what they are of: the lines of the other mesh do.
+    let measured = ["--scenario", "pair.toml", "-c", "bearing", "--tach", "tacho", "-o", "as_pair"];
+    for recording in ["box.csv", "gone.csv"] {
+        let asked = ["--records", FEW, "--reference", "kept", "-q"];
+        let said = workplace.succeeds(&[&["diagnose", recording][..], &measured, &asked].concat());
+        let of_pair = answer(&workplace, "as_pair");
+        assert_eq!(of_pair["is_outside"], true, "{recording}: {of_pair:#}");
+        let said = String::from_utf8_lossy(&said.get_output().stderr).into_owned();
+        assert!(said.contains("at no order of any shaft"), "{recording}: {said}");
+    }
 }

@@ -57,6 +57,9 @@ pub struct RecordingEntry {
     /// Its tones that belong to no shaft and no mesh; none where they were not looked for.
     #[serde(serialize_with = "json::foreign_lines")]
     pub foreign_lines: Option<Vec<ForeignTone>>,
+    /// (-) Part of the orders at which a tone would belong to the shafts and meshes, since the recording does not distinguish it from theirs; none
+    /// where foreign lines were not looked for.
+    pub own_orders_part: Option<f64>,
 }
 
 /// What one recording, or one segment of it, shows about one wheel.

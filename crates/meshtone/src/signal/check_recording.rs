@@ -1,7 +1,7 @@
 //! All that may be doubtful about a recording and what is stated about it.
 
 use super::{
-    AngularSignal, ForeignTone, ForeignTones, GearTrain, ShaftPhase, SignalWarning, StatedFacts,
+    AngularSignal, ForeignSearch, ForeignTones, GearTrain, ShaftPhase, SignalWarning, StatedFacts,
     StatedTurning, find_train_mismatch, foreign_tones,
 };
 
@@ -51,7 +51,7 @@ pub(super) struct RecordingCheck {
     /// What is doubtful.
     pub warnings: Vec<SignalWarning>,
     /// Tones that belong to no shaft and no mesh, where they were looked for.
-    pub foreign: Option<Vec<ForeignTone>>,
+    pub foreign: Option<ForeignSearch>,
 }
 
 impl RecordingCheck {
@@ -80,7 +80,10 @@ impl RecordingCheck {
             return Self::default();
         }
         let foreign = foreign_tones(angular, train, shaft, phase.mean_speed_hz(sampling_rate_hz));
-        let warning = foreign.as_deref().and_then(ForeignTones::that_count).map(SignalWarning::ForeignTones);
+        let warning = foreign
+            .as_ref()
+            .and_then(|found| ForeignTones::that_count(&found.tones))
+            .map(SignalWarning::ForeignTones);
         Self { warnings: warning.into_iter().collect(), foreign }
     }
 }

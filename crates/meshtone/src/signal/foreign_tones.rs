@@ -55,6 +55,17 @@ pub struct ForeignTone {
     pub may_be_mains: bool,
 }
 
+/// What a search for tones that belong to no shaft and no mesh found.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ForeignSearch {
+    /// The tones, the strongest first.
+    pub tones: Vec<ForeignTone>,
+    /// (-) Part of the orders that were searched at which a tone would belong to the train: it falls with the length of the recording, which
+    /// distinguishes orders.
+    pub own_part: f64,
+}
+
 /// Tones that belong to no shaft and make much of a recording.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -108,7 +119,7 @@ pub fn lines_off_shafts(angular: &AngularSignal, train: &GearTrain, shaft: usize
     LinesOffShafts { is_off: (0..spectrum.len()).map(is_off).collect(), spectrum }
 }
 
-/// Finds the tones of a recording that belong to no shaft and no mesh of a train, the strongest first.
+/// Searches a recording for tones that belong to no shaft and no mesh of a train.
 ///
 /// A tone is a line that is larger than its neighbours, stands 15 dB above the median around it and is not 60 dB below the strongest line. It is
 /// the train's own at an order of any shaft, at a sideband of a mesh by up to four orders of any two shafts together, and at an order at which
@@ -131,8 +142,8 @@ pub fn lines_off_shafts(angular: &AngularSignal, train: &GearTrain, shaft: usize
 /// let phase = ShaftPhase::constant(20.0, 1e4, signal.len())?;
 /// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
 /// let train = GearTrain::of_wheels([("pinion", 19), ("gear", 38)]);
-/// let tones = foreign_tones(&angular, &train, 0, 20.0).ok_or("too short")?;
-/// let [tone] = tones[..] else { panic!() };
+/// let found = foreign_tones(&angular, &train, 0, 20.0).ok_or("too short")?;
+/// let [tone] = found.tones[..] else { panic!() };
 /// assert!((tone.frequency_hz - 313.0).abs() < 0.05 && (tone.amplitude - 0.1).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -141,7 +152,7 @@ pub fn foreign_tones(
     train: &GearTrain,
     shaft: usize,
     mean_speed_hz: f64,
-) -> Option<Vec<ForeignTone>> {
+) -> Option<ForeignSearch> {
     let revolutions = angular.revolutions();
     if revolutions < FEWEST_REVOLUTIONS {
         return None;
@@ -154,7 +165,7 @@ pub fn foreign_tones(
     let energy: f64 = squares[lines.start.min(passed)..passed].iter().sum();
     let largest = squares[..passed].iter().copied().fold(0.0, f64::max);
     let medians: Vec<f64> = squares[..passed].chunks(BAND).map(median).collect();
-    let own = OwnOrders::new(train, shaft, revolutions as f64);
+    let own = OwnOrders::new(train, shaft, revolutions as f64, passed as f64 / revolutions as f64);
     let to_input = train.speed_ratio(shaft, train.input()).value();
     let tone = |line: usize| {
         let square = squares[line];
@@ -182,48 +193,68 @@ pub fn foreign_tones(
     };
     let mut tones: Vec<ForeignTone> = lines.filter_map(tone).collect();
     tones.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
-    Some(tones)
+    Some(ForeignSearch { tones, own_part: own.part() })
 }
 
 /// The orders of a train, to which a tone may belong.
 struct OwnOrders {
-    revolutions: f64,
-    shafts: Vec<f64>,
-    hunting: Option<f64>,
-    meshes: Vec<f64>,
+    /// First and last order of ranges that do not overlap, in rising order.
+    ranges: Vec<[f64; 2]>,
+    /// The last order that is looked at.
+    highest: f64,
 }
 
 impl OwnOrders {
-    fn new(train: &GearTrain, shaft: usize, revolutions: f64) -> Self {
+    fn new(train: &GearTrain, shaft: usize, revolutions: f64, highest: f64) -> Self {
         let (shafts, hunting) = train.spacings(shaft);
         let of_input = train.speed_ratio(train.input(), shaft).value();
-        Self {
-            revolutions,
-            hunting: (hunting * revolutions >= APART).then_some(hunting),
-            meshes: (0..train.meshes.len()).map(|mesh| train.mesh_order(mesh) * of_input).collect(),
-            shafts,
+        let [near_shaft, near_other] = OWN.map(|lines| lines / revolutions);
+        let near = |order: f64, by: f64| [order - by, order + by];
+        let multiples = |spacing: f64, by: f64| {
+            let last = ((highest + by) / spacing) as u32;
+            (0..=last).map(move |multiple| near(f64::from(multiple) * spacing, by))
+        };
+        let mut all: Vec<[f64; 2]> =
+            shafts.iter().flat_map(|spacing| multiples(*spacing, near_shaft)).collect();
+        if hunting * revolutions >= APART {
+            all.extend(multiples(hunting, near_other));
         }
+        for mesh in (0..train.meshes.len()).map(|mesh| train.mesh_order(mesh) * of_input) {
+            let offsets = sidebands(&shafts).filter(|off| off.abs() <= 0.5 * mesh);
+            for off in offsets {
+                let of_harmonic = |harmonic: u32| near(f64::from(harmonic) * mesh + off, near_other);
+                all.extend((0..=(highest / mesh + 1.0) as u32).map(of_harmonic));
+            }
+        }
+        all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        for [from, to] in all {
+            match ranges.last_mut() {
+                Some(before) if from <= before[1] => before[1] = before[1].max(to),
+                _ => ranges.push([from, to]),
+            }
+        }
+        Self { ranges, highest }
     }
 
     /// Returns whether a tone of an order is the train's own.
     fn contains(&self, order: f64) -> bool {
-        let is_near =
-            |spacing: f64, order: f64, lines: f64| distance(order, spacing) * self.revolutions <= lines;
-        let is_of_shaft = |order: f64| self.shafts.iter().any(|spacing| is_near(*spacing, order, OWN[0]));
-        let is_of_hunting = || self.hunting.is_some_and(|spacing| is_near(spacing, order, OWN[1]));
-        let is_sideband = || {
-            self.meshes.iter().any(|mesh| {
-                let off = order - (order / mesh).round() * mesh;
-                let orders = || (-SIDEBANDS..=SIDEBANDS).map(f64::from);
-                let of_two = |a: f64, b: f64| {
-                    orders()
-                        .any(|k| orders().any(|l| (off - k * a - l * b).abs() * self.revolutions <= OWN[1]))
-                };
-                self.shafts.iter().any(|a| self.shafts.iter().any(|b| of_two(*a, *b)))
-            })
-        };
-        is_of_shaft(order) || is_of_hunting() || is_sideband()
+        let after = self.ranges.partition_point(|[from, _]| *from <= order);
+        after.checked_sub(1).is_some_and(|at| order <= self.ranges[at][1])
     }
+
+    /// (-) Part of the orders that is the train's own.
+    fn part(&self) -> f64 {
+        let inside = |[from, to]: &[f64; 2]| (to.min(self.highest) - from.max(0.0)).max(0.0);
+        self.ranges.iter().map(inside).sum::<f64>() / self.highest
+    }
+}
+
+/// (orders) Distances of sidebands from a mesh harmonic: sums of some orders of any two shafts.
+fn sidebands(shafts: &[f64]) -> impl Iterator<Item = f64> {
+    let orders = || (-SIDEBANDS..=SIDEBANDS).map(f64::from);
+    let pairs = shafts.iter().enumerate().flat_map(move |(at, a)| shafts[at..].iter().map(move |b| (*a, *b)));
+    pairs.flat_map(move |(a, b)| orders().flat_map(move |k| orders().map(move |l| k * a + l * b)))
 }
 
 /// How far an order is from the next multiple of a spacing.

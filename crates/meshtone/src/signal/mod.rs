@@ -67,7 +67,9 @@ pub use check_recording::check_recording;
 pub use edge::Edge;
 pub use envelope::{analytic_signal, envelope, envelope_spectrum};
 pub use error::SignalError;
-pub use foreign_tones::{ForeignTone, ForeignTones, LinesOffShafts, foreign_tones, lines_off_shafts};
+pub use foreign_tones::{
+    ForeignSearch, ForeignTone, ForeignTones, LinesOffShafts, foreign_tones, lines_off_shafts,
+};
 pub use gear_train::{GearTrain, TrainShaft, TrainWheel};
 pub use indicators::{
     IndicatorValue, Indicators, MESH_HARMONICS, MESH_SIDEBANDS, MeshHarmonic, ShapeIndicators, energy_ratio,

@@ -5,8 +5,8 @@ use thiserror::Error;
 use super::check_recording::RecordingCheck;
 use super::record::{process_angular, process_angular_segments};
 use super::{
-    AngleZero, AngularSettings, AngularSignal, ChainSettings, ForeignTone, GearTrain, Interpolation, Record,
-    SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
+    AngleZero, AngularSettings, AngularSignal, ChainSettings, ForeignSearch, GearTrain, Interpolation,
+    Record, SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
     angular_resample, check_channel,
 };
 use crate::scenario::{Coupled, GearboxShaft, ScenarioForm};
@@ -73,7 +73,7 @@ impl TrainTurning {
 /// let records = recording.process(&TrainSettings::default())?;
 /// let revolutions: Vec<usize> = records.wheels.iter().map(|of| of.records[0].average.revolutions).collect();
 /// assert_eq!(revolutions, [29, 9, 9, 5]);
-/// assert_eq!(records.foreign.as_deref(), Some(&[][..]));
+/// assert!(records.foreign.is_some_and(|found| found.tones.is_empty()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -127,11 +127,11 @@ pub struct WheelRecords {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct TrainRecords {
-    /// The wheels, in the order of the train.
+    /// The wheels that turn often enough for an average, in the order of the train.
     pub wheels: Vec<WheelRecords>,
-    /// All tones that belong to no shaft and no mesh, the strongest first. They are not looked for where the mate of a single wheel is not known,
+    /// All tones that belong to no shaft and no mesh. They are not looked for where the mate of a single wheel is not known,
     /// where a stated value does not fit, over a run-up, in fewer than six revolutions, and in a simulated pair.
-    pub foreign: Option<Vec<ForeignTone>>,
+    pub foreign: Option<ForeignSearch>,
     /// What is doubtful, each once.
     pub warnings: Vec<SignalWarning>,
 }
@@ -218,24 +218,28 @@ impl TrainRecording<'_> {
     /// # Arguments
     /// * `settings` - how
     ///
+    /// A wheel that turns too little for an average, or for a segment, gets no result but a warning, where others turn often enough.
+    ///
     /// # Errors
-    /// Those of [`super::process_channel`] and [`super::process_segments`], with the first wheel that has one.
+    /// Those of [`super::process_channel`] and [`super::process_segments`], with the first wheel that has one; that a wheel turns too little only
+    /// where all do.
     pub fn process(&self, settings: &TrainSettings) -> Result<TrainRecords, WheelError> {
-        let all = || self.train.wheels.iter().enumerate();
-        let wheels: Vec<(WheelRecords, RecordingCheck)> = all()
-            .map(|(number, wheel)| {
-                self.process_wheel(number, settings).map_err(|error| WheelError {
-                    wheel: wheel.name.clone(),
-                    teeth: wheel.teeth,
-                    error,
-                })
-            })
-            .collect::<Result<_, _>>()?;
         let mut found = TrainRecords { wheels: Vec::new(), foreign: None, warnings: Vec::new() };
         if let TrainTurning::Shaft { phase, .. } = self.turning {
             found.warnings.clone_from(&phase.warnings);
         }
-        for (wheel, check) in wheels {
+        let mut first_without = None;
+        for (number, of) in self.train.wheels.iter().enumerate() {
+            let without = |error| WheelError { wheel: of.name.clone(), teeth: of.teeth, error };
+            let (wheel, check) = match self.process_wheel(number, settings) {
+                Ok(processed) => processed,
+                Err(error @ SignalError::TooFewRevolutions { .. }) => {
+                    found.warnings.push(SignalWarning::WheelWithoutAverage(without(error.clone())));
+                    first_without.get_or_insert(without(error));
+                    continue;
+                }
+                Err(error) => return Err(without(error)),
+            };
             let of_records = wheel.records.iter().flat_map(|record| &record.warnings).cloned();
             for warning in check.warnings.into_iter().chain(of_records) {
                 if !found.warnings.contains(&warning) {
@@ -245,7 +249,10 @@ impl TrainRecording<'_> {
             found.foreign = found.foreign.or(check.foreign);
             found.wheels.push(wheel);
         }
-        Ok(found)
+        match first_without {
+            Some(error) if found.wheels.is_empty() => Err(error),
+            _ => Ok(found),
+        }
     }
 
     /// The records of a wheel. The first wheel on the shaft whose phase is known is checked against what is stated, since the angles of the other

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{ForeignTone, ForeignTones, Mismatch, SynchronousPart};
+use super::{ForeignTone, ForeignTones, Mismatch, SynchronousPart, WheelError};
 
 /// Something about a recording that leaves the result right but that its user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -102,6 +102,9 @@ pub enum SignalWarning {
         /// (rev) Fewest revolutions that are averaged.
         needed: f64,
     },
+    /// A wheel turns too little for an average; others have one.
+    #[error("there is no result of {0}")]
+    WheelWithoutAverage(WheelError),
     /// Tones that belong to neither shaft make much of the recording.
     #[error("{0}")]
     ForeignTones(ForeignTones),
@@ -120,6 +123,7 @@ impl SignalWarning {
             Self::DoesNotFit(mismatch) => mismatch.alternative.code(),
             Self::NothingSynchronous { .. } => "nothing-synchronous",
             Self::NotAveraged { .. } => "not-averaged",
+            Self::WheelWithoutAverage(_) => "wheel-without-average",
             Self::ForeignTones(_) => "foreign-tones",
         }
     }
@@ -161,6 +165,7 @@ impl SignalWarning {
                 let all = std::iter::once(("needed".to_owned(), *needed));
                 all.chain(shafts.iter().enumerate().map(of_shaft)).collect()
             }
+            Self::WheelWithoutAverage(WheelError { teeth, .. }) => of(&[("teeth", f64::from(*teeth))]),
             Self::ForeignTones(tones) => {
                 let of_tone = |(index, tone): (usize, &ForeignTone)| {
                     let named = |name: &str, value: f64| (format!("{name}_{}", index + 1), value);

@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 
 use meshtone::scenario::*;
 use meshtone::signal::{
-    AngularSettings, Edge, GearTrain, ShaftPhase, StatedTurning, Tachometer, TrainRecording, TrainRecords,
-    TrainSettings, TrainTurning, resample_to, synchronous_average, tachometer_pulses,
+    AngularSettings, Edge, GearTrain, ShaftPhase, SignalError, SignalWarning, StatedTurning, Tachometer,
+    TrainRecording, TrainRecords, TrainSettings, TrainTurning, resample_to, synchronous_average,
+    tachometer_pulses,
 };
 
 fn healthy(rig: Option<GearboxRig>) -> Gearbox {
@@ -122,7 +123,8 @@ fn a_missing_tooth_shows_on_its_own_shaft() {
             let others = (0..4).filter(|other| recorded.train.wheels[*other].shaft != shaft);
             let most = others.map(|other| kurtosis[other]).fold(0.0, f64::max);
             assert!(kurtosis[number] >= 2.0 * most, "{} at {sensor}: {kurtosis:?}", wheel.name);
-            assert_eq!(records.foreign.as_deref(), Some(&[][..]), "{} at {sensor}", wheel.name);
+            let foreign = records.foreign.unwrap().tones;
+            assert!(foreign.is_empty(), "{} at {sensor}: {foreign:?}", wheel.name);
         }
     }
 }
@@ -152,7 +154,8 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
             };
             let records = process(&signal.values);
             println!("{rig:?} {}: {:?} {:?}", signal.name, records.foreign, records.warnings);
-            assert_eq!(records.foreign.as_deref(), Some(&[][..]), "{rig:?} {}", signal.name);
+            let foreign = records.foreign.unwrap();
+            assert!(foreign.tones.is_empty(), "{rig:?} {}: {foreign:?}", signal.name);
             // An output may not be heard at the input.
             let codes = records.warnings.iter().map(|warning| warning.code());
             assert!(codes.clone().all(|code| code == "nothing-synchronous"), "{rig:?} {}", signal.name);
@@ -161,7 +164,7 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
             let tone = |rev: &f64| 0.1 * level * 2f64.sqrt() * (TAU * 3.0523 * rev).cos();
             let values: Vec<f64> =
                 signal.values.iter().zip(&phase.revolutions).map(|(value, rev)| value + tone(rev)).collect();
-            let foreign = process(&values).foreign.unwrap();
+            let foreign = process(&values).foreign.unwrap().tones;
             let [bearing] = foreign[..] else { panic!("{rig:?} {}: {foreign:?}", signal.name) };
             let hz = 3.0523 * gearbox.operation.drive.pinion_speed_hz;
             assert!((bearing.order - 3.0523).abs() < 5e-3 && (bearing.frequency_hz / hz - 1.0).abs() < 2e-3);
@@ -206,4 +209,40 @@ fn a_mesh_tone_and_a_wrong_speed() {
     let records = recording.process(&TrainSettings::default()).unwrap();
     println!("{:?}", records.warnings);
     assert!(records.warnings.iter().any(|warning| warning.code() == "speed_hz"), "{:?}", records.warnings);
+}
+
+/// A recording of 1.6 revolutions of the output shaft has no average of its wheel, but those of the others; of 0.4, there is none at all.
+#[test]
+fn a_wheel_that_turns_too_little_leaves_the_others() {
+    let mut recorded = record(&healthy(None), "middle:1", 1, None);
+    let samples = |input_rev: f64| {
+        let from = recorded.input_rev[0];
+        recorded.input_rev.partition_point(|rev| *rev < from + input_rev)
+    };
+    let (long, short) = (samples(8.0), samples(1.5));
+    recorded.signal.truncate(long);
+    recorded.input_rev.truncate(long);
+    let records = recorded.process();
+    let wheels: Vec<usize> = records.wheels.iter().map(|of| of.wheel).collect();
+    assert_eq!(wheels, [0, 1, 2]);
+    let [SignalWarning::WheelWithoutAverage(without)] = &records.warnings[..] else {
+        panic!("{:?}", records.warnings)
+    };
+    assert_eq!((without.wheel.as_str(), without.teeth), ("z4", 80));
+    recorded.signal.truncate(short);
+    recorded.input_rev.truncate(short);
+    let phase = ShaftPhase::new(0, recorded.input_rev.clone()).unwrap();
+    let turning = TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::Other };
+    let none = recorded.recording(&turning).process(&TrainSettings::default()).unwrap_err();
+    assert!(matches!(none.error, SignalError::TooFewRevolutions { .. }), "{none}");
+}
+
+/// A longer recording leaves fewer orders in which a foreign line would not be seen.
+#[test]
+fn a_longer_recording_distinguishes_more_orders() {
+    let part =
+        |cycles: usize| record(&healthy(None), "middle:1", cycles, None).process().foreign.unwrap().own_part;
+    let [short, long] = [2, 8].map(part);
+    println!("{short:.3} {long:.3}");
+    assert!(short <= 1.0 && long < 0.5 * short, "{short} {long}");
 }

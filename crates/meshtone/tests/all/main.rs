@@ -59,6 +59,7 @@ mod signal_scipy;
 mod signal_simulated;
 mod support;
 mod tooth_shape;
+mod train_mismatch;
 mod trains;
 mod unbounded;
 mod wear;

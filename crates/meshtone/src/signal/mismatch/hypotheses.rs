@@ -6,11 +6,11 @@ use crate::operation::greatest_common_divisor;
 
 /// Mesh harmonics that are looked at, of the teeth that are stated: other counts have theirs in the same range, so that a multiple
 /// of the right one has fewer.
-const HARMONICS: u32 = 8;
+pub(super) const HARMONICS: u32 = 8;
 /// Most harmonics of any count.
 const MOST_HARMONICS: u32 = 12;
 /// (shaft orders) How far beside a mesh line its neighbours are looked for.
-const SIDEBANDS: f64 = 4.5;
+pub(super) const SIDEBANDS: f64 = 4.5;
 /// Fewest teeth of a wheel.
 const FEWEST_TEETH: u32 = 6;
 /// Pulses in a revolution that encoders and marks on shafts have.
@@ -31,7 +31,7 @@ const MAINS_HARMONICS: f64 = 8.0;
 /// (bins) Distance from a harmonic of hum at which a line may be it.
 const MAINS_BINS: f64 = 2.0;
 /// (bins) Distance of orders that are one line.
-const SAME_LINE: f64 = 1.5;
+pub(super) const SAME_LINE: f64 = 1.5;
 
 /// An interpretation of the recording. Orders are those of the shaft as it is stated.
 #[derive(Debug, Clone, Copy)]
@@ -99,6 +99,7 @@ impl Hypothesis {
             Alternative::OtherShaft { .. } => 2.0,
             Alternative::PulsesPerRevolution { .. } | Alternative::Teeth { .. } => 1.0,
             Alternative::MateTeeth { .. }
+            | Alternative::ShaftOfTrain { .. }
             | Alternative::ShaftSpeed { .. }
             | Alternative::VaryingSpeed { .. } => 0.0,
         }
@@ -274,17 +275,26 @@ fn other_counts(teeth: u32) -> impl Iterator<Item = u32> {
     (FEWEST_TEETH.max(teeth / 2 + 1)..2 * teeth).filter(move |other| *other != teeth)
 }
 
-fn other_pulses(stated: &StatedFacts, per_revolution: u32) -> Vec<Hypothesis> {
+/// Numbers of pulses in a revolution that may be meant instead of a stated one.
+///
+/// # Arguments
+/// * `per_revolution` - the stated number
+/// * `teeth` - of the wheels, one pulse of each tooth
+pub(super) fn pulse_counts(per_revolution: u32, teeth: impl IntoIterator<Item = u32>) -> Vec<u32> {
     let near = [-2, -1, 1, 2].into_iter().filter_map(|by| per_revolution.checked_add_signed(by));
     let multiples = [2, 3, 4].into_iter().filter_map(|by| per_revolution.checked_mul(by));
     let parts =
         [2, 3, 4].into_iter().filter(|by| per_revolution.is_multiple_of(*by)).map(|by| per_revolution / by);
-    let of_wheels = [Some(stated.teeth), stated.mate_teeth].into_iter().flatten();
     let mut counts: Vec<u32> =
-        USUAL_PULSES.into_iter().chain(near).chain(multiples).chain(parts).chain(of_wheels).collect();
+        USUAL_PULSES.into_iter().chain(near).chain(multiples).chain(parts).chain(teeth).collect();
     counts.sort_unstable();
     counts.dedup();
     counts.retain(|&count| count > 0 && count != per_revolution);
+    counts
+}
+
+fn other_pulses(stated: &StatedFacts, per_revolution: u32) -> Vec<Hypothesis> {
+    let of_wheels = [Some(stated.teeth), stated.mate_teeth].into_iter().flatten();
     let hypothesis = |pulses: u32| {
         let factor = f64::from(per_revolution) / f64::from(pulses);
         Hypothesis::scaled(
@@ -293,7 +303,7 @@ fn other_pulses(stated: &StatedFacts, per_revolution: u32) -> Vec<Hypothesis> {
             Alternative::PulsesPerRevolution { pulses, stated: per_revolution },
         )
     };
-    counts.into_iter().map(hypothesis).collect()
+    pulse_counts(per_revolution, of_wheels).into_iter().map(hypothesis).collect()
 }
 
 /// The speeds within some percent at which the mesh lines stand out most, and at which the wheel's orders do.

@@ -3,6 +3,7 @@
 mod changing_speed;
 mod fine_orders;
 mod hypotheses;
+mod other_turning;
 mod steadier_speed;
 mod varying_speed;
 mod words;
@@ -11,6 +12,7 @@ use super::{AngularSignal, GearTrain};
 use changing_speed::changing_speed;
 use fine_orders::FineOrders;
 use hypotheses::Hypothesis;
+use other_turning::{OtherTurning, all_meshes_speak_for, other_turning};
 use steadier_speed::{SteadierSpeed, steadier_speed};
 use varying_speed::varying_speed;
 
@@ -111,6 +113,11 @@ pub enum Alternative {
         /// Stated teeth of the mate.
         mate_teeth: u32,
     },
+    /// Speed or pulses are those of another shaft of a train of several meshes.
+    ShaftOfTrain {
+        /// Teeth of a wheel on that shaft.
+        teeth: u32,
+    },
     /// Another number of pulses in a revolution.
     PulsesPerRevolution {
         /// The number.
@@ -145,7 +152,7 @@ impl Alternative {
         match self {
             Self::Teeth { .. } => "teeth",
             Self::MateTeeth { .. } => "mate_teeth",
-            Self::OtherShaft { .. } => "other_shaft",
+            Self::OtherShaft { .. } | Self::ShaftOfTrain { .. } => "other_shaft",
             Self::PulsesPerRevolution { .. } => "pulses_per_revolution",
             Self::ShaftSpeed { .. } => "speed_hz",
             Self::VaryingSpeed { .. } => "varying_speed",
@@ -155,7 +162,9 @@ impl Alternative {
     /// The better value: teeth, pulses, (Hz) speed; of a speed that varies (-) its standard deviation over its mean.
     pub fn value(&self) -> f64 {
         match *self {
-            Self::Teeth { teeth } | Self::MateTeeth { teeth, .. } => f64::from(teeth),
+            Self::Teeth { teeth } | Self::MateTeeth { teeth, .. } | Self::ShaftOfTrain { teeth } => {
+                f64::from(teeth)
+            }
             Self::OtherShaft { mate_teeth } => f64::from(mate_teeth),
             Self::PulsesPerRevolution { pulses, .. } => f64::from(pulses),
             Self::ShaftSpeed { speed_hz, .. } => speed_hz,
@@ -234,8 +243,8 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
 
 /// Does what [`find_mismatch`] does for a shaft of a train.
 ///
-/// Of a train of several meshes only the speed is doubted: lines of another mesh would look like another tooth count. None of a shaft
-/// without wheels.
+/// Of a train of several meshes the shaft, the number of pulses and the speed are doubted, but not the tooth counts: lines of another mesh would
+/// look like another count. None of a shaft without wheels.
 ///
 /// # Arguments
 /// * `angular` - the recording over the angle of the shaft, as it is stated
@@ -248,9 +257,26 @@ pub fn find_train_mismatch(
     shaft: usize,
     turning: StatedTurning,
 ) -> Option<Mismatch> {
-    let is_pair = train.meshes.len() < 2;
     let stated = StatedFacts::of_shaft(train, shaft, turning)?;
-    find_among(angular, &stated, |alternative| is_pair || alternative.is_speed())
+    if train.meshes.len() < 2 {
+        return find_mismatch(angular, &stated);
+    }
+    let orders = FineOrders::of(angular)?;
+    let of_other = |OtherTurning { alternative, evidence, stated_evidence, .. }| Mismatch {
+        stated,
+        stated_evidence,
+        alternative,
+        evidence,
+        energy_ratio: None,
+    };
+    let other = other_turning(&orders, train, shaft, turning).map(of_other);
+    let is_of_all = |found: &Mismatch| match found.alternative {
+        Alternative::ShaftSpeed { speed_hz, stated_hz } if found.energy_ratio.is_none() => {
+            all_meshes_speak_for(speed_hz / stated_hz, &orders, train, shaft)
+        }
+        _ => true,
+    };
+    other.or_else(|| find_among(angular, &stated, Alternative::is_speed).filter(is_of_all))
 }
 
 /// Does what [`find_mismatch`] does, comparing only some of the alternatives.
@@ -380,9 +406,9 @@ fn evidence_if_better(
                 && !hypothesis.is_part_without_lines(as_stated, of_pair, orders);
             is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)
         }
-        Alternative::ShaftSpeed { .. } | Alternative::VaryingSpeed { .. } => {
-            has_mesh || has_wheel && lost_mesh <= 0.0
-        }
+        Alternative::ShaftSpeed { .. }
+        | Alternative::VaryingSpeed { .. }
+        | Alternative::ShaftOfTrain { .. } => has_mesh || has_wheel && lost_mesh <= 0.0,
     };
     let counted_mate_gain = if hypothesis.moves_wheel() { mate_gain.min(0.0) } else { mate_gain };
     (is_founded && mesh_gain + wheel_gain + counted_mate_gain > LEAST_GAIN).then_some(own)

@@ -9,6 +9,18 @@ const SAME_COUNT: f64 = 0.01;
 /// (-) Standard deviation of the speed over its mean up to which the mesh tone can be followed.
 const MOST_FOLLOWED: f64 = 0.01;
 
+impl Mismatch {
+    /// The source of the angle and its verb.
+    fn source(&self) -> &'static str {
+        match self.stated.turning {
+            StatedTurning::Pulses { .. } => "the pulses are",
+            StatedTurning::ConstantSpeed { .. } | StatedTurning::MeshTone { .. } | StatedTurning::Other => {
+                "the speed is"
+            }
+        }
+    }
+}
+
 impl Display for Mismatch {
     /// Says which facts would fit the recording, and what to check.
     ///
@@ -26,19 +38,18 @@ impl Display for Mismatch {
                 f,
                 "the other shaft's orders fit a mating gear of {alternative} teeth better than {stated}: check its tooth count"
             ),
-            Alternative::OtherShaft { mate_teeth } => {
-                let what = match self.stated.turning {
-                    StatedTurning::Pulses { .. } => "the pulses are",
-                    StatedTurning::ConstantSpeed { .. }
-                    | StatedTurning::MeshTone { .. }
-                    | StatedTurning::Other => "the speed is",
-                };
-                write!(
-                    f,
-                    "{what} rather of the other shaft, that of the wheel with {mate_teeth} teeth: exchange the tooth counts \
-                     {teeth} and {mate_teeth}"
-                )
-            }
+            Alternative::OtherShaft { mate_teeth } => write!(
+                f,
+                "{} rather of the other shaft, that of the wheel with {mate_teeth} teeth: exchange the tooth counts \
+                 {teeth} and {mate_teeth}",
+                self.source()
+            ),
+            Alternative::ShaftOfTrain { teeth: alternative } => write!(
+                f,
+                "{} rather of another shaft, that of the wheel with {alternative} teeth, than of the one with {teeth} teeth: name \
+                 that shaft",
+                self.source()
+            ),
             Alternative::PulsesPerRevolution { pulses, stated } => {
                 write!(
                     f,

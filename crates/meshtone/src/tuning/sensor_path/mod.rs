@@ -193,7 +193,7 @@ fn check_pair(scenario: &Scenario) -> Result<(), ScenarioError> {
     check_is_drawn(&scenario.quality)
 }
 
-/// Refuses a gearbox of which every draw is the same.
+/// Refuses a gearbox with a wheel of which every draw is the same.
 fn check_wheels(gearbox: &Gearbox) -> Result<(), ScenarioError> {
     let help = "state the class of the wheels with wheel.iso_class or wheel.din_grade";
     let wheels = gearbox.wheels.len();
@@ -202,10 +202,11 @@ fn check_wheels(gearbox: &Gearbox) -> Result<(), ScenarioError> {
         let error = ScenarioError::new("wheel.profile_errors_mm", "", problem).with_help(help);
         return Err(error.in_entry("wheel", given, wheels));
     }
-    if gearbox.wheels.iter().all(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0) {
-        let problem = "ideal wheels have no sidebands, and no draw of them differs from another";
+    if let Some(ideal) = gearbox.wheels.iter().position(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0)
+    {
+        let problem = "an ideal wheel has no sidebands, and no draw of it differs from another";
         let error = ScenarioError::new("wheel.iso_class", 0, problem).with_help(help);
-        return Err(error.in_entry("wheel", 0, wheels));
+        return Err(error.in_entry("wheel", ideal, wheels));
     }
     Ok(())
 }
