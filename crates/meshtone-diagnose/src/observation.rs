@@ -1,7 +1,7 @@
 //! Features of the wheels in a recording or a simulation.
 
 use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, BearingDefects, GearTrain, MeanPart, Mismatch,
+    Alternative, AngleZero, AngularSettings, BearingDefects, ForeignTones, GearTrain, MeanPart, Mismatch,
     SeparationSettings, ShaftPhase, SignalError, StatedFacts, StatedTurning, SynchronousAverage,
     angular_resample, check_channel, find_mismatch,
 };
@@ -136,6 +136,8 @@ pub struct Observation {
     pub noise: Vec<Vec<f64>>,
     /// Why the recording is not what it is stated to be, where that is seen without a simulation.
     pub mismatch: Option<String>,
+    /// Tones of no shaft, however weak.
+    pub foreign: Option<ForeignTones>,
     /// Other warnings about it.
     pub doubts: Vec<String>,
     /// What it shows about the bearings of the rig; nothing in a single revolution.
@@ -198,6 +200,7 @@ impl Observation {
             ],
             noise: vec![Vec::new(); 2],
             mismatch: None,
+            foreign: None,
             doubts: beyond_a_revolution(values_g, gear_teeth).into_iter().collect(),
             bearings: BearingDefects::default(),
         })

@@ -170,9 +170,10 @@ impl Observation {
         let wheel = &train.wheels[slowest];
         let shaft =
             SlowestShaft { angular: &angular[slowest], train, wheel, speed_hz: shaft_hz(wheel.shaft) };
+        let off_shafts = shaft.energy_off_all_shafts();
         let mismatch = nothing_synchronous(angular, &averages, (slowest, wheel.teeth))
             .or_else(|| shaft.silent_part())
-            .or_else(|| shaft.energy_off_all_shafts());
+            .or(off_shafts.mismatch);
         let separations = separations(train);
         let wheels = averages.iter().zip(separations);
         let wheels = wheels.map(|(average, separation)| Some(WheelLines::of_average(average, separation)));
@@ -184,6 +185,7 @@ impl Observation {
             wheels: wheels.collect(),
             noise: noise.collect(),
             mismatch,
+            foreign: off_shafts.tones,
             doubts: shaft.too_short().into_iter().collect(),
             bearings: BearingDefects::default(),
         })
@@ -206,6 +208,14 @@ fn mismatch(recording: &TrainRecording, angular: &[AngularSignal]) -> Result<Opt
         None if train.meshes.len() < 2 => other_tone(signal, sampling_rate_hz, phase, &facts),
         found => Ok(found),
     }
+}
+
+/// What a recording has at no order of any shaft.
+#[derive(Default)]
+struct OffShafts {
+    /// Evidence against the recording.
+    mismatch: Option<String>,
+    tones: Option<ForeignTones>,
 }
 
 /// The recording over the angle of the slowest shaft, on which what is not of the rig is looked for.
@@ -262,15 +272,15 @@ impl SlowestShaft<'_> {
         })
     }
 
-    /// Evidence against the recording where the orders of the shafts do not explain it: impulses, or tones, that repeat with none.
+    /// What the orders of the shafts do not explain: impulses, or tones, that repeat with none, and whether they speak against the recording.
     ///
     /// What repeats whenever the same teeth meet again is taken away, and the lines of all shafts are left out of the spectrum of the rest. Of the
     /// others, those that stand out of their surroundings are tones; and what they make over time is impulsive where something strikes. Impulses are
     /// looked for first, since their lines may stand out like tones.
-    fn energy_off_all_shafts(&self) -> Option<String> {
+    fn energy_off_all_shafts(&self) -> OffShafts {
         let Self { angular, train, wheel, speed_hz } = self;
         if angular.revolutions() < FEWEST_REVOLUTIONS {
-            return None;
+            return OffShafts::default();
         }
         let (unrepeated, kept) = without_cycle(angular, train, wheel.shaft);
         let whole = unrepeated.values.len();
@@ -290,15 +300,17 @@ impl SlowestShaft<'_> {
         let rest = from_real_spectrum(lines.spectrum, whole);
         let rest = &rest[whole / 4..3 * whole / 4];
         let part = (rms(rest) / level).powi(2) / MIDDLE_SQUARE / kept;
-        let impulses = kurtosis(rest)?;
-        if impulses > IMPULSIVE && part > COUNTS {
-            return Some(format!(
-                "impulses that repeat with no shaft make {:.0} % of the recording's energy (kurtosis {impulses:.1}): a bearing, or \
+        let impulses = kurtosis(rest).filter(|impulses| *impulses > IMPULSIVE && part > COUNTS);
+        let impulses = impulses.map(|kurtosis| {
+            format!(
+                "impulses that repeat with no shaft make {:.0} % of the recording's energy (kurtosis {kurtosis:.1}): a bearing, or \
                  something else than these teeth",
                 100.0 * part
-            ));
-        }
-        ForeignTones::that_count(&tones).map(|tones| tones.to_string())
+            )
+        });
+        let tones = ForeignTones::of(&tones);
+        let that_count = || tones.as_ref().filter(|tones| tones.count()).map(ForeignTones::to_string);
+        OffShafts { mismatch: impulses.or_else(that_count), tones }
     }
 }
 

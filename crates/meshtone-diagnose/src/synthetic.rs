@@ -109,6 +109,7 @@ pub fn observed(record: &ReferenceRecord) -> Observation {
         wheels: record.wheels.iter().map(|wheel| Some(noisy(wheel))).collect(),
         noise: vec![vec![NOISE_G]; record.wheels.len()],
         mismatch: None,
+        foreign: None,
         doubts: Vec::new(),
         bearings: BearingDefects::default(),
     }

@@ -11,6 +11,9 @@ use crate::learn::{Learned, Question};
 use crate::prior::Prior;
 use crate::{bearings, consistency, level, speed};
 
+/// (-) Part of the energy from which on tones of no shaft are the reason why a recording is unlike the simulations.
+const NOTICED: f64 = 0.005;
+
 /// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
 const SURELY: f64 = 0.9;
 
@@ -153,10 +156,17 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     use DiagnosisWarningKind::{Contradiction, HealthyOutside, Level, NotSimulated, Outside};
 
     let outside = answer.is_recording_outside().then(|| {
-        let why = if answer.has_bearing_lines() {
-            "a damaged bearing may be the reason, since no simulation has one"
-        } else {
-            "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
+        let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
+        let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
+        let why = match foreign {
+            _ if answer.has_bearing_lines() => {
+                "a damaged bearing may be the reason, since no simulation has one".to_owned()
+            }
+            Some(tones) => tones.to_string(),
+            None => {
+                "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
+                    .to_owned()
+            }
         };
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });

@@ -128,7 +128,9 @@ impl Series {
 
     /// Gives every record the NA4 that it has in the series.
     pub fn finish(&mut self) -> Result<(), Failure> {
-        for (wheel, residuals) in self.wheels.iter().zip(&self.residuals) {
+        let with_records =
+            self.wheels.iter().zip(&self.residuals).filter(|(_, residuals)| !residuals.is_empty());
+        for (wheel, residuals) in with_records {
             let values = na4(residuals).map_err(|error| Failure::failed(format!("NA4: {error}")))?;
             let records = self.results.records.iter_mut().filter(|record| record.wheel == wheel.name);
             for (record, value) in records.zip(values) {

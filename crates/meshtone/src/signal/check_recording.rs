@@ -80,10 +80,8 @@ impl RecordingCheck {
             return Self::default();
         }
         let foreign = foreign_tones(angular, train, shaft, phase.mean_speed_hz(sampling_rate_hz));
-        let warning = foreign
-            .as_ref()
-            .and_then(|found| ForeignTones::that_count(&found.tones))
-            .map(SignalWarning::ForeignTones);
+        let tones = foreign.as_ref().and_then(|found| ForeignTones::of(&found.tones));
+        let warning = tones.filter(ForeignTones::count).map(SignalWarning::ForeignTones);
         Self { warnings: warning.into_iter().collect(), foreign }
     }
 }

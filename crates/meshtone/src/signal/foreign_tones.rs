@@ -77,13 +77,18 @@ pub struct ForeignTones {
 }
 
 impl ForeignTones {
-    /// The tones where they make a fifth of the energy or more.
+    /// The energy of tones and the strongest of them; none of no tones.
     ///
     /// # Arguments
     /// * `tones` - all of a recording, the strongest first
-    pub fn that_count(tones: &[ForeignTone]) -> Option<Self> {
+    pub fn of(tones: &[ForeignTone]) -> Option<Self> {
         let part: f64 = tones.iter().map(|tone| tone.part).sum();
-        (part > COUNTS).then(|| Self { part, strongest: tones.iter().take(NAMED).copied().collect() })
+        (!tones.is_empty()).then(|| Self { part, strongest: tones.iter().take(NAMED).copied().collect() })
+    }
+
+    /// Returns whether they make a fifth of the energy or more.
+    pub fn count(&self) -> bool {
+        self.part > COUNTS
     }
 }
 
