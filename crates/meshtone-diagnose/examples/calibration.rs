@@ -155,6 +155,7 @@ fn observed(record: &ReferenceRecord, signal: SignalKind) -> Observation {
         noise: vec![noise; wheels.len()],
         wheels,
         mismatch: None,
+        foreign: None,
         doubts: Vec::new(),
         bearings: BearingDefects::default(),
     }

@@ -165,7 +165,7 @@ impl Difference {
         let total = energy.iter().sum::<f64>().max(f64::MIN_POSITIVE) / points as f64;
         let around = |teeth_on: f64| energy[wrapped(at as f64 + teeth_on * pitch, points)] / total;
         let mut shapes: Vec<f64> = WINDOWS.iter().map(|&on| around(on).max(LEAST_SHARE).ln()).collect();
-        let elsewhere = (0..points).filter(|&point| distance(point, at, points) > 3.0 * pitch);
+        let elsewhere = (0..points).filter(|&point| difference(point, at, points).abs() > 3.0 * pitch);
         let second = elsewhere.map(|point| energy[point]).fold(0.0, f64::max);
         shapes.push((second / energy[at].max(f64::MIN_POSITIVE)).max(LEAST_SHARE).ln());
         let half = energy.iter().filter(|&&value| value > 0.25 * energy[at]).count();
@@ -181,7 +181,7 @@ impl Difference {
     /// Shares of the bands in the spectrum of what is within three teeth of the burst.
     fn spectrum_around_burst(&self, at: usize, last: usize) -> impl Iterator<Item = f64> {
         let window = |point: usize| {
-            let from = wrapped_difference(point, at, self.points()) / self.pitch();
+            let from = difference(point, at, self.points()) / self.pitch();
             if from.abs() < 3.0 { 0.5 + 0.5 * (std::f64::consts::PI * from / 3.0).cos() } else { 0.0 }
         };
         let cut = self.values.iter().enumerate().map(|(point, value)| value * window(point));
@@ -227,11 +227,7 @@ fn wrapped(place: f64, points: usize) -> usize {
     (place.round().rem_euclid(points as f64)) as usize % points
 }
 
-fn wrapped_difference(a: usize, b: usize, points: usize) -> f64 {
-    let half = points as f64 / 2.0;
-    (a as f64 - b as f64 + half).rem_euclid(points as f64) - half
-}
-
-fn distance(a: usize, b: usize, points: usize) -> f64 {
-    wrapped_difference(a, b, points).abs()
+/// From one of an even number of points on a circle to another, the shorter way.
+fn difference(a: usize, b: usize, points: usize) -> f64 {
+    ((a + points + points / 2 - b) % points) as f64 - (points / 2) as f64
 }

@@ -41,7 +41,8 @@ pub(crate) fn beyond_healthy(now: &WheelLines, healthy: &WheelLines, last: usize
             (shared + weight * new[other] * old[other].conj(), energy + weight * old[other].norm_sqr())
         });
         let gain = sums.0 / sums.1;
-        gain * (MOST_GAIN / gain.norm()).min(1.0)
+        // The square, since a root of each line would take a tenth of the whole diagnosis.
+        if gain.norm_sqr() > MOST_GAIN * MOST_GAIN { gain * (MOST_GAIN / gain.norm()) } else { gain }
     };
     let lines = (0..count).map(|order| new[order] - gain(order) * old[order]).collect();
     WheelLines { lines, ..now.clone() }

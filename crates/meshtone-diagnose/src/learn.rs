@@ -1,5 +1,6 @@
 //! The model that is learnt from a reference set for one question.
 
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use meshtone::random::{Draws, Purpose};
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::DiagnoseError;
 use crate::answer::wheel_in_words;
-use crate::features::wheel_features;
+use crate::features::{WheelFeatures, wheel_features};
 use crate::healthy::beyond_healthy;
 use crate::matrix::{FOLDS, RandomFeatures, Standardisation, ridge};
 use crate::observation::{Observation, SignalKind, WheelLines};
@@ -102,6 +103,12 @@ fn shown(signal: SignalKind, wheels: &[WheelLines]) -> Vec<Option<&WheelLines>> 
     wheels.iter().enumerate().map(|(place, wheel)| is_shown(place).then_some(wheel)).collect()
 }
 
+/// A wheel when it was healthy.
+struct HealthyWheel {
+    lines: WheelLines,
+    features: WheelFeatures,
+}
+
 /// Features of one record.
 #[derive(Debug, Clone)]
 pub(crate) struct FeatureRow {
@@ -171,31 +178,59 @@ impl Layout {
     ///
     /// # Arguments
     /// * `record` - the simulation
-    /// * `healthy` - of the same pair of wheels, where it is compared with one
+    /// * `healthy` - of the same wheels, where it is compared with one
     /// * `seed` - of the noise
     fn simulation(
         &self,
         record: &ReferenceRecord,
-        healthy: Option<&ReferenceRecord>,
+        healthy: Option<&[Option<HealthyWheel>]>,
         seed: u64,
     ) -> FeatureRow {
-        let [now, before] = &self.noises;
-        let noisy = |record, noise| with_noise(record, self, noise, seed);
-        let (now, before) = (noisy(record, now), healthy.map(|healthy| noisy(healthy, before)));
+        let now = with_noise(record, self, &self.noises[0], seed);
         let speed = if self.knows_speed { (record.input_speed_hz / self.nominal_hz).ln() } else { 0.0 };
-        let before = before.as_ref().map(|wheels| shown(self.signal, wheels));
-        self.row(&shown(self.signal, &now), before.as_deref(), speed)
+        self.row(&shown(self.signal, &now), healthy, speed)
+    }
+
+    /// Features of simulations that can be compared with the question, in their order. What the healthy one of a unit shows is found once for
+    /// all that are compared with it.
+    fn simulations(&self, reference: &ReferenceSet, records: &[&ReferenceRecord]) -> Vec<FeatureRow> {
+        let seed = reference.prior.seed;
+        let mut before: Vec<&ReferenceRecord> = match self.has_healthy {
+            true => records.iter().filter_map(|record| reference.healthy_of(record)).collect(),
+            false => Vec::new(),
+        };
+        before.dedup_by_key(|record| record.number);
+        let of_unit = |record: &&ReferenceRecord| {
+            let noisy = with_noise(record, self, &self.noises[1], seed);
+            (record.unit(), self.healthy(&shown(self.signal, &noisy)))
+        };
+        let before: BTreeMap<u64, Vec<Option<HealthyWheel>>> = before.par_iter().map(of_unit).collect();
+        let row = |record: &&ReferenceRecord| {
+            self.simulation(record, before.get(&record.unit()).map(Vec::as_slice), seed)
+        };
+        records.par_iter().map(row).collect()
+    }
+
+    /// What wheels show when they are healthy.
+    fn healthy(&self, wheels: &[Option<&WheelLines>]) -> Vec<Option<HealthyWheel>> {
+        let of = |(wheel, lines): (usize, &Option<&WheelLines>)| {
+            let lines = (*lines)?.clone();
+            let features = wheel_features(&lines, self.last[wheel], self.signal.has_regular_part());
+            Some(HealthyWheel { lines, features })
+        };
+        wheels.iter().enumerate().map(of).collect()
     }
 
     /// Features of two states of one rig, or of one alone.
     ///
     /// # Arguments
-    /// * `now`, `healthy` - lines of the wheels that are seen
+    /// * `now` - lines of the wheels that are seen
+    /// * `healthy` - the same wheels when they were healthy
     /// * `speed` - (-) logarithm of the speed over the rig's; 0 where it is not known
     fn row(
         &self,
         now: &[Option<&WheelLines>],
-        healthy: Option<&[Option<&WheelLines>]>,
+        healthy: Option<&[Option<HealthyWheel>]>,
         speed: f64,
     ) -> FeatureRow {
         let mut row = FeatureRow { values: vec![speed], burst_rev: vec![0.0; now.len()] };
@@ -206,9 +241,10 @@ impl Layout {
             row.burst_rev[wheel] = plain.burst_rev;
             row.values.extend(&plain.levels);
             row.values.extend(&plain.shapes);
-            if let Some(healthy) = healthy.and_then(|healthy| healthy[wheel]) {
-                let before = wheel_features(healthy, last, regular);
-                let beyond = wheel_features(&beyond_healthy(now, healthy, last), last, false);
+            if let Some(HealthyWheel { lines, features: before }) =
+                healthy.and_then(|healthy| healthy[wheel].as_ref())
+            {
+                let beyond = wheel_features(&beyond_healthy(now, lines, last), last, false);
                 row.burst_rev[wheel] = beyond.burst_rev;
                 let louder = less(&plain.levels, &before.levels);
                 // A level that is wrong as a whole is wrong in all orders, damage in some.
@@ -232,7 +268,8 @@ impl Layout {
             match question.healthy {
                 [] => rows.push(self.row(&now, None, speed)),
                 several => {
-                    rows.extend(several.iter().map(|before| self.row(&now, Some(&before.seen()), speed)));
+                    let before = several.iter().map(|before| self.healthy(&before.seen()));
+                    rows.extend(before.map(|before| self.row(&now, Some(&before), speed)));
                 }
             }
         }
@@ -252,11 +289,12 @@ fn less(now: &[f64], before: &[f64]) -> Vec<f64> {
 
 /// The test whether a healthy recording is like the healthy simulations, in its own noise and without another recording beside it.
 fn healthy_test(layout: &Layout, reference: &ReferenceSet) -> OutlierTest {
-    let alone = Layout { noises: [layout.noises[1].clone(), Vec::new()], ..layout.clone() };
+    let noises = [layout.noises[1].clone(), Vec::new()];
+    let alone = Layout { has_healthy: false, noises, ..layout.clone() };
     let healthy: Vec<&ReferenceRecord> =
         reference.records.iter().filter(|record| record.fault.is_none()).collect();
-    let row_of = |record: &&ReferenceRecord| alone.simulation(record, None, reference.prior.seed).values;
-    let rows: Vec<Vec<f64>> = healthy.par_iter().map(row_of).collect();
+    let rows: Vec<Vec<f64>> =
+        alone.simulations(reference, &healthy).into_iter().map(|row| row.values).collect();
     let units = healthy.iter().map(|record| record.unit()).collect();
     OutlierTest::new(&rows, units, &vec![1.0; rows.len()])
 }
@@ -287,11 +325,7 @@ impl<'a> Learned<'a> {
         if records.len() < FEWEST_RECORDS {
             return Err(DiagnoseError::NoReference);
         }
-        let row_of = |record: &&ReferenceRecord| {
-            let before = reference.healthy_of(record).filter(|_| layout.has_healthy);
-            layout.simulation(record, before, reference.prior.seed)
-        };
-        let rows: Vec<FeatureRow> = records.par_iter().map(row_of).collect();
+        let rows = layout.simulations(reference, &records);
         let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();
         classes.sort_unstable();
         classes.dedup();
@@ -422,16 +456,13 @@ impl<'a> Learned<'a> {
         let is_whole = |record: &ReferenceRecord| {
             record.wheels.iter().zip(&self.layout.last).all(|(wheel, last)| wheel.last() >= *last)
         };
-        let seed = refined.prior.seed;
-        let row = |record: &'r ReferenceRecord| {
-            let healthy = refined.healthy_of(record).filter(|healthy| is_whole(healthy));
-            if record.fault.is_none() || !is_whole(record) || self.layout.has_healthy && healthy.is_none() {
-                return None;
-            }
-            let healthy = healthy.filter(|_| self.layout.has_healthy);
-            Some((record, self.layout.simulation(record, healthy, seed)))
+        let is_compared = |record: &&ReferenceRecord| {
+            let has_healthy = || refined.healthy_of(record).is_some_and(is_whole);
+            record.fault.is_some() && is_whole(record) && (!self.layout.has_healthy || has_healthy())
         };
-        refined.records.par_iter().filter_map(row).collect()
+        let records: Vec<&ReferenceRecord> = refined.records.iter().filter(is_compared).collect();
+        let rows = self.layout.simulations(refined, &records);
+        records.into_iter().zip(rows).collect()
     }
 }
 
