@@ -3,7 +3,7 @@
 //! *Levels* are logarithms of amplitudes: a path to the sensor adds to them, and those of a healthy recording of the same rig can
 //! be taken away. *Shapes* do not depend on the amplitude.
 
-use meshtone::signal::{envelope, kurtosis, peak, rms};
+use meshtone::signal::{analytic_signal, kurtosis, peak, rms};
 use meshtone_fourier::Complex64;
 
 use crate::observation::{WheelLines, revolution, separation};
@@ -128,8 +128,10 @@ impl Difference {
 
     /// The squared envelope, the mean over one tooth around each point.
     fn energy_over_tooth(&self) -> Vec<f64> {
-        let of = envelope(&self.values).unwrap_or_else(|_| self.values.clone());
-        let square: Vec<f64> = of.iter().map(|value| value * value).collect();
+        let square: Vec<f64> = match analytic_signal(&self.values) {
+            Ok(of) => of.iter().map(Complex64::norm_sqr).collect(),
+            Err(_) => self.values.iter().map(|value| value * value).collect(),
+        };
         moving_mean(&square, self.points() / self.teeth.max(1))
     }
 
