@@ -262,16 +262,14 @@ impl Layout {
     /// Features of the question: the mean over its recordings.
     fn question(&self, question: &Question) -> FeatureRow {
         let mut rows = Vec::new();
+        let before: Vec<_> = question.healthy.iter().map(|before| self.healthy(&before.seen())).collect();
         for now in question.now {
             let speed = now.input_speed_hz.map_or(0.0, |hz| (hz / self.nominal_hz).ln());
             let now = now.seen();
-            match question.healthy {
-                [] => rows.push(self.row(&now, None, speed)),
-                several => {
-                    let before = several.iter().map(|before| self.healthy(&before.seen()));
-                    rows.extend(before.map(|before| self.row(&now, Some(&before), speed)));
-                }
+            if before.is_empty() {
+                rows.push(self.row(&now, None, speed));
             }
+            rows.extend(before.iter().map(|before| self.row(&now, Some(before), speed)));
         }
         let count = rows.len() as f64;
         let mut mean = rows[0].clone();

@@ -75,7 +75,7 @@ class TrainRecord:
 
     def __getitem__(self, wheel: str) -> Record:
         if wheel not in self.wheels:
-            raise KeyError(f"there is no wheel {wheel!r}; there are {', '.join(self.wheels)}")
+            raise KeyError(f"there is no average of a wheel {wheel!r}; there are those of {', '.join(self.wheels)}")
         return self.wheels[wheel]
 
 

@@ -89,8 +89,9 @@ pub fn of_record(series: &Series, latest: &LatestRecords, processing: &Processin
 /// The figure of the orders of the first wheel's shaft over time, where the last recording is a run-up: where the speed changes so much that
 /// resonances pass over orders. Of another the average says all. A recording that has too few revolutions for a map has no figure.
 pub fn of_order_map(series: &Series, latest: &LatestRecords) -> Option<Figure> {
-    let (input, (wheel, ..)) = (&latest.input, latest.wheels.first()?);
-    let Turned { train, turning, source, .. } = &latest.turned;
+    let input = &latest.input;
+    let Turned { train, turning, source, wheels, .. } = &latest.turned;
+    let wheel = wheels.first()?;
     let turning = match turning {
         TrainTurning::Shaft { shaft, phase, .. } => {
             train.carried(phase, *shaft, train.wheels[0].shaft).ok()?

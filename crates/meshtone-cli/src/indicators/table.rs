@@ -13,8 +13,10 @@ const OF_GEARS: [&str; 7] = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", 
 
 /// Foreign lines that are printed; the others are counted.
 const LINES: usize = 10;
-/// (-) Part of the orders that are the machine's own from which on the table says that a longer recording distinguishes more.
+/// (-) Part of the orders that are the machine's own from which on the table recommends a longer recording: more than half is not searched.
 const MOST_OWN: f64 = 0.5;
+/// (-) Part from which on nothing is searched.
+const ALL_OWN: f64 = 0.95;
 
 /// The table of one record or of a series.
 pub fn table(series: &Series) -> String {
@@ -94,11 +96,17 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
         String::new()
     };
     if lines.is_empty() {
-        let own = 100.0 * own;
-        return format!(
-            "\n  every prominent line{of} is at an order of a shaft or a mesh; these are {own:.0} % of all orders{}\n",
-            if own > MOST_OWN { ": a longer recording distinguishes more" } else { "" }
-        );
+        let percent = 100.0 * own;
+        let searched = if *own > ALL_OWN {
+            "the recording is too short to distinguish foreign lines from those of shafts and meshes"
+                .to_owned()
+        } else {
+            format!(
+                "no foreign line was found{of}; {percent:.0} % of all orders are too near one of a shaft or a mesh to distinguish a line there"
+            )
+        };
+        let longer = if *own > MOST_OWN { ": record for longer" } else { "" };
+        return format!("\n  {searched}{longer}\n");
     }
     let on = if series.wheels.len() > 2 { "the input" } else { "the shaft" };
     let mut text = format!("\n  lines{of} that belong to no shaft and no mesh\n");

@@ -201,12 +201,13 @@ impl TrainRecording<'_> {
         let TrainTurning::Shaft { shaft, phase, .. } = self.turning else { return Ok(Vec::new()) };
         check_channel(self.signal)?;
         let angular = angular_resample(self.signal, phase, &AngularSettings::default())?;
-        Ok(self.check_over(&angular, phase, *shaft).warnings)
+        Ok(self.check_over(&angular, *shaft).warnings)
     }
 
-    fn check_over(&self, angular: &AngularSignal, phase: &ShaftPhase, shaft: usize) -> RecordingCheck {
+    /// What does not fit, and foreign tones, over the angle of a shaft; nothing where its phase follows from that of another.
+    fn check_over(&self, angular: &AngularSignal, shaft: usize) -> RecordingCheck {
         match self.turning {
-            TrainTurning::Shaft { shaft: of, stated, .. } if *of == shaft => {
+            TrainTurning::Shaft { shaft: of, phase, stated } if *of == shaft => {
                 RecordingCheck::new(angular, self.train, shaft, *stated, phase, self.sampling_rate_hz)
             }
             _ => RecordingCheck::default(),
@@ -215,10 +216,11 @@ impl TrainRecording<'_> {
 
     /// Processes the channel for every wheel, and looks for what does not fit and for foreign tones.
     ///
+    /// A wheel that turns too little for an average, or for a segment, gets no result but a warning, where others turn often enough. The angle of
+    /// the shaft whose phase is known is checked against what is stated, since the angles of the other shafts follow from the tooth counts.
+    ///
     /// # Arguments
     /// * `settings` - how
-    ///
-    /// A wheel that turns too little for an average, or for a segment, gets no result but a warning, where others turn often enough.
     ///
     /// # Errors
     /// Those of [`super::process_channel`] and [`super::process_segments`], with the first wheel that has one; that a wheel turns too little only
@@ -231,23 +233,30 @@ impl TrainRecording<'_> {
         let mut first_without = None;
         for (number, of) in self.train.wheels.iter().enumerate() {
             let without = |error| WheelError { wheel: of.name.clone(), teeth: of.teeth, error };
-            let (wheel, check) = match self.process_wheel(number, settings) {
-                Ok(processed) => processed,
+            let is_first = self.train.wheels.iter().position(|other| other.shaft == of.shaft) == Some(number);
+            let angular = check_channel(self.signal).and_then(|()| self.angular(number, &settings.angular));
+            let check = match (&angular, is_first) {
+                (Ok(angular), true) => self.check_over(angular, of.shaft),
+                _ => RecordingCheck::default(),
+            };
+            found.foreign = found.foreign.or(check.foreign);
+            let mut warnings = check.warnings;
+            match angular.and_then(|angular| self.process_wheel(number, &angular, settings)) {
+                Ok(wheel) => {
+                    warnings.extend(wheel.records.iter().flat_map(|record| &record.warnings).cloned());
+                    found.wheels.push(wheel);
+                }
                 Err(error @ SignalError::TooFewRevolutions { .. }) => {
-                    found.warnings.push(SignalWarning::WheelWithoutAverage(without(error.clone())));
+                    warnings.push(SignalWarning::WheelWithoutAverage(without(error.clone())));
                     first_without.get_or_insert(without(error));
-                    continue;
                 }
                 Err(error) => return Err(without(error)),
-            };
-            let of_records = wheel.records.iter().flat_map(|record| &record.warnings).cloned();
-            for warning in check.warnings.into_iter().chain(of_records) {
+            }
+            for warning in warnings {
                 if !found.warnings.contains(&warning) {
                     found.warnings.push(warning);
                 }
             }
-            found.foreign = found.foreign.or(check.foreign);
-            found.wheels.push(wheel);
         }
         match first_without {
             Some(error) if found.wheels.is_empty() => Err(error),
@@ -255,28 +264,21 @@ impl TrainRecording<'_> {
         }
     }
 
-    /// The records of a wheel. The first wheel on the shaft whose phase is known is checked against what is stated, since the angles of the other
-    /// shafts follow from the tooth counts.
+    /// The records of a wheel.
     fn process_wheel(
         &self,
         wheel: usize,
+        angular: &AngularSignal,
         settings: &TrainSettings,
-    ) -> Result<(WheelRecords, RecordingCheck), SignalError> {
-        check_channel(self.signal)?;
+    ) -> Result<WheelRecords, SignalError> {
         let of = &self.train.wheels[wheel];
-        let angular = self.angular(wheel, &settings.angular)?;
         let mut chain = ChainSettings {
             angular: settings.angular,
             separation: Some(self.train.separation(wheel, &settings.separation)),
         };
-        let is_first = self.train.wheels.iter().position(|other| other.shaft == of.shaft) == Some(wheel);
-        let mut check = RecordingCheck::default();
         let (mean_speed_hz, phase) = match self.turning {
             TrainTurning::Shaft { .. } => {
                 let phase = self.wheel_phase(wheel)?;
-                if is_first {
-                    check = self.check_over(&angular, &phase, of.shaft);
-                }
                 (phase.mean_speed_hz(self.sampling_rate_hz), Some(phase))
             }
             TrainTurning::SimulatedPair(shafts) => {
@@ -288,8 +290,8 @@ impl TrainRecording<'_> {
             }
         };
         let records = match settings.revolutions {
-            None => vec![process_angular(&angular, of.teeth, &chain)?],
-            Some(count) => process_angular_segments(&angular, of.teeth, &chain, count)?,
+            None => vec![process_angular(angular, of.teeth, &chain)?],
+            Some(count) => process_angular_segments(angular, of.teeth, &chain, count)?,
         };
         let second = |turned_rev: f64| match &phase {
             Some(phase) => phase.sample_at(angular.start_rev + turned_rev) / self.sampling_rate_hz,
@@ -301,6 +303,6 @@ impl TrainRecording<'_> {
             Some(second(*from_rev - 0.5 * count))
         });
         let middles_s = middles.collect();
-        Ok((WheelRecords { wheel, mean_speed_hz, records, middles_s }, check))
+        Ok(WheelRecords { wheel, mean_speed_hz, records, middles_s })
     }
 }

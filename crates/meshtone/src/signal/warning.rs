@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{ForeignTone, ForeignTones, Mismatch, SynchronousPart, WheelError};
+use super::{ForeignTone, ForeignTones, Mismatch, SignalError, SynchronousPart, WheelError};
 
 /// Something about a recording that leaves the result right but that its user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -165,7 +165,13 @@ impl SignalWarning {
                 let all = std::iter::once(("needed".to_owned(), *needed));
                 all.chain(shafts.iter().enumerate().map(of_shaft)).collect()
             }
-            Self::WheelWithoutAverage(WheelError { teeth, .. }) => of(&[("teeth", f64::from(*teeth))]),
+            Self::WheelWithoutAverage(WheelError { teeth, error, .. }) => {
+                let mut values = of(&[("teeth", f64::from(*teeth))]);
+                if let SignalError::TooFewRevolutions { revolutions, needed } = error {
+                    values.extend(of(&[("revolutions", *revolutions), ("needed", *needed as f64)]));
+                }
+                values
+            }
             Self::ForeignTones(tones) => {
                 let of_tone = |(index, tone): (usize, &ForeignTone)| {
                     let named = |name: &str, value: f64| (format!("{name}_{}", index + 1), value);

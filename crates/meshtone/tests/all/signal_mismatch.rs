@@ -349,7 +349,7 @@ impl std::iter::Sum for Tally {
 fn tally(case: &Case) -> Option<Tally> {
     let found = case.find_mismatch()?;
     let (right_cause, right_value) =
-        found.map_or((false, false), |mismatch| case.is_right(mismatch.alternative));
+        found.as_ref().map_or((false, false), |mismatch| case.is_right(mismatch.alternative));
     if std::env::var_os("MISMATCH_SHOW").is_some() && found.is_some() && !right_value {
         println!("{:?} right {:?} revs {:.1} {:?}", case.stated, case.right, case.revolutions, found);
     }
@@ -478,7 +478,7 @@ fn each_mistake_is_named_with_the_better_value() {
         ),
     ] {
         let found = mismatch_of(stated_per_right, stated);
-        assert_eq!(found.map(|mismatch| mismatch.alternative), alternative, "{stated:?}: {found:?}");
+        assert_eq!(found.as_ref().map(|mismatch| mismatch.alternative), alternative, "{stated:?}: {found:?}");
     }
 }
 
@@ -512,7 +512,7 @@ fn a_speed_that_is_off_is_found_to_parts_per_million() {
         let turning = StatedTurning::ConstantSpeed { speed_hz };
         let found =
             find_mismatch(&angular, &StatedFacts { teeth: TEETH[0], mate_teeth: Some(TEETH[1]), turning });
-        match found.map(|mismatch| mismatch.alternative) {
+        match found.as_ref().map(|mismatch| mismatch.alternative) {
             None => assert_eq!(off, 0.0),
             Some(Alternative::ShaftSpeed { speed_hz, .. }) => {
                 println!("{off:+.1e}: {:+.1e}, {}", speed_hz / 20.0 - 1.0, found.unwrap());
@@ -553,7 +553,8 @@ fn two_harmonics_are_enough() {
     for off in [-0.02, 0.004, 0.03] {
         let speed_hz = 20.0 * (1.0 + off);
         let found = mismatch_at(speed_hz, &signal, 23, constant(speed_hz));
-        let Some(Alternative::ShaftSpeed { speed_hz, .. }) = found.map(|mismatch| mismatch.alternative)
+        let Some(Alternative::ShaftSpeed { speed_hz, .. }) =
+            found.as_ref().map(|mismatch| mismatch.alternative)
         else {
             panic!("{off}: {found:?}")
         };
@@ -571,7 +572,7 @@ fn a_shaft_that_wobbles_does_not_turn_at_a_constant_speed() {
         for signal in [two_harmonics(23, &turned), meshing(TEETH, &turned)] {
             let found = mismatch_at(20.0, &signal, 23, StatedTurning::ConstantSpeed { speed_hz: 20.0 });
             let Some(Alternative::VaryingSpeed { variation, .. }) =
-                found.map(|mismatch| mismatch.alternative)
+                found.as_ref().map(|mismatch| mismatch.alternative)
             else {
                 panic!("{depth} {cycles_hz}: {found:?}")
             };

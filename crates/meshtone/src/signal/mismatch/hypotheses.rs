@@ -99,7 +99,6 @@ impl Hypothesis {
             Alternative::OtherShaft { .. } => 2.0,
             Alternative::PulsesPerRevolution { .. } | Alternative::Teeth { .. } => 1.0,
             Alternative::MateTeeth { .. }
-            | Alternative::ShaftOfTrain { .. }
             | Alternative::ShaftSpeed { .. }
             | Alternative::VaryingSpeed { .. } => 0.0,
         }

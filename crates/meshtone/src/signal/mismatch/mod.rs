@@ -12,7 +12,7 @@ use super::{AngularSignal, GearTrain};
 use changing_speed::changing_speed;
 use fine_orders::FineOrders;
 use hypotheses::Hypothesis;
-use other_turning::{OtherTurning, all_meshes_speak_for, other_turning};
+use other_turning::{OtherTurning, meshes_together_speak_for, other_turning};
 use steadier_speed::{SteadierSpeed, steadier_speed};
 use varying_speed::varying_speed;
 
@@ -108,15 +108,10 @@ pub enum Alternative {
         /// The stated number.
         stated: u32,
     },
-    /// Speed or pulses are those of the mate's shaft.
+    /// Speed or pulses are those of the mate's shaft, or of any other one of a train of several meshes.
     OtherShaft {
-        /// Stated teeth of the mate.
+        /// Stated teeth of the mate, or of a wheel on that shaft.
         mate_teeth: u32,
-    },
-    /// Speed or pulses are those of another shaft of a train of several meshes.
-    ShaftOfTrain {
-        /// Teeth of a wheel on that shaft.
-        teeth: u32,
     },
     /// Another number of pulses in a revolution.
     PulsesPerRevolution {
@@ -152,7 +147,7 @@ impl Alternative {
         match self {
             Self::Teeth { .. } => "teeth",
             Self::MateTeeth { .. } => "mate_teeth",
-            Self::OtherShaft { .. } | Self::ShaftOfTrain { .. } => "other_shaft",
+            Self::OtherShaft { .. } => "other_shaft",
             Self::PulsesPerRevolution { .. } => "pulses_per_revolution",
             Self::ShaftSpeed { .. } => "speed_hz",
             Self::VaryingSpeed { .. } => "varying_speed",
@@ -162,9 +157,7 @@ impl Alternative {
     /// The better value: teeth, pulses, (Hz) speed; of a speed that varies (-) its standard deviation over its mean.
     pub fn value(&self) -> f64 {
         match *self {
-            Self::Teeth { teeth } | Self::MateTeeth { teeth, .. } | Self::ShaftOfTrain { teeth } => {
-                f64::from(teeth)
-            }
+            Self::Teeth { teeth } | Self::MateTeeth { teeth, .. } => f64::from(teeth),
             Self::OtherShaft { mate_teeth } => f64::from(mate_teeth),
             Self::PulsesPerRevolution { pulses, .. } => f64::from(pulses),
             Self::ShaftSpeed { speed_hz, .. } => speed_hz,
@@ -192,7 +185,7 @@ impl Evidence {
 }
 
 /// A stated fact that does not fit the recording, with an alternative that fits better.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Mismatch {
     /// The stated facts.
@@ -206,6 +199,8 @@ pub struct Mismatch {
     /// (-) Energy of the mesh harmonics in the average at the alternative speed over that at the stated one; none where the speed is
     /// not in doubt.
     pub energy_ratio: Option<f64>,
+    /// Names of the stated shaft and of the one that fits, where a train of several meshes has another one.
+    pub shafts: Option<[String; 2]>,
 }
 
 /// Looks for a sign that the recording does not fit the stated facts: another tooth count, the other shaft, another number of pulses,
@@ -238,7 +233,7 @@ pub struct Mismatch {
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mismatch> {
-    find_among(angular, stated, |_| true)
+    find_among(angular, stated, &FineOrders::of(angular)?, |_| true)
 }
 
 /// Does what [`find_mismatch`] does for a shaft of a train.
@@ -262,42 +257,53 @@ pub fn find_train_mismatch(
         return find_mismatch(angular, &stated);
     }
     let orders = FineOrders::of(angular)?;
-    let of_other = |OtherTurning { alternative, evidence, stated_evidence, .. }| Mismatch {
+    let speed = find_among(angular, &stated, &orders, Alternative::is_speed);
+    // That the speed is another one as a whole, which the lines of a mesh say, and not how it is off, which their phases say.
+    let is_by_lines = |found: &Mismatch| {
+        matches!(found.alternative, Alternative::ShaftSpeed { .. }) && found.energy_ratio.is_none()
+    };
+    if speed.as_ref().is_some_and(|found| !is_by_lines(found)) {
+        return speed;
+    }
+    let name = |shaft: usize| train.shafts[shaft].name.clone();
+    let of_other = |OtherTurning { alternative, shaft: other, evidence, stated_evidence, .. }| Mismatch {
         stated,
         stated_evidence,
         alternative,
         evidence,
         energy_ratio: None,
+        shafts: other.map(|other| [name(shaft), name(other)]),
     };
-    let other = other_turning(&orders, train, shaft, turning).map(of_other);
     let is_of_all = |found: &Mismatch| match found.alternative {
-        Alternative::ShaftSpeed { speed_hz, stated_hz } if found.energy_ratio.is_none() => {
-            all_meshes_speak_for(speed_hz / stated_hz, &orders, train, shaft)
+        Alternative::ShaftSpeed { speed_hz, stated_hz } => {
+            meshes_together_speak_for(speed_hz / stated_hz, &orders, train, shaft)
         }
         _ => true,
     };
-    other.or_else(|| find_among(angular, &stated, Alternative::is_speed).filter(is_of_all))
+    let other = other_turning(&orders, train, shaft, turning).map(of_other);
+    other.or_else(|| speed.filter(is_of_all))
 }
 
 /// Does what [`find_mismatch`] does, comparing only some of the alternatives.
 fn find_among(
     angular: &AngularSignal,
     stated: &StatedFacts,
+    orders: &FineOrders,
     is_compared: impl Fn(&Alternative) -> bool,
 ) -> Option<Mismatch> {
     if stated.teeth.max(stated.mate_teeth.unwrap_or(0)) > MOST_TEETH {
         return None;
     }
-    let orders = FineOrders::of(angular)?;
     let as_stated = Hypothesis::as_stated(stated);
-    let stated_evidence = as_stated.evidence(&orders);
-    let of_pair = Hypothesis::orders_of_pair(stated, &orders);
+    let stated_evidence = as_stated.evidence(orders);
+    let of_pair = Hypothesis::orders_of_pair(stated, orders);
     let mismatch = |alternative, evidence, energy_ratio| Mismatch {
         stated: *stated,
         stated_evidence,
         alternative,
         evidence,
         energy_ratio,
+        shafts: None,
     };
     if let StatedTurning::ConstantSpeed { speed_hz: stated_hz }
     | StatedTurning::MeshTone { nominal_hz: stated_hz } = stated.turning
@@ -311,8 +317,8 @@ fn find_among(
         && stated_evidence.wheel_orders.is_none_or(|score| score < POOR_COMB);
     let total =
         |hypothesis: &Hypothesis, evidence: &Evidence| evidence.total() + hypothesis.prior(may_be_speed);
-    let better: Vec<(Hypothesis, Evidence)> = hypotheses::alternatives(stated, &orders)
-        .filter(|hypothesis| is_compared(&hypothesis.alternative) && !hypothesis.is_of_mains(stated, &orders))
+    let better: Vec<(Hypothesis, Evidence)> = hypotheses::alternatives(stated, orders)
+        .filter(|hypothesis| is_compared(&hypothesis.alternative) && !hypothesis.is_of_mains(stated, orders))
         .filter_map(|hypothesis| {
             let better = evidence_if_better(
                 &hypothesis,
@@ -320,7 +326,7 @@ fn find_among(
                 &stated_evidence,
                 may_be_speed,
                 &of_pair,
-                &orders,
+                orders,
             )?;
             Some((hypothesis, better))
         })
@@ -334,12 +340,12 @@ fn find_among(
         let (hypothesis, evidence) = likeliest.unwrap_or((as_stated, stated_evidence));
         let speed_is_alternative = likeliest
             .is_some_and(|(hypothesis, _)| matches!(hypothesis.alternative, Alternative::ShaftSpeed { .. }));
-        let steadier = steadier_speed(angular, &orders, &hypothesis, stated.teeth).filter(|steadier| {
+        let steadier = steadier_speed(angular, orders, &hypothesis, stated.teeth).filter(|steadier| {
             (likeliest.is_none() || speed_is_alternative) && steadier.energy_ratio >= LEAST_ENERGY_RATIO
         });
-        let is_doubtful = steadier.is_some() || speed_is_alternative || !as_stated.stands_out(&orders);
+        let is_doubtful = steadier.is_some() || speed_is_alternative || !as_stated.stands_out(orders);
         let variation =
-            if is_doubtful { varying_speed(angular, &orders, &as_stated, stated.teeth) } else { None };
+            if is_doubtful { varying_speed(angular, orders, &as_stated, stated.teeth) } else { None };
         if let Some(variation) = variation {
             let alternative = Alternative::VaryingSpeed { variation, stated_hz: speed_hz };
             return Some(mismatch(alternative, stated_evidence, None));
@@ -406,9 +412,9 @@ fn evidence_if_better(
                 && !hypothesis.is_part_without_lines(as_stated, of_pair, orders);
             is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)
         }
-        Alternative::ShaftSpeed { .. }
-        | Alternative::VaryingSpeed { .. }
-        | Alternative::ShaftOfTrain { .. } => has_mesh || has_wheel && lost_mesh <= 0.0,
+        Alternative::ShaftSpeed { .. } | Alternative::VaryingSpeed { .. } => {
+            has_mesh || has_wheel && lost_mesh <= 0.0
+        }
     };
     let counted_mate_gain = if hypothesis.moves_wheel() { mate_gain.min(0.0) } else { mate_gain };
     (is_founded && mesh_gain + wheel_gain + counted_mate_gain > LEAST_GAIN).then_some(own)

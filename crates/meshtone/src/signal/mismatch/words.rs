@@ -38,18 +38,19 @@ impl Display for Mismatch {
                 f,
                 "the other shaft's orders fit a mating gear of {alternative} teeth better than {stated}: check its tooth count"
             ),
-            Alternative::OtherShaft { mate_teeth } => write!(
-                f,
-                "{} rather of the other shaft, that of the wheel with {mate_teeth} teeth: exchange the tooth counts \
-                 {teeth} and {mate_teeth}",
-                self.source()
-            ),
-            Alternative::ShaftOfTrain { teeth: alternative } => write!(
-                f,
-                "{} rather of another shaft, that of the wheel with {alternative} teeth, than of the one with {teeth} teeth: name \
-                 that shaft",
-                self.source()
-            ),
+            Alternative::OtherShaft { mate_teeth } => match &self.shafts {
+                Some([stated, other]) => write!(
+                    f,
+                    "{} of shaft {other} rather than of shaft {stated}: state shaft {other}, or check what was recorded",
+                    self.source()
+                ),
+                None => write!(
+                    f,
+                    "{} rather of the other shaft, that of the wheel with {mate_teeth} teeth: exchange the tooth counts \
+                     {teeth} and {mate_teeth}",
+                    self.source()
+                ),
+            },
             Alternative::PulsesPerRevolution { pulses, stated } => {
                 write!(
                     f,
