@@ -11,9 +11,9 @@ use crate::learn::{Learned, Question};
 use crate::prior::Prior;
 use crate::{bearings, consistency, level, speed};
 
-/// (-) Part of the energy from which on tones of no shaft are mentioned where a recording is unlike the simulations: simulated recordings of the
-/// rig have none.
-const NOTICED: f64 = 0.001;
+/// (-) Part of the energy from which on tones of no shaft are mentioned where a recording is unlike the simulations. Sound pairs have none; teeth that
+/// part, which depend on the two that meet, make up to a twentieth.
+const NOTICED: f64 = 0.005;
 
 /// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
 const SURELY: f64 = 0.9;
@@ -164,15 +164,13 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
                 "a damaged bearing may be the reason, since no simulation has one".to_owned()
             }
             Some(tones) => format!(
-                "it also has tones at no order of any shaft, {:.2} % of its energy, the strongest at {:.2} Hz: the scenario may be of another \
+                "it also has tones at no order of any shaft, {:.1} % of its energy, the strongest at {:.2} Hz: the scenario may be of another \
                  machine, or of one pair of a gearbox, or its teeth or speed are not those of the rig",
                 100.0 * tones.part,
                 tones.strongest.first().map_or(f64::NAN, |tone| tone.frequency_hz)
             ),
-            None => {
-                "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
-                    .to_owned()
-            }
+            None => "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
+                .to_owned(),
         };
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });

@@ -136,6 +136,14 @@ impl Path {
         }
         let recording =
             TrainRecording { signal: &channel.samples, sampling_rate_hz, train: &train, turning: &turning };
+        // Here it is known of which shaft the phase is, and by how many pulses.
+        if let Some(warning) = recording.check().map_err(refused)?.into_iter().next() {
+            let problem = RecordingProblem::DoesNotFit(Box::new(warning));
+            return Failure::refuse(
+                format!("{}: {problem}", path.display()),
+                "check --shaft, --mesh, --pulses-per-rev, the speed and the scenario",
+            );
+        }
         let pinion = recording.phase(train.input()).map_err(refused)?;
         let doubtful = doubtful.iter().map(|warning| about(&source, warning));
         let warnings = warnings.into_iter().chain(doubtful).collect();

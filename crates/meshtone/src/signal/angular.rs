@@ -178,7 +178,8 @@ fn whole_revolutions(phase: &ShaftPhase, points: usize) -> Result<Revolutions, S
     let last_point = 1.0 - 1.0 / points as f64;
     let count = (phase.last() - start_rev - last_point + ANGLE_ROUNDING).floor() + 1.0;
     if count < 1.0 {
-        return Err(SignalError::TooFewRevolutions { revolutions: phase.span_rev(), needed: 1 });
+        // One may begin anywhere: of two at least one is whole.
+        return Err(SignalError::TooFewRevolutions { revolutions: phase.span_rev(), needed: 2 });
     }
     Ok(Revolutions { start_rev, count: count as usize, next_rev: phase.last() })
 }

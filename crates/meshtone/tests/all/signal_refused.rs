@@ -54,7 +54,7 @@ fn too_few_revolutions() {
     let message = refused(&recording(999), &steady(999), TEETH);
     assert_eq!(message, "the recording covers 1 whole revolution of the shaft, but at least 2 are needed");
     let message = refused(&recording(400), &steady(400), TEETH);
-    assert_eq!(message, "the recording covers 0.798 revolutions of the shaft, but at least 1 are needed");
+    assert_eq!(message, "the recording covers 0.798 revolutions of the shaft, but at least 2 are needed");
     assert!(process_channel(&recording(1_001), &steady(1_001), TEETH, &ChainSettings::default()).is_ok());
     // Without the sample that ends them, two revolutions are whole only if they are said to repeat.
     let periodic = AngularSettings { edge: Edge::Periodic, ..Default::default() };
