@@ -133,6 +133,7 @@ def test_a_recording_shows_every_shaft() -> None:
     assert own.mean_speeds_hz == pytest.approx({"input": 30, "middle": 10, "output": 6})
     assert own["z2"].indicators["difference_rms"] == own["z3"].indicators["difference_rms"]
     assert own.foreign_lines == []
+    assert own.own_orders_part is not None and 0.0 < own.own_orders_part < 1.0
 
     # A tachometer on the output, and the tone of something else.
     values, rate_hz = simulation["output_1_vertical_g"], simulation.sampling_rate_hz
@@ -146,7 +147,7 @@ def test_a_recording_shows_every_shaft() -> None:
     assert {wheel: record[wheel].teeth for wheel in record.wheels} == {"z1": 32, "z2": 96, "z3": 48, "z4": 80}
     with pytest.raises(ValueError, match="shaft = 'exit': must be one of input, middle, output"):
         mt.signal.process_train(values, phase, damaged, rate_hz, shaft="exit")
-    with pytest.raises(KeyError, match="there is no wheel 'z5'"):
+    with pytest.raises(KeyError, match="there is no average of a wheel 'z5'"):
         record["z5"]
 
     # A pair is a train of two shafts.
