@@ -367,7 +367,12 @@ class Observation:
     ) -> Observation: ...
     @staticmethod
     def of_measured(
-        signal: _Array, sampling_rate_hz: float, phase: ShaftPhase, machine: Scenario | Gearbox, other: Observation | None
+        signal: _Array,
+        sampling_rate_hz: float,
+        phase: ShaftPhase,
+        shaft: str | None,
+        machine: Scenario | Gearbox,
+        other: Observation | None,
     ) -> Observation: ...
     @staticmethod
     def of_revolution(values: _Array, gear_teeth: int, signal: str) -> Observation: ...
@@ -386,7 +391,7 @@ def diagnose(
 def tuned_rig(scenario: Scenario, path: _Path) -> Scenario: ...
 def estimate_path(
     machine: Scenario | Gearbox,
-    recordings: Sequence[tuple[_Array, float, ShaftPhase]],
+    recordings: Sequence[tuple[_Array, float, ShaftPhase, str | None]],
     draws: int,
     seed: int,
     progress: Callable[[int, int], None] | None,

@@ -17,15 +17,15 @@ from ._warnings import SignalWarning, typed, warn_of_signal
 from .gearbox import Gearbox, GearboxSimulation
 from .recording import Recording
 from .scenario import Scenario, native_scenario
-from .signal._arguments import finite_signal, positive, read_only, whole
-from .signal.phase import ShaftPhase, native_phase
-from .signal.train import native_machine
+from .signal._arguments import finite_signal, read_only, whole
+from .signal.phase import ShaftPhase
+from .signal.train import TrainRecording, measured, native_machine
 from .simulation import Simulation, chosen_channel
 
 __all__ = ["Diagnosis", "diagnose"]
 
 Array = npt.NDArray[np.float64]
-Recorded = Union[Simulation, GearboxSimulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase], npt.NDArray[Any]]
+Recorded = Union[Simulation, GearboxSimulation, Recording, TrainRecording, tuple[npt.ArrayLike, float, ShaftPhase], npt.NDArray[Any]]
 SignalKind = Literal["recording", "average", "difference"]
 
 SHOWN = 0.005
@@ -131,7 +131,8 @@ def diagnose(
     recordings : one or several, all of one state of the gear
         A :class:`Simulation` or :class:`GearboxSimulation`, of which the first sensor counts; a :class:`Recording` of what ``meshtone
         simulate`` wrote; or a measured signal with its rate and the phase of the pinion or of a gearbox's input,
-        ``(signal_g, sampling_rate_hz, phase)``. With another `signal` arrays: one revolution of the gear, in g.
+        ``(signal_g, sampling_rate_hz, phase)``. Of a phase of another shaft a :class:`~meshtone.signal.TrainRecording` that names it; its machine
+        is the scenario. With another `signal` arrays: one revolution of the gear, in g.
     scenario : Scenario or Gearbox
         The rig; its faults are left out.
     healthy : the same, optional
@@ -254,10 +255,9 @@ def _observation(
     if gearbox is not None:
         values = one[gearbox._native.leading_channel()]
         return _core.Observation.of_simulated(gearbox._native, values, one.start_s, other)
-    if isinstance(one, tuple) and len(one) == 3:
-        values, rate_hz, phase = one
-        rate_hz = positive("sampling_rate_hz", rate_hz)
-        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), native_machine(scenario), other)
+    known = measured(one)
+    if known is not None:
+        return _core.Observation.of_measured(*known, native_machine(scenario), other)
     raise TypeError(
-        f"{name}: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
+        f"{name}: must be simulations, recordings of them, or of what was measured (signal_g, sampling_rate_hz, phase) or a TrainRecording"
     )

@@ -15,15 +15,15 @@ from ._files import written_whole
 from .gearbox import Gearbox, GearboxSimulation
 from .recording import Recording
 from .scenario import Scenario, native_scenario
-from .signal._arguments import finite_signal, positive, read_only, whole
-from .signal.phase import ShaftPhase, native_phase
-from .signal.train import native_machine
+from .signal._arguments import read_only, whole
+from .signal.phase import ShaftPhase
+from .signal.train import TrainRecording, measured, native_machine
 from .simulation import Simulation, chosen_channel
 
 __all__ = ["PathEstimate", "estimate_path"]
 
 Array = npt.NDArray[np.float64]
-Recorded = Union[Simulation, GearboxSimulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase]]
+Recorded = Union[Simulation, GearboxSimulation, Recording, TrainRecording, tuple[npt.ArrayLike, float, ShaftPhase]]
 FEWEST_DRAWS = 8
 
 
@@ -88,7 +88,8 @@ def estimate_path(
     ----------
     recordings : one, or a list of several, by one sensor
         A :class:`Simulation` or :class:`GearboxSimulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal
-        with its rate and the phase of the pinion, or of the input of a gearbox, ``(signal_g, sampling_rate_hz, phase)``.
+        with its rate and the phase of the pinion, or of the input of a gearbox, ``(signal_g, sampling_rate_hz, phase)``. Of a phase of another
+        shaft a :class:`~meshtone.signal.TrainRecording` that names it; its machine is the scenario.
     scenario : Scenario or Gearbox
         The healthy machine, with the recordings' load. The wall and the mounted resonance of its first sensor stay beside the path; a
         ``frequency_response`` that it has is left out.
@@ -139,22 +140,22 @@ def estimate_path(
     )
 
 
-def _healthy(one: Any) -> tuple[Array, float, _core.ShaftPhase]:
+def _healthy(one: Any) -> tuple[Array, float, _core.ShaftPhase, str | None]:
+    known = measured(one)
+    if known is not None:
+        return known
     gearbox = one.gearbox if isinstance(one, (Recording, GearboxSimulation)) else None
     if gearbox is not None:
         values = one[gearbox._native.leading_channel()]
         phase = _core.ShaftPhase.of_simulated_input(gearbox._native, one.start_s, values.size)
-        return values, one.sampling_rate_hz, phase
+        return values, one.sampling_rate_hz, phase, None
     if isinstance(one, Recording) and one.scenario is not None:
         values, rig = one[chosen_channel(one.scenario, None)], one.scenario
     elif isinstance(one, Simulation):
         values, rig = getattr(one, chosen_channel(one.scenario, None)), one.scenario
-    elif isinstance(one, tuple) and len(one) == 3:
-        signal, rate_hz, phase = one
-        return finite_signal(signal), positive("sampling_rate_hz", rate_hz), native_phase(phase)
     else:
         raise TypeError(
-            "recordings: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
+            "recordings: must be simulations, recordings of them, or of what was measured (signal_g, sampling_rate_hz, phase) or a TrainRecording"
         )
     phase = _core.ShaftPhase.of_simulated(native_scenario(rig), one.start_s, values.size)
-    return values, one.sampling_rate_hz, phase
+    return values, one.sampling_rate_hz, phase, None

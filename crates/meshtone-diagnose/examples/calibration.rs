@@ -31,7 +31,7 @@ use meshtone_fourier::{from_real_spectrum, real_spectrum};
 
 /// Simulations that are learnt from, and those that are asked about; of a gearbox, which takes longer, fewer.
 const LEARNT: u64 = 6144;
-const ASKED: u64 = 1024;
+const ASKED: u64 = 4096;
 const OF_GEARBOX: [u64; 2] = [6144, 512];
 /// Seed of those that are asked about: no threshold was chosen looking at them.
 const ASKED_SEED: u64 = 2647;
@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .retain(|record| name(record) != other && (name(record) != SEVERAL || !has_other(record)));
     let mut learned: Option<Learned> = None;
     let mut table = String::from(
-        "unit,kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability,any_wheel\n",
+        "unit,kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability,any_wheel,speed_ln,load_ln\n",
     );
     let is_refined = other == "refined";
     let is_strange = ["signals", "bearing", "teeth", "ratio"].contains(&other);
@@ -100,6 +100,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let Some(before) = asked.records.iter().find(|before| before.number == record.number / 8 * 8) else {
             continue;
         };
+        let operation = |number| asked.prior.draw(number).map(|drawn| drawn.scenario.operation().clone());
+        let (then, at) = (operation(before.number)?, operation(record.number)?);
+        let apart = [
+            (at.pinion_speed_hz / then.pinion_speed_hz).ln(),
+            (at.brake_torque_nm / then.brake_torque_nm).ln(),
+        ];
         let now = if is_strange {
             strange(&asked.prior, record.number, other, 0.0)?
         } else {
@@ -121,7 +127,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             false => None,
         };
         let answer = diagnose(learned, &question, refined.as_ref())?;
-        row(&mut table, record, kind, &answer)?;
+        row(&mut table, record, kind, &answer, apart)?;
     }
     fs::write(output, table)?;
     Ok(())
@@ -335,6 +341,7 @@ fn row(
     record: &ReferenceRecord,
     kind: &str,
     answer: &Answer,
+    apart: [f64; 2],
 ) -> Result<(), Box<dyn Error>> {
     let of_kind = answer.kinds.iter().find(|of| of.label == kind);
     let names = &answer.wheels;
@@ -369,6 +376,7 @@ fn row(
     let said_tooth = tooth.map_or(0, |tooth| tooth.number);
     let sure = tooth.map_or(f64::NAN, |tooth| tooth.probability);
     let any_wheel = answer.any_damage.as_ref().map_or("", |any| &names[any.wheel]);
-    writeln!(table, ",{said_wheel},{said_tooth},{sure},{any_wheel}")?;
+    let [speed_ln, load_ln] = apart;
+    writeln!(table, ",{said_wheel},{said_tooth},{sure},{any_wheel},{speed_ln},{load_ln}")?;
     Ok(())
 }

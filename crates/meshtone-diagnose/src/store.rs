@@ -18,7 +18,7 @@ use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet, build_reference};
 
 /// Raised when a record of the same number becomes another one, or its file another.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 /// Records of a batch, which is one file: whole pairs of wheels.
 const BATCH: u64 = 512;
 /// Numbers of a record beside its lines: its own, kind, wheel, tooth, whether on one, severity, speed.

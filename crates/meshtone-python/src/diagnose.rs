@@ -16,7 +16,7 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{file_error, read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::process::Machine;
+use crate::process::{Machine, turning};
 use crate::scenario::Scenario;
 
 /// Features of a recording.
@@ -46,24 +46,27 @@ impl Observation {
         py.detach(observe).map(Self).map_err(value_error)
     }
 
-    /// Of a measured signal, in g, with the phase of the pinion's shaft or of the input, in the band of another observation that it is compared with.
+    /// Of a measured signal, in g, with the phase of a shaft, the pinion's or the input where none is named, in the band of another observation that it is compared with.
     #[staticmethod]
     fn of_measured(
         py: Python<'_>,
         signal: Signal<'_>,
         sampling_rate_hz: f64,
         phase: &ShaftPhase,
+        shaft: Option<&str>,
         machine: Machine<'_>,
         other: Option<&Self>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
         let form = machine.form();
         let train = GearTrain::of_form(&form).map_err(|error| scenario_error(&error))?;
-        let stated = match phase.0.zero {
-            AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: form.operation().pinion_speed_hz },
-            _ => StatedTurning::Other,
-        };
-        let turning = TrainTurning::Shaft { shaft: train.input(), phase: phase.0.clone(), stated };
+        let mut turning = turning(&train, phase, shaft)?;
+        if let TrainTurning::Shaft { shaft, phase, stated } = &mut turning
+            && phase.zero == AngleZero::Chance
+        {
+            let ratio = train.speed_ratio(*shaft, train.input()).value();
+            *stated = StatedTurning::MeshTone { nominal_hz: form.operation().pinion_speed_hz * ratio };
+        }
         let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
         let other = other.map(|other| &other.0);
         py.detach(|| Observed::of_recording(&recording, other)).map(Self).map_err(value_error)

@@ -1,6 +1,7 @@
 //! The path to a sensor.
 
 use meshtone::Error;
+use meshtone::signal::GearTrain;
 use meshtone::tuning::{self, ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings};
 use meshtone_io::path_csv::path_csv;
 use pyo3::exceptions::PyRuntimeError;
@@ -10,27 +11,32 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::process::Machine;
+use crate::process::{Machine, turning};
 
 /// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
 type Estimated<'py> = ([Array<'py>; 5], [f64; 2], String);
 
-/// Estimates the path from recordings: values in g, rate, and phase of the pinion or the input.
+/// A recording: values in g, rate, phase, and the name of the shaft that it is of; none of the pinion or the input.
+type Recorded<'py> = (Signal<'py>, f64, PyRef<'py, ShaftPhase>, Option<String>);
+
+/// Estimates the path from recordings.
 #[pyfunction]
 pub fn estimate_path<'py>(
     py: Python<'py>,
     machine: Machine<'py>,
-    recordings: Vec<(Signal<'py>, f64, PyRef<'py, ShaftPhase>)>,
+    recordings: Vec<Recorded<'py>>,
     draws: usize,
     seed: u64,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Estimated<'py>> {
-    let healthy = |(values, sampling_rate_hz, phase): &(Signal<'py>, f64, PyRef<'py, ShaftPhase>)| {
+    let (rig, settings) = (machine.form(), PathSettings { draws, seed });
+    let train = GearTrain::of_form(&rig).map_err(|error| scenario_error(&error))?;
+    let healthy = |(values, sampling_rate_hz, phase, shaft): &Recorded<'py>| {
         let values_g = samples(values)?.to_vec();
-        Ok(HealthyRecording { values_g, sampling_rate_hz: *sampling_rate_hz, pinion: phase.0.clone() })
+        let turning = turning(&train, phase, shaft.as_deref())?;
+        Ok(HealthyRecording { values_g, sampling_rate_hz: *sampling_rate_hz, turning })
     };
     let healthy = recordings.iter().map(healthy).collect::<PyResult<Vec<_>>>()?;
-    let (rig, settings) = (machine.form(), PathSettings { draws, seed });
     let estimate = interruptible(py, progress, 0, |cancelled, report| {
         let progress = |finished: usize, all: usize| report(finished as u64, all as u64);
         tuning::estimate_path(

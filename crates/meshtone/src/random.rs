@@ -80,6 +80,8 @@ pub enum Purpose {
     BearingStart = 33,
     /// Slip of a rolling bearing's cage, pass by pass; index: bearing.
     BearingSlip = 34,
+    /// Speed and load of a record of a reference set; index: record.
+    DiagnosisOperation = 35,
 }
 
 /// A sequence of random numbers.

@@ -13,7 +13,7 @@ from .. import _core
 from .._warnings import SignalWarning, typed, warn_of_signal
 from ..gearbox import Gearbox
 from ..scenario import Scenario, native_scenario
-from ._arguments import positive, regular_part, signal_array
+from ._arguments import finite_signal, positive, regular_part, signal_array
 from .bearings import Bearing, DefectLine, SquaredEnvelopeSpectrum
 from .kurtosis import Kurtogram
 from .phase import ShaftPhase, native_phase
@@ -202,6 +202,18 @@ class TrainRecording:
             lines=[[DefectLine(*line) for line in lines] for _, _, lines in parts["bearings"]],
             warnings=warnings,
         )
+
+
+def measured(one: Any) -> tuple[npt.NDArray[np.float64], float, _core.ShaftPhase, str | None] | None:
+    """A measured recording of a known machine as the compiled module takes it; None of anything else."""
+    if isinstance(one, tuple) and len(one) == 3:
+        values, rate_hz, phase = one
+        shaft = None
+    elif isinstance(one, TrainRecording):
+        values, rate_hz, phase, shaft = one.signal, one.sampling_rate_hz, one.phase, one.shaft
+    else:
+        return None
+    return finite_signal(values), positive("sampling_rate_hz", rate_hz), native_phase(phase), shaft
 
 
 def native_machine(machine: Machine) -> _core.Scenario | _core.Gearbox:

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use meshtone::Error;
 use meshtone::scenario::ScenarioForm;
-use meshtone::signal::{SignalWarning, StatedFacts, TrainRecording, TrainTurning};
+use meshtone::signal::{SignalWarning, StatedFacts, TrainTurning};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
     estimate_path,
@@ -106,7 +106,7 @@ impl Path {
         print_unless(self.quiet, &summary(&estimate, &self.output))
     }
 
-    /// Reads a recording whole, with the angle of the pinion's shaft or the input, and what is doubtful about it.
+    /// Reads a recording whole, with how the shafts turned, and what is doubtful about it.
     ///
     /// Where the mesh tone of a pair was followed, a doubtful phase may be that of another tone, which other tooth counts say.
     fn recording(
@@ -134,20 +134,9 @@ impl Path {
                 return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
             }
         }
-        let recording =
-            TrainRecording { signal: &channel.samples, sampling_rate_hz, train: &train, turning: &turning };
-        // Here it is known of which shaft the phase is, and by how many pulses.
-        if let Some(warning) = recording.check().map_err(refused)?.into_iter().next() {
-            let problem = RecordingProblem::DoesNotFit(Box::new(warning));
-            return Failure::refuse(
-                format!("{}: {problem}", path.display()),
-                "check --shaft, --mesh, --pulses-per-rev, the speed and the scenario",
-            );
-        }
-        let pinion = recording.phase(train.input()).map_err(refused)?;
         let doubtful = doubtful.iter().map(|warning| about(&source, warning));
         let warnings = warnings.into_iter().chain(doubtful).collect();
-        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, pinion }, warnings))
+        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, turning }, warnings))
     }
 
     /// Names the file that an error is about.
@@ -155,7 +144,12 @@ impl Path {
         match error {
             PathError::Simulation(Error::Scenario(error)) => file.refuse(error).into(),
             PathError::Recording { index, problem } => {
-                Failure::bad_input(format!("{}: {problem}", self.recordings[index].display()))
+                let failure = Failure::bad_input(format!("{}: {problem}", self.recordings[index].display()));
+                match problem {
+                    RecordingProblem::DoesNotFit(_) => failure
+                        .with_help("check --shaft, --mesh, --pulses-per-rev, the speed and the scenario"),
+                    _ => failure,
+                }
             }
             error => Failure::bad_input(error.to_string()),
         }

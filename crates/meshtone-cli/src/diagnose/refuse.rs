@@ -24,7 +24,7 @@ impl From<DiagnoseError> for Failure {
                 "record at a higher rate, or check --sampling-rate-hz and the scenario's speed and teeth",
             ),
             DiagnoseError::OtherSpeed { .. } => Self::bad_input(message).with_help(
-                "check --shaft-hz (revolutions per second), --teeth (the wheel that speed or pulses are of) and operation.pinion_speed_hz",
+                "check --shaft-hz (revolutions per second), --shaft or --teeth (what speed or pulses are of) and the speed in the scenario",
             ),
             DiagnoseError::NoReference => {
                 Self::bad_input(message).with_help("or make more of them, with --records")

@@ -1,7 +1,7 @@
 //! Hands groups to threads, and results to the caller in order.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::group::{Numbered, NumberedResult, simulate_group};
@@ -22,7 +22,8 @@ const WINDOW_SCENARIOS: usize = 64;
 
 /// What a caller wants to know, and to say, while many simulations run.
 pub struct Control<'a> {
-    /// Called with the number of finished simulations whenever some have finished, from any thread.
+    /// Called with the number of finished simulations whenever some have finished: from any thread, but by one at a time, so that the number
+    /// never falls.
     pub progress: &'a (dyn Fn(usize) + Sync),
     /// Set by the caller to stop: simulations that have not begun are left out.
     pub cancelled: &'a AtomicBool,
@@ -175,7 +176,7 @@ fn run_many<M: Many>(
             take,
         }),
         changed: Condvar::new(),
-        finished: AtomicUsize::new(0),
+        finished: Mutex::new(0),
         panicked: AtomicBool::new(false),
         many,
         control,
@@ -188,7 +189,7 @@ fn run_many<M: Many>(
 struct Work<'a, M: Many, I, F> {
     state: Mutex<State<M, I, F>>,
     changed: Condvar,
-    finished: AtomicUsize,
+    finished: Mutex<usize>,
     /// A thread has panicked: what it had in flight never arrives.
     panicked: AtomicBool,
     many: &'a M,
@@ -240,11 +241,18 @@ where
         while let Some(group) = self.next_group() {
             let count = group.len();
             let results = self.many.simulate(group);
-            let finished = self.finished.fetch_add(count, Ordering::Relaxed) + count;
-            (self.control.progress)(finished);
+            self.report(count);
             self.hand_out(count, results);
         }
         drop(ended);
+    }
+
+    /// Reports that further simulations have finished.
+    fn report(&self, count: usize) {
+        // The lock is held during the call: of two threads the one that counted first could otherwise report last.
+        let mut finished = self.finished.lock().unwrap_or_else(PoisonError::into_inner);
+        *finished += count;
+        (self.control.progress)(*finished);
     }
 
     fn next_group(&self) -> Option<Vec<Numbered<M::Scenario>>> {

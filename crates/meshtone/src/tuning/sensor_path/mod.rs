@@ -17,7 +17,7 @@ use std::sync::atomic::Ordering;
 
 use cells::{Cells, MeshOrders};
 use minimum_phase::minimum_phase_deg;
-use recording::{Piece, pieces};
+use recording::{InputRecording, Piece, pieces};
 use smoothing::{CellLevel, smooth};
 
 use super::ExperimentControl;
@@ -133,14 +133,18 @@ pub fn estimate_path(
         ScenarioForm::Pair(scenario) => check_pair(scenario)?,
         ScenarioForm::Gearbox(gearbox) => check_wheels(gearbox)?,
     }
-    let (window_s, pieces) = pieces(recordings, MeshOrders::slowest(&meshes))?;
+    let refused = |index| move |problem| PathError::Recording { index, problem };
+    let over_input = recordings.iter().enumerate();
+    let over_input = over_input.map(|(index, of)| of.over_input(&train).map_err(refused(index)));
+    let over_input = over_input.collect::<Result<Vec<_>, _>>()?;
+    let (window_s, pieces) = pieces(&over_input, MeshOrders::slowest(&meshes))?;
     for (index, recording) in recordings.iter().enumerate() {
-        recording.check(&train).map_err(|problem| PathError::Recording { index, problem })?;
+        recording.check(&train).map_err(refused(index))?;
     }
     let rate_hz = recordings.iter().map(|recording| recording.sampling_rate_hz).fold(f64::INFINITY, f64::min);
     let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * nominal_rate_hz(scenario));
     let cells = Cells::new(&pieces, window_s, [most_hz, rate_hz / 2.0], &meshes);
-    let measured = measured_powers(recordings, &pieces, &cells, &train)?;
+    let measured = measured_powers(&over_input, &pieces, &cells, &train)?;
     let simulated = match scenario {
         ScenarioForm::Pair(scenario) => simulated_pairs(scenario, &pieces, &cells, settings, control)?,
         ScenarioForm::Gearbox(gearbox) => simulated_gearboxes(gearbox, &pieces, &cells, settings, control)?,
@@ -232,7 +236,7 @@ fn check_is_drawn(quality: &Quality) -> Result<(), ScenarioError> {
 /// Noise is at most what is beside the orders of all shafts, and at most what there is in the quietest windows: the former says it
 /// at one speed, the latter over a run-up. As the most that it may be it is not subtracted.
 fn measured_powers(
-    recordings: &[HealthyRecording],
+    recordings: &[InputRecording],
     pieces: &[Piece],
     cells: &Cells,
     train: &GearTrain,
@@ -272,14 +276,14 @@ fn measured_powers(
 /// (g²/Hz) Density of a recording's noise: the median of the lines beside the orders of all shafts; infinite of a recording too
 /// short to tell.
 fn noise_density(
-    recording: &HealthyRecording,
+    recording: &InputRecording,
     cells: &Cells,
     train: &GearTrain,
 ) -> Result<Vec<f64>, SignalError> {
     let speed = |shaft: &usize| train.shafts[*shaft].speed_ratio.value();
     let slowest = (0..train.shafts.len()).min_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
-    let of_slowest = train.carried(&recording.pinion, train.input(), slowest)?;
-    let angular = angular_resample(&recording.values_g, &of_slowest, &AngularSettings::default())?;
+    let of_slowest = train.carried(&recording.input, train.input(), slowest)?;
+    let angular = angular_resample(recording.values_g, &of_slowest, &AngularSettings::default())?;
     let revolutions = angular.revolutions();
     if revolutions < FEWEST_REVOLUTIONS {
         return Ok(vec![f64::INFINITY; cells.frequency_hz.len()]);

@@ -2,7 +2,7 @@
 
 use super::{PathError, RecordingProblem};
 use crate::operation::Profile;
-use crate::signal::{GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
+use crate::signal::{GearTrain, ShaftPhase, TrainRecording, TrainTurning};
 
 /// Mesh periods in a window, so that mesh harmonics and the sidebands around them are apart.
 const PERIODS_IN_WINDOW: f64 = 20.0;
@@ -27,41 +27,61 @@ pub struct HealthyRecording {
     pub values_g: Vec<f64>,
     /// (S/s) Its sampling rate.
     pub sampling_rate_hz: f64,
-    /// Angle of the pinion's shaft over its samples, of a gearbox of the input.
-    pub pinion: ShaftPhase,
+    /// How the shafts turned, against whose statements the recording is checked.
+    pub turning: TrainTurning,
 }
 
 impl HealthyRecording {
+    /// The recording as one of this machine.
+    ///
+    /// # Arguments
+    /// * `train` - its tooth counts
+    fn of<'a>(&'a self, train: &'a GearTrain) -> TrainRecording<'a> {
+        let Self { values_g, sampling_rate_hz, turning } = self;
+        TrainRecording { signal: values_g, sampling_rate_hz: *sampling_rate_hz, train, turning }
+    }
+
+    /// Carries the phase to the input.
+    pub(super) fn over_input(&self, train: &GearTrain) -> Result<InputRecording<'_>, RecordingProblem> {
+        let input = self.of(train).phase(train.input())?;
+        Ok(InputRecording { values_g: &self.values_g, sampling_rate_hz: self.sampling_rate_hz, input })
+    }
+
+    /// Checks that the recording is of this machine and of nothing else.
+    pub(super) fn check(&self, train: &GearTrain) -> Result<(), RecordingProblem> {
+        match self.of(train).check()?.into_iter().next() {
+            Some(warning) => Err(RecordingProblem::DoesNotFit(Box::new(warning))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A recording over the angle of the pinion's shaft, of a gearbox of the input.
+pub(super) struct InputRecording<'a> {
+    /// (g) The sensor's signal.
+    pub values_g: &'a [f64],
+    /// (S/s) Its sampling rate.
+    pub sampling_rate_hz: f64,
+    /// Phase of the shaft.
+    pub input: ShaftPhase,
+}
+
+impl InputRecording<'_> {
     /// (Hz) Mean speed of the pinion between two samples of the phase.
     fn speed_hz(&self, from: usize, to: usize) -> f64 {
-        let angle = &self.pinion.revolutions;
+        let angle = &self.input.revolutions;
         (angle[to] - angle[from]) * self.sampling_rate_hz / (to - from) as f64
     }
 
     /// Samples that have both a value and an angle.
     fn samples(&self) -> usize {
-        self.pinion.revolutions.len().min(self.values_g.len().saturating_sub(self.pinion.first_sample))
+        self.input.revolutions.len().min(self.values_g.len().saturating_sub(self.input.first_sample))
     }
 
     /// The samples of a piece.
     pub(super) fn values_of(&self, piece: &Piece) -> &[f64] {
-        let first = self.pinion.first_sample + piece.first;
+        let first = self.input.first_sample + piece.first;
         &self.values_g[first..first + piece.samples]
-    }
-
-    /// Checks that the recording is of this machine and of nothing else.
-    ///
-    /// # Arguments
-    /// * `train` - its tooth counts
-    pub(super) fn check(&self, train: &GearTrain) -> Result<(), RecordingProblem> {
-        let (shaft, stated) = (train.input(), StatedTurning::Other);
-        let turning = TrainTurning::Shaft { shaft, phase: self.pinion.clone(), stated };
-        let sampling_rate_hz = self.sampling_rate_hz;
-        let recording = TrainRecording { signal: &self.values_g, sampling_rate_hz, train, turning: &turning };
-        match recording.check()?.into_iter().next() {
-            Some(warning) => Err(RecordingProblem::DoesNotFit(Box::new(warning))),
-            None => Ok(()),
-        }
     }
 }
 
@@ -111,11 +131,8 @@ impl Piece {
 ///
 /// # Returns
 /// (s) The window's length, and the pieces.
-pub(super) fn pieces(
-    recordings: &[HealthyRecording],
-    mesh_order: f64,
-) -> Result<(f64, Vec<Piece>), PathError> {
-    let slowest_hz = |recording: &HealthyRecording| {
+pub(super) fn pieces(recordings: &[InputRecording], mesh_order: f64) -> Result<(f64, Vec<Piece>), PathError> {
+    let slowest_hz = |recording: &InputRecording| {
         let last = recording.samples().saturating_sub(1);
         let step = ((WINDOW_S[0] * recording.sampling_rate_hz) as usize).clamp(1, last.max(1));
         let speeds = (0..last / step).map(|part| recording.speed_hz(part * step, (part + 1) * step));
@@ -150,7 +167,7 @@ pub(super) fn pieces(
     Ok((window_s, pieces))
 }
 
-fn piece(recording: &HealthyRecording, number: usize, first: usize, samples: usize, window_s: f64) -> Piece {
+fn piece(recording: &InputRecording, number: usize, first: usize, samples: usize, window_s: f64) -> Piece {
     let rate_hz = recording.sampling_rate_hz;
     let parts = ((2.0 * samples as f64 / rate_hz / window_s).round() as usize).clamp(2, samples - 1);
     let edge = |part: usize| part * (samples - 1) / parts;
@@ -176,12 +193,13 @@ mod tests {
     #[test]
     fn pieces_of_a_recording_lie_apart() {
         for recordings in [1, 2, 8] {
-            let recording = HealthyRecording {
-                values_g: vec![0.0; 45_000],
+            let recording = || InputRecording {
+                values_g: &[0.0; 45_000],
                 sampling_rate_hz: 1e4,
-                pinion: ShaftPhase::from_speed_profile(&[0.0, 4.5], &[20.0, 60.0], 1e4, 45_000).unwrap(),
+                input: ShaftPhase::from_speed_profile(&[0.0, 4.5], &[20.0, 60.0], 1e4, 45_000).unwrap(),
             };
-            let (_, pieces) = pieces(&vec![recording; recordings], 20.0).unwrap();
+            let all: Vec<InputRecording> = (0..recordings).map(|_| recording()).collect();
+            let (_, pieces) = pieces(&all, 20.0).unwrap();
             let mut first: Vec<usize> = pieces.iter().map(|piece| piece.first).collect();
             for pair in pieces.windows(2).filter(|pair| pair[0].recording == pair[1].recording) {
                 assert!(pair[0].first + pair[0].samples <= pair[1].first, "{recordings}");
