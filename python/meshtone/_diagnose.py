@@ -131,8 +131,8 @@ def diagnose(
     recordings : one or several, all of one state of the gear
         A :class:`Simulation` or :class:`GearboxSimulation`, of which the first sensor counts; a :class:`Recording` of what ``meshtone
         simulate`` wrote; or a measured signal with its rate and the phase of the pinion or of a gearbox's input,
-        ``(signal_g, sampling_rate_hz, phase)``. Of a phase of another shaft a :class:`~meshtone.signal.TrainRecording` that names it; its machine
-        is the scenario. With another `signal` arrays: one revolution of the gear, in g.
+        ``(signal_g, sampling_rate_hz, phase)``. Of a phase of another shaft a :class:`~meshtone.signal.TrainRecording` that names it, in g; its
+        ``machine`` is not used, but the scenario. With another `signal` arrays: one revolution of the gear, in g.
     scenario : Scenario or Gearbox
         The rig; its faults are left out.
     healthy : the same, optional
@@ -259,5 +259,5 @@ def _observation(
     if known is not None:
         return _core.Observation.of_measured(*known, native_machine(scenario), other)
     raise TypeError(
-        f"{name}: must be simulations, recordings of them, or of what was measured (signal_g, sampling_rate_hz, phase) or a TrainRecording"
+        f"{name}: must be simulations, recordings of them, (signal_g, sampling_rate_hz, phase), or a signal.TrainRecording"
     )

@@ -400,9 +400,9 @@ class GearboxOperation(TypedDict, total=False):
     torque_fluctuation_nm : float
         (N m) The half width of a uniform error of every sample's torque. Allowed: ≥ 0; less than the lowest torque.
     speed_profile_hz : dict of time_s and value
-        (s, Hz) The speed against time from the simulation's start, straight between the points, constant outside them;
-        or { file = "….csv" } with the columns time_s and value. Allowed: at least 2 points, times increasing, values >
-        0. Ignored by published.
+        (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between the
+        points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at least 2
+        points, times increasing, values > 0. Ignored by published.
     torque_profile_nm : dict of time_s and value
         (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0.
     brake_inertia_kgm2 : float

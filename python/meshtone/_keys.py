@@ -566,9 +566,9 @@ class ScenarioKeys:
             (N m) The half width of a uniform error of every sample's torque. Allowed: ≥ 0; less than the lowest torque.
             Default: 0.0.
         speed_profile_hz : dict of time_s and value, optional
-            (s, Hz) The speed against time from the simulation's start, straight between the points, constant outside
-            them; or { file = "….csv" } with the columns time_s and value. Allowed: at least 2 points, times increasing,
-            values > 0. Default: none. Ignored by published.
+            (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between
+            the points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at
+            least 2 points, times increasing, values > 0. Default: none. Ignored by published.
         torque_profile_nm : dict of time_s and value, optional
             (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
         din_grade : int, optional

@@ -89,7 +89,7 @@ def estimate_path(
     recordings : one, or a list of several, by one sensor
         A :class:`Simulation` or :class:`GearboxSimulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal
         with its rate and the phase of the pinion, or of the input of a gearbox, ``(signal_g, sampling_rate_hz, phase)``. Of a phase of another
-        shaft a :class:`~meshtone.signal.TrainRecording` that names it; its machine is the scenario.
+        shaft a :class:`~meshtone.signal.TrainRecording` that names it, in g; its ``machine`` is not used, but the scenario.
     scenario : Scenario or Gearbox
         The healthy machine, with the recordings' load. The wall and the mounted resonance of its first sensor stay beside the path; a
         ``frequency_response`` that it has is left out.
@@ -155,7 +155,7 @@ def _healthy(one: Any) -> tuple[Array, float, _core.ShaftPhase, str | None]:
         values, rig = getattr(one, chosen_channel(one.scenario, None)), one.scenario
     else:
         raise TypeError(
-            "recordings: must be simulations, recordings of them, or of what was measured (signal_g, sampling_rate_hz, phase) or a TrainRecording"
+            "recordings: must be simulations, recordings of them, (signal_g, sampling_rate_hz, phase), or a signal.TrainRecording"
         )
     phase = _core.ShaftPhase.of_simulated(native_scenario(rig), one.start_s, values.size)
     return values, one.sampling_rate_hz, phase, None

@@ -117,6 +117,13 @@ def test_a_gearbox_is_asked_about_before_anything_is_simulated() -> None:
         warnings.simplefilter("error", mt.MeshtoneWarning)
         with pytest.raises(mt.MeshtoneWarning, match="the recording is short"):
             mt.diagnose(recording, gearbox)
+        # Its output turns once where its input turns five times.
+        values, rate_hz = recording["output_1_vertical_g"], recording.sampling_rate_hz
+        phase = mt.ShaftPhase.constant(6.0, rate_hz, values.size)
+        with pytest.raises(mt.MeshtoneWarning, match="the recording is short"):
+            mt.diagnose(mt.signal.TrainRecording(values, phase, rate_hz, shaft="output"), gearbox)
+        with pytest.raises(ValueError, match="the speed may be of shaft output"):
+            mt.diagnose(mt.signal.TrainRecording(values, phase, rate_hz), gearbox)
     with pytest.raises(ValueError, match="wheels with 32, 96, 48, 80 teeth, the scenario has 20, 40"):
         mt.diagnose(recording, RIG)
     with pytest.raises(ValueError, match="signal = 'average'"):

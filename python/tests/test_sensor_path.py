@@ -41,6 +41,12 @@ def test_a_path_is_found_and_taken(tmp_path: Path) -> None:
     again = mt.estimate_path((healthy.sensors["pinion_support_vertical"], rate_hz, phase), RIG, draws=8)
     assert np.sqrt(np.mean((again.magnitude_db - path.magnitude_db) ** 2)) < 0.5
 
+    # So it is by the phase of the gear's shaft.
+    phase = mt.ShaftPhase.constant(20.0, rate_hz, healthy.time_s.size)
+    of_gear = mt.signal.TrainRecording(healthy.sensors["pinion_support_vertical"], phase, rate_hz, shaft="gear")
+    again = mt.estimate_path(of_gear, RIG, draws=8)
+    assert np.sqrt(np.mean((again.magnitude_db - path.magnitude_db) ** 2)) < 0.5
+
     path.write_csv(tmp_path / "path.csv")
     lines = (tmp_path / "path.csv").read_text().splitlines()
     assert lines[0] == "frequency_hz,magnitude,phase_deg,magnitude_db,low_db,high_db"
@@ -58,5 +64,9 @@ def test_what_is_wrong_is_refused() -> None:
         mt.estimate_path(healthy, RIG.copy(din_grade=0))
     with pytest.raises(ValueError, match="at least one"):
         mt.estimate_path([], RIG)
+    phase = mt.ShaftPhase.constant(40.0, healthy.sampling_rate_hz, healthy.time_s.size)
+    of_shaft = mt.signal.TrainRecording(healthy.vertical_g, phase, healthy.sampling_rate_hz, shaft="output")
+    with pytest.raises(ValueError, match=r"shaft = 'output': must be one of pinion, gear"):
+        mt.estimate_path(of_shaft, RIG)
     with pytest.raises(TypeError, match="must be simulations"):
         mt.estimate_path(healthy.vertical_g, RIG)  # type: ignore[arg-type]

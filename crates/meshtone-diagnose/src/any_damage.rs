@@ -5,6 +5,8 @@ use crate::quantile::interval;
 
 /// (-) Probability of damage from which on it is said to be there, and below which it is not seen.
 const DECIDED: [f64; 2] = [0.1, 0.9];
+/// (-) Probability of damage from which on it may be there as well as not, and is likely.
+const LIKELY: [f64; 2] = [0.3, 0.7];
 /// (-) Severities from which on damage is moderate, and heavy: thirds of the scale.
 const DEGREES: [f64; 2] = [1.0 / 3.0, 2.0 / 3.0];
 /// (-) Probability of a wheel, or a tooth, from which on it is named in words.
@@ -91,9 +93,9 @@ impl AnyDamage {
             Some(ToothAnswer { number, probability, .. }) if probability >= NAMED => {
                 format!("look at tooth {number} of the {wheel}")
             }
-            Some(tooth) => format!("look at the {wheel}, from tooth {} on", tooth.number),
+            Some(tooth) => format!("look at every tooth of the {wheel}, first at tooth {}", tooth.number),
             None if self.one_tooth_probability >= NAMED => {
-                format!("look at every tooth of the {wheel}: one is damaged")
+                format!("look at every tooth of the {wheel}: one is damaged, but it is not known which")
             }
             None => format!("look at every tooth of the {wheel}"),
         }
@@ -115,7 +117,12 @@ fn likely_wheels(answer: &Answer) -> String {
     if likely.len() == answer.wheels.len() {
         return format!("{} wheels", if likely.len() == 2 { "both" } else { "all" });
     }
-    format!("the wheels {}", likely.join(" and "))
+    match likely.split_last() {
+        Some((last, others)) if !others.is_empty() => {
+            format!("the wheels {} and {last}", others.join(", "))
+        }
+        _ => format!("the wheel {}", likely.concat()),
+    }
 }
 
 /// What is said of the teeth, in a sentence.
@@ -145,9 +152,14 @@ pub(crate) fn sentence(answer: &Answer) -> String {
             };
             format!("{what} is damaged, {}; {}.{several}", any.in_words(), any.where_to_look(answer))
         }
-        Some(any) if damaged >= 0.5 => {
+        Some(any) if damaged >= LIKELY[0] => {
             let (how, place) = (any.in_words(), any.where_to_look(answer));
-            format!("Damage is likely, but not sure; if so, {how}; {place}.")
+            let is_likely = if damaged >= LIKELY[1] {
+                "Damage is likely, but not sure"
+            } else {
+                "Damage can neither be excluded nor be shown"
+            };
+            format!("{is_likely}; if there is any, {how}; {place}.")
         }
         Some(_) if damaged > unseen => "Damage is not likely, but not excluded.".to_owned(),
         _ => "No damage is seen; what is small may be there all the same.".to_owned(),
@@ -233,11 +245,14 @@ mod tests {
         assert!(
             said_of("missing-tooth", Some(8), 0.99, 0.001).starts_with("Nothing can be said of the teeth")
         );
-        assert!(said(0.6).starts_with("Damage is likely, but not sure"));
-        assert!(said(0.3).contains("not excluded"));
+        assert!(said(0.8).starts_with("Damage is likely, but not sure"));
+        assert!(
+            said(0.6).starts_with("Damage can neither be excluded nor be shown; if there is any, heavily")
+        );
+        assert!(said(0.2).contains("not excluded"));
         assert!(said(0.05).starts_with("No damage is seen"));
         let unknown = said_of("missing-tooth", None, 1.0, 1.0);
-        assert!(unknown.ends_with("look at every tooth of the gear: one is damaged."));
+        assert!(unknown.ends_with("one is damaged, but it is not known which."));
         assert!(
             said_of(SEVERAL, None, 1.0, 1.0).ends_with("Two damages at once are likelier than a single one.")
         );
@@ -251,6 +266,7 @@ mod tests {
             likely_wheels(&Answer { wheels, wheel_probabilities, ..answer(Vec::new(), None, 1.0) })
         };
         assert_eq!(of([0.02, 0.5, 0.45, 0.03]), "the wheels z2 and z3");
+        assert_eq!(of([0.02, 0.3, 0.4, 0.28]), "the wheels z3, z2 and z4");
         assert_eq!(of([0.25; 4]), "all wheels");
     }
 }

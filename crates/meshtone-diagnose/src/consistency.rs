@@ -1,6 +1,6 @@
 //! A check that several recordings are of one state.
 
-use crate::answer::HEALTHY;
+use crate::answer::{HEALTHY, wheel_in_words};
 use crate::learn::{Learned, Question};
 use crate::observation::{Observation, WheelLines};
 
@@ -41,7 +41,7 @@ fn level_db(asked: &Observation) -> f64 {
     10.0 * most.log10()
 }
 
-/// Recordings of which one is damaged and another is not, where their levels do not say so already.
+/// Recordings of which one is damaged and another is not, or another wheel is, where their levels do not say so already.
 ///
 /// # Arguments
 /// * `learned`, `question` - by what each recording is looked at alone
@@ -49,15 +49,34 @@ pub(crate) fn contradicting_states(learned: &Learned, question: &Question) -> Op
     if question.now.len() < 2 || much_louder_recording(question.now).is_some() {
         return None;
     }
-    let damaged = |one: &Observation| {
+    let wheels = &learned.reference.prior.train.wheels;
+    // (-) Probability of damage to each wheel.
+    let of_wheels = |one: &Observation| {
         let alone = Question { now: std::slice::from_ref(one), healthy: question.healthy };
         let of_class = learned.probabilities(&learned.features(&learned.row(&alone)));
-        let of_damage = learned.classes.iter().zip(of_class).filter(|(class, _)| class.is_some());
-        of_damage.map(|(_, probability)| probability).sum::<f64>()
+        let mut of_wheels = vec![0.0; wheels.len()];
+        for (class, probability) in learned.classes.iter().zip(of_class) {
+            class.iter().for_each(|(_, wheel)| of_wheels[*wheel] += probability);
+        }
+        of_wheels
     };
-    let damaged: Vec<f64> = question.now.iter().map(damaged).collect();
-    let least = (0..damaged.len()).find(|&at| damaged[at] < DECIDED[0])?;
+    let of_wheels: Vec<Vec<f64>> = question.now.iter().map(of_wheels).collect();
+    let damaged: Vec<f64> = of_wheels.iter().map(|of| of.iter().sum()).collect();
     let most = (0..damaged.len()).find(|&at| damaged[at] > DECIDED[1])?;
+    let sure = |at: usize| (0..wheels.len()).find(|&wheel| of_wheels[at][wheel] > DECIDED[1]);
+    let sure: Vec<(usize, usize)> = (0..damaged.len()).filter_map(|at| Some((at, sure(at)?))).collect();
+    if let [(first, one), others @ ..] = &sure[..]
+        && let Some((second, other)) = others.iter().find(|(_, other)| other != one)
+    {
+        return Some(format!(
+            "the recordings are hardly of one state: of number {} alone the {} is damaged, of number {} the {}; ask about each state alone",
+            first + 1,
+            wheel_in_words(&wheels[*one].name),
+            second + 1,
+            wheel_in_words(&wheels[*other].name)
+        ));
+    }
+    let least = (0..damaged.len()).find(|&at| damaged[at] < DECIDED[0])?;
     Some(format!(
         "the recordings are hardly of one state: number {} alone is damaged with a probability of {:.0} %, number {} {HEALTHY} with \
          {:.0} %; ask about each state alone",

@@ -9,7 +9,6 @@ use crate::answer::{
 };
 use crate::any_damage::sentence;
 use crate::bearings;
-use crate::features::burst_rev;
 use crate::learn::{FeatureRow, Layout, Learned, Question};
 use crate::observation::{Observation, WheelLines, revolution};
 use crate::prior::{DrawnFault, Prior};
@@ -271,7 +270,7 @@ struct WheelView<'a> {
     of_class: &'a [f64],
     /// The recording among the simulations.
     point: Vec<f64>,
-    /// (rev) Where the burst of the first recording is.
+    /// (rev) Where the burst of the first recording is, of what is beyond the healthy recording where there is one.
     burst_rev: f64,
     /// (g) Rms of the healthy recording's difference signal, by which simulations are brought to the path's gain.
     healthy_rms_g: Option<f64>,
@@ -294,7 +293,7 @@ impl<'a> WheelView<'a> {
             wheel,
             of_class,
             point: learned.outside.point(&row.values),
-            burst_rev: of(&question.now[0]).map_or(0.0, |of| burst_rev(&of, last)),
+            burst_rev: row.burst_rev[wheel],
             healthy_rms_g: question.healthy.first().and_then(of).map(|of| rms_g(&of, last)),
             last,
             points: (2 * last + 1).next_power_of_two(),
@@ -316,6 +315,7 @@ impl<'a> WheelView<'a> {
 
     /// A simulation's difference signal, its burst where the recording has it, and as large as behind the recording's path.
     fn of_record(&self, record: usize) -> Vec<f64> {
+        let burst_rev = self.learned.rows[record].burst_rev[self.wheel];
         let record = self.learned.records[record];
         let wheel = &record.wheels[self.wheel];
         let of_unit = self.learned.reference.healthy_of(record);
@@ -326,7 +326,7 @@ impl<'a> WheelView<'a> {
             _ => 1.0,
         };
         let signal = self.difference_g(wheel);
-        let shift = ((self.burst_rev - burst_rev(wheel, self.last)) * self.points as f64).round();
+        let shift = ((self.burst_rev - burst_rev) * self.points as f64).round();
         let from =
             |point: usize| (point as f64 - shift).rem_euclid(self.points as f64) as usize % self.points;
         (0..self.points).map(|point| gain * signal[from(point)]).collect()

@@ -64,12 +64,6 @@ pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: b
     }
 }
 
-/// (rev) Where the burst of the difference signal is: the field of [`wheel_features`], without the other features.
-pub(crate) fn burst_rev(view: &WheelLines, last: usize) -> f64 {
-    let difference = Difference::new(view, last.min(view.last()));
-    largest_at(&difference.energy_over_tooth()) as f64 / difference.points() as f64
-}
-
 /// (log10 g) Levels over mesh orders, each band from half a mesh order below to half above; with the regular part also of the mesh
 /// harmonics, of what is beside them and of the lowest orders.
 fn levels(view: &WheelLines, difference: &Difference, last: usize, has_regular_part: bool) -> Vec<f64> {

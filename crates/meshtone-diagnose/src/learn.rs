@@ -294,7 +294,7 @@ fn healthy_test(layout: &Layout, reference: &ReferenceSet) -> OutlierTest {
     let rows: Vec<Vec<f64>> =
         alone.simulations(reference, &healthy).into_iter().map(|row| row.values).collect();
     let units = healthy.iter().map(|record| record.unit()).collect();
-    OutlierTest::new(&rows, units, &vec![1.0; rows.len()])
+    OutlierTest::new(&rows, units, vec![true; rows.len()])
 }
 
 impl<'a> Learned<'a> {
@@ -344,11 +344,11 @@ impl<'a> Learned<'a> {
         // Two damages at once may be anything between and beside the kinds: what is unlike a single one is outside.
         let is_single =
             |record: &ReferenceRecord| record.fault.as_ref().is_none_or(|of| of.kind < kinds.len());
-        // All others count alike, although healthy recordings are the likelier ones: these are less strange, and damaged ones would be called
-        // outside more often than the p-value says.
-        let expected = records.iter().map(|record| f64::from(u8::from(is_single(record))));
+        // Healthy records count as one each, not as half of all. They are the least strange ones, so that more weight would make damaged
+        // recordings be called outside more often than the p-value says.
+        let expected = records.iter().map(|record| is_single(record)).collect();
         let units = records.iter().map(|record| record.unit()).collect();
-        let outside = OutlierTest::new(&values, units, &expected.collect::<Vec<f64>>());
+        let outside = OutlierTest::new(&values, units, expected);
         let healthy_outside = layout.has_healthy.then(|| healthy_test(&layout, reference));
         let size_models = classes.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {

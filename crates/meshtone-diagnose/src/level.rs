@@ -31,6 +31,22 @@ pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
     })
 }
 
+/// (dB) Standard gravity, by which a recording in m/s² is louder than one in g; and how near a difference of levels is to it.
+const UNIT_DB: f64 = 19.83;
+const UNIT_NEAR_DB: f64 = 4.0;
+
+/// A hint for recordings that are about 9.81 times as loud, or as quiet, as the healthy one.
+pub(crate) fn unit_hint(learned: &Learned, question: &Question) -> Option<String> {
+    let of = |asked: &Observation| level_db(learned, asked.wheels.iter().map(Option::as_ref));
+    let louder_db = of(question.now.first()?) - of(question.healthy.first()?);
+    ((louder_db.abs() - UNIT_DB).abs() < UNIT_NEAR_DB).then(|| {
+        format!(
+            "it is {:.2} times as loud as the healthy recording: are both in the same unit (1 g is 9.81 m/s²)?",
+            10f64.powf(louder_db / 20.0)
+        )
+    })
+}
+
 /// (dB) Level of the last wheel's average, of a pair the gear's, or of its difference signal where no more is known.
 fn level_db<'w>(learned: &Learned, wheels: impl Iterator<Item = Option<&'w WheelLines>>) -> f64 {
     let layout = &learned.layout;

@@ -43,31 +43,27 @@ pub(crate) struct OutlierTest {
     by_rarer: Ranking,
 }
 
-/// Weighted values of which the part is known that are as large as another, or larger.
+/// Values of which the part is known that are as large as another, or larger.
+#[derive(Default)]
 struct Ranking {
-    /// Falling values, with the sum of the weights up to them.
-    sums: Vec<(f64, f64)>,
+    falling: Vec<f64>,
 }
 
 impl Ranking {
-    fn new(values: &[f64], weights: &[f64]) -> Self {
-        let mut sums: Vec<(f64, f64)> = values.iter().copied().zip(weights.iter().copied()).collect();
-        sums.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut sum = 0.0;
-        for (_, weight) in &mut sums {
-            sum += *weight;
-            *weight = sum;
-        }
-        Self { sums }
+    /// # Arguments
+    /// * `values` - of all simulations
+    /// * `counts` - whether each is to be expected
+    fn new(values: &[f64], counts: &[bool]) -> Self {
+        let expected = values.iter().zip(counts).filter(|(_, counts)| **counts);
+        let mut falling: Vec<f64> = expected.map(|(value, _)| *value).collect();
+        falling.sort_by(|a, b| b.total_cmp(a));
+        Self { falling }
     }
 
     /// (-) The part of the values that are as large, or larger, the asked one being one more.
     fn p_value(&self, value: f64) -> f64 {
-        let total = self.sums.last().map_or(1.0, |(_, sum)| *sum);
-        let mean = total / self.sums.len().max(1) as f64;
-        let larger = self.sums.partition_point(|(other, _)| *other >= value);
-        let sum = larger.checked_sub(1).map_or(0.0, |last| self.sums[last].1);
-        (sum + mean) / (total + mean)
+        let larger = self.falling.partition_point(|other| *other >= value);
+        (larger + 1) as f64 / (self.falling.len() + 1) as f64
     }
 }
 
@@ -75,8 +71,8 @@ impl OutlierTest {
     /// # Arguments
     /// * `rows` - features of the simulations
     /// * `units` - the pair of wheels of each
-    /// * `weights` - how often each is to be expected; one of 0 is a point, but no other is held against it
-    pub fn new(rows: &[Vec<f64>], units: Vec<u64>, weights: &[f64]) -> Self {
+    /// * `counts` - whether each is to be expected at all: one that is not is a point, but no other is held against it
+    pub fn new(rows: &[Vec<f64>], units: Vec<u64>, counts: Vec<bool>) -> Self {
         let standard = Standardisation::of(rows);
         let width = rows.first().map_or(0, Vec::len);
         let matrix: Vec<Vec<f64>> = rows.iter().map(|row| standard.apply(row)).collect();
@@ -93,9 +89,9 @@ impl OutlierTest {
         let left = order.iter().map(|&at| eigen.eigenvalues[at]).sum::<f64>();
         let left = (eigen.eigenvalues.sum() - left).max(1e-9).sqrt();
         let range = |half: u64, feature: usize| {
-            let inside =
-                rows.iter().zip(weights).zip(&units).filter(|(_, unit)| shuffled(**unit) % 2 == half);
-            quantiles(inside.map(|((row, weight), _)| (row[feature], *weight)).collect(), NEARLY_ALL)
+            let inside = rows.iter().zip(&counts).zip(&units);
+            let inside = inside.filter(|((_, counts), unit)| **counts && shuffled(**unit) % 2 == half);
+            quantiles(inside.map(|((row, _), _)| (row[feature], 1.0)).collect(), NEARLY_ALL)
         };
         let ranges =
             [0, 1].map(|half| (0..width).into_par_iter().map(|feature| range(half, feature)).collect());
@@ -105,11 +101,11 @@ impl OutlierTest {
             left,
             points: Vec::new(),
             units,
-            counts: weights.iter().map(|weight| *weight > 0.0).collect(),
+            counts,
             ranges,
-            by_distance: Ranking::new(&[], &[]),
-            by_feature: Ranking::new(&[], &[]),
-            by_rarer: Ranking::new(&[], &[]),
+            by_distance: Ranking::default(),
+            by_feature: Ranking::default(),
+            by_rarer: Ranking::default(),
         };
         of.points = rows.par_iter().map(|row| of.point(row)).collect();
         let places = || (0..rows.len()).into_par_iter();
@@ -117,10 +113,10 @@ impl OutlierTest {
             places().map(|row| of.distance(&of.points[row], Some(of.units[row]))).collect();
         let beyond: Vec<f64> =
             places().map(|row| of.beyond(&rows[row], 1 - (shuffled(of.units[row]) % 2) as usize)).collect();
-        of.by_distance = Ranking::new(&distances, weights);
-        of.by_feature = Ranking::new(&beyond, weights);
+        of.by_distance = Ranking::new(&distances, &of.counts);
+        of.by_feature = Ranking::new(&beyond, &of.counts);
         let rarer: Vec<f64> = places().map(|row| -of.rarer(distances[row], beyond[row])).collect();
-        of.by_rarer = Ranking::new(&rarer, weights);
+        of.by_rarer = Ranking::new(&rarer, &of.counts);
         of
     }
 
@@ -199,7 +195,7 @@ mod tests {
         };
         let rows: Vec<Vec<f64>> = (0..600).map(|_| row()).collect();
         let units: Vec<u64> = (0..600).map(|number| number / 4).collect();
-        let outside = OutlierTest::new(&rows, units, &[1.0; 600]);
+        let outside = OutlierTest::new(&rows, units, vec![true; 600]);
         let mut values: Vec<f64> = (0..400).map(|_| outside.p_value(&row())).collect();
         values.sort_by(f64::total_cmp);
         // Kolmogorov and Smirnov: 1.63 / √400 is passed by one in a hundred.

@@ -62,7 +62,8 @@ pub struct Focus {
 /// The prior of damage and rig.
 ///
 /// Drawn for a pair of wheels (eight records): its wheels' deviations, its structure, its path to the sensor. Drawn
-/// for a record: speed, load, damage.
+/// for a record: speed, load, damage. A third of the records are nearer to speed and load of the healthy record of their pair: the logarithms of
+/// the ratios are multiplied by a factor from 0.001 to 1 whose logarithm is uniform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     /// The rig, healthy; its wheels are one draw of those that may be.
@@ -509,14 +510,15 @@ mod tests {
                 (speed, (now.brake_torque_nm / healthy.brake_torque_nm).ln())
             })
             .unzip();
-        // By a million draws of the same distribution made elsewhere 17.2 %; three standard errors are 3.6 %.
+        // Of a million draws in NumPy 17.2 %, 11.0 % higher, 11.1 % lower; of a thousand a standard error is 1.2 %, 1.0 %.
         let same = speeds.iter().zip(&apart).filter(|(speed, load)| speed.abs() < 6e-4 && load.abs() < 0.05);
-        assert!((136..=208).contains(&same.count()));
+        let same = same.count();
+        assert!((136..=208).contains(&same), "{same}");
         let part = |least: f64, most: f64| {
             apart.iter().filter(|apart| (least..most).contains(*apart)).count() as f64 / 1000.0
         };
         let [near, higher, lower] = [part(-0.25, 0.25), part(1.0, 4.6), part(-4.6, -1.0)];
-        assert!(near > 0.4 && higher > 0.1 && lower > 0.1, "{near} {higher} {lower}");
+        assert!(near > 0.4 && higher > 0.08 && lower > 0.08, "{near} {higher} {lower}");
     }
 
     #[test]

@@ -24,10 +24,12 @@ impl Question<'_> {
     /// A recording whose speed is far from those of the simulations; recordings of other wheels, of too few orders or of different kinds.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
         let nominal_hz = prior.base.operation().pinion_speed_hz;
-        for speed_hz in self.all().filter_map(|asked| asked.input_speed_hz) {
+        for (asked, speed_hz) in self.all().filter_map(|asked| Some((asked, asked.input_speed_hz?))) {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
-                let reason = reason(speed_hz / nominal_hz, prior).unwrap_or_else(|| {
+                // Wrong pulses, or another shaft, are seen in the recording itself.
+                let reason = asked.mismatch.clone().or_else(|| reason(speed_hz / nominal_hz, prior));
+                let reason = reason.unwrap_or_else(|| {
                     let (_, key) = driving(prior);
                     format!(
                         "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed ({key})?"

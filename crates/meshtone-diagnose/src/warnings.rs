@@ -160,6 +160,7 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
         let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
         let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
         let why = match foreign {
+            _ if let Some(hint) = level::unit_hint(learned, question) => hint,
             _ if answer.has_bearing_lines() => {
                 "a damaged bearing may be the reason, since no simulation has one".to_owned()
             }
@@ -279,11 +280,15 @@ mod tests {
         assert_eq!(number(place.tooth), tooth);
 
         assert!(has(&ask(&[broken.clone(), sound.clone()]), "hardly of one state"));
-        let mut loud = sound.clone();
-        for wheel in loud.wheels.iter_mut().flatten() {
-            wheel.lines.iter_mut().for_each(|line| *line *= 1000.0);
-        }
-        assert!(has(&said(&learned, broken_alone, &[loud]), "unit"));
+        let times = |factor: f64| {
+            let mut loud = sound.clone();
+            for wheel in loud.wheels.iter_mut().flatten() {
+                wheel.lines.iter_mut().for_each(|line| *line *= factor);
+            }
+            loud
+        };
+        assert!(has(&said(&learned, broken_alone, &[times(1000.0)]), "unit"));
+        assert!(has(&ask(&[times(9.81)]), "9.81 times as loud as the healthy recording"));
         let blamed = said(&learned, sound_alone, broken_alone);
         assert!(
             has(&blamed, "unlike a healthy rig") && has(&blamed, "was it healthy?"),
@@ -296,6 +301,10 @@ mod tests {
 
         let at = |speed_hz| Observation { input_speed_hz: Some(speed_hz), ..broken.clone() };
         assert!(has(&ask(&[at(46.0)]), "the pinion turns at 46.000 Hz"));
+        // What is seen in the recording itself is the reason.
+        let pulses = at(20.0).with_mismatch("fits one pulse a revolution");
+        let refused = Question { now: &[pulses], healthy: &[] }.check(&prior).unwrap_err();
+        assert!(refused.to_string().ends_with("fits one pulse a revolution"), "{refused}");
         for (speed_hz, words) in [
             (2400.0, "rpm that was given as Hz"),
             (2.0 / 3.0, "has the scenario its speed in rpm"),

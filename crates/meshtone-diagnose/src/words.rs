@@ -54,8 +54,10 @@ impl Answer {
             [kind.label.to_owned(), percent(kind.probability), severity.unwrap_or_else(dash), at]
         });
         let rest: f64 = others.iter().map(|kind| kind.probability).sum();
-        let counted =
-            (!others.is_empty()).then(|| format!("{} other kinds: {} together", others.len(), percent(rest)));
+        let counted = (!others.is_empty()).then(|| match others.len() {
+            1 => format!("1 other kind: {}", percent(rest)),
+            count => format!("{count} other kinds: {} together", percent(rest)),
+        });
         AnswerInWords {
             summary,
             damaged: Some(format!("damaged with a probability of {}", percent(self.damaged()))),

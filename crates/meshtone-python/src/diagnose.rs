@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use meshtone::batch::Control;
-use meshtone::signal::{AngleZero, GearTrain, StatedTurning, TrainRecording, TrainTurning};
+use meshtone::signal::{GearTrain, TrainRecording, TrainTurning};
 use meshtone_diagnose::{
     Answer, DiagnoseError, Learned, Observation as Observed, Prior, Question, ReferenceStore, SignalKind,
     StoreError, refine,
@@ -16,7 +16,7 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{file_error, read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::process::{Machine, turning};
+use crate::process::{Machine, stated_of_rig};
 use crate::scenario::Scenario;
 
 /// Features of a recording.
@@ -60,13 +60,8 @@ impl Observation {
         let signal = samples(&signal)?;
         let form = machine.form();
         let train = GearTrain::of_form(&form).map_err(|error| scenario_error(&error))?;
-        let mut turning = turning(&train, phase, shaft)?;
-        if let TrainTurning::Shaft { shaft, phase, stated } = &mut turning
-            && phase.zero == AngleZero::Chance
-        {
-            let ratio = train.speed_ratio(*shaft, train.input()).value();
-            *stated = StatedTurning::MeshTone { nominal_hz: form.operation().pinion_speed_hz * ratio };
-        }
+        let (shaft, stated) = stated_of_rig(&form, &train, phase, shaft)?;
+        let turning = TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated };
         let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
         let other = other.map(|other| &other.0);
         py.detach(|| Observed::of_recording(&recording, other)).map(Self).map_err(value_error)

@@ -126,6 +126,23 @@ pub fn turning(train: &GearTrain, phase: &ShaftPhase, shaft: Option<&str>) -> Py
     Ok(TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated: StatedTurning::Other })
 }
 
+/// The shaft that the phase of a rig's recording is of, and what is stated about it: a phase from a mesh tone, whose zero is chance, has the
+/// scenario's speed beside it.
+pub fn stated_of_rig(
+    rig: &ScenarioForm,
+    train: &GearTrain,
+    phase: &ShaftPhase,
+    shaft: Option<&str>,
+) -> PyResult<(usize, StatedTurning)> {
+    let shaft = shaft.map_or_else(|| Ok(train.input()), |name| shaft_number(train, name))?;
+    let ratio = train.speed_ratio(shaft, train.input()).value();
+    let stated = match phase.0.zero {
+        AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: rig.operation().pinion_speed_hz * ratio },
+        _ => StatedTurning::Other,
+    };
+    Ok((shaft, stated))
+}
+
 /// Takes one channel to the indicators of every wheel of a machine: name, shaft, teeth, speed and record of each wheel; the foreign lines; the
 /// warnings.
 #[pyfunction]

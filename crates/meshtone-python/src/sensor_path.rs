@@ -11,7 +11,7 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::process::{Machine, turning};
+use crate::process::{Machine, stated_of_rig};
 
 /// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
 type Estimated<'py> = ([Array<'py>; 5], [f64; 2], String);
@@ -33,8 +33,9 @@ pub fn estimate_path<'py>(
     let train = GearTrain::of_form(&rig).map_err(|error| scenario_error(&error))?;
     let healthy = |(values, sampling_rate_hz, phase, shaft): &Recorded<'py>| {
         let values_g = samples(values)?.to_vec();
-        let turning = turning(&train, phase, shaft.as_deref())?;
-        Ok(HealthyRecording { values_g, sampling_rate_hz: *sampling_rate_hz, turning })
+        let (shaft, stated) = stated_of_rig(&rig, &train, phase, shaft.as_deref())?;
+        let sampling_rate_hz = *sampling_rate_hz;
+        Ok(HealthyRecording { values_g, sampling_rate_hz, shaft, phase: phase.0.clone(), stated })
     };
     let healthy = recordings.iter().map(healthy).collect::<PyResult<Vec<_>>>()?;
     let estimate = interruptible(py, progress, 0, |cancelled, report| {

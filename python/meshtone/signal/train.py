@@ -205,7 +205,7 @@ class TrainRecording:
 
 
 def measured(one: Any) -> tuple[npt.NDArray[np.float64], float, _core.ShaftPhase, str | None] | None:
-    """A measured recording of a known machine as the compiled module takes it; None of anything else."""
+    """A measured recording of a machine that is stated beside it, as the compiled module takes it; None of anything else."""
     if isinstance(one, tuple) and len(one) == 3:
         values, rate_hz, phase = one
         shaft = None

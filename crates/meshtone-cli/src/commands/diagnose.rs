@@ -51,7 +51,8 @@ pub struct Diagnose {
     /// Recordings of one state of the gears: any file of `meshtone indicators`, or directories that `meshtone simulate` wrote
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
-    /// The rig, a pair or a gearbox, with the recordings' speed and load; its faults are left out
+    /// The rig, a pair or a gearbox, with the recordings' speed and load; the listed sensor of the channel is simulated, or the first one; its
+    /// faults are left out
     #[arg(long, value_name = "SCENARIO.toml")]
     scenario: PathBuf,
     /// Recordings of the same rig, by the same sensor, when it was healthy
@@ -151,6 +152,7 @@ impl Diagnose {
             }
             scenario = ScenarioForm::Pair(tuned.apply(pair).map_err(|error| refuse(error.to_string()))?);
         }
+        self.reading.lead_with_sensor(&mut scenario);
         let doubts = check_form(&scenario).map_err(|error| file.refuse(error))?;
         warnings::print(&file, &doubts);
         Ok(scenario)

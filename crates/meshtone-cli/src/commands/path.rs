@@ -6,11 +6,12 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use meshtone::Error;
 use meshtone::scenario::ScenarioForm;
-use meshtone::signal::{SignalWarning, StatedFacts, TrainTurning};
+use meshtone::signal::{SignalWarning, StatedFacts, StatedTurning, TrainTurning};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
     estimate_path,
 };
+use meshtone::wheel::WheelName;
 use meshtone_diagnose::other_tone;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
@@ -42,7 +43,7 @@ pub struct Path {
     /// Recordings by one sensor: any file of `meshtone indicators`, or directories that `meshtone simulate` wrote
     #[arg(value_name = "HEALTHY", required = true)]
     recordings: Vec<PathBuf>,
-    /// The healthy machine, a pair or a gearbox, with the recordings' load; its first sensor is the one that recorded, its faults are left out
+    /// The healthy machine, a pair or a gearbox, with the recordings' load; the sensor that recorded is the listed one of the channel, or the first one; its faults are left out
     #[arg(long, value_name = "SCENARIO.toml")]
     scenario: PathBuf,
     /// File to write; it is replaced if it exists
@@ -74,7 +75,8 @@ Examples:
 impl Path {
     pub fn run(&self) -> Result<(), Failure> {
         let file = ScenarioFile::read_form(&self.scenario)?;
-        let scenario = file.scenario.clone().with_faults(Vec::new());
+        let mut scenario = file.scenario.clone().with_faults(Vec::new());
+        self.reading.lead_with_sensor(&mut scenario);
         let doubts = check_form(&scenario).map_err(|error| file.refuse(error))?;
         warnings::print(&file, &doubts);
         let recordings = self.recordings.iter().map(PathBuf::as_path);
@@ -106,7 +108,7 @@ impl Path {
         print_unless(self.quiet, &summary(&estimate, &self.output))
     }
 
-    /// Reads a recording whole, with how the shafts turned, and what is doubtful about it.
+    /// Reads a recording whole, with how its shafts turned, and what is doubtful about it.
     ///
     /// Where the mesh tone of a pair was followed, a doubtful phase may be that of another tone, which other tooth counts say.
     fn recording(
@@ -121,22 +123,25 @@ impl Path {
         let Input { source, channel, sampling_rate_hz, .. } = input;
         let what = format!("channel {}", channel.name);
         let refused = |error| refuse(&source, &what, RefusedInput::Phase, &error);
-        let mut doubtful = Vec::new();
-        if let TrainTurning::Shaft { shaft, phase, stated } = &turning {
-            doubtful.clone_from(&phase.warnings);
-            if train.meshes.len() == 1
-                && let Some(stated) = StatedFacts::of_shaft(&train, *shaft, *stated)
-                && let Some(mismatch) =
-                    other_tone(&channel.samples, sampling_rate_hz, phase, &stated).map_err(refused)?
-            {
-                let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
-                let problem = format!("{}: {problem}", path.display());
-                return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
+        let (shaft, phase, stated) = match turning {
+            TrainTurning::Shaft { shaft, phase, stated } => (shaft, phase, stated),
+            TrainTurning::SimulatedPair(shafts) => {
+                let phase = shafts.phase(WheelName::Pinion).map_err(refused)?;
+                (train.input(), phase, StatedTurning::Other)
             }
+        };
+        if train.meshes.len() == 1
+            && let Some(stated) = StatedFacts::of_shaft(&train, shaft, stated)
+            && let Some(mismatch) =
+                other_tone(&channel.samples, sampling_rate_hz, &phase, &stated).map_err(refused)?
+        {
+            let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
+            let problem = format!("{}: {problem}", path.display());
+            return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
         }
-        let doubtful = doubtful.iter().map(|warning| about(&source, warning));
+        let doubtful = phase.warnings.iter().map(|warning| about(&source, warning));
         let warnings = warnings.into_iter().chain(doubtful).collect();
-        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, turning }, warnings))
+        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, shaft, phase, stated }, warnings))
     }
 
     /// Names the file that an error is about.
@@ -144,8 +149,12 @@ impl Path {
         match error {
             PathError::Simulation(Error::Scenario(error)) => file.refuse(error).into(),
             PathError::Recording { index, problem } => {
-                let failure = Failure::bad_input(format!("{}: {problem}", self.recordings[index].display()));
+                let path = &self.recordings[index];
+                let failure = Failure::bad_input(format!("{}: {problem}", path.display()));
                 match problem {
+                    RecordingProblem::Signal(error) => {
+                        refuse(path, "the signal", RefusedInput::Phase, &error)
+                    }
                     RecordingProblem::DoesNotFit(_) => failure
                         .with_help("check --shaft, --mesh, --pulses-per-rev, the speed and the scenario"),
                     _ => failure,

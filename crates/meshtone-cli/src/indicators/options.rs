@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use meshtone::scenario::ScenarioForm;
 use meshtone::signal::{Interpolation, PulseEdge};
 use meshtone_io::recording::{DecimalSign, Separator};
 
 use crate::choice::{Choice, one_of};
+use crate::terminal::print_error_line;
 
 /// Options that select parts of the files, and state what the files do not say themselves.
 #[derive(Debug, Args)]
@@ -43,6 +45,15 @@ pub struct ReadingOptions {
 }
 
 impl ReadingOptions {
+    /// Puts the sensor of the chosen channel first in a scenario, and says so where that changes what is simulated.
+    pub fn lead_with_sensor(&self, scenario: &mut ScenarioForm) {
+        if let Some(channel) = self.channel.as_deref().filter(|channel| scenario.lead_with_sensor(channel)) {
+            print_error_line(format_args!(
+                "the scenario's sensor of the channel {channel} is simulated, in place of the first listed one"
+            ));
+        }
+    }
+
     /// Advice where the sampling rate is so low that it is rather meant in kHz.
     pub fn in_kilohertz(&self) -> Option<String> {
         const MOST_KILOHERTZ: f64 = 200.0;

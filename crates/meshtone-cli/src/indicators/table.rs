@@ -13,9 +13,9 @@ const OF_GEARS: [&str; 7] = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", 
 
 /// Foreign lines that are printed; the others are counted.
 const LINES: usize = 10;
-/// (-) Part of the orders that are the machine's own from which on the table recommends a longer recording: more than half is not searched.
+/// (-) Part of the orders that are the machine's own from which on the table recommends a longer recording: a line is rather missed than found.
 const MOST_OWN: f64 = 0.5;
-/// (-) Part from which on nothing is searched.
+/// (-) Part from which on it does not say that no line was found: next to nothing is left in which one could be.
 const ALL_OWN: f64 = 0.95;
 
 /// The table of one record or of a series.
@@ -98,8 +98,9 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
     if lines.is_empty() {
         let percent = 100.0 * own;
         let searched = if *own > ALL_OWN {
-            "the recording is too short to distinguish foreign lines from those of shafts and meshes"
-                .to_owned()
+            format!(
+                "the recording{of} is too short to distinguish foreign lines from those of shafts and meshes"
+            )
         } else {
             format!(
                 "no foreign line was found{of}; {percent:.0} % of all orders are too near one of a shaft or a mesh to distinguish a line there"

@@ -51,6 +51,23 @@ fn what_does_not_fit_is_refused() {
         &["path", "healthy", "--scenario", "rig.toml", "-o", "rig.toml"],
         &["is read", "another file"],
     );
+    // The pinion's speed, stated of the gear.
+    workplace.fails(
+        2,
+        &[
+            "path",
+            "healthy",
+            "--scenario",
+            "rig.toml",
+            "--shaft",
+            "gear",
+            "--shaft-hz",
+            "40",
+            "-o",
+            "path.csv",
+        ],
+        &["healthy: does not fit the scenario", "check --shaft"],
+    );
     workplace.write("ideal.toml", rig.replace("din_grade = 6", "din_grade = 0"));
     workplace.fails(
         2,

@@ -124,7 +124,7 @@ impl Keys for Operation {
             row(
                 "speed_profile_hz",
                 "s, Hz",
-                "the speed against time from the simulation's start, straight between the points, constant outside \
+                "the speed against time from the simulation's start, { time_s = […], value = […] }, straight between the points, constant outside \
                  them; or { file = \"….csv\" } with the columns time_s and value",
                 field!(speed_profile_hz),
             )

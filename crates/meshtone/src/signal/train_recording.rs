@@ -243,13 +243,7 @@ impl TrainRecording<'_> {
             let mut warnings = check.warnings;
             match angular.and_then(|angular| self.process_wheel(number, &angular, settings)) {
                 Ok(wheel) => {
-                    // Wheels on one shaft have one average.
-                    let is_told = |warning: &&SignalWarning| {
-                        is_first || !matches!(warning, SignalWarning::NothingSynchronous { .. })
-                    };
-                    warnings.extend(
-                        wheel.records.iter().flat_map(|record| &record.warnings).filter(is_told).cloned(),
-                    );
+                    warnings.extend(wheel.records.iter().flat_map(|record| &record.warnings).cloned());
                     found.wheels.push(wheel);
                 }
                 Err(error @ SignalError::TooFewRevolutions { .. }) => {

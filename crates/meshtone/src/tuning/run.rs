@@ -56,7 +56,7 @@ impl ExperimentResult {
 
 /// Progress and cancellation of an experiment.
 pub struct ExperimentControl<'a> {
-    /// Called with the simulations that are finished and all there are, from any thread.
+    /// Called with the simulations that are finished, which never fall, and all there are, from any thread.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
     /// Set to stop, at any time; the experiment then ends with [`HybridError::Cancelled`].
     pub cancelled: &'a AtomicBool,

@@ -8,9 +8,7 @@ use meshtone::scenario::{
     Fault, FrequencyResponse, GearPair, Gearbox, GearboxRig, MissingTooth, Profile, Scenario, ScenarioForm,
     Sensor, ToothBreakage, gearbox_template,
 };
-use meshtone::signal::{
-    ChainSettings, Edge, ShaftPhase, SimulatedShafts, StatedTurning, TrainTurning, resample_to,
-};
+use meshtone::signal::{ChainSettings, Edge, ShaftPhase, SimulatedShafts, StatedTurning, resample_to};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
     estimate_path,
@@ -66,11 +64,6 @@ fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s
     at_rate_of_recordings(channels.leading().1, &angles, shafts.sampling_rate_hz())
 }
 
-/// The phase of the pinion's shaft or of the input, without a source whose mistakes are looked for.
-fn of_input(phase: ShaftPhase) -> TrainTurning {
-    TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::Other }
-}
-
 /// A signal and the angle of the pinion or the input at the recordings' rate.
 fn at_rate_of_recordings(signal: &[f64], angles: &[f64], rate_hz: f64) -> HealthyRecording {
     let values_g = resample_to(signal, rate_hz, RATE_HZ, Edge::Zero).unwrap();
@@ -80,8 +73,13 @@ fn at_rate_of_recordings(signal: &[f64], angles: &[f64], rate_hz: f64) -> Health
         angles[below] + (at - below as f64) * (angles[below + 1] - angles[below])
     };
     let samples = ((angles.len() - 1) as f64 * RATE_HZ / rate_hz) as usize;
-    let input = ShaftPhase::new(0, (0..samples).map(angle).collect()).unwrap();
-    HealthyRecording { values_g, sampling_rate_hz: RATE_HZ, turning: of_input(input) }
+    let phase = ShaftPhase::new(0, (0..samples).map(angle).collect()).unwrap();
+    over_input(values_g, RATE_HZ, phase)
+}
+
+/// A recording over the angle of the pinion's shaft or the input, from no source whose mistakes are looked for.
+fn over_input(values_g: Vec<f64>, sampling_rate_hz: f64, phase: ShaftPhase) -> HealthyRecording {
+    HealthyRecording { values_g, sampling_rate_hz, shaft: 0, phase, stated: StatedTurning::Other }
 }
 
 fn estimate(recording: HealthyRecording) -> Result<PathEstimate, PathError> {
@@ -267,17 +265,12 @@ fn recordings_that_do_not_fit_are_refused() {
     let mut slow = recording(&rig(), 105, [40.0, 40.0], 3.0);
     slow.values_g = slow.values_g.into_iter().step_by(100).collect();
     slow.sampling_rate_hz /= 100.0;
-    slow.turning = of_input(ShaftPhase::constant(40.0, slow.sampling_rate_hz, slow.values_g.len()).unwrap());
+    slow.phase = ShaftPhase::constant(40.0, slow.sampling_rate_hz, slow.values_g.len()).unwrap();
     let refused = estimate(slow).unwrap_err();
     assert!(matches!(problem(refused), RecordingProblem::LowRate { .. }));
-    let noise = HealthyRecording {
-        values_g: {
-            let mut draws = Draws::new(1, Purpose::SensorNoise, 0);
-            (0..100_000).map(|_| 1e-3 * draws.normal()).collect()
-        },
-        sampling_rate_hz: RATE_HZ,
-        turning: of_input(ShaftPhase::constant(40.0, RATE_HZ, 100_000).unwrap()),
-    };
+    let mut draws = Draws::new(1, Purpose::SensorNoise, 0);
+    let noise = (0..100_000).map(|_| 1e-3 * draws.normal()).collect();
+    let noise = over_input(noise, RATE_HZ, ShaftPhase::constant(40.0, RATE_HZ, 100_000).unwrap());
     let refused = estimate(noise).unwrap_err();
     assert_eq!(refused, PathError::OnlyNoise);
 }

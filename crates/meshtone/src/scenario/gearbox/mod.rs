@@ -659,6 +659,40 @@ impl ScenarioForm {
         }
     }
 
+    /// Puts the sensor of a channel before the others, since a recording is compared with the first one.
+    ///
+    /// # Arguments
+    /// * `channel` - name of the channel, with its unit or without
+    ///
+    /// Returns whether another sensor is the first one now. A channel that no listed sensor has changes nothing.
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario, ScenarioForm, Sensor};
+    ///
+    /// let named = ["foot", "cover", "flange"].map(|name| {
+    ///     let mut sensor = Sensor::default();
+    ///     sensor.name = Some(name.to_owned());
+    ///     sensor
+    /// });
+    /// let mut form = ScenarioForm::Pair(Scenario::new(GearPair::example()).with_sensors(named.to_vec()));
+    /// assert!(form.lead_with_sensor("cover_g") && !form.lead_with_sensor("cover") && !form.lead_with_sensor("wall"));
+    /// let names: Vec<String> = form.sensors_mut().iter().map(|sensor| sensor.name()).collect();
+    /// assert_eq!(names, ["cover", "foot", "flange"]);
+    /// ```
+    pub fn lead_with_sensor(&mut self, channel: &str) -> bool {
+        let is = |name: String| channel == name || channel.strip_suffix("_g") == Some(&name);
+        let at = match self {
+            Self::Pair(scenario) => scenario.sensors.iter().position(|sensor| is(sensor.name())),
+            Self::Gearbox(gearbox) => gearbox.sensors.iter().position(|sensor| is(sensor.name())),
+        };
+        let Some(at) = at else { return false };
+        match self {
+            Self::Pair(scenario) => scenario.sensors[..=at].rotate_right(1),
+            Self::Gearbox(gearbox) => gearbox.sensors[..=at].rotate_right(1),
+        }
+        at > 0
+    }
+
     /// Returns the scenario with other faults.
     ///
     /// # Arguments

@@ -88,6 +88,14 @@ pub enum RecordingProblem {
         /// (S/s) The least rate.
         needed_hz: f64,
     },
+    /// Its phase is of a shaft that the machine does not have.
+    #[error("has the phase of shaft {shaft}, counted from 0, but the machine has {shafts} shafts")]
+    NoSuchShaft {
+        /// The number.
+        shaft: usize,
+        /// How many there are.
+        shafts: usize,
+    },
     /// It contradicts what is stated about it, or shows strong tones of something else.
     #[error("does not fit the scenario: {0}")]
     DoesNotFit(Box<SignalWarning>),

@@ -34,9 +34,10 @@ use crate::solver::{Block, Output, Recorder};
 const SETTLING_S: f64 = 0.3;
 /// (-) Part of the sampling rates up to which the signals are right: of the recording behind its filter, of the simulation by its step.
 const PASSED: [f64; 2] = [0.4, 0.25];
-/// (-) Least power of a cell over that of noise, of many lines; and by how much that of one line must exceed it, which one in 10⁵ does.
+/// (-) Least power of a cell over that of noise, of many lines; and by how much that of one line must exceed it. One line of noise in 10⁵ is 12
+/// times its mean, and the quietest windows are up to a third below the mean: 18 times, since a single cell draws a path towards it.
 const ABOVE_NOISE: f64 = 6.0;
-const ABOVE_NOISE_OF_ONE: f64 = 12.0;
+const ABOVE_NOISE_OF_ONE: f64 = 18.0;
 /// Windows over whose quietest succession noise is averaged.
 const QUIET_WINDOWS: usize = 4;
 /// (-) Median over mean of the squared magnitude of normal noise.
@@ -83,7 +84,7 @@ pub struct PathEstimate {
     pub high_db: Vec<f64>,
     /// (°) Phase: the least that a system of this magnitude can have.
     pub phase_deg: Vec<f64>,
-    /// (Hz) The frequencies at which recordings and simulations were compared.
+    /// (Hz) The lowest and the highest frequency at which recordings were above their noise, and compared with simulations.
     pub compared_hz: [f64; 2],
     /// (-) Distance of the recordings from the simulations, over what wheels explain: mean squares of the kinds of lines and of the cells.
     pub misfit: [f64; 2],
@@ -167,11 +168,13 @@ pub fn estimate_path(
         let ends = magnitude_db.iter().zip(&deviation_db);
         ends.map(|(db, deviation_db)| db + sign * NINETY_PERCENT * deviation_db).collect()
     };
+    let compared = levels.iter().map(|level| cells.frequency_hz[level.cell.frequency]);
+    let compared_hz = compared.fold([f64::INFINITY, 0.0], |[from, to], hz| [from.min(hz), to.max(hz)]);
     Ok(PathEstimate {
         low_db: end_db(-1.0),
         high_db: end_db(1.0),
         phase_deg: minimum_phase_deg(&frequency_hz, &magnitude_db),
-        compared_hz: cells.compared_hz,
+        compared_hz,
         frequency_hz,
         magnitude_db,
         misfit,
@@ -274,19 +277,23 @@ fn measured_powers(
 }
 
 /// (g²/Hz) Density of a recording's noise: the median of the lines beside the orders of all shafts; infinite of a recording too
-/// short to tell.
+/// short to tell, and of a run-up, over whose angle the noise of high frequencies is lost where the shaft turns slowly.
 fn noise_density(
     recording: &InputRecording,
     cells: &Cells,
     train: &GearTrain,
 ) -> Result<Vec<f64>, SignalError> {
+    let unknown = vec![f64::INFINITY; cells.frequency_hz.len()];
+    if recording.input.is_run_up(recording.sampling_rate_hz) {
+        return Ok(unknown);
+    }
     let speed = |shaft: &usize| train.shafts[*shaft].speed_ratio.value();
     let slowest = (0..train.shafts.len()).min_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or(0);
     let of_slowest = train.carried(&recording.input, train.input(), slowest)?;
     let angular = angular_resample(recording.values_g, &of_slowest, &AngularSettings::default())?;
     let revolutions = angular.revolutions();
     if revolutions < FEWEST_REVOLUTIONS {
-        return Ok(vec![f64::INFINITY; cells.frequency_hz.len()]);
+        return Ok(unknown);
     }
     let shaft_hz = of_slowest.mean_speed_hz(recording.sampling_rate_hz);
     let lines = lines_off_shafts(&angular, train, slowest);

@@ -2,7 +2,7 @@
 
 use super::{PathError, RecordingProblem};
 use crate::operation::Profile;
-use crate::signal::{GearTrain, ShaftPhase, TrainRecording, TrainTurning};
+use crate::signal::{GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
 
 /// Mesh periods in a window, so that mesh harmonics and the sidebands around them are apart.
 const PERIODS_IN_WINDOW: f64 = 20.0;
@@ -27,29 +27,42 @@ pub struct HealthyRecording {
     pub values_g: Vec<f64>,
     /// (S/s) Its sampling rate.
     pub sampling_rate_hz: f64,
-    /// How the shafts turned, against whose statements the recording is checked.
-    pub turning: TrainTurning,
+    /// Number of a shaft of the machine.
+    pub shaft: usize,
+    /// Angle of that shaft over the samples.
+    pub phase: ShaftPhase,
+    /// The source of the angle, whose mistakes are looked for.
+    pub stated: StatedTurning,
 }
 
 impl HealthyRecording {
-    /// The recording as one of this machine.
+    /// Carries the phase to the pinion's shaft or the input.
     ///
     /// # Arguments
-    /// * `train` - its tooth counts
-    fn of<'a>(&'a self, train: &'a GearTrain) -> TrainRecording<'a> {
-        let Self { values_g, sampling_rate_hz, turning } = self;
-        TrainRecording { signal: values_g, sampling_rate_hz: *sampling_rate_hz, train, turning }
-    }
-
-    /// Carries the phase to the input.
+    /// * `train` - tooth counts of the machine
     pub(super) fn over_input(&self, train: &GearTrain) -> Result<InputRecording<'_>, RecordingProblem> {
-        let input = self.of(train).phase(train.input())?;
+        let (shaft, shafts) = (self.shaft, train.shafts.len());
+        if shaft >= shafts {
+            return Err(RecordingProblem::NoSuchShaft { shaft, shafts });
+        }
+        let input = train.carried(&self.phase, shaft, train.input())?;
         Ok(InputRecording { values_g: &self.values_g, sampling_rate_hz: self.sampling_rate_hz, input })
     }
 
     /// Checks that the recording is of this machine and of nothing else.
+    ///
+    /// # Arguments
+    /// * `train` - tooth counts of the machine
     pub(super) fn check(&self, train: &GearTrain) -> Result<(), RecordingProblem> {
-        match self.of(train).check()?.into_iter().next() {
+        let Self { values_g, sampling_rate_hz, shaft, phase, stated } = self;
+        let turning = TrainTurning::Shaft { shaft: *shaft, phase: phase.clone(), stated: *stated };
+        let recording = TrainRecording {
+            signal: values_g,
+            sampling_rate_hz: *sampling_rate_hz,
+            train,
+            turning: &turning,
+        };
+        match recording.check()?.into_iter().next() {
             Some(warning) => Err(RecordingProblem::DoesNotFit(Box::new(warning))),
             None => Ok(()),
         }
