@@ -122,8 +122,8 @@ def test_a_gearbox_is_asked_about_before_anything_is_simulated() -> None:
         phase = mt.ShaftPhase.constant(6.0, rate_hz, values.size)
         with pytest.raises(mt.MeshtoneWarning, match="the recording is short"):
             mt.diagnose(mt.signal.TrainRecording(values, phase, rate_hz, shaft="output"), gearbox)
-        with pytest.raises(ValueError, match="the speed may be of shaft output"):
-            mt.diagnose(mt.signal.TrainRecording(values, phase, rate_hz), gearbox)
+        with pytest.raises(ValueError, match=r"input turns at 18\.0000 Hz by the recording"):
+            mt.diagnose(mt.signal.TrainRecording(values, phase, rate_hz, shaft="middle"), gearbox)
     with pytest.raises(ValueError, match="wheels with 32, 96, 48, 80 teeth, the scenario has 20, 40"):
         mt.diagnose(recording, RIG)
     with pytest.raises(ValueError, match="signal = 'average'"):

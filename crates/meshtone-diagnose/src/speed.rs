@@ -27,8 +27,8 @@ impl Question<'_> {
         for (asked, speed_hz) in self.all().filter_map(|asked| Some((asked, asked.input_speed_hz?))) {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
-                // Wrong pulses, or another shaft, are seen in the recording itself.
-                let reason = asked.mismatch.clone().or_else(|| reason(speed_hz / nominal_hz, prior));
+                // Wrong pulses are seen in the recording itself.
+                let reason = reason(speed_hz / nominal_hz, prior).or_else(|| asked.mismatch.clone());
                 let reason = reason.unwrap_or_else(|| {
                     let (_, key) = driving(prior);
                     format!(

@@ -302,7 +302,7 @@ mod tests {
         let at = |speed_hz| Observation { input_speed_hz: Some(speed_hz), ..broken.clone() };
         assert!(has(&ask(&[at(46.0)]), "the pinion turns at 46.000 Hz"));
         // What is seen in the recording itself is the reason.
-        let pulses = at(20.0).with_mismatch("fits one pulse a revolution");
+        let pulses = at(22.0).with_mismatch("fits one pulse a revolution");
         let refused = Question { now: &[pulses], healthy: &[] }.check(&prior).unwrap_err();
         assert!(refused.to_string().ends_with("fits one pulse a revolution"), "{refused}");
         for (speed_hz, words) in [
