@@ -127,4 +127,5 @@ axes[2].set(xlabel="Severity (-)", ylabel="Called damaged (-)", ylim=(-0.03, 1.0
 axes[2].legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
 for ax in axes:
     ax.grid(alpha=0.3)
-figure.savefig(Path(*sys.argv[2:3] or [source.parent], "diagnosis_calibration.png"), dpi=100)
+folder = Path(sys.argv[2]) if len(sys.argv) > 2 else source.parent
+figure.savefig(folder / "diagnosis_calibration.png", dpi=100)
