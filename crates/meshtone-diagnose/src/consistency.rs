@@ -41,7 +41,10 @@ fn level_db(asked: &Observation) -> f64 {
     10.0 * most.log10()
 }
 
-/// Recordings of which one is damaged and another is not, or another wheel is, where their levels do not say so already.
+/// Says which recordings contradict each other, where their levels do not say so already: one is damaged and another is not, or another
+/// wheel of it is.
+///
+/// Each recording is looked at alone. Two sure wheels are reported before a recording without damage, since they name more.
 ///
 /// # Arguments
 /// * `learned`, `question` - by what each recording is looked at alone
@@ -50,15 +53,9 @@ pub(crate) fn contradicting_states(learned: &Learned, question: &Question) -> Op
         return None;
     }
     let wheels = &learned.reference.prior.train.wheels;
-    // (-) Probability of damage to each wheel.
     let of_wheels = |one: &Observation| {
         let alone = Question { now: std::slice::from_ref(one), healthy: question.healthy };
-        let of_class = learned.probabilities(&learned.features(&learned.row(&alone)));
-        let mut of_wheels = vec![0.0; wheels.len()];
-        for (class, probability) in learned.classes.iter().zip(of_class) {
-            class.iter().for_each(|(_, wheel)| of_wheels[*wheel] += probability);
-        }
-        of_wheels
+        learned.wheel_probabilities(&learned.probabilities(&learned.features(&learned.row(&alone))))
     };
     let of_wheels: Vec<Vec<f64>> = question.now.iter().map(of_wheels).collect();
     let damaged: Vec<f64> = of_wheels.iter().map(|of| of.iter().sum()).collect();

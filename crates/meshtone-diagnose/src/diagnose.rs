@@ -81,12 +81,7 @@ pub fn diagnose(
         outside.p_value(&alone.values).min(of_mismatch(question.healthy))
     });
     let wheels = &learned.reference.prior.train.wheels;
-    let of_wheel = |wheel: usize| {
-        let classes = learned.classes.iter().zip(&of_class);
-        let of_wheel = classes.filter(|(class, _)| class.is_some_and(|(_, of)| of == wheel));
-        of_wheel.map(|(_, probability)| probability).sum()
-    };
-    let of_wheels: Vec<f64> = (0..wheels.len()).map(of_wheel).collect();
+    let of_wheels = learned.wheel_probabilities(&of_class);
     let any_damage = AnyDamage::over(&kinds, &draws_of, &of_wheels);
     let of_any = of_wheels.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     let is_seen = |wheel: &usize| question.now[0].wheels[*wheel].is_some();

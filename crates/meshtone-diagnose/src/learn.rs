@@ -174,25 +174,8 @@ impl Layout {
         })
     }
 
-    /// Features of a simulation.
-    ///
-    /// # Arguments
-    /// * `record` - the simulation
-    /// * `healthy` - of the same wheels, where it is compared with one
-    /// * `seed` - of the noise
-    fn simulation(
-        &self,
-        record: &ReferenceRecord,
-        healthy: Option<&[Option<HealthyWheel>]>,
-        seed: u64,
-    ) -> FeatureRow {
-        let now = with_noise(record, self, &self.noises[0], seed);
-        let speed = if self.knows_speed { (record.input_speed_hz / self.nominal_hz).ln() } else { 0.0 };
-        self.row(&shown(self.signal, &now), healthy, speed)
-    }
-
-    /// Features of simulations that can be compared with the question, in their order. What the healthy one of a unit shows is found once for
-    /// all that are compared with it.
+    /// Finds the features of simulations that can be compared with the question, in their order. Those of the healthy one of a unit are found once
+    /// for all that are compared with it.
     fn simulations(&self, reference: &ReferenceSet, records: &[&ReferenceRecord]) -> Vec<FeatureRow> {
         let seed = reference.prior.seed;
         let mut before: Vec<&ReferenceRecord> = match self.has_healthy {
@@ -206,12 +189,14 @@ impl Layout {
         };
         let before: BTreeMap<u64, Vec<Option<HealthyWheel>>> = before.par_iter().map(of_unit).collect();
         let row = |record: &&ReferenceRecord| {
-            self.simulation(record, before.get(&record.unit()).map(Vec::as_slice), seed)
+            let now = with_noise(record, self, &self.noises[0], seed);
+            let speed = if self.knows_speed { (record.input_speed_hz / self.nominal_hz).ln() } else { 0.0 };
+            self.row(&shown(self.signal, &now), before.get(&record.unit()).map(Vec::as_slice), speed)
         };
         records.par_iter().map(row).collect()
     }
 
-    /// What wheels show when they are healthy.
+    /// Finds the features of wheels when they are healthy.
     fn healthy(&self, wheels: &[Option<&WheelLines>]) -> Vec<Option<HealthyWheel>> {
         let of = |(wheel, lines): (usize, &Option<&WheelLines>)| {
             let lines = (*lines)?.clone();
@@ -386,6 +371,19 @@ impl<'a> Learned<'a> {
         let columns = self.coefficients.column_iter();
         let scores = columns.map(|column| column.iter().zip(features).map(|(a, b)| a * b).sum());
         self.softmax.probabilities(&scores.collect::<Vec<f64>>())
+    }
+
+    /// (-) The probability of damage to each wheel.
+    ///
+    /// # Arguments
+    /// * `of_class` - (-) probability of each class
+    pub(crate) fn wheel_probabilities(&self, of_class: &[f64]) -> Vec<f64> {
+        let of_wheel = |wheel: usize| {
+            let classes = self.classes.iter().zip(of_class);
+            let of_wheel = classes.filter(|(class, _)| class.is_some_and(|(_, of)| of == wheel));
+            of_wheel.map(|(_, probability)| probability).sum()
+        };
+        (0..self.reference.prior.train.wheels.len()).map(of_wheel).collect()
     }
 
     /// The rows of a class.

@@ -1,5 +1,7 @@
 //! A check that a recording is as loud as simulations of the rig.
 
+use meshtone::sensor::GRAVITY_M_PER_S2;
+
 use crate::learn::{Learned, Question};
 use crate::observation::{Observation, WheelLines};
 use crate::quantile::quantiles;
@@ -12,7 +14,7 @@ const BEYOND_DB: f64 = 10.0;
 /// # Arguments
 /// * `learned`, `question` - the simulations, and the recordings
 pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
-    let of = |asked: &Observation| level_db(learned, asked.wheels.iter().map(Option::as_ref));
+    let of = |asked: &Observation| observed_db(learned, asked);
     // A healthy recording is held against healthy simulations: damage is loud.
     let (name, asked, is_healthy) = match question.healthy.first() {
         Some(healthy) => ("healthy recording", of(healthy), true),
@@ -31,20 +33,25 @@ pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
     })
 }
 
-/// (dB) Standard gravity, by which a recording in m/s² is louder than one in g; and how near a difference of levels is to it.
-const UNIT_DB: f64 = 19.83;
+/// (dB) How near a difference of levels is to that of a recording in m/s² and one in g.
 const UNIT_NEAR_DB: f64 = 4.0;
 
 /// A hint for recordings that are about 9.81 times as loud, or as quiet, as the healthy one.
 pub(crate) fn unit_hint(learned: &Learned, question: &Question) -> Option<String> {
-    let of = |asked: &Observation| level_db(learned, asked.wheels.iter().map(Option::as_ref));
-    let louder_db = of(question.now.first()?) - of(question.healthy.first()?);
-    ((louder_db.abs() - UNIT_DB).abs() < UNIT_NEAR_DB).then(|| {
+    let louder_db =
+        observed_db(learned, question.now.first()?) - observed_db(learned, question.healthy.first()?);
+    let unit_db = 20.0 * GRAVITY_M_PER_S2.log10();
+    ((louder_db.abs() - unit_db).abs() < UNIT_NEAR_DB).then(|| {
         format!(
             "it is {:.2} times as loud as the healthy recording: are both in the same unit (1 g is 9.81 m/s²)?",
             10f64.powf(louder_db / 20.0)
         )
     })
+}
+
+/// (dB) Level of a recording.
+fn observed_db(learned: &Learned, asked: &Observation) -> f64 {
+    level_db(learned, asked.wheels.iter().map(Option::as_ref))
 }
 
 /// (dB) Level of the last wheel's average, of a pair the gear's, or of its difference signal where no more is known.

@@ -272,7 +272,7 @@ impl SlowestShaft<'_> {
         })
     }
 
-    /// What the orders of the shafts do not explain: impulses, or tones, that repeat with none, and whether they speak against the recording.
+    /// Looks for what the orders of the shafts do not explain, impulses or tones that repeat with none, and whether it speaks against the recording.
     ///
     /// What repeats whenever the same teeth meet again is taken away, and the lines of all shafts are left out of the spectrum of the rest. Of the
     /// others, those that stand out of their surroundings are tones; and what they make over time is impulsive where something strikes. Impulses are

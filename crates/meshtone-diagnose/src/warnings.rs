@@ -159,19 +159,19 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     let outside = answer.is_recording_outside().then(|| {
         let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
         let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
-        let why = match foreign {
-            _ if let Some(hint) = level::unit_hint(learned, question) => hint,
-            _ if answer.has_bearing_lines() => {
-                "a damaged bearing may be the reason, since no simulation has one".to_owned()
-            }
-            Some(tones) => format!(
+        let why = if let Some(hint) = level::unit_hint(learned, question) {
+            hint
+        } else if answer.has_bearing_lines() {
+            "a damaged bearing may be the reason, since no simulation has one".to_owned()
+        } else if let Some(tones) = foreign {
+            format!(
                 "it also has tones at no order of any shaft, {:.1} % of its energy, the strongest at {:.2} Hz: the scenario may be of another \
                  machine, or of one pair of a gearbox, or its teeth or speed are not those of the rig",
                 100.0 * tones.part,
                 tones.strongest.first().map_or(f64::NAN, |tone| tone.frequency_hz)
-            ),
-            None => "what is wrong may be none of the kinds that are known here, or the scenario is not this rig"
-                .to_owned(),
+            )
+        } else {
+            "what is wrong may be none of the kinds that are known here, or the scenario is not this rig".to_owned()
         };
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });

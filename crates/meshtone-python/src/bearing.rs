@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
 use crate::phase::ShaftPhase;
-use crate::process::{Machine, shaft_number, turning, typed};
+use crate::process::{Machine, shaft_number, stated_shaft, turning, typed};
 
 /// Number of elements, their diameter, the pitch diameter, and the contact angle.
 type Geometry = (u32, f64, f64, f64);
@@ -76,7 +76,7 @@ pub fn bearings_of_train<'py>(
     let signal = samples(&signal)?;
     let train = machine.map_or_else(|| Ok(GearTrain::of_shaft("shaft")), |machine| machine.train())?;
     let turning = turning(&train, phase, shaft)?;
-    let own = shaft.map_or_else(|| Ok(train.input()), |name| shaft_number(&train, name))?;
+    let own = stated_shaft(&train, shaft)?;
     let place = |(of, shaft): (Geometry, Option<String>)| -> PyResult<TrainBearing> {
         let shaft = shaft.map_or(Ok(own), |name| shaft_number(&train, &name))?;
         Ok(TrainBearing { geometry: geometry(of)?, shaft })

@@ -46,7 +46,8 @@ impl Observation {
         py.detach(observe).map(Self).map_err(value_error)
     }
 
-    /// Of a measured signal, in g, with the phase of a shaft, the pinion's or the input where none is named, in the band of another observation that it is compared with.
+    /// Observes a measured signal, in g, by the phase of a shaft (the pinion's or the input where none is named), in the band of another observation
+    /// that it is compared with.
     #[staticmethod]
     fn of_measured(
         py: Python<'_>,

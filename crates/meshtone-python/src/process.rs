@@ -120,9 +120,14 @@ pub fn shaft_number(train: &GearTrain, name: &str) -> PyResult<usize> {
     known.ok_or_else(|| value_error(format!("shaft = '{name}': must be one of {}", names.join(", "))))
 }
 
+/// Number of the shaft that a phase is stated to be of, the input where none is named.
+pub fn stated_shaft(train: &GearTrain, name: Option<&str>) -> PyResult<usize> {
+    name.map_or_else(|| Ok(train.input()), |name| shaft_number(train, name))
+}
+
 /// How a train turns by the phase of one shaft, of the input where none is named.
 pub fn turning(train: &GearTrain, phase: &ShaftPhase, shaft: Option<&str>) -> PyResult<TrainTurning> {
-    let shaft = shaft.map_or_else(|| Ok(train.input()), |name| shaft_number(train, name))?;
+    let shaft = stated_shaft(train, shaft)?;
     Ok(TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated: StatedTurning::Other })
 }
 
@@ -134,7 +139,7 @@ pub fn stated_of_rig(
     phase: &ShaftPhase,
     shaft: Option<&str>,
 ) -> PyResult<(usize, StatedTurning)> {
-    let shaft = shaft.map_or_else(|| Ok(train.input()), |name| shaft_number(train, name))?;
+    let shaft = stated_shaft(train, shaft)?;
     let ratio = train.speed_ratio(shaft, train.input()).value();
     let stated = match phase.0.zero {
         AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: rig.operation().pinion_speed_hz * ratio },

@@ -204,7 +204,7 @@ impl TrainRecording<'_> {
         Ok(self.check_over(&angular, *shaft).warnings)
     }
 
-    /// What does not fit, and foreign tones, over the angle of a shaft; nothing where its phase follows from that of another.
+    /// Looks for what does not fit, and for foreign tones, over the angle of a shaft; for nothing where its phase follows from that of another.
     fn check_over(&self, angular: &AngularSignal, shaft: usize) -> RecordingCheck {
         match self.turning {
             TrainTurning::Shaft { shaft: of, phase, stated } if *of == shaft => {
