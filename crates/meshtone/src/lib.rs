@@ -47,17 +47,27 @@ pub mod tuning;
 mod warnings;
 pub mod wheel;
 
-/// Declares modules that are public only for the project's own tests and benchmarks.
-macro_rules! internals {
-    ($($name:ident)+) => {$(
-        #[cfg(feature = "internals")]
-        pub mod $name;
-        #[cfg(not(feature = "internals"))]
-        mod $name;
-    )+};
-}
-
-internals! { interpolation machine published solver stiffness }
+// Public only for the project's own tests and benchmarks. Declared without a macro, since rustfmt does not look into macros for files.
+#[cfg(feature = "internals")]
+pub mod interpolation;
+#[cfg(not(feature = "internals"))]
+mod interpolation;
+#[cfg(feature = "internals")]
+pub mod machine;
+#[cfg(not(feature = "internals"))]
+mod machine;
+#[cfg(feature = "internals")]
+pub mod published;
+#[cfg(not(feature = "internals"))]
+mod published;
+#[cfg(feature = "internals")]
+pub mod solver;
+#[cfg(not(feature = "internals"))]
+mod solver;
+#[cfg(feature = "internals")]
+pub mod stiffness;
+#[cfg(not(feature = "internals"))]
+mod stiffness;
 
 /// Version of the numbers that a scenario gives. It grows with every change of the simulation that changes them, whatever the version of
 /// the program: what is kept of an older one, as a data set that is continued or a set of reference simulations, is made anew.

@@ -15,18 +15,18 @@ mod turning_force;
 
 pub use body::WheelBody;
 pub use gearbox::{
-    Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft, Housing, MeshLine,
-    PlacedUnbalance, Seat, SeatedBearing,
+    Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft,
+    Housing, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
 };
-pub(crate) use modes::connected_groups;
 pub(crate) use modes::KnownModes;
+pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
-pub use parts::{Axis, Drive, Machine, Place};
 pub(crate) use parts::weights;
+pub use parts::{Axis, Drive, Machine, Place};
 #[cfg(feature = "internals")]
 pub use parts::{LineOfAction, Spring};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use support::{Support, SupportSprings};
-pub use turning_force::{Bow, TurningForce, Unbalance};
 pub(crate) use train::turn_planes;
 pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, SupportMode, Supports, Train, WHEELS};
+pub use turning_force::{Bow, TurningForce, Unbalance};

@@ -68,8 +68,11 @@ impl Modes {
     /// * `damping_ratio` - (-) of every mode that deforms it
     pub fn damped_alike(machine: &Machine, damping_ratio: f64) -> Self {
         let mut modes = Self::undamped(machine);
-        modes.damping_ratio =
-            modes.angular_frequencies.iter().map(|omega| if *omega > 0.0 { damping_ratio } else { 0.0 }).collect();
+        modes.damping_ratio = modes
+            .angular_frequencies
+            .iter()
+            .map(|omega| if *omega > 0.0 { damping_ratio } else { 0.0 })
+            .collect();
         modes
     }
 

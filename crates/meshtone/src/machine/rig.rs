@@ -4,10 +4,10 @@ use std::ops::Bound::Excluded;
 
 use meshtone_toml::{ReadResult, TomlValue};
 
-use crate::keys::{
-    Check, KeyKind, KeyValue, Keys, NumberFiles, Range, KeyRow, Written, below, check_keys, field, row,
-};
 use super::{Support, Unbalance};
+use crate::keys::{
+    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, below, check_keys, field, row,
+};
 use crate::wheel::{Gears, WheelName};
 
 /// Bearings, shafts, brake and wheel bodies.
@@ -94,7 +94,8 @@ impl Keys for Rig {
                 field!(wheel_rotational_stiffness_nm_per_rad),
             )
             .range(STIFFNESS),
-            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2)).range(MASS),
+            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
+                .range(MASS),
             row(
                 "damping_ratio",
                 "-",
@@ -130,19 +131,16 @@ impl Keys for Rig {
             .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
             row("gear_inertia", "", "the wheel's mass and inertias, any of the three", field!(gear_inertia))
                 .otherwise(DISC)
-                .alternative("{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }"),
+                .alternative(
+                    "{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }",
+                ),
             row("pinion_unbalance", "", "the unbalance of the wheel and its shaft", field!(pinion_unbalance))
                 .otherwise("none")
                 .alternative("{ g_mm = 50.0 }"),
             row("gear_unbalance", "", "the unbalance of the wheel and its shaft", field!(gear_unbalance))
                 .otherwise("none")
                 .alternative("{ g_mm = 50.0 }"),
-            row(
-                "support",
-                "",
-                "the supports of the shafts' bearings",
-                field!(support),
-            ),
+            row("support", "", "the supports of the shafts' bearings", field!(support)),
             row(
                 "mesh_damping_ratio",
                 "-",

@@ -71,7 +71,8 @@ impl Support {
                 [stiffness_n_per_m, coupling_n_per_m]
             }
             SupportSprings::Frequencies { base_hz, differential_hz } => {
-                let [base, differential] = [base_hz, differential_hz].map(|hz| self.mass_kg * (TAU * hz).powi(2));
+                let [base, differential] =
+                    [base_hz, differential_hz].map(|hz| self.mass_kg * (TAU * hz).powi(2));
                 [base, (differential - base) / 2.0]
             }
         }
@@ -85,13 +86,16 @@ impl Support {
 
     /// A note about what a support by stiffnesses has of the values that it starts from; none of a support by frequencies.
     pub(crate) fn former_defaults(&self) -> Option<ScenarioWarning> {
-        let SupportSprings::Stiffnesses { stiffness_n_per_m, coupling_n_per_m } = self.springs else { return None };
+        let SupportSprings::Stiffnesses { stiffness_n_per_m, coupling_n_per_m } = self.springs else {
+            return None;
+        };
         let kept = [
             ("mass_kg = 1.6", self.mass_kg == Self::BY_STIFFNESSES.mass_kg),
             ("stiffness_n_per_m = 1.6e8", stiffness_n_per_m == 1.6e8),
             ("coupling_n_per_m = 5e8", coupling_n_per_m == 5e8),
         ];
-        let kept: Vec<&str> = kept.into_iter().filter_map(|(text, is_kept)| is_kept.then_some(text)).collect();
+        let kept: Vec<&str> =
+            kept.into_iter().filter_map(|(text, is_kept)| is_kept.then_some(text)).collect();
         let message = format!(
             "is given by stiffnesses and has {}, the former default of what is left out; if this is not \
              intended, give other values, or base_hz and differential_hz",
@@ -104,8 +108,14 @@ impl Support {
     pub(super) fn check(&self) -> Check {
         match self.springs {
             SupportSprings::Frequencies { base_hz, differential_hz } if differential_hz <= base_hz => {
-                let problem = format!("must be more than base_hz, {base_hz:?} Hz: the coupling of the supports stiffens them");
-                Err(ScenarioError::new("rig.support.differential_hz", format!("{differential_hz:?}"), problem))
+                let problem = format!(
+                    "must be more than base_hz, {base_hz:?} Hz: the coupling of the supports stiffens them"
+                );
+                Err(ScenarioError::new(
+                    "rig.support.differential_hz",
+                    format!("{differential_hz:?}"),
+                    problem,
+                ))
             }
             _ => Ok(()),
         }
@@ -124,8 +134,13 @@ impl Keys for Support {
     fn rows() -> Vec<KeyRow<Self>> {
         let springs: Field<Self, SupportSprings> = field!(springs);
         let mut rows = vec![
-            row("mass_kg", "kg", "the mass of each support; 1.6 by default where a stiffness is given", field!(mass_kg))
-                .range(MASS),
+            row(
+                "mass_kg",
+                "kg",
+                "the mass of each support; 1.6 by default where a stiffness is given",
+                field!(mass_kg),
+            )
+            .range(MASS),
         ];
         rows.extend(flatten(springs));
         rows.push(
@@ -144,7 +159,10 @@ impl Keys for Support {
         let given = |keys: [&'static str; 2]| keys.into_iter().find(|key| table.optional(key).is_some());
         match (given(FREQUENCIES), given(STIFFNESSES)) {
             (Some(frequency), Some(stiffness)) => Err(table
-                .error(stiffness, format!("given beside {frequency}; the stiffness of the supports has only one source"))
+                .error(
+                    stiffness,
+                    format!("given beside {frequency}; the stiffness of the supports has only one source"),
+                )
                 .with_help(format!("remove {frequency}, or remove {stiffness}"))),
             (Some(_), None) => {
                 if let SupportSprings::Stiffnesses { .. } = self.springs {

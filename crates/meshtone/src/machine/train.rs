@@ -323,7 +323,13 @@ pub fn torsional_stiffness(shaft: &Shaft, gears: &Gears) -> f64 {
 ///
 /// # Arguments
 /// * `torsion` - (N m/rad) stiffness of the pinion's and of the gear's shaft
-fn springs(gears: &Gears, rig: &Rig, torsion: [f64; 2], supports: Supports, coordinates: usize) -> Vec<Spring> {
+fn springs(
+    gears: &Gears,
+    rig: &Rig,
+    torsion: [f64; 2],
+    supports: Supports,
+    coordinates: usize,
+) -> Vec<Spring> {
     let spring = |damping_ratio| Spring::new(coordinates, damping_ratio);
     let mut gear_torsion = spring(rig.gear_shaft.damping_ratio);
     gear_torsion.resist(&[(THETA_GEAR, 1.0), (THETA_BRAKE, -1.0)], torsion[1]);

@@ -31,8 +31,13 @@ impl Keys for Unbalance {
         vec![
             row("g_mm", "g mm", "the mass times its distance from the axis", field!(g_mm))
                 .range(Range::not_negative().implausible_above(1e7)),
-            row("angle_deg", "°", "its direction at time 0, before settling, from x towards y", field!(angle_deg))
-                .range(ANGLE),
+            row(
+                "angle_deg",
+                "°",
+                "its direction at time 0, before settling, from x towards y",
+                field!(angle_deg),
+            )
+            .range(ANGLE),
         ]
     }
 }
@@ -66,8 +71,13 @@ impl Keys for Bow {
                 field!(middle_um),
             )
             .range(Range::not_negative().implausible_above(1e4)),
-            row("angle_deg", "°", "its direction at time 0, before settling, from x towards y", field!(angle_deg))
-                .range(ANGLE),
+            row(
+                "angle_deg",
+                "°",
+                "its direction at time 0, before settling, from x towards y",
+                field!(angle_deg),
+            )
+            .range(ANGLE),
         ]
     }
 }
@@ -90,7 +100,12 @@ impl TurningForce {
     /// * `speed_ratio`, `of_square_speed` - see the fields
     /// * `along` - the forces as they point along x and along y
     /// * `angle_deg` - (°) their direction at the start, from x towards y
-    pub(super) fn new(speed_ratio: f64, of_square_speed: bool, [x, y]: [DVector<f64>; 2], angle_deg: f64) -> Self {
+    pub(super) fn new(
+        speed_ratio: f64,
+        of_square_speed: bool,
+        [x, y]: [DVector<f64>; 2],
+        angle_deg: f64,
+    ) -> Self {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         Self { speed_ratio, of_square_speed, at: [&x * cos + &y * sin, y * cos - x * sin] }
     }

@@ -13,10 +13,10 @@ mod newmark;
 mod teeth;
 mod trace;
 
+pub(crate) use newmark::integrate;
 #[cfg(feature = "internals")]
 pub use teeth::relieved_teeth;
 pub use teeth::teeth;
-pub(crate) use newmark::integrate;
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -128,7 +128,8 @@ impl Published {
     fn wheels_move_in_opposition(&self) -> bool {
         let solver = &self.scenario.solver;
         self.machine.pinion.mass_kg == self.machine.gear.mass_kg
-            && solver.initial_displacement.is_none() && solver.initial_velocity.is_none()
+            && solver.initial_displacement.is_none()
+            && solver.initial_velocity.is_none()
     }
 
     /// (m, rad) Displacement at the start in the 13 coordinates.

@@ -24,10 +24,17 @@ pub fn relieved_teeth(gears: &Gears, bore_radii_mm: [f64; 2], relief: Option<Tip
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
     let profile = |wheel: &Wheel| {
-        tooth_profile(wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm, relief, Root::Published(joint(wheel)))
+        tooth_profile(
+            wheel,
+            gears.points_per_tooth,
+            gears.uniform_flank_reduction_mm,
+            relief,
+            Root::Published(joint(wheel)),
+        )
     };
     let own = Teeth::with_profiles(gears, [pinion, gear], profile);
-    let contact = ContactLine { pinion_initial_contact_index: own.contact.initial_contact_index, ..own.contact };
+    let contact =
+        ContactLine { pinion_initial_contact_index: own.contact.initial_contact_index, ..own.contact };
     Teeth { pinion_profile: resampled(&own.pinion_profile, &own.contact), contact, ..own }
 }
 

@@ -80,7 +80,8 @@ impl Order {
             let lists = [&output.displacement, &output.velocity, &output.acceleration];
             lists.into_iter().any(|list| list.get(n).is_some_and(|weight| *weight != 0.0))
         };
-        let seen_by = |n: &usize| -> Vec<bool> { prepared.outputs.iter().map(|output| sees(output, *n)).collect() };
+        let seen_by =
+            |n: &usize| -> Vec<bool> { prepared.outputs.iter().map(|output| sees(output, *n)).collect() };
         let mut order: Vec<usize> = (0..prepared.restore.len()).collect();
         order.sort_by_cached_key(seen_by);
         Self(order)
@@ -126,7 +127,8 @@ impl History {
     /// Keeps what some outputs see.
     fn new(outputs: &[OutputOfModes]) -> Self {
         let kept = |number: usize| {
-            let seen = || outputs.iter().map(|output| &output.weights[number]).filter(|seen| !seen.lots.is_empty());
+            let seen =
+                || outputs.iter().map(|output| &output.weights[number]).filter(|seen| !seen.lots.is_empty());
             let end = seen().map(|seen| seen.first + seen.lots.len()).max().unwrap_or(0);
             let lots = seen().map(|seen| seen.first).min().unwrap_or(0)..end;
             let tiles = vec![LotTile([Lanes::splat(0.0); TILE]); lots.len() * BLOCK / TILE];
@@ -195,7 +197,12 @@ pub(super) fn integrate(
             history: &mut history,
         });
         if first_recorded < sample + steps {
-            instructions.run(Outputs { constants: &constants, history: &mut history, first_recorded, outputs: &mut outputs });
+            instructions.run(Outputs {
+                constants: &constants,
+                history: &mut history,
+                first_recorded,
+                outputs: &mut outputs,
+            });
         }
         let moved = state.lots.iter().flat_map(|lot| &lot.0[..2]).flat_map(|lanes| &lanes.0);
         if !moved.into_iter().all(|mode| is_bounded(*mode)) {
@@ -246,7 +253,8 @@ impl<'a> Constants<'a> {
             lots.map(lot).collect()
         };
         let output = |others: &'a OutputWeights| OutputOfModes {
-            weights: [&others.displacement, &others.velocity, &others.acceleration].map(|list| order.weights(list)),
+            weights: [&others.displacement, &others.velocity, &others.acceleration]
+                .map(|list| order.weights(list)),
             others,
         };
         let (restore, damp) = (order.lots(&prepared.restore), order.lots(&prepared.damp));
@@ -259,7 +267,11 @@ impl<'a> Constants<'a> {
         Self {
             lots: (0..restore.len()).map(lot).collect(),
             columns: prepared.columns.iter().map(column).collect(),
-            turning: prepared.turning_push.iter().map(|of| of.each_ref().map(|push| order.lots(push))).collect(),
+            turning: prepared
+                .turning_push
+                .iter()
+                .map(|of| of.each_ref().map(|push| order.lots(push)))
+                .collect(),
             outputs: prepared.outputs.iter().map(output).collect(),
             all_midway: prepared.columns_of_unknown.iter().all(|columns| columns.len() == 1),
             prepared,
@@ -372,7 +384,8 @@ impl Task for Outputs<'_, '_> {
                 for (k, external) in external.iter().enumerate() {
                     let sample = tile * TILE + k;
                     let forces = dot(&weights.force, &force[sample * columns..]);
-                    let steady = weights.constant + weights.per_sample * (self.first_recorded + sample) as f64;
+                    let steady =
+                        weights.constant + weights.per_sample * (self.first_recorded + sample) as f64;
                     values.push(steady + forces + dot(&weights.external, external) + total(sums[k]));
                 }
             }
@@ -390,10 +403,13 @@ impl State {
         sample: &ContactSample,
         external: Option<[f64; EXTERNALS]>,
     ) {
-        for (LotState([displacement, velocity, acceleration]), constants) in self.lots.iter_mut().zip(&constants.lots) {
+        for (LotState([displacement, velocity, acceleration]), constants) in
+            self.lots.iter_mut().zip(&constants.lots)
+        {
             *velocity = velocity.add(simd, *acceleration);
             *displacement = displacement.add(simd, *velocity);
-            *acceleration = constants.restore.mul_add(simd, *displacement, constants.damp.mul(simd, *velocity));
+            *acceleration =
+                constants.restore.mul_add(simd, *displacement, constants.damp.mul(simd, *velocity));
             for (push, external) in constants.external_push.iter().zip(external.into_iter().flatten()) {
                 *acceleration = push.mul_add(simd, Lanes::splat(external), *acceleration);
             }
@@ -469,7 +485,9 @@ impl Constants<'_> {
         state.counts.searched += searched;
         // The static forces of the bearings are those of their linear springs.
         let static_forces_n = prepared.static_force_n.iter().copied().chain(std::iter::repeat(0.0));
-        for (unknown, (static_force_n, force)) in static_forces_n.zip(*forces).enumerate().take(equations.count) {
+        for (unknown, (static_force_n, force)) in
+            static_forces_n.zip(*forces).enumerate().take(equations.count)
+        {
             let mut columns = prepared.columns_of_unknown[unknown].clone();
             if let Some(middle) = columns.next() {
                 // The static force acts midway along the face.
@@ -504,7 +522,9 @@ impl Prepared {
             equations.of_static[a] = self.static_force_n.iter().enumerate().map(of_static).sum();
             for b in 0..equations.count {
                 if moved.contains(&a) || moved.contains(&b) {
-                    let of_r = |(r, of_r): (usize, f64)| weights(b).map(move |(s, of_s)| of_r * self.compliance[r][s] * of_s);
+                    let of_r = |(r, of_r): (usize, f64)| {
+                        weights(b).map(move |(s, of_s)| of_r * self.compliance[r][s] * of_s)
+                    };
                     equations.compliance[a][b] = weights(a).flat_map(of_r).sum();
                 }
             }
@@ -546,7 +566,8 @@ impl Law for ContactLaw<'_> {
 
     #[inline(always)]
     fn of_bearing(&self, bearing: usize, stretch_m: [f64; 2]) -> BearingLoad {
-        self.bearings[bearing].beside_spring(stretch_m, &self.sample.block.bearings[bearing].places(self.sample.k))
+        self.bearings[bearing]
+            .beside_spring(stretch_m, &self.sample.block.bearings[bearing].places(self.sample.k))
     }
 }
 
@@ -616,7 +637,13 @@ impl Equations {
     /// * `free` - (m) D₀
     /// * `deflection` - (m) where to begin; set to the solution
     #[inline(always)]
-    fn solve(&self, law: &impl Law, free: &OfUnknowns, deflection: &mut OfUnknowns, search: &mut Search) -> Found {
+    fn solve(
+        &self,
+        law: &impl Law,
+        free: &OfUnknowns,
+        deflection: &mut OfUnknowns,
+        search: &mut Search,
+    ) -> Found {
         let Search { loads, next } = search;
         self.set_loads(law, deflection, &mut loads[0]);
         for iteration in 0..MOST_ITERATIONS {
@@ -641,7 +668,13 @@ impl Equations {
 
     /// Whether the same pairs touch before and after an iteration, and no bearing has moved.
     #[inline(always)]
-    fn is_same(&self, loads: &Loads, next: &Loads, deflection: &OfUnknowns, next_deflection: &OfUnknowns) -> bool {
+    fn is_same(
+        &self,
+        loads: &Loads,
+        next: &Loads,
+        deflection: &OfUnknowns,
+        next_deflection: &OfUnknowns,
+    ) -> bool {
         let has_moved = |a: usize| moves(deflection, next_deflection, a);
         loads.slopes[..self.meshes] == next.slopes[..self.meshes] && !(self.meshes..self.count).any(has_moved)
     }
@@ -941,7 +974,8 @@ mod tests {
     /// The search along the line alone comes to the same solution.
     #[test]
     fn search_along_the_line_ends_at_the_solution() {
-        let law = |_: usize, deflection: f64| if deflection > 0.0 { [3.0 * deflection, 3.0] } else { [0.0, 0.0] };
+        let law =
+            |_: usize, deflection: f64| if deflection > 0.0 { [3.0 * deflection, 3.0] } else { [0.0, 0.0] };
         let mut compliance = [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS];
         compliance[0][..2].copy_from_slice(&[2.0, 0.9]);
         compliance[1][..2].copy_from_slice(&[0.9, 1.0]);
@@ -958,6 +992,9 @@ mod tests {
             equations.newton(&free, &searched, &loads, &mut newton);
             searched = equations.towards(&law, &free, &searched, &newton);
         }
-        assert!((searched[0] - exact[0]).abs() < 1e-12 && (searched[1] - exact[1]).abs() < 1e-12, "{searched:?}");
+        assert!(
+            (searched[0] - exact[0]).abs() < 1e-12 && (searched[1] - exact[1]).abs() < 1e-12,
+            "{searched:?}"
+        );
     }
 }

@@ -112,7 +112,12 @@ impl Problem<'_> {
     /// rolling bearings or unbalance, and no more modes than the largest has, all of which are stepped.
     pub(crate) fn fits_a_lane(&self) -> bool {
         let machine = &self.machine;
-        machine.lines.len() == 1 && machine.bearings.is_empty() && machine.turning_forces.is_empty() && self.forcing.springs().eq([PAIRS]) && machine.modes() <= MOST_MODES && machine.residual.is_empty()
+        machine.lines.len() == 1
+            && machine.bearings.is_empty()
+            && machine.turning_forces.is_empty()
+            && self.forcing.springs().eq([PAIRS])
+            && machine.modes() <= MOST_MODES
+            && machine.residual.is_empty()
     }
 }
 
@@ -266,6 +271,9 @@ impl<const L: usize> LaneForcing<L> {
                 }
             }
         }
-        PairsSample::line_up(&mut self.pairs[..samples], &self.blocks.each_ref().map(|block| &block.meshes[0]));
+        PairsSample::line_up(
+            &mut self.pairs[..samples],
+            &self.blocks.each_ref().map(|block| &block.meshes[0]),
+        );
     }
 }

@@ -85,7 +85,8 @@ impl Residual {
     /// # Arguments
     /// * `weights` - of the modes
     fn at_rest(&self, weights: &[f64]) -> AtRest {
-        let yielding = |force: &[f64]| (0..weights.len()).map(|n| weights[n] * force[n] / self.stiffness[n]).sum();
+        let yielding =
+            |force: &[f64]| (0..weights.len()).map(|n| weights[n] * force[n] / self.stiffness[n]).sum();
         AtRest {
             constant: dot(weights, &self.static_displacement),
             of_force: self.columns.iter().map(|column| yielding(column)).collect(),
@@ -137,7 +138,9 @@ impl ModalLine {
         [-1.0, 1.0].map(|side| {
             let mut line = self.columns[0].clone();
             for column in &self.columns[1..] {
-                line.iter_mut().zip(column).for_each(|(line, per_m)| *line += side * self.face_reach_m * per_m);
+                line.iter_mut()
+                    .zip(column)
+                    .for_each(|(line, per_m)| *line += side * self.face_reach_m * per_m);
             }
             line
         })
@@ -185,7 +188,9 @@ impl ModalMachine {
         let [motor, brake] = drives(machine).map(|force| modal(&force));
         let rigid = modal_motion(&machine.rigid_rotation);
         let velocity = match start.velocity {
-            Some(given) => DVector::from_fn(machine.coordinates(), |n, _| given.get(n).copied().unwrap_or(0.0)),
+            Some(given) => {
+                DVector::from_fn(machine.coordinates(), |n, _| given.get(n).copied().unwrap_or(0.0))
+            }
             None => &machine.rigid_rotation * start.motor_rad_per_s,
         };
         let velocity = modal_motion(&(velocity - &machine.rigid_rotation * start.nominal_rad_per_s));
@@ -200,7 +205,8 @@ impl ModalMachine {
         let turning: Vec<[DVector<f64>; 2]> =
             machine.turning_forces.iter().map(|force| force.at.each_ref().map(modal)).collect();
         let moved = |n: usize| {
-            let columns = lines.iter().flatten().chain(bearings.iter().flatten()).chain(turning.iter().flatten());
+            let columns =
+                lines.iter().flatten().chain(bearings.iter().flatten()).chain(turning.iter().flatten());
             [&motor, &brake, &rigid, &velocity].into_iter().chain(columns).any(|v| v[n] != 0.0)
         };
         let active: Vec<usize> = (0..machine.coordinates()).filter(|&n| moved(n)).collect();
@@ -243,7 +249,8 @@ impl ModalMachine {
     /// # Arguments
     /// * `angular_frequency` - (rad/s) of the highest mode that is stepped
     pub fn up_to(mut self, angular_frequency: f64) -> Self {
-        let is_stepped: Vec<bool> = self.stiffness.iter().map(|stiffness| stiffness.sqrt() <= angular_frequency).collect();
+        let is_stepped: Vec<bool> =
+            self.stiffness.iter().map(|stiffness| stiffness.sqrt() <= angular_frequency).collect();
         let split = |values: &mut Vec<f64>| take_out(values, &is_stepped);
         self.residual = Residual {
             shapes: take_out(&mut self.shapes, &is_stepped),
@@ -330,7 +337,8 @@ impl ModalMachine {
     /// * `highest_rad_per_s` - (rad/s) natural frequency of the highest mode that counts
     pub(crate) fn slowest_closed(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> DecayingMode {
         // An energy is the square of a modal entry, which is rounding below ROUNDING of the largest.
-        let is_moved = |mode: &ClosedMode| mode.mesh_energies.iter().any(|energy| *energy > ROUNDING * ROUNDING);
+        let is_moved =
+            |mode: &ClosedMode| mode.mesh_energies.iter().any(|energy| *energy > ROUNDING * ROUNDING);
         let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
         let moved = self.closed_modes(meshes, highest_rad_per_s).into_iter().filter(is_moved);
         let decays = moved.map(|mode| mode.decay);
@@ -396,7 +404,8 @@ fn turned_back(turn: &DMatrix<f64>, shapes: &DMatrix<f64>, modes: &[usize]) -> V
 
 /// Takes the entries out of a list that are not to stay.
 fn take_out<T>(values: &mut Vec<T>, stays: &[bool]) -> Vec<T> {
-    let (kept, out): (Vec<_>, Vec<_>) = std::mem::take(values).into_iter().zip(stays).partition(|(_, stays)| **stays);
+    let (kept, out): (Vec<_>, Vec<_>) =
+        std::mem::take(values).into_iter().zip(stays).partition(|(_, stays)| **stays);
     *values = kept.into_iter().map(|(value, _)| value).collect();
     out.into_iter().map(|(value, _)| value).collect()
 }

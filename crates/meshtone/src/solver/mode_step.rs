@@ -160,4 +160,3 @@ impl SampledSine {
         Self { second_difference: 2.0 * turn_rad.cos() - 2.0, velocity: -0.5 / (turn_rad / 2.0).tan() }
     }
 }
-

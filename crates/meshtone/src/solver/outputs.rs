@@ -99,7 +99,8 @@ impl Output {
             }
             Self::MeshForce { mesh } => return mesh_force(model, *mesh),
         };
-        let AtRest { constant, of_force, of_drives: [of_motor, of_brake] } = model.residual.of_coordinates(&weights);
+        let AtRest { constant, of_force, of_drives: [of_motor, of_brake] } =
+            model.residual.of_coordinates(&weights);
         let (weights, rigid) = model.of_coordinates(&weights);
         let scaled = |of: &dyn Fn(&StepOfMode) -> f64| -> Vec<f64> {
             weights.iter().zip(steps).map(|(weight, step)| weight * of(step)).collect()

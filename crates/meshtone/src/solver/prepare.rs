@@ -86,8 +86,9 @@ impl Prepared {
         let steps = model.steps(&problem.laws, step_s);
         let of_steps = |of: fn(&StepOfMode) -> f64| steps.iter().map(of).collect::<Vec<f64>>();
         let (restore, damp) = (of_steps(StepOfMode::of_displacement), of_steps(StepOfMode::of_velocity));
-        let yielding =
-            |(step, force): (&StepOfMode, &f64)| step_s * step_s * step.force_factor * step.yielding() * force;
+        let yielding = |(step, force): (&StepOfMode, &f64)| {
+            step_s * step_s * step.force_factor * step.yielding() * force
+        };
         let pushed = |force: &[f64]| steps.iter().zip(force).map(yielding).collect::<Vec<f64>>();
         let external_push = external_forces(model).map(|force| pushed(&force));
         let turning_push: Vec<[Vec<f64>; 2]> =
@@ -102,7 +103,8 @@ impl Prepared {
             .collect();
         let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| pushed(line)).collect();
         let column = |((line, lead), push): (&(&[f64], f64), &Vec<f64>)| {
-            let of_modes = |of: &dyn Fn(usize) -> f64| (0..steps.len()).map(|n| line[n] * of(n)).collect::<Vec<f64>>();
+            let of_modes =
+                |of: &dyn Fn(usize) -> f64| (0..steps.len()).map(|n| line[n] * of(n)).collect::<Vec<f64>>();
             let ahead = |n: usize| steps[n].beta + lead / 2.0;
             let of_acceleration = of_modes(&ahead);
             let of_displacement = of_modes(&|n| 1.0 + ahead(n) * restore[n]);
@@ -111,9 +113,15 @@ impl Prepared {
             let column = Column {
                 push: push.clone(),
                 static_deflection: dot(line, &model.static_displacement),
-                of_force: pushes.iter().map(|push| dot(&of_displacement, push) + dot(&of_velocity, push)).collect(),
+                of_force: pushes
+                    .iter()
+                    .map(|push| dot(&of_displacement, push) + dot(&of_velocity, push))
+                    .collect(),
                 of_external: external_push.each_ref().map(|push| dot(&of_acceleration, push)),
-                of_turning: turning_push.iter().map(|of| of.each_ref().map(|push| dot(&of_acceleration, push))).collect(),
+                of_turning: turning_push
+                    .iter()
+                    .map(|of| of.each_ref().map(|push| dot(&of_acceleration, push)))
+                    .collect(),
                 of_displacement,
                 of_velocity,
             };
@@ -125,12 +133,19 @@ impl Prepared {
         for (((column, compliance), residual), (_, lead)) in
             columns.iter_mut().zip(&mut compliance).zip(residual).zip(&lines)
         {
-            compliance.iter_mut().zip(residual.of_force).for_each(|(compliance, residual)| *compliance += residual);
+            compliance
+                .iter_mut()
+                .zip(residual.of_force)
+                .for_each(|(compliance, residual)| *compliance += residual);
             column.static_deflection += residual.constant;
             let [of_motor, of_brake] = residual.of_drives;
             // Modes at rest follow the motor's speed too, and that is the damping's lead of their deflection.
             let of_external = [of_motor, of_brake, lead * step_s * of_motor];
-            column.of_external.iter_mut().zip(of_external).for_each(|(external, residual)| *external += residual);
+            column
+                .of_external
+                .iter_mut()
+                .zip(of_external)
+                .for_each(|(external, residual)| *external += residual);
         }
         let mut next = 0;
         let of_meshes = model.lines.iter().map(|line| line.columns.len());
@@ -187,8 +202,12 @@ impl Prepared {
             (of(columns[mesh].start), tilted)
         };
         let turned = self.turned_at_rest(model, block);
-        let lines: Vec<&Vec<f64>> =
-            model.lines.iter().flat_map(|line| &line.columns).chain(model.bearings.iter().flatten()).collect();
+        let lines: Vec<&Vec<f64>> = model
+            .lines
+            .iter()
+            .flat_map(|line| &line.columns)
+            .chain(model.bearings.iter().flatten())
+            .collect();
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
                 let force_n = self.static_force_n[mesh].max(0.0);
@@ -215,15 +234,19 @@ impl Prepared {
             let z = blocks[mesh].face_centre_m(0);
             force.extend(columns[mesh].clone().skip(1).map(|_| z * (whole - self.static_force_n[mesh])));
         }
-        for ((bearing, places), first) in self.bearings.iter().zip(&block.bearings).zip((force.len()..).step_by(2)) {
+        for ((bearing, places), first) in
+            self.bearings.iter().zip(&block.bearings).zip((force.len()..).step_by(2))
+        {
             let stretch_m = [first, first + 1]
                 .map(|column| self.columns[column].static_deflection + dot(lines[column], &displacement));
             force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
         }
         let acceleration: Vec<f64> = (self.steps.iter().enumerate())
             .map(|(n, step)| {
-                let meshes: f64 = self.columns.iter().zip(&force).map(|(column, force)| column.push[n] * force).sum();
-                let driven: f64 = self.external_push.iter().zip(external).map(|(push, external)| push[n] * external).sum();
+                let meshes: f64 =
+                    self.columns.iter().zip(&force).map(|(column, force)| column.push[n] * force).sum();
+                let driven: f64 =
+                    self.external_push.iter().zip(external).map(|(push, external)| push[n] * external).sum();
                 let turned: f64 = (self.turning_push.iter().zip(&block.external.turning))
                     .map(|([cos, sin], values)| cos[n] * values[0][0] + sin[n] * values[0][1])
                     .sum();

@@ -202,7 +202,8 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
         for r in 0..R {
             if !Self::STEADY {
                 for x in 0..EXTERNALS {
-                    deflection[r] = self.prediction.of_external[r][x].mul_add(simd, external[x], deflection[r]);
+                    deflection[r] =
+                        self.prediction.of_external[r][x].mul_add(simd, external[x], deflection[r]);
                 }
             }
             for s in 0..R {

@@ -88,8 +88,7 @@ impl<'a> LoadedFlank<'a> {
                     let Section { yc_mm, zc_mm, iy_mm4, iz_mm4, iyz_mm4, .. } = sections[i];
                     bending_integrands(bending, depth(i), [yc_mm, zc_mm], [iy_mm4, iz_mm4, iyz_mm4])
                 };
-                let others =
-                    |i: usize| [shear * sections[i].shear_per_mm2, bending / sections[i].area_mm2];
+                let others = |i: usize| [shear * sections[i].shear_per_mm2, bending / sections[i].area_mm2];
                 Integrals::Damaged(cumulative(&profile.x_mm, bent), cumulative(&profile.x_mm, others))
             }
         };

@@ -119,7 +119,8 @@ impl Beam {
 fn element(bending: [[f64; 4]; 4], along: [f64; 2], twist: [f64; 2]) -> OfElement {
     let mut whole = OfElement::zeros();
     for ([deflection, slope], sign) in [([0, 4], 1.0), ([1, 3], -1.0)] {
-        let places = [(deflection, 1.0), (slope, sign), (PER_NODE + deflection, 1.0), (PER_NODE + slope, sign)];
+        let places =
+            [(deflection, 1.0), (slope, sign), (PER_NODE + deflection, 1.0), (PER_NODE + slope, sign)];
         for (r, (row, of_row)) in places.into_iter().enumerate() {
             for (c, (column, of_column)) in places.into_iter().enumerate() {
                 whole[(row, column)] += bending[r][c] * of_row * of_column;

@@ -286,7 +286,8 @@ impl GearboxMachine {
             nodes.iter().for_each(|(_, node)| machine.rigid_rotation[node + ABOUT_Z] = *ratio);
         }
         let brakes = parts.shafts.iter().zip(parts.speed_ratios);
-        let ratio_of_brake = brakes.filter(|((shaft, _), _)| shaft.couples_to == Coupled::Brake).map(|(_, ratio)| *ratio);
+        let ratio_of_brake =
+            brakes.filter(|((shaft, _), _)| shaft.couples_to == Coupled::Brake).map(|(_, ratio)| *ratio);
         machine.rigid_rotation[brake] = ratio_of_brake.sum();
         Self { machine, ..this }
     }
@@ -328,7 +329,9 @@ impl GearboxMachine {
 
     /// Adds bearings, seats and the housing with its feet.
     fn add_supports(&self, parts: &GearboxParts, assembly: &mut Assembly) {
-        for (&SeatedBearing { shaft, bearing, radial_n_per_m }, &seat) in parts.bearings.iter().zip(&self.seats) {
+        for (&SeatedBearing { shaft, bearing, radial_n_per_m }, &seat) in
+            parts.bearings.iter().zip(&self.seats)
+        {
             let (of_shaft, [x_m, y_m]) = parts.shafts[shaft];
             let z_m = bearing.at * of_shaft.length_mm * 1e-3;
             let node = self.node(shaft, z_m);
@@ -442,7 +445,8 @@ impl GearboxMachine {
         }
         // The coupling of the motor and the supports hold everything but a shaft that may slide, which a billionth of its own stiffness holds.
         let held = DMatrix::from_diagonal(&(stiffness.diagonal() * 1e-9));
-        let displacement = (stiffness + held).cholesky().map_or_else(|| force.clone() * 0.0, |factor| factor.solve(&force));
+        let displacement =
+            (stiffness + held).cholesky().map_or_else(|| force.clone() * 0.0, |factor| factor.solve(&force));
         let rolling = parts.bearings.iter().filter(|of| of.bearing.element().is_some());
         let load = |(of, stretch): (&SeatedBearing, &[DVector<f64>; 2])| {
             let [x_m, y_m] = stretch.each_ref().map(|stretch| stretch.dot(&displacement));
@@ -579,7 +583,9 @@ fn beam_between(shaft: &GearboxShaft, [from_m, to_m]: [f64; 2], material: Materi
 
 /// (m) Centre of the housing: the mean of the shafts' axes, at half the length of the longest.
 fn centre_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> Vector3<f64> {
-    let mean = |axis: usize| shafts.iter().map(|(_, position_m)| position_m[axis]).sum::<f64>() / shafts.len() as f64;
+    let mean = |axis: usize| {
+        shafts.iter().map(|(_, position_m)| position_m[axis]).sum::<f64>() / shafts.len() as f64
+    };
     Vector3::new(mean(0), mean(1), longest_m(shafts) / 2.0)
 }
 

@@ -4,7 +4,8 @@ use std::ops::Bound::{Excluded, Included};
 
 use super::super::{Bow, Unbalance};
 use crate::bearing::{
-    BearingDefect, BearingGeometry, ElementContact, NAMED_BEARINGS, NamedBearing, RollingElement, RollingParts, Spall,
+    BearingDefect, BearingGeometry, ElementContact, NAMED_BEARINGS, NamedBearing, RollingElement,
+    RollingParts, Spall,
 };
 use crate::error::ScenarioError;
 use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
@@ -143,7 +144,9 @@ impl Keys for GearboxShaft {
                 .range(Range::not_negative())
                 .rule("less than its radius"),
             row("position_mm", "mm", "x and y of its axis", field!(position_mm))
-                .otherwise("beside the shaft that it meshes with, at the mesh's centre distance towards positive x")
+                .otherwise(
+                    "beside the shaft that it meshes with, at the mesh's centre distance towards positive x",
+                )
                 .rule("at the mesh's centre distance from the axis of each mating shaft, within 0.01 mm")
                 .alternative("[101.6, 0.0]"),
             row("elements", "", "the number of its beam elements", field!(elements))
@@ -164,14 +167,24 @@ impl Keys for GearboxShaft {
             .otherwise("2e3 of a motor's, 4e3 of a brake's")
             .range(STIFFNESS)
             .alternative("2000.0"),
-            row("damping_ratio", "-", "the damping ratio of the shaft and its coupling", field!(damping_ratio))
-                .range(DAMPING),
+            row(
+                "damping_ratio",
+                "-",
+                "the damping ratio of the shaft and its coupling",
+                field!(damping_ratio),
+            )
+            .range(DAMPING),
             row("unbalance", "", "the unbalance of the shaft, midway along it", field!(unbalance))
                 .otherwise("none")
                 .alternative("{ g_mm = 50.0 }"),
-            row("bow", "", "the bow of a shaft that is not straight: half a sine over its length", field!(bow))
-                .otherwise("none")
-                .alternative("{ middle_um = 20.0 }"),
+            row(
+                "bow",
+                "",
+                "the bow of a shaft that is not straight: half a sine over its length",
+                field!(bow),
+            )
+            .otherwise("none")
+            .alternative("{ middle_um = 20.0 }"),
         ]
     }
 }
@@ -264,7 +277,8 @@ impl Bearing {
         let Some(element) = self.element() else { return self.check_linear().map(|()| None) };
         if self.stiffness_n_per_m != Self::start().stiffness_n_per_m {
             let problem = "given for a rolling bearing, whose stiffness follows from its elements";
-            return Err(ScenarioError::new("stiffness_n_per_m", self.stiffness_n_per_m, problem).with_help("remove it"));
+            return Err(ScenarioError::new("stiffness_n_per_m", self.stiffness_n_per_m, problem)
+                .with_help("remove it"));
         }
         let geometry = match &self.name {
             Some(name) => self.named_geometry(name, element)?,
@@ -272,7 +286,9 @@ impl Bearing {
         };
         let contact = match element {
             RollingElement::Ball => ElementContact::ball(&geometry),
-            RollingElement::Roller => ElementContact::roller(self.roller_length_mm.unwrap_or(geometry.element_mm)),
+            RollingElement::Roller => {
+                ElementContact::roller(self.roller_length_mm.unwrap_or(geometry.element_mm))
+            }
         };
         if element == RollingElement::Ball && self.roller_length_mm.is_some() {
             let problem = "given for a ball bearing";
@@ -326,7 +342,8 @@ impl Bearing {
 
     fn named_geometry(&self, name: &str, element: RollingElement) -> Result<BearingGeometry, ScenarioError> {
         let Some(named) = NamedBearing::find(name) else {
-            let of_kind = NAMED_BEARINGS.iter().filter(|named| is_simulated(named) && named.element == element);
+            let of_kind =
+                NAMED_BEARINGS.iter().filter(|named| is_simulated(named) && named.element == element);
             let names = of_kind.map(|named| named.name).collect::<Vec<_>>().join(", ");
             let problem = if names.is_empty() {
                 format!("no {} bearing is known by a name", element.name())
@@ -342,8 +359,12 @@ impl Bearing {
         }
         if named.element != element {
             let kind = named.element.name();
-            return Err(ScenarioError::new("name", format!("{name:?}"), format!("is a {kind} bearing; must agree with kind"))
-                .with_help(format!("set kind = {kind:?}")));
+            return Err(ScenarioError::new(
+                "name",
+                format!("{name:?}"),
+                format!("is a {kind} bearing; must agree with kind"),
+            )
+            .with_help(format!("set kind = {kind:?}")));
         }
         let given = [
             ("elements", self.elements.is_some()),
@@ -352,15 +373,17 @@ impl Bearing {
             ("contact_angle_deg", self.contact_angle_deg != 0.0),
         ];
         match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((key, _)) => Err(refused(key, "given beside name, which states the geometry").with_help("remove one of the two")),
+            Some((key, _)) => Err(refused(key, "given beside name, which states the geometry")
+                .with_help("remove one of the two")),
             None => Ok(named.geometry),
         }
     }
 
     fn own_geometry(&self) -> Result<BearingGeometry, ScenarioError> {
         let missing = |key: &str| {
-            refused(key, "missing; a rolling bearing needs elements, element_mm and pitch_mm")
-                .with_help("give these, or the name of a bearing whose geometry is published, as in name = \"6205\"")
+            refused(key, "missing; a rolling bearing needs elements, element_mm and pitch_mm").with_help(
+                "give these, or the name of a bearing whose geometry is published, as in name = \"6205\"",
+            )
         };
         let elements = self.elements.ok_or_else(|| missing("elements"))?;
         let element_mm = self.element_mm.ok_or_else(|| missing("element_mm"))?;
@@ -500,7 +523,8 @@ impl Keys for Seat {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("mass_kg", "kg", "the seat's mass", field!(mass_kg)).range(MASS),
-            row("inertia_kgm2", "kg m²", "its moment of inertia about every axis", field!(inertia_kgm2)).range(MASS),
+            row("inertia_kgm2", "kg m²", "its moment of inertia about every axis", field!(inertia_kgm2))
+                .range(MASS),
             row(
                 "stiffness_n_per_m",
                 "N/m",

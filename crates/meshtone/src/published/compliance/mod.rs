@@ -66,10 +66,8 @@ impl ToothCompliance {
         let body = Foundation::new(wheel, profile, foundation);
         // Axial compression: `U_a = F_a² ∫ dx/(2 E A)`.
         let per_area = 1.0 / (2.0 * tooth.youngs_modulus_mpa);
-        let axial = tooth.integrate(
-            |i| [per_area / section.area_mm2[i]],
-            |_, &[aa]| Energy { aa, ..Default::default() },
-        );
+        let axial = tooth
+            .integrate(|i| [per_area / section.area_mm2[i]], |_, &[aa]| Energy { aa, ..Default::default() });
         // Shear: `U_s = F_s² ∫ s/G dx`, with s = 0.6/A for a rectangular section.
         let per_shear = 1.0 / tooth.shear_modulus_mpa;
         let shear = tooth.integrate(

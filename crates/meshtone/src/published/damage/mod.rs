@@ -175,7 +175,12 @@ mod tests {
             scenario.faults = vec![Fault::on_first_gear_tooth(kind.example.clone())];
             let teeth = crate::published::teeth(&scenario.gears, [10.0; 2]);
             let (checked, made) = (scenario.validate(), geometry(&kind.example, &teeth, 0));
-            assert_eq!(checked.err().map(|error| error.key), made.err().map(|error| error.key), "{}", kind.name);
+            assert_eq!(
+                checked.err().map(|error| error.key),
+                made.err().map(|error| error.key),
+                "{}",
+                kind.name
+            );
         }
     }
 }
