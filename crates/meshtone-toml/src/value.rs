@@ -120,19 +120,30 @@ impl<'a> TomlValue<'a> {
     /// # Errors
     /// The value is of another type or none of the names; the nearest one is suggested.
     pub fn choice<T: Clone>(&self, choices: &[(&str, T)]) -> ReadResult<T> {
-        let names = || choices.iter().map(|(name, _)| *name);
-        let listed = names().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        Ok(choices[self.one_of(&names)?].1.clone())
+    }
+
+    /// Finds the index of the value in a list of names.
+    ///
+    /// # Arguments
+    /// * `names` - the names that are allowed
+    ///
+    /// # Errors
+    /// Those of [`Self::choice`].
+    pub fn one_of(&self, names: &[&str]) -> ReadResult<usize> {
+        let listed = names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
         let Some(written) = self.value.get_ref().as_str() else {
             return Err(self.wrong_type(&format!("one of {listed}")));
         };
-        if let Some((_, meaning)) = choices.iter().find(|(name, _)| *name == written) {
-            return Ok(meaning.clone());
+        if let Some(index) = names.iter().position(|name| *name == written) {
+            return Ok(index);
         }
         let error = self.error(format!("must be one of {listed}"));
-        if let Some(right) = names().find(|name| name.to_lowercase() == written.to_lowercase()) {
+        if let Some(right) = names.iter().find(|name| name.to_lowercase() == written.to_lowercase()) {
             return Err(error.with_help(format!("write \"{right}\": large and small letters count")));
         }
-        Err(match nearest_name(written, names()) {
+        Err(match nearest_name(written, names.iter().copied()) {
             Some(nearest) => error.with_help(format!("did you mean \"{nearest}\"?")),
             None => error,
         })

@@ -1,5 +1,7 @@
 //! The threads of the current rayon pool; without the feature `threads`, the one that asks.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
@@ -29,7 +31,11 @@ pub(crate) fn map<T: Send, R: Send>(
     work: impl Fn(T) -> R + Sync + Send,
 ) -> Vec<R> {
     #[cfg(feature = "threads")]
-    return shared(items).map(work).collect();
+    {
+        let mut results = Vec::new();
+        items.into_iter().collect::<Vec<T>>().into_par_iter().map(work).collect_into_vec(&mut results);
+        results
+    }
     #[cfg(not(feature = "threads"))]
     items.into_iter().map(work).collect()
 }
@@ -42,14 +48,9 @@ pub(crate) fn try_map<T: Send, R: Send, E: Send>(
     items: impl IntoIterator<Item = T>,
     work: impl Fn(T) -> Result<R, E> + Sync + Send,
 ) -> Result<Vec<R>, E> {
-    #[cfg(feature = "threads")]
-    return shared(items).map(work).collect();
-    #[cfg(not(feature = "threads"))]
-    items.into_iter().map(work).collect()
-}
-
-/// Items to be shared among the threads.
-#[cfg(feature = "threads")]
-fn shared<T: Send>(items: impl IntoIterator<Item = T>) -> impl ParallelIterator<Item = T> {
-    items.into_iter().collect::<Vec<T>>().into_par_iter()
+    let has_failed = AtomicBool::new(false);
+    let results = map(items, |item| {
+        (!has_failed.load(Relaxed)).then(|| work(item).inspect_err(|_| has_failed.store(true, Relaxed)))
+    });
+    results.into_iter().flatten().collect()
 }

@@ -9,7 +9,7 @@ use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
     Check, KeyDescription, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe, describe_from,
-    field, read_keys, require, row, rows_but, write_keys, write_rows,
+    field, read_keys, read_rows, require, row, rows_but, write_keys, write_rows,
 };
 use crate::wheel::{NamedGears, Teeth, WheelName};
 
@@ -173,8 +173,7 @@ impl Fault {
     pub(crate) fn on_named_wheel(table: &TomlTable<'_>) -> ReadResult<(String, Self)> {
         let wheel = table.required("wheel", "the name of the damaged wheel")?.string()?.to_owned();
         let mut fault = Self::at_usual_place(Damage::start_of(table)?);
-        let rows = rows_but::<Self>(&["wheel"]);
-        rows.iter().try_for_each(|row| row.read(&mut fault, table, &NoFiles))?;
+        read_rows(&rows_but(&["wheel"]), &mut fault, table, &NoFiles)?;
         fault.read_damage(table).map(|fault| (wheel, fault))
     }
 

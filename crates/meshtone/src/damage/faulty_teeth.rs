@@ -158,7 +158,7 @@ impl KeyValue for FaultyTeeth {
         *self = if value.is_array() {
             value.array()?.iter().map(number).collect::<ReadResult<Vec<u32>>>()?.into()
         } else if value.is_text() {
-            value.choice(&[(ALL, Self::All)])?
+            value.one_of(&[ALL]).map(|_| Self::All)?
         } else if value.is_whole() {
             Self::One(number(value)?)
         } else {

@@ -47,7 +47,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::keys::{
     Check, KeyDescription, Keys, NoFiles, check_rows, commented_rows, describe, essential_rows, read_keys,
-    rows_but, write_rows,
+    read_rows, rows_but, write_rows,
 };
 use crate::wheel::Gears;
 use severity::SoundTooth;
@@ -126,7 +126,7 @@ macro_rules! kinds {
             /// Reads the keys that may stand beside a severity.
             fn read_but_sizes(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
                 match self {
-                    $(Self::$kind(damage) => rows_but($kind::SIZES).iter().try_for_each(|row| row.read(damage, table, &NoFiles)),)+
+                    $(Self::$kind(damage) => read_rows(&rows_but($kind::SIZES), damage, table, &NoFiles),)+
                 }
             }
 

@@ -3,11 +3,11 @@
 use meshtone_toml::{ReadResult, TomlValue};
 
 use super::check::Check;
-use super::description::{KeyDescription, KeyKind};
+use super::description::KeyDescription;
 use super::files::NumberFiles;
 use super::range::Range;
 use super::row::KeyRow;
-use super::table::{Keys, written_pairs};
+use super::table::{Keys, check_rows, describe_rows, read_rows, written_pairs};
 use super::text::inline_table;
 use super::value::{KeyValue, Written};
 
@@ -19,12 +19,12 @@ pub(super) trait Cell<S> {
     fn write(&self, section: &S) -> Option<Written>;
     fn check(&self, section: &S, key: &str, range: &Range, unit: &str) -> Check;
     fn copy(&self, from: &S, to: &mut S);
-    fn kind(&self) -> KeyKind;
+    /// Describes the keys inside the value.
     fn inside(&self, section: &S) -> Vec<KeyDescription>;
 }
 
 /// A value that is read together with others, in [`Keys::choose`], and never written: it has another key for that.
-pub(super) struct ReadElsewhere(pub(super) KeyKind);
+pub(super) struct ReadElsewhere;
 
 impl<S> Cell<S> for ReadElsewhere {
     fn read(&self, _section: &mut S, _value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
@@ -41,10 +41,6 @@ impl<S> Cell<S> for ReadElsewhere {
 
     fn copy(&self, _from: &S, _to: &mut S) {}
 
-    fn kind(&self) -> KeyKind {
-        self.0.clone()
-    }
-
     fn inside(&self, _section: &S) -> Vec<KeyDescription> {
         Vec::new()
     }
@@ -55,7 +51,7 @@ pub(super) struct SubTable<S>(pub(super) Vec<KeyRow<S>>);
 
 impl<S> Cell<S> for SubTable<S> {
     fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        value.table()?.read(|table| self.0.iter().try_for_each(|row| row.read(section, table, files)))
+        value.table()?.read(|table| read_rows(&self.0, section, table, files))
     }
 
     fn write(&self, section: &S) -> Option<Written> {
@@ -64,19 +60,15 @@ impl<S> Cell<S> for SubTable<S> {
     }
 
     fn check(&self, section: &S, key: &str, _range: &Range, _unit: &str) -> Check {
-        self.0.iter().try_for_each(|row| row.check(section, key))
+        check_rows(&self.0, section, key)
     }
 
     fn copy(&self, from: &S, to: &mut S) {
         self.0.iter().for_each(|row| row.copy(from, to));
     }
 
-    fn kind(&self) -> KeyKind {
-        KeyKind::Table
-    }
-
     fn inside(&self, section: &S) -> Vec<KeyDescription> {
-        self.0.iter().flat_map(|row| row.describe(section, "")).collect()
+        describe_rows(&self.0, section, "")
     }
 }
 
@@ -111,10 +103,6 @@ impl<S, V: KeyValue> Cell<S> for Field<S, V> {
         }
     }
 
-    fn kind(&self) -> KeyKind {
-        V::kind()
-    }
-
     fn inside(&self, section: &S) -> Vec<KeyDescription> {
         (self.get)(section).map(V::inside).unwrap_or_default()
     }
@@ -146,10 +134,6 @@ impl<S, P> Cell<S> for PartCell<S, P> {
         }
     }
 
-    fn kind(&self) -> KeyKind {
-        self.cell.kind()
-    }
-
     fn inside(&self, section: &S) -> Vec<KeyDescription> {
         (self.get)(section).map(|part| self.cell.inside(part)).unwrap_or_default()
     }
@@ -158,5 +142,7 @@ impl<S, P> Cell<S> for PartCell<S, P> {
 /// The rows of a part of a section, whose keys stand among the section's own rather than in a table of theirs.
 pub(crate) fn flatten<S: 'static, P: Keys>(part: Field<S, P>) -> impl Iterator<Item = KeyRow<S>> {
     let Field { get, get_mut } = part;
-    P::rows().into_iter().map(move |row| row.moved(|cell| Box::new(PartCell { get, get_mut, cell })))
+    P::rows()
+        .into_iter()
+        .map(move |KeyRow { head, cell }| KeyRow { head, cell: Box::new(PartCell { get, get_mut, cell }) })
 }

@@ -27,6 +27,7 @@ mod cell;
 mod check;
 mod description;
 mod files;
+mod head;
 mod model;
 mod names;
 mod range;
@@ -42,12 +43,12 @@ pub use files::FileProblem;
 pub(crate) use files::{NoFiles, NumberFiles, load};
 pub(crate) use names::by_name;
 pub(crate) use range::Range;
-pub(crate) use row::{KeyRow, comment, documented, row, sub_table};
+pub(crate) use row::{KeyRow, documented, row, sub_table};
 pub(crate) use table::{
     Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, essential,
-    essential_rows, read_keys, rows_but, write_keys, write_rows,
+    essential_rows, read_keys, read_rows, rows_but, write_keys, write_rows,
 };
-pub(crate) use text::array;
+pub(crate) use text::{array, comment};
 pub(crate) use value::{KeyValue, Written};
 
 /// The field of a section that a row's value is kept in.

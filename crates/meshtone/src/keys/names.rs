@@ -18,7 +18,7 @@ macro_rules! by_name {
                 value: &meshtone_toml::TomlValue<'_>,
                 _files: &dyn $crate::keys::NumberFiles,
             ) -> meshtone_toml::ReadResult<()> {
-                *self = value.choice(&[$(($name, $value)),+])?;
+                *self = [$($value),+][value.one_of(&[$($name),+])?];
                 Ok(())
             }
 

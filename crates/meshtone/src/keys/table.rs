@@ -6,7 +6,7 @@ use super::check::Check;
 use super::description::KeyDescription;
 use super::files::NumberFiles;
 use super::row::KeyRow;
-use super::value::Written;
+use super::text::lines;
 
 /// Parameters that stand in one table of the scenario file.
 pub(crate) trait Keys: Clone + PartialEq + 'static {
@@ -39,24 +39,33 @@ pub(crate) fn read_keys<S: Keys>(
     files: &dyn NumberFiles,
 ) -> ReadResult<()> {
     section.choose(table, files)?;
-    S::rows().iter().try_for_each(|row| row.read(section, table, files))
+    read_rows(&S::rows(), section, table, files)
+}
+
+/// Reads some keys of a table over what the section has.
+pub(crate) fn read_rows<S>(
+    rows: &[KeyRow<S>],
+    section: &mut S,
+    table: &TomlTable<'_>,
+    files: &dyn NumberFiles,
+) -> ReadResult<()> {
+    rows.iter().try_for_each(|row| row.read(section, table, files))
 }
 
 /// The rows of a section but for some, by their names.
 pub(crate) fn rows_but<S: Keys>(names: &[&str]) -> Vec<KeyRow<S>> {
-    S::rows().into_iter().filter(|row| !names.contains(&row.name)).collect()
+    let mut rows = S::rows();
+    rows.retain(|row| !names.contains(&row.head.name));
+    rows
 }
 
 /// The keys and values of some rows.
 pub(super) fn written_pairs<S>(rows: &[KeyRow<S>], section: &S) -> Vec<(String, String)> {
-    let pairs = |row: &KeyRow<S>| match row.write(section) {
-        Written::Nothing => Vec::new(),
-        Written::Value(value) => vec![(row.name.to_string(), value)],
-        Written::Lines(pairs) => {
-            pairs.into_iter().map(|(key, value)| (format!("{}.{key}", row.name), value)).collect()
-        }
-    };
-    rows.iter().flat_map(pairs).collect()
+    let mut pairs = Vec::new();
+    for row in rows {
+        pairs.extend(row.head.pairs(row.write(section)));
+    }
+    pairs
 }
 
 /// The lines of a section, without its header.
@@ -65,8 +74,8 @@ pub(crate) fn write_keys<S: Keys>(section: &S) -> String {
 }
 
 /// The lines of some keys of a section.
-pub(crate) fn write_rows<S: Keys>(rows: &[KeyRow<S>], section: &S) -> String {
-    written_pairs(rows, section).iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
+pub(crate) fn write_rows<S>(rows: &[KeyRow<S>], section: &S) -> String {
+    lines(&written_pairs(rows, section))
 }
 
 /// Every key alone.
@@ -79,7 +88,7 @@ pub(crate) fn check_keys<S: Keys>(section: &S, path: &str) -> Check {
 }
 
 /// Some keys alone.
-pub(crate) fn check_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, path: &str) -> Check {
+pub(crate) fn check_rows<S>(rows: &[KeyRow<S>], section: &S, path: &str) -> Check {
     rows.iter().try_for_each(|row| row.check(section, path))
 }
 
@@ -90,7 +99,21 @@ pub(crate) fn describe<S: Keys>() -> Vec<KeyDescription> {
 
 /// Describes the keys of a section, with what `start` has as defaults.
 pub(crate) fn describe_from<S: Keys>(start: &S) -> Vec<KeyDescription> {
-    S::rows().iter().flat_map(|row| row.describe(start, S::SECTION)).collect()
+    describe_rows(&S::rows(), start, S::SECTION)
+}
+
+/// Describes some keys, each followed by those inside it.
+///
+/// # Arguments
+/// * `rows` - the keys
+/// * `start` - the section with its defaults
+/// * `section` - its name; empty for other tables
+pub(super) fn describe_rows<S>(rows: &[KeyRow<S>], start: &S, section: &str) -> Vec<KeyDescription> {
+    let mut keys = Vec::new();
+    for row in rows {
+        keys.extend(row.head.describe(row.write(start), row.cell.inside(start), section));
+    }
+    keys
 }
 
 /// The lines of a section with a comment for every key, without its header.
@@ -104,13 +127,22 @@ pub(crate) fn essential<S: Keys>(section: &S) -> String {
 }
 
 /// The lines of some keys of a section, likewise, with what `start` has as defaults.
-pub(crate) fn essential_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
-    let keys: Vec<[String; 2]> = rows.iter().filter_map(|row| row.essential(section, start)).collect();
-    let width = keys.iter().map(|[line, _]| line.chars().count()).max().unwrap_or(0);
-    keys.iter().map(|[line, meaning]| format!("{line:width$}  # {meaning}\n")).collect()
+pub(crate) fn essential_rows<S>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
+    let mut keys = Vec::new();
+    for row in rows {
+        keys.extend(row.head.essential(row.write(section), &row.write(start)));
+    }
+    in_columns(&keys)
+}
+
+/// Lines and what stands behind each, in a column of its own.
+fn in_columns(lines: &[[String; 2]]) -> String {
+    let width = lines.iter().map(|[line, _]| line.chars().count()).max().unwrap_or(0);
+    lines.iter().map(|[line, meaning]| format!("{line:width$}  # {meaning}\n")).collect()
 }
 
 /// The lines of some keys of a section with a comment for each, with what `start` has as defaults.
 pub(crate) fn commented_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
-    rows.iter().map(|row| row.commented(section, start, S::SECTION)).collect()
+    let commented = |row: &KeyRow<S>| row.head.commented(row.write(section), row.write(start), S::SECTION);
+    rows.iter().map(commented).collect()
 }

@@ -8,7 +8,6 @@ use super::files::NumberFiles;
 use super::range::Range;
 use super::table::{Keys, check_keys, describe_from, read_keys, written_pairs};
 use super::text::{array, inline_table, number};
-use crate::error_table::ErrorTable;
 
 /// Written form of a key's value.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +18,17 @@ pub(crate) enum Written {
     Value(String),
     /// Keys inside it, each on its own line with its dotted name.
     Lines(Vec<(String, String)>),
+}
+
+impl Written {
+    /// A table of keys, each on its own line or all on one.
+    fn table(pairs: Vec<(String, String)>, in_lines: bool) -> Self {
+        match pairs {
+            pairs if pairs.is_empty() => Self::Nothing,
+            pairs if in_lines => Self::Lines(pairs),
+            pairs => Self::Value(inline_table(&pairs)),
+        }
+    }
 }
 
 /// A value that a key may have.
@@ -132,29 +142,24 @@ impl KeyValue for Vec<f64> {
     }
 }
 
-/// Values that may be left out.
-macro_rules! optional {
-    ($($type:ty, $blank:expr);+) => {$(
-        impl KeyValue for Option<$type> {
-            fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-                self.insert($blank).read(value, files)
-            }
+/// A value that may be left out.
+impl<V: KeyValue + Default> KeyValue for Option<V> {
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        self.insert(V::default()).read(value, files)
+    }
 
-            fn write(&self) -> Written {
-                self.as_ref().map_or(Written::Nothing, KeyValue::write)
-            }
+    fn write(&self) -> Written {
+        self.as_ref().map_or(Written::Nothing, KeyValue::write)
+    }
 
-            fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
-                self.as_ref().map_or(Ok(()), |value| value.check(key, range, unit))
-            }
+    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+        self.as_ref().map_or(Ok(()), |value| value.check(key, range, unit))
+    }
 
-            fn kind() -> KeyKind {
-                <$type>::kind()
-            }
-        }
-    )+};
+    fn kind() -> KeyKind {
+        V::kind()
+    }
 }
-optional!(f64, 0.0; u32, 0; u64, 0; [f64; 2], [0.0; 2]; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new(); ErrorTable, ErrorTable::default());
 
 /// A text.
 impl KeyValue for String {
@@ -247,22 +252,6 @@ impl<S: Keys> KeyValue for Vec<S> {
     }
 }
 
-/// A text that may be left out.
-impl KeyValue for Option<String> {
-    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
-        *self = Some(value.string()?.to_string());
-        Ok(())
-    }
-
-    fn write(&self) -> Written {
-        self.as_deref().map_or(Written::Nothing, |text| Written::Value(toml::Value::from(text).to_string()))
-    }
-
-    fn kind() -> KeyKind {
-        KeyKind::Text
-    }
-}
-
 /// A table of keys of its own.
 impl<S: Keys> KeyValue for S {
     fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
@@ -270,11 +259,7 @@ impl<S: Keys> KeyValue for S {
     }
 
     fn write(&self) -> Written {
-        match written_pairs(&S::rows(), self) {
-            pairs if pairs.is_empty() => Written::Nothing,
-            pairs if S::IN_LINES => Written::Lines(pairs),
-            pairs => Written::Value(inline_table(&pairs)),
-        }
+        Written::table(written_pairs(&S::rows(), self), S::IN_LINES)
     }
 
     fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {

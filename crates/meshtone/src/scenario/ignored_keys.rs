@@ -1,7 +1,7 @@
 //! Keys that a model ignores.
 
 use super::{Model, Scenario, ScenarioWarning, Sensor, SensorPath, WarningKind};
-use crate::keys::Keys;
+use crate::keys::{KeyRow, Keys};
 
 impl Scenario {
     /// The scenario with what its model does not honour at its default.
@@ -77,13 +77,13 @@ fn reset_sensor(sensor: &mut Sensor, key: &str, model: Model) -> Vec<String> {
 
 fn reset<S: Keys>(section: &mut S, name: &str, model: Model) -> Vec<String> {
     let start = S::start();
-    let ignored = S::rows().into_iter().filter(|row| model.ignores(&format!("{}.{}", S::SECTION, row.name)));
-    let changed = ignored.filter(|row| {
+    let is_ignored = |row: &KeyRow<S>| model.ignores(&format!("{}.{}", S::SECTION, row.head.name));
+    let changed = S::rows().into_iter().filter(is_ignored).filter(|row| {
         let before = section.clone();
         row.copy(&start, section);
         *section != before
     });
-    changed.map(|row| format!("{name}.{}", row.name)).collect()
+    changed.map(|row| format!("{name}.{}", row.head.name)).collect()
 }
 
 #[cfg(test)]

@@ -75,8 +75,7 @@ impl KeyValue for Material {
             constants.read(value, files)?;
             *self = Self::Given(constants);
         } else {
-            let choices: Vec<(&str, Self)> = NAMES.into_iter().zip(Self::ALL).collect();
-            *self = value.choice(&choices)?;
+            *self = Self::ALL[value.one_of(&NAMES)?];
         }
         Ok(())
     }
@@ -101,25 +100,6 @@ impl KeyValue for Material {
 
     fn inside(&self) -> Vec<KeyDescription> {
         describe::<MaterialConstants>()
-    }
-}
-
-/// One that may be left out.
-impl KeyValue for Option<Material> {
-    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        self.insert(Material::default()).read(value, files)
-    }
-
-    fn write(&self) -> Written {
-        self.as_ref().map_or(Written::Nothing, KeyValue::write)
-    }
-
-    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
-        self.as_ref().map_or(Ok(()), |material| material.check(key, range, unit))
-    }
-
-    fn kind() -> KeyKind {
-        Material::kind()
     }
 }
 

@@ -133,7 +133,7 @@ fn shifts_together(gears: &NamedGears) -> Check {
         [WheelName::Gear, WheelName::Pinion]
     };
     let causes = [Coefficient::Shift(smaller), Coefficient::Shift(other)];
-    refuse_first(gears, &causes, "the teeth would fit into one another at no distance", can_mesh)
+    refuse_first(gears, &causes, "the teeth would fit into one another at no distance", &can_mesh)
 }
 
 /// Returns whether tips end at their height.
@@ -144,7 +144,7 @@ fn has_tips(gears: &Gears, wheel: WheelName) -> bool {
 fn pointed(gears: &NamedGears, wheel: WheelName) -> Check {
     let what = format!("the tips of {} teeth would be pointed", gears.teeth(wheel));
     let causes = [Coefficient::Shift(wheel), Coefficient::Addendum(wheel)];
-    refuse_first(gears, &causes, &what, |gears| has_tips(gears, wheel))
+    refuse_first(gears, &causes, &what, &|gears| has_tips(gears, wheel))
 }
 
 /// Returns whether the spaces between teeth are open down to their roots.
@@ -157,7 +157,7 @@ fn has_spaces(gears: &Gears, wheel: WheelName) -> bool {
 fn closed_space(gears: &NamedGears, wheel: WheelName) -> Check {
     let what = format!("the spaces between {} teeth would close above their roots", gears.teeth(wheel));
     let causes = [Coefficient::Dedendum(wheel), Coefficient::Shift(wheel)];
-    refuse_first(gears, &causes, &what, |gears| has_spaces(gears, wheel))
+    refuse_first(gears, &causes, &what, &|gears| has_spaces(gears, wheel))
 }
 
 /// Returns whether the axes are as far apart as teeth of nominal thickness need.
@@ -198,7 +198,7 @@ fn clearance(gears: &NamedGears, wheel: WheelName) -> Check {
     let mate = wheel.mate();
     let what = format!("{}'s tips would touch {}'s roots", gears.name(mate), gears.name(wheel));
     let causes = [Coefficient::Dedendum(wheel), Coefficient::Addendum(mate), Coefficient::Shift(wheel)];
-    refuse_first(gears, &causes, &what, |gears| is_clear(gears, wheel))
+    refuse_first(gears, &causes, &what, &|gears| is_clear(gears, wheel))
 }
 
 /// Returns whether the mate's tips stay off a wheel's fillets, in which its involute has ended. A wheel that is undercut without a shift
@@ -222,7 +222,7 @@ fn interference(gears: &NamedGears, wheel: WheelName) -> Check {
         Coefficient::Shift(mate),
         Coefficient::Shift(wheel),
     ];
-    refuse_first(gears, &causes, &what, |gears| is_free(gears, wheel))
+    refuse_first(gears, &causes, &what, &|gears| is_free(gears, wheel))
 }
 
 /// (mm) Radius of curvature of a wheel's flank where the mate's tip touches it first; less than 0 where the tip reaches beyond
@@ -254,7 +254,7 @@ fn contact_ratio(gears: &NamedGears) -> Check {
     }
     let of_wheel = |wheel| [Coefficient::Shift(wheel), Coefficient::Addendum(wheel)];
     let causes = [of_wheel(WheelName::Pinion), of_wheel(WheelName::Gear)].concat();
-    refuse_first(gears, &causes, &what, stays_in_contact)
+    refuse_first(gears, &causes, &what, &stays_in_contact)
 }
 
 /// (mm) Thickness of a wheel's teeth at the tip, along its circle.
@@ -307,13 +307,12 @@ fn refuse_first(
     gears: &NamedGears,
     causes: &[Coefficient],
     what: &str,
-    holds: impl Fn(&Gears) -> bool,
+    holds: &dyn Fn(&Gears) -> bool,
 ) -> Check {
     if holds(gears) {
         return Ok(());
     }
-    let all: &dyn Fn(&Gears) -> bool = &is_sound;
-    for does in [all, &holds] {
+    for does in [&is_sound, holds] {
         for cause in causes {
             let mut changed = Gears::clone(gears);
             let given = *cause.of(&mut changed);

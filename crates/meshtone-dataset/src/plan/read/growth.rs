@@ -29,14 +29,13 @@ pub(super) fn read(value: &TomlValue<'_>, faults: &[ClassFault]) -> ReadResult<G
 fn growth(table: &TomlTable<'_>, fault: &ClassFault) -> ReadResult<Growth> {
     // An unknown key is reported before the key that is missing because of it.
     table.refuse_unknown(&KEYS)?;
-    let names = Law::NAMES.map(|name| (name, name));
-    let law = table.required("law", "how the damage grows: paris, archard or pits")?.choice(&names)?;
+    let law = table.required("law", "how the damage grows: paris, archard or pits")?.one_of(&Law::NAMES)?;
     let exponent = |default: f64| -> ReadResult<f64> {
         let is_allowed = |number| number > 0.0 && number <= LARGEST_EXPONENT;
         let read = |value: &_| number_where(value, is_allowed, "must be more than 0 and at most 10");
         Ok(table.read_optional("exponent", read)?.unwrap_or(default))
     };
-    let law = match law {
+    let law = match Law::NAMES[law] {
         "paris" => Law::Paris { exponent: exponent(PARIS_EXPONENT)? },
         "pits" => {
             let count = table.read_optional("count", |value| value.integer(1..=100_000))?;

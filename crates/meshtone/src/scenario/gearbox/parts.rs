@@ -393,8 +393,8 @@ impl Keys for GearboxOperation {
         )
         .required()
         .range(Range::not_negative().implausible_above(1e9));
-        let others =
-            flatten(field!(drive)).filter(|row| !["pinion_speed_hz", "brake_torque_nm"].contains(&row.name));
+        let others = flatten(field!(drive))
+            .filter(|row| !["pinion_speed_hz", "brake_torque_nm"].contains(&row.head.name));
         let own = [
             row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
                 .range(Range::positive().implausible_above(1e9)),
@@ -540,7 +540,7 @@ impl Keys for GearboxSensor {
                 .alternative("\"output_bearing\"");
         let direction = row("direction", "", "the direction it measures in", field!(sensor.direction));
         const OWN: [&str; 4] = ["at", "name", "direction", "response_input"];
-        let others = flatten(field!(sensor)).filter(|row| !OWN.contains(&row.name));
+        let others = flatten(field!(sensor)).filter(|row| !OWN.contains(&row.head.name));
         [at, name, direction].into_iter().chain(others).collect()
     }
 }
@@ -617,7 +617,7 @@ impl Keys for GearboxSolver {
         .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
         .range(Range::between(Excluded(0.0), Included(1e9)))
         .alternative("20000.0");
-        let others = flatten(field!(settings)).filter(|row| !OF_PAIR.contains(&row.name));
+        let others = flatten(field!(settings)).filter(|row| !OF_PAIR.contains(&row.head.name));
         [rate, duration, revolutions].into_iter().chain(others).chain([highest]).collect()
     }
 }
