@@ -94,7 +94,7 @@ def test_what_is_seen_is_warned_of_before_anything_is_simulated(reference: Path,
 
         # A scenario of its own, of which no simulations are kept.
         rig = RIG.copy(din_grade=0)
-        found = mt.diagnose(gone, rig, reference=reference, records=1024, progress=lambda *_: before.append(codes()))
+        found = mt.diagnose(gone, rig, reference=reference, records=512, progress=lambda *_: before.append(codes()))
     assert before[0] == ["ideal-wheels", "no-healthy"]
     assert codes() == [warning.code for warning in found.warnings]
     assert caught[0].filename == __file__

@@ -19,7 +19,10 @@ def repository(folder: Path) -> None:
     shutil.copytree(ROOT / "python/tests/references", folder / "python/tests/references")
     for experiment in folder.glob("examples/experiments/*.toml"):
         text = experiment.read_text(encoding="utf-8")
-        experiment.write_text(text.replace("candidates = 160", "candidates = 4"), encoding="utf-8")
+        experiment.write_text(text.replace("candidates = 160", "candidates = 1"), encoding="utf-8")
+    for rig in folder.glob("examples/experiments/rig_*.toml"):
+        text = rig.read_text(encoding="utf-8")
+        rig.write_text(text if "[solver]" in text else f"{text}\n[solver]\nduration_s = 0.3\n", encoding="utf-8")
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/src/guide/python.md", "docs/src/guide/matlab-users.md"])
@@ -61,11 +64,37 @@ def test_gallery_includes_its_scripts(script: Path) -> None:
     assert f"](python_{script.stem}.png)" in page
 
 
+SHORTER = {
+    "classifier": [("records = 400\n", "records = 100\n")],
+    "sensor_path": [
+        ('"time_s": [1, 11], "value": [20, 60]}, duration_s=10, settle_fraction=1 / 11', '"time_s": [1, 3], "value": [20, 60]}, duration_s=2, settle_fraction=1 / 3'),
+        ("duration_s=5)", "duration_s=1)"),
+        ("mt.simulate(recorded), rig)", "mt.simulate(recorded), rig, draws=8)"),
+    ],
+}
+"""What is made short in scripts that take long, beside the experiments."""
+
+
+def draw(script: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, shorter: list[tuple[str, str]]) -> None:
+    code = script.read_text(encoding="utf-8")
+    for written, instead in shorter:
+        assert code.count(written) == 1, written
+        code = code.replace(written, instead)
+    repository(folder)
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr("sys.argv", [str(script), str(folder)])
+    exec(compile(code, script, "exec"), {"__name__": "__main__"})
+    plt.close("all")
+    assert (folder / f"python_{script.stem}.png").read_bytes().startswith(b"\x89PNG")
+
+
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_gallery_scripts_draw(script: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    repository(tmp_path)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("sys.argv", [str(script), str(tmp_path)])
-    exec(compile(script.read_text(encoding="utf-8"), script, "exec"), {"__name__": "__main__"})
-    plt.close("all")
-    assert (tmp_path / f"python_{script.stem}.png").read_bytes().startswith(b"\x89PNG")
+    """Those that take long are made short; the measurement below runs these as they are."""
+    draw(script, tmp_path, monkeypatch, SHORTER.get(script.stem, []))
+
+
+@pytest.mark.measurement
+@pytest.mark.parametrize("name", SHORTER)
+def test_gallery_scripts_that_take_long_draw(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    draw(ROOT / "python" / "gallery" / f"{name}.py", tmp_path, monkeypatch, [])

@@ -52,7 +52,7 @@ def test_npz(tmp_path: Path) -> None:
 
 def test_signals_of_every_format(tmp_path: Path) -> None:
     """What is saved is read back, and by the programs that the formats are for."""
-    simulation = meshtone.simulate(meshtone.examples.tooth_breakage())
+    simulation = meshtone.simulate(meshtone.examples.tooth_breakage().copy(duration_s=0.2))
     signals = simulation.signals(25_000)
     for ending in ("parquet", "csv", "mat", "npz", "wav"):
         path = tmp_path / f"signals.{ending}"

@@ -4,11 +4,11 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use crate::packages::{ALIKE, tests_of};
 use crate::step::{StepRunner, in_parallel};
 use crate::surroundings::unusual;
 use crate::{
-    dependencies, dist, docs, environment, features, kernels, packages, python, rooms, scipy, toolchain,
+    budgets, compilations, dependencies, dist, docs, environment, features, formatting, kernels, packages,
+    python, rooms, rustdoc, scipy, toolchain,
 };
 
 /// The parts of Python that the tests of the Rust packages need.
@@ -24,22 +24,19 @@ struct Prepared {
 /// # Errors
 /// The exit code of what failed.
 pub fn quick(row: &StepRunner) -> Result<(), u8> {
-    formatting(row)?;
-    row.check("rooms check", rooms::problems)?;
-    lints(row)?;
-    row.cargo(&[&CORE_TESTS[..], &ALIKE].concat(), &[])?;
-    tests_of(row, "meshtone", 0, &["--lib"], &[])
+    sources(row)?;
+    row.compile(&compilations::tests(), &[], &[])?;
+    row.compile(&compilations::core_tests(), &[], &[])?;
+    row.compile(&compilations::unit_tests("meshtone"), &[], &[])
 }
 
-/// Arguments of cargo for the tests of the core that run whole simulations.
-const CORE_TESTS: [&str; 6] = ["test", "--release", "--test", "all", "--package", "meshtone"];
-
-/// The packages that have tests. The one that has none, but benchmarks, asks for features of `serde` that no other does: with it, the
-/// project's own packages would be compiled for the tests and once more for the program and the wheel.
-const TESTED: [&str; 3] = ["--workspace", "--exclude", "meshtone-bench"];
-
-/// The package of recordings is tested alone, see [`unit_tests`].
-const BY_ITSELF: [&str; 2] = ["--exclude", READER];
+/// What needs the sources alone.
+fn sources(row: &StepRunner) -> Result<(), u8> {
+    row.check("formatting", formatting::problems)?;
+    row.check("rooms check", rooms::problems)?;
+    row.check("docs check", docs::problems)?;
+    row.check("budgets of sources", budgets::of_sources)
+}
 
 /// Everything.
 ///
@@ -49,32 +46,44 @@ const BY_ITSELF: [&str; 2] = ["--exclude", READER];
 /// # Errors
 /// The exit code of what failed first.
 pub fn all(root: &Path) -> Result<(), u8> {
-    let [rust, python] = StepRunner::pair(root, &root.join("target").join("checks").join("log"))?;
-    formatting(&rust)?;
-    rust.check("rooms check", rooms::problems)?;
+    let logs = root.join("target").join("checks").join("log");
+    let [rust, python] = StepRunner::pair(root, &logs, &linted())?;
+    sources(&rust)?;
+    rust.cargo(&["fetch", "--locked"], &[])?;
+    rust.check("dependencies check", dependencies::problems)?;
+    rust.check("nothing is compiled twice", compilations::problems)?;
     let (ready, prepared) = channel();
-    in_parallel(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))
+    in_parallel(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))?;
+    rust.check("budgets", |root| budgets::of_checks(root, &rust.times()))
+}
+
+/// Variables with which the compiler's own lints and Clippy's are errors of each compilation: no package is compiled apart for the lints.
+///
+/// Clippy's compiler hands LLVM what it has not simplified itself, so that the code of the checks is that of the same sources, optimised
+/// by LLVM alone. What a release carries is compiled without it.
+pub fn linted() -> Vec<(&'static str, OsString)> {
+    let arguments = ["-D", "warnings"].map(|argument| format!("{argument}__CLIPPY_HACKERY__")).concat();
+    vec![("RUSTC_WORKSPACE_WRAPPER", "clippy-driver".into()), ("CLIPPY_ARGS", arguments.into())]
 }
 
 fn rust_row(row: &StepRunner, prepared: &Receiver<Prepared>) -> Result<(), u8> {
-    lints(row)?;
-    // All that the platform needs has been fetched for the lints.
-    row.check("dependencies check", dependencies::problems)?;
+    // Compiled first: what fails soonest, and without what Python prepares meanwhile.
+    row.compile(&compilations::tests(), &[], &[])?;
     // Nothing comes where that has failed, which has been said.
     let prepared = prepared.recv().map_err(|_| 1)?;
     let mut surroundings = unusual(row)?;
     surroundings.push(("MESHTONE_SCIPY_REFERENCE", prepared.scipy.into()));
     surroundings.push(("MESHTONE_PYTHON", prepared.python.into()));
-    // Not the examples: the lints have looked at them, and nothing runs them.
-    let programs = ["test", "--release", "--bins", "--test", "*"];
-    row.cargo(&[&programs, &TESTED[..], &BY_ITSELF].concat(), &surroundings)?;
+    row.compile(&compilations::run_tests(), &[], &surroundings)?;
     unit_tests(row, &surroundings)?;
-    features::object_stores(row, &surroundings)?;
-    row.cargo(&[&["test", "--release", "--doc"], &TESTED[..]].concat(), &surroundings)?;
-    row.check("kernels check", kernels::problems)?;
+    row.compile(&compilations::object_stores(), &["objects::"], &surroundings)?;
+    row.compile(&compilations::examples_and_benchmarks(), &[], &[])?;
+    let mut documented = rustdoc::variables(row)?;
+    documented.extend(surroundings);
+    row.compile(&compilations::documentation_tests(), &[], &documented)?;
     let program = dist::program(row)?;
+    row.check("kernels check", kernels::problems)?;
     dist::try_program(row, &program)?;
-    documentation(row)?;
     features::without_threads(row)?;
     toolchain::check(row)
 }
@@ -91,47 +100,30 @@ fn python_row(row: &StepRunner, ready: &Sender<Prepared>) -> Result<(), u8> {
     dist::try_source(row, &python, &source)
 }
 
-/// The unit tests of every package that has some, with the other tests of the recordings' package, which take longer to compile than
-/// to run.
+/// The unit tests of every package that has some.
 fn unit_tests(row: &StepRunner, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
-    let tested = |package: &&String| !WITHOUT_UNIT_TESTS.contains(&package.as_str());
-    packages::names(row)?.iter().filter(tested).try_for_each(|package| match package.as_str() {
-        // They learn from many records.
-        "meshtone-diagnose" => tests_of(row, package, 3, &["--lib"], surroundings),
-        READER => {
-            let programs = packages::test_programs(row, package)?;
-            let named = programs.iter().flat_map(|program| ["--test", program]);
-            tests_of(row, package, 0, &[vec!["--lib"], named.collect()].concat(), surroundings)
-        }
-        _ => tests_of(row, package, 0, &["--lib"], surroundings),
-    })
+    let packages = packages::with_unit_tests(row.root()).map_err(|error| row.fail(&error))?;
+    packages.iter().try_for_each(|package| row.compile(&compilations::unit_tests(package), &[], surroundings))
 }
-
-/// The package that reads recordings.
-const READER: &str = "meshtone-io";
-
-/// Packages that have no unit tests of a library: the benchmarks and the interfaces.
-const WITHOUT_UNIT_TESTS: [&str; 4] =
-    ["meshtone-bench", "meshtone-cli", "meshtone-python", "workspace-features"];
 
 /// Writes what the tests of the core compare with the rows of the keys.
 ///
 /// # Errors
 /// The exit code of what failed.
 pub fn generate(row: &StepRunner) -> Result<(), u8> {
-    row.cargo(&[&CORE_TESTS[..], &ALIKE, &["generated::"]].concat(), &[("MESHTONE_GENERATE", "1".into())])
+    row.compile(&compilations::core_tests(), &["generated::"], &[("MESHTONE_GENERATE", "1".into())])
 }
 
-fn formatting(row: &StepRunner) -> Result<(), u8> {
-    row.cargo(&["fmt", "--all", "--check"], &[])
-}
-
-fn lints(row: &StepRunner) -> Result<(), u8> {
-    row.cargo(&["clippy", "--workspace", "--all-targets", "--release", "--", "-D", "warnings"], &[])
-}
-
-fn documentation(row: &StepRunner) -> Result<(), u8> {
-    let arguments = ["doc", "--workspace", "--no-deps", "--release"];
-    row.cargo(&arguments, &[("RUSTDOCFLAGS", "-D warnings".into())])?;
-    row.check("docs check", docs::problems)
+/// Prints the tables of the Validation page: tests that count over many simulations, which the checks leave out.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn measure(row: &StepRunner) -> Result<(), u8> {
+    let python = environment::of_checks(row)?;
+    let scipy = scipy::reference(row, &python)?;
+    let results = [("MESHTONE_SCIPY_REFERENCE", scipy.into()), ("MESHTONE_PYTHON", python.clone().into())];
+    row.compile(&compilations::run_tests(), &["--", "--ignored", "--nocapture"], &results)?;
+    let wheel = dist::wheel(row, &python)?;
+    python::measure(row, &python, &wheel)?;
+    budgets::measure(row)
 }

@@ -1,12 +1,10 @@
 //! Parts of a release: the program, the wheel and the source distribution, each tried where there is nothing else.
 
-use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::environment;
-use crate::packages::{self, ALIKE, opt_level};
 use crate::step::StepRunner;
+use crate::{compilations, environment, kernels};
 
 /// Program that tries an installed package.
 const TRIAL: &str = "\
@@ -24,7 +22,9 @@ const BENCHMARK: &str = "benchmark-1";
 /// The exit code of what failed.
 pub fn make(row: &StepRunner) -> Result<(), u8> {
     let python = environment::of_checks(row)?;
-    let made = [program(row)?, wheel(row, &python)?, source(row, &python)?];
+    let program = program(row)?;
+    row.check("kernels check", kernels::problems)?;
+    let made = [program, wheel(row, &python)?, source(row, &python)?];
     report(row, &made);
     Ok(())
 }
@@ -75,7 +75,7 @@ fn folder(row: &StepRunner) -> PathBuf {
 /// # Errors
 /// The exit code of what failed.
 pub fn program(row: &StepRunner) -> Result<PathBuf, u8> {
-    row.cargo(&[&["build", "--release", "--locked", "--bins"], &ALIKE[..]].concat(), &[])?;
+    row.compile(&compilations::program(), &[], &[])?;
     row.step("Program, stripped", || {
         let name = format!("meshtone{}", std::env::consts::EXE_SUFFIX);
         let built = row.root().join("target").join("release").join(&name);
@@ -121,7 +121,9 @@ fn maturin(row: &StepRunner, python: &Path, extension: &str, arguments: &[&str])
     for old in of_kind(row, &folder, extension)? {
         std::fs::remove_file(&old).map_err(|error| row.fail_at(&old, &error))?;
     }
-    row.program(Command::new(python).args(["-m", "maturin"]).args(arguments).arg("--out").arg(&folder))?;
+    let mut maturin = Command::new(python);
+    maturin.args(["-m", "maturin"]).args(arguments).arg("--out").arg(&folder).envs(row.environment());
+    row.program(&mut maturin)?;
     let made = of_kind(row, &folder, extension)?.pop();
     made.ok_or_else(|| row.fail(&format!("{}: nothing was made", folder.display())))
 }
@@ -166,9 +168,9 @@ pub fn try_wheel(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8
 
 /// Builds a wheel from the source distribution as pip does, installs it into an empty environment and simulates there.
 ///
-/// What other projects' packages give is taken from what has been built, and the project's own packages, which are compiled from
-/// the source distribution's files, are not optimised: it takes a tenth of the time, and shows as well that nothing is missing.
-/// The interpreter that builds is the one that built the wheel, as PyO3 is compiled anew for every other.
+/// Its sources are those of the workspace, which is checked first. So cargo takes what it has compiled of them for the wheel, unless a
+/// source is missing, and nothing is compiled twice. The interpreter that builds is the one that built the wheel, as PyO3 is compiled anew
+/// for every other.
 ///
 /// # Arguments
 /// * `python` - an interpreter with pip
@@ -177,33 +179,33 @@ pub fn try_wheel(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8
 /// The exit code of what failed.
 pub fn try_source(row: &StepRunner, python: &Path, source: &Path) -> Result<(), u8> {
     row.step("Source distribution, in an empty environment", || {
-        let content = std::fs::read(source).map_err(|error| row.fail_at(source, &error))?;
-        // All files of a source distribution have the same old date, by which cargo would take what was built of another
-        // one for fresh: a setting that nothing depends on, but which follows from the content, distinguishes them.
-        let units = LEAST_UNITS + BuildHasherDefault::<DefaultHasher>::default().hash_one(&content) % UNITS;
-        // The source distribution has not all packages, which cargo only remarks.
-        let unoptimised: Vec<String> = packages::names(row)?
-            .iter()
-            .map(|package| {
-                let level = opt_level(package, 0);
-                format!("--config {level} --config profile.release.package.{package}.codegen-units={units}")
-            })
-            .collect();
-        let environment = [
-            ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
-            ("MATURIN_PEP517_ARGS", unoptimised.join(" ").into()),
-        ];
+        row.program(Command::new(python).args(["-c", COMPARISON]).arg(source).arg(row.root()))?;
+        let target = [("CARGO_TARGET_DIR", row.root().join("target").into_os_string())];
         let built = empty_folder(row, "source wheel")?;
-        environment::pip_wheel(row, python, &built, |pip| pip.envs(environment).arg(source))?;
+        environment::pip_wheel(row, python, &built, |pip| {
+            pip.envs(row.environment()).envs(target).arg(source)
+        })?;
         let wheel = of_kind(row, &built, "whl")?.pop();
         let wheel = wheel.ok_or_else(|| row.fail(&format!("{}: nothing was made", built.display())))?;
         try_package(row, python, "source", &wheel)
     })
 }
 
-/// Numbers of codegen units, of which unoptimised crates never have so many.
-const LEAST_UNITS: u64 = 256;
-const UNITS: u64 = 1 << 20;
+/// Program that compares the sources of a source distribution with those of the workspace. What describes packages is written anew
+/// for it: it names those packages alone that are there.
+const COMPARISON: &str = "\
+import pathlib, sys, tarfile
+root, compared = pathlib.Path(sys.argv[2]), 0
+with tarfile.open(sys.argv[1]) as archive:
+    for member in filter(tarfile.TarInfo.isfile, archive):
+        path = pathlib.PurePosixPath(member.name).relative_to(pathlib.PurePosixPath(member.name).parts[0])
+        if path.name in ('PKG-INFO', 'README.md', 'Cargo.toml', 'Cargo.lock', 'pyproject.toml'):
+            continue
+        if archive.extractfile(member).read() != (root / path).read_bytes():
+            sys.exit(f'{path} in the source distribution is not the one of the workspace')
+        compared += 1
+assert compared > 100, compared
+";
 
 fn try_package(row: &StepRunner, pip: &Path, name: &str, wheel: &Path) -> Result<(), u8> {
     let folder = empty_folder(row, name)?;

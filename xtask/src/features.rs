@@ -1,30 +1,14 @@
 //! Builds with other features than the program's.
 
-use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-use crate::packages::tests_of;
 use crate::step::StepRunner;
 
 /// Rust's name of the machine that a browser is.
 const BROWSER: &str = "wasm32-unknown-unknown";
 /// Compiles the core without threads.
 const CORE: [&str; 5] = ["check", "--release", "--package", "meshtone", "--no-default-features"];
-/// Arguments of the data sets' tests in object stores.
-const OBJECT_STORES: [&str; 5] = ["--features", "meshtone-dataset/objects", "--test", "all", "objects::"];
-
-/// Tests data sets in object stores. The package is compiled once more for these few tests, and not optimised.
-///
-/// # Arguments
-/// * `surroundings` - variables of the tests
-///
-/// # Errors
-/// The exit code of what failed.
-pub fn object_stores(row: &StepRunner, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
-    tests_of(row, "meshtone-dataset", 0, &OBJECT_STORES, surroundings)
-}
-
 /// Checks the core without threads, also for a browser where Rust's libraries for one are installed.
 ///
 /// # Errors

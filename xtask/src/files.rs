@@ -22,6 +22,18 @@ pub fn below(folder: &Path, extension: &str) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
+/// Names of what lies in a folder, in their order.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn names_in(folder: &Path) -> io::Result<Vec<String>> {
+    let entries = fs::read_dir(folder).map_err(|error| about(folder, &error))?;
+    let mut names: Vec<String> =
+        entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort();
+    Ok(names)
+}
+
 /// The text of a file.
 ///
 /// # Errors

@@ -10,6 +10,9 @@ use std::path::Path;
 const INTRINSICS: &str = "4core9core_arch";
 /// Modules of the instruction sets that kernels are compiled for beside what every processor has.
 const SETS: [&str; 5] = ["3avx", "4avx2", "3fma", "avx512", "4neon"];
+/// Stands in the name of an intrinsic of numbers in double precision, as the kernels have them alone. Those of whole numbers are of packages
+/// that are compiled without optimisation, where every intrinsic is a function.
+const DOUBLES: [&str; 2] = ["_pd", "_f64"];
 /// Prefixes of the mangled name of a function, behind the underscores: as Rust mangles, and as it did before.
 const FUNCTIONS: [&str; 3] = ["RNv", "RINv", "ZN"];
 /// The crate of the kernels, as it stands in a mangled name.
@@ -59,7 +62,9 @@ fn is_intrinsic(name: &str) -> bool {
         let crate_number = path.trim_start_matches("Nt");
         crate_number.is_empty() || crate_number.find('_') == Some(crate_number.len() - 1)
     });
-    is_function && SETS.iter().any(|set| inside.contains(set))
+    is_function
+        && DOUBLES.iter().any(|name| inside.contains(name))
+        && SETS.iter().any(|set| inside.contains(set))
 }
 
 #[cfg(test)]
@@ -77,6 +82,7 @@ mod tests {
         assert!(!is_intrinsic(
             "RNvXs2_NtNtCsgEmfK2I1SDS_4core9core_arch3x86NtB5_7___m256dNtNtB9_3fmt5Debug3fmt"
         ));
+        assert!(!is_intrinsic("ZN4core9core_arch3x864avx215_mm256_or_si25617h0123456789abcdefE"));
         assert!(!is_intrinsic("RNvNtCsgEmfK2I1SDS_4core3mem4swap"));
         // What detects which processor it is.
         assert!(!is_intrinsic("RNvNtNtNtCsgEmfK2I1SDS_4core9core_arch3x865xsave7__xgetbv"));

@@ -2,17 +2,21 @@
 // A program that reports to the terminal.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod budgets;
 mod checks;
+mod compilations;
 mod dependencies;
 mod dist;
 mod docs;
 mod environment;
 mod features;
 mod files;
+mod formatting;
 mod kernels;
 mod packages;
 mod python;
 mod rooms;
+mod rustdoc;
 mod scipy;
 mod step;
 mod surroundings;
@@ -33,6 +37,9 @@ Tasks:
   test         Everything that a change must pass, which CONTRIBUTING.md lists; no step begins once
                one has failed. Python 3.11 or later is needed, as python3 or under the name in the
                variable PYTHON, and a package index
+  measure      Print the tables of the Validation page: tests that count over many simulations; then the processor time of README's
+               first command from nothing, and where there is valgrind the instructions of the program (half an hour on two cores;
+               needs Python)
   dist         Make what a release carries, in target/dist: the program, the Python package's wheel
                and its source distribution
   wheel        Of these, only the wheel
@@ -52,19 +59,24 @@ Tasks:
 const FUZZ: [&str; 7] = ["run", "--release", "--package", "meshtone-dataset", "--example", "fuzz", "--"];
 
 fn main() -> ExitCode {
+    if let Some(folder) = rustdoc::folder() {
+        return rustdoc::run(folder);
+    }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let root = workspace_root();
-    let row = StepRunner::at_terminal(root);
+    let row = StepRunner::at_terminal(root, &[]);
+    let linted = StepRunner::at_terminal(root, &checks::linted());
     let outcome = match words.as_slice() {
-        ["check"] => checks::quick(&row),
+        ["check"] => checks::quick(&linted),
         ["test"] => checks::all(root),
+        ["measure"] => checks::measure(&linted),
         ["dist"] => dist::make(&row),
         ["fuzz", arguments @ ..] => row.cargo(&[&FUZZ[..], arguments].concat(), &[]),
         ["docs"] => docs::build(root),
         ["wheel"] => dist::make_wheel(&row),
         ["benchmark"] => dist::benchmark(&row),
-        ["generate"] => checks::generate(&row),
+        ["generate"] => checks::generate(&linted),
         ["check-rooms"] => row.check("rooms check", rooms::problems),
         ["check-dependencies"] => row.check("dependencies check", dependencies::problems),
         ["check-docs"] => row.check("docs check", docs::problems),

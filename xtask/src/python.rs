@@ -39,9 +39,7 @@ fn is_installed(name: &str) -> bool {
 /// # Errors
 /// The exit code of what failed.
 pub fn test(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8> {
-    row.step("Python wheel, installed", || {
-        pip_install(row, python, python, |pip| pip.args(["--force-reinstall", "--no-deps"]).arg(wheel))
-    })?;
+    install(row, python, wheel)?;
     let surroundings = unusual(row)?;
     let run = |name: &str, module: &str, arguments: &[&str]| {
         let mut program = Command::new(python);
@@ -55,4 +53,26 @@ pub fn test(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8> {
     run("Python examples", "pytest", &EXAMPLES)?;
     run("Python types", "mypy", &TYPES)?;
     run("Python stubs", "mypy.stubtest", &["meshtone._core"])
+}
+
+/// Runs those tests of the package that count over many simulations, and prints what they print.
+///
+/// # Arguments
+/// * `python` - interpreter of the checks' environment
+/// * `wheel` - file of the wheel
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn measure(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8> {
+    install(row, python, wheel)?;
+    let mut pytest = Command::new(python);
+    pytest.args(["-m", "pytest", "--quiet", "-m", "measurement", "-s", "python/tests"]);
+    row.step("Python measurements", || row.program(&mut pytest))
+}
+
+/// Installs the wheel beside what its tests need.
+fn install(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8> {
+    row.step("Python wheel, installed", || {
+        pip_install(row, python, python, |pip| pip.args(["--force-reinstall", "--no-deps"]).arg(wheel))
+    })
 }

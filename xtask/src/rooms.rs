@@ -57,13 +57,24 @@ fn room_of(file: &Path) -> String {
 /// Modules of its own crate that a text names, as `crate::name`: the line, from 1, and the name. Comments and tests are left out.
 fn imports(text: &str) -> Vec<(usize, &str)> {
     const MARK: &str = "crate::";
-    let code = text.lines().enumerate().take_while(|(_, line)| line.trim() != "#[cfg(test)]");
-    let code = code.filter(|(_, line)| !line.trim_start().starts_with("//"));
+    let code = code(text);
     code.flat_map(|(index, line)| {
         let starts = line.match_indices(MARK).filter(|&(start, _)| is_start(line, start));
         starts.map(move |(start, _)| (index + 1, name(&line[start + MARK.len()..])))
     })
     .collect()
+}
+
+/// Lines of a text with their numbers from 0, without comments, up to its module of tests: an attribute of another item does not hide
+/// what follows it.
+pub fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_of_tests = |index: usize| {
+        let next = lines.get(index + 1).map_or("", |line| line.trim());
+        lines[index].trim() == "#[cfg(test)]" && next.starts_with("mod ") && next.ends_with('{')
+    };
+    let end = (0..lines.len()).find(|&index| is_of_tests(index)).unwrap_or(lines.len());
+    lines.into_iter().take(end).enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"))
 }
 
 /// Returns whether no longer word ends here, as in `$crate::` or `my_crate::`.
@@ -100,8 +111,10 @@ mod tests {
     #[test]
     fn imports_are_found_outside_comments_and_tests() {
         let text = "use crate::wheel::Gears;\n// crate::batch\nfn f(a: crate::keys::Row, b: $crate::x) {}\n\
-                    #[cfg(test)]\nmod tests { use crate::simulate; }\n";
+                    #[cfg(test)]\nmod tests {\n use crate::simulate;\n }\n";
         assert_eq!(imports(text), [(1, "wheel"), (3, "keys")]);
+        let text = "#[cfg(test)]\nfn f() {}\nuse crate::batch;\n";
+        assert_eq!(imports(text), [(3, "batch")]);
     }
 
     #[test]

@@ -1,15 +1,19 @@
 //! One timed step of a task, and where its programs write.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use wait4::Wait4;
+
+use crate::compilations::Compilation;
 
 /// Runs steps one after another, perhaps beside those of another row.
 pub struct StepRunner {
@@ -18,8 +22,23 @@ pub struct StepRunner {
     logs: Option<PathBuf>,
     /// Output of the step that runs.
     log: RefCell<Option<File>>,
+    /// Processor time of the programs of the step that runs.
+    processor: Cell<Duration>,
+    /// Variables of all that compiles.
+    environment: Vec<(&'static str, OsString)>,
     /// A step has failed, in this row or in the one beside it: none begins any more.
     failed: Arc<AtomicBool>,
+    /// The steps of both rows that have ended.
+    ended: Arc<Mutex<Vec<StepTime>>>,
+}
+
+/// What a step took.
+#[derive(Debug, Clone)]
+pub struct StepTime {
+    /// Its name.
+    pub name: String,
+    /// (s) Processor time of the programs that it ran; on Unix also of those that they ran.
+    pub processor_s: f64,
 }
 
 impl StepRunner {
@@ -27,8 +46,17 @@ impl StepRunner {
     ///
     /// # Arguments
     /// * `root` - folder of the workspace, where its programs run
-    pub fn at_terminal(root: &Path) -> Self {
-        Self { root: root.to_owned(), logs: None, log: RefCell::default(), failed: Arc::default() }
+    /// * `environment` - variables of all that compiles
+    pub fn at_terminal(root: &Path, environment: &[(&'static str, OsString)]) -> Self {
+        Self {
+            root: root.to_owned(),
+            logs: None,
+            log: RefCell::default(),
+            processor: Cell::default(),
+            environment: environment.to_vec(),
+            failed: Arc::default(),
+            ended: Arc::default(),
+        }
     }
 
     /// Two rows that run at once. Each of their steps writes to a file of its own, which is shown where the step fails.
@@ -36,19 +64,30 @@ impl StepRunner {
     /// # Arguments
     /// * `root` - folder of the workspace, where their programs run
     /// * `logs` - folder of the files
+    /// * `environment` - variables of all that compiles in them
     ///
     /// # Errors
     /// 1 where the folder cannot be made.
-    pub fn pair(root: &Path, logs: &Path) -> Result<[Self; 2], u8> {
+    pub fn pair(root: &Path, logs: &Path, environment: &[(&'static str, OsString)]) -> Result<[Self; 2], u8> {
         std::fs::create_dir_all(logs).map_err(|error| failed(logs, &error))?;
-        let failed = Arc::default();
-        let row = || Self {
-            root: root.to_owned(),
+        let one = Self { logs: Some(logs.to_owned()), ..Self::at_terminal(root, environment) };
+        let other = Self {
             logs: Some(logs.to_owned()),
-            log: RefCell::default(),
-            failed: Arc::clone(&failed),
+            failed: Arc::clone(&one.failed),
+            ended: Arc::clone(&one.ended),
+            ..Self::at_terminal(root, environment)
         };
-        Ok([row(), row()])
+        Ok([one, other])
+    }
+
+    /// Variables of all that compiles, so that no step compiles again what another one has.
+    pub fn environment(&self) -> impl Iterator<Item = (&'static str, OsString)> {
+        self.environment.iter().cloned()
+    }
+
+    /// What the steps of both rows took that have ended so far, in the order of their ends.
+    pub fn times(&self) -> Vec<StepTime> {
+        self.ended.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Folder of the workspace.
@@ -71,12 +110,15 @@ impl StepRunner {
         }
         println!("==> {name}");
         let start = Instant::now();
+        self.processor.set(Duration::ZERO);
         let outcome = work();
         let seconds = start.elapsed().as_secs_f64();
+        let processor_s = self.processor.get().as_secs_f64();
         self.log.replace(None);
+        let time = StepTime { name: name.to_owned(), processor_s };
+        self.ended.lock().unwrap_or_else(PoisonError::into_inner).push(time);
         match &outcome {
-            Ok(_) if path.is_some() => println!("    ok, {seconds:.1} s: {name}"),
-            Ok(_) => println!("    ok, {seconds:.1} s"),
+            Ok(_) => println!("    ok, {seconds:.1} s, {processor_s:.1} s of processor time: {name}"),
             Err(code) => {
                 self.failed.store(true, Ordering::Relaxed);
                 let output = path.and_then(|path| std::fs::read(path).ok()).unwrap_or_default();
@@ -115,11 +157,31 @@ impl StepRunner {
     /// # Errors
     /// Cargo's exit code, or 1 where it could not be started or was killed.
     pub fn cargo(&self, arguments: &[&str], environment: &[(&str, OsString)]) -> Result<(), u8> {
-        // Cargo informs the programs that it runs which cargo it is.
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
         self.step(&format!("cargo {}", arguments.join(" ")), || {
-            self.program(Command::new(&cargo).args(arguments).envs(environment.iter().cloned()))
+            let mut cargo = cargo();
+            self.program(cargo.args(arguments).envs(self.environment()).envs(environment.iter().cloned()))
         })
+    }
+
+    /// Runs a compilation, and what it compiles where that is tests, as a step of its name.
+    ///
+    /// # Arguments
+    /// * `compilation` - what is compiled
+    /// * `further` - arguments behind its own
+    /// * `environment` - variables to set, by name
+    ///
+    /// # Errors
+    /// Cargo's exit code, or 1 where it could not be started or was killed.
+    pub fn compile(
+        &self,
+        compilation: &Compilation,
+        further: &[&str],
+        environment: &[(&str, OsString)],
+    ) -> Result<(), u8> {
+        let mut cargo = cargo();
+        cargo.args(&compilation.arguments).args(further);
+        cargo.envs(self.environment()).envs(environment.iter().cloned());
+        self.step(&compilation.name, || self.program(&mut cargo))
     }
 
     /// Runs a program in the workspace's folder to its end.
@@ -138,9 +200,11 @@ impl StepRunner {
             let [out, err] = [file.try_clone(), file.try_clone()];
             command.stdout(out.map_err(|_| 1)?).stderr(err.map_err(|_| 1)?);
         }
-        let status = command.status().map_err(|error| {
+        let used = command.spawn().and_then(|child| child.wait4()).map_err(|error| {
             self.fail(&format!("cannot start {}: {error}", command.get_program().display()))
         })?;
+        self.processor.set(self.processor.get() + used.rusage.utime + used.rusage.stime);
+        let status = used.status;
         if status.success() { Ok(()) } else { Err(exit_code(status.code())) }
     }
 
@@ -163,6 +227,11 @@ impl StepRunner {
     pub fn fail_at(&self, path: &Path, error: &io::Error) -> u8 {
         self.fail(&format!("{}: {error}", path.display()))
     }
+}
+
+/// Cargo, which informs the programs that it runs which cargo it is.
+pub fn cargo() -> Command {
+    Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
 /// Runs two rows at once.

@@ -67,7 +67,7 @@ fn whole() -> &'static [(&'static str, Vec<u8>)] {
         (0..80).for_each(|sample| writer.write_sample(sample).unwrap());
         writer.finalize().unwrap();
         let mat = |name: &str| {
-            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings");
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshtone-io/tests/recordings");
             fs::read(folder.join(name)).unwrap()
         };
         vec![

@@ -1,4 +1,4 @@
-//! The book under `docs/` and the Markdown files at the root: checked and built.
+//! The book under `docs/` and the other Markdown files: checked and built.
 
 mod links;
 mod markdown;
@@ -10,8 +10,8 @@ use std::process::Command;
 
 use crate::files;
 
-/// Markdown files outside the book whose links are checked too.
-const ROOT_PAGES: [&str; 3] = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"];
+/// Folders with Markdown files outside the book whose links are checked too, beside those at the root.
+const FOLDERS: [&str; 4] = ["crates", "examples", "python", "xtask"];
 
 /// One thing wrong in one place.
 #[derive(Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub struct Problem {
     pub message: String,
 }
 
-/// Everything wrong with the book and the pages at the root, in words.
+/// Everything wrong with the book and the other pages of the project, in words.
 ///
 /// # Errors
 /// A page that cannot be read.
@@ -44,7 +44,12 @@ fn check(root: &Path) -> io::Result<Vec<Problem>> {
         problems.extend(links::check(page, &text, Some(&book))?);
         problems.extend(math::check(page, &text));
     }
-    for page in ROOT_PAGES.map(|name| root.join(name)) {
+    let at_root = files::names_in(root)?.into_iter().filter(|name| name.ends_with(".md"));
+    let mut others: Vec<PathBuf> = at_root.map(|name| root.join(name)).collect();
+    for folder in FOLDERS {
+        others.extend(files::below(&root.join(folder), "md")?);
+    }
+    for page in others {
         problems.extend(links::check(&page, &files::read(&page)?, None)?);
     }
     Ok(problems)

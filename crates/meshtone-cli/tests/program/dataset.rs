@@ -33,6 +33,8 @@ key = "operation.pinion_speed_hz"
 uniform = [30.0, 60.0]
 [keep]
 records_per_shard = 8
+[scenario.solver]
+sampling_rate_hz = 2e4
 "#;
 
 fn workplace() -> Workplace {
@@ -410,8 +412,7 @@ fn an_incomplete_data_set_is_not_verified() {
 #[test]
 fn doubtful_records_are_counted() {
     let workplace = workplace();
-    let solver = "[scenario.solver]\nsettle_fraction = 0.01\n[[class]]";
-    workplace.write("plan.toml", PLAN.replacen("[[class]]", solver, 1));
+    workplace.write("plan.toml", format!("{PLAN}settle_fraction = 0.01\n"));
     let said = crate::support::stderr(&workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "-q"]));
     assert!(
         said.contains("warning: 96 records have the warning unsettled: the start-up transient"),

@@ -38,15 +38,13 @@ fn examples_are_the_cases_of_the_templates() {
 #[test]
 fn every_example_is_simulated() {
     let workplace = Workplace::new();
-    for name in NAMES.into_iter().chain([
-        "several_faults",
-        "contact",
-        "sensors",
-        "profile_shift",
-        "helical",
-        "gearbox",
-    ]) {
-        let path = examples().join(name).with_extension("toml");
+    let scenarios: Vec<String> = crate::support::names(&examples())
+        .into_iter()
+        .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
+        .collect();
+    assert!(NAMES.iter().all(|name| scenarios.iter().any(|scenario| scenario == name)), "{scenarios:?}");
+    for name in scenarios {
+        let path = examples().join(&name).with_extension("toml");
         workplace.succeeds(&["simulate", path.to_str().unwrap()]);
         assert_eq!(workplace.names(&format!("{name}_results")).len(), 4);
     }

@@ -4,7 +4,7 @@
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::support::{Workplace, fast_with, program, stderr};
+use crate::support::{FAST, Workplace, fast_with, program, stderr};
 use meshtone_io::signals::read_signals;
 use meshtone_io::summary::read_run;
 
@@ -20,12 +20,15 @@ struct Contest {
 }
 
 impl Contest {
-    fn new() -> Self {
+    /// Long enough for a kill to meet the simulation as well as the writing.
+    fn long() -> Self {
+        Self::of(&fast_with("sampling_rate_hz", "sampling_rate_hz = 1e5"))
+    }
+
+    fn of(scenario: &str) -> Self {
         let workplace = Workplace::new();
-        // Long enough for a kill to meet the simulation as well as the writing.
-        let long = fast_with("sampling_rate_hz", "sampling_rate_hz = 1e5");
-        workplace.write("a.toml", &long);
-        workplace.write("b.toml", format!("{long}[quality]\ndin_grade = 5\n"));
+        workplace.write("a.toml", scenario);
+        workplace.write("b.toml", format!("{scenario}[quality]\ndin_grade = 5\n"));
         workplace.succeeds(&["simulate", "a.toml", "-o", "out"]);
         let earlier = FILES.map(|name| workplace.read(name));
         Self { workplace, earlier, caught: false.into() }
@@ -103,7 +106,7 @@ impl Contest {
 
 #[test]
 fn killed_at_any_moment() {
-    let contest = Contest::new();
+    let contest = Contest::long();
     let mut killed = 0;
     for delay_ms in (0..120).step_by(10) {
         let (start, delay) = (Instant::now(), Duration::from_millis(delay_ms));
@@ -114,7 +117,7 @@ fn killed_at_any_moment() {
 
 #[test]
 fn killed_while_it_writes() {
-    let contest = Contest::new();
+    let contest = Contest::long();
     let killed = (0..8).filter(|_| {
         contest.remove_what_the_killed_left();
         contest.kill(|| contest.is_being_written())
@@ -125,7 +128,7 @@ fn killed_while_it_writes() {
 /// Whether the kill comes in time is a matter of luck; what it leaves must be consistent, or seen not to be, either way.
 #[test]
 fn killed_while_it_names_its_files() {
-    let contest = Contest::new();
+    let contest = Contest::of(FAST);
     let summary = contest.workplace.path(SUMMARY);
     for _ in 0..20 {
         contest.kill(|| !summary.exists());

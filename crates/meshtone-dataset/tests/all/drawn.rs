@@ -233,6 +233,7 @@ fn a_mounting_has_its_own_values_and_every_class() {
     };
     let plan = mounted("unit");
     let records = all(&plan);
+    let sampler = Sampler::new(&plan.content).unwrap();
     let mut mountings: BTreeMap<u64, Vec<&DrawnRecord>> = BTreeMap::new();
     for record in &records {
         assert_eq!(record.mounting / 3, record.unit);
@@ -252,7 +253,7 @@ fn a_mounting_has_its_own_values_and_every_class() {
         for record in of_mounting {
             let load = value(record, "latent.load").unwrap();
             assert_eq!(load, value(first, "latent.load").unwrap());
-            let torque = plan_torque(&plan, record);
+            let torque = pair_of(&sampler, record).operation.brake_torque_nm;
             assert!((0.95..=1.05).contains(&(torque / load)), "{torque} {load}");
         }
     }
@@ -276,10 +277,6 @@ fn a_mounting_has_its_own_values_and_every_class() {
     // What a shift's condition says holds there alone.
     let speed = |record: &DrawnRecord| value(record, "operation.pinion_speed_hz").unwrap();
     assert!(remounted.iter().all(|record| (record.split == 3) == (speed(record) > 50.0)));
-}
-
-fn plan_torque(plan: &Plan, record: &DrawnRecord) -> f64 {
-    pair_of(&Sampler::new(&plan.content).unwrap(), record).operation.brake_torque_nm
 }
 
 #[test]

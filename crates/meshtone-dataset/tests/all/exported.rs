@@ -97,7 +97,7 @@ fn the_package_s_own_validator_accepts_it() {
     };
     let directory = tempfile::tempdir().unwrap();
     export_bearing_datasets(&set(directory.path()), &directory.path().join("sets/gears")).unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/validate.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshtone-dataset/tests/python/validate.py");
     let output = Command::new(python).arg(script).arg(directory.path()).output().unwrap();
     let said =
         String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);

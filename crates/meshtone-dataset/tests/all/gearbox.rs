@@ -23,7 +23,7 @@ use crate::support::{bytes, differing, plan, run};
 
 const WHEELS: [&str; 4] = ["z1", "z2", "z3", "z4"];
 
-/// The plan that `meshtone init dataset --gearbox` prints, with fewer records and a lower rate.
+/// The plan that `meshtone init dataset --gearbox` prints, with fewer records, a lower rate, less settling and shafts of fewer elements.
 fn fast() -> String {
     let mut text = gearbox_template();
     for (written, other) in [
@@ -31,6 +31,8 @@ fn fast() -> String {
         ("sampling_rate_hz = 50000.0", "sampling_rate_hz = 20000.0"),
         ("#sampling_rate_hz = 25e3", "records_per_shard = 20\nsampling_rate_hz = 1e4"),
         ("duration_s = 1.0     ", "duration_s = 0.6     "),
+        ("settle_fraction = 0.81", "settle_fraction = 0.5"),
+        ("radius_mm = 7.9375\n", "radius_mm = 7.9375\nelements = 4\n"),
     ] {
         assert!(text.contains(written), "{written}");
         text = text.replace(written, other);
@@ -235,7 +237,7 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         .replace("units = 10", "units = 4")
         .replace("duration_s = 0.6     ", "duration_s = 0.53    ")
         .replace("settle_tolerance = 1e-2", "settle_tolerance = 1e-6");
-    let text = text.replace("settle_fraction = 0.81", "settle_fraction = 0.95");
+    let text = text.replace("settle_fraction = 0.5", "settle_fraction = 0.95");
     let text = &text[..text.find("[[split.shift]]").unwrap()];
     let plan = plan(text);
     let made = made(&plan);

@@ -19,7 +19,7 @@ fn pyarrow_and_polars_read_it() {
     };
     let directory = tempfile::tempdir().unwrap();
     run(&plan(FAST), &Destination::directory(directory.path()), Part::WHOLE, 2).unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/read.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshtone-dataset/tests/python/read.py");
     let output = Command::new(python).arg(script).arg(directory.path()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));

@@ -8,7 +8,7 @@ use crate::recording_help::{rate, read, refused};
 use meshtone_io::recording::{ColumnChoice, Recording, RecordingOptions, RecordingWarning, read_recording};
 
 fn fixture(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshtone-io/tests/recordings").join(name)
 }
 
 fn bytes(name: &str) -> Vec<u8> {

@@ -8,7 +8,7 @@ use meshtone_io::recording::{Recording, RecordingOptions, TimeColumn, read_recor
 use crate::recording_help::rate;
 
 fn file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshtone-io/tests/recordings").join(name)
 }
 
 fn samples<'r>(recording: &'r Recording, name: &str) -> &'r [f64] {

@@ -103,7 +103,7 @@ impl AntiAliasing {
     ///
     /// Returns the values of each signal.
     pub fn read(&self, signals: &[&[f32]], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<Vec<f32>> {
-        self.bank.read(signals, self.bank_positions(places), edge, |value| value as f32)
+        self.read_each(signals, &mut { places }, edge)
     }
 
     /// Does what [`Self::read`] does for one signal in double precision.
@@ -113,10 +113,26 @@ impl AntiAliasing {
     /// * `places` - in samples from the first; fractions are places between samples
     /// * `edge` - how the signal goes on beyond its ends
     pub fn read_double(&self, signal: &[f64], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
+        self.read_one(signal, &mut { places }, edge)
+    }
+
+    // The two below have no type parameter, so that the filter is compiled here, for speed, and not once more in each crate that
+    // reads: to ask for a place through a table of functions costs little beside the place's taps.
+
+    fn read_each(
+        &self,
+        signals: &[&[f32]],
+        places: &mut dyn Iterator<Item = f64>,
+        edge: Edge,
+    ) -> Vec<Vec<f32>> {
+        self.bank.read(signals, self.bank_positions(places), edge, |value| value as f32)
+    }
+
+    fn read_one(&self, signal: &[f64], places: &mut dyn Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
         self.bank.read(&[signal], self.bank_positions(places), edge, |value| value).swap_remove(0)
     }
 
-    fn bank_positions(&self, places: impl Iterator<Item = f64>) -> impl Iterator<Item = BankPosition> {
+    fn bank_positions(&self, places: &mut dyn Iterator<Item = f64>) -> impl Iterator<Item = BankPosition> {
         places.map(|place| BankPosition::between_samples(place, self.reach, self.steps))
     }
 }

@@ -17,7 +17,9 @@ use ndarray_npy::NpzReader;
 
 /// The arrays of a gearbox by name.
 fn arrays(name: &str) -> HashMap<String, ArrayD<f64>> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/gearbox").join(format!("{name}.npz"));
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../meshtone/tests/gearbox")
+        .join(format!("{name}.npz"));
     let mut npz = NpzReader::new(File::open(path).unwrap()).unwrap();
     let names = npz.names().unwrap();
     let array = |npz: &mut NpzReader<File>, name: &str| npz.by_name::<OwnedRepr<f64>, IxDyn>(name).unwrap();

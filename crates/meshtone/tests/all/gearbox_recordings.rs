@@ -31,9 +31,19 @@ struct Recorded {
 }
 
 fn record(gearbox: &Gearbox, sensor: &str, cycles: usize, profile_hz: Option<[f64; 2]>) -> Recorded {
+    let [recorded] = record_at(gearbox, [sensor], cycles, profile_hz);
+    recorded
+}
+
+/// What several sensors record of one simulation.
+fn record_at<const SENSORS: usize>(
+    gearbox: &Gearbox,
+    sensors: [&str; SENSORS],
+    cycles: usize,
+    profile_hz: Option<[f64; 2]>,
+) -> [Recorded; SENSORS] {
     let mut gearbox = gearbox.clone();
-    gearbox.sensors = vec![GearboxSensor::new(sensor)];
-    let train = GearTrain::of_gearbox(&gearbox).unwrap();
+    gearbox.sensors = sensors.map(GearboxSensor::new).to_vec();
     let cycle_rev = GearboxLayout::new(&gearbox).unwrap().cycle_revolutions() as f64;
     let speed_hz = gearbox.operation.drive.pinion_speed_hz;
     let duration_s = (cycles + 1) as f64 * cycle_rev / speed_hz + 0.01;
@@ -48,12 +58,14 @@ fn record(gearbox: &Gearbox, sensor: &str, cycles: usize, profile_hz: Option<[f6
     let from_rev = (angle[0] / cycle_rev).ceil() * cycle_rev;
     let from = angle.partition_point(|rev| *rev < from_rev - 1e-3);
     let to = angle.partition_point(|rev| *rev < from_rev + cycles as f64 * cycle_rev + 1e-3).min(angle.len());
-    Recorded {
-        train,
+    let of_sensors: Vec<&str> = channels.signals[..SENSORS].iter().map(|signal| signal.unit).collect();
+    assert_eq!(of_sensors, ["g"; SENSORS]);
+    std::array::from_fn(|sensor| Recorded {
+        train: GearTrain::of_gearbox(&gearbox).unwrap(),
         rate_hz: channels.sampling_rate_hz,
-        signal: channels.signals[0].values[from..to].to_vec(),
+        signal: channels.signals[sensor].values[from..to].to_vec(),
         input_rev: angle[from..to].to_vec(),
-    }
+    })
 }
 
 impl Recorded {
@@ -113,8 +125,8 @@ fn a_missing_tooth_shows_on_its_own_shaft() {
         let mut damaged = gearbox.clone();
         let fault = Fault::new(WheelName::Gear, 5, MissingTooth);
         damaged.faults = vec![GearboxFault { wheel: wheel.name.clone(), fault }];
-        for sensor in ["middle:1", "output:0", "output:1"] {
-            let recorded = record(&damaged, sensor, 5, None);
+        let sensors = ["middle:1", "output:0", "output:1"];
+        for (sensor, recorded) in sensors.into_iter().zip(record_at(&damaged, sensors, 5, None)) {
             let records = recorded.process();
             let differences = records.wheels.iter().map(|of| of.records[0].indicators.difference);
             let kurtosis: Vec<f64> = differences.map(|of| of.kurtosis.unwrap()).collect();

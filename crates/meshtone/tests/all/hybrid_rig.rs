@@ -178,10 +178,10 @@ fn damage_on_the_pinion_is_tuned_over_its_own_revolutions() {
     }
 }
 
-#[test]
-fn the_hidden_parameters_are_found_behind_another_damping_and_a_transmission_path() {
+/// Looks for the hidden parameters behind another damping and a transmission path, among so many candidates.
+fn assert_hidden_parameters_are_found(candidates: usize) {
     let measured = measured(&[(3, 0.05), (11, -0.04), (40, 0.02)]);
-    let result = run(measured.clone(), damping(), 48);
+    let result = run(measured.clone(), damping(), candidates);
     let keys = result.with_keys.as_ref().unwrap();
     let tuning = &keys.tuning;
     println!(
@@ -203,4 +203,17 @@ fn the_hidden_parameters_are_found_behind_another_damping_and_a_transmission_pat
     assert!(tuning.enhanced_error < 0.1 * measured.mean_error(&untouched));
     assert!(tuning.enhanced_error < tuning.original_error);
     assert!(tuning.enhanced_error < result.enhancement_alone.enhanced_error);
+}
+
+/// Twenty candidates, of which one is near enough. The measurement below has more, so that what is found is nearer.
+#[test]
+fn the_hidden_parameters_are_found_behind_another_damping_and_a_transmission_path() {
+    assert_hidden_parameters_are_found(20);
+}
+
+/// Prints the numbers of the book's table of hidden parameters.
+#[test]
+#[ignore = "a measurement: cargo xtask measure"]
+fn the_hidden_parameters_among_many_candidates() {
+    assert_hidden_parameters_are_found(48);
 }

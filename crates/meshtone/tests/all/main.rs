@@ -4,13 +4,12 @@ mod batch;
 mod compliances;
 mod contact;
 mod contact_rigs;
-mod contact_slices;
+// A part of it serves the tests with solvers of their own alone.
+#[allow(dead_code)]
 mod dense;
-mod dense_oracle;
 mod drive;
 mod fault_limits;
 mod faults_anywhere;
-mod gearbox;
 mod gearbox_machine;
 mod gearbox_recordings;
 mod generated;
@@ -18,7 +17,6 @@ mod helical;
 mod hybrid;
 mod hybrid_experiment;
 mod hybrid_rig;
-mod integrator;
 mod linear_mesh;
 mod other_programs;
 mod paper_original;

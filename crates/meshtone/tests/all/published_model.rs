@@ -32,7 +32,9 @@ pub type Reference = HashMap<String, ArrayD<f64>>;
 
 /// The published outputs of a scenario.
 pub fn reference(name: &str) -> Reference {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/published").join(format!("{name}.npz"));
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../meshtone/tests/published")
+        .join(format!("{name}.npz"));
     let mut npz = NpzReader::new(File::open(path).unwrap()).unwrap();
     let names = npz.names().unwrap();
     names

@@ -126,6 +126,8 @@ fn any_teeth_can_be_simulated() {
             let mut scenario = published(teeth, 30.0, damage);
             scenario.quality.din_grade = 7;
             scenario.solver.sampling_rate_hz = 1e5;
+            // About ten cycles, which are revolutions of the gear.
+            scenario.solver.discard_and_keep(0.1, 0.5);
             let simulation = meshtone::simulate(&scenario).unwrap();
             let force_n = &simulation.channels.mesh_force_n;
             assert!(

@@ -366,9 +366,9 @@ fn row(name: &str, tally: Tally) {
     println!("| {name} | {recordings} | {warned} | {right_cause} | {right_value} |");
 }
 
-/// Prints the table of the book: `cargo test --release -p meshtone -- --ignored recordings_with_every_mistake --nocapture`.
+/// Prints the table of the book: `cargo test --release -p meshtone-tests --test core -- --ignored recordings_with_every_mistake --nocapture`.
 #[test]
-#[ignore = "takes minutes; prints a table"]
+#[ignore = "a measurement: cargo xtask measure"]
 fn recordings_with_every_mistake() {
     let machines: Vec<Machine> = (0..300u64).into_par_iter().map(machine).collect();
     println!("| what is stated | recordings | warned | right cause | right value |");

@@ -1,6 +1,8 @@
 //! What is said about recordings as rigs make them: hunting-tooth orders, a second mesh, noise, hum; stated rightly and wrongly.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use std::f64::consts::PI;
+
 use meshtone::signal::{
     AngularSignal, ChainSettings, Edge, MeshTone, ShaftPhase, SignalWarning, StatedFacts, StatedTurning,
     angular_resample, check_recording, interpolate_band_limited, process_angular, resample,
@@ -278,9 +280,9 @@ fn count(machines: &[Machine], wrong: Wrong, each: u64) -> [usize; 3] {
     [all.len(), refused, warned]
 }
 
-/// Prints the table of the book: `cargo test --release -p meshtone --test all -- --ignored recordings_of_rigs --nocapture`.
+/// Prints the table of the book: `cargo test --release -p meshtone-tests --test core -- --ignored recordings_of_rigs --nocapture`.
 #[test]
-#[ignore = "takes minutes; prints a table"]
+#[ignore = "a measurement: cargo xtask measure"]
 fn recordings_of_rigs() {
     let machines = machines(&PAIRS);
     assert_eq!(machines.len(), PAIRS.len());
@@ -308,6 +310,21 @@ fn wrong_recordings_of_a_rig_are_seen_and_right_ones_pass() {
     }
 }
 
+/// The sum of the [`wave`]s of 1, 2, … to `count` times so many cycles, in closed form.
+fn waves(count: u32, cycles: f64) -> f64 {
+    let (half, count) = (PI * cycles.fract(), f64::from(count));
+    let sine = half.sin();
+    if sine.abs() < 1e-9 { count } else { (count * half).sin() * ((count + 1.0) * half).cos() / sine }
+}
+
+#[test]
+fn the_closed_form_is_the_sum_of_waves() {
+    for cycles in [0.0, 1.0, 0.13, 7.25, 0.999, 41.0 / 3.0] {
+        let sum: f64 = (1..=120).map(|k| wave(f64::from(k) * cycles)).sum();
+        assert!((waves(120, cycles) - sum).abs() < 1e-9, "{cycles}: {} {sum}", waves(120, cycles));
+    }
+}
+
 /// Orders of both shafts and mesh harmonics with sidebands, the hunting-tooth orders of a pair, and noise, over so many revolutions.
 fn pair_with_hunting_tooth(teeth: u32, mate_teeth: u32, revolutions: usize) -> AngularSignal {
     let points_per_revolution = 1024;
@@ -316,9 +333,7 @@ fn pair_with_hunting_tooth(teeth: u32, mate_teeth: u32, revolutions: usize) -> A
     let noise = noise(u64::from(teeth), points_per_revolution * revolutions);
     let value = |(at, noise): (usize, f64)| {
         let turned = at as f64 / points_per_revolution as f64;
-        let of = |spacing: f64, amplitude: f64| -> f64 {
-            (1..=120).map(|k| amplitude * wave(f64::from(k) * (spacing * turned + 0.13))).sum()
-        };
+        let of = |spacing: f64, amplitude: f64| amplitude * waves(120, spacing * turned + 0.13);
         let mesh: f64 = (1..=4).map(|h| wave(f64::from(h * teeth) * turned) / f64::from(h)).sum();
         (1.0 + 0.2 * wave(turned) + 0.2 * wave(ratio * turned)) * mesh
             + of(1.0, 0.1)

@@ -167,21 +167,16 @@ fn counts(recordings: u64, first: u64) -> BTreeMap<&'static str, Count> {
     counts
 }
 
-// Of right statements hardly one is warned of; of wrong ones most are, and nearly all of these with what is right. What is off in its speed
-// alone is not said to be of another shaft.
-#[test]
-fn the_wrong_shaft_of_a_gearbox_is_named() {
-    let counts = counts(10, 1000);
+/// Of wrong statements most are warned of, and nearly all of these with what is right. What is off in its speed alone is not said to be of
+/// another shaft. Of right statements at most so large a part is warned of.
+fn assert_named(counts: &BTreeMap<&'static str, Count>, most_warned: f64) {
     let [warned, right, other] = [
         |count: &Count| count.warned as f64 / count.asked as f64,
         |count: &Count| count.right as f64 / count.asked as f64,
         |count: &Count| count.of_other_turning as f64 / count.asked as f64,
     ]
-    .map(|of| {
-        let counts = &counts;
-        move |name: &str| of(&counts[name])
-    });
-    assert!(warned("right") == 0.0 && other("right, constant speed") == 0.0);
+    .map(|of| move |name: &str| of(&counts[name]));
+    assert!(warned("right") <= most_warned && other("right, constant speed") <= most_warned);
     assert!(right("pulses of another shaft") > 0.9 && right("another number of pulses") > 0.6);
     assert!(right("a constant speed of another shaft") > 0.6);
     assert!(right("a speed 1 % off") > 0.6 && other("a speed 1 % off") < 0.05);
@@ -189,9 +184,16 @@ fn the_wrong_shaft_of_a_gearbox_is_named() {
     assert!(right(varies) > 0.4 && other(varies) < 0.05);
 }
 
-/// Prints the table of the book: `cargo test --release -p meshtone -- --ignored many_gearboxes_with_every_mistake --nocapture`.
+/// One gearbox, asked about each of its shafts. The measurement below counts many.
 #[test]
-#[ignore = "takes minutes; prints a table"]
+fn the_wrong_shaft_of_a_gearbox_is_named() {
+    assert_named(&counts(1, 1005), 0.0);
+}
+
+/// Prints the table of the book: `cargo test --release -p meshtone-tests --test core -- --ignored many_gearboxes_with_every_mistake --nocapture`.
+#[test]
+#[ignore = "a measurement: cargo xtask measure"]
 fn many_gearboxes_with_every_mistake() {
-    counts(150, 100);
+    assert_named(&counts(10, 1000), 0.0);
+    assert_named(&counts(150, 100), 0.01);
 }
