@@ -157,10 +157,7 @@ impl StepRunner {
     /// # Errors
     /// Cargo's exit code, or 1 where it could not be started or was killed.
     pub fn cargo(&self, arguments: &[&str], environment: &[(&str, OsString)]) -> Result<(), u8> {
-        self.step(&format!("cargo {}", arguments.join(" ")), || {
-            let mut cargo = cargo();
-            self.program(cargo.args(arguments).envs(self.environment()).envs(environment.iter().cloned()))
-        })
+        self.run_cargo(&format!("cargo {}", arguments.join(" ")), arguments, environment)
     }
 
     /// Runs a compilation, and what it compiles where that is tests, as a step of its name.
@@ -178,10 +175,16 @@ impl StepRunner {
         further: &[&str],
         environment: &[(&str, OsString)],
     ) -> Result<(), u8> {
+        let own = compilation.arguments.iter().map(String::as_str);
+        let arguments: Vec<&str> = own.chain(further.iter().copied()).collect();
+        self.run_cargo(&compilation.name, &arguments, environment)
+    }
+
+    /// Runs cargo as a step, with the variables of all that compiles.
+    fn run_cargo(&self, name: &str, arguments: &[&str], environment: &[(&str, OsString)]) -> Result<(), u8> {
         let mut cargo = cargo();
-        cargo.args(&compilation.arguments).args(further);
-        cargo.envs(self.environment()).envs(environment.iter().cloned());
-        self.step(&compilation.name, || self.program(&mut cargo))
+        cargo.args(arguments).envs(self.environment()).envs(environment.iter().cloned());
+        self.step(name, || self.program(&mut cargo))
     }
 
     /// Runs a program in the workspace's folder to its end.
