@@ -62,8 +62,7 @@ pub fn core_tests() -> Compilation {
 ///
 /// What it depends on stays as it was compiled for the program, hence one package a run.
 pub fn unit_tests(package: &str) -> Compilation {
-    // A diagnosis learns from many records, which takes minutes without optimisation.
-    let level = level(package, if package == "meshtone-diagnose" { 3 } else { 0 });
+    let level = level(package, 0);
     let arguments = ["test", "--release", "--locked", "--package", package, "--lib", "--config", &level];
     Compilation::new(&format!("unit tests of {package}"), &[&arguments, &ALIKE])
 }
@@ -82,6 +81,17 @@ pub fn documentation_tests() -> Compilation {
     Compilation::new("documentation", &[&arguments])
 }
 
+/// The core without threads, and not optimised: that it compiles is all that is asked.
+///
+/// # Arguments
+/// * `machine` - Rust's name of the kind of machine; none for the one that compiles
+pub fn without_threads(machine: Option<&str>) -> Compilation {
+    let arguments = ["build", "--release", "--locked", "--package", "meshtone", "--no-default-features"];
+    let features = ["--package", "workspace-features", "--config", &level("meshtone", 0)];
+    let target = machine.map_or(Vec::new(), |machine| vec!["--target", machine]);
+    Compilation::new("core without threads", &[&arguments, &features, &target])
+}
+
 /// What maturin compiles for the wheel.
 fn wheel() -> Compilation {
     let arguments = ["build", "--release", "--locked", "--package", "meshtone-python", "--lib"];
@@ -98,7 +108,8 @@ fn all(root: &Path) -> Result<Vec<Compilation>, String> {
     let units = packages::with_unit_tests(root)?.into_iter().map(|package| unit_tests(&package));
     let checks = Compilation::new("checks", &[&["build", "--release", "--package", "xtask"]]);
     let first = [checks, tests(), examples_and_benchmarks(), wheel()];
-    Ok(first.into_iter().chain(units).chain([object_stores(), documentation_tests(), program()]).collect())
+    let last = [object_stores(), documentation_tests(), program(), without_threads(None)];
+    Ok(first.into_iter().chain(units).chain(last).collect())
 }
 
 /// A thing that a compilation makes: package, target, kind of build, machine.
@@ -140,10 +151,15 @@ pub fn problems(root: &Path) -> Result<Vec<String>, String> {
     Ok(problems)
 }
 
-/// Whether a package is compiled again on purpose: data sets with object stores and their tests, see [`object_stores`].
+/// Whether a package is compiled again on purpose: data sets with object stores and their tests, see [`object_stores`], and the core
+/// without threads.
 fn is_meant([package, _, _, _]: &Unit, manner: &Manner) -> bool {
-    ["meshtone-dataset", "meshtone-tests"].contains(&package.as_str())
-        && manner.features.iter().any(|feature| feature == "objects")
+    let has = |name: &str| manner.features.iter().any(|feature| feature == name);
+    match package.as_str() {
+        "meshtone-dataset" | "meshtone-tests" => has("objects"),
+        "meshtone" => !has("threads"),
+        _ => false,
+    }
 }
 
 fn described([package, target, mode, _]: &Unit, first: &Manner, again: &Manner) -> String {

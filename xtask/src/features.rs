@@ -3,20 +3,20 @@
 use std::path::Path;
 use std::process::Command;
 
+use crate::compilations;
 use crate::step::StepRunner;
 
 /// Rust's name of the machine that a browser is.
 const BROWSER: &str = "wasm32-unknown-unknown";
-/// Compiles the core without threads.
-const CORE: [&str; 5] = ["check", "--release", "--package", "meshtone", "--no-default-features"];
-/// Checks the core without threads, also for a browser where Rust's libraries for one are installed.
+
+/// Compiles the core without threads, also for a browser where Rust's libraries for one are installed.
 ///
 /// # Errors
 /// The exit code of what failed.
 pub fn without_threads(row: &StepRunner) -> Result<(), u8> {
-    row.cargo(&CORE, &[])?;
+    row.compile(&compilations::without_threads(None), &[], &[])?;
     if is_installed(row, BROWSER)? {
-        return row.cargo(&[&CORE[..], &["--target", BROWSER]].concat(), &[]);
+        return row.compile(&compilations::without_threads(Some(BROWSER)), &[], &[]);
     }
     println!("    {BROWSER} was not tried: it is not installed");
     Ok(())

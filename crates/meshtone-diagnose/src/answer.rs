@@ -5,19 +5,10 @@ use meshtone::wheel::WheelName;
 
 use crate::bearings::BearingAnswer;
 use crate::diagnose::OUTSIDE;
+use meshtone_learn::Interval;
+
 use crate::observation::SignalKind;
 use crate::warnings::DiagnosisWarning;
-
-/// A number with its uncertainty.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Median: the value is as likely larger as smaller.
-    pub median: f64,
-    /// It is within with a probability of 0.5.
-    pub within_50: [f64; 2],
-    /// It is within with a probability of 0.9.
-    pub within_90: [f64; 2],
-}
 
 /// A size of a damage.
 #[derive(Debug, Clone, PartialEq)]

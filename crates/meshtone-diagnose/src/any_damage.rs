@@ -1,7 +1,7 @@
 //! The answer about a damage whatever its kind.
 
 use crate::answer::{Answer, AnyDamage, HEALTHY, KindAnswer, ToothAnswer};
-use crate::quantile::interval;
+use meshtone_learn::interval;
 
 /// (-) Probability of damage from which on it is said to be there, and below which it is not seen.
 const DECIDED: [f64; 2] = [0.1, 0.9];

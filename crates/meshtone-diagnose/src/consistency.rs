@@ -1,8 +1,10 @@
 //! A check that several recordings are of one state.
 
+use meshtone_learn::WheelLines;
+
 use crate::answer::{HEALTHY, wheel_in_words};
 use crate::learn::{Learned, Question};
-use crate::observation::{Observation, WheelLines};
+use crate::observation::Observation;
 
 /// (dB) How much louder one recording's difference signal may be than another's of the same state: loads and mounting move it less.
 const LOUDEST_DB: f64 = 6.0;

@@ -2,6 +2,7 @@
 
 use meshtone::signal::AngleZero;
 use meshtone_fourier::Complex64;
+use meshtone_learn::{WheelLines, interval, quantiles, revolution};
 
 use crate::DiagnoseError;
 use crate::answer::{
@@ -10,9 +11,8 @@ use crate::answer::{
 use crate::any_damage::sentence;
 use crate::bearings;
 use crate::learn::{FeatureRow, Layout, Learned, Question};
-use crate::observation::{Observation, WheelLines, revolution};
+use crate::observation::Observation;
 use crate::prior::{DrawnFault, Prior};
-use crate::quantile::{interval, quantiles};
 use crate::refine::Refined;
 use crate::warnings::warnings;
 

@@ -87,3 +87,12 @@ pub enum DiagnoseError {
 fn listed(teeth: &[u32]) -> String {
     teeth.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
 }
+
+impl From<meshtone_learn::LearnError> for DiagnoseError {
+    fn from(error: meshtone_learn::LearnError) -> Self {
+        match error {
+            meshtone_learn::LearnError::TooFewRows => Self::NoReference,
+            _ => Self::NotSolved,
+        }
+    }
+}

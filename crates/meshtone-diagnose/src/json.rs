@@ -3,7 +3,9 @@
 use meshtone::signal::AngleZero;
 use serde_json::{Map, Value, json};
 
-use crate::answer::{Answer, AnyDamage, Explanation, Interval, KindAnswer};
+use meshtone_learn::Interval;
+
+use crate::answer::{Answer, AnyDamage, Explanation, KindAnswer};
 use crate::bearings::BearingAnswer;
 use crate::warnings::DiagnosisWarning;
 

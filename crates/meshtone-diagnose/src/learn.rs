@@ -5,22 +5,18 @@ use std::sync::OnceLock;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::DamageKind;
-use meshtone_fourier::Complex64;
+use meshtone_learn::{
+    OutlierTest, RandomFeatures, SizeModel, Softmax, Standardisation, WheelFeatures, WheelLines,
+    beyond_healthy, fold_of, quantiles, ridge, wheel_features,
+};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::DiagnoseError;
 use crate::answer::wheel_in_words;
-use crate::features::{WheelFeatures, wheel_features};
-use crate::healthy::beyond_healthy;
-use crate::matrix::{FOLDS, RandomFeatures, Standardisation, ridge};
-use crate::observation::{Observation, SignalKind, WheelLines};
-use crate::outlier_test::OutlierTest;
+use crate::observation::{Observation, SignalKind};
 use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
-use crate::quantile::quantiles;
 use crate::reference::{ReferenceRecord, ReferenceSet};
-use crate::severity::SizeModel;
-use crate::softmax::Softmax;
 
 /// Random features beside the linear ones.
 const RANDOM_FEATURES: usize = 512;
@@ -314,7 +310,7 @@ impl<'a> Learned<'a> {
         classes.dedup();
         let place = |record: &&ReferenceRecord| classes.iter().position(|class| *class == class_of(record));
         let class_of: Vec<usize> = records.iter().filter_map(place).collect();
-        let folds: Vec<usize> = records.iter().map(|record| fold_of(record)).collect();
+        let folds: Vec<usize> = records.iter().map(|record| fold_of(record.unit())).collect();
         let weights = weights(&class_of, &classes);
         let values: Vec<Vec<f64>> = rows.iter().map(|row| row.values.clone()).collect();
         let standard = Standardisation::of(&values);
@@ -430,7 +426,7 @@ impl<'a> Learned<'a> {
             let known = features.ncols();
             features = features.resize_horizontally(known + more.len(), 0.0);
             features.columns_mut(known, more.len()).copy_from(&self.random.of(&values));
-            folds.extend(more.iter().map(|(record, _)| fold_of(record)));
+            folds.extend(more.iter().map(|(record, _)| fold_of(record.unit())));
             faults.extend(more.iter().filter_map(|(record, _)| record.fault.as_ref()));
         }
         let mut places = vec![None];
@@ -461,17 +457,6 @@ impl<'a> Learned<'a> {
         let rows = self.layout.simulations(refined, &records);
         records.into_iter().zip(rows).collect()
     }
-}
-
-/// Part of the simulations to which a record belongs: units are not divided. It is drawn, since classes come in turn, so that a class would
-/// be in some parts alone.
-fn fold_of(record: &ReferenceRecord) -> usize {
-    (shuffled(record.unit()) % FOLDS as u64) as usize
-}
-
-/// A number of a unit that does not follow the turn of the classes.
-pub(crate) fn shuffled(unit: u64) -> u64 {
-    Draws::new(0, Purpose::DiagnosisUnit, unit).bits()
 }
 
 fn class_of(record: &ReferenceRecord) -> Class {
@@ -510,20 +495,9 @@ fn with_noise(record: &ReferenceRecord, layout: &Layout, noise: &[Vec<f64>], see
     let mut draws = Draws::new(seed, Purpose::DiagnosisNoise, record.number);
     let [least, largest] = UNKNOWN_NOISE;
     let part = least * (largest / least).powf(draws.uniform(0.5, 0.5));
-    let mut noisy = |(wheel, lines): (usize, &WheelLines)| {
-        let mut lines = lines.clone();
-        lines.lines.truncate(layout.last[wheel] + 1);
-        let count = lines.lines.len().max(1) as f64;
-        let energy: f64 = lines.difference().iter().map(Complex64::norm_sqr).sum();
-        let unknown = part * (energy / count).sqrt();
-        let teeth = lines.teeth().max(1);
-        for (order, line) in lines.lines.iter_mut().enumerate() {
-            let known = noise.get(wheel).map_or(&[][..], |known| known);
-            let deviation = known.get((order + teeth / 2) / teeth).or(known.last()).unwrap_or(&unknown);
-            let [re, im] = draws.normals();
-            *line += Complex64::new(re, im) * (deviation * std::f64::consts::FRAC_1_SQRT_2);
-        }
-        lines
+    let noisy = |(wheel, lines): (usize, &WheelLines)| {
+        let known = noise.get(wheel).map_or(&[][..], Vec::as_slice);
+        lines.with_noise(layout.last[wheel], known, part, &mut draws)
     };
-    record.wheels.iter().enumerate().map(&mut noisy).collect()
+    record.wheels.iter().enumerate().map(noisy).collect()
 }

@@ -1,10 +1,10 @@
 //! A check that a recording is as loud as simulations of the rig.
 
 use meshtone::sensor::GRAVITY_M_PER_S2;
+use meshtone_learn::{WheelLines, quantiles};
 
 use crate::learn::{Learned, Question};
-use crate::observation::{Observation, WheelLines};
-use crate::quantile::quantiles;
+use crate::observation::Observation;
 
 /// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.
 const BEYOND_DB: f64 = 10.0;

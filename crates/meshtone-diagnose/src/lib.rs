@@ -12,21 +12,14 @@ mod bearings;
 mod consistency;
 mod diagnose;
 mod error;
-mod features;
-mod healthy;
 mod json;
 mod learn;
 mod level;
-mod matrix;
 mod observation;
-mod outlier_test;
 mod prior;
-mod quantile;
 mod recorded;
 mod reference;
 mod refine;
-mod severity;
-mod softmax;
 mod speed;
 mod store;
 #[cfg(test)]
@@ -35,14 +28,15 @@ mod warnings;
 mod words;
 
 pub use answer::{
-    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer,
-    ToothAnswer, p_in_words,
+    Answer, AnyDamage, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SEVERAL, SizeAnswer, ToothAnswer,
+    p_in_words,
 };
 pub use bearings::BearingAnswer;
 pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
-pub use observation::{Observation, SignalKind, WheelLines};
+pub use meshtone_learn::{Interval, WheelLines};
+pub use observation::{Observation, SignalKind};
 pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
 pub use recorded::other_tone;
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};

@@ -1,16 +1,11 @@
 //! Features of the wheels in a recording or a simulation.
 
 use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, BearingDefects, ForeignTones, GearTrain, MeanPart, Mismatch,
-    SeparationSettings, ShaftPhase, SignalError, StatedFacts, StatedTurning, SynchronousAverage,
-    angular_resample, check_channel, find_mismatch,
+    Alternative, AngleZero, AngularSettings, BearingDefects, ForeignTones, Mismatch, ShaftPhase, SignalError,
+    StatedFacts, StatedTurning, angular_resample, check_channel, find_mismatch,
 };
-use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
-
-/// Mesh orders of which lines are looked at.
-pub(crate) const MESH_ORDERS: usize = 16;
-/// (-) Part of a recording's Nyquist order up to which its lines are whole.
-pub(crate) const PASSED: f64 = 0.8;
+use meshtone_fourier::{Complex64, real_spectrum};
+use meshtone_learn::{MESH_ORDERS, PASSED, WheelLines, separation};
 
 /// Kind of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,87 +32,6 @@ impl SignalKind {
     pub(crate) fn has_regular_part(self) -> bool {
         self != Self::Difference
     }
-}
-
-/// The lines of a wheel's average over the orders of its shaft.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WheelLines {
-    /// Teeth of the wheel, and what else is regular in the average.
-    pub separation: SeparationSettings,
-    /// (g) Complex amplitude at each order from 0 on: half the peak of a tone, as a line of the spectrum over its length.
-    pub lines: Vec<Complex64>,
-}
-
-impl WheelLines {
-    /// The lines of an average, as far as it is whole and they are looked at.
-    ///
-    /// # Arguments
-    /// * `average` - over the revolutions of the wheel
-    /// * `separation` - of the wheel
-    pub fn of_average(average: &SynchronousAverage, separation: SeparationSettings) -> Self {
-        let passed = (PASSED * average.nyquist_order) as usize;
-        Self::of_values(&average.values, separation, passed)
-    }
-
-    /// The lines of one revolution.
-    ///
-    /// # Arguments
-    /// * `values` - (g) at equal angles
-    /// * `separation` - of the wheel
-    /// * `last` - the last order that is whole
-    pub fn of_values(values: &[f64], separation: SeparationSettings, last: usize) -> Self {
-        let count = values.len().max(1) as f64;
-        let mut lines = real_spectrum(values);
-        lines.truncate(1 + last.min(Self::most(separation.teeth)));
-        lines.iter_mut().for_each(|line| *line /= count);
-        Self { separation, lines }
-    }
-
-    /// The last order that is looked at, of a wheel of so many teeth.
-    pub(crate) fn most(teeth: usize) -> usize {
-        MESH_ORDERS * teeth + teeth / 2
-    }
-
-    /// Teeth of the wheel.
-    pub fn teeth(&self) -> usize {
-        self.separation.teeth
-    }
-
-    /// The last order there is.
-    pub(crate) fn last(&self) -> usize {
-        self.lines.len().saturating_sub(1)
-    }
-
-    /// The lines without the regular part.
-    pub(crate) fn difference(&self) -> Vec<Complex64> {
-        let regular = self.separation.regular_orders(self.last());
-        let kept =
-            |(line, is_regular): (&Complex64, bool)| if is_regular { Complex64::default() } else { *line };
-        self.lines.iter().zip(regular).map(kept).collect()
-    }
-}
-
-/// What is regular in the average of a wheel of so many teeth, alone on its shaft.
-pub(crate) fn separation(teeth: u32) -> SeparationSettings {
-    SeparationSettings { mean: MeanPart::Removed, ..SeparationSettings::new(teeth as usize) }
-}
-
-/// What is regular in the average of each wheel of a train.
-pub(crate) fn separations(train: &GearTrain) -> Vec<SeparationSettings> {
-    let of = |wheel: usize| train.separation(wheel, &separation(train.wheels[wheel].teeth));
-    (0..train.wheels.len()).map(of).collect()
-}
-
-/// (g) Values of one revolution.
-///
-/// # Arguments
-/// * `lines` - complex amplitudes by order
-/// * `points` - how many values
-pub(crate) fn revolution(lines: &[Complex64], points: usize) -> Vec<f64> {
-    let count = points as f64;
-    let mut spectrum: Vec<Complex64> = lines.iter().take(points / 2 + 1).map(|line| line * count).collect();
-    spectrum.resize(points / 2 + 1, Complex64::default());
-    from_real_spectrum(spectrum, points)
 }
 
 /// Features of a recording.
@@ -249,26 +163,4 @@ fn beyond_a_revolution(values_g: &[f64], gear_teeth: u32) -> Option<String> {
             values_g.len()
         )
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::f64::consts::TAU;
-
-    #[test]
-    fn lines_are_those_of_a_revolution() {
-        let value = |rev: f64| (TAU * 38.0 * rev).cos() + 0.1 * (TAU * 43.0 * rev).cos();
-        let values: Vec<f64> = (0..2048).map(|at| value(f64::from(at) / 2048.0)).collect();
-        let lines = WheelLines::of_values(&values, separation(38), 800);
-        assert_eq!(lines.last(), WheelLines::most(38));
-        assert!((lines.lines[38].norm() - 0.5).abs() < 1e-9);
-        assert!(lines.difference()[38].norm() == 0.0 && (lines.difference()[43].norm() - 0.05).abs() < 1e-9);
-        let error = revolution(&lines.lines, 2048)
-            .iter()
-            .zip(&values)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
-        assert!(error < 1e-9, "{error}");
-    }
 }

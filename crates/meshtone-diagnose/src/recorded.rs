@@ -9,11 +9,10 @@ use meshtone::signal::{
 };
 use meshtone::wheel::WheelName;
 use meshtone_fourier::{Complex64, from_real_spectrum};
+use meshtone_learn::{MESH_ORDERS, PASSED, WheelLines, separations};
 
 use crate::answer::wheel_in_words;
-use crate::observation::{
-    MESH_ORDERS, Observation, PASSED, SignalKind, WheelLines, other_teeth, separations,
-};
+use crate::observation::{Observation, SignalKind, other_teeth};
 
 /// (-) Kurtosis of what belongs to neither shaft, from which on it is impulsive.
 const IMPULSIVE: f64 = 4.5;

@@ -11,8 +11,8 @@ use meshtone::signal::{
 };
 use meshtone::wheel::WheelName;
 use meshtone::{Error, GearboxSimulation, Stages};
+use meshtone_learn::{WheelLines, separations};
 
-use crate::observation::{WheelLines, separations};
 use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
 
 /// A simulation of a reference set.

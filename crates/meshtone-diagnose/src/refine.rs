@@ -7,13 +7,12 @@
 use std::sync::atomic::Ordering;
 
 use meshtone::batch::Control;
+use meshtone_learn::{SizeModel, quantiles};
 
 use crate::DiagnoseError;
 use crate::learn::{Learned, Question};
 use crate::prior::{Focus, Prior};
-use crate::quantile::quantiles;
 use crate::reference::{ReferenceSet, build_reference};
-use crate::severity::SizeModel;
 
 /// (-) Probability of a kind on a wheel from which on it is looked at more closely.
 const LIKELY: f64 = 0.4;

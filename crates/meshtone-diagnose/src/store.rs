@@ -11,9 +11,9 @@ use meshtone::batch::Control;
 use meshtone_fourier::Complex64;
 use meshtone_io::atomic_file::{WriteFileError, write_atomically};
 use meshtone_io::npz::{NpzReader, NpzWriter};
+use meshtone_learn::{MESH_ORDERS, WheelLines, separations};
 use sha2::{Digest, Sha256};
 
-use crate::observation::{MESH_ORDERS, WheelLines, separations};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet, build_reference};
 

@@ -4,8 +4,9 @@ use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{DamageKind, GearPair, Gearbox, Scenario, ScenarioForm};
 use meshtone::signal::{AngleZero, BearingDefects};
 use meshtone_fourier::Complex64;
+use meshtone_learn::{WheelLines, separations};
 
-use crate::observation::{Observation, SignalKind, WheelLines, separations};
+use crate::observation::{Observation, SignalKind};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
 

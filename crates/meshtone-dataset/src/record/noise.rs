@@ -35,14 +35,11 @@ pub(super) fn add(
         background.add(&mut draws, deviation, signal);
         return Ok(());
     }
-    for pair in signal.chunks_mut(2) {
-        for (sample, normal) in pair.iter_mut().zip(draws.normals()) {
-            *sample = (f64::from(*sample) + deviation * normal) as f32;
-        }
-    }
+    draws.add_normals(deviation, signal);
     Ok(())
 }
 
+/// (the signal's unit) Standard deviation, in the order of the samples: a data set keeps its values.
 fn standard_deviation(signal: &[f32]) -> f64 {
     let count = signal.len().max(1) as f64;
     let mean = signal.iter().map(|&x| f64::from(x)).sum::<f64>() / count;

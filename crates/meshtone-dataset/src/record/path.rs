@@ -1,8 +1,7 @@
 //! The path from the simulated sensor's place to where a rig's is.
 
 use meshtone::scenario::{Sensor, SensorPath};
-use meshtone::sensor::PathRipple;
-use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum, shared_length};
+use meshtone::sensor::{Passage, PathRipple};
 use meshtone_io::run_identity::fnv_1a;
 
 use crate::draw::{DrawnRecord, PATH_KEYS};
@@ -28,31 +27,14 @@ pub(super) fn pass(
     signal: &mut [f32],
 ) {
     let [gain_db, ripple_db, ..] = PATH_KEYS.map(|key| drawn.value(key));
-    let factor = gain_db.map_or(1.0, |gain_db| libm::pow(10.0, gain_db / 20.0));
-    let ripple = ripple_db
-        .filter(|&ripple_db| ripple_db != 0.0)
-        .map(|ripple_db| PathRipple::new(drawn.mounting_seed, fnv_1a(channel.as_bytes()), ripple_db));
-    let structure = structure(drawn, channel);
-    if (ripple.is_none() && sensor.is_none() && structure.is_rigid()) || signal.len() < 2 {
-        signal.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * factor) as f32);
-        return;
-    }
-    filter(signal, |length, count| {
-        let step_hz = rate_hz / length as f64;
-        let mut gains = match sensor {
-            Some(sensor) => sensor.gains(step_hz, count),
-            None => vec![Complex64::ONE; count],
-        };
-        gains.iter_mut().for_each(|gain| *gain *= factor);
-        if let Some(ripple) = &ripple {
-            gains.iter_mut().zip(ripple.gains(step_hz, count)).for_each(|(gain, ripple)| *gain *= ripple);
-        }
-        if !structure.is_rigid() {
-            let structure = structure.at((0..count).map(|line| line as f64 * step_hz));
-            gains.iter_mut().zip(structure).for_each(|(gain, structure)| *gain *= structure);
-        }
-        gains
-    });
+    let ripple = |ripple_db: f64| PathRipple::new(drawn.mounting_seed, fnv_1a(channel.as_bytes()), ripple_db);
+    let passage = Passage {
+        factor: gain_db.map_or(1.0, |gain_db| libm::pow(10.0, gain_db / 20.0)),
+        sensor,
+        ripple: ripple_db.filter(|&ripple_db| ripple_db != 0.0).map(ripple),
+        structure: structure(drawn, channel),
+    };
+    passage.pass(rate_hz, signal);
 }
 
 /// The wall and the housing that a record's values put under a channel's sensor.
@@ -67,27 +49,6 @@ pub(super) fn structure(drawn: &DrawnRecord, channel: &str) -> SensorPath {
     structure.strength = strength.unwrap_or(0.0);
     structure.seed = drawn.mounting_seed ^ fnv_1a(channel.as_bytes());
     structure
-}
-
-/// Multiplies the spectrum of a signal, mirrored at its ends: what the transform takes for periodic has no jump anywhere.
-///
-/// # Arguments
-/// * `signal` - its samples
-/// * `gains` - of the length of the transform and the number of its lines
-fn filter(signal: &mut [f32], gains: impl FnOnce(usize, usize) -> Vec<Complex64>) {
-    // Behind the mirrored signal so much of its beginning, there and back, as is left of the length: at least an eighth, so that the
-    // filter does not reach beyond. The length is even.
-    let length = shared_length(2 * signal.len() + signal.len() / 4);
-    let (beginning, _) = signal.split_at((length - 2 * signal.len()) / 2);
-    let there_and_back =
-        |part: &[f32]| part.iter().chain(part.iter().rev()).map(|&x| f64::from(x)).collect::<Vec<_>>();
-    let mut mirrored = there_and_back(signal);
-    mirrored.extend(there_and_back(beginning));
-    let mut spectrum = real_spectrum(&mirrored);
-    let gains = gains(length, spectrum.len());
-    spectrum.iter_mut().zip(gains).for_each(|(value, gain)| *value *= gain);
-    let filtered = from_real_spectrum(spectrum, length);
-    signal.iter_mut().zip(filtered).for_each(|(sample, value)| *sample = value as f32);
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod contact_figures;
 mod frequency_response;
 mod measure;
 mod parameters;
+mod passage;
 mod path;
 mod path_ripple;
 
@@ -18,6 +19,7 @@ pub use frequency_response::FrequencyResponse;
 pub use measure::{Measurement, measure};
 pub(crate) use parameters::check_sensors;
 pub use parameters::{ResponseInput, Sensor, SensorDirection, SensorPlace};
+pub use passage::Passage;
 pub use path::SensorPath;
 pub use path_ripple::PathRipple;
 

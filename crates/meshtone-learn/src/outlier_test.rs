@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
-use crate::learn::shuffled;
+use crate::fold::shuffled;
 use crate::matrix::Standardisation;
 use crate::quantile::quantiles;
 
@@ -24,7 +24,7 @@ const LEAST_WIDTH: f64 = 0.1;
 const NEIGHBOURS: usize = 8;
 
 /// Simulations as points.
-pub(crate) struct OutlierTest {
+pub struct OutlierTest {
     standard: Standardisation,
     /// Principal components over their deviation, a column each.
     components: DMatrix<f64>,

@@ -4,17 +4,15 @@ use meshtone::random::{Draws, Purpose};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::DiagnoseError;
-
-/// Parts of the rows: each is predicted by a regression on the others.
-pub(crate) const FOLDS: usize = 5;
+use crate::LearnError;
+use crate::fold::FOLDS;
 
 /// The deviation of a feature that is the same in all simulations: logarithms and shapes differ by more where they differ.
 const LEAST_DEVIATION: f64 = 1e-3;
 
-/// Each feature less its mean, over its standard deviation, and within ± [`Self::MOST`].
+/// Each feature less its mean, over its standard deviation, and within bounds.
 #[derive(Debug, Clone)]
-pub(crate) struct Standardisation {
+pub struct Standardisation {
     mean: Vec<f64>,
     deviation: Vec<f64>,
 }
@@ -23,6 +21,10 @@ impl Standardisation {
     /// Standard deviations beyond which a feature is no farther away.
     const MOST: f64 = 5.0;
 
+    /// The mean and the standard deviation of each feature.
+    ///
+    /// # Arguments
+    /// * `rows` - features of the simulations
     pub fn of(rows: &[Vec<f64>]) -> Self {
         let (count, width) = (rows.len().max(1) as f64, rows.first().map_or(0, Vec::len));
         let mut mean = vec![0.0; width];
@@ -38,11 +40,19 @@ impl Standardisation {
         Self { mean, deviation }
     }
 
+    /// Standardises a row, within five standard deviations.
+    ///
+    /// # Arguments
+    /// * `row` - features of a signal
     pub fn apply(&self, row: &[f64]) -> Vec<f64> {
         self.within(row, Self::MOST)
     }
 
-    /// Standardises a row within ± other bounds.
+    /// Standardises a row within other bounds.
+    ///
+    /// # Arguments
+    /// * `row` - features of a signal
+    /// * `most` - (standard deviations) beyond which a feature is no farther away
     pub fn within(&self, row: &[f64], most: f64) -> Vec<f64> {
         let of = |((value, mean), deviation): ((&f64, &f64), &f64)| {
             ((value - mean) / deviation).clamp(-most, most)
@@ -55,7 +65,7 @@ impl Standardisation {
 ///
 /// Source: A. Rahimi, B. Recht, "Random features for large-scale kernel machines", NIPS 20 (2007).
 #[derive(Debug, Clone)]
-pub(crate) struct RandomFeatures {
+pub struct RandomFeatures {
     /// A direction for each feature, in its column.
     directions: DMatrix<f64>,
     phases: DVector<f64>,
@@ -67,9 +77,12 @@ impl RandomFeatures {
     /// (-) What a linear feature counts beside them.
     const LINEAR: f64 = 0.5;
 
+    /// Draws the directions.
+    ///
     /// # Arguments
     /// * `width` - number of features that there are
     /// * `count` - number of random ones
+    /// * `seed` - of the draws
     pub fn new(width: usize, count: usize, seed: u64) -> Self {
         let mut directions = DMatrix::zeros(width, count);
         let mut phases = DVector::zeros(count);
@@ -104,7 +117,7 @@ impl RandomFeatures {
 type NormalEquations = (DMatrix<f64>, DMatrix<f64>);
 
 /// A ridge regression of several targets.
-pub(crate) struct Ridge {
+pub struct Ridge {
     /// Coefficients: a row for each feature, a column for each target.
     pub coefficients: DMatrix<f64>,
     /// Predictions of every row by the regression on the other parts: a row for each target.
@@ -125,13 +138,13 @@ pub(crate) struct Ridge {
 ///
 /// # Errors
 /// Normal equations that cannot be solved: features that are not finite.
-pub(crate) fn ridge(
+pub fn ridge(
     features: &DMatrix<f64>,
     targets: &DMatrix<f64>,
     weights: &[f64],
     folds: &[usize],
     penalty: f64,
-) -> Result<Ridge, DiagnoseError> {
+) -> Result<Ridge, LearnError> {
     let width = features.nrows();
     let normal: Vec<NormalEquations> = (0..FOLDS)
         .into_par_iter()
@@ -147,12 +160,12 @@ pub(crate) fn ridge(
         })
         .collect();
     // All parts but one; of as many as there are parts, all.
-    let solve = |but: usize| -> Result<DMatrix<f64>, DiagnoseError> {
+    let solve = |but: usize| -> Result<DMatrix<f64>, LearnError> {
         let kept = normal.iter().enumerate().filter(|(fold, _)| *fold != but).map(|(_, pair)| pair.clone());
         let sum = kept.reduce(|(gram, right), (more, more_right)| (gram + more, right + more_right));
-        let (mut gram, right) = sum.ok_or(DiagnoseError::NoReference)?;
+        let (mut gram, right) = sum.ok_or(LearnError::TooFewRows)?;
         (0..width).for_each(|feature| gram[(feature, feature)] += penalty);
-        Ok(Cholesky::new(gram).ok_or(DiagnoseError::NotSolved)?.solve(&right))
+        Ok(Cholesky::new(gram).ok_or(LearnError::NotSolved)?.solve(&right))
     };
     let solved: Vec<DMatrix<f64>> = (0..=FOLDS).into_par_iter().map(solve).collect::<Result<_, _>>()?;
     let mut out_of_fold = DMatrix::zeros(targets.nrows(), targets.ncols());
@@ -163,7 +176,7 @@ pub(crate) fn ridge(
             out_of_fold.set_column(row, &predicted.column(place));
         }
     }
-    let coefficients = solved.into_iter().next_back().ok_or(DiagnoseError::NoReference)?;
+    let coefficients = solved.into_iter().next_back().ok_or(LearnError::TooFewRows)?;
     Ok(Ridge { coefficients, out_of_fold })
 }
 
@@ -171,18 +184,18 @@ pub(crate) fn ridge(
 ///
 /// # Errors
 /// Those of [`ridge`].
-pub(crate) fn dual_ridge(
+pub fn dual_ridge(
     features: &DMatrix<f64>,
     targets: &DMatrix<f64>,
     folds: &[usize],
     penalty: f64,
-) -> Result<Ridge, DiagnoseError> {
+) -> Result<Ridge, LearnError> {
     let products = features.transpose() * features;
-    let solve = |rows: &[usize]| -> Result<DMatrix<f64>, DiagnoseError> {
+    let solve = |rows: &[usize]| -> Result<DMatrix<f64>, LearnError> {
         let mut kernel = DMatrix::from_fn(rows.len(), rows.len(), |i, j| products[(rows[i], rows[j])]);
         (0..rows.len()).for_each(|row| kernel[(row, row)] += penalty);
         let right = DMatrix::from_fn(rows.len(), targets.nrows(), |i, target| targets[(target, rows[i])]);
-        Ok(Cholesky::new(kernel).ok_or(DiagnoseError::NotSolved)?.solve(&right))
+        Ok(Cholesky::new(kernel).ok_or(LearnError::NotSolved)?.solve(&right))
     };
     let mut out_of_fold = DMatrix::zeros(targets.nrows(), targets.ncols());
     for fold in 0..FOLDS {

@@ -9,7 +9,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::DiagnoseError;
+use crate::LearnError;
 use crate::matrix::{Ridge, dual_ridge};
 
 /// Penalties that are tried, as parts of the number of rows; the one that predicts the other wheels best is taken.
@@ -22,7 +22,7 @@ const FEWEST: usize = 40;
 const FEWEST_TO_LEARN: usize = 8;
 
 /// Model of one number of a damage.
-pub(crate) struct SizeModel {
+pub struct SizeModel {
     /// The number of each simulation.
     values: Vec<f64>,
     /// Prediction for each record by those of other wheels.
@@ -47,10 +47,10 @@ impl SizeModel {
         features: &DMatrix<f64>,
         numbers: &[Vec<f64>],
         folds: &[usize],
-    ) -> Result<Vec<Self>, DiagnoseError> {
+    ) -> Result<Vec<Self>, LearnError> {
         let count = folds.len();
         if count < FEWEST_TO_LEARN {
-            return Err(DiagnoseError::NoReference);
+            return Err(LearnError::TooFewRows);
         }
         let mean = |values: &[f64]| values.iter().sum::<f64>() / count as f64;
         let targets = DMatrix::from_fn(numbers.len(), count, |target, row| {
@@ -137,9 +137,9 @@ mod tests {
             values.iter().map(|value| draws.normals().map(|noise| value + 0.2 * noise)).collect();
         let features =
             DMatrix::from_fn(3, COUNT, |feature, row| if feature < 2 { seen[row][feature] } else { 1.0 });
-        let folds: Vec<usize> = (0..COUNT).map(|row| row % crate::matrix::FOLDS).collect();
+        let folds: Vec<usize> = (0..COUNT).map(|row| row % crate::fold::FOLDS).collect();
         let models = SizeModel::fit(&features, std::slice::from_ref(&values), &folds).unwrap();
-        let within = |row: usize, part: fn(&crate::answer::Interval) -> [f64; 2]| {
+        let within = |row: usize, part: fn(&crate::quantile::Interval) -> [f64; 2]| {
             let [low, high] = part(&crate::quantile::interval(&models[0].posterior_of(row)));
             low <= values[row] && values[row] <= high
         };

@@ -6,7 +6,7 @@ use argmin::solver::quasinewton::LBFGS;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::DiagnoseError;
+use crate::LearnError;
 
 /// Penalty of the squares of the slopes.
 const PENALTY: f64 = 1.0;
@@ -21,7 +21,7 @@ const CHUNK: usize = 512;
 
 /// Probabilities of classes from their scores.
 #[derive(Debug, Clone)]
-pub(crate) struct Softmax {
+pub struct Softmax {
     /// A row for each class: a slope for each score, and the intercept.
     parameters: Vec<f64>,
     classes: usize,
@@ -37,7 +37,7 @@ impl Softmax {
     ///
     /// # Errors
     /// A search that found nothing.
-    pub fn fit(scores: &DMatrix<f64>, classes: &[usize], weights: &[f64]) -> Result<Self, DiagnoseError> {
+    pub fn fit(scores: &DMatrix<f64>, classes: &[usize], weights: &[f64]) -> Result<Self, LearnError> {
         let count = scores.nrows();
         let problem = Problem { scores, classes, weights };
         let start: Vec<f64> = (0..count * (count + 1))
@@ -46,12 +46,12 @@ impl Softmax {
         let solver = LBFGS::new(MoreThuenteLineSearch::new(), MEMORY)
             .with_tolerance_grad(TOLERANCE)
             .and_then(|solver| solver.with_tolerance_cost(TOLERANCE * TOLERANCE))
-            .map_err(|_| DiagnoseError::NotSolved)?;
+            .map_err(|_| LearnError::NotSolved)?;
         let found = Executor::new(problem, solver)
             .configure(|state| state.param(start).max_iters(MOST_ITERATIONS))
             .run()
-            .map_err(|_| DiagnoseError::NotSolved)?;
-        let parameters = found.state.get_best_param().cloned().ok_or(DiagnoseError::NotSolved)?;
+            .map_err(|_| LearnError::NotSolved)?;
+        let parameters = found.state.get_best_param().cloned().ok_or(LearnError::NotSolved)?;
         Ok(Self { parameters, classes: count })
     }
 

@@ -6,7 +6,7 @@
 use meshtone::signal::{analytic_signal, kurtosis, peak, rms};
 use meshtone_fourier::Complex64;
 
-use crate::observation::{WheelLines, revolution, separation};
+use crate::lines::{WheelLines, revolution, separation};
 
 /// (-) Least amplitude, as a part of the largest, whose logarithm is taken.
 const FLOOR: f64 = 1e-6;
@@ -30,7 +30,7 @@ const PARTS: [f64; 4] = [0.0, 3.5, 7.5, 16.5];
 
 /// Features of a wheel's average.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct WheelFeatures {
+pub struct WheelFeatures {
     /// (log10 g) Levels.
     pub levels: Vec<f64>,
     /// (-) Shapes.
@@ -48,7 +48,7 @@ pub(crate) struct WheelFeatures {
 /// * `view` - the lines
 /// * `last` - the last order that is whole in everything that is compared
 /// * `has_regular_part` - whether the mesh harmonics are in it
-pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: bool) -> WheelFeatures {
+pub fn wheel_features(view: &WheelLines, last: usize, has_regular_part: bool) -> WheelFeatures {
     let last = last.min(view.last());
     let difference = Difference::new(view, last);
     let energy = difference.energy_over_tooth();

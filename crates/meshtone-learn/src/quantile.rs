@@ -1,12 +1,21 @@
 //! Weighted quantiles.
 
-use crate::answer::Interval;
+/// A number with its uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Median: the value is as likely larger as smaller.
+    pub median: f64,
+    /// It is within with a probability of 0.5.
+    pub within_50: [f64; 2],
+    /// It is within with a probability of 0.9.
+    pub within_90: [f64; 2],
+}
 
 /// The median and the intervals of a weighted sample.
 ///
 /// # Arguments
 /// * `sample` - values and their weights, none of them negative; not empty
-pub(crate) fn interval(sample: &[(f64, f64)]) -> Interval {
+pub fn interval(sample: &[(f64, f64)]) -> Interval {
     let [lowest, low, median, high, highest] = quantiles(sample.to_vec(), [0.05, 0.25, 0.5, 0.75, 0.95]);
     Interval { median, within_50: [low, high], within_90: [lowest, highest] }
 }
@@ -16,7 +25,7 @@ pub(crate) fn interval(sample: &[(f64, f64)]) -> Interval {
 /// # Arguments
 /// * `sample` - values and their weights, none of them negative
 /// * `parts` - (-) of the weight, from 0 to 1
-pub(crate) fn quantiles<const N: usize>(mut sample: Vec<(f64, f64)>, parts: [f64; N]) -> [f64; N] {
+pub fn quantiles<const N: usize>(mut sample: Vec<(f64, f64)>, parts: [f64; N]) -> [f64; N] {
     sample.sort_by(|a, b| a.0.total_cmp(&b.0));
     parts.map(|part| quantile(&sample, part))
 }

@@ -2,7 +2,7 @@
 
 use meshtone_fourier::Complex64;
 
-use crate::observation::{WheelLines, revolution};
+use crate::lines::{WheelLines, revolution};
 
 /// (lines) How far around each line its neighbours count for the gain from then to now: the gain of a path changes over orders where the speed
 /// differs, while damage has another phase at each line than the deviations, so that a sixth of it is lost.
@@ -17,7 +17,7 @@ const MOST_GAIN: f64 = 3.0;
 /// * `now` - the average now
 /// * `healthy` - the average when the wheel was healthy
 /// * `last` - the last order that is whole in both
-pub(crate) fn beyond_healthy(now: &WheelLines, healthy: &WheelLines, last: usize) -> WheelLines {
+pub fn beyond_healthy(now: &WheelLines, healthy: &WheelLines, last: usize) -> WheelLines {
     let last = last.min(now.last()).min(healthy.last());
     let (new, old) = (now.difference(), healthy.difference());
     let count = last + 1;
@@ -51,7 +51,7 @@ pub(crate) fn beyond_healthy(now: &WheelLines, healthy: &WheelLines, last: usize
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observation::separation;
+    use crate::lines::separation;
     use meshtone::random::{Draws, Purpose};
 
     // The same wheel from another tooth on, behind a resonance that was elsewhere, and a burst that was not there.
