@@ -1,12 +1,9 @@
 //! The noise of a rig, from a recording of its healthy machine.
 
-use std::fmt::{self, Debug, Formatter};
 use std::sync::Arc;
 
 use meshtone::random::Draws;
 use meshtone::signal::{AntiAliasing, Edge, SignalError, discrete_random_separation, standard_deviation};
-
-use crate::digest::Digest;
 
 /// Blocks in a recording by which its periodic part is found.
 const BLOCKS: usize = 16;
@@ -15,17 +12,9 @@ const LONGEST_BLOCK_S: f64 = 1.0;
 
 /// What a recording of a healthy machine has beside everything that is periodic: the noise of the machine, of its surroundings and of the
 /// measurement, at the data set's rate, with the standard deviation 1.
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Background {
     samples: Arc<[f32]>,
-}
-
-/// Shows the digest of the samples: the text of a plan's hash consists of such texts.
-impl Debug for Background {
-    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        let bytes: Vec<u8> = self.samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
-        write!(formatter, "Background({})", Digest::of(&bytes).sha256)
-    }
 }
 
 impl Background {

@@ -1,7 +1,5 @@
 //! The faults of a class: damaged teeth and spalls of rolling bearings, and where the scenarios of its records have them.
 
-use std::fmt::{self, Debug, Formatter};
-
 use meshtone::scenario::{
     BearingDefect, Fault, Gearbox, GearboxFault, ScenarioError, ScenarioForm, ScenarioNumber,
     names_or_numbers,
@@ -12,7 +10,7 @@ use super::Wheel;
 use crate::draw::is_of_plan;
 
 /// Damage to teeth of a wheel.
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ToothFault {
     /// The damaged wheel.
     pub wheel: Wheel,
@@ -21,7 +19,7 @@ pub struct ToothFault {
 }
 
 /// A fault of a class, before its varied keys are drawn.
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum ClassFault {
     /// Damage to teeth.
     Teeth(ToothFault),
@@ -32,17 +30,6 @@ pub enum ClassFault {
         /// The spall.
         defect: BearingDefect,
     },
-}
-
-/// Shows the fault and, on a gearbox, its wheel, for the same reason as [`Wheel`] does.
-impl Debug for ClassFault {
-    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Teeth(ToothFault { wheel: Wheel::OfPair(_), fault }) => fault.fmt(formatter),
-            Self::Teeth(ToothFault { wheel: Wheel::OfGearbox(name), fault }) => (name, fault).fmt(formatter),
-            Self::Bearing { bearing, defect } => (bearing, defect).fmt(formatter),
-        }
-    }
 }
 
 impl ToothFault {

@@ -83,6 +83,34 @@ pub struct PlanFile {
 impl PlanFile {
     /// Names that such files have: the plan, its base scenario, what was tuned, the background.
     pub const NAMES: [&'static str; 4] = ["plan.toml", "scenario.toml", "tuned.toml", "background.csv"];
+
+    /// Keys of a plan that change no record: what the data card states, and the names of files, which count by their texts.
+    const BESIDE_CONTENT: [&'static str; 10] = [
+        "title",
+        "description",
+        "licence",
+        "version",
+        "published",
+        "citation",
+        "questions",
+        "scenario",
+        "tuned",
+        "background",
+    ];
+
+    /// The text as it is compared: TOML without layout, comments and the keys that change no record.
+    fn canonical(&self) -> String {
+        match self.text.parse::<toml::Table>() {
+            Ok(mut table) => {
+                if self.name == Self::NAMES[0] {
+                    Self::BESIDE_CONTENT.iter().for_each(|key| drop(table.remove(*key)));
+                }
+                canonical(table.into()).to_string()
+            }
+            // The samples of a background are no TOML.
+            Err(_) => self.text.clone(),
+        }
+    }
 }
 
 /// The facts that the data card states about a data set.
@@ -177,14 +205,28 @@ impl Plan {
         self.content.classes.iter().map(|class| class.count).sum()
     }
 
-    /// The SHA-256 of the plan's content and of the versions of the program and of its numbers, in hexadecimal digits. Plans that say the same have the same hash,
-    /// whatever their layout, comments and description.
+    /// The plan's identity, in hexadecimal digits: the SHA-256 of its canonical TOML and that of its files, and of the versions of the program and of
+    /// its numbers.
     ///
-    /// Another version of the program may compute other numbers, and therefore gives another hash.
+    /// Plans with the same keys and values have the same hash, whatever their layout, comments and description. A default that is written out is
+    /// another key. Another version of the program may compute other numbers, and therefore gives another hash.
     pub fn hash(&self) -> String {
-        // Every field is plain data, and numbers are written so that they are read back exactly.
-        let text = format!("{}{}{:?}", env!("CARGO_PKG_VERSION"), meshtone::PHYSICS_VERSION, self.content);
-        Digest::of(text.as_bytes()).sha256.to_string()
+        let versions = format!("{} {}", env!("CARGO_PKG_VERSION"), meshtone::PHYSICS_VERSION);
+        let files = self.files.iter().map(|file| format!("\n{}\n{}", file.name, file.canonical()));
+        Digest::of((versions + &files.collect::<String>()).as_bytes()).sha256.to_string()
+    }
+}
+
+/// A value of TOML as it is compared: whole numbers are numbers like others, and keys are in the order of their names.
+fn canonical(value: toml::Value) -> toml::Value {
+    match value {
+        // A seed may have more digits than a float.
+        toml::Value::Integer(number) if (number as f64) as i64 == number => toml::Value::Float(number as f64),
+        toml::Value::Array(values) => toml::Value::Array(values.into_iter().map(canonical).collect()),
+        toml::Value::Table(table) => {
+            table.into_iter().map(|(key, value)| (key, canonical(value))).collect::<toml::Table>().into()
+        }
+        other => other,
     }
 }
 
@@ -232,4 +274,28 @@ settle_tolerance = 1e-2
     let parts = gearbox.split("\n\n").filter(has_section);
     let parts: String = parts.map(|part| part.lines().map(of_scenario).collect::<String>() + "\n").collect();
     include_str!("template_gearbox.toml").replace("# <gearbox>\n", &format!("{parts}{SOLVER}\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn a_plan_is_identified_by_its_keys_and_values() {
+        let hash = |text: String| Plan::read_text(text, Path::new("plan.toml")).unwrap().hash();
+        let plan = template().to_owned();
+        let first = hash(plan.clone());
+        assert_eq!(hash(plan.replace("\n[", "\n\n# Another layout.\n[")), first);
+        assert_eq!(hash(format!("licence = \"MIT\"\n{}", plan.replace("licence", "# licence"))), first);
+        assert_eq!(hash(plan.replace("pinion_speed_hz = 40.0", "pinion_speed_hz = 40")), first);
+        for (there, instead) in [("records = 600", "records = 601"), ("module_mm = 3.0", "module_mm = 2.5")] {
+            assert!(plan.contains(there), "{there}");
+            assert_ne!(hash(plan.replace(there, instead)), first, "{there}");
+        }
+        let seeds = [9_007_199_254_740_993u64, 9_007_199_254_740_992];
+        let [one, other] =
+            seeds.map(|seed| hash(format!("seed = {seed}\n{}", plan.replace("seed =", "# seed ="))));
+        assert_ne!(one, other);
+    }
 }

@@ -1,26 +1,14 @@
 //! Wheels of the base scenario, as a plan names them.
 
-use std::fmt::{self, Debug, Formatter};
-
 use meshtone::scenario::{Gearbox, ScenarioForm, WheelName};
 
 /// A wheel of the base scenario.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Wheel {
     /// The pinion or the gear of a pair.
     OfPair(WheelName),
     /// The wheel of this name of a gearbox.
     OfGearbox(String),
-}
-
-/// Shows the name. The text of a plan's hash consists of such texts, which must stay the same for a pair.
-impl Debug for Wheel {
-    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OfPair(wheel) => wheel.fmt(formatter),
-            Self::OfGearbox(name) => name.fmt(formatter),
-        }
-    }
 }
 
 impl Wheel {
@@ -47,22 +35,12 @@ impl Wheel {
 }
 
 /// The wheels over whose revolutions signals are averaged.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AveragedWheels {
     /// One wheel: the columns of its average are called as they are.
     One(Wheel),
     /// Several: the names of each one's columns begin with its name.
     Each(Vec<Wheel>),
-}
-
-/// Shows the wheels, for the same reason as [`Wheel`] does.
-impl Debug for AveragedWheels {
-    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::One(wheel) => wheel.fmt(formatter),
-            Self::Each(wheels) => wheels.fmt(formatter),
-        }
-    }
 }
 
 impl AveragedWheels {

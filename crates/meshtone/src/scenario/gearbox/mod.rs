@@ -12,8 +12,6 @@ pub use parts::{
     GearboxFault, GearboxMesh, GearboxOperation, GearboxSensor, GearboxSolver, GearboxWheel, Ripple,
 };
 
-use std::fmt;
-
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable};
 
 use super::from_toml::{Numbers, ScenarioFiles, located};
@@ -111,7 +109,7 @@ const OF_GEARBOX: [&str; 5] = ["shaft", "wheel", "mesh", "bearing", "housing"];
 const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
 /// A scenario file, as what it is read.
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a file has only one")]
 pub enum ScenarioForm {
     /// The short form: one pair of gears.
@@ -530,16 +528,6 @@ fn check_list<S: Keys>(name: &str, entries: &[S]) -> Result<(), ScenarioError> {
         check_keys(entry, name).map_err(|error| error.in_entry(name, index, entries.len()))
     };
     entries.iter().enumerate().try_for_each(check)
-}
-
-/// Shows what it holds, as that shows itself.
-impl fmt::Debug for ScenarioForm {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Pair(scenario) => scenario.fmt(formatter),
-            Self::Gearbox(gearbox) => gearbox.fmt(formatter),
-        }
-    }
 }
 
 impl ScenarioForm {
