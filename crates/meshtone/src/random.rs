@@ -144,17 +144,4 @@ impl Draws {
         let radius = (-2.0 * unit.ln()).sqrt();
         [radius * angle.cos(), radius * angle.sin()]
     }
-
-    /// Adds white Gaussian noise to a signal.
-    ///
-    /// # Arguments
-    /// * `deviation` - (the signal's unit) standard deviation of the noise
-    /// * `signal` - its samples
-    pub fn add_normals(&mut self, deviation: f64, signal: &mut [f32]) {
-        for pair in signal.chunks_mut(2) {
-            for (sample, normal) in pair.iter_mut().zip(self.normals()) {
-                *sample = (f64::from(*sample) + deviation * normal) as f32;
-            }
-        }
-    }
 }

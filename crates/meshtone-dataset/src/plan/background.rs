@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use meshtone::random::Draws;
+use meshtone::sensor::add_recorded_noise;
 use meshtone::signal::{AntiAliasing, Edge, SignalError, discrete_random_separation, standard_deviation};
 
 /// Blocks in a recording by which its periodic part is found.
@@ -88,10 +89,7 @@ impl Background {
     /// * `signal` - the signal
     pub(crate) fn add(&self, draws: &mut Draws, deviation: f64, signal: &mut [f32]) {
         let first = (draws.bits() % self.samples.len() as u64) as usize;
-        let piece = self.samples.iter().cycle().skip(first);
-        for (sample, noise) in signal.iter_mut().zip(piece) {
-            *sample = (f64::from(*sample) + deviation * f64::from(*noise)) as f32;
-        }
+        add_recorded_noise(&self.samples, first, deviation, signal);
     }
 }
 

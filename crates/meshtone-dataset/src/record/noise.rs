@@ -1,6 +1,7 @@
 //! Noise that is added to raw channels: white, or that of a recorded machine.
 
 use meshtone::random::{Draws, Purpose};
+use meshtone::sensor::{add_white_noise, standard_deviation_of_channel};
 
 use crate::draw::{DrawnRecord, NOISE_KEYS};
 use crate::plan::Background;
@@ -25,7 +26,7 @@ pub(super) fn add(
 ) -> Result<(), String> {
     let [relative_db, level_g] = NOISE_KEYS.map(|key| drawn.value(key));
     let deviation = match (relative_db, level_g) {
-        (Some(ratio_db), _) => standard_deviation(signal) * libm::pow(10.0, -ratio_db / 20.0),
+        (Some(ratio_db), _) => standard_deviation_of_channel(signal) * libm::pow(10.0, -ratio_db / 20.0),
         (None, Some(level)) => level,
         (None, None) => return Ok(()),
     };
@@ -35,13 +36,6 @@ pub(super) fn add(
         background.add(&mut draws, deviation, signal);
         return Ok(());
     }
-    draws.add_normals(deviation, signal);
+    add_white_noise(&mut draws, deviation, signal);
     Ok(())
-}
-
-/// (the signal's unit) Standard deviation, in the order of the samples: a data set keeps its values.
-fn standard_deviation(signal: &[f32]) -> f64 {
-    let count = signal.len().max(1) as f64;
-    let mean = signal.iter().map(|&x| f64::from(x)).sum::<f64>() / count;
-    (signal.iter().map(|&x| (f64::from(x) - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
