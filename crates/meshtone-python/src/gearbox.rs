@@ -12,7 +12,7 @@ use meshtone_io::summary::GearboxSummary;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::array::{array, field};
+use crate::array::{field, named_arrays};
 use crate::error::{read_error, scenario_error, simulation_error, value_error};
 use crate::signals_file::write;
 use crate::value::table;
@@ -103,13 +103,10 @@ impl GearboxSimulation {
         simulation: meshtone::GearboxSimulation,
         all_warnings: Vec<ScenarioWarning>,
     ) -> PyResult<Self> {
-        let signals = simulation.channels.signals.iter();
-        let named = signals.map(|signal| (signal.name.clone(), array(py, signal.values.clone())));
-        let channels = named.collect::<Vec<_>>().into_py_dict(py)?.unbind();
         Ok(Self {
             sampling_rate_hz: simulation.channels.sampling_rate_hz,
             start_s: simulation.channels.start_s,
-            channels,
+            channels: named_arrays(py, simulation.channels.clone())?,
             all_warnings,
             simulation,
         })

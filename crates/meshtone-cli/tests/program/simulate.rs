@@ -1,5 +1,6 @@
 //! `meshtone simulate`
 
+use meshtone::scenario::ScenarioForm;
 use std::fs::File;
 
 use crate::support::{Workplace, fast_and, fast_with, stderr, stdout};
@@ -26,7 +27,7 @@ fn signals_are_those_of_the_library() {
     assert_eq!(workplace.names("out"), ALL_FILES);
     let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
-    assert_eq!(recorded.scenario, scenario);
+    assert_eq!(recorded.scenario, ScenarioForm::Pair(scenario.clone()));
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
 }
 
@@ -43,7 +44,7 @@ fn signals_in_other_formats() {
     assert_eq!(workplace.names("out"), ["signals.mat", "signals.wav", "summary.json"]);
     let recording = read_recording(&workplace.path("out"), &RecordingOptions::default()).unwrap();
     assert_eq!(recording.source, workplace.path("out/signals.mat"));
-    assert_eq!(recording.channel("vertical_g").unwrap().samples, recorded.channels.vertical_g);
+    assert_eq!(recording.channel("vertical_g").unwrap().samples, recorded.channels["vertical_g"]);
     let words = ["out/signals.mat: does not contain the scenario", "--format parquet"];
     workplace.fails(2, &["panel", "out"], &words);
     workplace.fails(2, &["simulate", "out"], &["is what `meshtone simulate` wrote"]);
@@ -73,7 +74,7 @@ fn parquet_panel_and_summary_carry_the_runs_identity() {
         let run = summary(&workplace, "out")["run"].as_str().unwrap().to_string();
         let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
         assert_eq!(recorded.run.to_string(), run);
-        assert_eq!(recorded.run, RunIdentity::of(&recorded.scenario));
+        assert_eq!(recorded.run, RunIdentity::of_toml(&recorded.scenario.to_toml()));
         for panel in ["out/panel.svg", "out/panel.png"] {
             let bytes = workplace.read(panel);
             assert!(bytes.windows(run.len()).any(|part| part == run.as_bytes()), "{panel}");
@@ -207,7 +208,10 @@ fn several_scenarios_on_the_same_wheels() {
     assert_eq!(workplace.names("out/deep"), ["fast", "gone"]);
     let read =
         |name: &str| read_signals(&workplace.path(&format!("out/deep/{name}/signals.parquet"))).unwrap();
-    let (healthy, gone) = (read("fast").scenario, read("gone").scenario);
+    let [healthy, gone] = ["fast", "gone"].map(|name| match read(name).scenario {
+        ScenarioForm::Pair(scenario) => scenario,
+        ScenarioForm::Gearbox(_) => panic!("{name} is of a pair"),
+    });
     assert_eq!(healthy.quality, gone.quality);
     assert!(healthy.quality.profile_errors.is_some());
     // The wheels are those that the grade draws.

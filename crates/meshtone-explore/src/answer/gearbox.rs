@@ -1,6 +1,7 @@
 //! From a gearbox to everything that its page draws.
 
 use meshtone::scenario::{Gearbox, ScenarioForm, ScenarioWarning};
+use meshtone::sensor::SignalSource;
 use meshtone::signal::{
     AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainTurning, revolution_average,
 };
@@ -79,7 +80,7 @@ pub fn gearbox_answer(
     Ok(GearboxState {
         signal: number(
             options.channel.as_deref(),
-            signals.iter().map(|signal| signal.name.clone()).collect(),
+            signals.iter().map(|signal| signal.name.to_string()).collect(),
         ),
         wheel,
         mesh: number(mesh, gearbox.meshes.iter().map(|mesh| mesh.name()).collect()),
@@ -129,8 +130,7 @@ impl GearboxState {
         let sent = (SENT_HARMONICS * highest_hz / spectrum.step_hz) as usize;
         let line = |line: &SpectrumLine| json!([line.frequency_hz, line.amplitude, line.name]);
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
-        let force_name = format!("force_n.{}", self.gearbox.meshes[self.mesh].name());
-        let force = channels.signal(&force_name).unwrap_or_default();
+        let force = channels.of(SignalSource::MeshForce(self.mesh));
         let train = GearTrain::of_layout(&self.gearbox, &stages.layout);
         let form = ScenarioForm::Gearbox(self.gearbox.clone());
         let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.values.len());

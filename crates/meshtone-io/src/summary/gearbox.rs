@@ -3,7 +3,7 @@
 use meshtone::GearboxSimulation;
 use meshtone::bearing::{RollingBearing, Spall};
 use meshtone::scenario::{FaultyTeeth, ScenarioWarning};
-use meshtone::sensor::ContactFigures;
+use meshtone::sensor::{ContactFigures, SignalSource};
 use serde::Serialize;
 
 use super::{
@@ -194,16 +194,14 @@ impl GearboxSummary {
     pub fn new(simulation: &GearboxSimulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
         let (stages, channels) = (&simulation.stages, &simulation.channels);
         let gearbox = &stages.gearbox;
-        let signal =
-            |quantity: &str, name: &str| channels.signal(&format!("{quantity}.{name}")).unwrap_or(&[]);
         let meshes = gearbox.meshes.iter().enumerate().map(|(number, mesh)| {
             let tables = &stages.meshes[number];
             let revolution = 0..tables.sequence.gear_teeth();
             let [min_n_per_mm, mean_n_per_mm, max_n_per_mm] =
                 extremes(&tables.stiffness_n_per_mm(revolution.clone()));
-            let force = signal("force_n", &mesh.name());
+            let force = channels.of(SignalSource::MeshForce(number));
             let [min_n, mean_n, max_n] = extremes(force);
-            let [min, mean, max] = extremes(signal("transmission_error_um", &mesh.name()));
+            let [min, mean, max] = extremes(channels.of(SignalSource::TransmissionError(number)));
             let static_force_n = stages.pairs[number].static_force_n;
             MeshSummary {
                 wheels: mesh.wheels.clone(),
@@ -241,7 +239,6 @@ impl GearboxSummary {
             tooth: of.fault.tooth.clone(),
             severity,
         });
-        let listed = channels.signals.iter();
         Self {
             head: SummaryHead {
                 format_version: FORMAT_VERSION,
@@ -262,9 +259,7 @@ impl GearboxSummary {
                 .map(|(number, bearing)| BearingSummary::new(gearbox.bearings[*number].seat_name(), bearing))
                 .collect(),
             natural_frequencies_hz: stages.natural_frequencies_hz(),
-            channels: listed
-                .map(|signal| ChannelSummary::new(signal.name.clone(), signal.unit, &signal.values))
-                .collect(),
+            channels: ChannelSummary::all(channels),
             end: SummaryEnd::new(&simulation.timings, warnings),
         }
     }

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use meshtone::damage::{QuantityValue, ToothPart, damages_of_fault};
 use meshtone::scenario::{Fault, FaultyTeeth, Gears, ScenarioWarning};
-use meshtone::sensor::{Channel, ContactFigures};
+use meshtone::sensor::{Channels, ContactFigures, NamedSignal, SignalSource};
 use meshtone::signal::{ChainSettings, Indicators, SimulatedShafts, kurtosis, peak, rms};
 use meshtone::wheel::WheelName;
 use meshtone::{Simulation, StageTime, Stages};
@@ -224,9 +224,16 @@ pub struct ChannelSummary {
 }
 
 impl ChannelSummary {
-    /// The main numbers of a signal.
-    pub(crate) fn new(name: String, unit: &'static str, signal: &[f64]) -> Self {
-        Self { name, unit, rms: rms(signal), peak: peak(signal), kurtosis: kurtosis(signal) }
+    /// The main numbers of all signals.
+    fn all(channels: &Channels) -> Vec<Self> {
+        let summary = |signal: &NamedSignal| Self {
+            name: signal.name.to_string(),
+            unit: signal.unit,
+            rms: rms(&signal.values),
+            peak: peak(&signal.values),
+            kurtosis: kurtosis(&signal.values),
+        };
+        channels.signals.iter().map(summary).collect()
     }
 }
 
@@ -247,13 +254,12 @@ impl Summary {
         let mesh = stages.mesh_curves().into_iter().next();
         let [min_n_per_mm, mean_n_per_mm, max_n_per_mm] =
             extremes(mesh.as_ref().map_or(&[], |mesh| &mesh.stiffness_n_per_mm));
-        let [min_n, mean_n, max_n] = extremes(&channels.mesh_force_n);
+        let force_n = channels.of(SignalSource::MeshForce(0));
+        let [min_n, mean_n, max_n] = extremes(force_n);
+        let figures = ContactFigures::of_force(force_n);
         let contact = simulation.contact_figures();
-        let (leading, signal) = channels.leading();
-        let listed = channels.list();
-        let channel_summary = |channel: &Channel| {
-            Some(ChannelSummary::new(channel.name().into_owned(), channel.unit(), channels.signal(channel)?))
-        };
+        let leading = channels.leading();
+        let signal = leading.map_or(&[][..], |signal| &signal.values);
         Self {
             head: SummaryHead {
                 format_version: FORMAT_VERSION,
@@ -276,11 +282,11 @@ impl Summary {
                 min_n,
                 mean_n,
                 max_n,
-                tension_fraction: contact.is_none().then(|| channels.tension_fraction()),
+                tension_fraction: contact.is_none().then_some(figures.back_flank_fraction),
                 contact,
             },
-            channels: listed.iter().filter_map(channel_summary).collect(),
-            averaged: leading.name().into_owned(),
+            channels: ChannelSummary::all(channels),
+            averaged: leading.map_or_else(String::new, |signal| signal.name.to_string()),
             indicators: WheelName::BOTH.map(|shaft| {
                 let record = shafts.process(signal, shaft, &ChainSettings::default());
                 Some(record.ok()?.indicators)
