@@ -8,7 +8,7 @@ use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_io::signals::SignalTable;
-use meshtone_io::summary::GearboxSummary;
+use meshtone_io::summary::Summary;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
@@ -131,7 +131,7 @@ impl GearboxSimulation {
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let toml = self.simulation.stages.gearbox.to_toml();
         let summary = py.detach(|| {
-            GearboxSummary::new(&self.simulation, RunIdentity::of_toml(&toml), &self.all_warnings)
+            Summary::of_gearbox(&self.simulation, RunIdentity::of_toml(&toml), &self.all_warnings)
         });
         let json = serde_json::to_string(&summary).map_err(value_error)?;
         Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)

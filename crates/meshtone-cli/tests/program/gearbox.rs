@@ -38,6 +38,8 @@ fn every_mesh_is_in_every_result() {
         assert!(mesh["mesh_stiffness"]["mean_n_per_mm"].as_f64().unwrap() > 1e5);
         assert!(mesh["transmission_error_um"]["static_peak_to_peak"].as_f64().unwrap() > 0.0);
     }
+    assert!(summary.get("mesh_force").is_none());
+    assert_eq!(summary["wheels"][2], serde_json::json!({ "name": "z3", "shaft": "middle", "teeth": 48 }));
     assert_eq!(summary["faults"][0]["wheel"], "z3");
     let path = workplace.path("out/signals.parquet");
     let recorded = read_signals(&path).unwrap();

@@ -159,6 +159,15 @@ fn summary_of_a_healthy_pair() {
     let stiffness = |key: &str| summary["mesh_stiffness"][key].as_f64().unwrap();
     assert!(stiffness("min_n_per_mm") < stiffness("mean_n_per_mm"));
     assert!(stiffness("mean_n_per_mm") < stiffness("max_n_per_mm"));
+    // A pair is a train with one mesh, whose numbers stand beside the lists too.
+    let mesh = &summary["meshes"][0];
+    for key in ["contact_ratio", "helix", "face_load_factor", "mesh_stiffness", "mesh_force"] {
+        assert!(mesh[key] == summary[key] && summary.get(key).is_some(), "{key}");
+    }
+    assert_eq!((&mesh["wheels"], &mesh["mesh_frequency_hz"]), (&json!(["pinion", "gear"]), &json!(800.0)));
+    assert_eq!(summary["shafts"][1], json!({ "name": "gear", "speed_hz": 20.0, "speed_ratio": "-1/2" }));
+    assert_eq!(summary["wheels"][1], json!({ "name": "gear", "shaft": "gear", "teeth": 40 }));
+    assert_eq!((&summary["bearings"], &summary["cycle_input_revolutions"]), (&json!([]), &json!(2)));
     let channels = &summary["channels"];
     let speed = channels["pinion_shaft_speed_hz"]["rms_hz"].as_f64().unwrap();
     assert!((speed - 40.0).abs() < 0.1, "{speed}");
@@ -251,7 +260,7 @@ fn faults_on_several_teeth_of_both_wheels() {
     let text = stdout(&workplace.succeeds(&["simulate", "two.toml", "-o", "out"]));
     for words in [
         "tooth-breakage (severity 0.1",
-        ") on tooth 3 of the pinion, missing-tooth (severity 1.000) on tooth 7 of the gear",
+        ") on tooth 3 of pinion, missing-tooth (severity 1.000) on tooth 7 of gear",
     ] {
         assert!(text.contains(words), "{text}");
     }

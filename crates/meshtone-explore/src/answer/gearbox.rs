@@ -1,7 +1,7 @@
 //! From a gearbox to everything that its page draws.
 
 use meshtone::scenario::{Gearbox, ScenarioForm, ScenarioWarning};
-use meshtone::sensor::SignalSource;
+use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
     AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainTurning, revolution_average,
 };
@@ -197,8 +197,7 @@ impl GearboxState {
         let (pair, mesh) = (&stages.pairs[self.mesh], &stages.meshes[self.mesh]);
         let name = &tones.meshes[self.mesh].name;
         let largest_n = force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let apart =
-            force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64;
+        let apart = ContactFigures::of_force(force_n).apart_fraction;
         let of_mesh = |what: &str| format!("{what} of {name}");
         vec![
             (of_mesh("mesh frequency"), tones.meshes[self.mesh].frequency_hz, "Hz"),
