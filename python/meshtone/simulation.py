@@ -144,7 +144,7 @@ class Simulation:
         self._scenario = scenario
         self._native = native
         self._fields: dict[str, Any] | None = None
-        for signal in (*native.channels.values(), *native.sensors.values()):
+        for signal in native.channels.values():
             read_only(signal)
 
     @property
@@ -167,6 +167,11 @@ class Simulation:
     def time_s(self) -> Array:
         """(s) Time of each sample since the start of the simulation."""
         return self.start_s + np.arange(self.vertical_g.size) / self.sampling_rate_hz
+
+    @property
+    def channels(self) -> dict[str, Array]:
+        """All signals by their names, in the order of :attr:`Scenario.channels`: sensors first; shape (samples,) each."""
+        return dict(self._native.channels)
 
     @property
     def horizontal_g(self) -> Array:
@@ -202,7 +207,8 @@ class Simulation:
     @property
     def sensors(self) -> dict[str, Array]:
         """(g) What the scenario's sensors show, by their names, in their order; each is an attribute too, ``NAME_g``; shape (samples,)."""
-        return dict(self._native.sensors)
+        names = self.scenario.channels[: len(self.scenario.sensors)]
+        return {name.removesuffix("_g"): self._native.channels[name] for name in names}
 
     @property
     def tension_fraction(self) -> float:
@@ -254,7 +260,7 @@ class Simulation:
         >>> simulate(examples.healthy()).signals(10_000).vertical_g.shape
         (9500,)
         """
-        channels = {name: getattr(self, name).astype(np.float32) for name in self.scenario.channels}
+        channels = {name: signal.astype(np.float32) for name, signal in self._native.channels.items()}
         own = Signals(self.scenario, self.sampling_rate_hz, self.start_s, channels, self.warnings, self.warning_codes)
         return own if target_rate_hz is None else own.at_rate(target_rate_hz)
 
@@ -287,7 +293,7 @@ class Simulation:
         >>> bool((recording["vertical_g"] == simulation.vertical_g).all()), recording.sampling_rate_hz, recording.units["vertical_g"]
         (True, 100640.0, 'g')
         """
-        signals = [(name, getattr(self, name)) for name in self.scenario.channels]
+        signals = list(self._native.channels.items())
         _core.write_signals(path, native_scenario(self.scenario), (self.sampling_rate_hz, self.start_s), signals)
 
     @property
@@ -310,8 +316,8 @@ class Simulation:
         def __getattr__(self, name: str) -> Any:
             if name.startswith("_"):
                 raise AttributeError(name)
-            if name.endswith("_g") and name[:-2] in (sensors := self.sensors):
-                return sensors[name[:-2]]
+            if name in self._native.channels:
+                return self._native.channels[name]
             try:
                 return self.fields[name]
             except KeyError:

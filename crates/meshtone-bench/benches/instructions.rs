@@ -13,7 +13,7 @@ use gungraun::prelude::*;
 use meshtone::batch::{Control, KeepChannels, simulate_many};
 use meshtone::mesh::Mesh;
 use meshtone::scenario::{Model, Scenario};
-use meshtone::sensor::channel_outputs;
+use meshtone::sensor::ChannelKind;
 use meshtone::solver::{Block, Recorder};
 use meshtone::{Stages, stages};
 
@@ -43,7 +43,7 @@ fn prepared(index: usize, model: Model) -> Box<Stages> {
 #[bench::healthy_contact(prepared(0, Model::Contact))]
 #[bench::tooth_breakage_contact(prepared(2, Model::Contact))]
 fn time_loop(stages: Box<Stages>) -> Box<Stages> {
-    let outputs = channel_outputs();
+    let outputs = ChannelKind::ALL.map(ChannelKind::output);
     stages.integrate(&outputs, stages.time.first_kept_sample, &mut Nothing).expect("a solution");
     stages
 }

@@ -36,7 +36,7 @@ fn difference(scenario: &Scenario) -> f64 {
     let dense = Newmark::new(&stages).signals();
     let simulation = simulate(scenario).expect("an example is valid");
     let differences = ChannelKind::ACCELERATIONS.iter().zip(&dense).map(|(kind, dense)| {
-        let signal = simulation.channels.get(*kind);
+        let signal = simulation.channels.of(kind.source());
         assert_eq!(signal.len(), dense.len());
         let square = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>();
         let power = square(&mut signal.iter().copied());

@@ -14,7 +14,7 @@ use meshtone::scenario::{Model, Scenario};
 use meshtone::solver::{Block, Output, Recorder};
 use meshtone::wheel::quality::profile_errors;
 use meshtone::wheel::teeth;
-use meshtone::{sensor::channel_outputs, stages};
+use meshtone::{sensor::ChannelKind, stages};
 
 /// Takes the samples as they come and keeps none.
 struct Nothing;
@@ -57,7 +57,7 @@ fn before_the_time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenar
 
 fn time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenario) {
     let stages = stages(scenario).expect("an example is valid");
-    let outputs = channel_outputs();
+    let outputs = ChannelKind::ALL.map(ChannelKind::output);
     let mut group = criterion.benchmark_group(format!("time loop/{name}"));
     group.sample_size(20);
     let mut with = |id: &str, outputs: &[Output], from: usize| {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{Scenario, template};
-use meshtone::sensor::{Channel, ChannelKind};
+use meshtone::sensor::{ChannelKind, Channels, NamedSignal};
 use meshtone::signal::{Edge, resample_to};
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::signals::SignalTable;
@@ -73,10 +73,11 @@ pub fn stage(directory: &Path) -> Result<Vec<StagedFile>, Failure> {
 /// The recording of the sensor on a rig, as Parquet.
 fn recording(scenario: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let channels = meshtone::simulate(&Scenario::from_toml(scenario)?)?.channels;
-    let (_, simulated) = channels.leading();
-    let measured = resample_to(simulated, channels.sampling_rate_hz, SAMPLING_RATE_HZ, Edge::Reflect)?;
-    let named = [(Channel::Fixed(ChannelKind::Vertical), &measured[..])];
+    let simulated = channels.leading().map_or(&[][..], |signal| &signal.values);
+    let mut measured = NamedSignal::from(ChannelKind::Vertical);
+    measured.values = resample_to(simulated, channels.sampling_rate_hz, SAMPLING_RATE_HZ, Edge::Reflect)?;
+    let measured = Channels::new(SAMPLING_RATE_HZ, 0.0, vec![measured]);
     let mut file = Vec::new();
-    SignalTable::of_channels(None, [SAMPLING_RATE_HZ, 0.0], named)?.write_parquet(&mut file)?;
+    SignalTable::without_scenario(&measured).write_parquet(&mut file)?;
     Ok(file)
 }

@@ -1,87 +1,67 @@
 //! The main numbers of a run, for reading.
 
 use meshtone_io::summary::{
-    ChannelSummary, FaultSummary, GearboxSummary, HelixSummary, MeshForce, MeshStiffness, Summary,
-    SummaryEnd, SummaryHead,
+    ChannelSummary, HelixSummary, MachineSummary, MeshForce, MeshStiffness, MeshSummary, Summary,
 };
 
-/// The table of one run.
+/// Natural frequencies that are printed.
+const FREQUENCIES: usize = 17;
+
+/// The table of one run: a few rows for the whole, then some for each mesh, then the signals.
 pub fn table(summary: &Summary) -> String {
-    let rows = rows(summary).into_iter().map(|(name, value)| format!("  {name:<24}{value}\n"));
-    rows.chain(signals(&summary.channels, label)).collect()
-}
-
-/// The main numbers of each signal, below their heads.
-fn signals(
-    channels: &[ChannelSummary],
-    label: fn(&ChannelSummary) -> String,
-) -> impl Iterator<Item = String> {
+    let row = |(name, value): (String, String)| format!("  {name:<24}{value}\n");
+    let whole = of_whole(summary).into_iter().map(|(name, value)| row((name.to_owned(), value)));
+    let meshes = summary.machine.meshes.iter().flat_map(|mesh| {
+        let rows = of_mesh(mesh).into_iter().map(row);
+        std::iter::once("\n".to_owned()).chain(rows).collect::<Vec<_>>()
+    });
     let heads = format!("\n  {:<28}{:>12}{:>12}{:>12}\n", "signal", "rms", "peak", "kurtosis");
-    let channels = channels.iter().map(move |channel| {
-        let kurtosis = channel.kurtosis.map_or_else(|| "-".to_string(), short);
-        let (rms, peak) = (short(channel.rms), short(channel.peak));
-        format!("  {:<28}{rms:>12}{peak:>12}{kurtosis:>12}\n", label(channel))
+    let signals = summary.channels.iter().map(|channel| {
+        let ChannelSummary { name, rms, peak, kurtosis, .. } = channel;
+        let (rms, peak) = (short(*rms), short(*peak));
+        let kurtosis = kurtosis.map_or_else(|| "-".to_string(), short);
+        format!("  {name:<28}{rms:>12}{peak:>12}{kurtosis:>12}\n")
     });
-    std::iter::once(heads).chain(channels)
+    whole.chain(meshes).chain([heads]).chain(signals).collect()
 }
 
-/// The table of a gearbox's run: a few rows for the whole, then some for each mesh.
-pub fn gearbox_table(summary: &GearboxSummary) -> String {
-    let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().take(12).map(|f| frequency(*f)).collect();
-    let shafts = summary.shafts.iter().map(|shaft| format!("{} {}", shaft.name, short(shaft.speed_hz)));
-    let faults = summary.faults.iter().map(|fault| {
-        format!(
-            "{} (severity {:.3}) on {} of {}",
-            fault.kind,
-            fault.severity,
-            fault.tooth.in_words(),
-            fault.wheel
-        )
-    });
-    let spalls = summary.bearings.iter().flat_map(|bearing| {
-        bearing.defects.iter().map(|of| {
-            format!(
-                "spall of {} mm ({}, severity {:.3}) on bearing {}",
-                short(of.width_mm),
-                of.race,
-                of.severity,
-                bearing.at
-            )
-        })
-    });
-    let faults: Vec<_> = faults.chain(spalls).collect();
-    let [model, sampling, time] = common_rows(&summary.head, &summary.end);
-    let whole = [
-        model,
-        ("fault", if faults.is_empty() { "none".to_owned() } else { faults.join(", ") }),
-        sampling,
+/// The rows of the whole machine.
+fn of_whole(summary: &Summary) -> [(&'static str, String); 7] {
+    let Summary { machine, samples, sampling_rate_hz, .. } = summary;
+    let MachineSummary { model, seed, shafts, natural_frequencies_hz: frequencies, .. } = machine;
+    let duration_s = *samples as f64 / sampling_rate_hz;
+    let rate = short(*sampling_rate_hz);
+    let shown: Vec<_> = frequencies.iter().take(FREQUENCIES).map(|f| frequency(*f)).collect();
+    let more = if frequencies.len() > FREQUENCIES { " …" } else { "" };
+    let shafts = shafts.iter().map(|shaft| format!("{} {}", shaft.name, short(shaft.speed_hz)));
+    [
+        ("model", format!("{model}, seed {seed}")),
+        ("fault", faults(machine)),
+        ("sampling", format!("{samples} samples, {duration_s:.3} s at {rate} S/s")),
         ("shaft speeds, rev/s", shafts.collect::<Vec<_>>().join(", ")),
-        ("repeats after", format!("{} revolutions of the input", summary.cycle_input_revolutions)),
-        ("natural frequencies, Hz", format!("{} …", frequencies.join(" "))),
-        time,
+        ("repeats after", format!("{} revolutions of the input", machine.cycle_input_revolutions)),
+        ("natural frequencies, Hz", shown.join(" ") + more),
+        ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
+    ]
+}
+
+/// The rows of a mesh.
+fn of_mesh(mesh: &MeshSummary) -> Vec<(String, String)> {
+    let (stiffness, force) = (&mesh.mesh_stiffness, &mesh.mesh_force);
+    let uneven = mesh.face_load_factor.filter(|factor| *factor > 1.0);
+    let uneven = uneven.map_or_else(String::new, |factor| format!("; face load factor {factor:.2}"));
+    let ratio = contact_ratio(mesh.contact_ratio, mesh.helix) + &uneven;
+    let frequency = format!("{} Hz, contact ratio {ratio}", short(mesh.mesh_frequency_hz));
+    let mut rows = vec![
+        (format!("mesh {}", mesh.wheels.join("-")), frequency),
+        ("mesh stiffness, N/µm".to_owned(), range(per_um(stiffness))),
+        ("mesh force, N".to_owned(), range([force.min_n, force.mean_n, force.max_n]) + &touching(force)),
     ];
-    let of_meshes = summary.meshes.iter().flat_map(|mesh| {
-        let (stiffness, force, error) = (&mesh.mesh_stiffness, &mesh.mesh_force, &mesh.transmission_error_um);
-        [
-            (String::new(), String::new()),
-            (
-                format!("mesh {}", mesh.wheels.join("-")),
-                format!(
-                    "{} Hz, contact ratio {}",
-                    short(mesh.mesh_frequency_hz),
-                    contact_ratio(mesh.contact_ratio, mesh.helix)
-                ),
-            ),
-            ("mesh stiffness, N/µm".to_owned(), range(per_um(stiffness))),
-            ("mesh force, N".to_owned(), range([force.min_n, force.mean_n, force.max_n]) + &touching(force)),
-            ("transmission error, µm".to_owned(), range([error.min, error.mean, error.max])),
-        ]
-    });
-    let rows = whole.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(of_meshes);
-    let rows =
-        rows.map(|(name, value)| format!("  {name:<24}{value}\n").replace(&format!("{:26}\n", ""), "\n"));
-    let named = |channel: &ChannelSummary| channel.name.clone();
-    rows.chain(signals(&summary.channels, named)).collect()
+    rows.extend(
+        mesh.transmission_error_um
+            .map(|error| ("transmission error, µm".to_owned(), range([error.min, error.mean, error.max]))),
+    );
+    rows
 }
 
 /// `1.5`, of helical wheels with their overlap and the force along the shafts.
@@ -109,42 +89,6 @@ fn range(values: [f64; 3]) -> String {
     format!("min {min}, mean {mean}, max {max}")
 }
 
-fn rows(summary: &Summary) -> [(&'static str, String); 8] {
-    let (stiffness, force) = (&summary.mesh_stiffness, &summary.mesh_force);
-    let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
-    let [model, sampling, time] = common_rows(&summary.head, &summary.end);
-    let stiffness = range(per_um(stiffness));
-    let forces = range([force.min_n, force.mean_n, force.max_n]);
-    [
-        model,
-        ("fault", faults(&summary.faults)),
-        sampling,
-        ("contact ratio", contact_ratio(summary.contact_ratio, summary.helix) + &along_the_face(summary)),
-        ("mesh stiffness, N/µm", stiffness),
-        ("mesh force, N", forces + &touching(force)),
-        ("natural frequencies, Hz", frequencies.join(" ")),
-        time,
-    ]
-}
-
-/// Model, sampling and computing time, which every run has.
-fn common_rows(head: &SummaryHead, end: &SummaryEnd) -> [(&'static str, String); 3] {
-    let SummaryHead { model, seed, samples, sampling_rate_hz, .. } = head;
-    let duration_s = *samples as f64 / sampling_rate_hz;
-    let rate = short(*sampling_rate_hz);
-    [
-        ("model", format!("{model}, seed {seed}")),
-        ("sampling", format!("{samples} samples, {duration_s:.3} s at {rate} S/s")),
-        ("computing time", format!("{} ms", short(end.total_time().as_secs_f64() * 1e3))),
-    ]
-}
-
-/// By how much the load is uneven along the face, where it is.
-fn along_the_face(summary: &Summary) -> String {
-    let uneven = summary.face_load_factor.filter(|factor| *factor > 1.0);
-    uneven.map_or_else(String::new, |factor| format!("; face load factor {factor:.2}"))
-}
-
 /// For how long the mesh pulls, or its teeth do not touch or touch with their backs.
 fn touching(force: &MeshForce) -> String {
     let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
@@ -161,22 +105,20 @@ fn touching(force: &MeshForce) -> String {
     format!("; contact loss {} of the time, {hits}", percent(contact.apart_fraction))
 }
 
-/// `root-crack (severity 0.400) on tooth 1 of the gear`, one after the other.
-fn faults(faults: &[FaultSummary]) -> String {
-    let place = |fault: &FaultSummary| {
-        let FaultSummary { kind, wheel, tooth, severity, .. } = fault;
-        format!("{kind} (severity {severity:.3}) on {} of the {wheel}", tooth.in_words())
-    };
-    match faults {
-        [] => "none".to_string(),
-        faults => faults.iter().map(place).collect::<Vec<_>>().join(", "),
-    }
-}
-
-/// `pinion shaft speed, Hz` for `pinion_shaft_speed_hz`.
-fn label(channel: &ChannelSummary) -> String {
-    let quantity = channel.name.rsplit_once('_').map_or(channel.name.as_str(), |(quantity, _)| quantity);
-    format!("{}, {}", quantity.replace('_', " "), channel.unit)
+/// `root-crack (severity 0.400) on tooth 1 of gear`, one after the other, and the spalls of bearings.
+fn faults(machine: &MachineSummary) -> String {
+    let faults = machine.faults.iter().map(|fault| {
+        let (kind, severity, wheel) = (fault.kind, fault.severity, &fault.wheel);
+        format!("{kind} (severity {severity:.3}) on {} of {wheel}", fault.tooth.in_words())
+    });
+    let spalls = machine.bearings.iter().flat_map(|bearing| {
+        bearing.defects.iter().map(|of| {
+            let (width, race, severity) = (short(of.width_mm), of.race, of.severity);
+            format!("spall of {width} mm ({race}, severity {severity:.3}) on bearing {}", bearing.at)
+        })
+    });
+    let all: Vec<_> = faults.chain(spalls).collect();
+    if all.is_empty() { "none".to_owned() } else { all.join(", ") }
 }
 
 /// To the hertz, where that is not too long to read.

@@ -288,7 +288,7 @@ fn strange(prior: &Prior, number: u64, what: &str, level_g: f64) -> Result<Obser
     let simulation = meshtone::simulate(&scenario)?;
     let rate_hz = simulation.stages.time.sampling_rate_hz;
     // Behind the path to the sensor. The same teeth meet again where the simulation ends: it goes on as it began.
-    let (_, once) = simulation.channels.leading();
+    let once = simulation.channels.leading().map_or(&[][..], |signal| &signal.values);
     let mut spectrum = real_spectrum(once);
     let gains = drawn.path_gains((0..spectrum.len()).map(|line| line as f64 * rate_hz / once.len() as f64));
     spectrum.iter_mut().zip(gains).for_each(|(value, gain)| *value *= gain);

@@ -1,8 +1,10 @@
 //! Arrays from and for NumPy.
 
 use meshtone::TraceField;
+use meshtone::sensor::Channels;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::error::value_error;
 
@@ -29,6 +31,12 @@ pub fn matrix<'py>(
     shape: [usize; 2],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     array(py, values).reshape(shape).map_err(value_error)
+}
+
+/// A simulation's signals by their names, in their order.
+pub fn named_arrays(py: Python<'_>, channels: Channels) -> PyResult<Py<PyDict>> {
+    let named = channels.signals.into_iter().map(|signal| (signal.name, array(py, signal.values)));
+    Ok(named.collect::<Vec<_>>().into_py_dict(py)?.unbind())
 }
 
 /// A field of a trace: a number, or an array of its shape.

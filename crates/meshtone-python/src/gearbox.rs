@@ -8,11 +8,11 @@ use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_io::signals::SignalTable;
-use meshtone_io::summary::GearboxSummary;
+use meshtone_io::summary::Summary;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::array::{array, field};
+use crate::array::{field, named_arrays};
 use crate::error::{read_error, scenario_error, simulation_error, value_error};
 use crate::signals_file::write;
 use crate::value::table;
@@ -103,13 +103,10 @@ impl GearboxSimulation {
         simulation: meshtone::GearboxSimulation,
         all_warnings: Vec<ScenarioWarning>,
     ) -> PyResult<Self> {
-        let signals = simulation.channels.signals.iter();
-        let named = signals.map(|signal| (signal.name.clone(), array(py, signal.values.clone())));
-        let channels = named.collect::<Vec<_>>().into_py_dict(py)?.unbind();
         Ok(Self {
             sampling_rate_hz: simulation.channels.sampling_rate_hz,
             start_s: simulation.channels.start_s,
-            channels,
+            channels: named_arrays(py, simulation.channels.clone())?,
             all_warnings,
             simulation,
         })
@@ -134,7 +131,7 @@ impl GearboxSimulation {
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let toml = self.simulation.stages.gearbox.to_toml();
         let summary = py.detach(|| {
-            GearboxSummary::new(&self.simulation, RunIdentity::of_toml(&toml), &self.all_warnings)
+            Summary::of_gearbox(&self.simulation, RunIdentity::of_toml(&toml), &self.all_warnings)
         });
         let json = serde_json::to_string(&summary).map_err(value_error)?;
         Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::sensor::Channel;
+use meshtone::sensor::{Channel, Channels, NamedSignal, SignalSource};
 use meshtone_io::atomic_file::write_atomically;
 use meshtone_io::signals::{SignalFormat, SignalTable};
 use pyo3::prelude::*;
@@ -20,14 +20,22 @@ pub fn write_signals(
     rate_and_start: [f64; 2],
     signals: Vec<(String, Signal<'_>)>,
 ) -> PyResult<()> {
-    let named = signals.iter().map(|(name, signal)| {
-        let channel = Channel::named(name).ok_or_else(|| value_error(format!("there is no channel {name}")));
-        Ok((channel?, samples(signal)?))
+    let named = signals.iter().enumerate().map(|(number, (name, signal))| {
+        let mut named = match Channel::named(name) {
+            Some(Channel::Fixed(kind)) => NamedSignal::from(kind),
+            Some(_) => NamedSignal::new(name.clone(), SignalSource::Sensor(number)),
+            None => return Err(value_error(format!("there is no channel {name}"))),
+        };
+        named.values = samples(signal)?.to_vec();
+        Ok(named)
     });
-    let named = named.collect::<PyResult<Vec<_>>>()?;
-    let scenario = scenario.map(|scenario| &scenario.0);
-    let table = SignalTable::of_channels(scenario, rate_and_start, named);
-    let table = table.map_err(|error| value_error(error.to_string()))?;
+    let [sampling_rate_hz, start_s] = rate_and_start;
+    let channels = Channels::new(sampling_rate_hz, start_s, named.collect::<PyResult<Vec<_>>>()?);
+    let table = match scenario {
+        Some(scenario) => SignalTable::of_pair(&scenario.0, &channels),
+        None => SignalTable::without_scenario(&channels),
+    };
+    table.check_lengths().map_err(|error| value_error(error.to_string()))?;
     py.detach(|| write(&path, &table))
 }
 

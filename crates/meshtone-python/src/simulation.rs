@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 
 use meshtone::damage::{DamageDescription, DamagedTooth, ToothPart};
 use meshtone::scenario::ScenarioWarning;
-use meshtone::sensor::ContactFigures;
+use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::SimulatedShafts;
 use meshtone::wheel::{WheelDeviations, WheelName};
 use meshtone::{Stages, Trace};
@@ -13,7 +13,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::array::{Array, Signal, array, field, matrix, samples};
+use crate::array::{Array, Signal, array, field, matrix, named_arrays, samples};
 use crate::error::{scenario_error, simulation_error, value_error};
 use crate::process::{Settings, record_parts};
 use crate::scenario::{BothWheels, Scenario, both_wheels};
@@ -31,12 +31,9 @@ pub struct Simulation {
     /// (s) Of the first kept sample.
     #[pyo3(get)]
     start_s: f64,
-    /// The channels that every simulation has, by their names.
+    /// The signals by their names, sensors first.
     #[pyo3(get)]
     channels: Py<PyDict>,
-    /// (g) What the scenario's sensors show, by their names, in their order.
-    #[pyo3(get)]
-    sensors: Py<PyDict>,
     /// (-) Part of the kept time in which the mesh force is negative.
     #[pyo3(get)]
     tension_fraction: f64,
@@ -97,25 +94,15 @@ impl Simulation {
         };
         let contact_figures = simulation.contact_figures().map(contact);
         let channels = simulation.channels;
-        let tension_fraction = channels.tension_fraction();
-        let sensors = channels.sensors.into_iter().map(|sensor| (sensor.name, array(py, sensor.values_g)));
-        let named = [
-            ("horizontal_g", channels.horizontal_g),
-            ("vertical_g", channels.vertical_g),
-            ("axial_g", channels.axial_g),
-            ("pinion_shaft_speed_hz", channels.pinion_shaft_speed_hz),
-            ("gear_shaft_speed_hz", channels.gear_shaft_speed_hz),
-            ("mesh_force_n", channels.mesh_force_n),
-        ];
+        let force = ContactFigures::of_force(channels.of(SignalSource::MeshForce(0)));
         Ok(Self {
             contact_figures,
-            tension_fraction,
+            tension_fraction: force.back_flank_fraction,
             warnings: warnings.iter().map(ToString::to_string).collect(),
             warning_codes: warnings.iter().map(|warning| warning.kind.code()).collect(),
             sampling_rate_hz: channels.sampling_rate_hz,
             start_s: channels.start_s,
-            channels: named.map(|(name, values)| (name, array(py, values))).into_py_dict(py)?.unbind(),
-            sensors: sensors.into_py_dict(py)?.unbind(),
+            channels: named_arrays(py, channels)?,
             computing_time_s: simulation
                 .timings
                 .iter()

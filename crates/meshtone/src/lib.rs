@@ -13,7 +13,7 @@
 //! let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 0.0 };
 //! scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
 //! let simulation = meshtone::simulate(&scenario)?;
-//! assert_eq!(simulation.channels.vertical_g.len(), 95_608);
+//! assert_eq!(simulation.channels["vertical_g"].len(), 95_608);
 //! # Ok::<(), meshtone::Error>(())
 //! ```
 //!
@@ -78,8 +78,8 @@ pub use simd::InstructionSet;
 #[cfg(feature = "internals")]
 pub use simulate::Equations;
 pub use simulate::{
-    GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
-    gearbox_stages_within, simulate_gearbox, simulate_gearboxes,
+    GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages, gearbox_stages_within, simulate_gearbox,
+    simulate_gearboxes,
 };
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages, stages_within};
 pub use trace::{Trace, TraceField, gearbox_trace, stage_trace, trace, trace_at};

@@ -16,9 +16,10 @@ use web_time::Instant;
 pub use equations::Equations;
 pub(crate) use gearbox::gearbox_stages_with;
 pub use gearbox::{
-    GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
-    gearbox_stages_within, simulate_gearbox, simulate_gearboxes,
+    GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages, gearbox_stages_within, simulate_gearbox,
+    simulate_gearboxes,
 };
+use measured::WantedChannels;
 use options::MachineOptions;
 
 use crate::damage::{DamagedTooth, ToothPart, damaged_teeth};
@@ -31,9 +32,9 @@ use crate::mesh::{
 use crate::operation::{CycleGrid, Solver, TimeGrid};
 use crate::published::{self, Published};
 use crate::scenario::{MemoryLimit, Scenario};
-use crate::sensor::{Channels, ContactFigures};
+use crate::sensor::{Channels, ContactFigures, SignalSource};
 use crate::simd::InstructionSet;
-use crate::solver::{Block, Diverged, Output, Recorder};
+use crate::solver::{Diverged, Output, Recorder, StepCounts};
 use crate::wheel::quality::{deviations, profile_errors};
 use crate::wheel::{
     Deviations, NamedGears, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth,
@@ -113,7 +114,7 @@ pub struct Simulation {
 /// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let simulation = meshtone::simulate(&scenario)?;
-/// let force = &simulation.channels.mesh_force_n;
+/// let force = &simulation.channels["mesh_force_n"];
 /// let mean = force.iter().sum::<f64>() / force.len() as f64;
 /// assert!((mean / 187.0 - 1.0).abs() < 0.01);
 /// # Ok::<(), meshtone::Error>(())
@@ -372,7 +373,8 @@ impl MeshOf<'_> {
 impl Simulation {
     /// How the teeth touched; none where the flanks may pull.
     pub fn contact_figures(&self) -> Option<ContactFigures> {
-        self.stages.teeth_part().then(|| ContactFigures::of(&self.channels))
+        let force_n = self.channels.of(SignalSource::MeshForce(0));
+        self.stages.teeth_part().then(|| ContactFigures::of_force(force_n))
     }
 }
 
@@ -498,8 +500,7 @@ impl Stages {
     /// ```
     pub fn simulate(self) -> Result<Simulation, Error> {
         let clock = Clock::default();
-        let mut channels = self.channels();
-        self.integrate_into(&mut channels)?;
+        let channels = self.integrated_while(&|| true)?;
         Ok(self.simulated(channels, clock))
     }
 
@@ -525,21 +526,22 @@ impl Stages {
     /// ```
     pub fn simulate_while(self, is_wanted: &dyn Fn() -> bool) -> Result<Option<Simulation>, Error> {
         let clock = Clock::default();
-        let mut wanted = WantedChannels { channels: self.channels(), is_wanted };
-        self.integrate_into(&mut wanted)?;
-        let channels = wanted.channels;
+        let channels = self.integrated_while(is_wanted)?;
         Ok(is_wanted().then(|| self.simulated(channels, clock)))
     }
 
     /// Stage 7, with what the channels take of it.
-    fn integrate_into(&self, recorder: &mut dyn Recorder) -> Result<(), Error> {
-        self.integrate(&self.channel_outputs(), self.time.first_kept_sample, recorder)
+    fn integrated_while(&self, is_wanted: &dyn Fn() -> bool) -> Result<Channels, Error> {
+        let counts = StepCounts::default();
+        let mut wanted = WantedChannels { channels: self.channels(), counts, is_wanted };
+        self.integrate(&self.scenario.outputs(), self.time.first_kept_sample, &mut wanted)?;
+        Ok(wanted.channels)
     }
 
     /// Stage 8, and everything together.
     fn simulated(self, mut channels: Channels, mut clock: Clock) -> Simulation {
         clock.lap("time integration");
-        if !channels.sensors.is_empty() {
+        if !self.scenario.sensors.is_empty() {
             channels = self.measured(channels);
             clock.lap("sensors");
         }
@@ -608,22 +610,6 @@ fn most_neighbours(damaged: &[DamagedTooth], wheel: WheelName, teeth: usize) -> 
     let missing: Vec<usize> = of_wheel.flat_map(|tooth| tooth.teeth.iter().copied()).collect();
     let run = |&first: &usize| (0..teeth).take_while(|n| missing.contains(&((first + n) % teeth))).count();
     missing.iter().map(run).max().unwrap_or(0)
-}
-
-/// Channels that somebody waits for, as long as they do.
-struct WantedChannels<'a> {
-    channels: Channels,
-    is_wanted: &'a dyn Fn() -> bool,
-}
-
-impl Recorder for WantedChannels<'_> {
-    fn record(&mut self, block: &Block) {
-        self.channels.record(block);
-    }
-
-    fn goes_on(&self) -> bool {
-        (self.is_wanted)()
-    }
 }
 
 /// What is simulated; the fields' thousands of numbers are left out.

@@ -4,12 +4,14 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use meshtone::scenario::{ScenarioError, ScenarioForm};
+use meshtone::sensor::Channels;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::recording::signals_in;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{RecordedGearbox, read_gearbox_signals, read_signals};
+use meshtone_io::signals::{Recorded, read_signals};
 use meshtone_io::summary::read_run;
 use meshtone_plot::panel;
 
@@ -58,52 +60,34 @@ impl Panel {
                 "simulate again with `--format parquet`, or with `--format parquet,mat` and alike",
             );
         }
-        let of_gearbox = read_gearbox_signals(&path).ok().flatten();
-        let files = match of_gearbox {
-            Some(recorded) => self.panel_of_gearbox(recorded)?,
-            None => self.panel_of_pair(&path)?,
-        };
+        let files = self.panel_of(&path)?;
         undisturbed(|| files.into_iter().try_for_each(StagedFile::commit))?;
         let [svg, png] = PANEL.map(|name| self.directory.join(name));
         print_unless(self.quiet, &format!("{}\n{}\n", svg.display(), png.display()))
     }
 
-    fn panel_of_gearbox(&self, recorded: RecordedGearbox) -> Result<Vec<StagedFile>, Failure> {
-        let path = self.directory.join(SIGNALS);
-        self.check_summary(recorded.run)?;
-        let stages = meshtone::gearbox_stages(&recorded.gearbox)
-            .map_err(|error| ReadResultsError::scenario(&path, &error))?;
-        let mut channels = stages.channels();
-        let names = channels.signals.iter().map(|signal| &signal.name);
-        if recorded.sampling_rate_hz != channels.sampling_rate_hz
-            || !names.eq(recorded.signals.iter().map(|(name, _)| name))
-        {
-            let problem = "has another rate or other signals than its gearbox".to_owned();
-            return Err(ReadResultsError::foreign(&path, problem).into());
-        }
-        self.warn_of_version(&recorded.version);
-        for (signal, (_, values)) in channels.signals.iter_mut().zip(recorded.signals) {
-            signal.values = values;
-        }
-        let simulation = stages.with_channels(channels);
-        stage_panel(&self.directory, recorded.run, panel::draw_gearbox(&simulation))
-    }
-
-    fn panel_of_pair(&self, path: &Path) -> Result<Vec<StagedFile>, Failure> {
-        let recorded = read_signals(path).map_err(|error| {
+    /// The panel of what a file of signals is of.
+    fn panel_of(&self, path: &Path) -> Result<Vec<StagedFile>, Failure> {
+        let Recorded { scenario, channels, version, run } = read_signals(path).map_err(|error| {
             let is_there = path.try_exists().unwrap_or(false);
             if is_there { error.into() } else { or_other_kind(&self.directory, WRITTEN, error.into()) }
         })?;
-        self.check_summary(recorded.run)?;
-        let stages =
-            meshtone::stages(&recorded.scenario).map_err(|error| ReadResultsError::scenario(path, &error))?;
-        let (rate, expected) = (recorded.channels.sampling_rate_hz, stages.time.sampling_rate_hz);
-        if rate != expected {
-            let problem = format!("is sampled at {rate} S/s, but its scenario at {expected} S/s");
-            return Err(ReadResultsError::foreign(path, problem).into());
-        }
-        self.warn_of_version(&recorded.version);
-        stage_panel(&self.directory, recorded.run, panel::draw(&stages, &recorded.channels))
+        self.check_summary(run)?;
+        let unfit = |error: ScenarioError| ReadResultsError::scenario(path, &error);
+        let panel = match &scenario {
+            ScenarioForm::Pair(scenario) => {
+                let stages = meshtone::stages(scenario).map_err(unfit)?;
+                check_rate(path, &channels, stages.time.sampling_rate_hz)?;
+                panel::draw(&stages, &channels)
+            }
+            ScenarioForm::Gearbox(gearbox) => {
+                let stages = meshtone::gearbox_stages(gearbox).map_err(unfit)?;
+                check_rate(path, &channels, stages.time.sampling_rate_hz)?;
+                panel::draw_gearbox(&stages.with_channels(channels))
+            }
+        };
+        self.warn_of_version(&version);
+        stage_panel(&self.directory, run, panel)
     }
 
     /// Signals without a summary can be drawn all the same; but a panel is not to make the files of two runs look like
@@ -143,4 +127,14 @@ impl Panel {
             ));
         }
     }
+}
+
+/// Refuses signals that are not sampled as what they are of.
+fn check_rate(path: &Path, channels: &Channels, expected: f64) -> Result<(), ReadResultsError> {
+    let rate = channels.sampling_rate_hz;
+    if rate == expected {
+        return Ok(());
+    }
+    let problem = format!("is sampled at {rate} S/s, but its scenario at {expected} S/s");
+    Err(ReadResultsError::foreign(path, problem))
 }

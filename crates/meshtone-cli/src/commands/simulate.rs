@@ -14,8 +14,8 @@ use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FileKind, FilesBeside, ScenarioFile};
 use meshtone_io::signals::{SignalFormat, SignalTable};
-use meshtone_io::summary::{GearboxSummary, Summary};
-use meshtone_plot::panel;
+use meshtone_io::summary::Summary;
+use meshtone_plot::{Figure, PlotError, panel};
 use serde_json::json;
 
 use crate::check::check;
@@ -25,7 +25,7 @@ use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_spinner;
 use crate::results::{self, RESULTS, Results};
 use crate::same_file::is_same_file;
-use crate::table::{gearbox_table, table};
+use crate::table::table;
 use crate::terminal::{print_unless, warn};
 use crate::warnings;
 
@@ -267,28 +267,47 @@ impl Simulate {
         let GearboxRun { file, stages, .. } = run;
         let of_stages = stages.warnings();
         warnings::print(&file, &of_stages);
-        let message = format!("{} ({} of {})", file.path.display(), number + 1, self.scenarios.len());
-        let (summary, by_signals, written) = with_spinner(message, !self.quiet, || {
+        self.report(&file, directory, number, || {
             let simulation = stages.simulate().map_err(|error| not_simulated(&file, error))?;
             let by_signals = simulation.warnings_of_signals(StepJudgement::Repeated);
-            let all_warnings = [&of_stages[..], &by_signals].concat();
             let run = RunIdentity::of_toml(&file.scenario.to_toml());
-            let summary = GearboxSummary::new(&simulation, run, &all_warnings);
-            let trace = self.trace.as_deref().map(|path| (meshtone::gearbox_trace(&simulation), path));
-            let results = Results {
-                run,
-                signals: SignalTable::of_gearbox(&simulation.stages.gearbox, &simulation.channels),
-                summary: json!(summary),
-                trace: trace.as_ref().map(|(trace, path)| (trace, *path)),
-            };
-            let draw = (!self.no_panel).then_some(|| panel::draw_gearbox(&simulation));
-            let written = results::write(&directory.path, &results, &self.format, draw);
-            Ok::<_, Failure>((summary, by_signals, written))
-        })?;
-        warnings::print(&file, &by_signals);
+            let summary = Summary::of_gearbox(&simulation, run, &[&of_stages[..], &by_signals].concat());
+            let trace = self.trace.is_some().then(|| meshtone::gearbox_trace(&simulation));
+            let signals = SignalTable::of_gearbox(&simulation.stages.gearbox, &simulation.channels);
+            let draw = || panel::draw_gearbox(&simulation);
+            let written = self.write(directory, signals, &summary, trace.as_ref(), draw);
+            Ok((summary, by_signals, written))
+        })
+    }
+
+    /// Writes all files of a run.
+    fn write(
+        &self,
+        directory: &OutputDirectory,
+        signals: SignalTable,
+        summary: &Summary,
+        trace: Option<&Trace>,
+        draw: impl FnOnce() -> Result<Figure, PlotError> + Send,
+    ) -> Result<(), Failure> {
+        let trace = trace.zip(self.trace.as_deref());
+        let results = Results { run: summary.run, signals, summary: json!(summary), trace };
+        results::write(&directory.path, &results, &self.format, (!self.no_panel).then_some(draw))
+    }
+
+    /// Simulates, with something that moves on the terminal meanwhile, and prints warnings and the main numbers.
+    fn report<S>(
+        &self,
+        file: &ScenarioFile<S>,
+        directory: &OutputDirectory,
+        number: usize,
+        simulate: impl FnOnce() -> Result<Reported, Failure>,
+    ) -> Result<(), Failure> {
+        let from = file.path.display();
+        let message = format!("{from} ({} of {})", number + 1, self.scenarios.len());
+        let (summary, by_signals, written) = with_spinner(message, !self.quiet, simulate)?;
+        warnings::print(file, &by_signals);
         written?;
-        let (from, to) = (file.path.display(), directory.path.display());
-        print_unless(self.quiet, &format!("{from} -> {to}\n{}\n", gearbox_table(&summary)))
+        print_unless(self.quiet, &format!("{from} -> {}\n{}\n", directory.path.display(), table(&summary)))
     }
 
     /// An error about a scenario, or about the errors file that the command line put in its place.
@@ -306,31 +325,22 @@ impl Simulate {
 
     fn simulate(&self, run: PairRun, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
         warnings::print(&run.file, &run.warnings);
-        let of = format!("({} of {})", number + 1, self.scenarios.len());
-        let message = format!("{} {of}", run.file.path.display());
-        let (summary, by_signals, written) = with_spinner(message, !self.quiet, || {
+        self.report(&run.file, directory, number, || {
             let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
                 .map_err(|error| not_simulated(&run.file, error))?;
             let by_signals = simulation.warnings_of_signals();
-            let all_warnings: Vec<_> = run.warnings.iter().chain(&by_signals).cloned().collect();
             let identity = RunIdentity::of(&run.scenario);
-            let summary = Summary::new(&simulation, identity, &all_warnings);
-            let results = Results {
-                run: identity,
-                signals: SignalTable::of_pair(&run.scenario, &simulation.channels),
-                summary: json!(summary),
-                trace: trace.as_ref().zip(self.trace.as_deref()),
-            };
-            let draw = (!self.no_panel).then_some(|| panel::draw(&simulation.stages, &simulation.channels));
-            let written = results::write(&directory.path, &results, &self.format, draw);
-            Ok::<_, Failure>((summary, by_signals, written))
-        })?;
-        warnings::print(&run.file, &by_signals);
-        written?;
-        let (from, to) = (run.file.path.display(), directory.path.display());
-        print_unless(self.quiet, &format!("{from} -> {to}\n{}\n", table(&summary)))
+            let summary = Summary::of_pair(&simulation, identity, &[&run.warnings[..], &by_signals].concat());
+            let signals = SignalTable::of_pair(&run.scenario, &simulation.channels);
+            let draw = || panel::draw(&simulation.stages, &simulation.channels);
+            let written = self.write(directory, signals, &summary, trace.as_ref(), draw);
+            Ok((summary, by_signals, written))
+        })
     }
 }
+
+/// The main numbers of a run, what its signals show to be doubtful, and whether its files could be written.
+type Reported = (Summary, Vec<ScenarioWarning>, Result<(), Failure>);
 
 /// Refuses a trace that cannot be written, or would replace a result or a file that is read.
 ///

@@ -5,7 +5,7 @@ use std::fs;
 use std::process::Stdio;
 
 use meshtone::scenario::{Gearbox, gearbox_template};
-use meshtone_io::signals::{read_gearbox_signals, read_signals};
+use meshtone_io::signals::read_signals;
 use serde_json::Value;
 
 use crate::indicators::{csv, tacho};
@@ -33,7 +33,7 @@ fn workplace() -> Workplace {
 fn as_measured(workplace: &Workplace, of: &str) {
     let channels = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().channels;
     let rate = channels.sampling_rate_hz;
-    workplace.write(&format!("{of}.csv"), csv(rate, &channels.vertical_g, tacho(40.0, rate)));
+    workplace.write(&format!("{of}.csv"), csv(rate, &channels["vertical_g"], tacho(40.0, rate)));
 }
 
 fn answer(workplace: &Workplace, directory: &str) -> Value {
@@ -253,10 +253,9 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     // is the first.
     let speed_hz = gearbox.operation.drive.pinion_speed_hz;
     for of in ["box", "gone"] {
-        let recorded =
-            read_gearbox_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().unwrap();
+        let recorded = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().channels;
         let rate = recorded.sampling_rate_hz;
-        workplace.write(&format!("{of}.csv"), csv(rate, &recorded.signals[0].1, tacho(speed_hz, rate)));
+        workplace.write(&format!("{of}.csv"), csv(rate, &recorded.signals[0].values, tacho(speed_hz, rate)));
     }
     let of_box = [
         "--scenario",
@@ -283,9 +282,9 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     // A measured file does not say what it is of: the output's orders, which the teeth's deviations have, do.
     workplace.write("rough.toml", small_gearbox().to_toml());
     workplace.succeeds(&["simulate", "rough.toml", "-o", "rough", "--no-panel", "-q"]);
-    let recorded = read_gearbox_signals(&workplace.path("rough/signals.parquet")).unwrap().unwrap();
+    let recorded = read_signals(&workplace.path("rough/signals.parquet")).unwrap().channels;
     let rate = recorded.sampling_rate_hz;
-    workplace.write("rough.csv", csv(rate, &recorded.signals[0].1, tacho(speed_hz, rate)));
+    workplace.write("rough.csv", csv(rate, &recorded.signals[0].values, tacho(speed_hz, rate)));
     let measured =
         ["rough.csv", "--scenario", "pair.toml", "-c", "bearing", "--tach", "tacho", "-o", "as_pair"];
     let asked = ["--records", FEW, "--reference", "kept", "-q"];

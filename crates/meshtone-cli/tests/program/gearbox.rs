@@ -1,10 +1,11 @@
 //! Gearboxes: `meshtone init gearbox`, `simulate`, `panel`, and the commands that know one pair only.
 
+use meshtone::scenario::ScenarioForm;
 use std::f64::consts::TAU;
 
 use crate::indicators::{csv, tacho};
 use crate::support::{Workplace, stdout};
-use meshtone_io::signals::{read_gearbox_signals, read_signals};
+use meshtone_io::signals::read_signals;
 use serde_json::Value;
 
 /// An example of 0.1 s with a broken tooth.
@@ -37,22 +38,22 @@ fn every_mesh_is_in_every_result() {
         assert!(mesh["mesh_stiffness"]["mean_n_per_mm"].as_f64().unwrap() > 1e5);
         assert!(mesh["transmission_error_um"]["static_peak_to_peak"].as_f64().unwrap() > 0.0);
     }
+    assert!(summary.get("mesh_force").is_none());
+    assert_eq!(summary["wheels"][2], serde_json::json!({ "name": "z3", "shaft": "middle", "teeth": 48 }));
     assert_eq!(summary["faults"][0]["wheel"], "z3");
     let path = workplace.path("out/signals.parquet");
-    let recorded = read_gearbox_signals(&path).unwrap().unwrap();
-    let names: Vec<&str> = recorded.signals.iter().map(|(name, _)| name.as_str()).collect();
-    assert!(names.contains(&"force_n.z3-z4") && names.contains(&"speed_hz.output"), "{names:?}");
-    let simulation = meshtone::simulate_gearbox(&recorded.gearbox).unwrap();
-    for ((name, values), signal) in recorded.signals.iter().zip(&simulation.channels.signals) {
-        assert_eq!((name, values), (&signal.name, &signal.values));
+    let recorded = read_signals(&path).unwrap();
+    for name in ["force_n.z3-z4", "speed_hz.output"] {
+        assert!(recorded.channels.signal(name).is_some(), "{name}");
     }
+    let ScenarioForm::Gearbox(gearbox) = &recorded.scenario else { panic!("it is of a gearbox") };
+    assert_eq!(recorded.channels, meshtone::simulate_gearbox(gearbox).unwrap().channels);
     let panel = String::from_utf8(workplace.read("out/panel.svg")).unwrap();
     for words in ["z1-z2", "z3-z4", "Tooth breakage on tooth 2 of z3"] {
         assert!(panel.contains(words), "{words}");
     }
     workplace.succeeds(&["panel", "out"]);
     assert_eq!(String::from_utf8(workplace.read("out/panel.svg")).unwrap(), panel);
-    assert!(read_signals(&path).unwrap_err().to_string().contains("is of a gearbox"));
 }
 
 // The file of a pair of wheels holds those of a mesh, and what its wheels have beside it is refused.
@@ -75,13 +76,14 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
     let with_file = text.replacen("iso_class = 6", "errors_file = \"wheels.npz\"", 2);
     workplace.write("file.toml", &with_file);
     workplace.succeeds(&["simulate", "file.toml", "-o", "out", "--no-panel", "--trace", "trace.npz"]);
-    let recorded = read_gearbox_signals(&workplace.path("out/signals.parquet")).unwrap().unwrap();
-    let stages = meshtone::gearbox_stages(&recorded.gearbox).unwrap();
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
+    let ScenarioForm::Gearbox(gearbox) = &recorded.scenario else { panic!("it is of a gearbox") };
+    let stages = meshtone::gearbox_stages(gearbox).unwrap();
     let read = meshtone_io::scenario_file::ScenarioFile::read(&workplace.path("pair.toml")).unwrap();
     let of_pair = meshtone::stages(&read.scenario).unwrap();
     let errors = of_pair.profile_errors.unwrap();
-    assert_eq!(recorded.gearbox.wheels[0].profile_errors_mm.as_ref(), Some(&errors.pinion_profile_errors_mm));
-    assert_eq!(recorded.gearbox.wheels[1].profile_errors_mm.as_ref(), Some(&errors.gear_profile_errors_mm));
+    assert_eq!(gearbox.wheels[0].profile_errors_mm.as_ref(), Some(&errors.pinion_profile_errors_mm));
+    assert_eq!(gearbox.wheels[1].profile_errors_mm.as_ref(), Some(&errors.gear_profile_errors_mm));
     assert_eq!(stages.pairs[0].profile_errors.as_ref(), Some(&errors));
     assert_eq!(stages.pairs[0].run_out, of_pair.run_out);
     workplace
@@ -144,10 +146,10 @@ fn indicators_of_every_shaft() {
         assert!(figure.contains(words), "{words}");
     }
 
-    let recorded = read_gearbox_signals(&workplace.path("out/signals.parquet")).unwrap().unwrap();
-    let rate_hz = recorded.sampling_rate_hz;
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
+    let rate_hz = recorded.channels.sampling_rate_hz;
     let tone = |(i, value): (usize, &f64)| value + 0.3 * (TAU * 91.57 * i as f64 / rate_hz).cos();
-    let values: Vec<f64> = recorded.signals[0].1.iter().enumerate().map(tone).collect();
+    let values: Vec<f64> = recorded.channels.signals[0].values.iter().enumerate().map(tone).collect();
     workplace.write("run.csv", csv(rate_hz, &values, tacho(6.0, rate_hz)));
     let run = [
         "indicators",

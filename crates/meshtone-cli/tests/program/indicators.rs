@@ -158,8 +158,9 @@ fn a_simulation_and_the_same_signal_from_other_files() {
 
     let channels = read_signals(&workplace.path("gone/signals.parquet")).unwrap().channels;
     let rate = channels.sampling_rate_hz;
-    workplace.write("gone.csv", csv(rate, &channels.vertical_g, tacho(40.0, rate)));
-    ndarray_npy::write_npy(workplace.path("gone.npy"), &Array1::from(channels.vertical_g)).unwrap();
+    workplace.write("gone.csv", csv(rate, &channels["vertical_g"], tacho(40.0, rate)));
+    ndarray_npy::write_npy(workplace.path("gone.npy"), &Array1::from(channels["vertical_g"].to_vec()))
+        .unwrap();
     let rate = rate.to_string();
     let wheels = ["--teeth", "20", "--mate-teeth", "40", "-o", "out"];
     for arguments in [

@@ -1,6 +1,7 @@
 //! A run that is killed leaves the results of the run before it whole; where it is killed while it gives its files
 //! their names, this can be seen, and the next command puts the earlier results back.
 
+use meshtone::scenario::ScenarioForm;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -69,7 +70,8 @@ impl Contest {
             let found = bytes.windows(run_of_signals.len()).any(|part| part == run_of_signals.as_bytes());
             assert!(found, "{name} is not of the run {run_of_signals}");
         }
-        match signals.scenario.quality.din_grade {
+        let ScenarioForm::Pair(scenario) = signals.scenario else { panic!("it is of a pair") };
+        match scenario.quality.din_grade {
             0 => assert!(
                 FILES.map(|name| self.workplace.read(name)) == self.earlier,
                 "an earlier result changed"

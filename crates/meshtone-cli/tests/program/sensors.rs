@@ -17,8 +17,8 @@ fn sensors_come_first() {
     workplace.write("sensed.toml", fast_and(SENSORS));
     let printed = stdout(&workplace.succeeds(&["simulate", "sensed.toml", "-o", "out"]));
     let place = |words: &str| printed.find(words).unwrap_or(usize::MAX);
-    assert!(place("casing, g") < place("support vertical, g"), "{printed}");
-    assert!(place("support vertical, g") < place("horizontal, g"), "{printed}");
+    assert!(place("casing_g ") < place("support_vertical_g "), "{printed}");
+    assert!(place("support_vertical_g ") < place("horizontal_g "), "{printed}");
     let table = TableReader::new(File::open(workplace.path("out/signals.parquet")).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names[..4], ["time_s", "casing_g", "pinion_support_vertical_g", "horizontal_g"]);

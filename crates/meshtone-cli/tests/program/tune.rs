@@ -348,7 +348,7 @@ fn rig(fault: &str, seed: u64) -> Scenario {
 fn recording(scenario: &Scenario, offset: usize) -> String {
     let simulation = meshtone::simulate(scenario).unwrap();
     let per_revolution = (simulation.stages.time.sampling_rate_hz / 20.0).round() as usize;
-    let revolution = &simulation.channels.vertical_g[..per_revolution];
+    let revolution = &simulation.channels["vertical_g"][..per_revolution];
     let resampled = resample(revolution, 400, per_revolution, Edge::Periodic).unwrap();
     let mut text = String::from("acc,tacho\n");
     for i in offset..offset + 9 * resampled.len() {

@@ -9,7 +9,7 @@ use meshtone::batch::{Observation, SignalRecorder};
 use meshtone::damage::{DamagedTooth, damages_of_fault};
 use meshtone::operation::TimeGrid;
 use meshtone::scenario::{ScenarioWarning, Sensor};
-use meshtone::sensor::Channel;
+use meshtone::sensor::{Channel, ContactFigures, SignalSource};
 use meshtone::signal::{AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
 use meshtone::tuning::DifferenceChain;
 use meshtone::{GearboxSimulation, GearboxStages, Stages, StepJudgement};
@@ -47,18 +47,15 @@ pub(super) fn gearbox_record(
     let of_signals = simulation.warnings_of_signals(StepJudgement::Estimated);
     let warnings = [simulation.stages.warnings(), of_signals].concat();
     let GearboxSimulation { stages, channels, .. } = &simulation;
-    let signal = |name: &str| {
-        channels.signal(name).ok_or_else(|| format!("the simulation of the gearbox has no signal `{name}`"))
-    };
     let single = |channel: &Channel| {
-        signal(&channel.name()).map(|signal| signal.iter().map(|&value| value as f32).collect())
+        let name = channel.name();
+        let signal = channels.signal(&name);
+        let signal = signal.ok_or_else(|| format!("the simulation of the gearbox has no signal `{name}`"))?;
+        Ok::<_, String>(signal.iter().map(|&value| value as f32).collect())
     };
     let samples: Vec<Vec<f32>> = content.keep.simulated().iter().map(single).collect::<Result<_, _>>()?;
-    let apart = stages.gearbox.meshes.iter().map(|mesh| {
-        let force_n = signal(&format!("force_n.{}", mesh.name()))?;
-        Ok(force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64)
-    });
-    let apart = apart.collect::<Result<_, String>>()?;
+    let apart = |mesh| ContactFigures::of_force(channels.of(SignalSource::MeshForce(mesh))).apart_fraction;
+    let apart = (0..stages.meshes.len()).map(apart).collect();
     View::new(content, window, Simulated::Gearbox(stages)).record(content, drawn, &samples, &warnings, apart)
 }
 

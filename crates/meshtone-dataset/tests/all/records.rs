@@ -1,6 +1,7 @@
 //! What a record holds is what its scenario gives, taken as a rig would take it.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use meshtone::sensor::ContactFigures;
 use std::fs::File;
 use std::path::Path;
 
@@ -216,7 +217,10 @@ fn warnings_are_columns_and_are_counted() {
             codes.iter().for_each(|code| *counts.entry((*code).to_owned()).or_insert(0) += 1);
             let (name, part) = match simulation.contact_figures() {
                 Some(figures) => ("apart_fraction", figures.apart_fraction),
-                None => ("tension_fraction", simulation.channels.tension_fraction()),
+                None => {
+                    let force = ContactFigures::of_force(&simulation.channels["mesh_force_n"]);
+                    ("tension_fraction", force.back_flank_fraction)
+                }
             };
             // The record is simulated from where it begins, with a margin for filters; under contact it has not settled.
             assert!(
@@ -322,7 +326,7 @@ fn steep_taps(up: usize, down: usize) -> Vec<f64> {
 /// A record is its scenario's simulation, begun at the mark and brought to the data set's rate.
 #[test]
 fn the_simulation_is_in_the_record() {
-    compare_with_simulations(FAST, "vertical_g", |simulation| &simulation.channels.vertical_g);
+    compare_with_simulations(FAST, "vertical_g", |simulation| &simulation.channels["vertical_g"]);
 }
 
 /// The resonance of a sensor without noise is applied at the data set's rate, and at that of the simulation elsewhere.
@@ -330,15 +334,11 @@ fn the_simulation_is_in_the_record() {
 fn a_resonance_is_the_same_at_either_rate() {
     let sensor = "[[scenario.sensor]]\nname = \"casing\"\nresonance_hz = 2e3\nresonance_damping_ratio = 0.02\n\n[[class]]";
     let text = FAST.replacen("[[class]]", sensor, 1);
-    compare_with_simulations(&text, "casing_g", |simulation| &simulation.channels.sensors[0].values_g);
+    compare_with_simulations(&text, "casing_g", |simulation| &simulation.channels.signals[0].values[..]);
 }
 
 /// Compares the first records of a plan with simulations of their scenarios.
-fn compare_with_simulations(
-    text: &str,
-    channel: &str,
-    simulated: impl Fn(&meshtone::Simulation) -> &Vec<f64>,
-) {
+fn compare_with_simulations(text: &str, channel: &str, simulated: impl Fn(&meshtone::Simulation) -> &[f64]) {
     let plan = plan(
         &text
             .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")

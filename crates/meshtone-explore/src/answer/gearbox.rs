@@ -1,6 +1,7 @@
 //! From a gearbox to everything that its page draws.
 
 use meshtone::scenario::{Gearbox, ScenarioForm, ScenarioWarning};
+use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
     AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainTurning, revolution_average,
 };
@@ -79,7 +80,7 @@ pub fn gearbox_answer(
     Ok(GearboxState {
         signal: number(
             options.channel.as_deref(),
-            signals.iter().map(|signal| signal.name.clone()).collect(),
+            signals.iter().map(|signal| signal.name.to_string()).collect(),
         ),
         wheel,
         mesh: number(mesh, gearbox.meshes.iter().map(|mesh| mesh.name()).collect()),
@@ -129,8 +130,7 @@ impl GearboxState {
         let sent = (SENT_HARMONICS * highest_hz / spectrum.step_hz) as usize;
         let line = |line: &SpectrumLine| json!([line.frequency_hz, line.amplitude, line.name]);
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
-        let force_name = format!("force_n.{}", self.gearbox.meshes[self.mesh].name());
-        let force = channels.signal(&force_name).unwrap_or_default();
+        let force = channels.of(SignalSource::MeshForce(self.mesh));
         let train = GearTrain::of_layout(&self.gearbox, &stages.layout);
         let form = ScenarioForm::Gearbox(self.gearbox.clone());
         let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.values.len());
@@ -197,8 +197,7 @@ impl GearboxState {
         let (pair, mesh) = (&stages.pairs[self.mesh], &stages.meshes[self.mesh]);
         let name = &tones.meshes[self.mesh].name;
         let largest_n = force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let apart =
-            force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64;
+        let apart = ContactFigures::of_force(force_n).apart_fraction;
         let of_mesh = |what: &str| format!("{what} of {name}");
         vec![
             (of_mesh("mesh frequency"), tones.meshes[self.mesh].frequency_hz, "Hz"),

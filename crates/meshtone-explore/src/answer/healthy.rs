@@ -33,6 +33,6 @@ pub fn healthy_indicators(
     let healthy = options.detail.of(scenario).with_faults(Vec::new());
     let stages = meshtone::stages_within(&healthy, memory_limit())?;
     let simulation = stages.simulate_while(is_wanted)?.ok_or(Refusal::Superseded)?;
-    let (channel, of_wheel) = wheel_signals(&simulation, options.channel.as_deref());
-    Ok(WheelName::BOTH.map(|shaft| of_wheel(shaft).indicators(channel.unit())))
+    let (signal, of_wheel) = wheel_signals(&simulation, options.channel.as_deref());
+    Ok(WheelName::BOTH.map(|shaft| of_wheel(shaft).indicators(simulation.channels.signals[signal].unit)))
 }

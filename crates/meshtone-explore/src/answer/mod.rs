@@ -12,7 +12,7 @@ mod teeth;
 mod wheel_signals;
 
 use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning};
-use meshtone::sensor::Channel;
+use meshtone::sensor::{NamedSignal, SignalSource};
 use meshtone::signal::{ChainSettings, SimulatedShafts};
 use meshtone::wheel::WheelName;
 use meshtone::{Simulation, StageTime, Stages};
@@ -112,8 +112,8 @@ pub struct State {
     pub teeth: TeethInPlane,
     /// Stiffness and forces over the mesh cycle.
     pub mesh: MeshCycle,
-    /// The channel that is drawn.
-    pub channel: Channel,
+    /// Number of the signal that is drawn.
+    pub signal: usize,
     /// What its signal shows of each wheel, the pinion first.
     pub wheels: [WheelSignals; 2],
 }
@@ -148,7 +148,7 @@ pub fn answer(
     wanted(is_wanted)?;
     let simulation = stages.simulate_while(is_wanted)?.ok_or(Refusal::Superseded)?;
     let stages = &simulation.stages;
-    let (channel, of_wheel) = wheel_signals(&simulation, options.channel.as_deref());
+    let (signal, of_wheel) = wheel_signals(&simulation, options.channel.as_deref());
     let of_signals = || match options.detail {
         Detail::Full => simulation.warnings_of_signals(),
         Detail::Coarse => Vec::new(),
@@ -165,7 +165,7 @@ pub fn answer(
         figures,
         teeth,
         mesh,
-        channel,
+        signal,
         wheels,
         simulation,
     })
@@ -176,22 +176,23 @@ fn wanted(is_wanted: &dyn Fn() -> bool) -> Result<(), Refusal> {
     if is_wanted() { Ok(()) } else { Err(Refusal::Superseded) }
 }
 
-/// The channel of a name, or the leading one where there is none of it, and what its signal shows of the wheel on a shaft.
+/// The signal of a name, or the leading one where there is none of it, by its number, and what it shows of the wheel on a shaft.
 fn wheel_signals(
     simulation: &Simulation,
     name: Option<&str>,
-) -> (Channel, impl Fn(WheelName) -> WheelSignals + Send) {
+) -> (usize, impl Fn(WheelName) -> WheelSignals + Send) {
     let Simulation { stages, channels, .. } = simulation;
-    let named = channels.list().into_iter().find(|channel| name == Some(&channel.name()));
-    let channel = named.unwrap_or_else(|| channels.leading().0);
-    let signal = channels.signal(&channel).unwrap_or_default();
+    let named = channels.signals.iter().position(|signal| name == Some(&signal.name));
+    let leading = || channels.signals.iter().position(|signal| Some(signal) == channels.leading());
+    let number = named.or_else(leading).unwrap_or(0);
+    let signal = &channels.signals[number].values;
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
     let of_wheel = move |shaft| {
         let damaged = damaged_numbers(stages, shaft);
         let record = shafts.process(signal, shaft, &ChainSettings::default());
         WheelSignals { record, teeth: shafts.teeth(shaft), damaged }
     };
-    (channel, of_wheel)
+    (number, of_wheel)
 }
 
 /// Numbers of a wheel's damaged teeth, from 1, rising.
@@ -207,7 +208,7 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
     let frequencies = stages.natural_frequencies_hz();
     // Rigid rotation has none.
     let lowest = frequencies.into_iter().find(|&frequency| frequency > 1.0);
-    let largest = channels.mesh_force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let largest = channels.of(SignalSource::MeshForce(0)).iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut figures =
         vec![("contact ratio", stages.teeth.path.contact_ratio, ""), ("mesh frequency", mesh_hz, "Hz")];
     if gears.is_helical() {
@@ -242,7 +243,7 @@ impl State {
     pub fn packet(&self, more: Map<String, Value>) -> Vec<u8> {
         let mut packet = Packet::default();
         let Simulation { stages, channels, timings, .. } = &self.simulation;
-        let signal = channels.signal(&self.channel).unwrap_or_default();
+        let signal = &channels.signals[self.signal];
         let timing = |stage: &StageTime| json!([stage.stage, stage.elapsed.as_secs_f64() * 1e3]);
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
         let mut said = json!({
@@ -255,15 +256,15 @@ impl State {
             "figures": self.figures,
             "teeth": self.teeth.json(&mut packet),
             "mesh": self.mesh.json(&mut packet),
-            "channels": channels.list().iter().map(channel_json).collect::<Vec<_>>(),
+            "channels": channels.signals.iter().map(channel_json).collect::<Vec<_>>(),
             "signal": {
-                "channel": channel_json(&self.channel),
+                "channel": channel_json(signal),
                 "sampling_rate_hz": channels.sampling_rate_hz,
                 "start_s": channels.start_s,
-                "values": packet.array(signal.iter().copied()),
+                "values": packet.array(signal.values.iter().copied()),
             },
-            "modes": modes_json(stages, &self.channel),
-            "wheels": self.wheels.each_ref().map(|wheel| wheel.json(self.channel.unit(), &mut packet)),
+            "modes": modes_json(stages, signal.source),
+            "wheels": self.wheels.each_ref().map(|wheel| wheel.json(signal.unit, &mut packet)),
             "timings_ms": timings.iter().map(timing).collect::<Vec<_>>(),
         });
         if let Value::Object(entries) = &mut said {
@@ -274,14 +275,17 @@ impl State {
 }
 
 /// (Hz) Where the machine rings before the channel: what rings, and its natural frequencies.
-fn modes_json(stages: &Stages, channel: &Channel) -> Value {
+fn modes_json(stages: &Stages, source: SignalSource) -> Value {
     let modes = stages.support_modes();
     let of_supports = |is_alike: bool| {
         let of_kind = modes.iter().filter(move |mode| mode.is_alike == is_alike);
         of_kind.map(|mode| mode.frequency_hz).collect::<Vec<f64>>()
     };
     let sensors = &stages.scenario.sensors;
-    let sensor = sensors.iter().find(|sensor| *channel == Channel::Sensor(sensor.name()));
+    let sensor = match source {
+        SignalSource::Sensor(number) => sensors.get(number),
+        _ => None,
+    };
     let housing = sensor.map_or_else(Vec::new, |sensor| sensor.path.housing_frequencies_hz());
     let mount: Vec<f64> = sensor.and_then(|sensor| sensor.resonance_hz).into_iter().collect();
     json!([
@@ -303,6 +307,6 @@ fn sized_faults(scenario: &Scenario) -> Value {
     }
 }
 
-fn channel_json(channel: &Channel) -> Value {
-    json!({ "name": channel.name(), "unit": channel.unit(), "meaning": channel.meaning() })
+fn channel_json(signal: &NamedSignal) -> Value {
+    json!({ "name": signal.name, "unit": signal.unit, "meaning": signal.meaning })
 }

@@ -58,8 +58,8 @@ pub fn severity_curve(
     let control = Control { cancelled, ..Control::default() };
     simulate_many(scenarios, &KeepSimulation, &control, |_, simulation| {
         tables.push(simulation.ok().map(|simulation| {
-            let (channel, of_wheel) = wheel_signals(&simulation, channel);
-            of_wheel(wheel).indicators(channel.unit())
+            let (signal, of_wheel) = wheel_signals(&simulation, channel);
+            of_wheel(wheel).indicators(simulation.channels.signals[signal].unit)
         }));
     });
     if tables.len() < severities.len() {

@@ -201,7 +201,7 @@ async fn of_gearbox(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<
 /// Indicators of the gears without damage, where they are known already: where they have none, or the damage alone has changed.
 fn known_healthy(shared: &Shared, state: &State, options: &AnswerOptions) -> Option<HealthyIndicators> {
     if state.scenario.faults.is_empty() {
-        let unit = state.channel.unit();
+        let unit = state.simulation.channels.signals[state.signal].unit;
         return Some(state.wheels.each_ref().map(|wheel| wheel.indicators(unit)));
     }
     let known = shared.healthy.lock().unwrap_or_else(PoisonError::into_inner);

@@ -12,11 +12,10 @@ mod signal_table;
 
 pub use format::SignalFormat;
 pub(crate) use format::wav::{WavChannel, WavComment};
-pub use read::{Recorded, RecordedGearbox, read_gearbox_signals, read_signals};
+pub use read::{Recorded, read_signals};
 pub use signal_table::SignalTable;
 
-/// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::Channel), listed sensors
-/// first.
+/// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::Channels), sensors first.
 pub const TIME: &str = "time_s";
 /// Metadata key of the scenario, as TOML.
 pub const SCENARIO_KEY: &str = "meshtone.scenario";

@@ -1,23 +1,25 @@
-//! The summary of a simulation, as JSON.
+//! The summary of a simulation, as JSON: lists of shafts, wheels, meshes and bearings, whatever the form of the machine.
 //!
 //! Every key of a number ends in its unit. A number that does not exist, such as the kurtosis of a constant
 //! channel, is `null`.
 
-mod gearbox;
+mod bearing;
 mod json;
+mod mesh;
 
-pub use gearbox::{GearboxSummary, MeshSummary, ShaftSummary, TransmissionError, WheelFault};
+pub use bearing::{BearingOrders, BearingSummary, DefectSummary};
 pub use json::write_json;
+pub use mesh::{HelixSummary, MeshForce, MeshStiffness, MeshSummary, OneMesh, TransmissionError};
 
 use std::path::Path;
 use std::time::Duration;
 
 use meshtone::damage::{QuantityValue, ToothPart, damages_of_fault};
-use meshtone::scenario::{Fault, FaultyTeeth, Gears, ScenarioWarning};
-use meshtone::sensor::{Channel, ContactFigures};
+use meshtone::scenario::{Fault, FaultyTeeth, Model, Ratio, Scenario, ScenarioWarning};
+use meshtone::sensor::{Channels, NamedSignal, SignalSource};
 use meshtone::signal::{ChainSettings, Indicators, SimulatedShafts, kurtosis, peak, rms};
 use meshtone::wheel::WheelName;
-use meshtone::{Simulation, StageTime, Stages};
+use meshtone::{GearboxSimulation, Simulation, StageTime, Stages};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -28,10 +30,10 @@ use crate::run_identity::RunIdentity;
 /// Version of the summary's format: it grows when a key changes its name or meaning.
 pub const FORMAT_VERSION: u32 = 2;
 
-/// What every summary begins with.
+/// The main numbers of a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct SummaryHead {
+pub struct Summary {
     /// [`FORMAT_VERSION`].
     pub format_version: u32,
     /// Version of Meshtone.
@@ -39,22 +41,24 @@ pub struct SummaryHead {
     /// Identity of the run, which all its files carry.
     #[serde(serialize_with = "json::run")]
     pub run: RunIdentity,
-    /// Model, by its name in the scenario file.
-    pub model: &'static str,
-    /// Seed of the random draws.
-    pub seed: u64,
     /// (S/s) Actual sampling rate.
     pub sampling_rate_hz: f64,
     /// Number of samples kept.
     pub samples: usize,
     /// (s) Time of the first sample kept, since the start of the simulation.
     pub start_s: f64,
-}
-
-/// What the summary of every simulation has of its computation.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct SummaryEnd {
+    /// What was simulated.
+    #[serde(flatten)]
+    pub machine: MachineSummary,
+    /// The numbers of the mesh, where there is one only.
+    #[serde(flatten)]
+    pub one_mesh: Option<OneMesh>,
+    /// Main numbers of each signal, by the name of its column; sensors first.
+    #[serde(serialize_with = "json::channels")]
+    pub channels: Vec<ChannelSummary>,
+    /// Indicators of a pair's main signal.
+    #[serde(flatten)]
+    pub averaged: Option<AveragedSignal>,
     /// Time that each stage took.
     #[serde(rename = "computing_time_ms", serialize_with = "json::times")]
     pub computing_time: Vec<(String, Duration)>,
@@ -63,55 +67,43 @@ pub struct SummaryEnd {
     pub warnings: Vec<ScenarioWarning>,
 }
 
-impl SummaryEnd {
-    fn new(timings: &[StageTime], warnings: &[ScenarioWarning]) -> Self {
-        let times = timings.iter().map(|time| (time.stage.to_owned(), time.elapsed));
-        Self { computing_time: times.collect(), warnings: warnings.to_vec() }
-    }
-
-    /// (s) Time that all stages took.
-    pub fn total_time(&self) -> Duration {
-        self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
-    }
-}
-
-/// The main numbers of a simulation.
+/// The main numbers of a machine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Summary {
-    /// What every summary begins with.
-    #[serde(flatten)]
-    pub head: SummaryHead,
-    /// The faults; none of a healthy pair.
+pub struct MachineSummary {
+    /// Model, by its name in the scenario file.
+    pub model: &'static str,
+    /// Seed of the random draws.
+    pub seed: u64,
+    /// The faults; none of healthy wheels.
     pub faults: Vec<FaultSummary>,
-    /// Samples per revolution of the pinion, at the nominal speed.
-    pub samples_per_pinion_revolution: usize,
-    /// (-) Contact ratio, of helical wheels in the transverse section.
-    pub contact_ratio: f64,
-    /// Overlap and thrust; only of helical wheels.
-    pub helix: Option<HelixSummary>,
-    /// (-) Face load factor K_Hβ of sound teeth under the nominal load; only under `contact`.
-    pub face_load_factor: Option<f64>,
-    /// (Hz) The natural frequencies at the mean mesh stiffness, rising: 13, under `contact` 17.
+    /// Samples per revolution of the input, at the nominal speed.
+    pub samples_per_input_revolution: usize,
+    /// Revolutions of the input after which all teeth and shafts stand as at the start.
+    pub cycle_input_revolutions: i64,
+    /// The shafts, in the order of the file; of a pair the pinion's is the first.
+    pub shafts: Vec<ShaftSummary>,
+    /// The wheels, likewise.
+    pub wheels: Vec<WheelSummary>,
+    /// The meshes, in the order of the file.
+    pub meshes: Vec<MeshSummary>,
+    /// The rolling bearings, in the order of the file; none of a pair.
+    pub bearings: Vec<BearingSummary>,
+    /// (Hz) The natural frequencies at the mean mesh stiffness, rising: of a pair 13, under `contact` 17.
     pub natural_frequencies_hz: Vec<f64>,
-    /// Over a revolution of the gear.
-    pub mesh_stiffness: MeshStiffness,
-    /// Over the samples kept.
-    pub mesh_force: MeshForce,
-    /// Indicators of each signal, by the name of its column; listed sensors first.
-    #[serde(serialize_with = "json::channels")]
-    pub channels: Vec<ChannelSummary>,
-    /// Indicators of that signal, synchronously averaged on the shafts of pinion and gear; none where the kept signal holds no
-    /// average.
+}
+
+/// Indicators of a pair's main signal, synchronously averaged on either shaft.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct AveragedSignal {
+    /// Of the shafts of pinion and gear; none where the kept signal holds no average.
     #[serde(serialize_with = "json::indicators")]
     pub indicators: [Option<Indicators>; 2],
-    /// Computing time and warnings.
-    #[serde(flatten)]
-    pub end: SummaryEnd,
-    /// The signal that [`Self::indicators`] are of: the first sensor's. Of a simulation without listed sensors they are the
+    /// The signal that they are of: the first sensor's. Of a simulation without listed sensors they are the
     /// vertical acceleration's, as ever, and the file does not say so.
     #[serde(rename = "indicators_of", skip_serializing_if = "json::is_vertical")]
-    pub averaged: String,
+    pub name: String,
 }
 
 /// A fault: its kind and place, each as in the scenario file, and how severe it is.
@@ -121,13 +113,13 @@ pub struct FaultSummary {
     /// Kind of damage.
     pub kind: &'static str,
     /// The damaged wheel.
-    pub wheel: &'static str,
+    pub wheel: String,
     /// Which of its teeth, by their numbers from 1.
     #[serde(serialize_with = "json::tooth")]
     pub tooth: FaultyTeeth,
     /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
     pub severity: f64,
-    /// What it has done to each of its teeth; only of a fault that takes spots of their flanks.
+    /// What it has done to each of its teeth; only of a pair's fault that takes spots of their flanks.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "json::pitted_teeth")]
     pub pitted_teeth: Vec<PittedTooth>,
 }
@@ -135,76 +127,61 @@ pub struct FaultSummary {
 /// Number of a tooth, from 1, and the quantities of the damage there, by their names.
 pub type PittedTooth = (u32, Vec<(&'static str, QuantityValue)>);
 
+/// A shaft.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ShaftSummary {
+    /// Its name; of a pair that of its wheel.
+    pub name: String,
+    /// (rev/s) Its nominal speed.
+    pub speed_hz: f64,
+    /// Its speed over that of the input as a fraction; negative where it turns against the input.
+    pub speed_ratio: String,
+}
+
+/// A wheel.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct WheelSummary {
+    /// Its name.
+    pub name: String,
+    /// Name of its shaft.
+    pub shaft: String,
+    /// Tooth count.
+    pub teeth: u32,
+}
+
+impl ShaftSummary {
+    fn new(name: &str, ratio: Ratio, input_hz: f64) -> Self {
+        let speed_hz = ratio.value().abs() * input_hz;
+        Self { name: name.to_owned(), speed_hz, speed_ratio: ratio.to_string() }
+    }
+}
+
 impl FaultSummary {
-    /// Those of a simulation.
-    fn all(stages: &Stages) -> Vec<Self> {
-        let faults = stages.scenario.faults.iter().zip(&stages.fault_severities).enumerate();
-        let summary = |(number, (fault, &severity)): (usize, (&Fault, &f64))| Self {
+    fn new(fault: &Fault, wheel: &str, severity: f64) -> Self {
+        Self {
             kind: fault.damage.kind(),
-            wheel: fault.wheel.name(),
+            wheel: wheel.to_owned(),
             tooth: fault.tooth.clone(),
             severity,
+            pitted_teeth: Vec::new(),
+        }
+    }
+
+    /// Those of a pair.
+    fn of_pair(stages: &Stages) -> Vec<Self> {
+        let faults = stages.scenario.faults.iter().zip(&stages.fault_severities).enumerate();
+        let summary = |(number, (fault, &severity)): (usize, (&Fault, &f64))| Self {
             pitted_teeth: damages_of_fault(&stages.damaged, number)
                 .into_iter()
                 .filter(|(_, damage)| damage.part == ToothPart::FlankSpots)
                 .map(|(tooth, damage)| (tooth, damage.quantities.clone()))
                 .collect(),
+            ..Self::new(fault, fault.wheel.name(), severity)
         };
         faults.map(summary).collect()
     }
-}
-
-/// What only helical wheels have.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct HelixSummary {
-    /// (-) Overlap ratio ε_β.
-    pub overlap_ratio: f64,
-    /// (-) Total contact ratio ε_γ.
-    pub total_contact_ratio: f64,
-    /// (N) Force along the shafts under the nominal torque, on the driving wheel; positive towards positive z where it turns about that.
-    pub axial_force_n: f64,
-}
-
-impl HelixSummary {
-    /// Of two wheels; none of spur wheels.
-    fn of(gears: &Gears, static_force_n: f64) -> Option<Self> {
-        gears.is_helical().then(|| Self {
-            overlap_ratio: gears.overlap_ratio(),
-            total_contact_ratio: gears.total_contact_ratio(),
-            axial_force_n: static_force_n * gears.thrust(),
-        })
-    }
-}
-
-/// Stiffness of the mesh over a revolution of the gear.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct MeshStiffness {
-    /// (N/mm) Smallest.
-    pub min_n_per_mm: f64,
-    /// (N/mm) Mean.
-    pub mean_n_per_mm: f64,
-    /// (N/mm) Largest.
-    pub max_n_per_mm: f64,
-}
-
-/// Force along the line of action.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct MeshForce {
-    /// (N) Smallest; negative where the mesh pulls.
-    pub min_n: f64,
-    /// (N) Mean.
-    pub mean_n: f64,
-    /// (N) Largest.
-    pub max_n: f64,
-    /// (-) Part of the time in which the mesh pulls; none under `contact`, whose teeth never do.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tension_fraction: Option<f64>,
-    /// How the teeth touched; only under `contact`.
-    #[serde(flatten)]
-    pub contact: Option<ContactFigures>,
 }
 
 /// Indicators of one signal.
@@ -224,14 +201,34 @@ pub struct ChannelSummary {
 }
 
 impl ChannelSummary {
-    /// The main numbers of a signal.
-    pub(crate) fn new(name: String, unit: &'static str, signal: &[f64]) -> Self {
-        Self { name, unit, rms: rms(signal), peak: peak(signal), kurtosis: kurtosis(signal) }
+    /// The main numbers of all signals.
+    fn all(channels: &Channels) -> Vec<Self> {
+        let summary = |signal: &NamedSignal| Self {
+            name: signal.name.to_string(),
+            unit: signal.unit,
+            rms: rms(&signal.values),
+            peak: peak(&signal.values),
+            kurtosis: kurtosis(&signal.values),
+        };
+        channels.signals.iter().map(summary).collect()
+    }
+}
+
+impl AveragedSignal {
+    /// None where nothing was kept.
+    fn of(stages: &Stages, channels: &Channels) -> Option<Self> {
+        let leading = channels.leading()?;
+        let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+        let indicators = WheelName::BOTH.map(|shaft| {
+            let record = shafts.process(&leading.values, shaft, &ChainSettings::default());
+            Some(record.ok()?.indicators)
+        });
+        Some(Self { indicators, name: leading.name.to_string() })
     }
 }
 
 impl Summary {
-    /// Sums up a simulation.
+    /// Sums up a simulation of a pair.
     ///
     /// What can be computed from the signals is taken from them as they are written, not from the simulation's inner state, so that a
     /// reader of the files finds the same numbers. Indicators are those of the leading channel; they are none where the signal is too short
@@ -241,62 +238,131 @@ impl Summary {
     /// * `simulation` - its stages and signals
     /// * `run` - the run's identity
     /// * `warnings` - what deserves attention
-    pub fn new(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
-        let (stages, channels) = (&simulation.stages, &simulation.channels);
-        let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
-        let mesh = stages.mesh_curves().into_iter().next();
-        let [min_n_per_mm, mean_n_per_mm, max_n_per_mm] =
-            extremes(mesh.as_ref().map_or(&[], |mesh| &mesh.stiffness_n_per_mm));
-        let [min_n, mean_n, max_n] = extremes(&channels.mesh_force_n);
-        let contact = simulation.contact_figures();
-        let (leading, signal) = channels.leading();
-        let listed = channels.list();
-        let channel_summary = |channel: &Channel| {
-            Some(ChannelSummary::new(channel.name().into_owned(), channel.unit(), channels.signal(channel)?))
+    pub fn of_pair(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
+        let Simulation { stages, channels, timings, .. } = simulation;
+        let Scenario { gears, operation, seed, model, .. } = &stages.scenario;
+        let names = WheelName::BOTH.map(WheelName::name);
+        let [pinion, gear] = [gears.pinion_teeth, gears.gear_teeth];
+        let ratio = Ratio::ONE.times(-i64::from(pinion), i64::from(gear));
+        let input_hz = operation.pinion_speed_hz;
+        let wheel = |(name, teeth): (&str, u32)| {
+            let [name, shaft] = [name, name].map(str::to_owned);
+            WheelSummary { name, shaft, teeth }
         };
-        Self {
-            head: SummaryHead {
-                format_version: FORMAT_VERSION,
-                meshtone_version: env!("CARGO_PKG_VERSION"),
-                run,
-                model: stages.scenario.model.name(),
-                seed: stages.scenario.seed,
-                sampling_rate_hz: channels.sampling_rate_hz,
-                samples: channels.len(),
-                start_s: channels.start_s,
-            },
-            faults: FaultSummary::all(stages),
-            samples_per_pinion_revolution: stages.time.samples_per_pinion_revolution,
+        let curve = stages.mesh_curves().into_iter().next();
+        let static_force_n = stages.static_force_n();
+        let force_n = channels.of(SignalSource::MeshForce(0));
+        let mesh = MeshSummary {
+            wheels: names.map(str::to_owned),
+            mesh_frequency_hz: input_hz * f64::from(pinion),
             contact_ratio: stages.teeth.contact.contact_ratio,
-            helix: HelixSummary::of(&stages.scenario.gears, stages.static_force_n()),
-            face_load_factor: mesh.and_then(|mesh| mesh.face_load_factor),
+            helix: HelixSummary::of(gears, static_force_n),
+            face_load_factor: curve.as_ref().and_then(|curve| curve.face_load_factor),
+            static_force_n,
+            mesh_stiffness: MeshStiffness::of(curve.as_ref().map_or(&[], |curve| &curve.stiffness_n_per_mm)),
+            mesh_force: MeshForce::of(force_n, simulation.contact_figures().is_some()),
+            transmission_error_um: None,
+        };
+        let machine = MachineSummary {
+            model: model.name(),
+            seed: *seed,
+            faults: FaultSummary::of_pair(stages),
+            samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
+            cycle_input_revolutions: ratio.denominator,
+            shafts: vec![
+                ShaftSummary::new(names[0], Ratio::ONE, input_hz),
+                ShaftSummary::new(names[1], ratio, input_hz),
+            ],
+            wheels: names.into_iter().zip([pinion, gear]).map(wheel).collect(),
+            meshes: vec![mesh],
+            bearings: Vec::new(),
             natural_frequencies_hz: stages.natural_frequencies_hz(),
-            mesh_stiffness: MeshStiffness { min_n_per_mm, mean_n_per_mm, max_n_per_mm },
-            mesh_force: MeshForce {
-                min_n,
-                mean_n,
-                max_n,
-                tension_fraction: contact.is_none().then(|| channels.tension_fraction()),
-                contact,
-            },
-            channels: listed.iter().filter_map(channel_summary).collect(),
-            averaged: leading.name().into_owned(),
-            indicators: WheelName::BOTH.map(|shaft| {
-                let record = shafts.process(signal, shaft, &ChainSettings::default());
-                Some(record.ok()?.indicators)
-            }),
-            end: SummaryEnd::new(&simulation.timings, warnings),
+        };
+        let averaged = AveragedSignal::of(stages, channels);
+        Self { averaged, ..Self::new(machine, channels, run, timings, warnings) }
+    }
+
+    /// Sums up a simulation of a gearbox.
+    ///
+    /// # Arguments
+    /// * `simulation`, `run`, `warnings` - as for [`Self::of_pair`]
+    pub fn of_gearbox(
+        simulation: &GearboxSimulation,
+        run: RunIdentity,
+        warnings: &[ScenarioWarning],
+    ) -> Self {
+        let GearboxSimulation { stages, channels, timings, .. } = simulation;
+        let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+        let input_hz = gearbox.operation.drive.pinion_speed_hz;
+        let meshes = gearbox.meshes.iter().zip(&stages.meshes).zip(&stages.pairs).enumerate();
+        let meshes = meshes.map(|(number, ((mesh, tables), pair))| {
+            let revolution = 0..tables.sequence.gear_teeth();
+            let static_um = tables.at_rest(pair.static_force_n, revolution.clone()).peak_to_peak_m() * 1e6;
+            let error_um = channels.of(SignalSource::TransmissionError(number));
+            MeshSummary {
+                wheels: mesh.wheels.clone(),
+                mesh_frequency_hz: tables.turning.pitches_per_revolution * input_hz,
+                contact_ratio: pair.teeth.contact.contact_ratio,
+                helix: HelixSummary::of(&layout.gears[number], pair.static_force_n),
+                face_load_factor: Some(tables.face_load_factor),
+                static_force_n: pair.static_force_n,
+                mesh_stiffness: MeshStiffness::of(&tables.stiffness_n_per_mm(revolution)),
+                mesh_force: MeshForce::of(channels.of(SignalSource::MeshForce(number)), true),
+                transmission_error_um: Some(TransmissionError::of(error_um, static_um)),
+            }
+        });
+        let faults = gearbox.faults.iter().zip(&stages.fault_severities);
+        let shafts = gearbox.shafts.iter().zip(&layout.ratios);
+        let wheels = gearbox.wheels.iter().map(|wheel| WheelSummary {
+            name: wheel.name.clone(),
+            shaft: wheel.shaft.clone(),
+            teeth: wheel.teeth,
+        });
+        let bearings = stages.bearings.iter();
+        let machine = MachineSummary {
+            model: Model::Contact.name(),
+            seed: gearbox.seed,
+            faults: faults.map(|(of, &severity)| FaultSummary::new(&of.fault, &of.wheel, severity)).collect(),
+            samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
+            cycle_input_revolutions: layout.cycle_revolutions(),
+            shafts: shafts.map(|(shaft, ratio)| ShaftSummary::new(&shaft.name, *ratio, input_hz)).collect(),
+            wheels: wheels.collect(),
+            meshes: meshes.collect(),
+            bearings: bearings
+                .map(|(number, bearing)| BearingSummary::new(gearbox.bearings[*number].seat_name(), bearing))
+                .collect(),
+            natural_frequencies_hz: stages.natural_frequencies_hz(),
+        };
+        Self::new(machine, channels, run, timings, warnings)
+    }
+
+    fn new(
+        machine: MachineSummary,
+        channels: &Channels,
+        run: RunIdentity,
+        timings: &[StageTime],
+        warnings: &[ScenarioWarning],
+    ) -> Self {
+        Self {
+            format_version: FORMAT_VERSION,
+            meshtone_version: env!("CARGO_PKG_VERSION"),
+            run,
+            sampling_rate_hz: channels.sampling_rate_hz,
+            samples: channels.len(),
+            start_s: channels.start_s,
+            one_mesh: OneMesh::of(&machine.meshes, machine.samples_per_input_revolution),
+            machine,
+            channels: ChannelSummary::all(channels),
+            averaged: None,
+            computing_time: timings.iter().map(|time| (time.stage.to_owned(), time.elapsed)).collect(),
+            warnings: warnings.to_vec(),
         }
     }
-}
 
-/// Smallest value, mean and largest value.
-fn extremes(values: &[f64]) -> [f64; 3] {
-    [
-        values.iter().copied().fold(f64::INFINITY, f64::min),
-        values.iter().sum::<f64>() / values.len() as f64,
-        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-    ]
+    /// Time that all stages took.
+    pub fn total_time(&self) -> Duration {
+        self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
+    }
 }
 
 /// The identity of the run that a summary is of.

@@ -8,7 +8,7 @@ use crate::parquet_help::{Plain, parquet};
 use crate::recording_help::{rate, read, refused};
 use hound::{SampleFormat, WavSpec, WavWriter};
 use meshtone::scenario::{GearPair, Scenario};
-use meshtone::sensor::Channels;
+use meshtone::sensor::{ChannelKind, Channels, NamedSignal};
 use meshtone_io::recording::{ColumnChoice, Recording, RecordingOptions, read_recording};
 use meshtone_io::signals::SignalTable;
 use ndarray::{Array1, Array2, Array3, ShapeBuilder, arr0};
@@ -30,15 +30,13 @@ fn table() -> Array2<f64> {
 fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
     let directory = tempfile::tempdir().unwrap();
     let signal = |scale: f64| (0..70_000).map(|i| scale * (f64::from(i) / 3.0).sin()).collect::<Vec<_>>();
-    let mut channels = Channels::default();
-    channels.sampling_rate_hz = 258_400.0;
-    channels.start_s = 0.95;
-    channels.horizontal_g = signal(1.0);
-    channels.vertical_g = signal(1e-300);
-    channels.axial_g = signal(0.0);
-    channels.pinion_shaft_speed_hz = signal(40.0);
-    channels.gear_shaft_speed_hz = signal(17.0);
-    channels.mesh_force_n = signal(1e9);
+    let values = [signal(1.0), signal(1e-300), signal(0.0), signal(40.0), signal(17.0), signal(1e9)];
+    let named = ChannelKind::ALL.into_iter().zip(values).map(|(kind, values)| {
+        let mut signal = NamedSignal::from(kind);
+        signal.values = values;
+        signal
+    });
+    let channels = Channels::new(258_400.0, 0.95, named.collect());
     let scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     let file = File::create(directory.path().join("signals.parquet")).unwrap();
     SignalTable::of_pair(&scenario, &channels).write_parquet(file).unwrap();
@@ -47,8 +45,8 @@ fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
     assert_eq!((recording.sampling_rate_hz, recording.start_s), (258_400.0, 0.95));
     assert_eq!(recording.scenario_toml, Some(scenario.to_toml()));
     assert_eq!(recording.channels.len(), 6);
-    assert_eq!(recording.channels[0].samples, channels.horizontal_g);
-    assert_eq!(recording.channels[5].samples, channels.mesh_force_n);
+    assert_eq!(recording.channels[0].samples, channels["horizontal_g"]);
+    assert_eq!(recording.channels[5].samples, channels["mesh_force_n"]);
     assert!(recording.channels.iter().all(|channel| channel.unit.is_some()));
     assert_eq!(recording.channels[0].unit.as_deref(), Some("g"));
 }

@@ -5,8 +5,8 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::{GearPair, Gearbox, Scenario, Sensor, gearbox_template};
-use meshtone::sensor::{Channels, SensorSignal};
+use meshtone::scenario::{GearPair, Gearbox, Scenario, ScenarioForm, Sensor, gearbox_template};
+use meshtone::sensor::{ChannelKind, Channels, NamedSignal, SignalSource};
 use meshtone_io::ReadResultsError;
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
@@ -24,16 +24,20 @@ fn scenario() -> Scenario {
 /// More rows than are written at once, with numbers that only exact writing keeps.
 fn channels() -> Channels {
     let signal = |scale: f64| (0..70_000).map(|i| scale * (f64::from(i) / 3.0).sin()).collect::<Vec<_>>();
-    let mut channels = Channels::default();
-    channels.sampling_rate_hz = 258_400.0;
-    channels.start_s = 0.95;
-    channels.horizontal_g = signal(1.0);
-    channels.vertical_g = signal(1e-300);
-    channels.axial_g = vec![-0.0; 70_000];
-    channels.pinion_shaft_speed_hz = signal(40.0);
-    channels.gear_shaft_speed_hz = signal(17.0);
-    channels.mesh_force_n = signal(1e9);
-    channels
+    let values = [signal(1.0), signal(1e-300), vec![-0.0; 70_000], signal(40.0), signal(17.0), signal(1e9)];
+    let named = ChannelKind::ALL.into_iter().zip(values).map(|(kind, values)| {
+        let mut signal = NamedSignal::from(kind);
+        signal.values = values;
+        signal
+    });
+    Channels::new(258_400.0, 0.95, named.collect())
+}
+
+/// A sensor's signal, to stand before the others.
+fn of_sensor(number: usize, name: &str, value: f64) -> NamedSignal {
+    let mut signal = NamedSignal::new(name.to_owned(), SignalSource::Sensor(number));
+    signal.values = vec![value; 70_000];
+    signal
 }
 
 fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
@@ -49,7 +53,7 @@ fn signals_are_read_back_exactly() {
     let path = directory.path().join("signals.parquet");
     SignalTable::of_pair(&scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
     let recorded = read_signals(&path).unwrap();
-    assert_eq!((recorded.scenario, recorded.channels), (scenario(), channels()));
+    assert_eq!((recorded.scenario, recorded.channels), (ScenarioForm::Pair(scenario()), channels()));
     assert_eq!(recorded.run, RunIdentity::of(&scenario()));
     assert_eq!(recorded.version, env!("CARGO_PKG_VERSION"));
 }
@@ -62,8 +66,7 @@ fn signals_of_every_format_are_read_back() {
     let mut channels = channels();
     // Not the whole number of samples a second that a WAV file's header holds.
     channels.sampling_rate_hz = 258_400.4;
-    channels.sensors =
-        vec![SensorSignal { name: "pinion_support_vertical".into(), values_g: vec![1.5; 70_000] }];
+    channels.signals.insert(0, of_sensor(0, "pinion_support_vertical_g", 1.5));
     let table = SignalTable::of_pair(&scenario, &channels);
     for format in SignalFormat::ALL {
         let path = directory.path().join(format.file_name());
@@ -73,11 +76,10 @@ fn signals_of_every_format_are_read_back() {
         assert!((recording.sampling_rate_hz / channels.sampling_rate_hz - 1.0).abs() < 1e-9, "{format:?}");
         assert!((recording.start_s - 0.95).abs() < 1e-9, "{format:?}: {}", recording.start_s);
         assert_eq!(recording.scenario_toml.is_some(), format == SignalFormat::Parquet);
-        let listed = channels.list();
-        assert_eq!(recording.channels.len(), listed.len());
-        for (read, channel) in recording.channels.iter().zip(&listed) {
-            assert_eq!((&*read.name, read.unit.as_deref()), (&*channel.name(), Some(channel.unit())));
-            let written = channels.signal(channel).unwrap();
+        assert_eq!(recording.channels.len(), channels.signals.len());
+        for (read, signal) in recording.channels.iter().zip(&channels.signals) {
+            assert_eq!((&*read.name, read.unit.as_deref()), (&*signal.name, Some(signal.unit)));
+            let written = &signal.values;
             let peak = written.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
             let allowed = if format == SignalFormat::Wav { peak * 2.0_f64.powi(-24) } else { 0.0 };
             let off = read.samples.iter().zip(written).map(|(read, written)| (read - written).abs());
@@ -121,7 +123,8 @@ fn signals_of_a_gearbox_have_names_that_matlab_accepts() {
         let recording = read_recording(&path, &RecordingOptions::default()).unwrap();
         recording.channels.into_iter().map(|channel| channel.name).collect()
     };
-    let written: Vec<String> = simulation.channels.signals.iter().map(|signal| signal.name.clone()).collect();
+    let written: Vec<String> =
+        simulation.channels.signals.iter().map(|signal| signal.name.to_string()).collect();
     for format in [SignalFormat::Csv, SignalFormat::Npz, SignalFormat::Wav] {
         assert_eq!(names(format), written, "{format:?}");
     }
@@ -257,13 +260,13 @@ fn sensors_are_the_first_columns() {
     second.name = Some("casing".into());
     let scenario = scenario().with_sensors(vec![Sensor::default(), second]);
     let mut channels = channels();
-    let signal = |name: &str, value: f64| SensorSignal { name: name.into(), values_g: vec![value; 70_000] };
-    channels.sensors = vec![signal("pinion_support_vertical", 1.5), signal("casing", -2.5)];
+    let sensors = [of_sensor(0, "pinion_support_vertical_g", 1.5), of_sensor(1, "casing_g", -2.5)];
+    channels.signals.splice(..0, sensors);
     SignalTable::of_pair(&scenario, &channels).write_parquet(File::create(&path).unwrap()).unwrap();
     let table = TableReader::new(File::open(&path).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names[..4], ["time_s", "pinion_support_vertical_g", "casing_g", "horizontal_g"]);
     assert_eq!(names.len(), 9);
     let recorded = read_signals(&path).unwrap();
-    assert_eq!((recorded.scenario, recorded.channels), (scenario, channels));
+    assert_eq!((recorded.scenario, recorded.channels), (ScenarioForm::Pair(scenario), channels));
 }

@@ -1,7 +1,7 @@
 //! The first sensor's signal, or the vertical acceleration, averaged over the revolutions of either shaft.
 
 use meshtone::Stages;
-use meshtone::sensor::{Channel, Channels};
+use meshtone::sensor::{Channels, SignalSource};
 use meshtone::signal::{ChainSettings, SimulatedShafts};
 use meshtone::wheel::WheelName;
 
@@ -21,9 +21,10 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
         return;
     }
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
-    let quantity = capitalised(&quantity(&channels.leading().0));
+    let (quantity, signal) = leading(channels);
+    let quantity = capitalised(&quantity);
     // Where there is no whole revolution there is no average.
-    let average = |shaft| shafts.average(channels.leading().1, shaft, &ChainSettings::default()).ok();
+    let average = |shaft| shafts.average(signal, shaft, &ChainSettings::default()).ok();
     let averages = WheelName::BOTH
         .map(|shaft| average(shaft).map_or_else(Default::default, |of| (of.values, of.revolutions)));
     let values = averages.iter().flat_map(|(values, _)| values.iter().copied());
@@ -56,13 +57,17 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
 /// Most letters of a name for which a vertical axis has room.
 const LONGEST_NAME: usize = 28;
 
-/// What a channel shows, as a sentence has it: a sensor's is its name as the user wrote it, where there is room for it.
-pub(super) fn quantity(channel: &Channel) -> String {
-    match channel {
-        Channel::Sensor(name) if name.len() > LONGEST_NAME => "first sensor".to_owned(),
-        Channel::Sensor(name) => name.replace('_', " "),
-        _ => "vertical acceleration".to_owned(),
-    }
+/// What the main signal shows, as a sentence has it, and its samples: a sensor's is its name as the user wrote it, where there is room for it.
+pub(super) fn leading(channels: &Channels) -> (String, &[f64]) {
+    let signal = channels.leading();
+    let quantity = match signal.filter(|signal| matches!(signal.source, SignalSource::Sensor(_))) {
+        Some(sensor) => match sensor.name.trim_end_matches("_g") {
+            name if name.len() > LONGEST_NAME => "first sensor".to_owned(),
+            name => name.replace('_', " "),
+        },
+        None => "vertical acceleration".to_owned(),
+    };
+    (quantity, signal.map_or(&[], |signal| &signal.values))
 }
 
 /// Draws an average from the angle at which the first tooth enters contact.
@@ -80,12 +85,12 @@ fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
         samples => [channels.time_s(0), channels.time_s(samples - 1)],
     };
     let time = axes::time_range(time);
-    let (channel, signal) = channels.leading();
-    let quantity = capitalised(&quantity(&channel));
+    let (quantity, signal) = leading(channels);
+    let quantity = capitalised(&quantity);
     let acceleration = [(signal, CURVE)];
     let speeds = [
-        (channels.pinion_shaft_speed_hz.as_slice(), CURVE),
-        (channels.gear_shaft_speed_hz.as_slice(), SECOND_CURVE),
+        (channels.of(SignalSource::ShaftSpeed(0)), CURVE),
+        (channels.of(SignalSource::ShaftSpeed(1)), SECOND_CURVE),
     ];
     let title = format!("{quantity}, at changing speed");
     signals(canvas, areas[0], time, &title, &format!("{quantity} (g)"), &acceleration);

@@ -30,12 +30,12 @@ pub(super) struct InputSpectrum<'a> {
 
 /// Draws the spectrum of a pair; also at changing speed, where it is of the signal over the pinion's angle.
 pub(super) fn of_pair(canvas: &mut Canvas, area: Area, stages: &Stages, channels: &Channels) {
-    let (channel, signal) = channels.leading();
+    let (quantity, signal) = super::average::leading(channels);
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
     let angular = shafts.angular(signal, WheelName::Pinion, &ChainSettings::default());
     let [pinion, gear] = WheelName::BOTH.map(|wheel| f64::from(stages.teeth.wheel(wheel).teeth));
     let spectrum = InputSpectrum {
-        quantity: (&super::average::quantity(&channel), "g"),
+        quantity: (&quantity, "g"),
         shaft: "pinion",
         angular: angular.map_err(|error| note(&error)),
         shafts: vec![1.0, pinion / gear],

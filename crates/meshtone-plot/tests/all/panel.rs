@@ -393,7 +393,7 @@ fn awkward_signals() {
     let length = channels.len();
     let like = |values: Vec<f64>| {
         let mut like = channels.clone();
-        like.vertical_g = values;
+        like.signals.iter_mut().for_each(|signal| signal.values.clone_from(&values));
         like
     };
     let panel = |channels: &Channels| {
@@ -407,7 +407,7 @@ fn awkward_signals() {
     for value in [0.0, 1.0, -1e-9, 3e8, f64::NAN, f64::INFINITY, 1e300] {
         panel(&like(vec![value; length]));
     }
-    let mut spiked = channels.vertical_g.clone();
+    let mut spiked = channels["vertical_g"].to_vec();
     spiked[length / 2] = f64::NAN;
     panel(&like(spiked));
 }

@@ -2,7 +2,7 @@
 
 use crate::error::ScenarioError;
 use crate::scenario::Scenario;
-use crate::sensor::{Channel, ChannelKind, Channels, outputs_of_all};
+use crate::sensor::{Channel, ChannelKind, Channels};
 use crate::simulate::{Simulation, Stages};
 use crate::solver::{Block, Output, Recorder};
 
@@ -56,7 +56,7 @@ impl Keep for KeepSimulation {
     type Kept = Simulation;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        Ok(outputs_of_all(&scenario.sensors))
+        Ok(scenario.outputs())
     }
 
     fn recorder(&self, stages: &Stages) -> Channels {

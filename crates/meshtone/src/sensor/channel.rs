@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::parameters::{channel_of, is_name};
-use super::{ChannelKind, Channels, Sensor};
+use super::{ChannelKind, NamedSignal, Sensor, SignalSource};
 use crate::error::ScenarioError;
 use crate::solver::Output;
 
@@ -112,7 +112,7 @@ impl Channel {
     pub fn unit(&self) -> &'static str {
         match self {
             Self::Fixed(kind) => kind.unit(),
-            Self::Sensor(_) => "g",
+            Self::Sensor(_) => SignalSource::Sensor(0).unit(),
         }
     }
 
@@ -120,7 +120,7 @@ impl Channel {
     pub fn meaning(&self) -> &'static str {
         match self {
             Self::Fixed(kind) => kind.meaning(),
-            Self::Sensor(_) => "what the sensor shows, over 9.81 m/s²",
+            Self::Sensor(_) => NamedSignal::MEANING_OF_SENSOR,
         }
     }
 
@@ -150,36 +150,6 @@ impl Channel {
                         .with_help("list the sensor, or name a channel that is there"))
                 }
             },
-        }
-    }
-}
-
-impl Channels {
-    /// The signal of a channel; none of a sensor that there is not.
-    ///
-    /// # Arguments
-    /// * `channel` - which of them
-    pub fn signal(&self, channel: &Channel) -> Option<&[f64]> {
-        match channel {
-            Channel::Fixed(kind) => Some(self.get(*kind)),
-            Channel::Sensor(name) => {
-                let sensor = self.sensors.iter().find(|sensor| sensor.name == *name);
-                sensor.map(|sensor| sensor.values_g.as_slice())
-            }
-        }
-    }
-
-    /// The channels that there are, sensors first.
-    pub fn list(&self) -> Vec<Channel> {
-        let sensors = self.sensors.iter().map(|sensor| Channel::Sensor(sensor.name.clone()));
-        sensors.chain(ChannelKind::ALL.map(Channel::Fixed)).collect()
-    }
-
-    /// The main signal and its channel: the first sensor's signal, or the vertical acceleration where none is listed.
-    pub fn leading(&self) -> (Channel, &[f64]) {
-        match self.sensors.first() {
-            Some(sensor) => (Channel::Sensor(sensor.name.clone()), &sensor.values_g),
-            None => (Channel::Fixed(ChannelKind::Vertical), &self.vertical_g),
         }
     }
 }

@@ -2,8 +2,6 @@
 
 use serde::Serialize;
 
-use super::Channels;
-
 /// Contact of the teeth of a mesh over the kept time.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[non_exhaustive]
@@ -20,28 +18,18 @@ pub struct ContactFigures {
 }
 
 impl ContactFigures {
-    /// The figures of a simulation under the model of contact.
-    ///
-    /// # Arguments
-    /// * `channels` - its signals: the force along the line of action is 0 where no teeth touch, and negative where coast flanks do
-    ///
-    /// ```
-    /// use meshtone::sensor::{Channels, ContactFigures};
-    ///
-    /// let mut channels = Channels::default();
-    /// channels.mesh_force_n = vec![180.0, 0.0, -20.0, -35.0, 0.0, 0.0, -5.0, 210.0];
-    /// let figures = ContactFigures::of(&channels);
-    /// assert_eq!((figures.apart_fraction, figures.back_flank_fraction), (0.375, 0.375));
-    /// assert_eq!((figures.back_flank_hits, figures.largest_force_n), (2, 210.0));
-    /// ```
-    pub fn of(channels: &Channels) -> Self {
-        Self::of_force(&channels.mesh_force_n)
-    }
-
     /// The figures of one mesh.
     ///
     /// # Arguments
     /// * `force` - (N) along its line of action, 0 where no teeth touch, negative where coast flanks do
+    ///
+    /// ```
+    /// use meshtone::sensor::ContactFigures;
+    ///
+    /// let figures = ContactFigures::of_force(&[180.0, 0.0, -20.0, -35.0, 0.0, 0.0, -5.0, 210.0]);
+    /// assert_eq!((figures.apart_fraction, figures.back_flank_fraction), (0.375, 0.375));
+    /// assert_eq!((figures.back_flank_hits, figures.largest_force_n), (2, 210.0));
+    /// ```
     pub fn of_force(force: &[f64]) -> Self {
         let part = |is: fn(f64) -> bool| {
             force.iter().filter(|&&force| is(force)).count() as f64 / force.len().max(1) as f64

@@ -22,8 +22,7 @@ use crate::model::Model;
 ///     .with_sensors(vec![sensor]);
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let channels = meshtone::simulate(&scenario)?.channels;
-/// assert_eq!(channels.sensors[0].channel(), "pinion_support_vertical_g");
-/// assert_eq!(channels.sensors[0].values_g.len(), channels.vertical_g.len());
+/// assert_eq!(channels.signals[0].name, "pinion_support_vertical_g");
 /// # Ok::<(), meshtone::Error>(())
 /// ```
 ///

@@ -118,7 +118,7 @@ impl SimulatedShafts {
     /// scenario.solver.sampling_rate_hz = 1e4;
     /// let channels = meshtone::simulate(&scenario)?.channels;
     /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);
-    /// let angular = shafts.angular(&channels.vertical_g, WheelName::Gear, &ChainSettings::default())?;
+    /// let angular = shafts.angular(&channels["vertical_g"], WheelName::Gear, &ChainSettings::default())?;
     /// assert_eq!((angular.start_rev, angular.revolutions()), (0.0, 20));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -188,7 +188,7 @@ impl SimulatedShafts {
     /// scenario.solver.sampling_rate_hz = 1e4;
     /// let channels = meshtone::simulate(&scenario)?.channels;
     /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);
-    /// let average = shafts.average(&channels.vertical_g, WheelName::Gear, &ChainSettings::default())?;
+    /// let average = shafts.average(&channels["vertical_g"], WheelName::Gear, &ChainSettings::default())?;
     /// assert_eq!(average.revolutions, 20);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
+use super::measured::WantedChannels;
 use super::{Clock, MeshOf, StageTime, start_of_settling};
 use crate::bearing::{BearingTurning, RollingBearing, RollingParts};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
@@ -16,10 +17,10 @@ use crate::machine::{
 use crate::mesh::{Contact, Forcing, Mesh, PairDeviations, Turning};
 use crate::operation::{CycleGrid, Motion, TimeGrid, TorqueHarmonic};
 use crate::random::{Draws, Purpose};
-use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor, MemoryLimit};
-use crate::sensor::{GRAVITY_M_PER_S2, Measurement, measure};
+use crate::scenario::{Gearbox, GearboxLayout, GearboxMesh, GearboxSensor, GearboxShaft, MemoryLimit};
+use crate::sensor::{Channels, GRAVITY_M_PER_S2, Measurement, NamedSignal, SignalSource};
 use crate::simd::InstructionSet;
-use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorder, StepCounts, integrate};
+use crate::solver::{InitialMotion, ModalMachine, Output, Problem, Recorder, StepCounts, integrate};
 use crate::threads;
 use crate::trace_fields::Trace;
 use crate::wheel::quality::deviations;
@@ -80,65 +81,6 @@ pub struct GearboxStages {
     pub(crate) memory_limit: MemoryLimit,
 }
 
-/// A signal of a gearbox.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct GearboxSignal {
-    /// Its name: `force_n.z1-z2`, `transmission_error_um.z1-z2`, `speed_hz.input`, or a sensor's with `_g`.
-    pub name: String,
-    /// Unit of its values.
-    pub unit: &'static str,
-    /// The kept samples.
-    pub values: Vec<f64>,
-}
-
-/// The kept signals of a gearbox: sensors first, then for each mesh force and transmission error, then the speed of each shaft.
-#[derive(Debug, Clone, PartialEq, Default)]
-#[non_exhaustive]
-pub struct GearboxChannels {
-    /// (S/s) Sampling rate.
-    pub sampling_rate_hz: f64,
-    /// (s) Time of the first kept sample since the start of the simulation.
-    pub start_s: f64,
-    /// The signals, equally long.
-    pub signals: Vec<GearboxSignal>,
-    /// Steps, iterations of Newton's method, most of them in a step, and steps in which a search along the line was needed.
-    pub step_counts: [u64; 4],
-}
-
-impl GearboxChannels {
-    /// The signal of a name.
-    ///
-    /// # Arguments
-    /// * `name` - with the unit in it
-    pub fn signal(&self, name: &str) -> Option<&[f64]> {
-        self.signals.iter().find(|signal| signal.name == name).map(|signal| signal.values.as_slice())
-    }
-
-    /// Number of samples.
-    pub fn len(&self) -> usize {
-        self.signals.first().map_or(0, |signal| signal.values.len())
-    }
-
-    /// Whether there are no samples.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-}
-
-impl Recorder for GearboxChannels {
-    fn record(&mut self, block: &Block) {
-        for (index, signal) in self.signals.iter_mut().enumerate() {
-            signal.values.extend_from_slice(block.output(index));
-        }
-    }
-
-    fn count(&mut self, counts: StepCounts) {
-        let StepCounts { steps, iterations, most_iterations, searched } = counts;
-        self.step_counts = [steps, iterations, most_iterations, searched];
-    }
-}
-
 /// A simulation of a gearbox.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
@@ -146,7 +88,9 @@ pub struct GearboxSimulation {
     /// Results of the stages.
     pub stages: GearboxStages,
     /// The kept signals.
-    pub channels: GearboxChannels,
+    pub channels: Channels,
+    /// Steps, iterations of Newton's method, most of them in a step, and steps in which a search along the line was needed.
+    pub step_counts: [u64; 4],
     /// Time that each stage took, the time loop included.
     pub timings: Vec<StageTime>,
 }
@@ -491,6 +435,43 @@ fn points_per_pitch(time: &TimeGrid, is_steady: bool, turning: &Turning, gears: 
     CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz).points_per_pitch
 }
 
+impl Gearbox {
+    /// The signals that a simulation has, without their samples, in the order of files: sensors first.
+    pub fn signals(&self) -> Vec<NamedSignal> {
+        self.signals_and_outputs().into_iter().map(|(signal, _)| signal).collect()
+    }
+
+    /// What each of [`Self::signals`] is of the solution.
+    pub(crate) fn outputs(&self) -> Vec<Output> {
+        self.signals_and_outputs().into_iter().map(|(_, output)| output).collect()
+    }
+
+    fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
+        let sensor = |(number, sensor): (usize, GearboxSensor)| {
+            let (place, axis) = (sensor.name().into(), sensor.axis());
+            let output = Output::Acceleration { place, axis, factor: 1.0 / GRAVITY_M_PER_S2 };
+            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), output)
+        };
+        let mesh = |(mesh, of): (usize, &GearboxMesh)| {
+            let (name, axis) = (transmission_error_name(&of.name()), Axis::Rotation);
+            let error = Output::Displacement { place: name.clone().into(), axis, factor: 1e6 };
+            let force = NamedSignal::new(format!("force_n.{}", of.name()), SignalSource::MeshForce(mesh));
+            [
+                (force, Output::MeshForce { mesh }),
+                (NamedSignal::new(name, SignalSource::TransmissionError(mesh)), error),
+            ]
+        };
+        let shaft = |(shaft, of): (usize, &GearboxShaft)| {
+            let (name, axis) = (speed_name(&of.name), Axis::Rotation);
+            let output = Output::Velocity { place: name.clone().into(), axis, factor: 1.0 / TAU };
+            (NamedSignal::new(name, SignalSource::ShaftSpeed(shaft)), output)
+        };
+        let sensors = self.all_sensors().into_iter().enumerate().map(sensor);
+        let meshes = self.meshes.iter().enumerate().flat_map(mesh);
+        sensors.chain(meshes).chain(self.shafts.iter().enumerate().map(shaft)).collect()
+    }
+}
+
 impl GearboxStages {
     /// (Hz) Natural frequencies of the machine with its meshes closed at their mean stiffness, rising; 0 of the whole train's free rotation,
     /// where nothing holds it.
@@ -573,51 +554,12 @@ impl GearboxStages {
         self.modal.balancing_forces_n(torque_nm)
     }
 
-    /// What the channels are made of.
-    pub(crate) fn outputs(&self) -> Vec<(String, &'static str, Output)> {
-        let sensors = self.sensors.iter().map(|sensor| {
-            let (name, axis) = (sensor.name(), sensor.axis());
-            let output =
-                Output::Acceleration { place: name.clone().into(), axis, factor: 1.0 / GRAVITY_M_PER_S2 };
-            (sensor.channel(), "g", output)
-        });
-        let meshes = self.gearbox.meshes.iter().enumerate().flat_map(|(number, mesh)| {
-            let name = transmission_error_name(&mesh.name());
-            let place = name.clone().into();
-            [
-                (format!("force_n.{}", mesh.name()), "N", Output::MeshForce { mesh: number }),
-                (name, "µm", Output::Displacement { place, axis: Axis::Rotation, factor: 1e6 }),
-            ]
-        });
-        let shafts = self.gearbox.shafts.iter().map(|shaft| {
-            let name = speed_name(&shaft.name);
-            let place = name.clone().into();
-            (name, "Hz", Output::Velocity { place, axis: Axis::Rotation, factor: 1.0 / TAU })
-        });
-        sensors.chain(meshes).chain(shafts).collect()
-    }
-
-    /// The signals that a simulation has, without their samples.
-    pub fn channels(&self) -> GearboxChannels {
-        let signal = |(name, unit, _)| GearboxSignal {
-            name,
-            unit,
-            values: Vec::with_capacity(self.time.kept_samples()),
-        };
-        GearboxChannels {
-            sampling_rate_hz: self.time.sampling_rate_hz,
-            start_s: self.time.kept_from_s(),
-            signals: self.outputs().into_iter().map(signal).collect(),
-            step_counts: [0; 4],
-        }
-    }
-
     /// The simulation that signals are of, such as those read from its file.
     ///
     /// # Arguments
-    /// * `channels` - [`Self::channels`] with their samples
-    pub fn with_channels(self, channels: GearboxChannels) -> GearboxSimulation {
-        GearboxSimulation { channels, timings: self.timings.clone(), stages: self }
+    /// * `channels` - those of [`Gearbox::signals`] with their samples
+    pub fn with_channels(self, channels: Channels) -> GearboxSimulation {
+        GearboxSimulation { channels, step_counts: [0; 4], timings: self.timings.clone(), stages: self }
     }
 
     /// Solves the equations of motion, and makes the signals of the sensors.
@@ -626,24 +568,24 @@ impl GearboxStages {
     /// A motion that grows without bound.
     pub fn simulate(self) -> Result<GearboxSimulation, Error> {
         let mut clock = Clock::default();
-        let outputs: Vec<Output> = self.outputs().into_iter().map(|(.., output)| output).collect();
-        let mut channels = self.channels();
-        self.integrate(&outputs, &mut channels)?;
+        let channels = Channels::with_room(&self.time, self.gearbox.signals());
+        let mut wanted = WantedChannels { channels, counts: StepCounts::default(), is_wanted: &|| true };
+        self.integrate(&self.gearbox.outputs(), &mut wanted)?;
         clock.lap("time integration");
-        for (index, (sensor, signal)) in self.sensors.iter().zip(&mut channels.signals).enumerate() {
-            let measurement = Measurement {
-                sampling_rate_hz: self.time.sampling_rate_hz,
-                is_periodic: self
-                    .cycle_samples()
-                    .is_some_and(|cycle| self.time.kept_samples().is_multiple_of(cycle)),
-                seed: self.gearbox.seed,
-                index,
-            };
-            signal.values = measure(std::mem::take(&mut signal.values), &sensor.sensor, &measurement);
-        }
+        let WantedChannels { mut channels, counts, .. } = wanted;
+        let conditions = Measurement {
+            sampling_rate_hz: self.time.sampling_rate_hz,
+            is_periodic: (self.cycle_samples())
+                .is_some_and(|cycle| self.time.kept_samples().is_multiple_of(cycle)),
+            seed: self.gearbox.seed,
+            index: 0,
+        };
+        channels.measure(self.sensors.iter().map(|of| &of.sensor), &conditions);
         clock.lap("sensors");
         let timings = self.timings.iter().copied().chain(clock.laps).collect();
-        Ok(GearboxSimulation { channels, timings, stages: self })
+        let StepCounts { steps, iterations, most_iterations, searched } = counts;
+        let step_counts = [steps, iterations, most_iterations, searched];
+        Ok(GearboxSimulation { channels, step_counts, timings, stages: self })
     }
 
     /// Solves the equations of motion and hands the kept samples on.

@@ -2,7 +2,7 @@
 
 use super::Trace;
 use crate::operation::TimeGrid;
-use crate::sensor::Channels;
+use crate::sensor::{Channels, SensorDirection, SignalSource};
 use crate::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, Record, ShaftPhase, SignalError,
     process_channel, resample, resample_to, whole_ratio,
@@ -21,12 +21,11 @@ const CONTINUATION: usize = 40;
 /// kept signal is continued periodically before, so that nothing rings.
 pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, rate_hz: f64) {
     let rate_hz = rate_hz.min(stages.time.sampling_rate_hz);
-    let Channels { vertical_g, pinion_shaft_speed_hz: pinion_speed_hz, .. } = channels;
     let Ok(record) = wheel_record(
         stages,
         WheelName::Gear,
-        vertical_g,
-        pinion_speed_hz,
+        channels.of(SignalSource::Supports(SensorDirection::Vertical)),
+        channels.of(SignalSource::ShaftSpeed(0)),
         rate_hz,
         ChainSettings { angular: by_pchip(), separation: None },
     ) else {

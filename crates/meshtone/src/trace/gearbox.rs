@@ -58,7 +58,7 @@ pub fn gearbox_trace(simulation: &GearboxSimulation) -> Trace {
     trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
     for (name, count) in ["steps", "newton_iterations", "most_newton_iterations", "line_searches"]
         .into_iter()
-        .zip(channels.step_counts)
+        .zip(simulation.step_counts)
     {
         trace.scalar(name, count as f64);
     }

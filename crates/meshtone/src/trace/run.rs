@@ -8,7 +8,7 @@ use super::average::average;
 use super::{Trace, static_stages};
 use crate::error::Error;
 use crate::scenario::Scenario;
-use crate::sensor::Channels;
+use crate::sensor::{ChannelKind, Channels};
 use crate::simulate::{Simulation, Stages, stages};
 use crate::solver::{Block, Output, Recorder};
 
@@ -50,7 +50,7 @@ pub fn trace_at(scenario: &Scenario, average_rate_hz: f64) -> Result<(Simulation
     static_stages(&mut trace, &stages);
     let mut recorder = StateRecorder::new(&stages);
     let state = state_outputs(recorder.coordinates);
-    let outputs: Vec<Output> = stages.channel_outputs().into_iter().chain(state).collect();
+    let outputs: Vec<Output> = stages.scenario.outputs().into_iter().chain(state).collect();
     stages.integrate(&outputs, stages.time.first_kept_sample, &mut recorder)?;
     let channels = stages.measured(recorder.finish(&mut trace));
     average(&mut trace, &stages, &channels, average_rate_hz);
@@ -98,7 +98,7 @@ impl StateRecorder {
         let last = |count: usize| kept.end.saturating_sub(count)..kept.end;
         Self {
             channels: stages.channels(),
-            first_state: stages.channel_outputs().len(),
+            first_state: stages.scenario.outputs().len(),
             coordinates,
             windows: [
                 window("acceleration", 2, first(ACCELERATIONS)),
@@ -126,7 +126,7 @@ impl StateRecorder {
         let channels = self.channels;
         trace.vector(
             "rms_g_horizontal_vertical_axial",
-            [rms(&channels.horizontal_g), rms(&channels.vertical_g), rms(&channels.axial_g)],
+            ChannelKind::ACCELERATIONS.map(|kind| rms(channels.of(kind.source()))),
         );
         channels
     }

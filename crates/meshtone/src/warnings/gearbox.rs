@@ -7,6 +7,7 @@ use super::step_error::{StepJudgement, step_error_of_gearbox};
 use super::{largest_torque, overload, unsettled, words_of};
 use crate::error::{ScenarioWarning, WarningKind};
 use crate::mesh::Mesh;
+use crate::sensor::SignalSource;
 use crate::simulate::{GearboxSimulation, GearboxStages};
 use crate::wheel::unused_slices;
 
@@ -96,16 +97,18 @@ impl GearboxSimulation {
         let (stages, channels) = (&self.stages, &self.channels);
         let (_, torque_nm) = largest_torque(&stages.gearbox.operation.drive);
         let static_n = stages.forces_of_torque_n(torque_nm);
-        let forces = stages.gearbox.meshes.iter().zip(static_n).filter_map(|(mesh, static_n)| {
-            let force_n = channels.signal(&format!("force_n.{}", mesh.name()))?;
+        let meshes = stages.gearbox.meshes.iter().zip(static_n).enumerate();
+        let forces = meshes.filter_map(|(number, (mesh, static_n))| {
+            let force_n = channels.of(SignalSource::MeshForce(number));
             let largest_n = force_n.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
             let name = format!("mesh {}", mesh.name());
             resonance(&name, "operation.input_speed_hz", largest_n, static_n)
         });
         let driven = stages.motion().skip(stages.time.first_kept_sample).take(channels.len());
         let driven_hz = driven.map(|motion| motion.speed_hz).sum::<f64>() / channels.len() as f64;
-        let speeds = stages.gearbox.shafts.iter().zip(&stages.layout.ratios).filter_map(|(shaft, ratio)| {
-            let speed_hz = channels.signal(&format!("speed_hz.{}", shaft.name))?;
+        let shafts = stages.gearbox.shafts.iter().zip(&stages.layout.ratios).enumerate();
+        let speeds = shafts.filter_map(|(number, (shaft, ratio))| {
+            let speed_hz = channels.of(SignalSource::ShaftSpeed(number));
             let mean_hz = speed_hz.iter().sum::<f64>() / speed_hz.len() as f64;
             other_speed(&format!("shaft {:?}", shaft.name), driven_hz * ratio.value().abs(), mean_hz.abs())
         });

@@ -27,7 +27,7 @@ impl Simulation {
     /// step.
     pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
         let mut observer = Observer::new(&self.stages);
-        observer.observe(Observer::CHANNELS.map(|kind| self.channels.get(kind)));
+        observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
         self.stages.warnings_of_signals(&observer, StepJudgement::Repeated)
     }
 }

@@ -6,8 +6,7 @@ use std::f64::consts::TAU;
 use crate::error::Error;
 use crate::machine::{Axis, PINION_SUPPORT};
 use crate::operation::greatest_common_divisor;
-use crate::scenario::GearboxSensor;
-use crate::sensor::ChannelKind;
+use crate::sensor::{ChannelKind, Sensor, SignalSource};
 use crate::simulate::{
     Equations, GearboxSimulation, GearboxStages, Stages, gearbox_stages_within, stages_within,
 };
@@ -57,6 +56,33 @@ pub enum StepJudgement {
 }
 
 /// Estimate of the step's error where a resonance is suspected of it.
+///
+/// # Arguments
+/// * `estimate` - (-) how far the step may falsify the rms, by the signals alone
+/// * `judgement` - whether that is enough
+/// * `coarse` - rms of the signals that are judged
+/// * `repeated` - the rate of a simulation with half the step, and what its signals are there
+fn judged(
+    estimate: f64,
+    judgement: StepJudgement,
+    coarse: &[f64],
+    repeated: impl FnOnce() -> Result<(f64, SquareSums), Error>,
+) -> Option<StepError> {
+    if judgement == StepJudgement::Estimated {
+        return (estimate >= CERTAIN).then_some(StepError::Suspected(estimate));
+    }
+    if estimate <= SUSPICIOUS {
+        return None;
+    }
+    let Ok((finer_rate_hz, squares)) = repeated() else {
+        return Some(StepError::Suspected(estimate));
+    };
+    let gains = coarse.iter().zip(squares.rms()).map(|(&coarse, finer)| gain(coarse, finer));
+    let gain = gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most });
+    Some(StepError::Shown { gain, finer_rate_hz })
+}
+
+/// The error of a pair's step: by its vertical acceleration and its mesh force, whose sums over turns have the lines.
 pub(super) fn step_error(
     stages: &Stages,
     observer: &Observer,
@@ -64,37 +90,15 @@ pub(super) fn step_error(
 ) -> Option<StepError> {
     let [acceleration, force] = observer.turns.as_ref()?;
     let estimate = estimate(stages, [acceleration, force]);
-    if judgement == StepJudgement::Estimated {
-        return (estimate >= CERTAIN).then_some(StepError::Suspected(estimate));
-    }
-    if estimate <= SUSPICIOUS {
-        return None;
-    }
-    let mut scenario = stages.scenario.clone();
-    scenario.solver.sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
-    let finer = stages_within(&scenario, stages.memory_limit).map_err(Error::from);
-    let finer = finer.and_then(|finer| {
+    judged(estimate, judgement, &[acceleration.rms(), force.rms()], || {
+        let mut scenario = stages.scenario.clone();
+        scenario.solver.sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
+        let finer = stages_within(&scenario, stages.memory_limit)?;
         let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
         let mut squares = SquareSums::of(outputs.len());
         finer.integrate(&outputs, finer.time.first_kept_sample, &mut squares)?;
         Ok((finer.time.sampling_rate_hz, squares))
-    });
-    Some(judged_by(estimate, &[acceleration.rms(), force.rms()], finer))
-}
-
-/// The error of a step by a repetition with half of it.
-///
-/// # Arguments
-/// * `estimate` - (-) the error where there is no repetition
-/// * `coarse` - rms of the signals that are judged
-/// * `finer` - (S/s) sampling rate of the repetition, and the squares of its signals
-fn judged_by(estimate: f64, coarse: &[f64], finer: Result<(f64, SquareSums), Error>) -> StepError {
-    let Ok((finer_rate_hz, squares)) = finer else {
-        return StepError::Suspected(estimate);
-    };
-    let gains = coarse.iter().zip(squares.rms()).map(|(&coarse, finer)| gain(coarse, finer));
-    let gain = gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most });
-    StepError::Shown { gain, finer_rate_hz }
+    })
 }
 
 /// Sums of the squares of outputs, whose samples are kept nowhere.
@@ -174,7 +178,7 @@ struct Line {
     powers: Vec<f64>,
 }
 
-/// A gearbox's [`step_error`]: by its plain sensors and the forces of its meshes, whose spectra have the lines.
+/// The error of a gearbox's step: by its plain sensors and the forces of its meshes, whose spectra have the lines.
 pub(super) fn step_error_of_gearbox(
     simulation: &GearboxSimulation,
     judgement: StepJudgement,
@@ -183,10 +187,10 @@ pub(super) fn step_error_of_gearbox(
     if !stages.is_steady() {
         return None;
     }
-    let signals = judged(stages).map(|index| channels.signals[index].values.as_slice());
-    let signals: Vec<&[f64]> = signals.collect();
-    let powers: Vec<f64> = signals.iter().map(|values| mean_square(values)).collect();
-    let spectra: Vec<Vec<f64>> = signals.iter().map(|values| power_spectrum(values)).collect();
+    let is_judged: Vec<bool> = channels.signals.iter().map(|of| is_judged(of.source, stages)).collect();
+    let judged_ones = || channels.signals.iter().zip(&is_judged).filter(|(_, is)| **is).map(|(of, _)| of);
+    let powers: Vec<f64> = judged_ones().map(|signal| mean_square(&signal.values)).collect();
+    let spectra: Vec<Vec<f64>> = judged_ones().map(|signal| power_spectrum(&signal.values)).collect();
     let resolution_hz = channels.sampling_rate_hz / channels.len() as f64;
     let line = |index: usize| Line {
         frequency_hz: index as f64 * resolution_hz,
@@ -195,49 +199,40 @@ pub(super) fn step_error_of_gearbox(
     let is_strong =
         |line: &Line| line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole);
     let lines = (1..channels.len().div_ceil(2)).map(line).filter(is_strong);
-    let sensors: Vec<_> =
-        plain_sensors(stages).map(|(_, sensor)| (sensor.name().into(), sensor.axis())).collect();
+    let plain = stages.sensors.iter().filter(|of| is_plain(&of.sensor));
+    let sensors: Vec<_> = plain.map(|sensor| (sensor.name().into(), sensor.axis())).collect();
     let laws = stages.meshes.iter().map(|mesh| mesh.law()).collect();
     let machine = MeanMachine::new(stages.modal_machine(), laws, stages.time.step_s(), &sensors);
-    let estimate = growth(&machine, lines, &powers);
-    if judgement == StepJudgement::Estimated {
-        return (estimate >= CERTAIN).then_some(StepError::Suspected(estimate));
-    }
-    if estimate <= SUSPICIOUS {
-        return None;
-    }
-    let mut gearbox = stages.gearbox.clone();
-    // The same machine, whose highest mode follows the rate where it is not stated.
-    gearbox.solver.highest_mode_hz = Some(gearbox.solver.highest_mode_hz(channels.sampling_rate_hz));
-    gearbox.solver.settings.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
-    let finer = gearbox_stages_within(&gearbox, stages.memory_limit).map_err(Error::from).and_then(|finer| {
-        let all = finer.outputs();
-        let outputs: Vec<Output> = judged(&finer).map(|index| all[index].2.clone()).collect();
+    let coarse: Vec<f64> = powers.iter().map(|power| power.sqrt()).collect();
+    judged(growth(&machine, lines, &powers), judgement, &coarse, || {
+        let mut gearbox = stages.gearbox.clone();
+        // The same machine, whose highest mode follows the rate where it is not stated.
+        gearbox.solver.highest_mode_hz = Some(gearbox.solver.highest_mode_hz(channels.sampling_rate_hz));
+        gearbox.solver.settings.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
+        let finer = gearbox_stages_within(&gearbox, stages.memory_limit)?;
+        let outputs = gearbox.outputs().into_iter().zip(&is_judged).filter(|(_, is)| **is);
+        let outputs: Vec<Output> = outputs.map(|(output, _)| output).collect();
         let mut squares = SquareSums::of(outputs.len());
         finer.integrate(&outputs, &mut squares)?;
         Ok((finer.time.sampling_rate_hz, squares))
-    });
-    let coarse: Vec<f64> = powers.iter().map(|power| power.sqrt()).collect();
-    Some(judged_by(estimate, &coarse, finer))
+    })
 }
 
 /// (-) Part of a gearbox's signal's power from which a line of its spectrum counts: there are many lines.
 const STRONG_PART: f64 = 1e-4;
 
-/// Numbers of the signals of plain sensors and of the forces of the meshes.
-fn judged(stages: &GearboxStages) -> impl Iterator<Item = usize> {
-    let forces = stages
-        .outputs()
-        .into_iter()
-        .enumerate()
-        .filter(|(_, (.., output))| matches!(output, Output::MeshForce { .. }));
-    plain_sensors(stages).map(|(index, _)| index).chain(forces.map(|(index, _)| index))
+/// Whether a signal's power says something of the step: that of a plain sensor, and the force of a mesh.
+fn is_judged(source: SignalSource, stages: &GearboxStages) -> bool {
+    match source {
+        SignalSource::Sensor(number) => stages.sensors.get(number).is_some_and(|of| is_plain(&of.sensor)),
+        SignalSource::MeshForce(_) => true,
+        _ => false,
+    }
 }
 
-/// The sensors that show the motion of their places as it is, with their numbers: of these alone the motion is known at both steps without
-/// keeping it.
-fn plain_sensors(stages: &GearboxStages) -> impl Iterator<Item = (usize, &GearboxSensor)> {
-    stages.sensors.iter().enumerate().filter(|(_, of)| of.sensor.is_linear() && !of.sensor.filters())
+/// Whether a sensor shows the motion of its place as it is: of such sensors alone the motion is known at both steps without keeping it.
+fn is_plain(sensor: &Sensor) -> bool {
+    sensor.is_linear() && !sensor.filters()
 }
 
 /// By what part the rms of a signal is larger at the finer step; 0 where the signal is rounding alone.

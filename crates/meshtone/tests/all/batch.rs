@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use meshtone::InstructionSet;
 use meshtone::batch::{Control, KeepChannels, KeepSimulation, simulate_many};
 use meshtone::scenario::*;
-use meshtone::sensor::Channels;
+use meshtone::sensor::{Channels, NamedSignal};
 use meshtone::simulate;
 
 fn small(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
@@ -129,18 +129,8 @@ fn shuffled<T>(mut items: Vec<T>, seed: u64) -> Vec<T> {
 }
 
 fn bits(channels: &Channels) -> Vec<Vec<u64>> {
-    let Channels {
-        horizontal_g,
-        vertical_g,
-        axial_g,
-        pinion_shaft_speed_hz,
-        gear_shaft_speed_hz,
-        mesh_force_n,
-        ..
-    } = channels;
-    [horizontal_g, vertical_g, axial_g, pinion_shaft_speed_hz, gear_shaft_speed_hz, mesh_force_n]
-        .map(|channel| channel.iter().map(|value| value.to_bits()).collect())
-        .to_vec()
+    let of = |signal: &NamedSignal| signal.values.iter().map(|value| value.to_bits()).collect();
+    channels.signals.iter().map(of).collect()
 }
 
 fn in_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
@@ -217,9 +207,9 @@ fn every_instruction_set_gives_the_same() {
                 continue;
             };
             for (a, b) in [
-                (&result.horizontal_g, &reference.horizontal_g),
-                (&result.vertical_g, &reference.vertical_g),
-                (&result.mesh_force_n, &reference.mesh_force_n),
+                (&result["horizontal_g"], &reference["horizontal_g"]),
+                (&result["vertical_g"], &reference["vertical_g"]),
+                (&result["mesh_force_n"], &reference["mesh_force_n"]),
             ] {
                 let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
                 let difference = square(&mut a.iter().zip(b).map(|(a, b)| a - b)).sqrt();
@@ -284,7 +274,7 @@ fn single_precision_channels_are_the_signals_rounded() {
         assert_eq!(signals.sampling_rate_hz, whole.sampling_rate_hz);
         assert_eq!(signals.start_s, whole.start_s);
         assert_eq!(signals.channels.len(), 2);
-        for (channel, whole) in signals.channels.iter().zip([&whole.horizontal_g, &whole.vertical_g]) {
+        for (channel, whole) in signals.channels.iter().zip([&whole["horizontal_g"], &whole["vertical_g"]]) {
             assert_eq!(channel.len(), whole.len());
             assert!(channel.iter().zip(whole).all(|(a, b)| *a == *b as f32));
         }

@@ -48,7 +48,7 @@ fn eccentricity_turns_with_both_shafts() {
     let (small, large) = (with(0.005), with(0.010));
     let rate = plain.sampling_rate_hz;
     for (shaft, hz) in [("pinion", 30.0), ("gear", 15.0)] {
-        let [without, small, large] = [&plain, &small, &large].map(|c| amplitude(&c.vertical_g, rate, hz));
+        let [without, small, large] = [&plain, &small, &large].map(|c| amplitude(&c["vertical_g"], rate, hz));
         println!("{shaft}: {without:.2e} g without, {small:.3e} g, {large:.3e} g");
         assert!(without < 1e-3 * small, "{shaft}");
         // The stiffness varies with the angle and so with the motion, but that is of second order.
@@ -56,7 +56,7 @@ fn eccentricity_turns_with_both_shafts() {
     }
     // Quasi-static: the wheels give way by e with the mesh in series to the shafts, so what the mesh carries at the
     // shafts' frequencies is far below k E.
-    let force = amplitude(&large.mesh_force_n, rate, 30.0);
+    let force = amplitude(&large["mesh_force_n"], rate, 30.0);
     assert!(force > 0.0 && force < 1e8 * 0.01e-3, "{force} N");
 }
 
@@ -80,8 +80,8 @@ fn shafts_follow_a_speed_profile() {
             continue;
         }
         let range = start..start + window;
-        let pinion = mean(&channels.pinion_shaft_speed_hz[range.clone()]);
-        let gear = mean(&channels.gear_shaft_speed_hz[range]);
+        let pinion = mean(&channels["pinion_shaft_speed_hz"][range.clone()]);
+        let gear = mean(&channels["gear_shaft_speed_hz"][range]);
         worst = worst.max(deviation(pinion, speed_at(middle)).abs()).max(deviation(2.0 * gear, pinion).abs());
     }
     println!("speed profile: followed within {worst:.1e}");
@@ -103,7 +103,7 @@ fn mesh_force_follows_a_torque_profile() {
         let middle = channels.time_s(start) + 0.5 * window as f64 / channels.sampling_rate_hz;
         let torque = 20.0 + 60.0 * (middle - duration / 2.0) / (duration / 2.0);
         worst = worst.max(
-            deviation(mean(&channels.mesh_force_n[start..start + window]), torque / base_radius_m).abs(),
+            deviation(mean(&channels["mesh_force_n"][start..start + window]), torque / base_radius_m).abs(),
         );
     }
     println!("torque profile: followed within {worst:.1e}");
@@ -153,6 +153,6 @@ fn fluctuations_reach_the_signals() {
     let calm = channels(&scenario);
     scenario.operation.torque_fluctuation_nm = 5.0;
     let shaken = channels(&scenario);
-    assert_ne!(calm.mesh_force_n, shaken.mesh_force_n);
-    assert_close("mean mesh force", 2e-3, [(mean(&shaken.mesh_force_n), mean(&calm.mesh_force_n))]);
+    assert_ne!(calm["mesh_force_n"], shaken["mesh_force_n"]);
+    assert_close("mean mesh force", 2e-3, [(mean(&shaken["mesh_force_n"]), mean(&calm["mesh_force_n"]))]);
 }

@@ -43,7 +43,7 @@ fn effect(healthy: &[f64], damage: Damage) -> [f64; 3] {
         .map(|(damaged, sound)| deviation(damaged.stiffness_n_per_m, sound.stiffness_n_per_m).abs())
         .collect();
     let separation_m: Vec<f64> = on_path().map(|(damaged, _)| damaged.separation_m).collect();
-    let signal = &simulation.channels.vertical_g;
+    let signal = &simulation.channels["vertical_g"];
     let difference: Vec<f64> = signal.iter().zip(healthy).map(|(f, h)| f - h).collect();
     [mean(&change), mean(&separation_m), rms(&difference) / rms(healthy)]
 }
@@ -59,7 +59,7 @@ const SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
 
 impl Vanishing {
     fn of(name: &str, damage: impl Fn(f64) -> Damage) -> Self {
-        let healthy = simulate(&scenario(None)).unwrap().channels.vertical_g;
+        let healthy = simulate(&scenario(None)).unwrap().channels["vertical_g"].to_vec();
         let effects: Vec<[f64; 3]> = SIZES.iter().map(|&size| effect(&healthy, damage(size))).collect();
         let column = |k: usize| effects.iter().map(|effect| effect[k]).collect::<Vec<f64>>();
         let vanishing = Self { stiffness: column(0), separation: column(1), acceleration: column(2) };
@@ -127,7 +127,7 @@ fn a_vanishing_partial_pit_is_no_pit() {
     // The step in width at the pit's ends stays: it rings the mesh until the pit has passed much faster than the ring.
     let length = Vanishing::of("partial pit, length", |s| partial(5.0, pit(0.5 * s, 0.5)));
     assert!((order(&length.stiffness) - 1.0).abs() < 0.05);
-    let signal = |damage| simulate(&sampled_scenario(damage, 1.6e6)).unwrap().channels.vertical_g;
+    let signal = |damage| simulate(&sampled_scenario(damage, 1.6e6)).unwrap().channels["vertical_g"].to_vec();
     let healthy = signal(None);
     let short = [32.0, 64.0, 128.0, 256.0].map(|shorter| {
         let damaged = signal(Some(partial(5.0, pit(0.5 / shorter, 0.5))));
@@ -146,7 +146,7 @@ fn a_vanishing_partial_pit_is_no_pit() {
 fn a_shallow_pit_still_carries_nothing() {
     let depth = Vanishing::of("partial pit, depth", |s| partial(5.0, pit(0.5, 0.5 * s)));
     assert!(depth.stiffness[5] > 0.95 * depth.stiffness[0] && depth.stiffness[5] < depth.stiffness[0]);
-    let healthy = simulate(&scenario(None)).unwrap().channels.vertical_g;
+    let healthy = simulate(&scenario(None)).unwrap().channels["vertical_g"].to_vec();
     let shallow = effect(&healthy, ThroughFace { pit: pit(0.5, 1e-3) }.into());
     let line = DestructionLine::End(0.8);
     let chord = ToothDestruction { start: 0.3, line, offset_mm: 0.0, noise_mm: 0.0 };

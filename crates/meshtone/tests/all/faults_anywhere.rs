@@ -78,7 +78,7 @@ fn the_signal_turns_with_the_damaged_tooth() {
                 let simulation = simulate(&pair(vec![Fault::new(wheel, tooth, damage.clone())])).unwrap();
                 let pitch = samples_per_pitch(&simulation);
                 assert_eq!(simulation.channels.len(), 17 * 38 * pitch);
-                (simulation.channels.vertical_g, (tooth as usize - 1) * pitch)
+                (simulation.channels["vertical_g"].to_vec(), (tooth as usize - 1) * pitch)
             });
             let (first, _) = &signals[0];
             for (signal, turn) in &signals[1..] {
@@ -95,7 +95,7 @@ fn the_signal_turns_with_the_damaged_tooth() {
 fn a_damaged_tooth_repeats_at_its_own_shaft_s_order() {
     for (wheel, own, other) in [(WheelName::Pinion, 17, 38), (WheelName::Gear, 38, 17)] {
         let simulation = simulate(&pair(vec![Fault::new(wheel, 4, MissingTooth)])).unwrap();
-        let (pitch, signal) = (samples_per_pitch(&simulation), &simulation.channels.vertical_g);
+        let (pitch, signal) = (samples_per_pitch(&simulation), &simulation.channels["vertical_g"]);
         assert!(off(signal, signal, own * pitch) < 1e-8, "{} once a revolution", wheel.name());
         for turn in [1, other, own - 1] {
             assert!(off(signal, signal, turn * pitch) > 0.1, "{}, {turn} pitches", wheel.name());
@@ -142,7 +142,7 @@ fn faults_on_different_teeth_are_each_its_own() {
     assert!(alone > 1000 && together > 0, "{alone} {together}");
 
     // The order in which they are named says nothing.
-    let signal = |faults: Vec<Fault>| simulate(&pair(faults)).unwrap().channels.vertical_g;
+    let signal = |faults: Vec<Fault>| simulate(&pair(faults)).unwrap().channels["vertical_g"].to_vec();
     let both = signal(vec![one.clone(), two.clone()]);
     assert!(off(&signal(vec![two.clone(), one.clone()]), &both, 0) < 1e-10);
     assert!(off(&signal(vec![one]), &both, 0) > 1e-3 && off(&signal(vec![two]), &both, 0) > 1e-3);

@@ -375,8 +375,8 @@ fn a_reversed_hand_mirrors_the_axial_motion() {
     let apart = |a: &[f64], b: &[f64], sign: f64| {
         rms(&a.iter().zip(b).map(|(a, b)| a - sign * b).collect::<Vec<_>>()) / rms(b)
     };
-    assert!(apart(&right.mesh_force_n, &left.mesh_force_n, 1.0) < 1e-9);
-    let values = |channels: &meshtone::sensor::Channels, n: usize| channels.sensors[n].values_g.clone();
+    assert!(apart(&right["mesh_force_n"], &left["mesh_force_n"], 1.0) < 1e-9);
+    let values = |channels: &meshtone::sensor::Channels, n: usize| channels.signals[n].values.clone();
     assert!(apart(&values(&right, 0), &values(&left, 0), 1.0) < 1e-9);
     assert!(apart(&values(&right, 1), &values(&left, 1), -1.0) < 1e-9);
     assert!(rms(&values(&right, 1)) > 1e-3 * rms(&values(&right, 0)));

@@ -80,7 +80,7 @@ fn a_deviation_of_all_teeth_is_a_rotation() {
     scenario.quality.profile_errors = Some(errors);
     scenario.quality.din_grade = 0;
     let thicker = simulate(&scenario).unwrap();
-    let (a, b) = (&drawn.channels.vertical_g, &thicker.channels.vertical_g);
+    let (a, b) = (&drawn.channels["vertical_g"], &thicker.channels["vertical_g"]);
     let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     println!("10 µm on all pinion teeth: {:.2e} of {:.3} g", rms(&difference) / rms(a), rms(a));
     assert!(rms(&difference) < 1e-9 * rms(a));

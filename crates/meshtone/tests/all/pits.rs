@@ -227,7 +227,7 @@ fn drawn_pits_may_be_listed() {
         teeth.iter().map(|(tooth, pits)| Fault::new(WheelName::Pinion, *tooth, list(pits))).collect();
     let [of_draw, of_lists] =
         [vec![fault.clone()], as_lists].map(|faults| simulate(&scenario(Model::Contact, faults)).unwrap());
-    assert!(of_draw.channels.vertical_g == of_lists.channels.vertical_g);
+    assert!(of_draw.channels["vertical_g"] == of_lists.channels["vertical_g"]);
 }
 
 #[test]

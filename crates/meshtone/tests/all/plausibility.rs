@@ -5,6 +5,7 @@ use meshtone::scenario::{
     DampingRatio, Fault, GearPair, MissingTooth, Model, Profile, Scenario, ScenarioWarning, WarningKind,
     WheelName,
 };
+use meshtone::sensor::{NamedSignal, SignalSource};
 use meshtone::{Simulation, simulate};
 use meshtone_fourier::real_spectrum;
 use nalgebra::DVector;
@@ -132,7 +133,9 @@ fn a_shaft_that_turns_at_another_speed_is_told() {
     scenario.solver.sampling_rate_hz = 3e4;
     let mut simulation = simulate(&scenario).unwrap();
     assert_eq!(about(&simulation.warnings_of_signals(), "solver.settle_fraction"), None);
-    simulation.channels.gear_shaft_speed_hz.iter_mut().for_each(|speed_hz| *speed_hz *= 0.75);
+    let of_gear = |signal: &&mut NamedSignal| signal.source == SignalSource::ShaftSpeed(1);
+    let signal = simulation.channels.signals.iter_mut().find(of_gear).unwrap();
+    signal.values.iter_mut().for_each(|speed_hz| *speed_hz *= 0.75);
     let warnings = simulation.warnings_of_signals();
     let told = about(&warnings, "solver.settle_fraction").unwrap();
     let words = "the gear turns at 13.4211 Hz on average, while the motor drives it at 17.8947 Hz";
@@ -189,8 +192,8 @@ fn a_step_that_shifts_a_resonance_is_told_with_its_error() {
         let scenario = resonant(damping_ratio, harmonic);
         let coarse = at_rate(&scenario, 5e4);
         let fine = at_rate(&scenario, 2e6);
-        let acceleration = |of: &Simulation| rms(&of.channels.vertical_g);
-        let force = |of: &Simulation| rms(&of.channels.mesh_force_n);
+        let acceleration = |of: &Simulation| rms(&of.channels["vertical_g"]);
+        let force = |of: &Simulation| rms(&of.channels["mesh_force_n"]);
         let error = |of: &Simulation| {
             let gains = [acceleration(&fine) / acceleration(of) - 1.0, force(&fine) / force(of) - 1.0];
             gains.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap()
@@ -217,7 +220,7 @@ fn a_step_that_shifts_a_resonance_is_told_with_its_error() {
 
 /// (g) Rms of the vertical acceleration below 10 kHz: the jumps of a linear mesh's stiffness reach beyond every rate.
 fn rms_below_10_khz(simulation: &Simulation) -> f64 {
-    let signal = &simulation.channels.vertical_g;
+    let signal = &simulation.channels["vertical_g"];
     let lines = (1e4 * signal.len() as f64 / simulation.channels.sampling_rate_hz) as usize;
     let spectrum = real_spectrum(signal);
     spectrum[1..lines].iter().map(|line| line.norm_sqr()).sum::<f64>().sqrt() / signal.len() as f64

@@ -211,7 +211,7 @@ fn the_mesh_pushes_at_the_working_pressure_angle() {
 #[test]
 fn shifted_pairs_run_under_contact() {
     let simulation = meshtone::simulate(&scenario(Model::Contact)).unwrap();
-    let force = mean(&simulation.channels.mesh_force_n);
+    let force = mean(&simulation.channels["mesh_force_n"]);
     let expected = 10.0 / (0.057 * 20f64.to_radians().cos());
     assert!(deviation(force, expected).abs() < 5e-3, "{force} {expected}");
 }

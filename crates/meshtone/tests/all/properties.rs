@@ -6,7 +6,7 @@ use crate::physics::*;
 use meshtone::operation::CycleGrid;
 use meshtone::published::machine::coordinates::{COORDINATES, CoordinateMatrix, Y_GEAR, Y_PINION};
 use meshtone::scenario::*;
-use meshtone::sensor::{Channels, GRAVITY_M_PER_S2, channel_outputs};
+use meshtone::sensor::{ChannelKind, Channels, GRAVITY_M_PER_S2};
 use meshtone::solver::Output;
 use meshtone::{Equations, Stages, simulate, stages};
 use nalgebra::{DMatrix, DVector};
@@ -169,7 +169,7 @@ fn least_common_multiple(a: u32, b: u32) -> u32 {
 /// The signals that move in the plane of the wheels.
 fn signals(scenario: &Scenario) -> [Vec<f64>; 3] {
     let channels = simulate(scenario).unwrap().channels;
-    [channels.horizontal_g, channels.vertical_g, channels.mesh_force_n]
+    ["horizontal_g", "vertical_g", "mesh_force_n"].map(|name| channels[name].to_vec())
 }
 
 /// How far `more` is from `rest + factor (once − rest)` at most, over the largest value of all.
@@ -195,7 +195,7 @@ fn with_errors(scenario: &Scenario, errors: &ProfileErrors, factor: f64) -> Scen
 fn own_and_summed_accelerations(stages: &Stages) -> (f64, f64) {
     // The rig's coordinates have the numbers that the published ones have.
     let vertical = |number| Output::Coordinate { number, derivative: 2 };
-    let [horizontal, summed, ..] = channel_outputs();
+    let [horizontal, summed, ..] = ChannelKind::ALL.map(ChannelKind::output);
     let outputs = [vertical(Y_PINION), vertical(Y_GEAR), horizontal, summed];
     let recorded = outputs_from(stages.time.first_kept_sample, stages, &outputs);
     let rms: Vec<f64> = recorded.iter().map(|signal| rms(signal)).collect();
@@ -506,11 +506,11 @@ proptest! {
         let drawn = fitting(&scenario)?.profile_errors.unwrap();
         let scaled = |factor: f64| simulate(&with_errors(&scenario, &drawn, factor)).unwrap().channels;
         let (once, mirrored, quarter, ideal) = (scaled(1.0), scaled(-1.0), scaled(0.25), scaled(0.0));
-        prop_assert!(rms(&once.mesh_force_n) > 1.0);
+        prop_assert!(rms(&once["mesh_force_n"]) > 1.0);
         for of in [
-            |channels: &Channels| channels.horizontal_g.clone(),
-            |channels: &Channels| channels.vertical_g.clone(),
-            |channels: &Channels| channels.mesh_force_n.clone(),
+            |channels: &Channels| channels["horizontal_g"].to_vec(),
+            |channels: &Channels| channels["vertical_g"].to_vec(),
+            |channels: &Channels| channels["mesh_force_n"].to_vec(),
         ] {
             let expected = |factor: f64| of(&once).iter().map(|value| factor * value).collect::<Vec<f64>>();
             prop_assert_eq!(of(&mirrored), expected(-1.0));
@@ -554,11 +554,11 @@ proptest! {
         scenario.gears.gear_teeth = 2 * scenario.gears.pinion_teeth;
         fitting(&scenario)?;
         let channels = simulate(&scenario).unwrap().channels;
-        prop_assert!(channels.axial_g.iter().all(|a| *a == 0.0));
+        prop_assert!(channels["axial_g"].iter().all(|a| *a == 0.0));
         let tangent = scenario.gears.pressure_angle_deg.to_radians().tan();
         let across: Vec<f64> =
-            channels.horizontal_g.iter().zip(&channels.vertical_g).map(|(h, v)| h - tangent * v).collect();
-        let scale = rms(&channels.vertical_g);
+            channels["horizontal_g"].iter().zip(&channels["vertical_g"]).map(|(h, v)| h - tangent * v).collect();
+        let scale = rms(&channels["vertical_g"]);
         prop_assert!(scale > 1e-3);
         prop_assert!(largest(across) < 1e-10 * scale);
     }

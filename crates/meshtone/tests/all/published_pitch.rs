@@ -129,7 +129,7 @@ fn any_teeth_can_be_simulated() {
             // About ten cycles, which are revolutions of the gear.
             scenario.solver.discard_and_keep(0.1, 0.5);
             let simulation = meshtone::simulate(&scenario).unwrap();
-            let force_n = &simulation.channels.mesh_force_n;
+            let force_n = &simulation.channels["mesh_force_n"];
             assert!(
                 force_n.iter().all(|force| force.is_finite()) && force_n.iter().any(|force| *force > 0.0)
             );

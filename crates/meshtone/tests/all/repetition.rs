@@ -29,7 +29,7 @@ fn a_settled_motion_is_repeated() {
     let long = simulate(&scenario(10.0, 40.0)).unwrap();
     let period = long.stages.time.hunting_period_samples(&long.stages.scenario.gears);
     assert_eq!(period, 2 * long.stages.time.samples_per_pinion_revolution);
-    let signal = &long.channels.vertical_g;
+    let signal = &long.channels["vertical_g"];
     // Of 20 periods some are simulated until two agree.
     let repeated = first_repeated(signal, period).unwrap();
     println!("the first of the periods that repeat another is number {repeated}");
@@ -43,7 +43,7 @@ fn a_settled_motion_is_repeated() {
     let simulated = simulate(&late).unwrap();
     let end = &signal[signal.len() - 2 * period..];
     let difference =
-        rms(end.iter().zip(&simulated.channels.vertical_g).map(|(a, b)| a - b)) / rms(end.iter().copied());
+        rms(end.iter().zip(&simulated.channels["vertical_g"]).map(|(a, b)| a - b)) / rms(end.iter().copied());
     println!("repeated against simulated: {difference:.1e} of rms");
     assert!(difference < 2e-6 && difference > 0.0, "{difference}");
 }
@@ -55,7 +55,7 @@ fn a_motion_without_a_period_is_simulated_on() {
     bouncing.faults = vec![Fault::new(WheelName::Gear, 3, MissingTooth)];
     let simulation = simulate(&bouncing).unwrap();
     let period = simulation.stages.time.hunting_period_samples(&bouncing.gears);
-    assert_eq!(first_repeated(&simulation.channels.vertical_g, period), None);
+    assert_eq!(first_repeated(&simulation.channels["vertical_g"], period), None);
 }
 
 /// Neither does a fluctuating speed repeat.
@@ -65,7 +65,7 @@ fn an_unsteady_motion_is_simulated_on() {
     unsteady.operation.speed_fluctuation_hz = 0.01;
     let simulation = simulate(&unsteady).unwrap();
     let period = simulation.stages.time.hunting_period_samples(&unsteady.gears);
-    assert_eq!(first_repeated(&simulation.channels.vertical_g, period), None);
+    assert_eq!(first_repeated(&simulation.channels["vertical_g"], period), None);
 }
 
 /// A sensor's noise is drawn for every sample, also of a motion that is repeated.
@@ -77,7 +77,7 @@ fn noise_does_not_repeat() {
     noisy.sensors = vec![sensor];
     let simulation = simulate(&noisy).unwrap();
     let period = simulation.stages.time.hunting_period_samples(&noisy.gears);
-    let signal = &simulation.channels.sensors[0].values_g;
+    let signal = &simulation.channels.signals[0].values;
     assert_eq!(first_repeated(signal, period), None);
     let pair: Vec<&[f64]> = signal.chunks_exact(period).skip(5).take(2).collect();
     let noise = rms(pair[0].iter().zip(pair[1]).map(|(a, b)| (a - b) / 2f64.sqrt())) / (period as f64).sqrt();

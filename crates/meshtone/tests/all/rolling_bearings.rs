@@ -299,8 +299,8 @@ fn unbalance_of_a_pair_shakes_its_supports() {
         let channels = meshtone::simulate(&scenario).unwrap().channels;
         let turn = |k: usize| TAU * scenario.operation.pinion_speed_hz * k as f64 / channels.sampling_rate_hz;
         let part = |of: fn(f64) -> f64| {
-            channels.vertical_g.iter().enumerate().map(|(k, value)| value * of(turn(k))).sum::<f64>() * 2.0
-                / channels.vertical_g.len() as f64
+            channels["vertical_g"].iter().enumerate().map(|(k, value)| value * of(turn(k))).sum::<f64>() * 2.0
+                / channels["vertical_g"].len() as f64
         };
         part(f64::cos).hypot(part(f64::sin))
     };

@@ -224,7 +224,7 @@ fn the_signal_of_teeth_that_part_turns_with_the_cracked_tooth() {
         let fault = Fault::new(WheelName::Gear, tooth, crack(3.0, None));
         let simulation = simulate(&scenario(Model::Contact, vec![fault])).unwrap();
         let samples_per_pitch = simulation.stages.time.samples_per_pinion_revolution / 17;
-        (simulation.channels.vertical_g, samples_per_pitch)
+        (simulation.channels["vertical_g"].to_vec(), samples_per_pitch)
     };
     let (first, samples_per_pitch) = signal(1);
     assert_eq!(first.len(), 17 * 38 * samples_per_pitch);

@@ -62,7 +62,7 @@ fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s
     let channels = meshtone::simulate(&machine).unwrap().channels;
     let shafts = SimulatedShafts::of_channels(&machine, &channels);
     let angles = shafts.phase(WheelName::Pinion).unwrap().revolutions;
-    at_rate_of_recordings(channels.leading().1, &angles, shafts.sampling_rate_hz())
+    at_rate_of_recordings(&channels.leading().unwrap().values, &angles, shafts.sampling_rate_hz())
 }
 
 /// A signal and the angle of the pinion or the input at the recordings' rate.
@@ -264,8 +264,9 @@ fn indicators(response: Option<FrequencyResponse>, seeds: Range<u64>) -> [Vec<f6
         })];
         let channels = meshtone::simulate(&damaged).unwrap().channels;
         let shafts = SimulatedShafts::of_channels(&damaged, &channels);
-        let record =
-            shafts.process(channels.leading().1, WheelName::Gear, &ChainSettings::default()).unwrap();
+        let record = shafts
+            .process(&channels.leading().unwrap().values, WheelName::Gear, &ChainSettings::default())
+            .unwrap();
         let shown = record.indicators;
         let values =
             [shown.difference.rms, shown.difference.kurtosis.unwrap(), shown.envelope.kurtosis.unwrap()];

@@ -154,11 +154,11 @@ fn plain_sensors_read_their_places() {
     for model in [Model::Linear, Model::Contact] {
         let scenario = pair(model, "").with_sensors(sensors.clone());
         let channels = measured(&scenario);
-        let [support, pinion, gear, wheels] = [0, 1, 2, 3].map(|n| &channels.sensors[n].values_g);
-        assert_eq!(pinion, &channels.vertical_g);
+        let [support, pinion, gear, wheels] = [0, 1, 2, 3].map(|n| &channels.signals[n].values);
+        assert_eq!(pinion, &channels["vertical_g"]);
         let without = measured(&scenario.clone().with_sensors(Vec::new()));
         let mut others = channels.clone();
-        others.sensors.clear();
+        others.signals.drain(..sensors.len());
         assert_eq!(without, others, "{model:?}");
         if model == Model::Linear {
             assert!([pinion, gear, wheels].into_iter().all(|signal| signal == support));
@@ -172,7 +172,7 @@ fn plain_sensors_read_their_places() {
             assert!(wheels != support && pinion != gear);
             assert_eq!(scenario.ignored_by_model(), []);
         }
-        let names: Vec<_> = channels.sensors.iter().map(|sensor| sensor.channel()).collect();
+        let names: Vec<_> = channels.signals[..4].iter().map(|signal| signal.name.clone()).collect();
         let expected = ["support", "pinion_support", "gear_support", "wheels"];
         assert_eq!(names, expected.map(|place| format!("{place}_vertical_g")));
     }
@@ -186,8 +186,8 @@ fn axial_sensor_is_the_axial_channel() {
     scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
     scenario.sensors = vec![at(SensorPlace::Wheels, SensorDirection::Axial)];
     let channels = measured(&scenario);
-    let largest = channels.axial_g.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let mut pairs = channels.sensors[0].values_g.iter().zip(&channels.axial_g);
+    let largest = channels["axial_g"].iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let mut pairs = channels.signals[0].values.iter().zip(&channels["axial_g"]);
     assert!(pairs.all(|(sensor, axial)| (sensor - axial).abs() <= 1e-12 * largest));
 }
 
@@ -202,7 +202,7 @@ fn flat_path_from_the_force_is_the_force_over_g() {
     });
     for model in [Model::Linear, Model::Contact] {
         let channels = measured(&pair(model, "").with_sensors(vec![sensor.clone()]));
-        let mut pairs = channels.sensors[0].values_g.iter().zip(&channels.mesh_force_n);
+        let mut pairs = channels.signals[0].values.iter().zip(&channels["mesh_force_n"]);
         assert!(pairs.all(|(shown, force)| (shown - force / 9.81).abs() < 1e-10), "{model:?}");
     }
 }
@@ -239,9 +239,9 @@ fn sensors_show_the_same_bits_in_any_company() {
             let keep = KeepChannels::new([Channel::Sensor("a".into()), ChannelKind::Vertical.into()]);
             simulate_many(scenarios.clone(), &keep, &Control::default(), |n, result| {
                 let single = |values: &[f64]| values.iter().map(|&value| value as f32).collect::<Vec<_>>();
-                match alone[n].signal(&Channel::Sensor("a".into())) {
+                match alone[n].signal("a_g") {
                     Some(signal) => {
-                        let expected = [single(signal), single(&alone[n].vertical_g)];
+                        let expected = [single(signal), single(&alone[n]["vertical_g"])];
                         assert_eq!(result.unwrap().channels, expected, "{n}");
                     }
                     None => {
@@ -266,12 +266,13 @@ fn noise_is_keyed_by_seed_and_place_in_the_list() {
     second.name = Some("second".into());
     let base = pair(Model::Linear, "");
     let shown = |sensors: Vec<Sensor>, seed| {
+        let count = sensors.len();
         let channels = measured(&base.clone().with_seed(seed).with_sensors(sensors));
-        let vertical = channels.vertical_g;
+        let vertical = channels["vertical_g"].to_vec();
         let noise = move |values: Vec<f64>| -> Vec<f64> {
             values.iter().zip(&vertical).map(|(shown, vertical)| shown - vertical).collect()
         };
-        channels.sensors.into_iter().map(|sensor| noise(sensor.values_g)).collect::<Vec<_>>()
+        channels.signals.into_iter().take(count).map(|signal| noise(signal.values)).collect::<Vec<_>>()
     };
     let one = shown(vec![noisy.clone()], 1);
     let two = shown(vec![noisy.clone(), second], 1);

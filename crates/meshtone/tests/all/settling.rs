@@ -23,7 +23,7 @@ fn differences(scenario: &Scenario, tolerance: f64) -> (usize, usize, [f64; 2]) 
     (
         time.first_kept_sample,
         time.first_simulated_sample,
-        [of(&a.vertical_g, &b.vertical_g), of(&a.mesh_force_n, &b.mesh_force_n)],
+        ["vertical_g", "mesh_force_n"].map(|name| of(&a[name], &b[name])),
     )
 }
 

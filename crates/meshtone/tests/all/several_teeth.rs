@@ -22,9 +22,9 @@ fn pair(model: Model, faults: Vec<Fault>) -> Scenario {
 fn signal(model: Model, faults: Vec<Fault>) -> (Vec<f64>, usize) {
     let Simulation { stages, channels, .. } = simulate(&pair(model, faults)).unwrap();
     let per_pitch = stages.time.samples_per_pinion_revolution / 17;
-    assert_eq!(channels.vertical_g.len(), CYCLE * per_pitch);
+    assert_eq!(channels["vertical_g"].len(), CYCLE * per_pitch);
     // From the first pair's start of contact on.
-    let mut signal = channels.vertical_g;
+    let mut signal = channels["vertical_g"].to_vec();
     let kept = signal.len();
     signal.rotate_right(stages.time.first_kept_sample % kept);
     (signal, per_pitch)

@@ -143,12 +143,12 @@ fn severity_0_is_the_healthy_signal() {
                 }
                 let simulation = simulate(&given).unwrap();
                 assert_eq!(simulation.stages.fault_severities, [severity]);
-                let difference = simulation.channels.vertical_g.iter().zip(&of_healthy.vertical_g);
+                let difference = simulation.channels["vertical_g"].iter().zip(&of_healthy["vertical_g"]);
                 let most = largest(difference.map(|(faulty, healthy)| (faulty - healthy).abs()));
                 let limit = if severity == 0.0 {
                     0.0
                 } else {
-                    1e-12 * largest(of_healthy.vertical_g.iter().map(|x| x.abs()))
+                    1e-12 * largest(of_healthy["vertical_g"].iter().map(|x| x.abs()))
                 };
                 assert!(most <= limit, "{} {severity}: {most}", damage.kind());
             }
@@ -168,7 +168,7 @@ fn severity_1_can_be_simulated() {
                 let simulation = simulate(&with_severity(&healthy, &damage, wheel, 1.0));
                 let simulation = simulation
                     .unwrap_or_else(|error| panic!("{} {teeth:?} {model:?}: {error}", damage.kind()));
-                assert!(simulation.channels.vertical_g.iter().all(|x| x.is_finite()));
+                assert!(simulation.channels["vertical_g"].iter().all(|x| x.is_finite()));
                 assert_eq!(simulation.stages.fault_severities, [1.0]);
             }
         }

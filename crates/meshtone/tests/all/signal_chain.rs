@@ -223,15 +223,15 @@ fn a_run_up_has_mesh_lines_one_bin_wide() {
     let channels = &simulation.channels;
     let rate_hz = channels.sampling_rate_hz;
     // The mesh force carries the teeth's variation whatever the speed; resonances make its amplitude vary.
-    let signal = &channels.mesh_force_n;
-    let phase = ShaftPhase::from_speed_samples(&channels.pinion_shaft_speed_hz, rate_hz).unwrap();
+    let signal = &channels["mesh_force_n"];
+    let phase = ShaftPhase::from_speed_samples(&channels["pinion_shaft_speed_hz"], rate_hz).unwrap();
     let angular = angular_resample(signal, &phase, &AngularSettings::default()).unwrap();
     let points = angular.points_per_revolution;
     println!(
         "{} revolutions from {:.1} to {:.1} Hz",
         angular.revolutions(),
-        channels.pinion_shaft_speed_hz[0],
-        channels.pinion_shaft_speed_hz[signal.len() - 1]
+        channels["pinion_shaft_speed_hz"][0],
+        channels["pinion_shaft_speed_hz"][signal.len() - 1]
     );
     assert!(angular.revolutions() > 40);
 

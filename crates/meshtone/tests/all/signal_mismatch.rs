@@ -104,7 +104,7 @@ pub fn machine_of(seed: u64, teeth: [u32; 2], least_torque_nm: f64, draws: &mut 
     let channels = simulation.channels;
     let rate_hz = channels.sampling_rate_hz;
     Some(Machine {
-        signal: channels.vertical_g,
+        signal: channels["vertical_g"].to_vec(),
         rate_hz,
         samples_per_pinion_revolution: (rate_hz / scenario.operation.pinion_speed_hz).round(),
         teeth,

@@ -29,7 +29,7 @@ fn check(name: &str) {
 
     // The published chain, with Octave's filter.
     let (up, down) = resampling_ratio(channels.sampling_rate_hz, rate_hz).unwrap();
-    let resampled = resample_with(&channels.vertical_g, up, down, &[10.0], Edge::Zero).unwrap();
+    let resampled = resample_with(&channels["vertical_g"], up, down, &[10.0], Edge::Zero).unwrap();
     let phase = ShaftPhase::constant(gear_hz, rate_hz, resampled.len()).unwrap();
     let angular =
         AngularSettings { interpolation: Interpolation::Pchip, edge: Edge::Zero, ..Default::default() };
@@ -49,7 +49,7 @@ fn check(name: &str) {
 
     // What was meant: the trace's fields are the low orders of the kept signal itself, whose samples are whole revolutions.
     let per_revolution = (channels.sampling_rate_hz / gear_hz).round() as usize;
-    let exact = order_spectrum(&revolution_average(&channels.vertical_g, per_revolution)).unwrap();
+    let exact = order_spectrum(&revolution_average(&channels["vertical_g"], per_revolution)).unwrap();
     let ours = &trace.get("order_amplitude_g").unwrap().values;
     let largest = exact.iter().copied().fold(0.0, f64::max);
     let nyquist = ours.len() as f64;
@@ -74,8 +74,8 @@ fn band_limited_interpolation_keeps_the_orders() {
     let reference = reference("healthy_din7");
     let scenario = scenario("healthy_din7", &reference);
     let channels = simulate(&scenario).unwrap().channels;
-    let exact = order_spectrum(&revolution_average(&channels.vertical_g, 14_440)).unwrap();
-    let resampled = resample(&channels.vertical_g, 125, 1292, Edge::Periodic).unwrap();
+    let exact = order_spectrum(&revolution_average(&channels["vertical_g"], 14_440)).unwrap();
+    let resampled = resample(&channels["vertical_g"], 125, 1292, Edge::Periodic).unwrap();
     assert_eq!(resampled.len(), 23_750);
     let phase = ShaftPhase::constant(40.0 * 17.0 / 38.0, 25e3, resampled.len()).unwrap();
     let largest = exact[..698].iter().copied().fold(0.0, f64::max);

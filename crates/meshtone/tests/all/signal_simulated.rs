@@ -41,8 +41,8 @@ fn the_average_is_that_of_the_samples() {
     assert_eq!(shafts.mean_speed_hz(WheelName::Gear), 20.0);
     for shaft in WheelName::BOTH {
         let per_revolution = (channels.sampling_rate_hz / shafts.mean_speed_hz(shaft)).round() as usize;
-        let record = shafts.process(&channels.vertical_g, shaft, &ChainSettings::default()).unwrap();
-        let mut expected = revolution_average(&channels.vertical_g, per_revolution);
+        let record = shafts.process(&channels["vertical_g"], shaft, &ChainSettings::default()).unwrap();
+        let mut expected = revolution_average(&channels["vertical_g"], per_revolution);
         let start = (channels.start_s * channels.sampling_rate_hz).round() as usize;
         expected.rotate_right(start % per_revolution);
         assert_eq!(record.average.revolutions * per_revolution, channels.len());
@@ -58,7 +58,7 @@ fn as_measured_at_constant_speed() {
     let channels = channels(&scenario);
     let shafts = SimulatedShafts::of_channels(&scenario, &channels);
     let phase = ShaftPhase::constant(20.0, channels.sampling_rate_hz, channels.len()).unwrap();
-    let (signal, settings) = (&channels.vertical_g, ChainSettings::default());
+    let (signal, settings) = (&channels["vertical_g"], ChainSettings::default());
     let simulated = shafts.process(signal, WheelName::Gear, &settings).unwrap();
     let measured = process_channel(signal, &phase, 40, &settings).unwrap();
     for (a, b) in simulated.indicators.table("g").iter().zip(measured.indicators.table("g")) {
@@ -78,14 +78,15 @@ fn a_speed_that_varies() {
     let steady = faulty();
     let still = channels(&steady);
     let expected = SimulatedShafts::of_channels(&steady, &still);
-    let expected = expected.process(&still.vertical_g, WheelName::Gear, &ChainSettings::default()).unwrap();
+    let expected =
+        expected.process(&still["vertical_g"], WheelName::Gear, &ChainSettings::default()).unwrap();
     let mut fluctuating = faulty();
     fluctuating.operation.speed_fluctuation_hz = 1e-6;
     let channels = channels(&fluctuating);
     let shafts = SimulatedShafts::of_channels(&fluctuating, &channels);
     assert!(!shafts.is_steady());
     close(shafts.mean_speed_hz(WheelName::Pinion), 40.0, 1e-6);
-    let found = shafts.process(&channels.vertical_g, WheelName::Gear, &ChainSettings::default()).unwrap();
+    let found = shafts.process(&channels["vertical_g"], WheelName::Gear, &ChainSettings::default()).unwrap();
     close(found.indicators.difference.rms, expected.indicators.difference.rms, 0.01);
     close(found.indicators.fm4.unwrap(), expected.indicators.fm4.unwrap(), 0.01);
     // The burst of the missing tooth is at the same angle.
@@ -125,7 +126,7 @@ fn a_rising_speed_with_its_own_facts_is_not_doubted() {
         let channels = channels(&scenario);
         let shafts = SimulatedShafts::of_channels(&scenario, &channels);
         let phase = shafts.varying_phase(WheelName::Pinion).unwrap().unwrap();
-        let angular = angular_resample(&channels.vertical_g, &phase, &AngularSettings::default()).unwrap();
+        let angular = angular_resample(&channels["vertical_g"], &phase, &AngularSettings::default()).unwrap();
         let turning = StatedTurning::Pulses { per_revolution: 1 };
         let said = |teeth: u32, mate_teeth: u32| {
             let stated = StatedFacts { teeth, mate_teeth: Some(mate_teeth), turning };
@@ -149,7 +150,7 @@ fn a_run_up_has_its_energy_at_mesh_orders_at_every_speed() {
     let shafts = SimulatedShafts::of_channels(&scenario, &channels);
     let phase = shafts.varying_phase(WheelName::Pinion).unwrap().unwrap();
     let settings = OrderMapSettings { revolutions: Some(4), highest_order: Some(90.0) };
-    let map = order_map(&channels.vertical_g, &phase, channels.sampling_rate_hz, &settings).unwrap();
+    let map = order_map(&channels["vertical_g"], &phase, channels.sampling_rate_hz, &settings).unwrap();
     // From 8 Hz on, four revolutions at 17.8 Hz/s have a mean of 11.2 Hz.
     assert!(map.speeds_hz[0] < 12.0 && *map.speeds_hz.last().unwrap() > 37.0);
     for (speed_hz, part) in map.speeds_hz.iter().zip(&map.amplitudes) {

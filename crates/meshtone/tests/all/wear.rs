@@ -218,7 +218,7 @@ fn stiffness_falls_a_little_with_the_depth() {
 fn indicators(scenario: &Scenario) -> [f64; 3] {
     let simulation = simulate(scenario).unwrap();
     let shafts = SimulatedShafts::of_channels(scenario, &simulation.channels);
-    let signal = &simulation.channels.sensors[0].values_g;
+    let signal = &simulation.channels.signals[0].values;
     let record = shafts.process(signal, WheelName::Gear, &ChainSettings::default()).unwrap();
     let mesh: f64 =
         record.order_spectrum.iter().skip(38).step_by(38).take(10).map(|order| order * order / 2.0).sum();

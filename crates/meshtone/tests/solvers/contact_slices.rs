@@ -192,7 +192,7 @@ fn the_middle_of_what_bears_acts_as_its_slices_do() {
         let simulation = simulate(&scenario).unwrap();
         let samples = 3 * simulation.stages.time.samples_per_pinion_revolution;
         let mean: Vec<f64> =
-            simulation.channels.sensors[0].values_g[..samples].iter().map(|g| g * 9.81).collect();
+            simulation.channels.signals[0].values[..samples].iter().map(|g| g * 9.81).collect();
         let damping_time_s = mesh(&simulation.stages).damping_time_s;
         let face = Face { slices: SLICES, slope: 0.0, damping_time_s };
         let sliced = by_slices(&simulation.stages, &face, samples);
@@ -242,8 +242,8 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
         let sliced: Vec<f64> =
             by_slices(&aligned.stages, &face, kept.end)[kept.clone()].iter().map(|a| a / 9.81).collect();
         let [before, found, sliced] = [
-            &aligned.channels.sensors[0].values_g[kept.clone()],
-            &leaning.channels.sensors[0].values_g[kept],
+            &aligned.channels.signals[0].values[kept.clone()],
+            &leaning.channels.signals[0].values[kept],
             &sliced,
         ]
         .map(indicators);

@@ -1,6 +1,7 @@
 //! Gearboxes from their keys to their signals.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use meshtone::sensor::NamedSignal;
 use std::f64::consts::TAU;
 
 use crate::dense::{Dense, DenseMesh};
@@ -9,8 +10,8 @@ use meshtone::scenario::*;
 use meshtone::solver::InitialMotion;
 use meshtone::wheel::ErrorTable;
 use meshtone::{
-    GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, StepJudgement, gearbox_stages,
-    gearbox_stages_within, simulate_gearbox, simulate_gearboxes,
+    GearboxSimulation, GearboxStages, MeshedPair, StepJudgement, gearbox_stages, gearbox_stages_within,
+    simulate_gearbox, simulate_gearboxes,
 };
 
 fn gearbox(rig: Option<GearboxRig>) -> Gearbox {
@@ -42,7 +43,7 @@ fn simulate(gearbox: &Gearbox) -> GearboxSimulation {
 }
 
 /// The accelerations of the six seats.
-fn accelerations(simulation: &GearboxSimulation) -> impl Iterator<Item = &GearboxSignal> {
+fn accelerations(simulation: &GearboxSimulation) -> impl Iterator<Item = &NamedSignal> {
     let signals = simulation.channels.signals.iter().filter(|signal| signal.unit == "g");
     assert_eq!(signals.clone().count(), 6);
     signals
@@ -118,7 +119,7 @@ fn stiffness_and_vibration_have_the_size_of_the_reference() {
         println!("{}: {found:.2} m/s², reference {expected}", signal.name);
         assert!(found > 0.2 * expected && found < 5.0 * expected);
     }
-    let [steps, iterations, most, searched] = simulation.channels.step_counts;
+    let [steps, iterations, most, searched] = simulation.step_counts;
     assert!(
         steps >= 100_000 && iterations < 3 * steps && most <= 6 && searched == 0,
         "{iterations} {most} {searched}"

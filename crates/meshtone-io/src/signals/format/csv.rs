@@ -9,10 +9,10 @@ use super::super::signal_table::SignalTable;
 pub fn write(table: &SignalTable, to: impl Write) -> io::Result<()> {
     let mut to = BufWriter::new(to);
     to.write_all(TIME.as_bytes())?;
-    table.columns.iter().try_for_each(|column| write!(to, ",{}", column.name))?;
-    for sample in 0..table.samples() {
-        write!(to, "\n{:?}", table.time_s(sample))?;
-        table.columns.iter().try_for_each(|column| write!(to, ",{:?}", column.values[sample]))?;
+    table.channels.signals.iter().try_for_each(|column| write!(to, ",{}", column.name))?;
+    for sample in 0..table.channels.len() {
+        write!(to, "\n{:?}", table.channels.time_s(sample))?;
+        table.channels.signals.iter().try_for_each(|column| write!(to, ",{:?}", column.values[sample]))?;
     }
     writeln!(to)?;
     to.flush()

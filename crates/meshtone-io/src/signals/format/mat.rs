@@ -31,12 +31,12 @@ pub fn write(table: &SignalTable, to: impl Write) -> io::Result<()> {
     write!(to, "{text:TEXT_BYTES$}")?;
     to.write_all(&[0; SUBSYSTEM_BYTES])?;
     to.write_all(&VERSION_AND_ORDER)?;
-    write_variable(&mut to, RATE, &[table.sampling_rate_hz])?;
+    write_variable(&mut to, RATE, &[table.channels.sampling_rate_hz])?;
     write_variable(&mut to, TIME, &table.times_s())?;
     let mut names = vec![RATE.to_owned(), TIME.to_owned()];
-    for column in &table.columns {
+    for column in &table.channels.signals {
         let name = variable_name(&column.name, &names);
-        write_variable(&mut to, &name, column.values)?;
+        write_variable(&mut to, &name, &column.values)?;
         names.push(name);
     }
     to.flush()

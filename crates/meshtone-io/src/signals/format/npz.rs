@@ -8,10 +8,10 @@ use crate::npz::NpzWriter;
 
 pub fn write(table: &SignalTable, to: impl Write + Seek) -> io::Result<()> {
     let mut archive = NpzWriter::stored(BufWriter::new(to));
-    archive.add(RATE, &[], &[table.sampling_rate_hz])?;
-    archive.add(TIME, &[table.samples()], &table.times_s())?;
-    for column in &table.columns {
-        archive.add(&column.name, &[column.values.len()], column.values)?;
+    archive.add(RATE, &[], &[table.channels.sampling_rate_hz])?;
+    archive.add(TIME, &[table.channels.len()], &table.times_s())?;
+    for column in &table.channels.signals {
+        archive.add(&column.name, &[column.values.len()], &column.values)?;
     }
     archive.finish()?.flush()
 }

@@ -16,7 +16,7 @@ const GROUP_ROWS: usize = 1 << 20;
 
 /// Writes columns behind the time, with what was simulated in the metadata.
 pub fn write(table: &SignalTable, to: impl Write + Send) -> io::Result<()> {
-    let columns = &table.columns;
+    let columns = &table.channels.signals;
     let time = table_column(TIME, "s", "time since the start of the simulation");
     let signals = columns.iter().map(|column| table_column(&column.name, column.unit, column.meaning));
     let mut writer = TableWriter::new(to, std::iter::once(time).chain(signals).collect(), properties())?;
@@ -27,11 +27,11 @@ pub fn write(table: &SignalTable, to: impl Write + Send) -> io::Result<()> {
             (RUN_KEY, RunIdentity::of_toml(toml).to_string()),
         ]);
     }
-    writer.add_metadata([(RATE_KEY, format!("{:?}", table.sampling_rate_hz))]);
-    let samples = table.samples();
+    writer.add_metadata([(RATE_KEY, format!("{:?}", table.channels.sampling_rate_hz))]);
+    let samples = table.channels.len();
     for start in (0..samples).step_by(GROUP_ROWS) {
         let rows = start..samples.min(start + GROUP_ROWS);
-        let times_s: Vec<f64> = rows.clone().map(|row| table.time_s(row)).collect();
+        let times_s: Vec<f64> = rows.clone().map(|row| table.channels.time_s(row)).collect();
         let time = Cells::Signal(&times_s);
         let signals = columns.iter().map(|column| Cells::Signal(&column.values[rows.clone()]));
         writer.write_rows(std::iter::once(time).chain(signals).collect())?;

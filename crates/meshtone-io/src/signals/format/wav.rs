@@ -41,20 +41,20 @@ pub(crate) struct WavChannel {
 }
 
 pub fn write(table: &SignalTable, to: impl Write) -> io::Result<()> {
-    let channels = table.columns.iter().map(|column| WavChannel {
+    let channels = table.channels.signals.iter().map(|column| WavChannel {
         name: column.name.to_string(),
         unit: column.unit.to_owned(),
-        full_scale: full_scale(column.values),
+        full_scale: full_scale(&column.values),
     });
     let comment = WavComment {
-        sampling_rate_hz: table.sampling_rate_hz,
-        start_s: table.start_s,
+        sampling_rate_hz: table.channels.sampling_rate_hz,
+        start_s: table.channels.start_s,
         channels: channels.collect(),
     };
     let mut to = BufWriter::new(to);
-    write_head(&mut to, &comment, table.samples())?;
-    for sample in 0..table.samples() {
-        for (column, channel) in table.columns.iter().zip(&comment.channels) {
+    write_head(&mut to, &comment, table.channels.len())?;
+    for sample in 0..table.channels.len() {
+        for (column, channel) in table.channels.signals.iter().zip(&comment.channels) {
             to.write_all(&((column.values[sample] / channel.full_scale) as f32).to_le_bytes())?;
         }
     }

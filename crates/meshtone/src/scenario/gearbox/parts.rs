@@ -11,7 +11,7 @@ use crate::keys::{
 };
 use crate::machine::{Axis, Unbalance, WheelInertia};
 use crate::operation::{Operation, Solver};
-use crate::sensor::{Sensor, SensorDirection, SensorPath};
+use crate::sensor::{Sensor, SensorPath};
 use crate::wheel::quality::{file_deviations, ignored_shares};
 use crate::wheel::rows::*;
 use crate::wheel::{EndRelief, ErrorTable, FlankRelief, Hand, Material, WheelDeviations, WheelName};
@@ -508,11 +508,7 @@ impl GearboxSensor {
 
     /// The axis that it measures along.
     pub(crate) fn axis(&self) -> Axis {
-        match self.sensor.direction {
-            SensorDirection::Horizontal => Axis::X,
-            SensorDirection::Vertical => Axis::Y,
-            SensorDirection::Axial => Axis::Z,
-        }
+        self.sensor.direction.axis()
     }
 }
 

@@ -1,0 +1,165 @@
+//! What the summary says of meshes.
+
+use meshtone::scenario::Gears;
+use meshtone::sensor::ContactFigures;
+use serde::Serialize;
+
+/// A mesh.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct MeshSummary {
+    /// Names of the driving and of the driven wheel.
+    pub wheels: [String; 2],
+    /// (Hz) Nominal mesh frequency.
+    pub mesh_frequency_hz: f64,
+    /// (-) Contact ratio, of helical wheels in the transverse section.
+    pub contact_ratio: f64,
+    /// Overlap and thrust; only of helical wheels.
+    pub helix: Option<HelixSummary>,
+    /// (-) Face load factor K_Hβ of sound teeth under the nominal load; only under `contact`.
+    pub face_load_factor: Option<f64>,
+    /// (N) Force that holds the nominal torque.
+    pub static_force_n: f64,
+    /// Over a revolution of the driven wheel.
+    pub mesh_stiffness: MeshStiffness,
+    /// Along the line of action, over the samples kept.
+    pub mesh_force: MeshForce,
+    /// Along the line of action, over the samples kept; only of a gearbox.
+    pub transmission_error_um: Option<TransmissionError>,
+}
+
+/// How far the wheels of a mesh turn against one another, along the line of action.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct TransmissionError {
+    /// (µm) Least.
+    pub min: f64,
+    /// (µm) Mean.
+    pub mean: f64,
+    /// (µm) Largest.
+    pub max: f64,
+    /// (µm) Largest less least.
+    pub peak_to_peak: f64,
+    /// (µm) Largest less least at rest under the nominal load, of the teeth without their deviations, over a revolution of the driven wheel.
+    pub static_peak_to_peak: f64,
+}
+
+/// What only helical wheels have.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct HelixSummary {
+    /// (-) Overlap ratio ε_β.
+    pub overlap_ratio: f64,
+    /// (-) Total contact ratio ε_γ.
+    pub total_contact_ratio: f64,
+    /// (N) Force along the shafts under the nominal torque, on the driving wheel; positive towards positive z where it turns about that.
+    pub axial_force_n: f64,
+}
+
+impl HelixSummary {
+    /// Of two wheels; none of spur wheels.
+    pub(super) fn of(gears: &Gears, static_force_n: f64) -> Option<Self> {
+        gears.is_helical().then(|| Self {
+            overlap_ratio: gears.overlap_ratio(),
+            total_contact_ratio: gears.total_contact_ratio(),
+            axial_force_n: static_force_n * gears.thrust(),
+        })
+    }
+}
+
+/// Stiffness of the mesh over a revolution of the gear.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct MeshStiffness {
+    /// (N/mm) Smallest.
+    pub min_n_per_mm: f64,
+    /// (N/mm) Mean.
+    pub mean_n_per_mm: f64,
+    /// (N/mm) Largest.
+    pub max_n_per_mm: f64,
+}
+
+/// Force along the line of action.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct MeshForce {
+    /// (N) Smallest; negative where the mesh pulls.
+    pub min_n: f64,
+    /// (N) Mean.
+    pub mean_n: f64,
+    /// (N) Largest.
+    pub max_n: f64,
+    /// (-) Part of the time in which the mesh pulls; none under `contact`, whose teeth never do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tension_fraction: Option<f64>,
+    /// How the teeth touched; only under `contact`.
+    #[serde(flatten)]
+    pub contact: Option<ContactFigures>,
+}
+
+impl MeshStiffness {
+    pub(super) fn of(stiffness_n_per_mm: &[f64]) -> Self {
+        let [min_n_per_mm, mean_n_per_mm, max_n_per_mm] = extremes(stiffness_n_per_mm);
+        Self { min_n_per_mm, mean_n_per_mm, max_n_per_mm }
+    }
+}
+
+impl MeshForce {
+    /// Of the force of a mesh whose teeth part when they are pulled, or do not.
+    pub(super) fn of(force_n: &[f64], teeth_part: bool) -> Self {
+        let [min_n, mean_n, max_n] = extremes(force_n);
+        let figures = ContactFigures::of_force(force_n);
+        let tension_fraction = (!teeth_part).then_some(figures.back_flank_fraction);
+        Self { min_n, mean_n, max_n, tension_fraction, contact: teeth_part.then_some(figures) }
+    }
+}
+
+impl TransmissionError {
+    pub(super) fn of(values_um: &[f64], static_peak_to_peak: f64) -> Self {
+        let [min, mean, max] = extremes(values_um);
+        Self { min, mean, max, peak_to_peak: max - min, static_peak_to_peak }
+    }
+}
+
+/// What stands beside the list of meshes where there is one: the same numbers, as files of one pair have them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct OneMesh {
+    /// Samples per revolution of the driving wheel, at the nominal speed.
+    pub samples_per_pinion_revolution: usize,
+    /// [`MeshSummary::contact_ratio`].
+    pub contact_ratio: f64,
+    /// [`MeshSummary::helix`].
+    pub helix: Option<HelixSummary>,
+    /// [`MeshSummary::face_load_factor`].
+    pub face_load_factor: Option<f64>,
+    /// [`MeshSummary::mesh_stiffness`].
+    pub mesh_stiffness: MeshStiffness,
+    /// [`MeshSummary::mesh_force`].
+    pub mesh_force: MeshForce,
+}
+
+impl OneMesh {
+    /// Of the only mesh; none where there are several.
+    pub(super) fn of(meshes: &[MeshSummary], samples_per_pinion_revolution: usize) -> Option<Self> {
+        let [mesh] = meshes else { return None };
+        let MeshSummary { contact_ratio, helix, face_load_factor, mesh_stiffness, mesh_force, .. } = *mesh;
+        Some(Self {
+            samples_per_pinion_revolution,
+            contact_ratio,
+            helix,
+            face_load_factor,
+            mesh_stiffness,
+            mesh_force,
+        })
+    }
+}
+
+/// Smallest value, mean and largest value.
+fn extremes(values: &[f64]) -> [f64; 3] {
+    [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().sum::<f64>() / values.len() as f64,
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
