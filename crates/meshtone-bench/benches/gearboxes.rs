@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use meshtone::batch::{Control, simulate_many_gearboxes};
 use meshtone::scenario::{BearingKind, Gearbox, gearbox_template};
 use meshtone::{Simulation, StepJudgement, stages};
 
@@ -64,8 +65,8 @@ fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
     group.sample_size(10);
     let gearbox = two_stages(1);
     group.bench_function("stages", |bencher| bencher.iter(|| stages(black_box(&gearbox))));
-    let stages = stages(&gearbox).expect("the template is valid");
-    group.bench_function("time loop", |bencher| bencher.iter(|| black_box(&stages).clone().simulate()));
+    let made = stages(&gearbox).expect("the template is valid");
+    group.bench_function("time loop", |bencher| bencher.iter(|| black_box(&made).clone().simulate()));
     let mut with_ball_bearing = gearbox.clone();
     with_ball_bearing.bearings[0].kind = BearingKind::Ball;
     with_ball_bearing.bearings[0].name = Some("ER-10K".to_owned());
@@ -84,7 +85,10 @@ fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
     group.bench_function("16 simulations, 1 thread", |bencher| {
         bencher.iter(|| {
             pool.install(|| {
-                simulate_gearboxes(&many, |simulation| warnings(&simulation, StepJudgement::Estimated))
+                let keep = |_: usize, simulation: Simulation| warnings(&simulation, StepJudgement::Estimated);
+                let mut kept = Vec::with_capacity(many.len());
+                simulate_many_gearboxes(many.clone(), &keep, &Control::default(), |_, of| kept.push(of));
+                kept
             })
         });
     });

@@ -161,12 +161,11 @@ fn warnings(set: &Finished) -> String {
 }
 
 fn classes(set: &Finished) -> String {
+    let is_pair = set.plan.content.base.pair().is_some();
     let fault = |fault: &ClassFault| match fault {
-        ClassFault::Teeth(ToothFault { wheel: Wheel::OfPair(_), .. }) => fault.kind().to_owned(),
-        ClassFault::Teeth(ToothFault { wheel: Wheel::OfGearbox(name), .. })
-        | ClassFault::Bearing { bearing: name, .. } => {
-            format!("{} of {name}", fault.kind())
-        }
+        ClassFault::Teeth(_) if is_pair => fault.kind().to_owned(),
+        ClassFault::Teeth(ToothFault { wheel, .. }) => format!("{} of {}", fault.kind(), wheel.name()),
+        ClassFault::Bearing { bearing, .. } => format!("{} of {bearing}", fault.kind()),
     };
     let row = |class: &Class| {
         let fault = match &class.faults[..] {

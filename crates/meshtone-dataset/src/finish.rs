@@ -1,6 +1,5 @@
 //! Finishing a data set: its data card, preview, Croissant metadata and manifest.
 
-use meshtone::scenario::ScenarioForm;
 use meshtone_plot::dataset::{DatasetPreview, Example, PreviewColumn, dataset_figure};
 
 use crate::card;
@@ -166,10 +165,7 @@ fn signal(to: &Destination, shard: &str, row: usize, column: &str) -> Vec<f64> {
 
 /// Teeth, speed, load and severity of one record, in words.
 fn conditions(plan: &Plan, to: &Destination, shard: &str, row: usize) -> String {
-    let speed = match plan.content.base {
-        ScenarioForm::Gearbox(_) => "input_speed_hz",
-        _ => "pinion_speed_hz",
-    };
+    let speed = plan.content.base.speed_key().trim_start_matches("operation.");
     let teeth = Wheel::all(&plan.content.base).into_iter().map(|wheel| column_part(wheel.name()) + "_teeth");
     let names: Vec<String> = teeth.chain([speed, "brake_torque_nm", "severity"].map(str::to_owned)).collect();
     let wanted: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -156,8 +156,10 @@ pub fn stages_within(scenario: impl Into<ScenarioForm>, limit: MemoryLimit) -> R
     stages_with(scenario.into(), limit, &KnownModes::default())
 }
 
-/// Does what [`stages_within`] does, with modes that are known already: the stages in their order, of which the published model has all
-/// but the first two for itself.
+/// Does what [`stages_within`] does, with modes that are known already.
+///
+/// Layout and teeth come first, as both models need them, and settling last, as it is of both; what lies between is either a machine
+/// around meshes or the published model. Faults get their severities only here, since the teeth of all meshes must be known for that.
 pub(crate) fn stages_with(
     scenario: ScenarioForm,
     memory_limit: MemoryLimit,
@@ -218,8 +220,11 @@ struct Parts {
 /// (Hz) Natural frequency above which modes of shafts of beams decay faster than those below.
 const HIGHEST_OF_SLOW_HZ: f64 = 2e3;
 
-/// The stages of a machine around meshes: the machine, which needs the wheels' base radii; the static forces, by which teeth are pressed
-/// together; the wheels with deviations and damage; the meshes with their tables; and the modes that are stepped.
+/// The stages of a machine around meshes, in the order in which each needs what the ones before it gave.
+///
+/// The machine needs the base radii of the teeth, and gives the static forces that press these together; the meshes' tables need these
+/// forces, the deviations and the damage of the wheels. The tables then say how far a load moves along the face: where it does, the machine
+/// is taken to its modes a second time, with the tilt that this excites.
 fn machine_parts(
     scenario: &ScenarioForm,
     layout: &GearboxLayout,

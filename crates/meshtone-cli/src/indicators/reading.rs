@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::ScenarioForm;
-use meshtone::sensor::Channel as SimulatedChannel;
+use meshtone::sensor::{ChannelKind, Channels};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
     Channel, ColumnChoice, Recording, RecordingOptions, TextOptions, TimeColumn, names, read_recording,
@@ -19,13 +19,11 @@ const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
 
 /// The channel of a simulation that is processed unless another is chosen: the first sensor's, or the vertical acceleration.
 fn leading_of(scenario_toml: &str) -> String {
-    let sensors = match ScenarioForm::from_toml(scenario_toml) {
-        Ok(ScenarioForm::Gearbox(gearbox)) => return gearbox.leading_channel(),
-        Ok(ScenarioForm::Pair(scenario)) => scenario.sensors,
-        // What another version wrote has no sensors, or is looked at without them.
-        Err(_) => Vec::new(),
-    };
-    SimulatedChannel::leading(&sensors).name().into_owned()
+    // What another version wrote has no sensors, or is looked at without them.
+    let signals = ScenarioForm::from_toml(scenario_toml).map_or_else(|_| Vec::new(), |form| form.signals());
+    let channels = Channels::new(0.0, 0.0, signals);
+    let leading = channels.leading().map(|signal| signal.name.to_string());
+    leading.unwrap_or_else(|| ChannelKind::Vertical.name().to_owned())
 }
 
 /// A recording with the channel that is processed and the one that gives the phase.

@@ -345,10 +345,7 @@ impl Export<'_> {
         let level = |row: usize| {
             if faults[row / channels].is_empty() { 0 } else { (grade[row / channels] as i64).max(1) }
         };
-        let speed = match self.content.base {
-            ScenarioForm::Gearbox(_) => "input_speed_hz",
-            _ => "pinion_speed_hz",
-        };
+        let speed = self.content.base.speed_key().trim_start_matches("operation.");
         let (speed_hz, torque_nm) = (read.numbers(speed), read.numbers("brake_torque_nm"));
         let rate_hz = self.sampling_rates(read);
         let profile = if self.content.base.is_steady() { "constant" } else { "varying" };

@@ -35,12 +35,12 @@ pub enum ClassFault {
 impl ToothFault {
     /// A fault of a pair.
     pub(crate) fn of_pair(fault: Fault) -> Self {
-        Self { wheel: Wheel::OfPair(fault.wheel), fault }
+        Self { wheel: fault.wheel.into(), fault }
     }
 
     /// A fault of a gearbox.
     pub(crate) fn of_gearbox(fault: GearboxFault) -> Self {
-        Self { wheel: Wheel::OfGearbox(fault.wheel), fault: fault.fault }
+        Self { wheel: fault.wheel.into(), fault: fault.fault }
     }
 
     /// The damaged teeth of a scenario.
@@ -48,10 +48,10 @@ impl ToothFault {
     /// # Arguments
     /// * `scenario` - of a record
     pub(crate) fn all_of(scenario: &ScenarioForm) -> Vec<Self> {
-        match scenario {
-            ScenarioForm::Pair(scenario) => scenario.faults.iter().cloned().map(Self::of_pair).collect(),
-            ScenarioForm::Gearbox(gearbox) => gearbox.faults.iter().cloned().map(Self::of_gearbox).collect(),
-        }
+        let wheels = Wheel::all(scenario);
+        let of_wheel =
+            |(wheel, fault): (usize, &Fault)| Self { wheel: wheels[wheel].clone(), fault: fault.clone() };
+        scenario.faults().into_iter().map(of_wheel).collect()
     }
 }
 

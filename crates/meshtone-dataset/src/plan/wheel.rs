@@ -1,14 +1,21 @@
 //! Wheels of the base scenario, as a plan names them.
 
-use meshtone::scenario::{Gearbox, ScenarioForm, WheelName};
+use meshtone::scenario::{ScenarioForm, WheelName};
 
-/// A wheel of the base scenario.
+/// A wheel of the base scenario, by its name: `pinion` or `gear` of a pair.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Wheel {
-    /// The pinion or the gear of a pair.
-    OfPair(WheelName),
-    /// The wheel of this name of a gearbox.
-    OfGearbox(String),
+pub struct Wheel(String);
+
+impl From<WheelName> for Wheel {
+    fn from(wheel: WheelName) -> Self {
+        Self(wheel.name().to_owned())
+    }
+}
+
+impl From<String> for Wheel {
+    fn from(name: String) -> Self {
+        Self(name)
+    }
 }
 
 impl Wheel {
@@ -17,20 +24,12 @@ impl Wheel {
     /// # Arguments
     /// * `base` - the scenario
     pub fn all(base: &ScenarioForm) -> Vec<Self> {
-        match base {
-            ScenarioForm::Gearbox(Gearbox { wheels, .. }) => {
-                wheels.iter().map(|wheel| Self::OfGearbox(wheel.name.clone())).collect()
-            }
-            _ => WheelName::BOTH.map(Self::OfPair).to_vec(),
-        }
+        base.wheel_names().into_iter().map(|name| Self(name.to_owned())).collect()
     }
 
     /// Its name in a plan.
     pub fn name(&self) -> &str {
-        match self {
-            Self::OfPair(wheel) => wheel.name(),
-            Self::OfGearbox(name) => name,
-        }
+        &self.0
     }
 }
 

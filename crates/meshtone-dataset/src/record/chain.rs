@@ -113,10 +113,7 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
 /// * `stages` - of the simulation
 /// * `number` - of the fault
 fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(ToothFault, f64)> {
-    let fault = match stages.scenario.gearbox() {
-        Some(gearbox) => gearbox.faults.get(number).cloned().map(ToothFault::of_gearbox),
-        None => stages.scenario.faults().get(number).map(|(_, fault)| ToothFault::of_pair((*fault).clone())),
-    };
+    let fault = ToothFault::all_of(&stages.scenario).into_iter().nth(number);
     fault.zip(stages.fault_severities.get(number).copied())
 }
 

@@ -349,7 +349,7 @@ fn compare_with_simulations(text: &str, channel: &str, simulated: impl Fn(&mesht
     let sampler = Sampler::new(&plan.content).unwrap();
     for row in 0..6 {
         let record = sampler.record(row as u64).unwrap();
-        let simulation = meshtone::simulate(&pair_of(&sampler, &record)).unwrap();
+        let simulation = meshtone::simulate(pair_of(&sampler, &record)).unwrap();
         let (up, down) = resampling_ratio(simulation.channels.sampling_rate_hz, 8e3).unwrap();
         // It begins when some tooth comes into contact; nothing else differs.
         let simulated = simulated(&simulation);

@@ -51,10 +51,10 @@ fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
 fn signals_are_read_back_exactly() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
-    SignalTable::of_scenario(&scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
+    SignalTable::of_scenario(scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
     let recorded = read_signals(&path).unwrap();
     assert_eq!((recorded.scenario, recorded.channels), (ScenarioForm::Pair(scenario()), channels()));
-    assert_eq!(recorded.run, RunIdentity::of(&scenario()));
+    assert_eq!(recorded.run, RunIdentity::of(scenario()));
     assert_eq!(recorded.version, env!("CARGO_PKG_VERSION"));
 }
 
@@ -93,7 +93,7 @@ fn signals_of_every_format_are_read_back() {
 #[test]
 fn wav_files_are_what_players_expect() {
     let mut file = io::Cursor::new(Vec::new());
-    SignalTable::of_scenario(&scenario(), &channels()).write(&mut file, SignalFormat::Wav).unwrap();
+    SignalTable::of_scenario(scenario(), &channels()).write(&mut file, SignalFormat::Wav).unwrap();
     let bytes = file.into_inner();
     let length = u32::from_le_bytes(bytes[4..8].try_into().unwrap());
     assert_eq!(length as usize, bytes.len() - 8);
@@ -158,7 +158,7 @@ fn cut_files_are_refused() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
     let mut bytes = Vec::new();
-    SignalTable::of_scenario(&scenario(), &channels()).write_parquet(&mut bytes).unwrap();
+    SignalTable::of_scenario(scenario(), &channels()).write_parquet(&mut bytes).unwrap();
     fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     let error = read_signals(&path).unwrap_err();
     assert!(error.to_string().contains("not a whole Parquet file"), "{error}");

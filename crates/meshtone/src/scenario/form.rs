@@ -181,7 +181,7 @@ impl ScenarioForm {
     }
 
     /// Key of the nominal speed.
-    pub(crate) fn speed_key(&self) -> &'static str {
+    pub fn speed_key(&self) -> &'static str {
         if self.gearbox().is_some() { "operation.input_speed_hz" } else { "operation.pinion_speed_hz" }
     }
 
@@ -219,10 +219,7 @@ impl ScenarioForm {
 
     /// Whether motor and brake are steady.
     pub fn is_steady(&self) -> bool {
-        match self {
-            Self::Pair(scenario) => scenario.operation.is_steady(),
-            Self::Gearbox(gearbox) => gearbox.operation.is_steady(),
-        }
+        self.operation().is_steady() && self.torque_ripple().is_empty()
     }
 
     /// Division of time.
@@ -345,22 +342,19 @@ impl ScenarioForm {
         }
     }
 
+    /// Names of the wheels, in their order: of a pair `pinion` and `gear`.
+    pub fn wheel_names(&self) -> Vec<&str> {
+        match self.gearbox() {
+            Some(gearbox) => gearbox.wheels.iter().map(|wheel| wheel.name.as_str()).collect(),
+            None => WheelName::BOTH.map(WheelName::name).to_vec(),
+        }
+    }
+
     /// Number of the faults.
     pub fn fault_count(&self) -> usize {
         match self {
             Self::Pair(scenario) => scenario.faults.len(),
             Self::Gearbox(gearbox) => gearbox.faults.len(),
-        }
-    }
-
-    /// (-) How severe each fault is, from 0, none, to 1, the largest that the tooth allows: as given, or by its sizes.
-    ///
-    /// # Errors
-    /// Those of [`Self::validate`].
-    pub fn fault_severities(&self) -> Result<Vec<f64>, ScenarioError> {
-        match self {
-            Self::Pair(scenario) => scenario.fault_severities(),
-            Self::Gearbox(gearbox) => gearbox.fault_severities(),
         }
     }
 

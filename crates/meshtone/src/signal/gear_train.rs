@@ -150,10 +150,7 @@ impl GearTrain {
     /// # Errors
     /// Those of [`Self::of_gearbox`].
     pub fn of_form(form: &ScenarioForm) -> Result<Self, ScenarioError> {
-        match form {
-            ScenarioForm::Pair(scenario) => Ok(Self::of_pair(scenario)),
-            ScenarioForm::Gearbox(gearbox) => Self::of_gearbox(gearbox),
-        }
+        Ok(Self::of_scenario(form, &form.layout()?))
     }
 
     /// The shafts of a simulation.
@@ -161,13 +158,13 @@ impl GearTrain {
     /// # Arguments
     /// * `stages` - of the simulation
     pub fn of_stages(stages: &Stages) -> Self {
-        match stages.scenario.gearbox() {
-            Some(gearbox) => Self::of_layout(gearbox, &stages.layout),
-            None => {
-                let gears = &stages.layout.gears[0];
-                Self::of_wheels(WheelName::BOTH.map(|wheel| (wheel.name(), gears.teeth(wheel))))
-            }
-        }
+        Self::of_scenario(&stages.scenario, &stages.layout)
+    }
+
+    fn of_scenario(scenario: &ScenarioForm, layout: &GearboxLayout) -> Self {
+        let of_pair = || WheelName::BOTH.map(|wheel| (wheel.name(), layout.gears[0].teeth(wheel)));
+        let gearbox = scenario.gearbox();
+        gearbox.map_or_else(|| Self::of_wheels(of_pair()), |gearbox| Self::of_layout(gearbox, layout))
     }
 
     /// Number of the shaft that the ratios are of: the input, which the motor turns.

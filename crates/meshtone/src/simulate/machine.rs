@@ -77,8 +77,10 @@ fn rig(Scenario { gears, rig, model, .. }: &Scenario, teeth: &Teeth) -> Assemble
     }
 }
 
-/// Shafts of beams in bearings. Rolling bearings have the stiffness of linear ones first, which gives their static loads, and these the
-/// linear springs in their places.
+/// Shafts of beams in bearings: wheels become discs, meshes lines of action, and all unbalances are placed on their shafts.
+///
+/// Rolling bearings have the stiffness of linear ones first, which gives their static loads, and these the linear springs in their
+/// places. Places that outputs read are added at the end, since they need the nodes of the finished machine.
 fn shafts_of_beams(
     gearbox: &Gearbox,
     layout: &GearboxLayout,

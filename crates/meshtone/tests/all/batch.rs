@@ -244,7 +244,7 @@ fn cancelled_work_ends_early_and_what_is_handed_out_is_whole() {
         asked_for.fetch_add(1, Ordering::Relaxed);
         small(17, 34, None)
     });
-    let expected = simulate(&small(17, 34, None)).unwrap().channels.len();
+    let expected = simulate(small(17, 34, None)).unwrap().channels.len();
     let control = Control { cancelled: &cancelled, ..Control::default() };
     let handed_out = in_threads(2, || {
         simulate_many(scenarios, &KeepChannels::default(), &control, |index, signals| {

@@ -70,7 +70,7 @@ fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
     rigid(&mut linear);
     if deviates {
         linear.quality =
-            Quality::of_errors(stages(&of_rig(6)).unwrap().pairs[0].profile_errors.clone().unwrap());
+            Quality::of_errors(stages(of_rig(6)).unwrap().pairs[0].profile_errors.clone().unwrap());
         linear.rig.eccentricity_mm = 0.004;
     }
     let mut contact = linear.clone();

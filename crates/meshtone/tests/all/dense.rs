@@ -18,7 +18,7 @@ const MOST_ITERATIONS: usize = 50;
 
 /// The machine of a simulation, and its modes without the meshes.
 pub fn machine_of(stages: &Stages) -> (&Machine, &Modes) {
-    stages.machine_and_modes().expect("the published model has a machine of its own")
+    stages.machine_and_modes().unwrap()
 }
 
 /// The outputs of a solution, each at all recorded samples.

@@ -33,7 +33,7 @@ fn sampled_scenario(damage: Option<Damage>, sampling_rate_hz: f64) -> Scenario {
 /// (mean relative change of the pair's stiffness, mean of the flanks' separation in m, rms of the change of the vertical acceleration
 /// over its rms)
 fn effect(healthy: &[f64], damage: Damage) -> [f64; 3] {
-    let simulation = simulate(&scenario(Some(damage))).unwrap();
+    let simulation = simulate(scenario(Some(damage))).unwrap();
     // On a grid of its own, finer than the time loop's.
     let mesh = &simulation.stages.meshes_at(NonZeroUsize::new(5_000).unwrap()).unwrap()[0];
     let [sound, damaged] = sound_and_damaged(mesh);
@@ -59,7 +59,7 @@ const SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
 
 impl Vanishing {
     fn of(name: &str, damage: impl Fn(f64) -> Damage) -> Self {
-        let healthy = simulate(&scenario(None)).unwrap().channels["vertical_g"].to_vec();
+        let healthy = simulate(scenario(None)).unwrap().channels["vertical_g"].to_vec();
         let effects: Vec<[f64; 3]> = SIZES.iter().map(|&size| effect(&healthy, damage(size))).collect();
         let column = |k: usize| effects.iter().map(|effect| effect[k]).collect::<Vec<f64>>();
         let vanishing = Self { stiffness: column(0), separation: column(1), acceleration: column(2) };
@@ -127,7 +127,7 @@ fn a_vanishing_partial_pit_is_no_pit() {
     // The step in width at the pit's ends stays: it rings the mesh until the pit has passed much faster than the ring.
     let length = Vanishing::of("partial pit, length", |s| partial(5.0, pit(0.5 * s, 0.5)));
     assert!((order(&length.stiffness) - 1.0).abs() < 0.05);
-    let signal = |damage| simulate(&sampled_scenario(damage, 1.6e6)).unwrap().channels["vertical_g"].to_vec();
+    let signal = |damage| simulate(sampled_scenario(damage, 1.6e6)).unwrap().channels["vertical_g"].to_vec();
     let healthy = signal(None);
     let short = [32.0, 64.0, 128.0, 256.0].map(|shorter| {
         let damaged = signal(Some(partial(5.0, pit(0.5 / shorter, 0.5))));
@@ -146,7 +146,7 @@ fn a_vanishing_partial_pit_is_no_pit() {
 fn a_shallow_pit_still_carries_nothing() {
     let depth = Vanishing::of("partial pit, depth", |s| partial(5.0, pit(0.5, 0.5 * s)));
     assert!(depth.stiffness[5] > 0.95 * depth.stiffness[0] && depth.stiffness[5] < depth.stiffness[0]);
-    let healthy = simulate(&scenario(None)).unwrap().channels["vertical_g"].to_vec();
+    let healthy = simulate(scenario(None)).unwrap().channels["vertical_g"].to_vec();
     let shallow = effect(&healthy, ThroughFace { pit: pit(0.5, 1e-3) }.into());
     let line = DestructionLine::End(0.8);
     let chord = ToothDestruction { start: 0.3, line, offset_mm: 0.0, noise_mm: 0.0 };
@@ -181,7 +181,7 @@ fn a_vanishing_destruction_is_no_destruction() {
 #[test]
 fn a_missing_tooth_carries_nothing() {
     let carries = |damage: Damage| {
-        let stages = meshtone::stages(&scenario(Some(damage))).unwrap();
+        let stages = meshtone::stages(scenario(Some(damage))).unwrap();
         sound_and_damaged(mesh(&stages))[1].states.iter().any(|state| state.stiffness_n_per_m > 0.0)
     };
     assert!(!carries(MissingTooth.into()));

@@ -75,7 +75,7 @@ fn the_signal_turns_with_the_damaged_tooth() {
     for (wheel, teeth) in [(WheelName::Pinion, [1, 2, 9, 17]), (WheelName::Gear, [1, 3, 20, 38])] {
         for damage in damages() {
             let signals = teeth.map(|tooth| {
-                let simulation = simulate(&pair(vec![Fault::new(wheel, tooth, damage.clone())])).unwrap();
+                let simulation = simulate(pair(vec![Fault::new(wheel, tooth, damage.clone())])).unwrap();
                 let pitch = samples_per_pitch(&simulation);
                 assert_eq!(simulation.channels.len(), 17 * 38 * pitch);
                 (simulation.channels["vertical_g"].to_vec(), (tooth as usize - 1) * pitch)
@@ -94,7 +94,7 @@ fn the_signal_turns_with_the_damaged_tooth() {
 #[test]
 fn a_damaged_tooth_repeats_at_its_own_shaft_s_order() {
     for (wheel, own, other) in [(WheelName::Pinion, 17, 38), (WheelName::Gear, 38, 17)] {
-        let simulation = simulate(&pair(vec![Fault::new(wheel, 4, MissingTooth)])).unwrap();
+        let simulation = simulate(pair(vec![Fault::new(wheel, 4, MissingTooth)])).unwrap();
         let (pitch, signal) = (samples_per_pitch(&simulation), &simulation.channels["vertical_g"]);
         assert!(off(signal, signal, own * pitch) < 1e-8, "{} once a revolution", wheel.name());
         for turn in [1, other, own - 1] {
@@ -118,7 +118,7 @@ fn faults_on_different_teeth_are_each_its_own() {
     let two = Fault::new(WheelName::Pinion, 11, PartialFace { width_mm: 5.0, pit: pit(0.2, 0.8) });
     let meshes =
         [vec![], vec![one.clone()], vec![two.clone()], vec![one.clone(), two.clone()]].map(|faults| {
-            let stages = stages(&pair(faults)).unwrap();
+            let stages = stages(pair(faults)).unwrap();
             (stages.pairs[0].damaged.len(), mesh(&stages).stiffness_n_per_mm(0..17 * 38))
         });
     assert_eq!(meshes.each_ref().map(|(damaged, _)| *damaged), [0, 1, 1, 2]);
@@ -142,7 +142,7 @@ fn faults_on_different_teeth_are_each_its_own() {
     assert!(alone > 1000 && together > 0, "{alone} {together}");
 
     // The order in which they are named says nothing.
-    let signal = |faults: Vec<Fault>| simulate(&pair(faults)).unwrap().channels["vertical_g"].to_vec();
+    let signal = |faults: Vec<Fault>| simulate(pair(faults)).unwrap().channels["vertical_g"].to_vec();
     let both = signal(vec![one.clone(), two.clone()]);
     assert!(off(&signal(vec![two.clone(), one.clone()]), &both, 0) < 1e-10);
     assert!(off(&signal(vec![one]), &both, 0) > 1e-3 && off(&signal(vec![two]), &both, 0) > 1e-3);
@@ -151,7 +151,7 @@ fn faults_on_different_teeth_are_each_its_own() {
 #[test]
 fn teeth_that_are_alike_make_one_class() {
     let of = |faults: Vec<Fault>| {
-        let stages = stages(&pair(faults)).unwrap();
+        let stages = stages(pair(faults)).unwrap();
         let teeth: Vec<Vec<usize>> =
             stages.pairs[0].damaged.iter().map(|tooth| tooth.teeth.clone()).collect();
         let mesh = mesh(&stages);
@@ -187,7 +187,7 @@ fn teeth_that_are_alike_make_one_class() {
 fn a_tooth_may_be_broken_and_ground() {
     let on_tooth = |damages: &[Damage]| {
         let faults = damages.iter().map(|damage| Fault::new(WheelName::Gear, 5, damage.clone())).collect();
-        stages(&pair(faults)).unwrap()
+        stages(pair(faults)).unwrap()
     };
     let [broken, flat, both] = [
         on_tooth(&[chip().into()]),
@@ -224,7 +224,7 @@ fn cuts_that_overlap_are_refused() {
     let refused = |one: Damage, other: Damage, tooth: u32| {
         let named = format!("where fault[0] ({}) has cut it", one.kind());
         let faults = vec![Fault::new(WheelName::Gear, 3, one), Fault::new(WheelName::Gear, tooth, other)];
-        stages(&pair(faults)).err().map(|error| {
+        stages(pair(faults)).err().map(|error| {
             assert!(error.problem.contains("tooth 3"), "{error}");
             assert!(error.problem.contains(&named), "{error}");
             error.key
@@ -354,7 +354,7 @@ fn a_pit_whose_edge_has_broken_off_is_refused() {
     let [pitted, broken]: [Damage; 2] = [ThroughFace { pit: pit(0.2, 0.8) }.into(), broken.into()];
     for faults in [[pitted.clone(), broken.clone()], [broken, pitted]] {
         let faults = faults.map(Fault::on_first_gear_tooth).to_vec();
-        let error = stages(&pair(faults)).map(drop).unwrap_err().to_string();
+        let error = stages(pair(faults)).map(drop).unwrap_err().to_string();
         assert!(error.contains("without its edge"), "{error}");
     }
 }

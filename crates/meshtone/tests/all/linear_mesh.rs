@@ -21,7 +21,7 @@ fn pair() -> Scenario {
 #[test]
 fn mesh_stiffness_of_a_trial() {
     let points = NonZeroUsize::new(4_000).unwrap();
-    let meshes = stages(&pair()).unwrap().meshes_at(points).unwrap();
+    let meshes = stages(pair()).unwrap().meshes_at(points).unwrap();
     let mesh = meshes[0].healthy_stiffness_n_per_mm();
     let least = mesh.iter().copied().fold(f64::INFINITY, f64::min);
     assert_close(
@@ -35,7 +35,7 @@ fn mesh_stiffness_of_a_trial() {
 // position and not of the number of points, but for those within which a pair enters or leaves: they hold it in part.
 #[test]
 fn mesh_stiffness_does_not_depend_on_the_points() {
-    let stages = stages(&pair()).unwrap();
+    let stages = stages(pair()).unwrap();
     let curve = &stages.mesh_curves()[0];
     let own = &curve.healthy_stiffness_n_per_mm;
     assert_eq!(curve.points_per_pitch * 17, stages.time.samples_per_pinion_revolution);
@@ -64,7 +64,7 @@ fn conjugate_flanks_are_stiffer_than_published_ones() {
     let most = largest(mesh.iter().copied());
     assert_close("published mesh stiffness", 1e-3, [(least, 141.3e3), (most, 261.9e3)]);
     assert_close("published mean", 4e-3, [(mean(mesh), 214.3e3)]);
-    let linear = stages(&pair()).unwrap();
+    let linear = stages(pair()).unwrap();
     assert!(linear.mesh_curves()[0].mean_stiffness_n_per_mm > 1.09 * mean(mesh));
 }
 

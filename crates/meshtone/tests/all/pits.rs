@@ -206,7 +206,7 @@ fn drawn_pits_lie_about_the_working_pitch_circle() {
 #[test]
 fn drawn_pits_may_be_listed() {
     let fault = Fault::new(WheelName::Pinion, vec![2, 9], drawn(8.0));
-    let of = |seed: u64| stages(&scenario(Model::Contact, vec![fault.clone()]).with_seed(seed)).unwrap();
+    let of = |seed: u64| stages(scenario(Model::Contact, vec![fault.clone()]).with_seed(seed)).unwrap();
     let stages_of_one = of(1);
     let teeth = damages_of_fault(&stages_of_one.pairs[0].damaged, 0);
     assert_eq!(teeth.iter().map(|(tooth, _)| *tooth).collect::<Vec<_>>(), [2, 9]);
@@ -226,7 +226,7 @@ fn drawn_pits_may_be_listed() {
     let as_lists =
         teeth.iter().map(|(tooth, pits)| Fault::new(WheelName::Pinion, *tooth, list(pits))).collect();
     let [of_draw, of_lists] =
-        [vec![fault.clone()], as_lists].map(|faults| simulate(&scenario(Model::Contact, faults)).unwrap());
+        [vec![fault.clone()], as_lists].map(|faults| simulate(scenario(Model::Contact, faults)).unwrap());
     assert!(of_draw.channels["vertical_g"] == of_lists.channels["vertical_g"]);
 }
 
@@ -278,7 +278,7 @@ fn pits_beside_the_middle_tilt_the_wheels() {
             let pits = listed(&[[0.5, z_mm, 1.5, 2.0, 0.2], [0.5, -z_mm, 1.5, 2.0, 0.2]]);
             let aside = listed(&[[0.5, z_mm, 1.5, 2.0, 0.2]]);
             [pits, aside].map(|pits| {
-                let stages = stages(&scenario(model, vec![Fault::on_first_gear_tooth(pits)])).unwrap();
+                let stages = stages(scenario(model, vec![Fault::on_first_gear_tooth(pits)])).unwrap();
                 let [_, damaged] = sound_and_damaged(mesh(&stages));
                 largest(damaged.states.iter().map(|state| state.face_centre_m))
             })

@@ -184,7 +184,7 @@ impl Recorder for Kept {
 // bearing being as stiff in x as in y. The force is the torque over the base radius, which no shift changes.
 #[test]
 fn the_mesh_pushes_at_the_working_pressure_angle() {
-    let stages = meshtone::stages(&scenario(Model::Linear)).unwrap();
+    let stages = meshtone::stages(scenario(Model::Linear)).unwrap();
     let train = Train::new(
         &stages.layout.gears[0],
         &stages.scenario.pair().unwrap().rig,
@@ -215,7 +215,7 @@ fn the_mesh_pushes_at_the_working_pressure_angle() {
 
 #[test]
 fn shifted_pairs_run_under_contact() {
-    let simulation = meshtone::simulate(&scenario(Model::Contact)).unwrap();
+    let simulation = meshtone::simulate(scenario(Model::Contact)).unwrap();
     let force = mean(&simulation.channels["mesh_force_n"]);
     let expected = 10.0 / (0.057 * 20f64.to_radians().cos());
     assert!(deviation(force, expected).abs() < 5e-3, "{force} {expected}");

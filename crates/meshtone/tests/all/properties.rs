@@ -510,7 +510,7 @@ proptest! {
         scenario.operation.brake_torque_nm = 0.0;
         scenario.quality.din_grade = 6;
         let drawn = fitting(&scenario)?.pairs[0].profile_errors.clone().unwrap();
-        let scaled = |factor: f64| simulate(&with_errors(&scenario, &drawn, factor)).unwrap().channels;
+        let scaled = |factor: f64| simulate(with_errors(&scenario, &drawn, factor)).unwrap().channels;
         let (once, mirrored, quarter, ideal) = (scaled(1.0), scaled(-1.0), scaled(0.25), scaled(0.0));
         prop_assert!(rms(&once["mesh_force_n"]) > 1.0);
         for of in [

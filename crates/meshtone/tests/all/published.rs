@@ -168,7 +168,7 @@ fn difference(
 fn check(name: &str) {
     let reference = reference(name);
     let rate_hz = reference["sa_rate_in_hz"].sum();
-    let (_, trace) = trace_at(&scenario(name, &reference), rate_hz).unwrap();
+    let (_, trace) = trace_at(scenario(name, &reference), rate_hz).unwrap();
     let mut failures = Vec::new();
     let mut fields: Vec<&String> = reference.keys().collect();
     fields.sort();

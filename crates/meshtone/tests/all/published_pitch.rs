@@ -64,7 +64,7 @@ fn a_longer_cycle_is_turned_as_a_whole() {
         ([20, 31], 0.3, 0.7, 495, 31_713),
         ([17, 38], 0.2, 0.8, 380, 1516),
     ] {
-        let stages = stages(&published(teeth, 40.0, through(start, end))).unwrap();
+        let stages = stages(published(teeth, 40.0, through(start, end))).unwrap();
         let own = own_stages(&stages);
         let nominal = own.mesh.load.nominal.pressure_angle_rad;
         let turned: Vec<usize> = (0..stages.pairs[0].cycle.points_per_gear_revolution)
@@ -93,7 +93,7 @@ fn a_displacement_does_not_know_of_the_longer_cycle() {
 // The grid of the cycle follows the nominal sampling rate, not the higher actual one.
 #[test]
 fn the_fine_grid_follows_the_nominal_rate() {
-    let stages = stages(&published([40, 41], 100.0, MissingTooth)).unwrap();
+    let stages = stages(published([40, 41], 100.0, MissingTooth)).unwrap();
     assert!((1.0 / stages.pairs[0].cycle.fine_step_rev - 1_066_000.0).abs() < 1e-6);
     assert!(stages.time.sampling_rate_hz > 1_100_000.0);
 }
@@ -103,7 +103,7 @@ fn the_fine_grid_follows_the_nominal_rate() {
 fn a_destruction_begins_in_contact() {
     let line = DestructionLine::End(0.9);
     let destruction = ToothDestruction { start: -0.1, line, offset_mm: 0.01, noise_mm: 0.0 };
-    let stages = stages(&published([18, 35], 45.0, destruction)).unwrap();
+    let stages = stages(published([18, 35], 45.0, destruction)).unwrap();
     let first = stage_trace(&stages).get("fault_indices").unwrap().values[0];
     // Indices count from 1.
     assert_eq!(first as usize, stages.pairs[0].teeth.contact.initial_contact_index + 1);

@@ -57,7 +57,7 @@ fn spalls_shake_the_seat_as_in_an_independent_solution() {
         println!("{} {defect}: {found:.2} m/s², {expected}", of_rig.name());
         assert!((found / expected - 1.0).abs() < 0.15);
     }
-    let load_n = stages(&rig(GearboxRig::Phm2009Helical, "")).unwrap().bearings[0].1.static_load_n;
+    let load_n = stages(rig(GearboxRig::Phm2009Helical, "")).unwrap().bearings[0].1.static_load_n;
     assert!((load_n[0].hypot(load_n[1]) - 124.7).abs() < 0.1, "{load_n:?}");
     // A shaft that may slide along itself has the same loads across it.
     let mut sliding = rig(GearboxRig::Phm2009Spur, "");
@@ -154,7 +154,7 @@ fn wide_spalls_make_double_pulses() {
 /// A bearing with neither clearance nor a defect has the natural frequencies of a linear one of its stiffness.
 #[test]
 fn a_sound_bearing_has_the_frequencies_of_a_linear_one() {
-    let stages = stages(&rig(GearboxRig::Phm2009Helical, "clearance_um = 0.0")).unwrap();
+    let stages = stages(rig(GearboxRig::Phm2009Helical, "clearance_um = 0.0")).unwrap();
     let [[xx, _], [_, yy]] = stages.bearings[0].1.spring_n_per_m;
     let linear = |stiffness: f64| {
         let mut gearbox = rig(GearboxRig::Phm2009Helical, "");

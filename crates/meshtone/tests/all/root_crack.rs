@@ -210,7 +210,7 @@ fn scenario(model: Model, faults: Vec<Fault>) -> Scenario {
 #[test]
 fn back_flanks_are_as_stiff_as_those_of_sound_teeth() {
     let stiffness = |faults| {
-        let stages = stages(&scenario(Model::Contact, faults)).unwrap();
+        let stages = stages(scenario(Model::Contact, faults)).unwrap();
         mesh(&stages).law().back_stiffness_n_per_m
     };
     assert_eq!(stiffness(vec![Fault::on_first_gear_tooth(crack(3.0, None))]), stiffness(Vec::new()));
@@ -222,7 +222,7 @@ fn back_flanks_are_as_stiff_as_those_of_sound_teeth() {
 fn the_signal_of_teeth_that_part_turns_with_the_cracked_tooth() {
     let signal = |tooth: u32| {
         let fault = Fault::new(WheelName::Gear, tooth, crack(3.0, None));
-        let simulation = simulate(&scenario(Model::Contact, vec![fault])).unwrap();
+        let simulation = simulate(scenario(Model::Contact, vec![fault])).unwrap();
         let samples_per_pitch = simulation.stages.time.samples_per_pinion_revolution / 17;
         (simulation.channels["vertical_g"].to_vec(), samples_per_pitch)
     };

@@ -20,7 +20,7 @@ fn pair(model: Model, faults: Vec<Fault>) -> Scenario {
 }
 
 fn signal(model: Model, faults: Vec<Fault>) -> (Vec<f64>, usize) {
-    let Simulation { stages, channels, .. } = simulate(&pair(model, faults)).unwrap();
+    let Simulation { stages, channels, .. } = simulate(pair(model, faults)).unwrap();
     let per_pitch = stages.time.samples_per_pinion_revolution / 17;
     assert_eq!(channels["vertical_g"].len(), CYCLE * per_pitch);
     // From the first pair's start of contact on.
@@ -83,7 +83,7 @@ fn two_damaged_teeth_that_meet_show_at_the_hunting_tooth_rate() {
     };
 
     let stiffness =
-        all().map(|faults| mesh(&stages(&pair(Model::Linear, faults)).unwrap()).stiffness_n_per_mm(0..CYCLE));
+        all().map(|faults| mesh(&stages(pair(Model::Linear, faults)).unwrap()).stiffness_n_per_mm(0..CYCLE));
     let stiffness_excess = excess(&stiffness);
     let per_pitch = stiffness_excess.len() / CYCLE;
     let (mut here, mut elsewhere) = (0.0_f64, 0.0_f64);
@@ -140,7 +140,7 @@ fn neighbours_that_are_damaged_bear_together() {
         } else {
             vec![Fault::new(WheelName::Gear, teeth.to_vec(), crack(3.0))]
         };
-        mesh(&stages(&pair(Model::Linear, faults)).unwrap()).stiffness_n_per_mm(0..38)
+        mesh(&stages(pair(Model::Linear, faults)).unwrap()).stiffness_n_per_mm(0..38)
     };
     let (sound, first, second, both) = (of(&[]), of(&[6]), of(&[7]), of(&[6, 7]));
     let mut together = 0;
@@ -151,7 +151,7 @@ fn neighbours_that_are_damaged_bear_together() {
     }
     let share = together as f64 * 38.0 / sound.len() as f64;
     // As long as two pairs are on their path between the chamfers.
-    let expected = mesh(&stages(&pair(Model::Linear, Vec::new())).unwrap()).contact_ratio - 1.0;
+    let expected = mesh(&stages(pair(Model::Linear, Vec::new())).unwrap()).contact_ratio - 1.0;
     println!("together for {share:.3} pitches of {expected:.3}");
     assert!((share - expected).abs() < 0.03, "{share}");
     // Under `contact` too a tooth whose neighbour is damaged is softer where both bear.

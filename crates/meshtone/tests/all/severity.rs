@@ -165,7 +165,7 @@ fn severity_1_can_be_simulated() {
             for (damage, wheel) in
                 kinds.flat_map(|damage| WheelName::BOTH.map(|wheel| (damage.clone(), wheel)))
             {
-                let simulation = simulate(&with_severity(&healthy, &damage, wheel, 1.0));
+                let simulation = simulate(with_severity(&healthy, &damage, wheel, 1.0));
                 let simulation = simulation
                     .unwrap_or_else(|error| panic!("{} {teeth:?} {model:?}: {error}", damage.kind()));
                 assert!(simulation.channels["vertical_g"].iter().all(|x| x.is_finite()));
@@ -296,7 +296,7 @@ fn severities_of_sizes_by_hand() {
     near(severity(ThroughFace { pit }.into()), 0.3 / 0.9);
     let circle = PitCircle::Circle { x_mm: 57.5, y_mm: 3.66, radius_mm: 2.5 };
     let simulated =
-        stages(&healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(ThroughFace { pit: circle })]))
+        stages(healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(ThroughFace { pit: circle })]))
             .unwrap();
     let length_fraction = simulated.pairs[0].damaged[0].descriptions[0].numbers("length_fraction")[0];
     assert!((simulated.fault_severities[0] - length_fraction / 0.9).abs() < 0.01);

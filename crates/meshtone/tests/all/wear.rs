@@ -181,7 +181,7 @@ fn scenario(model: Model, pinion_speed_hz: f64, din_grade: u8, faults: Vec<Fault
 #[test]
 fn wear_without_depth_is_none() {
     for model in [Model::Linear, Model::Contact] {
-        let of = |faults| stages(&scenario(model, 40.0, 0, faults)).unwrap();
+        let of = |faults| stages(scenario(model, 40.0, 0, faults)).unwrap();
         let (healthy, none) = (of(Vec::new()), of(all_worn(0.0, 0.0)));
         let stiffness =
             mesh(&none).stiffness_n_per_mm(0..38).into_iter().zip(mesh(&healthy).stiffness_n_per_mm(0..38));
@@ -311,7 +311,7 @@ fn worn_teeth_may_have_other_damage() {
     for other in others {
         let other = Fault::new(WheelName::Gear, 3, other);
         let of = |faults: Vec<Fault>| {
-            let stages = stages(&scenario(Model::Linear, 40.0, 0, faults)).unwrap();
+            let stages = stages(scenario(Model::Linear, 40.0, 0, faults)).unwrap();
             let of_third =
                 stages.pairs[0].damaged.iter().find(|tooth| tooth.teeth.contains(&2)).unwrap().clone();
             (of_third, stages.pairs[0].damaged.len(), mesh(&stages).stiffness_n_per_mm(0..38))

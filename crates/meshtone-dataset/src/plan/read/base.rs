@@ -32,11 +32,7 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
     };
     // Also of one that is written in the plan: it may name files.
     reading.files.push(PlanFile { name: PlanFile::NAMES[1], text: scenario.to_toml() });
-    let ignored = match &scenario {
-        ScenarioForm::Pair(pair) => pair.ignored_by_model(),
-        _ => Vec::new(),
-    };
-    if let Some(ignored) = ignored.into_iter().next() {
+    if let Some(ignored) = scenario.ignored_by_model().into_iter().next() {
         return Err(TomlError::new(format!("{KEY}.{}", ignored.key), "", ignored.message));
     }
     if scenario.fault_count() > 0 {

@@ -1,6 +1,6 @@
 //! The table `[keep]`.
 
-use meshtone::scenario::{ScenarioForm, Sensor};
+use meshtone::scenario::{ScenarioForm, Sensor, WheelName};
 use meshtone::sensor::{Channel, ChannelKind};
 use meshtone::signal::GearTrain;
 use meshtone_io::channel_name::{accelerations, read_channel};
@@ -46,7 +46,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &ScenarioForm, tuned: Option<&Tu
         Ok(chosen)
     })?;
     let duration_s = table.read_optional("duration_s", |value| over_zero(value, "must be more than 0 s"))?;
-    let of_tuned = || tuned.map(|tuned| AveragedWheels::One(Wheel::OfPair(tuned.wheel)));
+    let of_tuned = || tuned.map(|tuned| AveragedWheels::One(tuned.wheel.into()));
     let wheel = table.read_optional("wheel", |value| wheels(value, base))?.or_else(of_tuned);
     let wheel = wheel.unwrap_or_else(|| default_wheels(base));
     // The meshes of all wheels on a shaft are taken away from the average over its revolutions.
@@ -135,7 +135,7 @@ fn wheels(value: &TomlValue<'_>, base: &ScenarioForm) -> ReadResult<AveragedWhee
 fn default_wheels(base: &ScenarioForm) -> AveragedWheels {
     match base {
         ScenarioForm::Gearbox(_) => AveragedWheels::Each(Wheel::all(base)),
-        _ => AveragedWheels::One(Wheel::OfPair(Default::default())),
+        _ => AveragedWheels::One(WheelName::default().into()),
     }
 }
 
@@ -186,7 +186,7 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     for (key, same) in [
         ("sampling_rate_hz", keep.sampling_rate_hz == tuned.sampling_rate_hz),
         ("analysed", keep.analysed == tuned.channel),
-        ("wheel", keep.wheel == AveragedWheels::One(Wheel::OfPair(tuned.wheel))),
+        ("wheel", keep.wheel == AveragedWheels::One(tuned.wheel.into())),
         ("sidebands", keep.sidebands == tuned.sidebands),
         ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
         ("duration_s", keep.duration_s.is_none()),

@@ -183,10 +183,7 @@ pub fn estimate_path(
 
 /// (S/s) The sampling rate that a scenario states.
 fn nominal_rate_hz(scenario: &ScenarioForm) -> f64 {
-    match scenario {
-        ScenarioForm::Pair(scenario) => scenario.solver.sampling_rate_hz,
-        ScenarioForm::Gearbox(gearbox) => gearbox.solver.settings.sampling_rate_hz,
-    }
+    scenario.solver().sampling_rate_hz
 }
 
 /// Refuses a pair of which every draw is the same, or whose sensor shows forces.
