@@ -35,7 +35,10 @@ pub fn export(form: &str, scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> 
     };
     let text = |ending, media_type, text: String| Exported { ending, media_type, bytes: text.into_bytes() };
     match form {
-        "toml" => Ok(text("toml", "application/toml", scenario.to_toml())),
+        "toml" => {
+            let file = format!("# Made by {}.\n{}", meshtone::made_by(), scenario.to_toml());
+            Ok(text("toml", "application/toml", file))
+        }
         "python" => Ok(text("py", "text/x-python", python(scenario))),
         "svg" => {
             let simulation = simulated()?;

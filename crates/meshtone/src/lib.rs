@@ -73,6 +73,15 @@ mod stiffness;
 /// the program: what is kept of an older one, as a data set that is continued or a set of reference simulations, is made anew.
 pub const PHYSICS_VERSION: u32 = 3;
 
+/// The program and the numbers by which a file was made: what a scenario file that is written out and a data card say.
+///
+/// ```
+/// assert!(meshtone::made_by().starts_with("Meshtone 0."));
+/// ```
+pub fn made_by() -> String {
+    format!("Meshtone {}, physics version {PHYSICS_VERSION}", env!("CARGO_PKG_VERSION"))
+}
+
 pub use error::Error;
 pub use simd::InstructionSet;
 #[cfg(feature = "internals")]
