@@ -286,6 +286,9 @@ impl Summary {
 
     /// Sums up a simulation of a gearbox.
     ///
+    /// Each list has the order of the scenario file, and each entry is made of what the stages found of its part and of the signals of that
+    /// part. Averages are left to [`TrainRecording`](meshtone::signal::TrainRecording): a train has one for every wheel.
+    ///
     /// # Arguments
     /// * `simulation`, `run`, `warnings` - as for [`Self::of_pair`]
     pub fn of_gearbox(
