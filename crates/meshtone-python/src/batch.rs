@@ -74,15 +74,19 @@ fn signals<'py>(
     names: &[String],
     result: Result<ObservedSignals, meshtone::Error>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (signals, warnings) = match result {
-        Ok(observed) => (observed.signals, observed.observation.warnings),
+    let (signals, observation) = match result {
+        Ok(observed) => (observed.signals, observed.observation),
         Err(error) => return Ok(simulation_error(&error).into_value(py).into_bound(py).into_any()),
     };
     let all = PyDict::new(py);
     all.set_item("sampling_rate_hz", signals.sampling_rate_hz)?;
     all.set_item("start_s", signals.start_s)?;
-    let (messages, codes): (Vec<_>, Vec<_>) =
-        warnings.iter().map(|warning| (warning.to_string(), warning.kind.code())).unzip();
+    let alone = observation.stepped_alone.map(|reason| {
+        let message = format!("stepped alone, which takes several times as long as side by side: {reason}");
+        (message, "stepped-alone")
+    });
+    let warnings = observation.warnings.iter().map(|warning| (warning.to_string(), warning.kind.code()));
+    let (messages, codes): (Vec<_>, Vec<_>) = warnings.chain(alone).unzip();
     all.set_item("warnings", messages)?;
     all.set_item("warning_codes", codes)?;
     for (name, channel) in names.iter().zip(signals.channels) {

@@ -9,7 +9,7 @@ use crate::machine::{ClosedMesh, DecayingMode, Modes, SupportMode, Train, WheelB
 use crate::mesh::{Forcing, Mesh, MeshCurve, PairDeviations};
 use crate::published::{self, Published};
 use crate::simd::InstructionSet;
-use crate::solver::{InitialMotion, ModalMachine, Output, Problem, Recorder, integrate};
+use crate::solver::{InitialMotion, ModalMachine, Output, Problem, Recorder, SteppedAlone, integrate};
 use crate::trace_fields::Trace;
 use crate::wheel::WheelName;
 
@@ -185,15 +185,25 @@ impl Stages {
         result.map_err(|diverged| self.divergence(diverged))
     }
 
-    /// The simulation as it is solved side by side with others; none where it is solved alone: under the published model,
-    /// and machines of several meshes.
+    /// The simulation as it is solved side by side with others.
     ///
     /// # Arguments
     /// * `outputs` - what is read off the solution, of the kept samples
-    pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Option<Problem<'a>> {
-        let (train, modes) = self.train()?;
+    ///
+    /// # Errors
+    /// It is solved alone, with the reason.
+    pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Result<Problem<'a>, SteppedAlone> {
+        let (train, modes) = self.train().ok_or(SteppedAlone::PublishedModel)?;
         let problem = self.problem(train, modes, outputs, self.time.first_kept_sample);
-        problem.fits_a_lane().then_some(problem)
+        problem.stepped_alone().map_or(Ok(problem), Err)
+    }
+
+    /// Why a batch steps the simulation alone, which takes several times as long; none where it steps it side by side with others.
+    pub fn stepped_alone(&self) -> Option<SteppedAlone> {
+        match self.train() {
+            Some((train, modes)) => SteppedAlone::of(&self.modal_machine(train, modes), self.meshes.iter()),
+            None => Some(SteppedAlone::PublishedModel),
+        }
     }
 
     /// The simulation as the solver sees it.
