@@ -916,6 +916,7 @@ def simulate_many(
     results = _core.simulate_many(native, list(channels), most, raises, ask)
     if raises:
         _raise_first(results)
+    _warn_of_stepped_alone([result.pop("stepped_alone") for result in results if isinstance(result, dict)])
     made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
     _warn_of_many([result for result in made if isinstance(result, Signals)])
     if rate_hz is None:
@@ -929,6 +930,14 @@ def _raise_first(results: Sequence[dict[str, Any] | ValueError]) -> None:
     for index, result in enumerate(results):
         if isinstance(result, ValueError):
             raise ValueError(f"scenarios[{index}]: {result}") from result
+
+
+def _warn_of_stepped_alone(reasons: list[str | None]) -> None:
+    """One warning of all simulations of a batch that are not stepped side by side with others."""
+    alone = [reason for reason in reasons if reason is not None]
+    if len(reasons) > 1 and alone:
+        of = f"{len(alone)} of {len(reasons)} simulations"
+        warn([f"{of} were stepped alone, which takes several times as long as side by side: {alone[0]}"], ["stepped-alone"])
 
 
 def _warn_of_rate(rate_hz: float, scenarios: Sequence[Scenario]) -> None:

@@ -69,8 +69,8 @@ fn head(set: &Finished) -> String {
     };
     let ([plan, scenario, ..], made_by) = (PlanFile::NAMES, meshtone::made_by());
     format!(
-        "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
-         {made_by} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\
+        "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made from \
+         `{plan}` by {made_by}, by which the plan makes the same bytes again; the base scenario is `{scenario}`.\n\n\
          **Licence of the data: {}.** Cite as: {}.\n\n\
          ![Examples of each class, distributions of the keys, indicators by class]({})\n\n",
         about.licence,

@@ -81,12 +81,9 @@ fn signals<'py>(
     let all = PyDict::new(py);
     all.set_item("sampling_rate_hz", signals.sampling_rate_hz)?;
     all.set_item("start_s", signals.start_s)?;
-    let alone = observation.stepped_alone.map(|reason| {
-        let message = format!("stepped alone, which takes several times as long as side by side: {reason}");
-        (message, "stepped-alone")
-    });
+    all.set_item("stepped_alone", observation.stepped_alone.map(|reason| reason.to_string()))?;
     let warnings = observation.warnings.iter().map(|warning| (warning.to_string(), warning.kind.code()));
-    let (messages, codes): (Vec<_>, Vec<_>) = warnings.chain(alone).unzip();
+    let (messages, codes): (Vec<_>, Vec<_>) = warnings.unzip();
     all.set_item("warnings", messages)?;
     all.set_item("warning_codes", codes)?;
     for (name, channel) in names.iter().zip(signals.channels) {

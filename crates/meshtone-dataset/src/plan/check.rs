@@ -13,6 +13,7 @@ use super::{
 use crate::draw::{DrawnRecord, NOISE_KEYS, Sampler, is_of_plan};
 use crate::record::Turning;
 use crate::shard::FailedRecord;
+use crate::words::counted;
 
 /// Largest number of records that are drawn to check a plan.
 const DRAWN: u64 = 5_000;
@@ -209,7 +210,7 @@ impl Plan {
 
 /// A warning about pairs that a batch steps alone, where it steps most side by side.
 ///
-/// The first records tell, the whole stages of each of which are made: as many as a plan has classes, and no more than some.
+/// The first records tell, the whole stages of each of which are made: twice as many as a plan has classes, and no more than some.
 fn stepped_alone(plan: &Plan) -> Option<String> {
     let sampler = Sampler::new(&plan.content).ok()?;
     let reason = |index: u64| {
@@ -222,7 +223,8 @@ fn stepped_alone(plan: &Plan) -> Option<String> {
     let reasons: Vec<SteppedAlone> = (0..looked_at).filter_map(reason).collect();
     let first = reasons.first()?;
     Some(format!(
-        "{} of the first {looked_at} records are simulated one by one, which takes several times as long, for example because {first}",
+        "of the first {}, {} cannot be simulated side by side with others, which takes several times as long: {first}",
+        counted(looked_at, "record"),
         reasons.len()
     ))
 }

@@ -368,7 +368,7 @@ fn doubtful_plans_are_warned_of() {
         plan(&FAST.replacen("face_width_mm = 15.0", "face_width_mm = 15.0\nlead_crowning_um = 5.0", 1))
             .warnings();
     assert!(
-        crowned.len() == 1 && crowned[0].contains("one by one") && crowned[0].contains("slices"),
+        crowned.len() == 1 && crowned[0].contains("side by side") && crowned[0].contains("slices"),
         "{crowned:?}"
     );
 }

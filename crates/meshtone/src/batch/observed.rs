@@ -51,7 +51,7 @@ pub struct ObservedSignals {
 pub struct Observation {
     /// What deserves attention: of the scenario and its stages, then of the signals.
     pub warnings: Vec<ScenarioWarning>,
-    /// Why the batch stepped the simulation alone, which takes several times as long; none where it stepped it side by side with others.
+    /// Why the simulation cannot be stepped side by side with others, so that it takes several times as long; none where it can.
     pub stepped_alone: Option<SteppedAlone>,
     /// (-) Part of the kept time in which no teeth touch.
     pub apart_fraction: f64,

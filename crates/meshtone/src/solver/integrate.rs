@@ -131,16 +131,6 @@ pub enum SteppedAlone {
 }
 
 impl SteppedAlone {
-    /// All of its values.
-    pub const ALL: [Self; 6] = [
-        Self::PublishedModel,
-        Self::SeveralMeshes,
-        Self::RollingBearings,
-        Self::SlicedFace,
-        Self::ManyPairs,
-        Self::ManyModes,
-    ];
-
     /// The reason of a machine around some meshes; none where it is stepped side by side with others.
     pub(crate) fn of<'m>(
         machine: &ModalMachine,
@@ -170,7 +160,9 @@ impl fmt::Display for SteppedAlone {
             Self::RollingBearings => formatter.write_str("it has rolling bearings"),
             Self::SlicedFace => formatter.write_str("its face is cut into slices"),
             Self::ManyPairs => write!(formatter, "more than {MOST_PAIRS} pairs of its teeth overlap"),
-            Self::ManyModes => write!(formatter, "it has more than {MOST_MODES} modes"),
+            Self::ManyModes => {
+                write!(formatter, "it has more than {MOST_MODES} modes, or such that follow as at rest")
+            }
         }
     }
 }
@@ -398,12 +390,16 @@ mod tests {
         let [result] = of_size([problem()], instructions, vec![&mut side_by_side]);
         result.unwrap();
         coupled::integrate(problem(), instructions, &mut alone).unwrap();
+        assert_eq!((side_by_side.0.len(), alone.0.len()), (outputs.len(), outputs.len()), "{name}");
         for (number, (side_by_side, alone)) in side_by_side.0.iter().zip(&alone.0).enumerate() {
             let largest =
                 |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, x: f64| x.abs().max(most));
             let most = largest(&mut alone.iter().copied());
             let difference = largest(&mut side_by_side.iter().zip(alone).map(|(a, b)| a - b));
-            assert!(side_by_side.len() == alone.len() && most > 0.0 || number == 2, "{name}");
+            assert_eq!(side_by_side.len(), alone.len(), "{name}, output {number}");
+            assert!(side_by_side.iter().all(|value| value.is_finite()), "{name}, output {number}");
+            // Spur wheels do not move along their shafts.
+            assert!(most > 0.0 || number == 2, "{name}, output {number}");
             assert!(difference <= 1e-12 * most, "{name}, output {number}: {difference:e} of {most}");
         }
     }

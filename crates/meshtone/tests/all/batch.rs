@@ -223,7 +223,7 @@ fn the_same_bits_alone_in_any_lane_and_any_thread_with_unbalance_and_helical_tee
     expect_the_same_bits(scenarios);
 }
 
-/// What cannot be stepped side by side says why, and is stepped alone among others.
+/// What cannot be stepped side by side says why, by itself and in a batch.
 #[test]
 fn what_is_stepped_alone_has_a_reason() {
     let reason = |scenario: &Scenario| stages(scenario).unwrap().stepped_alone();

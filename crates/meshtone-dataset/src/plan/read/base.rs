@@ -31,10 +31,9 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
         file.scenario
     };
     // Also of one that is written in the plan: it may name files.
-    reading.files.push(PlanFile {
-        name: PlanFile::NAMES[1],
-        text: format!("# Made by {}.\n{}", meshtone::made_by(), scenario.to_toml()),
-    });
+    reading
+        .files
+        .push(PlanFile { name: PlanFile::NAMES[1], text: meshtone::written_out(&scenario.to_toml()) });
     let ignored = match &scenario {
         ScenarioForm::Pair(pair) => pair.ignored_by_model(),
         _ => Vec::new(),
