@@ -8,7 +8,7 @@ use std::time::Duration;
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use meshtone::scenario::{BearingKind, Gearbox, gearbox_template};
-use meshtone::{GearboxSimulation, StepJudgement, gearbox_stages, simulate_gearbox, simulate_gearboxes};
+use meshtone::{Simulation, StepJudgement, stages};
 
 /// Time that this thread had the processor.
 struct ProcessorTime(WallTime);
@@ -54,7 +54,7 @@ fn two_stages(seed: u64) -> Gearbox {
 }
 
 /// Number of the warnings that a user gets.
-fn warnings(simulation: &GearboxSimulation, judgement: StepJudgement) -> usize {
+fn warnings(simulation: &Simulation, judgement: StepJudgement) -> usize {
     simulation.stages.warnings().len() + simulation.warnings_of_signals(judgement).len()
 }
 
@@ -63,19 +63,19 @@ fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
     let mut group = criterion.benchmark_group("gearbox/two stages");
     group.sample_size(10);
     let gearbox = two_stages(1);
-    group.bench_function("stages", |bencher| bencher.iter(|| gearbox_stages(black_box(&gearbox))));
-    let stages = gearbox_stages(&gearbox).expect("the template is valid");
+    group.bench_function("stages", |bencher| bencher.iter(|| stages(black_box(&gearbox))));
+    let stages = stages(&gearbox).expect("the template is valid");
     group.bench_function("time loop", |bencher| bencher.iter(|| black_box(&stages).clone().simulate()));
     let mut with_ball_bearing = gearbox.clone();
     with_ball_bearing.bearings[0].kind = BearingKind::Ball;
     with_ball_bearing.bearings[0].name = Some("ER-10K".to_owned());
-    let with_ball_bearing = gearbox_stages(&with_ball_bearing).expect("the bearing is valid");
+    let with_ball_bearing = stages(&with_ball_bearing).expect("the bearing is valid");
     group.bench_function("time loop, one ball bearing", |bencher| {
         bencher.iter(|| black_box(&with_ball_bearing).clone().simulate());
     });
     group.bench_function("alone", |bencher| {
         bencher.iter(|| {
-            let simulation = simulate_gearbox(black_box(&gearbox)).expect("the template is valid");
+            let simulation = meshtone::simulate(black_box(&gearbox)).expect("the template is valid");
             warnings(&simulation, StepJudgement::Repeated)
         });
     });

@@ -13,7 +13,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::fs;
 
-use meshtone::GearboxSimulation;
+use meshtone::Simulation;
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{Bearing, BearingDefect, BearingKind, DefectPlace, Gearbox, ScenarioForm};
 use meshtone::signal::{
@@ -142,7 +142,7 @@ struct Simulated {
     drawn: Drawn,
     gearbox: Gearbox,
     form: ScenarioForm,
-    simulation: GearboxSimulation,
+    simulation: Simulation,
 }
 
 impl Simulated {
@@ -163,7 +163,7 @@ impl Simulated {
         if let Some((bearing, race, size)) = defect {
             gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
         }
-        let Ok(simulation) = meshtone::simulate_gearbox(&gearbox) else { return Ok(None) };
+        let Ok(simulation) = meshtone::simulate(&gearbox) else { return Ok(None) };
         let form = ScenarioForm::Gearbox(gearbox.clone());
         Ok(Some(Self { drawn, gearbox, form, simulation }))
     }

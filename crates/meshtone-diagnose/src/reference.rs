@@ -10,7 +10,7 @@ use meshtone::signal::{
     SynchronousAverage, TrainRecording, TrainTurning, TrainWheel, synchronous_average,
 };
 use meshtone::wheel::WheelName;
-use meshtone::{Error, GearboxSimulation, Stages};
+use meshtone::{Error, Simulation, Stages};
 use meshtone_learn::{WheelLines, separations};
 
 use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
@@ -97,7 +97,7 @@ pub fn build_reference(
             simulate_many(pairs, &keep, control, take);
         }
         ScenarioForm::Gearbox(_) => {
-            let keep = |_: usize, simulation: GearboxSimulation| averages(&simulation, &prior.train);
+            let keep = |_: usize, simulation: Simulation| averages(&simulation, &prior.train);
             simulate_many_gearboxes(gearboxes, &keep, control, take);
         }
     }
@@ -142,7 +142,7 @@ impl Keep for KeepAverages {
     fn keep(&self, _: usize, stages: Stages, recorder: SignalRecorder) -> Self::Kept {
         let Signals { start_s, channels, .. } = recorder.finish(&stages);
         let signal: Vec<f64> = channels.into_iter().flatten().map(f64::from).collect();
-        let shafts = SimulatedShafts::new(&stages.scenario, start_s, signal.len());
+        let shafts = SimulatedShafts::of_stages(&stages, start_s, signal.len());
         let average = |shaft: WheelName| shafts.average(&signal, shaft, &ChainSettings::default());
         WheelName::BOTH.into_iter().map(average).collect()
     }
@@ -155,14 +155,13 @@ const REPEATED: usize = 3;
 ///
 /// Where the simulation is one cycle, after which the same teeth meet again, it is repeated and averaged over whole cycles: then the lines of
 /// each shaft are free of the others'.
-fn averages(simulation: &GearboxSimulation, train: &GearTrain) -> Averages {
-    let GearboxSimulation { stages, channels, .. } = simulation;
+fn averages(simulation: &Simulation, train: &GearTrain) -> Averages {
+    let Simulation { stages, channels, .. } = simulation;
     let first = channels.signals.first().map_or(&[][..], |signal| &signal.values);
     let cycle = train.revolutions_of_a_cycle(train.input());
     let is_cycle = stages.is_steady() && first.len() == cycle * stages.time.samples_per_pinion_revolution;
     let signal = if is_cycle { first.repeat(REPEATED) } else { first.to_vec() };
-    let form = ScenarioForm::Gearbox(stages.gearbox.clone());
-    let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len())?;
+    let turning = TrainTurning::of_simulated(&stages.scenario, channels.start_s, signal.len())?;
     let recording = TrainRecording {
         signal: &signal,
         sampling_rate_hz: channels.sampling_rate_hz,
@@ -199,7 +198,7 @@ mod tests {
         let settled = cycle * solver.settle_fraction / (1.0 - solver.settle_fraction);
         solver.pinion_revolutions = Some(5.0 * cycle);
         solver.settle_fraction = settled / (settled + 5.0 * cycle);
-        let simulation = meshtone::simulate_gearbox(&gearbox).unwrap();
+        let simulation = meshtone::simulate(&gearbox).unwrap();
         let channels = &simulation.channels;
         let signal = &channels.signals[0].values;
         let form = ScenarioForm::Gearbox(gearbox);

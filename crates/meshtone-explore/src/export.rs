@@ -39,14 +39,14 @@ pub fn export(form: &str, scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> 
         "python" => Ok(text("py", "text/x-python", python(scenario))),
         "svg" => {
             let simulation = simulated()?;
-            let drawn = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels);
+            let drawn = meshtone_plot::panel::draw(&simulation);
             let figure = drawn.map_err(|error| Refusal::unfit(error.to_string()))?;
             let run = RunIdentity::of(scenario).to_string();
             Ok(text("svg", "image/svg+xml", figure.of_run(&run).svg().to_owned()))
         }
         "parquet" => {
             let mut bytes = Vec::new();
-            SignalTable::of_pair(scenario, &simulated()?.channels)
+            SignalTable::of_scenario(scenario, &simulated()?.channels)
                 .write_parquet(&mut bytes)
                 .map_err(|error| Refusal::unfit(format!("the signals cannot be written: {error}")))?;
             Ok(Exported { ending: "parquet", media_type: "application/vnd.apache.parquet", bytes })

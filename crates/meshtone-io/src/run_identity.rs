@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::ScenarioForm;
 
 /// What every file of a run carries, so that files of different runs can be distinguished.
 ///
@@ -37,8 +37,8 @@ impl RunIdentity {
     ///
     /// # Arguments
     /// * `scenario` - what is simulated, as the user asked for it
-    pub fn of(scenario: &Scenario) -> Self {
-        Self::of_toml(&scenario.to_toml())
+    pub fn of(scenario: impl Into<ScenarioForm>) -> Self {
+        Self::of_toml(&scenario.into().to_toml())
     }
 
     /// The identity of the run of a scenario or a gearbox that is given as a text.

@@ -18,8 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let with_svg = std::env::args().any(|argument| argument == "--svg");
     for (name, scenario) in support::gallery() {
         let simulation = meshtone::simulate(&scenario)?;
-        let (panel, drawn) =
-            quickest(|| meshtone_plot::panel::draw(&simulation.stages, &simulation.channels))?;
+        let (panel, drawn) = quickest(|| meshtone_plot::panel::draw(&simulation))?;
         let (png, rasterised) = quickest(|| panel.png())?;
         println!(
             "{name}: SVG in {:.1} ms, PNG from it in {:.1} ms; SVG {} kB, PNG {} kB",

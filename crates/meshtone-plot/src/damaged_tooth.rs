@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use meshtone::Stages;
 use meshtone::damage::{Fault, ToothPart};
-use meshtone::wheel::{Gears, Teeth, WheelName};
+use meshtone::wheel::{Gears, WheelName};
+use meshtone::{MeshedPair, Stages};
 
 use crate::drawing::{Axes, Canvas, Fill, colour};
 
@@ -62,21 +62,17 @@ impl DamagedTooth {
         standing_out(on_teeth.into_iter().map(of_tooth).collect(), teeth)
     }
 
-    /// The teeth of a wheel that a simulation has damaged, each once and in the order of their numbers.
+    /// The teeth of a wheel of the first mesh that a simulation has damaged, each once and in the order of their numbers.
     ///
     /// # Arguments
     /// * `stages` - what was simulated
     /// * `wheel` - whose teeth
     pub fn of_stages(stages: &Stages, wheel: WheelName) -> Vec<Self> {
-        Self::of_teeth(&stages.teeth, &stages.damaged, wheel)
+        Self::of_pair(&stages.pairs[0], wheel)
     }
 
-    /// The same of a pair of wheels.
-    pub(crate) fn of_teeth(
-        teeth: &Teeth,
-        damaged: &[meshtone::damage::DamagedTooth],
-        wheel: WheelName,
-    ) -> Vec<Self> {
+    /// The same of two wheels in mesh.
+    pub(crate) fn of_pair(MeshedPair { teeth, damaged, .. }: &MeshedPair, wheel: WheelName) -> Vec<Self> {
         let contact_pitches = teeth.contact_span_pitches();
         let of_wheel = damaged.iter().filter(|alike| alike.wheel == wheel).enumerate();
         let mut damaged: Vec<(Self, usize)> = of_wheel

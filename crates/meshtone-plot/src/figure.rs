@@ -60,7 +60,7 @@ impl Figure {
     /// let mut scenario = Scenario::new(GearPair::example());
     /// scenario.solver.sampling_rate_hz = 2e4;
     /// let simulation = meshtone::simulate(&scenario)?;
-    /// let panel = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels)?.of_run("00ff");
+    /// let panel = meshtone_plot::panel::draw(&simulation)?.of_run("00ff");
     /// assert!(panel.svg().contains("<metadata>meshtone.run: 00ff</metadata>"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use meshtone::StepJudgement;
+use meshtone::batch::{Control, simulate_many_gearboxes};
 use meshtone::scenario::{self, GearboxRig, ScenarioForm, ScenarioWarning};
 use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
@@ -84,7 +85,7 @@ impl Gearbox {
 /// A simulation of a gearbox.
 #[pyclass(frozen, module = "meshtone._core")]
 pub struct GearboxSimulation {
-    simulation: meshtone::GearboxSimulation,
+    simulation: meshtone::Simulation,
     /// The signals by their names.
     #[pyo3(get)]
     channels: Py<PyDict>,
@@ -100,7 +101,7 @@ pub struct GearboxSimulation {
 impl GearboxSimulation {
     fn new(
         py: Python<'_>,
-        simulation: meshtone::GearboxSimulation,
+        simulation: meshtone::Simulation,
         all_warnings: Vec<ScenarioWarning>,
     ) -> PyResult<Self> {
         Ok(Self {
@@ -129,9 +130,9 @@ impl GearboxSimulation {
 
     /// The content of summary.json.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let toml = self.simulation.stages.gearbox.to_toml();
+        let simulation = &self.simulation;
         let summary = py.detach(|| {
-            Summary::of_gearbox(&self.simulation, RunIdentity::of_toml(&toml), &self.all_warnings)
+            Summary::new(simulation, RunIdentity::of(&simulation.stages.scenario), &self.all_warnings)
         });
         let json = serde_json::to_string(&summary).map_err(value_error)?;
         Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
@@ -139,13 +140,13 @@ impl GearboxSimulation {
 
     /// Writes the signals in the format that the file's ending says.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let meshtone::GearboxSimulation { stages, channels, .. } = &self.simulation;
-        py.detach(|| write(&path, &SignalTable::of_gearbox(&stages.gearbox, channels)))
+        let meshtone::Simulation { stages, channels, .. } = &self.simulation;
+        py.detach(|| write(&path, &SignalTable::of_scenario(&stages.scenario, channels)))
     }
 
     /// Every stage's output by name.
     fn trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let trace = py.detach(|| meshtone::gearbox_trace(&self.simulation));
+        let trace = py.detach(|| meshtone::simulation_trace(&self.simulation));
         let named = trace.fields.into_iter().map(|entry| Ok((entry.name.clone(), field(py, entry)?)));
         named.collect::<PyResult<Vec<_>>>()?.into_py_dict(py)
     }
@@ -173,7 +174,7 @@ impl GearboxSimulation {
 #[pyfunction]
 pub fn simulate_gearbox(py: Python<'_>, gearbox: &Gearbox) -> PyResult<GearboxSimulation> {
     let simulated = py.detach(|| {
-        let stages = meshtone::gearbox_stages_within(&gearbox.0, memory::limit())?;
+        let stages = meshtone::stages_within(&gearbox.0, memory::limit())?;
         stages.simulate().map(|of| with_warnings(of, StepJudgement::Repeated))
     });
     let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
@@ -187,8 +188,11 @@ pub fn simulate_gearboxes<'py>(
     gearboxes: Vec<PyRef<'py, Gearbox>>,
 ) -> PyResult<Vec<Py<PyAny>>> {
     let gearboxes: Vec<scenario::Gearbox> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
-    let estimated = |of| with_warnings(of, StepJudgement::Estimated);
-    let results = py.detach(|| meshtone::simulate_gearboxes(&gearboxes, estimated));
+    let estimated = |_: usize, of| with_warnings(of, StepJudgement::Estimated);
+    let mut results = Vec::with_capacity(gearboxes.len());
+    py.detach(|| {
+        simulate_many_gearboxes(gearboxes, &estimated, &Control::default(), |_, result| results.push(result))
+    });
     let made = results.into_iter().map(|result| match result {
         Ok((simulation, warnings)) => {
             Ok(Py::new(py, GearboxSimulation::new(py, simulation, warnings)?)?.into_any())
@@ -200,9 +204,9 @@ pub fn simulate_gearboxes<'py>(
 
 /// A simulation with all its warnings.
 fn with_warnings(
-    simulation: meshtone::GearboxSimulation,
+    simulation: meshtone::Simulation,
     judgement: StepJudgement,
-) -> (meshtone::GearboxSimulation, Vec<ScenarioWarning>) {
+) -> (meshtone::Simulation, Vec<ScenarioWarning>) {
     let warnings = [simulation.stages.warnings(), simulation.warnings_of_signals(judgement)].concat();
     (simulation, warnings)
 }

@@ -32,7 +32,7 @@ pub fn write_signals(
     let [sampling_rate_hz, start_s] = rate_and_start;
     let channels = Channels::new(sampling_rate_hz, start_s, named.collect::<PyResult<Vec<_>>>()?);
     let table = match scenario {
-        Some(scenario) => SignalTable::of_pair(&scenario.0, &channels),
+        Some(scenario) => SignalTable::of_scenario(&scenario.0, &channels),
         None => SignalTable::without_scenario(&channels),
     };
     table.check_lengths().map_err(|error| value_error(error.to_string()))?;

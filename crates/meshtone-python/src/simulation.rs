@@ -7,7 +7,7 @@ use meshtone::scenario::ScenarioWarning;
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::SimulatedShafts;
 use meshtone::wheel::{WheelDeviations, WheelName};
-use meshtone::{Stages, Trace};
+use meshtone::{Stages, StepJudgement, Trace};
 use meshtone_io::memory;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -58,7 +58,7 @@ pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
     let simulated = py.detach(|| {
         let (stages, mut warnings) = meshtone::stages_and_warnings(&scenario.0, memory::limit())?;
         let simulation = stages.simulate()?;
-        warnings.extend(simulation.warnings_of_signals());
+        warnings.extend(simulation.warnings_of_signals(StepJudgement::Repeated));
         Ok((simulation, warnings))
     });
     let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
@@ -117,8 +117,9 @@ impl Simulation {
 impl Simulation {
     /// The simulated scenario.
     #[getter]
-    fn scenario(&self) -> Scenario {
-        Scenario(self.stages.scenario.clone())
+    fn scenario(&self) -> PyResult<Scenario> {
+        let pair = self.stages.scenario.pair().cloned().map(Scenario);
+        pair.ok_or_else(|| value_error("the simulation is of a gearbox"))
     }
 
     /// The fields of a trace that belong to the stages before the time loop.
@@ -171,7 +172,7 @@ impl Simulation {
 
     /// (mm) Profile of a wheel's tooth: x, y.
     fn tooth_profile_mm<'py>(&self, py: Python<'py>, wheel: &str) -> PyResult<[Array<'py>; 2]> {
-        let profile = self.stages.teeth.profile(wheel_name(wheel)?);
+        let profile = self.stages.pairs[0].teeth.profile(wheel_name(wheel)?);
         Ok([array(py, profile.x_mm.clone()), array(py, profile.y_mm.clone())])
     }
 
@@ -183,14 +184,14 @@ impl Simulation {
             let of_tooth = |tooth: &usize| (wheel, tooth + 1, flank.clone());
             alike.teeth.iter().map(of_tooth).collect::<Vec<_>>()
         };
-        self.stages.damaged.iter().flat_map(of_alike).collect()
+        self.stages.pairs[0].damaged.iter().flat_map(of_alike).collect()
     }
 
     /// What each damaged tooth has lost, damage by damage: wheel, number from 1, kind, what it takes of the tooth, first and last
     /// profile index, whether a part of the face is sound there, its sizes and a caption in words, (mm) outlines on the face as z and x, (mm) x and
     /// y of a crack's start and tip.
     fn damages<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let damages = self.stages.damaged.iter().flat_map(|alike| {
+        let damages = self.stages.pairs[0].damaged.iter().flat_map(|alike| {
             let each = alike
                 .teeth
                 .iter()
@@ -221,12 +222,12 @@ impl Simulation {
 
     /// (mm) Profile errors of both wheels, a column a tooth; none for ideal teeth.
     fn profile_errors_mm<'py>(&self, py: Python<'py>) -> PyResult<Option<BothWheels<'py>>> {
-        self.stages.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
+        self.stages.pairs[0].profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
     }
 
     /// (µm, rad) What both wheels have beside their profile errors, by the keys of a scenario.
     fn wheel_deviations(&self) -> Vec<(&'static str, Vec<f64>)> {
-        WheelDeviations::entries(&self.stages.wheel_deviations())
+        WheelDeviations::entries(&self.stages.wheel_deviations()[0])
     }
 }
 

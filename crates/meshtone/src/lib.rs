@@ -93,11 +93,7 @@ pub fn written_out(toml: &str) -> String {
 pub use error::Error;
 pub use simd::InstructionSet;
 #[cfg(feature = "internals")]
-pub use simulate::Equations;
-pub use simulate::{
-    GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages, gearbox_stages_within, simulate_gearbox,
-    simulate_gearboxes,
-};
-pub use simulate::{Simulation, StageTime, Stages, simulate, stages, stages_within};
-pub use trace::{Trace, TraceField, gearbox_trace, stage_trace, trace, trace_at};
+pub use simulate::{AssembledMachine, Equations};
+pub use simulate::{MeshedPair, Simulation, StageTime, Stages, simulate, stages, stages_within};
+pub use trace::{Trace, TraceField, simulation_trace, stage_trace, trace, trace_at, trace_of};
 pub use warnings::{Observer, StepJudgement, stages_and_warnings};

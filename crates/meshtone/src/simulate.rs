@@ -1,12 +1,15 @@
-//! The eight stages, in order.
+//! The eight stages, in order: layout, teeth, machine, static forces, wheels, meshes, modes and settling; then the time loop.
 
 mod curves;
 mod equations;
-mod gearbox;
+mod machine;
 mod measured;
-mod options;
+mod meshes;
 mod severities;
+mod wheels;
 
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::fmt::{self, Debug, Formatter};
 use std::num::NonZeroUsize;
 use std::time::Duration;
@@ -14,66 +17,56 @@ use std::time::Duration;
 use web_time::Instant;
 
 pub use equations::Equations;
-pub(crate) use gearbox::gearbox_stages_with;
-pub use gearbox::{
-    GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages, gearbox_stages_within, simulate_gearbox,
-    simulate_gearboxes,
-};
+pub use machine::AssembledMachine;
 use measured::WantedChannels;
-use options::MachineOptions;
+pub use wheels::MeshedPair;
+use wheels::{healthy_teeth, sound_pair};
 
-use crate::damage::{DamagedTooth, ToothPart, damaged_teeth};
+use crate::bearing::RollingBearing;
+use crate::damage::{DamagedTooth, ToothPart};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{DecayingMode, Machine, Modes, Train};
-use crate::mesh::{
-    Contact, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
-    place_on_face,
-};
-use crate::operation::{CycleGrid, Solver, TimeGrid};
-use crate::published::{self, Published};
-use crate::scenario::{MemoryLimit, Scenario};
-use crate::sensor::{Channels, ContactFigures, SignalSource};
+use crate::machine::{DecayingMode, KnownModes};
+use crate::mesh::{Contact, Mesh, Pairs};
+use crate::operation::{Motion, Solver, TimeGrid, TorqueHarmonic};
+use crate::published::Published;
+use crate::scenario::{GearboxLayout, MemoryLimit, Ripple, Scenario, ScenarioForm};
+use crate::sensor::{Channels, ContactFigures, Sensor, SignalSource};
 use crate::simd::InstructionSet;
-use crate::solver::{Diverged, Output, Recorder, StepCounts};
-use crate::wheel::quality::{deviations, profile_errors};
-use crate::wheel::{
-    Deviations, NamedGears, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth,
-};
+use crate::solver::{Diverged, ModalMachine, Output, Recorder, StepCounts};
+use crate::wheel::{Teeth, TipRelief, WheelDeviations, WheelName};
 
-/// Results of every stage before the time loop.
+/// Results of every stage before the time loop, of any form of scenario: a pair is a train with one mesh.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stages {
-    /// Stage 1: what is simulated. Keys that the model ignores are at their defaults; faults that were given by their severity
-    /// have its sizes beside it.
-    pub scenario: Scenario,
-    /// Division of time.
+    /// What is simulated. Keys that the model ignores are at their defaults; a pair's faults that were given by their severity have its
+    /// sizes beside it.
+    pub scenario: ScenarioForm,
+    /// How shafts, wheels and meshes stand and turn.
+    pub layout: GearboxLayout,
+    /// Division of time; a pinion revolution is one of the motor.
     pub time: TimeGrid,
-    /// Division of the mesh cycle.
-    pub cycle: CycleGrid,
-    /// Stage 2: healthy teeth and their contact.
-    pub teeth: Teeth,
-    /// Stage 3: profile errors; none for ideal teeth.
-    pub profile_errors: Option<ProfileErrors>,
-    /// Stage 3: run-out of the pinion and of the gear.
-    pub run_out: [RunOut; 2],
-    /// (µm) Stage 3: helix slope deviation of the pinion and of the gear over the face width.
-    pub helix_slope_um: [f64; 2],
-    /// Stage 4: the damaged teeth; none of a healthy pair.
-    pub damaged: Vec<DamagedTooth>,
-    /// (-) Stage 4: how severe each of the scenario's faults is, from 0 to 1.
-    pub fault_severities: Vec<f64>,
-    /// Stage 5: the meshes; none under the published model, which has one of its own.
+    /// What the stages before the mesh make of each mesh's wheels.
+    pub pairs: Vec<MeshedPair>,
+    /// The meshes, in the order of the scenario; none under the published model, which has one of its own.
     pub meshes: Vec<Mesh>,
-    /// Stage 6: the equations of motion, of a type that is public only for the project's own tests and benchmarks.
+    /// The rolling bearings: each with its number in the scenario.
+    pub bearings: Vec<(usize, RollingBearing)>,
+    /// The sensors, each with its name: those listed, or of a gearbox without any those on its bearings' seats.
+    pub sensors: Vec<Sensor>,
+    /// (-) How severe each of the scenario's faults is, from 0 to 1.
+    pub fault_severities: Vec<f64>,
+    /// The equations of motion, of a type that is public only for the project's own tests and benchmarks.
     #[cfg(feature = "internals")]
     #[doc(hidden)]
     pub equations: Equations,
     #[cfg(not(feature = "internals"))]
     pub(crate) equations: Equations,
+    /// The mode that is the slowest to decay with the meshes closed.
+    pub(crate) slowest_mode: DecayingMode,
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
-    /// Stage 1: what is doubtful by the scenario alone.
+    /// What is doubtful by the scenario alone.
     pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
     /// Most memory that the simulation may need, and one that repeats it.
     pub(crate) memory_limit: MemoryLimit,
@@ -92,15 +85,18 @@ pub struct StageTime {
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Simulation {
-    /// Stages 1 to 6.
+    /// Results of the stages.
     pub stages: Stages,
-    /// Stage 8: the kept signals.
+    /// The kept signals.
     pub channels: Channels,
+    /// Steps, iterations of Newton's method, most of them in a step, and steps in which a search along the line was needed; 0 where the
+    /// simulation was stepped side by side with others.
+    pub step_counts: [u64; 4],
     /// Time that each stage took, the time loop included.
     pub timings: Vec<StageTime>,
 }
 
-/// Simulates a scenario.
+/// Simulates a scenario, of one pair or of a gearbox.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
@@ -109,28 +105,33 @@ pub struct Simulation {
 /// A scenario that is not valid, a fault that does not fit the tooth, a motion that grows without bound.
 ///
 /// ```
-/// use meshtone::scenario::{GearPair, Scenario};
+/// use meshtone::scenario::{GearPair, Gearbox, Scenario, gearbox_template};
 ///
+/// let mean = |force: &[f64]| force.iter().sum::<f64>() / force.len() as f64;
 /// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let simulation = meshtone::simulate(&scenario)?;
-/// let force = &simulation.channels["mesh_force_n"];
-/// let mean = force.iter().sum::<f64>() / force.len() as f64;
-/// assert!((mean / 187.0 - 1.0).abs() < 0.01);
+/// assert!((mean(&simulation.channels["mesh_force_n"]) / 187.0 - 1.0).abs() < 0.01);
+///
+/// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
+/// gearbox.solver.settings.duration_s = Some(0.1);
+/// let simulation = meshtone::simulate(&gearbox)?;
+/// let static_force_n = simulation.stages.pairs[1].static_force_n;
+/// assert!((mean(&simulation.channels["force_n.z3-z4"]) / static_force_n - 1.0).abs() < 0.05);
 /// # Ok::<(), meshtone::Error>(())
 /// ```
-pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
+pub fn simulate(scenario: impl Into<ScenarioForm>) -> Result<Simulation, Error> {
     stages(scenario)?.simulate()
 }
 
-/// Runs stages 1 to 6: everything before the time loop.
+/// Runs every stage before the time loop.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
 ///
 /// # Errors
 /// A scenario that is not valid, or a fault that does not fit the tooth.
-pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
+pub fn stages(scenario: impl Into<ScenarioForm>) -> Result<Stages, ScenarioError> {
     stages_within(scenario, MemoryLimit::default())
 }
 
@@ -138,7 +139,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
-/// * `limit` - most memory that the simulation may need
+/// * `limit` - most memory that the simulation, and one that repeats it, may need
 ///
 /// # Errors
 /// Those of [`stages`].
@@ -151,122 +152,146 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed }).is_ok());
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed - 1 }).is_err());
 /// ```
-pub fn stages_within(scenario: &Scenario, limit: MemoryLimit) -> Result<Stages, ScenarioError> {
-    let clock = Clock::default();
-    let mut warnings = scenario.validate_within(limit)?;
-    warnings.extend(scenario.ignored_by_model());
-    let honoured = scenario.without_ignored_keys();
-    let mut stages = match MachineOptions::of(scenario.model) {
-        Some(options) => machine_stages(honoured, &options, clock)?,
-        None => published_stages(honoured, clock)?,
-    };
-    stages.warnings_of_scenario = warnings;
-    stages.memory_limit = limit;
-    let Stages { scenario: Scenario { faults, .. }, teeth, .. } = &mut stages;
-    let severities = faults.iter().map(|fault| fault.severity_on(teeth)).collect();
-    *faults = faults.iter().map(|fault| fault.with_sizes(teeth)).collect();
-    stages.fault_severities = severities;
-    stages.time.first_simulated_sample = stages.start_of_settling();
-    Ok(stages)
+pub fn stages_within(scenario: impl Into<ScenarioForm>, limit: MemoryLimit) -> Result<Stages, ScenarioError> {
+    stages_with(scenario.into(), limit, &KnownModes::default())
 }
 
-/// Stages 1 to 6 of a machine around one mesh. The models that have one differ in nothing but its options.
-fn machine_stages(
-    scenario: Scenario,
-    options: &MachineOptions,
-    mut clock: Clock,
+/// Does what [`stages_within`] does, with modes that are known already: the stages in their order, of which the published model has all
+/// but the first two for itself.
+pub(crate) fn stages_with(
+    scenario: ScenarioForm,
+    memory_limit: MemoryLimit,
+    known: &KnownModes,
 ) -> Result<Stages, ScenarioError> {
-    let (gears, rig) = (&scenario.gears, &scenario.rig);
-    let time = scenario.time_grid();
-    let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
+    let mut clock = Clock::default();
+    let mut warnings_of_scenario = scenario.validate_within(memory_limit)?;
+    warnings_of_scenario.extend(scenario.ignored_by_model());
+    let scenario = scenario.without_ignored_keys();
+    let layout = scenario.layout()?;
+    let mut time = scenario.time_grid();
     clock.lap("scenario");
-    let teeth = healthy_teeth(&scenario);
+    let teeth = healthy_teeth(scenario.model(), &layout);
     clock.lap("tooth profiles");
-    let Deviations { flanks: profile_errors, run_out, helix_slope_um } =
-        deviations(&scenario.quality, &teeth, scenario.seed);
-    clock.lap("profile errors");
-    let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
-    clock.lap("fault");
-    let train = Train::new(gears, rig, &teeth, options.supports);
-    let modes = (options.modes)(&train.machine, rig);
-    let mut stages = Stages {
-        time,
-        cycle,
-        teeth,
-        profile_errors,
-        run_out,
-        helix_slope_um,
-        damaged,
-        fault_severities: Vec::new(),
-        meshes: Vec::new(),
-        equations: Equations::Machine(Box::new(train), modes),
-        timings: Vec::new(),
-        warnings_of_scenario: Vec::new(),
-        memory_limit: MemoryLimit::default(),
-        scenario,
+    let parts = match scenario.pair() {
+        Some(pair) if !pair.model.has_meshes() => {
+            published_parts(pair, &scenario, &layout, &time, teeth, &mut clock)?
+        }
+        _ => machine_parts(&scenario, &layout, &time, teeth, known, &mut clock)?,
     };
-    clock.lap("equations of motion");
-    stages.meshes = stages.meshes_at(stages.points_per_pitch())?;
-    clock.lap("mesh stiffness");
-    stages.timings = clock.laps;
-    Ok(stages)
-}
-
-/// The same of the published model, which has a mesh and equations of motion of its own.
-fn published_stages(scenario: Scenario, mut clock: Clock) -> Result<Stages, ScenarioError> {
-    let time = scenario.time_grid();
-    clock.lap("scenario");
-    let teeth = healthy_teeth(&scenario);
-    clock.lap("tooth profiles");
-    let profile_errors = profile_errors(&scenario.quality, &teeth, scenario.seed);
-    clock.lap("profile errors");
-    let published = Published::new(&scenario, &time, &teeth, profile_errors.as_ref())?;
-    clock.lap("mesh stiffness");
+    let Parts { pairs, meshes, bearings, equations, slowest_mode } = parts;
+    let Solver { settle_tolerance, initial_velocity, .. } = scenario.solver();
+    // Only a steady motion that starts in equilibrium: what is left out is then a motion like the one that follows.
+    if scenario.model().has_meshes() && initial_velocity.is_none() && scenario.is_steady() {
+        time.first_simulated_sample = start_of_settling(&time, *settle_tolerance, &slowest_mode);
+    }
+    let severities = pairs
+        .iter()
+        .flat_map(|pair| pair.faults.iter().map(|(number, fault)| (*number, fault.severity_on(&pair.teeth))));
+    // A wheel in two meshes is damaged in both.
+    let severities: BTreeMap<usize, f64> = severities.collect();
     Ok(Stages {
-        cycle: published.mesh.grid,
-        damaged: published.damaged_tooth(&teeth).into_iter().collect(),
+        sensors: scenario.all_sensors(),
+        scenario: scenario.with_sizes(&pairs[0].teeth),
+        layout,
         time,
-        teeth,
-        profile_errors,
-        run_out: Default::default(),
-        helix_slope_um: [0.0; 2],
-        fault_severities: Vec::new(),
-        meshes: Vec::new(),
-        equations: Equations::Published(Box::new(published)),
+        pairs,
+        meshes,
+        bearings,
+        fault_severities: severities.into_values().collect(),
+        equations,
+        slowest_mode,
         timings: clock.laps,
-        warnings_of_scenario: Vec::new(),
-        memory_limit: MemoryLimit::default(),
-        scenario,
+        warnings_of_scenario,
+        memory_limit,
     })
 }
 
-/// The healthy teeth of a scenario's wheels.
-///
-/// # Arguments
-/// * `scenario` - with the keys that its model ignores at their defaults
-fn healthy_teeth(scenario: &Scenario) -> Teeth {
-    let Scenario { gears, rig, model, .. } = scenario;
-    let bore_radii_mm = [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm];
-    if model.has_meshes() { teeth(gears, bore_radii_mm) } else { published::teeth(gears, bore_radii_mm) }
+/// What a model makes of the teeth.
+struct Parts {
+    pairs: Vec<MeshedPair>,
+    meshes: Vec<Mesh>,
+    bearings: Vec<(usize, RollingBearing)>,
+    equations: Equations,
+    slowest_mode: DecayingMode,
 }
 
-/// The mesh, unless it can carry nothing, or has more pairs at once than a step looks at.
-fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
-    if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
-        return Err(ScenarioError::not_stiff(gears.foundation()));
+/// (Hz) Natural frequency above which modes of shafts of beams decay faster than those below.
+const HIGHEST_OF_SLOW_HZ: f64 = 2e3;
+
+/// The stages of a machine around meshes: the machine, which needs the wheels' base radii; the static forces, by which teeth are pressed
+/// together; the wheels with deviations and damage; the meshes with their tables; and the modes that are stepped.
+fn machine_parts(
+    scenario: &ScenarioForm,
+    layout: &GearboxLayout,
+    time: &TimeGrid,
+    teeth: Vec<Teeth>,
+    known: &KnownModes,
+    clock: &mut Clock,
+) -> Result<Parts, ScenarioError> {
+    let (machine, bearings) = machine::assembled(scenario, layout, &teeth, known)?;
+    let modal = machine.modal(scenario, &vec![0.0; teeth.len()]);
+    let driven_mm: Vec<f64> = teeth.iter().map(|teeth| teeth.gear.base_radius_mm).collect();
+    let forces_n = static_forces_n(Some(&modal), &driven_mm, scenario.operation().brake_torque_nm);
+    clock.lap("equations of motion");
+    let pairs: Vec<MeshedPair> = (teeth.into_iter().zip(forces_n).enumerate())
+        .map(|(mesh, (teeth, force_n))| {
+            sound_pair(scenario, layout, time, mesh, teeth, force_n).damaged(scenario, layout, mesh)
+        })
+        .collect::<Result<_, _>>()?;
+    clock.lap("profile errors and faults");
+    let meshes = meshes::meshes(scenario, layout, time, (&pairs, &machine), None)?;
+    clock.lap("mesh stiffness");
+    let face_reach_m: Vec<f64> = meshes.iter().map(Mesh::face_reach_m).collect();
+    let is_tilted = face_reach_m.iter().any(|reach_m| *reach_m > 0.0);
+    let modal = if is_tilted { machine.modal(scenario, &face_reach_m) } else { modal };
+    let closed: Vec<_> = meshes.iter().map(Mesh::closed).collect();
+    let (modal, highest_of_slow_hz) = match scenario.gearbox() {
+        Some(gearbox) => {
+            let highest_hz = gearbox.solver.highest_mode_hz(time.sampling_rate_hz);
+            (modal.up_to(TAU * highest_hz), HIGHEST_OF_SLOW_HZ)
+        }
+        None => (modal, f64::INFINITY),
+    };
+    let slowest_mode = modal.slowest_closed(&closed, TAU * highest_of_slow_hz);
+    clock.lap("settling");
+    let equations = Equations::Machine(Box::new(machine), Box::new(modal));
+    Ok(Parts { pairs, meshes, bearings, equations, slowest_mode })
+}
+
+/// The same of the published model, which has a mesh and equations of motion of its own.
+fn published_parts(
+    pair: &Scenario,
+    scenario: &ScenarioForm,
+    layout: &GearboxLayout,
+    time: &TimeGrid,
+    teeth: Vec<Teeth>,
+    clock: &mut Clock,
+) -> Result<Parts, ScenarioError> {
+    let forces_n = static_forces_n(None, &[teeth[0].gear.base_radius_mm], pair.operation.brake_torque_nm);
+    let sound = |(mesh, (teeth, force_n))| sound_pair(scenario, layout, time, mesh, teeth, force_n);
+    let mut pairs: Vec<MeshedPair> = teeth.into_iter().zip(forces_n).enumerate().map(sound).collect();
+    clock.lap("profile errors");
+    let MeshedPair { teeth, profile_errors, cycle, damaged, .. } = &mut pairs[0];
+    let published = Published::new(pair, time, teeth, profile_errors.as_ref())?;
+    (*cycle, *damaged) = (published.mesh.grid, published.damaged_tooth(teeth).into_iter().collect());
+    clock.lap("mesh stiffness");
+    let slowest_mode = published.slowest_mode();
+    let equations = Equations::Published(Box::new(published));
+    Ok(Parts { pairs, meshes: Vec::new(), bearings: Vec::new(), equations, slowest_mode })
+}
+
+/// (N) The forces along the lines of action that hold a torque of the brake: of one mesh by the driven wheel's base radius, of several by
+/// the balance of the shafts that turn freely.
+///
+/// # Arguments
+/// * `modal` - the machine in its modes
+/// * `driven_mm` - (mm) base radius of each mesh's driven wheel
+/// * `torque_nm` - (N m) the torque
+fn static_forces_n(modal: Option<&ModalMachine>, driven_mm: &[f64], torque_nm: f64) -> Vec<f64> {
+    match (driven_mm, modal) {
+        ([_, _, ..], Some(modal)) => modal.balancing_forces_n(torque_nm),
+        _ => driven_mm.iter().map(|radius_mm| torque_nm / (radius_mm * 1e-3)).collect(),
     }
-    if mesh.contact_ratio <= 0.0 {
-        let problem = "the tips' chamfers and the active profile's shortening leave no path of contact";
-        let help =
-            format!("lower {} or {}", gears.key("tip_chamfer_mm"), gears.key("active_profile_shortening"));
-        return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
-    }
-    if mesh.overlap == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
-        let keys = [gears.whole(), gears.key("pressure_angle_deg")];
-        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
-    }
-    let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
-    if mesh.classes.iter().any(meets) { Ok(mesh) } else { Err(ScenarioError::nothing_left()) }
 }
 
 /// First sample that must be simulated, so that a mode's transient has decayed to the settling tolerance where the kept signal starts.
@@ -275,99 +300,6 @@ fn start_of_settling(time: &TimeGrid, settle_tolerance: f64, slowest: &DecayingM
     let decay_s = -settle_tolerance.ln() / slowest.decay_per_s.clamp(0.0, f64::MAX);
     let settling = (decay_s * time.sampling_rate_hz).ceil();
     time.first_kept_sample.saturating_sub(settling as usize)
-}
-
-/// What a mesh is made of.
-struct MeshOf<'a> {
-    gears: &'a NamedGears<'a>,
-    teeth: &'a Teeth,
-    damaged: &'a [DamagedTooth],
-    machine: &'a Machine,
-    /// Without the meshes.
-    modes: &'a Modes,
-    /// Of the mesh in the machine.
-    number: usize,
-    /// (µm) By how much more the flanks close at one end of the face than at the other.
-    closer_um: f64,
-    static_force_n: f64,
-    contact: Contact,
-    turning: Turning,
-    /// 1 where the driving wheel turns about positive z, −1 where it turns the other way.
-    sense: f64,
-    damping_ratio: f64,
-    /// (kg) That the wheels' rotation has along the line of action.
-    mesh_mass_kg: f64,
-}
-
-impl MeshOf<'_> {
-    /// The mesh with its tables.
-    ///
-    /// # Errors
-    /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load, and a mesh that cannot carry any.
-    fn with_tables(&self, points_per_pitch: NonZeroUsize) -> Result<Mesh, ScenarioError> {
-        let &Self { gears, teeth, damaged, closer_um, static_force_n, .. } = self;
-        let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, damaged)?;
-        if closer_um != 0.0 && static_force_n <= 0.0 {
-            return Err(ScenarioError::no_load_along_the_face(gears.load()));
-        }
-        let width_m = gears.face_width_mm * 1e-3;
-        let face = || FaceSlope {
-            slope: closer_um * 1e-6 / width_m,
-            width_m,
-            tilt_rad_per_m: self.modes.tilt_rad_per_nm(self.machine, self.number) * static_force_n,
-        };
-        let slices = if self.gap_varies_along_face() { gears.slices as usize } else { 1 };
-        let parameters = MeshParameters {
-            contact: self.contact,
-            turning: self.turning,
-            damping_ratio: self.damping_ratio,
-            mesh_mass_kg: self.mesh_mass_kg,
-            // Across the teeth, as it is measured; in the transverse section it is larger.
-            backlash_m: gears.normal_backlash_mm() * 1e-3 / gears.base_helix_angle_rad().cos(),
-            static_force_n,
-            face: (closer_um != 0.0).then(face),
-            overlap: self.sense * gears.hand.sign() * gears.overlap_ratio(),
-            face_width_m: width_m,
-            gaps_m: (0..slices)
-                .map(|slice| [slice, slice + 1].map(|edge| place_on_face(edge as f64, slices)))
-                .map(|ends| gears.mean_gap_mm(ends) * 1e-3)
-                .collect(),
-        };
-        let shape = TipShape {
-            chamfer_mm: gears.chamfer_mm(),
-            active_profile_shortening: match self.contact {
-                Contact::Unilateral => gears.active_profile_shortening,
-                Contact::Bilateral => 0.0,
-            },
-            relief: gears.flank_relief,
-        };
-        let tabulated =
-            |faces: &[Pairs]| checked(Mesh::new(faces, shape, sequence, points_per_pitch, parameters), gears);
-        if slices == 1 {
-            return tabulated(&[Pairs::new(teeth, damaged, gears.material, &gears.foundation)]);
-        }
-        let width_mm = gears.face_width_mm;
-        let of_slice = teeth.with_face_width(width_mm / slices as f64);
-        let damaged: Vec<Vec<DamagedTooth>> = (0..slices)
-            .map(|slice| [slice, slice + 1].map(|edge| width_mm * place_on_face(edge as f64, slices)))
-            .map(|ends_mm| damaged.iter().map(|tooth| tooth.slice(ends_mm, width_mm)).collect())
-            .collect();
-        let sound = Pairs::new(&of_slice, &[], gears.material, &gears.foundation);
-        tabulated(&damaged.iter().map(|damaged| sound.with_damaged(damaged)).collect::<Vec<_>>())
-    }
-
-    /// Whether the gap between two flanks differs along the face, so that its slices touch one after the other. A slope of spur wheels'
-    /// flanks and what is lost of their faces need no slices: see [`FaceSlope`] and [`Pairs`].
-    fn gap_varies_along_face(&self) -> bool {
-        let gears = self.gears;
-        let is_crowned = gears.lead_crowning_um > 0.0 || gears.end_relief.amount_um > 0.0;
-        let varies_along_contact_lines = || {
-            self.closer_um != 0.0
-                || gears.flank_relief.amount_um > 0.0
-                || self.damaged.iter().any(DamagedTooth::varies_over_face)
-        };
-        is_crowned || gears.is_helical() && varies_along_contact_lines()
-    }
 }
 
 impl Simulation {
@@ -384,9 +316,10 @@ impl Stages {
         self.meshes.iter().any(|mesh| mesh.contact == Contact::Unilateral)
     }
 
-    /// The tooth pairs, at any position of their path; not under the published model, whose flanks are not conjugate.
-    pub fn pairs(&self) -> Pairs<'_> {
-        Pairs::new(&self.teeth, &self.damaged, self.scenario.gears.material, &self.scenario.gears.foundation)
+    /// The tooth pairs of the first mesh, at any position of their path; not under the published model, whose flanks are not conjugate.
+    pub fn tooth_pairs(&self) -> Pairs<'_> {
+        let (gears, MeshedPair { teeth, damaged, .. }) = (&self.layout.gears[0], &self.pairs[0]);
+        Pairs::new(teeth, damaged, gears.material, &gears.foundation)
     }
 
     /// The meshes, with another number of points from one pair to the next than the time loop has; none under the published model.
@@ -397,93 +330,89 @@ impl Stages {
     /// # Errors
     /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load.
     pub fn meshes_at(&self, points_per_pitch: NonZeroUsize) -> Result<Vec<Mesh>, ScenarioError> {
-        let (Some((train, modes)), Some(options)) = (self.train(), MachineOptions::of(self.scenario.model))
-        else {
-            return Ok(Vec::new());
-        };
-        let Scenario { gears, rig, .. } = &self.scenario;
-        let closer_um = if options.feels_misalignment {
-            rig.misalignment_um + self.helix_slope_um.iter().sum::<f64>()
-        } else {
-            0.0
-        };
-        let mesh = MeshOf {
-            gears: &NamedGears::of_pair(gears),
-            teeth: &self.teeth,
-            damaged: &self.damaged,
-            machine: &train.machine,
-            modes,
-            number: 0,
-            closer_um,
-            static_force_n: self.static_force_n(),
-            contact: options.contact,
-            turning: Turning { pitches_per_revolution: f64::from(gears.pinion_teeth), first_pitch: 0.0 },
-            sense: 1.0,
-            damping_ratio: rig.mesh_damping_ratio,
-            mesh_mass_kg: train.mesh_mass_kg,
-        };
-        Ok(vec![mesh.with_tables(points_per_pitch)?])
+        let Some((machine, _)) = self.machine() else { return Ok(Vec::new()) };
+        meshes::meshes(
+            &self.scenario,
+            &self.layout,
+            &self.time,
+            (&self.pairs, machine),
+            Some(points_per_pitch),
+        )
     }
 
-    /// The deviations of the pinion and of the gear beside their profile errors: run-out and helix slope. With the profile errors, of
+    /// The deviations of the wheels of each mesh beside their profile errors: run-out and helix slope. With the profile errors, of
     /// which the pitches are a part, these are all their deviations: given to a scenario, they make the same signals.
-    pub fn wheel_deviations(&self) -> [WheelDeviations; 2] {
-        let of_wheel = |wheel: usize| WheelDeviations {
+    pub fn wheel_deviations(&self) -> Vec<[WheelDeviations; 2]> {
+        let of_wheel = |pair: &MeshedPair, wheel: usize| WheelDeviations {
             cumulative_pitch_um: None,
-            run_out_um: Some(self.run_out[wheel].run_out_um),
-            run_out_phase_rad: Some(self.run_out[wheel].phase_rad),
-            helix_slope_um: Some(self.helix_slope_um[wheel]),
+            run_out_um: Some(pair.run_out[wheel].run_out_um),
+            run_out_phase_rad: Some(pair.run_out[wheel].phase_rad),
+            helix_slope_um: Some(pair.helix_slope_um[wheel]),
         };
-        let none = [WheelDeviations::default(), WheelDeviations::default()];
-        if self.scenario.model.has_meshes() { [of_wheel(0), of_wheel(1)] } else { none }
+        if !self.scenario.model().has_meshes() {
+            return vec![Default::default()];
+        }
+        self.pairs.iter().map(|pair| [of_wheel(pair, 0), of_wheel(pair, 1)]).collect()
     }
 
-    /// (mm) How far the tips' chamfers and their relief reach inwards from the tip; 0 where there is none.
+    /// (mm) How far the tips' chamfers and their relief reach inwards from the tip, of the wheels of the first mesh; 0 where there is none.
     pub fn tip_lengths_mm(&self) -> [f64; 2] {
-        let gears = &self.scenario.gears;
-        if !self.scenario.model.has_meshes() {
+        if !self.scenario.model().has_meshes() {
             return [0.0, TipRelief::PUBLISHED.length_mm];
         }
-        gears.tip_lengths_mm()
+        self.layout.gears[0].tip_lengths_mm()
     }
 
-    /// (N) Force along the line of action that balances the brake's nominal torque.
+    /// (N) Force along the line of action of the first mesh that balances the brake's nominal torque.
     pub fn static_force_n(&self) -> f64 {
-        self.force_of_torque_n(self.scenario.operation.brake_torque_nm)
+        self.pairs[0].static_force_n
     }
 
-    /// (N) Force along the line of action that balances a torque on the gear.
-    pub(crate) fn force_of_torque_n(&self, torque_nm: f64) -> f64 {
-        torque_nm / (self.teeth.gear.base_radius_mm * 1e-3)
-    }
-
-    /// Points from one pair to the next: while motor and brake are steady every sample is one, else the coarse points of the cycle.
-    fn points_per_pitch(&self) -> NonZeroUsize {
-        let Self { time, teeth, cycle, .. } = self;
-        let samples = time.samples_per_pinion_revolution / teeth.pinion.teeth as usize;
-        let points = if self.is_steady() { samples } else { cycle.points_per_pitch };
-        NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN)
-    }
-
-    /// Whether motor speed and brake torque are constant.
-    pub fn is_steady(&self) -> bool {
-        self.scenario.operation.is_steady()
-    }
-
-    /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where
-    /// the kept signal starts.
+    /// (N) The forces of the meshes that hold a torque of the brake.
     ///
-    /// Only for a steady motion that starts in equilibrium: what is left out is then a motion like the one that follows.
-    fn start_of_settling(&self) -> usize {
-        let Solver { settle_tolerance, initial_velocity, .. } = &self.scenario.solver;
-        let starts_in_equilibrium = self.scenario.model.has_meshes() && initial_velocity.is_none();
-        if !starts_in_equilibrium || !self.is_steady() {
-            return 0;
-        }
-        start_of_settling(&self.time, *settle_tolerance, &self.slowest_mode())
+    /// # Arguments
+    /// * `torque_nm` - (N m) the torque
+    pub(crate) fn forces_of_torque_n(&self, torque_nm: f64) -> Vec<f64> {
+        let driven_mm: Vec<f64> = self.pairs.iter().map(|pair| pair.teeth.gear.base_radius_mm).collect();
+        static_forces_n(self.machine().map(|(_, modal)| modal), &driven_mm, torque_nm)
     }
 
-    /// Stages 7 and 8: the rest of the simulation, for those who have looked at the first six.
+    /// Whether motor and brake are steady.
+    pub fn is_steady(&self) -> bool {
+        self.scenario.is_steady()
+    }
+
+    /// Samples after which all teeth and shafts stand again as at the start, where motor and brake are steady and no rolling bearing slips.
+    pub(crate) fn cycle_samples(&self) -> Option<usize> {
+        let revolutions = usize::try_from(self.layout.cycle_revolutions()).ok()?;
+        let samples = revolutions.checked_mul(self.time.samples_per_pinion_revolution)?;
+        (self.is_steady() && self.bearings.is_empty()).then_some(samples)
+    }
+
+    /// Motion of motor and brake, sample by sample from the start of the simulation.
+    pub fn motion(&self) -> Motion<'_> {
+        let brake = self.machine().map_or(1.0, |(machine, _)| {
+            let rotation = &machine.machine.rigid_rotation;
+            rotation[rotation.len() - 1].abs()
+        });
+        let harmonic = |ripple: &Ripple| TorqueHarmonic {
+            order: ripple.order * brake,
+            amplitude: ripple.amplitude,
+            phase_rad: ripple.phase_deg.to_radians(),
+        };
+        let ripple = self.scenario.torque_ripple().iter().map(harmonic).collect();
+        Motion::new(self.scenario.operation(), self.scenario.seed(), &self.time).with_ripple(ripple)
+    }
+
+    /// The simulation that signals are of, such as those read from its file.
+    ///
+    /// # Arguments
+    /// * `channels` - those of [`ScenarioForm::signals`] with their samples
+    pub fn with_channels(self, channels: Channels) -> Simulation {
+        Simulation { channels, step_counts: [0; 4], timings: self.timings.clone(), stages: self }
+    }
+
+    /// The time loop and the sensors: the rest of the simulation, for those who have looked at the stages before.
     ///
     /// # Errors
     /// Those of [`Self::integrate`].
@@ -500,8 +429,8 @@ impl Stages {
     /// ```
     pub fn simulate(self) -> Result<Simulation, Error> {
         let clock = Clock::default();
-        let channels = self.integrated_while(&|| true)?;
-        Ok(self.simulated(channels, clock))
+        let wanted = self.integrated_while(&|| true)?;
+        Ok(self.simulated(wanted, clock))
     }
 
     /// Does what [`Self::simulate`] does, for those who may change their mind meanwhile.
@@ -526,35 +455,37 @@ impl Stages {
     /// ```
     pub fn simulate_while(self, is_wanted: &dyn Fn() -> bool) -> Result<Option<Simulation>, Error> {
         let clock = Clock::default();
-        let channels = self.integrated_while(is_wanted)?;
-        Ok(is_wanted().then(|| self.simulated(channels, clock)))
+        let wanted = self.integrated_while(is_wanted)?;
+        Ok(is_wanted().then(|| self.simulated(wanted, clock)))
     }
 
-    /// Stage 7, with what the channels take of it.
-    fn integrated_while(&self, is_wanted: &dyn Fn() -> bool) -> Result<Channels, Error> {
+    /// The time loop, with what the channels take of it.
+    fn integrated_while(&self, is_wanted: &dyn Fn() -> bool) -> Result<(Channels, StepCounts), Error> {
         let counts = StepCounts::default();
         let mut wanted = WantedChannels { channels: self.channels(), counts, is_wanted };
         self.integrate(&self.scenario.outputs(), self.time.first_kept_sample, &mut wanted)?;
-        Ok(wanted.channels)
+        Ok((wanted.channels, wanted.counts))
     }
 
-    /// Stage 8, and everything together.
-    fn simulated(self, mut channels: Channels, mut clock: Clock) -> Simulation {
+    /// What the sensors show, and everything together.
+    fn simulated(self, (channels, counts): (Channels, StepCounts), mut clock: Clock) -> Simulation {
         clock.lap("time integration");
-        if !self.scenario.sensors.is_empty() {
-            channels = self.measured(channels);
+        let channels = self.measured(channels);
+        if !self.sensors.is_empty() {
             clock.lap("sensors");
         }
         let timings = self.timings.iter().copied().chain(clock.laps).collect();
-        Simulation { stages: self, channels, timings }
+        let StepCounts { steps, iterations, most_iterations, searched } = counts;
+        let step_counts = [steps, iterations, most_iterations, searched];
+        Simulation { stages: self, channels, step_counts, timings }
     }
 
-    /// (rev) Simulated revolutions of the pinion at the nominal speed, settling included.
+    /// (rev) Simulated revolutions of the motor at the nominal speed, settling included.
     pub fn pinion_revolutions(&self) -> f64 {
         self.time.samples as f64 / self.time.samples_per_pinion_revolution as f64
     }
 
-    /// Stage 7: solves the equations of motion and hands the outputs of every sample to `recorder`.
+    /// Solves the equations of motion and hands the outputs of every sample to `recorder`.
     ///
     /// # Arguments
     /// * `outputs` - what is read off the solution
@@ -575,22 +506,28 @@ impl Stages {
     /// The error that a solution without bound is.
     pub(crate) fn divergence(&self, diverged: Diverged) -> Error {
         let time_s = diverged.sample as f64 * self.time.step_s();
-        if let Some(error) = WheelName::BOTH.into_iter().find_map(|wheel| self.gap(wheel, time_s)) {
+        let gaps = self.scenario.pair().and_then(|pair| self.gap(pair, time_s));
+        if let Some(error) = gaps {
             return error.into();
         }
         let (key, damping_ratios) = self.damping();
-        let help = "raise the damping ratios of [rig], use more teeth, or change operation.pinion_speed_hz";
+        let help = match self.scenario.gearbox() {
+            None => "raise the damping ratios of [rig], use more teeth, or change operation.pinion_speed_hz",
+            Some(_) => {
+                "raise bearing.damping_ratio or mesh.damping_ratio, use more teeth, or change operation.input_speed_hz"
+            }
+        };
         Error::Diverged { time_s, key, help, damping_ratios }
     }
 
-    /// The same where more neighbours are missing on a wheel than pairs are in contact at once: nothing bears while they pass.
-    fn gap(&self, wheel: WheelName, time_s: f64) -> Option<ScenarioError> {
-        let missing = most_neighbours(&self.damaged, wheel, self.teeth.wheel(wheel).teeth as usize);
-        let ratio = self.scenario.gears.total_contact_ratio();
-        if missing as f64 <= ratio {
-            return None;
-        }
-        let faults = self.scenario.faults.iter().enumerate();
+    /// The same of a pair where more neighbours are missing on a wheel than pairs are in contact at once: nothing bears while they pass.
+    fn gap(&self, scenario: &Scenario, time_s: f64) -> Option<ScenarioError> {
+        let MeshedPair { teeth, damaged, .. } = &self.pairs[0];
+        let missing = |wheel: WheelName| most_neighbours(damaged, wheel, teeth.wheel(wheel).teeth as usize);
+        let ratio = scenario.gears.total_contact_ratio();
+        let wheel = WheelName::BOTH.into_iter().find(|&wheel| missing(wheel) as f64 > ratio)?;
+        let missing = missing(wheel);
+        let faults = scenario.faults.iter().enumerate();
         let of_wheel =
             faults.filter(|(_, fault)| fault.wheel == wheel && fault.damage.part() == ToothPart::Whole);
         let named: Vec<String> = of_wheel.map(|(n, _)| format!("fault[{n}]")).collect();

@@ -7,9 +7,9 @@
 
 use std::ops::Index;
 
+use meshtone::Stages;
 use meshtone::machine::{Axis, Drive, Machine, PINION_SUPPORT};
 use meshtone::mesh::{Forcing, ForcingBlock, Mesh, PairDeviations};
-use meshtone::{Equations, Stages};
 use pulp::{Arch, NullaryFnOnce};
 
 /// Coordinates of the machine whose supports are held.
@@ -61,10 +61,9 @@ impl<'a> Newmark<'a> {
     /// Makes the inverses.
     pub fn new(stages: &'a Stages) -> Self {
         assert!(stages.is_steady(), "the mesh stiffness is a table only at constant speed and load");
-        let (Equations::Machine(train, modes), [mesh]) = (&stages.equations, &stages.meshes[..]) else {
+        let (Some((machine, modes)), [mesh]) = (stages.machine_and_modes(), &stages.meshes[..]) else {
             panic!("one linear mesh");
         };
-        let machine = &train.machine;
         let step_s = stages.time.step_s();
         let (stiffness, damping) = (machine.turn_back(&machine.stiffness()), modes.damping_matrix(machine));
         let mut at_rest = None;
@@ -121,16 +120,15 @@ fn mesh_samples(
     mesh: &Mesh,
     mut new_state: impl FnMut(f64, f64, f64) -> State,
 ) -> (Vec<Sample>, Vec<State>) {
-    let (scenario, time) = (&stages.scenario, &stages.time);
-    let operation = &scenario.operation;
+    let (time, operation) = (&stages.time, stages.scenario.operation());
     let deviations = PairDeviations {
-        teeth: &stages.teeth,
-        errors: stages.profile_errors.as_ref(),
-        eccentricity_m: scenario.rig.eccentricity_mm * 1e-3,
-        run_out: stages.run_out,
+        teeth: &stages.pairs[0].teeth,
+        errors: stages.pairs[0].profile_errors.as_ref(),
+        eccentricity_m: stages.pairs[0].eccentricity_mm * 1e-3,
+        run_out: stages.pairs[0].run_out,
     };
     let nominal = [operation.pinion_speed_hz, operation.brake_torque_nm];
-    let mut forcing = Forcing::new(scenario.motion(time), time, nominal, 0, [(mesh, deviations)]);
+    let mut forcing = Forcing::new(stages.motion(), time, nominal, 0, [(mesh, deviations)]);
     let mut block = ForcingBlock::default();
     let (mut samples, mut states) = (Vec::with_capacity(time.samples), Vec::<State>::new());
     // The numbers of the states at each point of a pitch.
@@ -166,7 +164,7 @@ fn brake(stages: &Stages, machine: &Machine) -> Vector {
     let mut brake = [0.0; ROWS];
     for drive in &machine.drives {
         if let Drive::Brake { coordinate, torque_share } = *drive {
-            brake[coordinate] += torque_share * stages.scenario.operation.brake_torque_nm;
+            brake[coordinate] += torque_share * stages.scenario.operation().brake_torque_nm;
         }
     }
     brake

@@ -18,7 +18,7 @@ use meshtone_io::own_file::undisturbed;
 use meshtone_io::scenario_file::{FileKind, ScenarioFile};
 use serde_json::{Value, json};
 
-use crate::check::check_form;
+use crate::check::check;
 use crate::choice::{Choice, one_of};
 use crate::diagnose::observe::Observer;
 use crate::diagnose::{figure, table};
@@ -153,7 +153,7 @@ impl Diagnose {
             scenario = ScenarioForm::Pair(tuned.apply(pair).map_err(|error| refuse(error.to_string()))?);
         }
         self.reading.lead_with_sensor(&mut scenario);
-        let doubts = check_form(&scenario).map_err(|error| file.refuse(error))?;
+        let (doubts, _) = check(&scenario).map_err(|error| file.refuse(error))?;
         warnings::print(&file, &doubts);
         Ok(scenario)
     }

@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshtone::scenario::{ScenarioError, ScenarioForm};
+use meshtone::scenario::ScenarioError;
 use meshtone::sensor::Channels;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::StagedFile;
@@ -74,18 +74,9 @@ impl Panel {
         })?;
         self.check_summary(run)?;
         let unfit = |error: ScenarioError| ReadResultsError::scenario(path, &error);
-        let panel = match &scenario {
-            ScenarioForm::Pair(scenario) => {
-                let stages = meshtone::stages(scenario).map_err(unfit)?;
-                check_rate(path, &channels, stages.time.sampling_rate_hz)?;
-                panel::draw(&stages, &channels)
-            }
-            ScenarioForm::Gearbox(gearbox) => {
-                let stages = meshtone::gearbox_stages(gearbox).map_err(unfit)?;
-                check_rate(path, &channels, stages.time.sampling_rate_hz)?;
-                panel::draw_gearbox(&stages.with_channels(channels))
-            }
-        };
+        let stages = meshtone::stages(scenario).map_err(unfit)?;
+        check_rate(path, &channels, stages.time.sampling_rate_hz)?;
+        let panel = panel::draw(&stages.with_channels(channels));
         self.warn_of_version(&version);
         stage_panel(&self.directory, run, panel)
     }

@@ -18,7 +18,7 @@ use meshtone_io::own_file::undisturbed;
 use meshtone_io::path_csv::path_csv;
 use meshtone_io::scenario_file::ScenarioFile;
 
-use crate::check::check_form;
+use crate::check::check;
 use crate::diagnose::observe::to_g;
 use crate::failure::Failure;
 use crate::indicators::options::{PhaseOptions, ReadingOptions, ShaftOptions};
@@ -77,7 +77,7 @@ impl Path {
         let file = ScenarioFile::read_form(&self.scenario)?;
         let mut scenario = file.scenario.clone().with_faults(Vec::new());
         self.reading.lead_with_sensor(&mut scenario);
-        let doubts = check_form(&scenario).map_err(|error| file.refuse(error))?;
+        let (doubts, _) = check(&scenario).map_err(|error| file.refuse(error))?;
         warnings::print(&file, &doubts);
         let recordings = self.recordings.iter().map(PathBuf::as_path);
         let mut read = file.sources().chain(recordings).chain(self.phase.files());

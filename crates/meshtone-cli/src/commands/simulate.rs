@@ -1,16 +1,15 @@
 //! `meshtone simulate`
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use meshtone::scenario::{
-    Gearbox, Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioForm, ScenarioWarning,
+    Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioForm, ScenarioWarning,
 };
-use meshtone::{GearboxStages, Simulation, StageTime, Stages, StepJudgement, Trace};
+use meshtone::{Simulation, StageTime, Stages, StepJudgement, Trace};
 use meshtone_io::atomic_file::check_target;
 use meshtone_io::experiment::{Tuned, read_tuned};
-use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FileKind, FilesBeside, ScenarioFile};
 use meshtone_io::signals::{SignalFormat, SignalTable};
@@ -108,38 +107,22 @@ const MODELS: [Choice<Model>; 3] = [
     ("published", "The published code with its known errors", Model::Published),
 ];
 
-/// A run that can be simulated, of either form of the scenario file.
-enum Run {
-    Pair(Box<PairRun>),
-    Gearbox(Box<GearboxRun>),
+/// A scenario that can be simulated, and where its results go.
+struct Run {
+    file: ScenarioFile<ScenarioForm>,
+    /// The file's scenario with what the command line changes.
+    scenario: ScenarioForm,
+    warnings: Vec<ScenarioWarning>,
+    /// Computed while the scenario was checked; kept where it is the only one, as several would fill the memory.
+    stages: Option<Stages>,
+    directory: PathBuf,
 }
 
 impl Run {
     /// The directory of its results, and the files that were read for it.
     fn files(&self) -> (&Path, Vec<&Path>) {
-        match self {
-            Self::Pair(run) => (&run.directory, run.file.sources().collect()),
-            Self::Gearbox(run) => (&run.directory, run.file.sources().collect()),
-        }
+        (&self.directory, self.file.sources().collect())
     }
-}
-
-/// A gearbox that can be simulated, and where its results go.
-struct GearboxRun {
-    file: ScenarioFile<Gearbox>,
-    stages: GearboxStages,
-    directory: PathBuf,
-}
-
-/// A scenario that can be simulated, and where its results go.
-struct PairRun {
-    file: ScenarioFile,
-    /// The file's scenario with what the command line changes.
-    scenario: Scenario,
-    warnings: Vec<ScenarioWarning>,
-    /// Computed while the scenario was checked; kept where it is the only one, as several would fill the memory.
-    stages: Option<Stages>,
-    directory: PathBuf,
 }
 
 impl Simulate {
@@ -167,10 +150,7 @@ impl Simulate {
             check_trace(trace, runs[0].files().0, &read)?;
         }
         for (number, (run, directory)) in runs.into_iter().zip(directories).enumerate() {
-            match run {
-                Run::Pair(run) => self.simulate(*run, &directory, number)?,
-                Run::Gearbox(run) => self.simulate_gearbox(*run, &directory, number)?,
-            }
+            self.simulate(run, &directory, number)?;
         }
         Ok(())
     }
@@ -210,11 +190,23 @@ impl Simulate {
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
         let file = ScenarioFile::read_form(path)?;
-        let mut scenario = match file.scenario.clone() {
-            ScenarioForm::Pair(scenario) => scenario,
-            ScenarioForm::Gearbox(gearbox) => return self.prepare_gearbox(file.with(gearbox), directory),
+        let scenario = match file.scenario.clone() {
+            ScenarioForm::Pair(scenario) => self.changed(path, scenario, errors, tuned)?.into(),
+            ScenarioForm::Gearbox(_) => self.refuse_options_of_pair(path).map(|()| file.scenario.clone())?,
         };
-        let file = file.with(scenario.clone());
+        let (warnings, stages) = check(&scenario).map_err(|error| self.refuse(&file, error))?;
+        let stages = (self.scenarios.len() == 1).then_some(stages);
+        Ok(Run { file, scenario, warnings, stages, directory })
+    }
+
+    /// A pair with what the command line changes.
+    fn changed(
+        &self,
+        path: &Path,
+        mut scenario: Scenario,
+        errors: Option<&Quality>,
+        tuned: Option<&Tuned>,
+    ) -> Result<Scenario, Failure> {
         if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {
             if let Some(warning) = tuned.warning_for(&scenario) {
                 warn(format_args!("{}: {warning}", tuned_path.display()));
@@ -230,54 +222,20 @@ impl Simulate {
         if let Some(errors) = errors {
             scenario.quality = errors.clone();
         }
-        let (warnings, stages) = check(&scenario).map_err(|error| self.refuse(&file, error))?;
-        let stages = (self.scenarios.len() == 1 && self.trace.is_none()).then_some(stages);
-        Ok(Run::Pair(Box::new(PairRun { file, scenario, warnings, stages, directory })))
+        Ok(scenario)
     }
 
     /// A gearbox knows one model and no files of a pair.
-    fn prepare_gearbox(&self, file: ScenarioFile<Gearbox>, directory: PathBuf) -> Result<Run, Failure> {
+    fn refuse_options_of_pair(&self, path: &Path) -> Result<(), Failure> {
         let of_pair = [
             ("--model", self.model.is_some_and(|model| model != Model::Contact)),
             ("--errors-file", self.errors_file.is_some()),
             ("--tuned", self.tuned.is_some()),
         ];
-        if let Some((option, _)) = of_pair.iter().find(|(_, given)| *given) {
-            let problem = format!(
-                "{option}: {} is of a gearbox, and this is known of one pair only",
-                file.path.display()
-            );
-            return Failure::refuse(
-                problem,
-                format!("leave {option} out, or simulate a scenario of one pair"),
-            );
-        }
-        match meshtone::gearbox_stages_within(&file.scenario, memory::limit()) {
-            Ok(stages) => Ok(Run::Gearbox(Box::new(GearboxRun { file, stages, directory }))),
-            Err(error) => Err(file.refuse(error).into()),
-        }
-    }
-
-    fn simulate_gearbox(
-        &self,
-        run: GearboxRun,
-        directory: &OutputDirectory,
-        number: usize,
-    ) -> Result<(), Failure> {
-        let GearboxRun { file, stages, .. } = run;
-        let of_stages = stages.warnings();
-        warnings::print(&file, &of_stages);
-        self.report(&file, directory, number, || {
-            let simulation = stages.simulate().map_err(|error| not_simulated(&file, error))?;
-            let by_signals = simulation.warnings_of_signals(StepJudgement::Repeated);
-            let run = RunIdentity::of_toml(&file.scenario.to_toml());
-            let summary = Summary::of_gearbox(&simulation, run, &[&of_stages[..], &by_signals].concat());
-            let trace = self.trace.is_some().then(|| meshtone::gearbox_trace(&simulation));
-            let signals = SignalTable::of_gearbox(&simulation.stages.gearbox, &simulation.channels);
-            let draw = || panel::draw_gearbox(&simulation);
-            let written = self.write(directory, signals, &summary, trace.as_ref(), draw);
-            Ok((summary, by_signals, written))
-        })
+        let Some((option, _)) = of_pair.iter().find(|(_, given)| *given) else { return Ok(()) };
+        let problem =
+            format!("{option}: {} is of a gearbox, and this is known of one pair only", path.display());
+        Failure::refuse(problem, format!("leave {option} out, or simulate a scenario of one pair"))
     }
 
     /// Writes all files of a run.
@@ -295,9 +253,9 @@ impl Simulate {
     }
 
     /// Simulates, with something that moves on the terminal meanwhile, and prints warnings and the main numbers.
-    fn report<S>(
+    fn report(
         &self,
-        file: &ScenarioFile<S>,
+        file: &ScenarioFile<ScenarioForm>,
         directory: &OutputDirectory,
         number: usize,
         simulate: impl FnOnce() -> Result<Reported, Failure>,
@@ -311,7 +269,7 @@ impl Simulate {
     }
 
     /// An error about a scenario, or about the errors file that the command line put in its place.
-    fn refuse(&self, file: &ScenarioFile, error: ScenarioError) -> Failure {
+    fn refuse(&self, file: &ScenarioFile<ScenarioForm>, error: ScenarioError) -> Failure {
         match (&self.errors_file, error.key.strip_prefix("quality.")) {
             (Some(errors_file), Some(entry)) => {
                 let (errors_file, scenario) = (errors_file.display(), file.path.display());
@@ -323,16 +281,16 @@ impl Simulate {
         }
     }
 
-    fn simulate(&self, run: PairRun, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
+    fn simulate(&self, run: Run, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
         warnings::print(&run.file, &run.warnings);
         self.report(&run.file, directory, number, || {
             let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
                 .map_err(|error| not_simulated(&run.file, error))?;
-            let by_signals = simulation.warnings_of_signals();
+            let by_signals = simulation.warnings_of_signals(StepJudgement::Repeated);
             let identity = RunIdentity::of(&run.scenario);
-            let summary = Summary::of_pair(&simulation, identity, &[&run.warnings[..], &by_signals].concat());
-            let signals = SignalTable::of_pair(&run.scenario, &simulation.channels);
-            let draw = || panel::draw(&simulation.stages, &simulation.channels);
+            let summary = Summary::new(&simulation, identity, &[&run.warnings[..], &by_signals].concat());
+            let signals = SignalTable::of_scenario(&run.scenario, &simulation.channels);
+            let draw = || panel::draw(&simulation);
             let written = self.write(directory, signals, &summary, trace.as_ref(), draw);
             Ok((summary, by_signals, written))
         })
@@ -380,7 +338,7 @@ fn read_errors(path: &Path) -> Result<Quality, Failure> {
 }
 
 /// A scenario that gave no simulation, named by its file.
-fn not_simulated<S>(file: &ScenarioFile<S>, error: meshtone::Error) -> Failure {
+fn not_simulated(file: &ScenarioFile<ScenarioForm>, error: meshtone::Error) -> Failure {
     let help = error.help().map(str::to_owned);
     match error {
         meshtone::Error::Scenario(error) => file.refuse(error).into(),
@@ -392,18 +350,19 @@ fn not_simulated<S>(file: &ScenarioFile<S>, error: meshtone::Error) -> Failure {
 }
 
 fn simulate(
-    scenario: &Scenario,
+    scenario: &ScenarioForm,
     stages: Option<Stages>,
     with_trace: bool,
 ) -> Result<(Simulation, Option<Trace>), meshtone::Error> {
+    let stages = stages.map_or_else(|| meshtone::stages(scenario), Ok)?;
     if !with_trace {
-        let stages = stages.map_or_else(|| meshtone::stages(scenario), Ok)?;
         return Ok((stages.simulate()?, None));
     }
+    let before: Duration = stages.timings.iter().map(|time| time.elapsed).sum();
     let start = Instant::now();
-    let (mut simulation, trace) = meshtone::trace(scenario)?;
-    let before: std::time::Duration = simulation.timings.iter().map(|time| time.elapsed).sum();
-    let elapsed = start.elapsed().saturating_sub(before);
+    let (mut simulation, trace) = meshtone::trace_of(stages)?;
+    let known: Duration = simulation.timings.iter().map(|time| time.elapsed).sum();
+    let elapsed = start.elapsed().saturating_sub(known.saturating_sub(before));
     simulation.timings.push(StageTime { stage: "time integration and trace", elapsed });
     Ok((simulation, Some(trace)))
 }

@@ -44,7 +44,7 @@ impl Wheels {
         // The errors are those of the wheels before the damage.
         scenario.faults.clear();
         let stages = meshtone::stages(&scenario).map_err(|error| file.refuse(error))?;
-        let deviations = stages.wheel_deviations();
+        let deviations = stages.wheel_deviations().swap_remove(0);
         // Run-out and helix slopes may be all that these wheels deviate by.
         let is_off = |given: Option<f64>| given.is_some_and(|value| value != 0.0);
         let has_others =
@@ -54,7 +54,7 @@ impl Wheels {
             pinion_profile_errors_mm: ideal(scenario.gears.pinion_teeth),
             gear_profile_errors_mm: ideal(scenario.gears.gear_teeth),
         };
-        let errors = stages.profile_errors.or_else(|| has_others.then(ideal_profiles)).ok_or_else(|| {
+        let errors = stages.pairs[0].profile_errors.clone().or_else(|| has_others.then(ideal_profiles)).ok_or_else(|| {
             let problem = "must be a grade of DIN 3961, from 1 (best) to 12: the teeth of grade 0 are ideal \
                            and have no errors to write";
             file.refuse(ScenarioError::new("quality.din_grade", 0, problem))

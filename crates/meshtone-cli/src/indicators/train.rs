@@ -203,7 +203,7 @@ fn damaged_teeth(form: &ScenarioForm, wheel: usize) -> Vec<DamagedTooth> {
         let layout = GearboxLayout::new(gearbox).ok()?;
         let (mesh, side) = layout.mesh_of(wheel)?;
         let faults: Vec<_> =
-            layout.faults_of_mesh(gearbox, mesh).into_iter().map(|(_, fault)| fault).collect();
+            layout.faults_of_mesh(&form.faults(), mesh).into_iter().map(|(_, fault)| fault).collect();
         Some(DamagedTooth::of_wheel(&faults, side, &layout.gears[mesh]))
     };
     match form {

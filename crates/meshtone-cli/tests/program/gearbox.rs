@@ -47,7 +47,7 @@ fn every_mesh_is_in_every_result() {
         assert!(recorded.channels.signal(name).is_some(), "{name}");
     }
     let ScenarioForm::Gearbox(gearbox) = &recorded.scenario else { panic!("it is of a gearbox") };
-    assert_eq!(recorded.channels, meshtone::simulate_gearbox(gearbox).unwrap().channels);
+    assert_eq!(recorded.channels, meshtone::simulate(gearbox).unwrap().channels);
     let panel = String::from_utf8(workplace.read("out/panel.svg")).unwrap();
     for words in ["z1-z2", "z3-z4", "Tooth breakage on tooth 2 of z3"] {
         assert!(panel.contains(words), "{words}");
@@ -78,14 +78,14 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
     workplace.succeeds(&["simulate", "file.toml", "-o", "out", "--no-panel", "--trace", "trace.npz"]);
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     let ScenarioForm::Gearbox(gearbox) = &recorded.scenario else { panic!("it is of a gearbox") };
-    let stages = meshtone::gearbox_stages(gearbox).unwrap();
+    let stages = meshtone::stages(gearbox).unwrap();
     let read = meshtone_io::scenario_file::ScenarioFile::read(&workplace.path("pair.toml")).unwrap();
     let of_pair = meshtone::stages(&read.scenario).unwrap();
-    let errors = of_pair.profile_errors.unwrap();
+    let errors = of_pair.pairs[0].profile_errors.clone().unwrap();
     assert_eq!(gearbox.wheels[0].profile_errors_mm.as_ref(), Some(&errors.pinion_profile_errors_mm));
     assert_eq!(gearbox.wheels[1].profile_errors_mm.as_ref(), Some(&errors.gear_profile_errors_mm));
     assert_eq!(stages.pairs[0].profile_errors.as_ref(), Some(&errors));
-    assert_eq!(stages.pairs[0].run_out, of_pair.run_out);
+    assert_eq!(stages.pairs[0].run_out, of_pair.pairs[0].run_out);
     workplace
         .write("both.toml", text.replacen("iso_class = 6", "iso_class = 6\nerrors_file = \"wheels.npz\"", 1));
     workplace.fails(2, &["simulate", "both.toml"], &["wheel[0].iso_class", "given beside profile errors"]);

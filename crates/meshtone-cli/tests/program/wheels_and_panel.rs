@@ -10,7 +10,7 @@ fn wheels_are_those_that_the_scenario_draws() {
     workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 9\n[fault]\nkind = \"missing-tooth\""));
     workplace.succeeds(&["wheels", "worn.toml", "-o", "wheels.npz"]).stdout("");
     let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
-    let drawn = meshtone::stages(&scenario).unwrap().profile_errors.unwrap();
+    let drawn = meshtone::stages(&scenario).unwrap().pairs[0].profile_errors.clone().unwrap();
     let written = FilesBeside::new(workplace.directory.path()).profile_errors("wheels.npz").unwrap();
     assert_eq!(written, drawn);
 }

@@ -174,7 +174,7 @@ fn make_others(work: &Path) {
     scenario.solver.sampling_rate_hz = 1e4;
     let simulation = meshtone::simulate(&scenario).expect("an example");
     let mut signals = Vec::new();
-    let table = SignalTable::of_pair(&scenario, &simulation.channels);
+    let table = SignalTable::of_scenario(&scenario, &simulation.channels);
     table.write_parquet(&mut signals).expect("it can be written");
     write("signals.parquet", &signals);
     let plan =

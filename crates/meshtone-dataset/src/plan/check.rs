@@ -131,11 +131,7 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
             });
             let result = made.map_err(of_class).and_then(|scenario| {
                 refuse_length(content, &scenario)?;
-                let stages = match &scenario {
-                    ScenarioForm::Gearbox(gearbox) => meshtone::gearbox_stages(gearbox).map(drop),
-                    ScenarioForm::Pair(pair) => meshtone::stages(pair).map(drop),
-                };
-                stages.map_err(of_class)
+                meshtone::stages(scenario).map(drop).map_err(of_class)
             });
             if result.is_ok() || class.simulated.is_none() {
                 class.simulated = Some(result);

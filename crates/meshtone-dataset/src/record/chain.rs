@@ -6,13 +6,12 @@
 use std::error::Error;
 
 use meshtone::batch::{Observation, SignalRecorder};
-use meshtone::damage::{DamagedTooth, damages_of_fault};
-use meshtone::operation::TimeGrid;
+use meshtone::damage::damages_of_fault;
 use meshtone::scenario::{ScenarioWarning, Sensor};
 use meshtone::sensor::{Channel, ContactFigures, SignalSource};
 use meshtone::signal::{AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
 use meshtone::tuning::DifferenceChain;
-use meshtone::{GearboxSimulation, GearboxStages, Stages, StepJudgement};
+use meshtone::{Simulation, Stages, StepJudgement};
 
 use super::kept::KeptChain;
 use super::window::Window;
@@ -29,9 +28,9 @@ pub(super) fn record(
     observation: Observation,
     recorder: SignalRecorder,
 ) -> Result<Record, Box<dyn Error>> {
-    let view = View::new(content, window, Simulated::Pair(stages));
+    let view = View::new(content, window, stages);
     let samples = view.before_linear_sensors(stages, recorder);
-    let parts = stages.scenario.model.teeth_part();
+    let parts = stages.scenario.model().teeth_part();
     let slack = if parts { observation.apart_fraction } else { observation.tension_fraction };
     view.record(content, drawn, &samples, &observation.warnings, vec![slack])
 }
@@ -41,12 +40,12 @@ pub(super) fn gearbox_record(
     content: &Content,
     drawn: DrawnRecord,
     window: Window,
-    simulation: GearboxSimulation,
+    simulation: Simulation,
 ) -> Result<Record, Box<dyn Error>> {
     // The error is only estimated, as that of a pair's record.
     let of_signals = simulation.warnings_of_signals(StepJudgement::Estimated);
     let warnings = [simulation.stages.warnings(), of_signals].concat();
-    let GearboxSimulation { stages, channels, .. } = &simulation;
+    let Simulation { stages, channels, .. } = &simulation;
     let single = |channel: &Channel| {
         let name = channel.name();
         let signal = channels.signal(&name);
@@ -56,7 +55,7 @@ pub(super) fn gearbox_record(
     let samples: Vec<Vec<f32>> = content.keep.simulated().iter().map(single).collect::<Result<_, _>>()?;
     let apart = |mesh| ContactFigures::of_force(channels.of(SignalSource::MeshForce(mesh))).apart_fraction;
     let apart = (0..stages.meshes.len()).map(apart).collect();
-    View::new(content, window, Simulated::Gearbox(stages)).record(content, drawn, &samples, &warnings, apart)
+    View::new(content, window, stages).record(content, drawn, &samples, &warnings, apart)
 }
 
 /// Makes the record of a healthy twin, which has only the difference signal.
@@ -67,7 +66,7 @@ pub(super) fn twin(
     stages: &Stages,
     recorder: SignalRecorder,
 ) -> Result<Record, SignalError> {
-    let view = View::new(content, window, Simulated::Pair(stages));
+    let view = View::new(content, window, stages);
     let simulated = content.keep.simulated();
     let samples = view.before_linear_sensors(stages, recorder);
     let mut record = view.empty(content, drawn);
@@ -108,96 +107,49 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
     Ok(())
 }
 
-/// What is read like a recording.
-#[derive(Clone, Copy)]
-enum Simulated<'a> {
-    Pair(&'a Stages),
-    Gearbox(&'a GearboxStages),
+/// A fault of teeth, with its severity; none where there is no such fault.
+///
+/// # Arguments
+/// * `stages` - of the simulation
+/// * `number` - of the fault
+fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(ToothFault, f64)> {
+    let fault = match stages.scenario.gearbox() {
+        Some(gearbox) => gearbox.faults.get(number).cloned().map(ToothFault::of_gearbox),
+        None => stages.scenario.faults().get(number).map(|(_, fault)| ToothFault::of_pair((*fault).clone())),
+    };
+    fault.zip(stages.fault_severities.get(number).copied())
 }
 
-impl<'a> Simulated<'a> {
-    fn time(self) -> &'a TimeGrid {
-        match self {
-            Self::Pair(stages) => &stages.time,
-            Self::Gearbox(stages) => &stages.time,
-        }
-    }
+/// A spall of a bearing; none where there is no such spall.
+///
+/// # Arguments
+/// * `stages` - of the simulation
+/// * `bearing` - number of the bearing
+/// * `number` - of the spall among those of its bearing
+fn spall(stages: &Stages, bearing: usize, number: usize) -> Option<RecordSpall> {
+    let gearbox = stages.scenario.gearbox()?;
+    let (_, rolling) = stages.bearings.iter().find(|(other, _)| *other == bearing)?;
+    let sizes = *rolling.parts.spalls.get(number)?;
+    let order = rolling.parts.geometry.defect_orders().of_defect(sizes.place);
+    Some(RecordSpall { bearing: gearbox.bearings[bearing].seat_name(), sizes, order })
+}
 
-    fn is_steady(self) -> bool {
-        match self {
-            Self::Pair(stages) => stages.is_steady(),
-            Self::Gearbox(stages) => stages.is_steady(),
-        }
-    }
-
-    /// The machine by its tooth counts, with the wheels in the order of [`super::Turning`].
-    fn train(self) -> GearTrain {
-        match self {
-            Self::Pair(stages) => GearTrain::of_pair(&stages.scenario),
-            Self::Gearbox(stages) => GearTrain::of_layout(&stages.gearbox, &stages.layout),
-        }
-    }
-
-    /// A fault of teeth, with its severity; none where there is no such fault.
-    ///
-    /// # Arguments
-    /// * `number` - of the fault
-    fn fault_of_teeth(self, number: usize) -> Option<(ToothFault, f64)> {
-        let (fault, severities) = match self {
-            Self::Pair(stages) => {
-                let fault = stages.scenario.faults.get(number).cloned();
-                (fault.map(ToothFault::of_pair), &stages.fault_severities)
-            }
-            Self::Gearbox(stages) => {
-                let fault = stages.gearbox.faults.get(number).cloned();
-                (fault.map(ToothFault::of_gearbox), &stages.fault_severities)
-            }
-        };
-        fault.zip(severities.get(number).copied())
-    }
-
-    /// A spall of a bearing; none where there is no such spall.
-    ///
-    /// # Arguments
-    /// * `bearing` - number of the bearing
-    /// * `number` - of the spall among those of its bearing
-    fn spall(self, bearing: usize, number: usize) -> Option<RecordSpall> {
-        let Self::Gearbox(stages) = self else { return None };
-        let (_, rolling) = stages.bearings.iter().find(|(other, _)| *other == bearing)?;
-        let sizes = *rolling.parts.spalls.get(number)?;
-        let order = rolling.parts.geometry.defect_orders().of_defect(sizes.place);
-        Some(RecordSpall { bearing: stages.gearbox.bearings[bearing].seat_name(), sizes, order })
-    }
-
-    /// The damaged teeth of all meshes.
-    fn damaged(self) -> Vec<&'a [DamagedTooth]> {
-        match self {
-            Self::Pair(stages) => vec![&stages.damaged],
-            Self::Gearbox(stages) => stages.pairs.iter().map(|pair| pair.damaged.as_slice()).collect(),
-        }
-    }
-
-    /// (rev) Angle of the input at every sample from one on.
-    fn input_revolutions(self, from: usize) -> Vec<f64> {
-        let time = self.time();
-        let motion = match self {
-            Self::Pair(stages) => stages.scenario.motion(time),
-            Self::Gearbox(stages) => stages.motion(),
-        };
-        let kept = motion.skip(time.first_kept_sample + from).take(time.kept_samples() - from);
-        kept.map(|sample| sample.revolutions).collect()
-    }
+/// (rev) Angle of the input at every sample from one on.
+fn input_revolutions(stages: &Stages, from: usize) -> Vec<f64> {
+    let time = &stages.time;
+    let kept = stages.motion().skip(time.first_kept_sample + from).take(time.kept_samples() - from);
+    kept.map(|sample| sample.revolutions).collect()
 }
 
 /// A simulation that is read like a recording: from the mark on, at the sampling rate of the data set.
 struct View<'a> {
     keep: &'a Keep,
-    simulated: Simulated<'a>,
+    simulated: &'a Stages,
     window: Window,
 }
 
 impl<'a> View<'a> {
-    fn new(content: &'a Content, window: Window, simulated: Simulated<'a>) -> Self {
+    fn new(content: &'a Content, window: Window, simulated: &'a Stages) -> Self {
         Self { keep: &content.keep, simulated, window }
     }
 
@@ -216,9 +168,9 @@ impl<'a> View<'a> {
         let keep = self.keep;
         let simulated = keep.simulated();
         if self.is_steady() {
-            let damping_key = match self.simulated {
-                Simulated::Pair(_) => "rig.damping_ratio",
-                Simulated::Gearbox(_) => "damping_ratio of meshes, shafts and bearings",
+            let damping_key = match self.simulated.scenario.pair() {
+                Some(_) => "rig.damping_ratio",
+                None => "damping_ratio of meshes, shafts and bearings",
             };
             refuse_growth(&simulated, samples, damping_key)?;
         }
@@ -239,7 +191,7 @@ impl<'a> View<'a> {
                 noise::add(&record.drawn, background, number as u64, rate_hz, channel)?;
             }
         }
-        self.chain(&self.simulated.train())?.fill(&mut record, analysed, channels)?;
+        self.chain(&GearTrain::of_stages(self.simulated))?.fill(&mut record, analysed, channels)?;
         Ok(record)
     }
 
@@ -257,21 +209,21 @@ impl<'a> View<'a> {
     fn fault(&self, place: FaultPlace) -> Option<RecordFault> {
         match place {
             FaultPlace::Teeth(number) => {
-                let (fault, severity) = self.simulated.fault_of_teeth(number)?;
-                let damaged = self.simulated.damaged();
+                let (fault, severity) = fault_of_teeth(self.simulated, number)?;
+                let pairs = self.simulated.pairs.iter();
                 Some(RecordFault {
                     kind: fault.fault.damage.kind(),
                     wheel: Some(fault.wheel.name().to_owned()),
                     tooth: start::tooth(&fault, &self.window.turning, &self.window.counted_from),
                     severity,
-                    area_percent: (damaged.iter().flat_map(|damaged| damages_of_fault(damaged, number)))
+                    area_percent: (pairs.flat_map(|pair| damages_of_fault(&pair.damaged, number)))
                         .flat_map(|(_, damage)| damage.numbers("area_percent"))
                         .reduce(f64::max),
                     spall: None,
                 })
             }
             FaultPlace::Spall { bearing, number } => {
-                let spall = self.simulated.spall(bearing, number)?;
+                let spall = spall(self.simulated, bearing, number)?;
                 Some(RecordFault {
                     kind: spall.sizes.place.kind(),
                     wheel: None,
@@ -293,10 +245,7 @@ impl<'a> View<'a> {
             speed_hz: wheel.speed_hz,
             angle_rev: if starts_at_tooth { 0.0 } else { self.angles(number, 1)[0] },
         };
-        let operation = match self.simulated {
-            Simulated::Pair(stages) => &stages.scenario.operation,
-            Simulated::Gearbox(stages) => &stages.gearbox.operation.drive,
-        };
+        let operation = self.simulated.scenario.operation();
         Record {
             drawn,
             faults: places.into_iter().filter_map(|place| self.fault(place)).collect(),
@@ -311,7 +260,7 @@ impl<'a> View<'a> {
 
     /// (s) How long the record is.
     fn span_s(&self) -> f64 {
-        let time = self.simulated.time();
+        let time = &self.simulated.time;
         (time.kept_samples() - 2 * self.window.margin) as f64 * time.step_s()
     }
 
@@ -332,9 +281,9 @@ impl<'a> View<'a> {
 
     /// The sensor of a channel, where its signal is a linear function of its place's motion and not made yet.
     fn linear_sensor(&self, channel: &Channel) -> Option<&'a Sensor> {
-        let Simulated::Pair(stages) = self.simulated else { return None };
+        let pair = self.simulated.scenario.pair()?;
         let is_of = |sensor: &&Sensor| *channel == Channel::Sensor(sensor.name());
-        stages.scenario.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
+        pair.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
     }
 
     /// The channels at the data set's rate, behind their sensors and the record's path.
@@ -348,7 +297,7 @@ impl<'a> View<'a> {
         samples: &[Vec<f32>],
     ) -> Result<Vec<Vec<f32>>, SignalError> {
         let keep = self.keep;
-        let (from_hz, to_hz) = (self.simulated.time().sampling_rate_hz, keep.sampling_rate_hz);
+        let (from_hz, to_hz) = (self.simulated.time.sampling_rate_hz, keep.sampling_rate_hz);
         let step = from_hz / to_hz;
         // The filter is steep because records begin at any moment: frequencies that fold back would differ between them.
         let filter = AntiAliasing::steep(from_hz, to_hz)?;
@@ -377,7 +326,7 @@ impl<'a> View<'a> {
         let teeth = f64::from(wheel.teeth);
         let ratio = wheel.pitches_per_revolution / teeth;
         let first = (wheel.first_pitch - self.window.counted_from[number] as f64) / teeth;
-        let revolutions = self.simulated.input_revolutions(self.window.margin).into_iter();
+        let revolutions = input_revolutions(self.simulated, self.window.margin).into_iter();
         revolutions.take(most).map(|revolution| revolution * ratio + first).collect()
     }
 
@@ -392,7 +341,7 @@ impl<'a> View<'a> {
         let number = if turning.enter_together { turning.marked } else { turning.number(wheel) };
         let turns = f64::from(turning.wheels[number].teeth) / f64::from(self.wheel(wheel).teeth);
         let angles = self.angles(number, usize::MAX);
-        let step = self.simulated.time().sampling_rate_hz / rate_hz;
+        let step = self.simulated.time.sampling_rate_hz / rate_hz;
         let at = |i: usize| {
             let place = i as f64 * step;
             let (whole, last) = (place as usize, angles.len() - 1);
@@ -418,10 +367,10 @@ impl<'a> View<'a> {
         if content.tuned.is_none() {
             return Ok(Vec::new());
         }
-        let Simulated::Pair(stages) = self.simulated else { return Ok(Vec::new()) };
+        let stages = self.simulated;
         // The same settings as those of the signals that the enhancement was tuned with.
-        let angular = DifferenceChain::angular_settings(stages.scenario.model);
-        let train = self.simulated.train();
+        let angular = DifferenceChain::angular_settings(stages.scenario.model());
+        let train = GearTrain::of_stages(stages);
         Ok(self.chain(&train)?.analyse(signal, 0, angular, MeanPart::Removed)?.parts.difference)
     }
 }

@@ -19,7 +19,7 @@ use meshtone::bearing::Spall;
 use meshtone::operation::TimeGrid;
 use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
 use meshtone::signal::{IndicatorValue, SignalWarning};
-use meshtone::{GearboxSimulation, Stages, StepJudgement};
+use meshtone::{Simulation, Stages, StepJudgement};
 
 use crate::draw::DrawnRecord;
 use crate::plan::Content;
@@ -171,7 +171,7 @@ impl<F: Fn(usize) -> Option<Role> + Sync> KeepRecords<'_, F> {
     /// # Arguments
     /// * `index` - number of the simulation
     /// * `simulation` - with all its signals
-    pub fn of_gearbox(&self, index: usize, simulation: GearboxSimulation) -> Result<Box<Record>, String> {
+    pub fn of_gearbox(&self, index: usize, simulation: Simulation) -> Result<Box<Record>, String> {
         // A gearbox has no twins: nothing of it is enhanced.
         let Some(Role::Record(drawn, window)) = (self.role)(index) else {
             return Err("it was not asked for".to_owned());

@@ -57,7 +57,7 @@ fn a_unit_is_in_one_split_with_the_same_wheels() {
         let [a, b] = [first, records.last().unwrap()].map(|record| pair_of(&sampler, record));
         assert_ne!(a.seed, b.seed);
         let errors = |scenario: &meshtone::scenario::Scenario| {
-            meshtone::stages(scenario).unwrap().profile_errors.unwrap()
+            meshtone::stages(scenario).unwrap().pairs[0].profile_errors.clone().unwrap()
         };
         assert_eq!(errors(&a), errors(&b));
         wheels.push(errors(&a));

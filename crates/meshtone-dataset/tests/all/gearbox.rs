@@ -125,7 +125,7 @@ fn the_wheels_are_those_of_the_unit() {
         let drawn = sampler.record(index).unwrap();
         let ScenarioForm::Gearbox(mut gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
         gearbox.faults.clear();
-        let stages = meshtone::gearbox_stages(&gearbox).unwrap();
+        let stages = meshtone::stages(&gearbox).unwrap();
         let deviations: Vec<_> = (stages.pairs.into_iter())
             .map(|pair| (pair.profile_errors.unwrap(), pair.run_out, pair.helix_slope_um))
             .collect();
@@ -254,7 +254,7 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         // A cycle of the train, 15 revolutions of the input, after what is left of the wheel's first revolution.
         let speed_hz = made.number(&format!("{wheel}_speed_hz"), row);
         gearbox.solver.settings.duration_s = Some(0.5005 + 1.0 / speed_hz);
-        let simulation = meshtone::simulate_gearbox(&gearbox).unwrap();
+        let simulation = meshtone::simulate(&gearbox).unwrap();
         let channels = &simulation.channels;
         let signal = channels.signal("output_1_vertical_g").unwrap();
         let train = GearTrain::of_layout(&gearbox, &simulation.stages.layout);

@@ -211,7 +211,7 @@ fn warnings_are_columns_and_are_counted() {
             let (stages, mut warnings) =
                 meshtone::stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
             let simulation = stages.simulate().unwrap();
-            warnings.extend(simulation.warnings_of_signals());
+            warnings.extend(simulation.warnings_of_signals(meshtone::StepJudgement::Repeated));
             let codes: Vec<&str> = warnings.iter().map(|warning| warning.kind.code()).collect();
             assert_eq!(made.text("warnings", row), codes.join(";"));
             codes.iter().for_each(|code| *counts.entry((*code).to_owned()).or_insert(0) += 1);
@@ -269,7 +269,7 @@ fn a_step_too_long_is_warned_of_without_a_second_simulation() {
         let is_confirmed = |row: &&usize| {
             let scenario = pair_of(&sampler, &sampler.record(**row as u64).unwrap());
             let (stages, _) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
-            let repeated = stages.simulate().unwrap().warnings_of_signals();
+            let repeated = stages.simulate().unwrap().warnings_of_signals(meshtone::StepJudgement::Repeated);
             repeated.iter().any(|warning| warning.kind.code() == "step-error")
         };
         let confirmed = warned.iter().filter(is_confirmed).count();

@@ -5,7 +5,7 @@ use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
     AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainTurning, revolution_average,
 };
-use meshtone::{GearboxSimulation, StepJudgement};
+use meshtone::{Simulation, StepJudgement};
 use serde_json::{Map, Value, json};
 
 use super::bearing::LookedAtBearing;
@@ -27,7 +27,7 @@ pub struct GearboxState {
     gearbox: Gearbox,
     options: AnswerOptions,
     warnings: Vec<ScenarioWarning>,
-    simulation: GearboxSimulation,
+    simulation: Simulation,
     /// Number of the signal that is drawn.
     signal: usize,
     /// Number of the wheel that is looked at.
@@ -46,7 +46,7 @@ pub struct GearboxState {
 /// * `is_wanted` - whether the answer still is, asked between the stages
 ///
 /// # Errors
-/// As [`meshtone::simulate_gearbox`]; a simulation that needs more memory than one for the page may; no longer wanted.
+/// As [`meshtone::simulate`]; a simulation that needs more memory than one for the page may; no longer wanted.
 pub fn gearbox_answer(
     gearbox: &Gearbox,
     options: &AnswerOptions,
@@ -59,10 +59,9 @@ pub fn gearbox_answer(
         settings.discard_and_keep(gearbox.time_grid().kept_from_s(), SHORT_S);
         settings.settle_tolerance = settings.settle_tolerance.max(SHORT_TOLERANCE);
     }
-    let stages = meshtone::gearbox_stages_within(&simulated, memory_limit())?;
+    let stages = meshtone::stages_within(&simulated, memory_limit())?;
     wanted(is_wanted)?;
-    let simulation = stages.simulate()?;
-    wanted(is_wanted)?;
+    let simulation = stages.simulate_while(is_wanted)?.ok_or(Refusal::Superseded)?;
     let mut warnings = simulation.stages.warnings();
     if options.detail == Detail::Full {
         warnings.extend(simulation.warnings_of_signals(StepJudgement::Estimated));
@@ -84,7 +83,7 @@ pub fn gearbox_answer(
         ),
         wheel,
         mesh: number(mesh, gearbox.meshes.iter().map(|mesh| mesh.name()).collect()),
-        bearing: looked_at(&simulation, options.bearing.as_deref()),
+        bearing: looked_at(gearbox, &simulation, options.bearing.as_deref()),
         gearbox: gearbox.clone(),
         options: options.clone(),
         warnings,
@@ -93,9 +92,9 @@ pub fn gearbox_answer(
 }
 
 /// The rolling bearing of a name; where there is none of it the first with a defect, or else the first.
-fn looked_at(simulation: &GearboxSimulation, name: Option<&str>) -> Option<LookedAtBearing> {
-    let GearboxSimulation { stages, .. } = simulation;
-    let (bearings, rolling) = (&stages.gearbox.bearings, &stages.bearings);
+fn looked_at(gearbox: &Gearbox, simulation: &Simulation, name: Option<&str>) -> Option<LookedAtBearing> {
+    let Simulation { stages, .. } = simulation;
+    let (bearings, rolling) = (&gearbox.bearings, &stages.bearings);
     let named = rolling.iter().find(|(number, _)| Some(bearings[*number].seat_name().as_str()) == name);
     let damaged = || rolling.iter().find(|(_, bearing)| !bearing.parts.spalls.is_empty());
     let (number, bearing) = named.or_else(damaged).or(rolling.first())?;
@@ -121,7 +120,7 @@ impl GearboxState {
     /// * `more` - what else is said beside it
     pub fn packet(&self, more: Map<String, Value>) -> Vec<u8> {
         let mut packet = Packet::default();
-        let GearboxSimulation { stages, channels, .. } = &self.simulation;
+        let Simulation { stages, channels, .. } = &self.simulation;
         let signal = &channels.signals[self.signal];
         let tones = Tones::of(stages);
         let spectrum = Spectrum::of(&signal.values, channels.sampling_rate_hz);
@@ -131,7 +130,7 @@ impl GearboxState {
         let line = |line: &SpectrumLine| json!([line.frequency_hz, line.amplitude, line.name]);
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
         let force = channels.of(SignalSource::MeshForce(self.mesh));
-        let train = GearTrain::of_layout(&self.gearbox, &stages.layout);
+        let train = GearTrain::of_stages(stages);
         let form = ScenarioForm::Gearbox(self.gearbox.clone());
         let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.values.len());
         let recording = || {

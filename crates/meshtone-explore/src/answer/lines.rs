@@ -1,6 +1,7 @@
 //! What the lines of a gearbox's spectrum are: harmonics of which mesh, sidebands of which shaft.
 
-use meshtone::GearboxStages;
+use meshtone::Stages;
+use meshtone::signal::GearTrain;
 use meshtone_fourier::{hann_window, real_spectrum};
 
 /// Lines of a spectrum that are named: the strongest.
@@ -94,20 +95,19 @@ impl Spectrum {
 }
 
 impl Tones {
-    /// The tones of a gearbox at its nominal speed.
-    pub fn of(stages: &GearboxStages) -> Self {
-        let (gearbox, layout) = (&stages.gearbox, &stages.layout);
-        let input_hz = gearbox.operation.drive.pinion_speed_hz;
-        let speed_hz = |shaft: usize| layout.ratios[shaft].value().abs() * input_hz;
-        let mesh = |(number, mesh): (usize, &meshtone::scenario::GearboxMesh)| {
-            let [driving, driven] = layout.wheels_of_mesh[number];
-            let shafts = [driving, driven].map(|wheel| layout.shaft_of_wheel[wheel]);
-            let frequency_hz = f64::from(gearbox.wheels[driving].teeth) * speed_hz(shafts[0]);
-            MeshTone { name: mesh.name(), frequency_hz, shafts }
+    /// The tones of a machine at its nominal speed.
+    pub fn of(stages: &Stages) -> Self {
+        let train = GearTrain::of_stages(stages);
+        let input_hz = stages.scenario.operation().pinion_speed_hz;
+        let speed_hz = |shaft: usize| train.shafts[shaft].speed_ratio.value() * input_hz;
+        let mesh = |(number, wheels): (usize, &[usize; 2])| {
+            let shafts = wheels.map(|wheel| train.wheels[wheel].shaft);
+            let frequency_hz = f64::from(train.wheels[wheels[0]].teeth) * speed_hz(shafts[0]);
+            MeshTone { name: train.mesh_name(number), frequency_hz, shafts }
         };
-        let shafts = gearbox.shafts.iter().enumerate();
+        let shafts = train.shafts.iter().enumerate();
         Self {
-            meshes: gearbox.meshes.iter().enumerate().map(mesh).collect(),
+            meshes: train.meshes.iter().enumerate().map(mesh).collect(),
             shafts: shafts.map(|(number, shaft)| (shaft.name.clone(), speed_hz(number))).collect(),
         }
     }

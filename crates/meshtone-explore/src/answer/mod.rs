@@ -15,7 +15,7 @@ use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning};
 use meshtone::sensor::{NamedSignal, SignalSource};
 use meshtone::signal::{ChainSettings, SimulatedShafts};
 use meshtone::wheel::WheelName;
-use meshtone::{Simulation, StageTime, Stages};
+use meshtone::{Simulation, StageTime, Stages, StepJudgement};
 use meshtone_plot::DamagedTooth;
 use serde_json::{Map, Value, json};
 
@@ -150,7 +150,7 @@ pub fn answer(
     let stages = &simulation.stages;
     let (signal, of_wheel) = wheel_signals(&simulation, options.channel.as_deref());
     let of_signals = || match options.detail {
-        Detail::Full => simulation.warnings_of_signals(),
+        Detail::Full => simulation.warnings_of_signals(StepJudgement::Repeated),
         Detail::Coarse => Vec::new(),
     };
     // About as long as the wheels' signals.
@@ -189,7 +189,7 @@ fn wheel_signals(
     };
     let number = named.or_else(leading).unwrap_or(0);
     let signal = &channels.signals[number].values;
-    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let shafts = SimulatedShafts::of_stages(stages, channels.start_s, channels.len());
     let of_wheel = move |shaft| {
         let damaged = damaged_numbers(stages, shaft);
         let record = shafts.process(signal, shaft, &ChainSettings::default());
@@ -206,14 +206,16 @@ fn damaged_numbers(stages: &Stages, wheel: WheelName) -> Vec<usize> {
 /// Key figures of a simulation.
 fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
     let Simulation { stages, channels, .. } = simulation;
-    let Scenario { gears, operation, .. } = &stages.scenario;
-    let mesh_hz = operation.pinion_speed_hz * f64::from(gears.pinion_teeth);
+    let (scenario, gears) = (&stages.scenario, &stages.layout.gears[0]);
+    let mesh_hz = scenario.operation().pinion_speed_hz * f64::from(gears.pinion_teeth);
     let frequencies = stages.natural_frequencies_hz();
     // Rigid rotation has none.
     let lowest = frequencies.into_iter().find(|&frequency| frequency > 1.0);
     let largest = channels.of(SignalSource::MeshForce(0)).iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let mut figures =
-        vec![("contact ratio", stages.teeth.path.contact_ratio, ""), ("mesh frequency", mesh_hz, "Hz")];
+    let mut figures = vec![
+        ("contact ratio", stages.pairs[0].teeth.path.contact_ratio, ""),
+        ("mesh frequency", mesh_hz, "Hz"),
+    ];
     if gears.is_helical() {
         figures.extend([
             ("overlap ratio", gears.overlap_ratio(), ""),
@@ -230,8 +232,8 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
             .map(|contact| ("teeth apart", 100.0 * contact.apart_fraction, "% of the time")),
     );
     figures.extend(lowest.map(|frequency| ("lowest natural frequency", frequency, "Hz")));
-    if stages.scenario.model == Model::Contact {
-        let [alike, against] = stages.scenario.rig.support.frequencies_hz();
+    if let Some(pair) = scenario.pair().filter(|pair| pair.model == Model::Contact) {
+        let [alike, against] = pair.rig.support.frequencies_hz();
         figures.extend([("bare supports, alike", alike, "Hz"), ("against each other", against, "Hz")]);
     }
     figures.push(("sampling rate", channels.sampling_rate_hz, "S/s"));
@@ -255,7 +257,7 @@ impl State {
             "scenario": serde_json::to_value(&self.scenario).unwrap_or_default(),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
             "severities": stages.fault_severities,
-            "sized_faults": sized_faults(&stages.scenario),
+            "sized_faults": stages.scenario.pair().map(sized_faults),
             "figures": self.figures,
             "teeth": self.teeth.json(&mut packet),
             "mesh": self.mesh.json(&mut packet),
@@ -284,9 +286,8 @@ fn modes_json(stages: &Stages, source: SignalSource) -> Value {
         let of_kind = modes.iter().filter(move |mode| mode.is_alike == is_alike);
         of_kind.map(|mode| mode.frequency_hz).collect::<Vec<f64>>()
     };
-    let sensors = &stages.scenario.sensors;
     let sensor = match source {
-        SignalSource::Sensor(number) => sensors.get(number),
+        SignalSource::Sensor(number) => stages.sensors.get(number),
         _ => None,
     };
     let housing = sensor.map_or_else(Vec::new, |sensor| sensor.path.housing_frequencies_hz());

@@ -1,8 +1,8 @@
 //! The teeth of both wheels in their plane, and where they touch.
 
-use meshtone::Stages;
 use meshtone::damage::{DamagedTooth, ToothPart};
 use meshtone::wheel::{ToothProfile, Wheel, WheelName};
+use meshtone::{MeshedPair, Stages};
 use serde_json::{Value, json};
 
 use crate::packet::Packet;
@@ -65,7 +65,7 @@ impl TeethInPlane {
     /// # Arguments
     /// * `stages` - what is simulated
     pub fn new(stages: &Stages) -> Self {
-        let teeth = &stages.teeth;
+        let MeshedPair { teeth, damaged, .. } = &stages.pairs[0];
         let path = &teeth.path;
         let angle_rad = teeth.pinion.working_pressure_angle_rad;
         let centre_distance_mm = teeth.pinion.working_pitch_radius_mm + teeth.gear.working_pitch_radius_mm;
@@ -81,7 +81,7 @@ impl TeethInPlane {
             let half_rad = wheel.half_thickness_angle_at_rad(x_mm.hypot(y_mm));
             let profile = teeth.profile(name);
             let points = drawn_points(profile.len());
-            let damaged = stages.damaged.iter().filter(|tooth| tooth.wheel == name);
+            let damaged = damaged.iter().filter(|tooth| tooth.wheel == name);
             let place = |point_mm: [f64; 2]| teeth.transverse_point_mm(name, point_mm);
             let mut in_plane = WheelInPlane {
                 wheel,

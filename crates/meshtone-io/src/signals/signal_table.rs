@@ -2,7 +2,7 @@
 
 use std::io::{self, Seek, Write};
 
-use meshtone::scenario::{Gearbox, Scenario};
+use meshtone::scenario::ScenarioForm;
 use meshtone::sensor::{Channels, NamedSignal};
 
 use super::format::{SignalFormat, csv, mat, npz, parquet, wav};
@@ -17,22 +17,15 @@ pub struct SignalTable<'a> {
 }
 
 impl<'a> SignalTable<'a> {
-    /// The signals of a pair.
+    /// The signals of a scenario.
     ///
     /// # Arguments
     /// * `scenario` - what was simulated
     /// * `channels` - the signals
-    pub fn of_pair(scenario: &Scenario, channels: &'a Channels) -> Self {
-        Self { scenario: Some((SCENARIO_KEY, scenario.to_toml())), channels }
-    }
-
-    /// The signals of a gearbox.
-    ///
-    /// # Arguments
-    /// * `gearbox` - what was simulated
-    /// * `channels` - the signals
-    pub fn of_gearbox(gearbox: &Gearbox, channels: &'a Channels) -> Self {
-        Self { scenario: Some((GEARBOX_KEY, gearbox.to_toml())), channels }
+    pub fn of_scenario(scenario: impl Into<ScenarioForm>, channels: &'a Channels) -> Self {
+        let scenario = scenario.into();
+        let key = if scenario.gearbox().is_some() { GEARBOX_KEY } else { SCENARIO_KEY };
+        Self { scenario: Some((key, scenario.to_toml())), channels }
     }
 
     /// Signals that are not what a simulation of a scenario gives.
@@ -58,7 +51,7 @@ impl<'a> SignalTable<'a> {
     /// use meshtone_io::signals::{SignalFormat, SignalTable};
     ///
     /// let simulation = meshtone::simulate(&Scenario::new(GearPair::example()))?;
-    /// let table = SignalTable::of_pair(&simulation.stages.scenario, &simulation.channels);
+    /// let table = SignalTable::of_scenario(&simulation.stages.scenario, &simulation.channels);
     /// let directory = tempfile::tempdir()?;
     /// let path = directory.path().join("signals.mat");
     /// table.write(std::fs::File::create(&path)?, SignalFormat::Mat)?;

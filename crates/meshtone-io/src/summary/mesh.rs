@@ -1,7 +1,10 @@
 //! What the summary says of meshes.
 
+use meshtone::Simulation;
+use meshtone::mesh::MeshCurve;
 use meshtone::scenario::Gears;
-use meshtone::sensor::ContactFigures;
+use meshtone::sensor::{ContactFigures, SignalSource};
+use meshtone::signal::GearTrain;
 use serde::Serialize;
 
 /// A mesh.
@@ -26,6 +29,41 @@ pub struct MeshSummary {
     pub mesh_force: MeshForce,
     /// Along the line of action, over the samples kept; only of a gearbox.
     pub transmission_error_um: Option<TransmissionError>,
+}
+
+impl MeshSummary {
+    /// A mesh of a simulation.
+    ///
+    /// # Arguments
+    /// * `simulation`, `train` - what was simulated, and its shafts and wheels by their names
+    /// * `number` - of the mesh
+    /// * `curve` - its stiffness over a revolution of the driven wheel
+    pub(super) fn new(simulation: &Simulation, train: &GearTrain, number: usize, curve: &MeshCurve) -> Self {
+        let Simulation { stages, channels, .. } = simulation;
+        let (layout, pair) = (&stages.layout, &stages.pairs[number]);
+        let wheels = layout.wheels_of_mesh[number];
+        let gears = &layout.gears[number];
+        let ratio = layout.ratios[layout.shaft_of_wheel[wheels[0]]].value().abs();
+        let pitches_per_revolution = f64::from(gears.pinion_teeth) * ratio;
+        let error_um = channels.of(SignalSource::TransmissionError(number));
+        let error = stages.meshes.get(number).filter(|_| !error_um.is_empty()).map(|tables| {
+            let revolution = 0..tables.sequence.gear_teeth();
+            let static_um = tables.at_rest(pair.static_force_n, revolution).peak_to_peak_m() * 1e6;
+            TransmissionError::of(error_um, static_um)
+        });
+        let force_n = channels.of(SignalSource::MeshForce(number));
+        Self {
+            wheels: wheels.map(|wheel| train.wheels[wheel].name.clone()),
+            mesh_frequency_hz: pitches_per_revolution * stages.scenario.operation().pinion_speed_hz,
+            contact_ratio: pair.teeth.contact.contact_ratio,
+            helix: HelixSummary::of(gears, pair.static_force_n),
+            face_load_factor: curve.face_load_factor,
+            static_force_n: pair.static_force_n,
+            mesh_stiffness: MeshStiffness::of(&curve.stiffness_n_per_mm),
+            mesh_force: MeshForce::of(force_n, simulation.contact_figures().is_some()),
+            transmission_error_um: error,
+        }
+    }
 }
 
 /// How far the wheels of a mesh turn against one another, along the line of action.

@@ -15,11 +15,14 @@ use std::path::Path;
 use std::time::Duration;
 
 use meshtone::damage::{QuantityValue, ToothPart, damages_of_fault};
-use meshtone::scenario::{Fault, FaultyTeeth, Model, Ratio, Scenario, ScenarioWarning};
-use meshtone::sensor::{Channels, NamedSignal, SignalSource};
-use meshtone::signal::{ChainSettings, Indicators, SimulatedShafts, kurtosis, peak, rms};
+use meshtone::mesh::MeshCurve;
+use meshtone::scenario::{Fault, FaultyTeeth, Ratio, ScenarioWarning};
+use meshtone::sensor::{Channels, NamedSignal};
+use meshtone::signal::{
+    ChainSettings, GearTrain, Indicators, SimulatedShafts, TrainWheel, kurtosis, peak, rms,
+};
 use meshtone::wheel::WheelName;
-use meshtone::{GearboxSimulation, Simulation, StageTime, Stages};
+use meshtone::{Simulation, Stages};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -171,16 +174,20 @@ impl FaultSummary {
         }
     }
 
-    /// Those of a pair.
-    fn of_pair(stages: &Stages) -> Vec<Self> {
-        let faults = stages.scenario.faults.iter().zip(&stages.fault_severities).enumerate();
-        let summary = |(number, (fault, &severity)): (usize, (&Fault, &f64))| Self {
-            pitted_teeth: damages_of_fault(&stages.damaged, number)
+    /// The faults of teeth.
+    fn all(stages: &Stages, train: &GearTrain) -> Vec<Self> {
+        let faults = stages.scenario.faults().into_iter().zip(&stages.fault_severities).enumerate();
+        let of_pair = |number: usize| -> Vec<PittedTooth> {
+            damages_of_fault(&stages.pairs[0].damaged, number)
                 .into_iter()
                 .filter(|(_, damage)| damage.part == ToothPart::FlankSpots)
                 .map(|(tooth, damage)| (tooth, damage.quantities.clone()))
-                .collect(),
-            ..Self::new(fault, fault.wheel.name(), severity)
+                .collect()
+        };
+        let is_pair = stages.scenario.pair().is_some();
+        let summary = |(number, ((wheel, fault), &severity)): (usize, ((usize, &Fault), &f64))| Self {
+            pitted_teeth: if is_pair { of_pair(number) } else { Vec::new() },
+            ..Self::new(fault, &train.wheels[wheel].name, severity)
         };
         faults.map(summary).collect()
     }
@@ -217,10 +224,10 @@ impl ChannelSummary {
 }
 
 impl AveragedSignal {
-    /// None where nothing was kept.
+    /// None where nothing was kept, and of a gearbox.
     fn of(stages: &Stages, channels: &Channels) -> Option<Self> {
-        let leading = channels.leading()?;
-        let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+        let leading = channels.leading().filter(|_| stages.scenario.pair().is_some())?;
+        let shafts = SimulatedShafts::of_stages(stages, channels.start_s, channels.len());
         let indicators = WheelName::BOTH.map(|shaft| {
             let record = shafts.process(&leading.values, shaft, &ChainSettings::default());
             Some(record.ok()?.indicators)
@@ -229,125 +236,51 @@ impl AveragedSignal {
     }
 }
 
+impl MachineSummary {
+    fn new(simulation: &Simulation) -> Self {
+        let Simulation { stages, .. } = simulation;
+        let (scenario, layout, train) = (&stages.scenario, &stages.layout, GearTrain::of_stages(stages));
+        let input_hz = scenario.operation().pinion_speed_hz;
+        let curves = stages.mesh_curves();
+        let mesh = |(number, curve): (usize, &MeshCurve)| MeshSummary::new(simulation, &train, number, curve);
+        let shafts = train.shafts.iter().zip(&layout.ratios);
+        let wheel = |wheel: &TrainWheel| WheelSummary {
+            name: wheel.name.clone(),
+            shaft: train.shafts[wheel.shaft].name.clone(),
+            teeth: wheel.teeth,
+        };
+        let bearings = stages.bearings.iter().zip(&train.bearings);
+        Self {
+            model: scenario.model().name(),
+            seed: scenario.seed(),
+            faults: FaultSummary::all(stages, &train),
+            samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
+            cycle_input_revolutions: layout.cycle_revolutions(),
+            shafts: shafts.map(|(shaft, ratio)| ShaftSummary::new(&shaft.name, *ratio, input_hz)).collect(),
+            wheels: train.wheels.iter().map(wheel).collect(),
+            meshes: curves.iter().enumerate().map(mesh).collect(),
+            bearings: bearings
+                .map(|((_, bearing), (name, _))| BearingSummary::new(name.clone(), bearing))
+                .collect(),
+            natural_frequencies_hz: stages.natural_frequencies_hz(),
+        }
+    }
+}
+
 impl Summary {
-    /// Sums up a simulation of a pair.
+    /// Sums up a simulation.
     ///
     /// What can be computed from the signals is taken from them as they are written, not from the simulation's inner state, so that a
-    /// reader of the files finds the same numbers. Indicators are those of the leading channel; they are none where the signal is too short
-    /// for an average.
+    /// reader of the files finds the same numbers. Indicators are those of a pair's leading channel; they are none where the signal is too
+    /// short for an average.
     ///
     /// # Arguments
     /// * `simulation` - its stages and signals
     /// * `run` - the run's identity
     /// * `warnings` - what deserves attention
-    pub fn of_pair(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
+    pub fn new(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
         let Simulation { stages, channels, timings, .. } = simulation;
-        let Scenario { gears, operation, seed, model, .. } = &stages.scenario;
-        let names = WheelName::BOTH.map(WheelName::name);
-        let [pinion, gear] = [gears.pinion_teeth, gears.gear_teeth];
-        let ratio = Ratio::ONE.times(-i64::from(pinion), i64::from(gear));
-        let input_hz = operation.pinion_speed_hz;
-        let wheel = |(name, teeth): (&str, u32)| {
-            let [name, shaft] = [name, name].map(str::to_owned);
-            WheelSummary { name, shaft, teeth }
-        };
-        let curve = stages.mesh_curves().into_iter().next();
-        let static_force_n = stages.static_force_n();
-        let force_n = channels.of(SignalSource::MeshForce(0));
-        let mesh = MeshSummary {
-            wheels: names.map(str::to_owned),
-            mesh_frequency_hz: input_hz * f64::from(pinion),
-            contact_ratio: stages.teeth.contact.contact_ratio,
-            helix: HelixSummary::of(gears, static_force_n),
-            face_load_factor: curve.as_ref().and_then(|curve| curve.face_load_factor),
-            static_force_n,
-            mesh_stiffness: MeshStiffness::of(curve.as_ref().map_or(&[], |curve| &curve.stiffness_n_per_mm)),
-            mesh_force: MeshForce::of(force_n, simulation.contact_figures().is_some()),
-            transmission_error_um: None,
-        };
-        let machine = MachineSummary {
-            model: model.name(),
-            seed: *seed,
-            faults: FaultSummary::of_pair(stages),
-            samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
-            cycle_input_revolutions: ratio.denominator,
-            shafts: vec![
-                ShaftSummary::new(names[0], Ratio::ONE, input_hz),
-                ShaftSummary::new(names[1], ratio, input_hz),
-            ],
-            wheels: names.into_iter().zip([pinion, gear]).map(wheel).collect(),
-            meshes: vec![mesh],
-            bearings: Vec::new(),
-            natural_frequencies_hz: stages.natural_frequencies_hz(),
-        };
-        let averaged = AveragedSignal::of(stages, channels);
-        Self { averaged, ..Self::new(machine, channels, run, timings, warnings) }
-    }
-
-    /// Sums up a simulation of a gearbox.
-    ///
-    /// Each list has the order of the scenario file, and each entry is made of what the stages found of its part and of the signals of that
-    /// part. Averages are left to [`TrainRecording`](meshtone::signal::TrainRecording): a train has one for every wheel.
-    ///
-    /// # Arguments
-    /// * `simulation`, `run`, `warnings` - as for [`Self::of_pair`]
-    pub fn of_gearbox(
-        simulation: &GearboxSimulation,
-        run: RunIdentity,
-        warnings: &[ScenarioWarning],
-    ) -> Self {
-        let GearboxSimulation { stages, channels, timings, .. } = simulation;
-        let (gearbox, layout) = (&stages.gearbox, &stages.layout);
-        let input_hz = gearbox.operation.drive.pinion_speed_hz;
-        let meshes = gearbox.meshes.iter().zip(&stages.meshes).zip(&stages.pairs).enumerate();
-        let meshes = meshes.map(|(number, ((mesh, tables), pair))| {
-            let revolution = 0..tables.sequence.gear_teeth();
-            let static_um = tables.at_rest(pair.static_force_n, revolution.clone()).peak_to_peak_m() * 1e6;
-            let error_um = channels.of(SignalSource::TransmissionError(number));
-            MeshSummary {
-                wheels: mesh.wheels.clone(),
-                mesh_frequency_hz: tables.turning.pitches_per_revolution * input_hz,
-                contact_ratio: pair.teeth.contact.contact_ratio,
-                helix: HelixSummary::of(&layout.gears[number], pair.static_force_n),
-                face_load_factor: Some(tables.face_load_factor),
-                static_force_n: pair.static_force_n,
-                mesh_stiffness: MeshStiffness::of(&tables.stiffness_n_per_mm(revolution)),
-                mesh_force: MeshForce::of(channels.of(SignalSource::MeshForce(number)), true),
-                transmission_error_um: Some(TransmissionError::of(error_um, static_um)),
-            }
-        });
-        let faults = gearbox.faults.iter().zip(&stages.fault_severities);
-        let shafts = gearbox.shafts.iter().zip(&layout.ratios);
-        let wheels = gearbox.wheels.iter().map(|wheel| WheelSummary {
-            name: wheel.name.clone(),
-            shaft: wheel.shaft.clone(),
-            teeth: wheel.teeth,
-        });
-        let bearings = stages.bearings.iter();
-        let machine = MachineSummary {
-            model: Model::Contact.name(),
-            seed: gearbox.seed,
-            faults: faults.map(|(of, &severity)| FaultSummary::new(&of.fault, &of.wheel, severity)).collect(),
-            samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
-            cycle_input_revolutions: layout.cycle_revolutions(),
-            shafts: shafts.map(|(shaft, ratio)| ShaftSummary::new(&shaft.name, *ratio, input_hz)).collect(),
-            wheels: wheels.collect(),
-            meshes: meshes.collect(),
-            bearings: bearings
-                .map(|(number, bearing)| BearingSummary::new(gearbox.bearings[*number].seat_name(), bearing))
-                .collect(),
-            natural_frequencies_hz: stages.natural_frequencies_hz(),
-        };
-        Self::new(machine, channels, run, timings, warnings)
-    }
-
-    fn new(
-        machine: MachineSummary,
-        channels: &Channels,
-        run: RunIdentity,
-        timings: &[StageTime],
-        warnings: &[ScenarioWarning],
-    ) -> Self {
+        let machine = MachineSummary::new(simulation);
         Self {
             format_version: FORMAT_VERSION,
             meshtone_version: env!("CARGO_PKG_VERSION"),
@@ -359,7 +292,7 @@ impl Summary {
             one_mesh: OneMesh::of(&machine.meshes, machine.samples_per_input_revolution),
             machine,
             channels: ChannelSummary::all(channels),
-            averaged: None,
+            averaged: AveragedSignal::of(stages, channels),
             computing_time: timings.iter().map(|time| (time.stage.to_owned(), time.elapsed)).collect(),
             warnings: warnings.to_vec(),
         }

@@ -39,7 +39,7 @@ fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
     let channels = Channels::new(258_400.0, 0.95, named.collect());
     let scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     let file = File::create(directory.path().join("signals.parquet")).unwrap();
-    SignalTable::of_pair(&scenario, &channels).write_parquet(file).unwrap();
+    SignalTable::of_scenario(&scenario, &channels).write_parquet(file).unwrap();
     // The folder stands for its signals.
     let recording = read_recording(directory.path(), &defaults()).unwrap();
     assert_eq!((recording.sampling_rate_hz, recording.start_s), (258_400.0, 0.95));

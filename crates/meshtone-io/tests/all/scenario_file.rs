@@ -148,8 +148,8 @@ fn deviations_that_were_drawn_make_the_same_signal_from_a_file() {
     };
     let drawn = contact("din_grade = 7\nhelix_share = 0.5");
     let simulation = meshtone::simulate(&drawn).unwrap();
-    let errors = simulation.stages.profile_errors.as_ref().unwrap();
-    let deviations = simulation.stages.wheel_deviations();
+    let errors = simulation.stages.pairs[0].profile_errors.as_ref().unwrap();
+    let deviations = simulation.stages.wheel_deviations().swap_remove(0);
     assert!(deviations.iter().all(|given| given.run_out_um > Some(1.0) && given.helix_slope_um != Some(0.0)));
     write_wheels_npz(&directory.path().join("wheels.npz"), errors, &deviations).unwrap();
     let given = contact("errors_file = \"wheels.npz\"");

@@ -51,7 +51,7 @@ fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
 fn signals_are_read_back_exactly() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
-    SignalTable::of_pair(&scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
+    SignalTable::of_scenario(&scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
     let recorded = read_signals(&path).unwrap();
     assert_eq!((recorded.scenario, recorded.channels), (ScenarioForm::Pair(scenario()), channels()));
     assert_eq!(recorded.run, RunIdentity::of(&scenario()));
@@ -67,7 +67,7 @@ fn signals_of_every_format_are_read_back() {
     // Not the whole number of samples a second that a WAV file's header holds.
     channels.sampling_rate_hz = 258_400.4;
     channels.signals.insert(0, of_sensor(0, "pinion_support_vertical_g", 1.5));
-    let table = SignalTable::of_pair(&scenario, &channels);
+    let table = SignalTable::of_scenario(&scenario, &channels);
     for format in SignalFormat::ALL {
         let path = directory.path().join(format.file_name());
         assert_eq!(SignalFormat::of_path(&path), Some(format));
@@ -93,7 +93,7 @@ fn signals_of_every_format_are_read_back() {
 #[test]
 fn wav_files_are_what_players_expect() {
     let mut file = io::Cursor::new(Vec::new());
-    SignalTable::of_pair(&scenario(), &channels()).write(&mut file, SignalFormat::Wav).unwrap();
+    SignalTable::of_scenario(&scenario(), &channels()).write(&mut file, SignalFormat::Wav).unwrap();
     let bytes = file.into_inner();
     let length = u32::from_le_bytes(bytes[4..8].try_into().unwrap());
     assert_eq!(length as usize, bytes.len() - 8);
@@ -115,8 +115,8 @@ fn signals_of_a_gearbox_have_names_that_matlab_accepts() {
     let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
     gearbox.solver.settings.sampling_rate_hz = 2e4;
     gearbox.solver.settings.duration_s = Some(0.2);
-    let simulation = meshtone::gearbox_stages(&gearbox).unwrap().simulate().unwrap();
-    let table = SignalTable::of_gearbox(&gearbox, &simulation.channels);
+    let simulation = meshtone::stages(&gearbox).unwrap().simulate().unwrap();
+    let table = SignalTable::of_scenario(&gearbox, &simulation.channels);
     let names = |format: SignalFormat| -> Vec<String> {
         let path = directory.path().join(format.file_name());
         table.write(File::create(&path).unwrap(), format).unwrap();
@@ -158,7 +158,7 @@ fn cut_files_are_refused() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
     let mut bytes = Vec::new();
-    SignalTable::of_pair(&scenario(), &channels()).write_parquet(&mut bytes).unwrap();
+    SignalTable::of_scenario(&scenario(), &channels()).write_parquet(&mut bytes).unwrap();
     fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     let error = read_signals(&path).unwrap_err();
     assert!(error.to_string().contains("not a whole Parquet file"), "{error}");
@@ -262,7 +262,7 @@ fn sensors_are_the_first_columns() {
     let mut channels = channels();
     let sensors = [of_sensor(0, "pinion_support_vertical_g", 1.5), of_sensor(1, "casing_g", -2.5)];
     channels.signals.splice(..0, sensors);
-    SignalTable::of_pair(&scenario, &channels).write_parquet(File::create(&path).unwrap()).unwrap();
+    SignalTable::of_scenario(&scenario, &channels).write_parquet(File::create(&path).unwrap()).unwrap();
     let table = TableReader::new(File::open(&path).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names[..4], ["time_s", "pinion_support_vertical_g", "casing_g", "horizontal_g"]);

@@ -16,11 +16,11 @@ const MARGIN: f64 = 0.06;
 /// Draws both averages on the same scale; or, where the speed changes and nothing can be averaged revolution by
 /// revolution, the signal and the speeds over time.
 pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, channels: &Channels) {
-    if stages.scenario.operation.speed_profile_hz.is_some() {
+    if stages.scenario.operation().speed_profile_hz.is_some() {
         over_time(canvas, areas, channels);
         return;
     }
-    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let shafts = SimulatedShafts::of_stages(stages, channels.start_s, channels.len());
     let (quantity, signal) = leading(channels);
     let quantity = capitalised(&quantity);
     // Where there is no whole revolution there is no average.
@@ -31,7 +31,7 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
     let y = axes::range(values, MARGIN);
     for (column, (values, revolutions)) in averages.iter().enumerate() {
         let wheel = WheelName::BOTH[column];
-        let teeth = stages.teeth.wheel(wheel).teeth;
+        let teeth = stages.layout.gears[0].teeth(wheel);
         let damaged = DamagedTooth::of_stages(stages, wheel);
         let marked = damaged_tooth::marked(&damaged, teeth);
         let name = wheel.name();

@@ -2,6 +2,7 @@
 
 use meshtone::Stages;
 use meshtone::damage::{DamageDescription, Fault, damages_of_fault};
+use meshtone::scenario::Scenario;
 
 use crate::DamagedTooth;
 use crate::drawing::capitalised;
@@ -9,10 +10,10 @@ use crate::drawing::capitalised;
 /// The damages in words: what they are, where they are not on the gear's tooth 1, and, as far as there is room, their sizes.
 ///
 /// # Arguments
-/// * `stages` - what was simulated
+/// * `scenario`, `stages` - what was simulated
 /// * `fits` - whether there is room
-pub(super) fn title(stages: &Stages, fits: impl Fn(&str) -> bool) -> String {
-    let damages = damages(stages);
+pub(super) fn title(scenario: &Scenario, stages: &Stages, fits: impl Fn(&str) -> bool) -> String {
+    let damages = damages(scenario, stages);
     let Some((only, _)) = damages.first() else { return "Healthy gear pair".to_owned() };
     let usual = Fault::at_usual_place(only.damage.clone());
     let is_usual = damages.len() == 1 && (only.wheel, &only.tooth) == (usual.wheel, &usual.tooth);
@@ -34,9 +35,10 @@ pub(super) fn title(stages: &Stages, fits: impl Fn(&str) -> bool) -> String {
 }
 
 /// The faults that do anything to a tooth, each with what it has done to the first of its teeth.
-fn damages(stages: &Stages) -> Vec<(&Fault, &DamageDescription)> {
-    let first = |number: usize| damages_of_fault(&stages.damaged, number).first().map(|(_, damage)| *damage);
-    let faults = stages.scenario.faults.iter().enumerate();
+fn damages<'a>(scenario: &'a Scenario, stages: &'a Stages) -> Vec<(&'a Fault, &'a DamageDescription)> {
+    let damaged = &stages.pairs[0].damaged;
+    let first = |number: usize| damages_of_fault(damaged, number).first().map(|(_, damage)| *damage);
+    let faults = scenario.faults.iter().enumerate();
     faults.filter_map(|(number, fault)| Some((fault, first(number)?))).collect()
 }
 

@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use meshtone::scenario::GearboxWheel;
+use meshtone::scenario::{Gearbox, GearboxWheel};
 use meshtone::signal::{
     AngularSettings, AngularSignal, GearTrain, ShaftPhase, SignalError, StatedTurning, TrainRecording,
     TrainTurning, angular_resample, revolution_average,
 };
-use meshtone::{GearboxSimulation, GearboxStages};
+use meshtone::{Simulation, Stages};
 
 use super::side::Side;
 use super::spectrum::{self, InputSpectrum};
@@ -42,28 +42,29 @@ const WHEEL: Fill = Fill::solid(colour::STEEL);
 /// Draws the results panel of a gearbox's simulation.
 ///
 /// # Arguments
-/// * `simulation` - what was simulated, with its signals
+/// * `gearbox` - what was simulated
+/// * `simulation` - its stages and signals
 ///
 /// # Errors
 /// Signals without a spectrum.
-pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError> {
+pub(super) fn draw(gearbox: &Gearbox, simulation: &Simulation) -> Result<Figure, PlotError> {
     let stages = &simulation.stages;
-    let wheels = Wheels::of(stages)?;
+    let wheels = Wheels::of(gearbox, stages)?;
     let wheels_top = TRAIN_TOP + TRAIN_HEIGHT;
     let spectrum_top = wheels_top + wheels.height() + ROW_GAP;
     let mut canvas = Canvas::new(WIDTH, (spectrum_top + SPECTRUM_HEIGHT + FOOT) as u32);
-    let title = title(stages);
-    let facts = facts(stages);
+    let title = title(gearbox);
+    let facts = facts(gearbox, stages);
     let edge = LEFT - NAME_LEFT - 11.0;
     canvas.heading(edge, f64::from(WIDTH) - 2.0 * edge, (36.0, &title), (61.0, &facts.join(BETWEEN_FACTS)));
     let half = (FULL_WIDTH - COLUMN_GAP) / 2.0;
-    let train = drawn_wheels(stages);
+    let train = drawn_wheels(gearbox, stages);
     let [front, above] =
         [LEFT, LEFT + half + COLUMN_GAP].map(|left| Area::new(left, TRAIN_TOP, half, TRAIN_HEIGHT));
-    draw_front(&mut canvas, front, stages, &train);
-    draw_above(&mut canvas, above, stages, &train);
-    wheels.draw(&mut canvas, wheels_top, simulation);
-    spectrum(&mut canvas, Area::new(LEFT, spectrum_top, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
+    draw_front(&mut canvas, front, (gearbox, stages), &train);
+    draw_above(&mut canvas, above, (gearbox, stages), &train);
+    wheels.draw(&mut canvas, wheels_top, gearbox, simulation);
+    spectrum(&mut canvas, Area::new(LEFT, spectrum_top, FULL_WIDTH, SPECTRUM_HEIGHT), (gearbox, simulation));
     let description = format!(
         "Results panel of a simulated gearbox: the train from the front and from above, teeth, mesh stiffness and \
          averages of its wheels, and the spectrum of a sensor in orders of the input. {}.",
@@ -72,12 +73,12 @@ pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError>
     Ok(canvas.finish(&title, &description))
 }
 
-fn title(stages: &GearboxStages) -> String {
-    let faults = stages.gearbox.faults.iter().map(|of| {
+fn title(gearbox: &Gearbox) -> String {
+    let faults = gearbox.faults.iter().map(|of| {
         let kind = of.fault.damage.kind().replace('-', " ");
         format!("{kind} on {} of {}", of.fault.tooth.in_words(), of.wheel)
     });
-    let spalls = stages.gearbox.bearings.iter().flat_map(|bearing| {
+    let spalls = gearbox.bearings.iter().flat_map(|bearing| {
         let at = bearing.seat_name();
         bearing
             .defect
@@ -88,8 +89,7 @@ fn title(stages: &GearboxStages) -> String {
     if faults.is_empty() { "Healthy gearbox".to_owned() } else { faults }
 }
 
-fn facts(stages: &GearboxStages) -> Vec<String> {
-    let gearbox = &stages.gearbox;
+fn facts(gearbox: &Gearbox, stages: &Stages) -> Vec<String> {
     let stage = |mesh: usize| {
         let gears = &stages.layout.gears[mesh];
         format!(
@@ -128,8 +128,8 @@ struct DrawnWheel<'a> {
 }
 
 /// All wheels of the train.
-fn drawn_wheels<'a>(stages: &'a GearboxStages) -> Vec<DrawnWheel<'a>> {
-    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+fn drawn_wheels<'a>(gearbox: &'a Gearbox, stages: &Stages) -> Vec<DrawnWheel<'a>> {
+    let layout = &stages.layout;
     let drawn = |(number, wheel): (usize, &'a GearboxWheel)| {
         let GearboxWheel { name, at, teeth, face_width_mm, .. } = wheel;
         let (mesh, _) = layout.mesh_of(number)?;
@@ -156,7 +156,12 @@ fn rectangle(axes: &Axes, (z, x): (f64, f64), (half_z, half_x): (f64, f64)) -> [
 }
 
 /// Pitch circles and shafts across the axes.
-fn draw_front(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &[DrawnWheel]) {
+fn draw_front(
+    canvas: &mut Canvas,
+    area: Area,
+    (gearbox, stages): (&Gearbox, &Stages),
+    wheels: &[DrawnWheel],
+) {
     let (x, y) = equal_scales(area, extent(wheels, |wheel| wheel.x), extent(wheels, |wheel| wheel.y));
     let axes = Axes::titled(canvas, area, x, y, "Train from the front, pitch circles");
     axes.x_axis(canvas, &Ticks::nice(x[0], x[1], 10), "x (mm)");
@@ -168,7 +173,7 @@ fn draw_front(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &
         let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
         canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
     }
-    for (shaft, [x_m, y_m]) in stages.gearbox.shafts.iter().zip(&stages.layout.positions_m) {
+    for (shaft, [x_m, y_m]) in gearbox.shafts.iter().zip(&stages.layout.positions_m) {
         let radius = shaft.radius_at_mm(0.5);
         canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
     }
@@ -180,8 +185,13 @@ fn draw_front(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &
 }
 
 /// Shafts, wheels and bearings along the axes.
-fn draw_above(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheels: &[DrawnWheel]) {
-    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+fn draw_above(
+    canvas: &mut Canvas,
+    area: Area,
+    (gearbox, stages): (&Gearbox, &Stages),
+    wheels: &[DrawnWheel],
+) {
+    let layout = &stages.layout;
     let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
     let [low, high] = extent(wheels, |wheel| wheel.x);
     let margin = 0.05 * (high - low);
@@ -249,13 +259,14 @@ struct Wheels<'a> {
 }
 
 impl<'a> Wheels<'a> {
-    fn of(stages: &'a GearboxStages) -> Result<Self, PlotError> {
-        let gearbox = &stages.gearbox;
+    fn of(gearbox: &Gearbox, stages: &'a Stages) -> Result<Self, PlotError> {
         let is_damaged =
             |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
         let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
         let sides = damaged.iter().take(MOST_WHEELS);
-        let sides = sides.filter_map(|number| Side::of_gearbox(stages, *number)).collect::<Result<_, _>>()?;
+        let sides = sides
+            .filter_map(|number| Side::of_gearbox(gearbox, stages, *number))
+            .collect::<Result<_, _>>()?;
         let first = || stages.layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).take(MOST_WHOLE).collect();
         Ok(Self { numbers: if damaged.is_empty() { first() } else { damaged }, damaged: sides })
     }
@@ -272,7 +283,7 @@ impl<'a> Wheels<'a> {
     /// Draws a column for each: its first damaged tooth as a pair's, the stiffness of its mesh and the average of the first sensor's signal,
     /// both over a revolution of it. One column leaves room for the curves beside the tooth; of more than two only tooth and average are
     /// drawn.
-    fn draw(&self, canvas: &mut Canvas, above: f64, simulation: &GearboxSimulation) {
+    fn draw(&self, canvas: &mut Canvas, above: f64, gearbox: &Gearbox, simulation: &Simulation) {
         let teeth_top = above + HEADING_GAP;
         let below_teeth = if self.damaged.is_empty() { above } else { teeth_top + TEETH_HEIGHT };
         let curves = Area::new(LEFT, below_teeth + ROW_GAP, FULL_WIDTH, CURVES_HEIGHT);
@@ -299,9 +310,9 @@ impl<'a> Wheels<'a> {
         }
         for (wheel, areas) in self.numbers.iter().zip(areas.chunks(each)) {
             if let [area, _] = areas {
-                stiffness(canvas, *area, &simulation.stages, *wheel);
+                stiffness(canvas, *area, (gearbox, &simulation.stages), *wheel);
             }
-            average(canvas, areas[each - 1], simulation, *wheel);
+            average(canvas, areas[each - 1], (gearbox, simulation), *wheel);
         }
         if let Some(more @ 1..) = self.numbers.len().checked_sub(MOST_WHEELS) {
             let wheels = if more == 1 { "wheel is" } else { "wheels are" };
@@ -312,16 +323,15 @@ impl<'a> Wheels<'a> {
 }
 
 /// Tints the turns of a wheel's damaged teeth, from where each enters contact.
-fn tint(canvas: &mut Canvas, axes: &Axes, stages: &GearboxStages, wheel: usize, pitch: f64) {
+fn tint(canvas: &mut Canvas, axes: &Axes, stages: &Stages, wheel: usize, pitch: f64) {
     let Some((mesh, side)) = stages.layout.mesh_of(wheel) else { return };
-    let pair = &stages.pairs[mesh];
-    let (damaged, teeth) =
-        (DamagedTooth::of_teeth(&pair.teeth, &pair.damaged, side), stages.gearbox.wheels[wheel].teeth);
+    let damaged = DamagedTooth::of_pair(&stages.pairs[mesh], side);
+    let teeth = stages.layout.gears[mesh].teeth(side);
     damaged_tooth::tint(canvas, axes, damaged_tooth::marked(&damaged, teeth), teeth, pitch);
 }
 
-fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usize) {
-    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+fn stiffness(canvas: &mut Canvas, area: Area, (gearbox, stages): (&Gearbox, &Stages), wheel: usize) {
+    let layout = &stages.layout;
     let Some((mesh, _)) = layout.mesh_of(wheel) else { return };
     let (tables, teeth) = (&stages.meshes[mesh], gearbox.wheels[wheel].teeth as usize);
     let stiffness: Vec<f64> = tables.stiffness_n_per_mm(0..teeth).iter().map(|of_mm| 1e-3 * of_mm).collect();
@@ -337,9 +347,9 @@ fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usi
     axes.frame(canvas);
 }
 
-fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, wheel: usize) {
-    let (stages, name) = (&simulation.stages, &simulation.stages.gearbox.wheels[wheel].name);
-    let average = over_wheel_angle(simulation, wheel);
+fn average(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Gearbox, &Simulation), wheel: usize) {
+    let (stages, name) = (&simulation.stages, &gearbox.wheels[wheel].name);
+    let average = over_wheel_angle(gearbox, simulation, wheel);
     let values = average.as_ref().map_or_else(
         |_| Vec::new(),
         |angular| revolution_average(&angular.values, angular.points_per_revolution),
@@ -351,7 +361,7 @@ fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, whee
         revolutions => format!("Average of {revolutions} revolutions of {name}"),
     };
     let axes = Axes::titled(canvas, area, [0.0, 360.0], y, &title);
-    tint(canvas, &axes, stages, wheel, 360.0 / f64::from(stages.gearbox.wheels[wheel].teeth));
+    tint(canvas, &axes, stages, wheel, 360.0 / f64::from(gearbox.wheels[wheel].teeth));
     axes.x_axis(canvas, &Ticks::every(90.0, 0.0, 360.0), "Angle since its first tooth enters contact (°)");
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Acceleration (g)", NAME_LEFT);
     match average {
@@ -362,11 +372,15 @@ fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, whee
 }
 
 /// The first sensor's signal over the revolutions of a wheel.
-fn over_wheel_angle(simulation: &GearboxSimulation, wheel: usize) -> Result<AngularSignal, SignalError> {
-    let train = GearTrain::of_layout(&simulation.stages.gearbox, &simulation.stages.layout);
+fn over_wheel_angle(
+    gearbox: &Gearbox,
+    simulation: &Simulation,
+    wheel: usize,
+) -> Result<AngularSignal, SignalError> {
+    let train = GearTrain::of_stages(&simulation.stages);
     let turning = TrainTurning::Shaft {
         shaft: train.input(),
-        phase: input_phase(simulation)?,
+        phase: input_phase(gearbox, simulation)?,
         stated: StatedTurning::Other,
     };
     let signal = simulation.channels.signals.first().map_or(&[][..], |signal| &signal.values);
@@ -376,14 +390,14 @@ fn over_wheel_angle(simulation: &GearboxSimulation, wheel: usize) -> Result<Angu
 }
 
 /// The phase of the input at the kept samples.
-fn input_phase(simulation: &GearboxSimulation) -> Result<ShaftPhase, SignalError> {
+fn input_phase(gearbox: &Gearbox, simulation: &Simulation) -> Result<ShaftPhase, SignalError> {
     let channels = &simulation.channels;
-    ShaftPhase::of_simulated_input(&simulation.stages.gearbox, channels.start_s, channels.len())
+    ShaftPhase::of_simulated_input(gearbox, channels.start_s, channels.len())
 }
 
 /// The spectrum of the first sensor, with the orders of all meshes and shafts. Where the speed changes it is of the signal over the angle of the
 /// input.
-fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
+fn spectrum(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Gearbox, &Simulation)) {
     let (stages, channels) = (&simulation.stages, &simulation.channels);
     let Some(signal) = channels.signals.first() else { return };
     let angular = if stages.is_steady() {
@@ -392,11 +406,11 @@ fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
         let values = signal.values.clone();
         Ok(AngularSignal { points_per_revolution, start_rev: 0.0, nyquist_order, values })
     } else {
-        input_phase(simulation)
+        input_phase(gearbox, simulation)
             .and_then(|phase| angular_resample(&signal.values, &phase, &AngularSettings::default()))
             .map_err(|error| spectrum::note(&error))
     };
-    let meshes = stages.gearbox.meshes.iter().zip(&stages.meshes);
+    let meshes = gearbox.meshes.iter().zip(&stages.meshes);
     let spectrum = InputSpectrum {
         quantity: (&signal.name.trim_end_matches("_g").replace('_', " "), signal.unit),
         shaft: "input",

@@ -14,22 +14,22 @@ const EDGE: f64 = super::LEFT - super::NAME_LEFT - 11.0;
 const ROOM: f64 = super::WIDTH as f64 - 2.0 * EDGE;
 
 /// The faults and their sizes.
-pub(super) fn title(stages: &Stages) -> String {
-    let title = damage::title(stages, |text| TextStyle::TITLE.width(text) <= ROOM);
+pub(super) fn title(scenario: &Scenario, stages: &Stages) -> String {
+    let title = damage::title(scenario, stages, |text| TextStyle::TITLE.width(text) <= ROOM);
     TextStyle::TITLE.fitted(&title, ROOM)
 }
 
 /// The panel in a sentence, for readers who cannot see it.
-pub(super) fn description(stages: &Stages) -> String {
+pub(super) fn description(scenario: &Scenario) -> String {
     format!(
         "Results panel of a simulated gear pair: teeth, tooth faces, profile errors, averages over the \
          shafts' revolutions and mesh stiffness. {}.",
-        facts(&stages.scenario).join(", ")
+        facts(scenario).join(", ")
     )
 }
 
-pub(super) fn draw(canvas: &mut Canvas, title: &str, stages: &Stages) {
-    canvas.heading(EDGE, ROOM, (36.0, title), (61.0, &facts(&stages.scenario).join(BETWEEN_FACTS)));
+pub(super) fn draw(canvas: &mut Canvas, title: &str, scenario: &Scenario) {
+    canvas.heading(EDGE, ROOM, (36.0, title), (61.0, &facts(scenario).join(BETWEEN_FACTS)));
 }
 
 pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, side: &Side) {

@@ -15,11 +15,10 @@ mod spectrum;
 mod stiffness;
 mod tooth;
 
-pub use gearbox::draw_gearbox;
-
-use meshtone::Stages;
+use meshtone::scenario::{Scenario, ScenarioForm};
 use meshtone::sensor::Channels;
 use meshtone::wheel::WheelName;
+use meshtone::{Simulation, Stages};
 
 use crate::drawing::{Area, Canvas, Pixel};
 use crate::{Figure, PlotError};
@@ -58,11 +57,10 @@ const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH
 /// Draws the results panel of a simulation.
 ///
 /// # Arguments
-/// * `stages` - what was simulated
-/// * `channels` - the kept signals, as simulated; they may be empty
+/// * `simulation` - what was simulated, and the kept signals, as simulated; of a pair they may be empty
 ///
 /// # Errors
-/// Signals at another sampling rate than the simulation's.
+/// Signals at another sampling rate than the simulation's; of a gearbox, signals without a spectrum.
 ///
 /// ```
 /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
@@ -70,16 +68,23 @@ const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH
 /// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
 /// scenario.solver.sampling_rate_hz = 2e4;
-/// let simulation = meshtone::simulate(&scenario)?;
-/// let panel = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels)?;
+/// let panel = meshtone_plot::panel::draw(&meshtone::simulate(&scenario)?)?;
 /// assert!(panel.svg().contains("Missing tooth"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn draw(stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
+pub fn draw(simulation: &Simulation) -> Result<Figure, PlotError> {
+    let Simulation { stages, channels, .. } = simulation;
+    match &stages.scenario {
+        ScenarioForm::Gearbox(gearbox) => gearbox::draw(gearbox, simulation),
+        ScenarioForm::Pair(pair) => draw_pair(pair, stages, channels),
+    }
+}
+
+fn draw_pair(scenario: &Scenario, stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
     check_rate(stages, channels)?;
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
-    let title = heading::title(stages);
-    heading::draw(&mut canvas, &title, stages);
+    let title = heading::title(scenario, stages);
+    heading::draw(&mut canvas, &title, scenario);
     for (column, wheel) in WheelName::BOTH.into_iter().enumerate() {
         teeth(&mut canvas, (column_left(column), TEETH_TOP), &Side::new(stages, wheel)?);
     }
@@ -91,7 +96,7 @@ pub fn draw(stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
         stages,
         channels,
     );
-    Ok(canvas.finish(&title, &heading::description(stages)))
+    Ok(canvas.finish(&title, &heading::description(scenario)))
 }
 
 fn column_left(column: usize) -> f64 {

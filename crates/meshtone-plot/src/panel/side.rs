@@ -1,8 +1,9 @@
 //! A wheel, as the panel sees it.
 
 use meshtone::damage::DamagedTooth;
-use meshtone::wheel::{ErrorTable, ProfileErrors, Teeth, ToothProfile, Wheel, WheelName};
-use meshtone::{GearboxStages, Stages};
+use meshtone::scenario::Gearbox;
+use meshtone::wheel::{ErrorTable, Teeth, ToothProfile, Wheel, WheelName};
+use meshtone::{MeshedPair, Stages};
 
 use crate::PlotError;
 use crate::drawing::Area;
@@ -40,19 +41,21 @@ impl<'a> Side<'a> {
             WheelName::Gear => ["Gear", "output shaft", "gear "],
         };
         let heading = [title.to_owned(), shaft.to_owned()];
-        let (errors, tips) = (stages.profile_errors.as_ref(), stages.tip_lengths_mm());
         let overlap = stages.meshes.first().map_or(0.0, |mesh| mesh.overlap);
-        Self::of_pair(name, heading, of_tooth, (&stages.teeth, overlap), &stages.damaged, errors, tips)
+        Self::of_pair(name, heading, of_tooth, (&stages.pairs[0], overlap), stages.tip_lengths_mm())
     }
 
     /// A wheel of a gearbox, in its first mesh; none of a wheel in no mesh.
-    pub(super) fn of_gearbox(stages: &'a GearboxStages, wheel: usize) -> Option<Result<Self, PlotError>> {
+    pub(super) fn of_gearbox(
+        gearbox: &Gearbox,
+        stages: &'a Stages,
+        wheel: usize,
+    ) -> Option<Result<Self, PlotError>> {
         let (mesh, name) = stages.layout.mesh_of(wheel)?;
-        let (of_mesh, of_file) = (&stages.pairs[mesh], &stages.gearbox.wheels[wheel]);
+        let (of_mesh, of_file) = (&stages.pairs[mesh], &gearbox.wheels[wheel]);
         let heading = [of_file.name.clone(), format!("shaft {}", of_file.shaft)];
-        let (errors, tips) = (of_mesh.profile_errors.as_ref(), stages.layout.gears[mesh].tip_lengths_mm());
-        let teeth = (&of_mesh.teeth, stages.meshes[mesh].overlap);
-        Some(Self::of_pair(name, heading, "", teeth, &of_mesh.damaged, errors, tips))
+        let tips_mm = stages.layout.gears[mesh].tip_lengths_mm();
+        Some(Self::of_pair(name, heading, "", (of_mesh, stages.meshes[mesh].overlap), tips_mm))
     }
 
     /// One of two wheels in mesh, with (base pitches) how much farther on its path a pair is at the end of the face at positive z than at
@@ -61,11 +64,10 @@ impl<'a> Side<'a> {
         name: WheelName,
         [title, shaft]: [String; 2],
         of_tooth: &'static str,
-        (teeth, overlap): (&'a Teeth, f64),
-        damaged: &'a [DamagedTooth],
-        errors: Option<&'a ProfileErrors>,
+        (pair, overlap): (&'a MeshedPair, f64),
         tip_lengths_mm: [f64; 2],
     ) -> Result<Self, PlotError> {
+        let MeshedPair { teeth, damaged, profile_errors, .. } = pair;
         let profile = teeth.profile(name);
         let contact_index = teeth.initial_contact_index(name);
         let points = profile.len().min(profile.y_mm.len());
@@ -73,7 +75,7 @@ impl<'a> Side<'a> {
             let wheel = if of_tooth.is_empty() { title } else { format!("the {}", name.name()) };
             return Err(PlotError::NoProfile { wheel, points });
         }
-        let standing_out = crate::DamagedTooth::of_teeth(teeth, damaged, name);
+        let standing_out = crate::DamagedTooth::of_pair(pair, name);
         let first = standing_out.first().map(|tooth| tooth.tooth as usize - 1);
         let mut of_wheel = damaged.iter().filter(|tooth| tooth.wheel == name);
         Ok(Self {
@@ -87,7 +89,7 @@ impl<'a> Side<'a> {
             tip_shapes: tip_shapes(tip_lengths_mm, profile),
             tooth: first.and_then(|first| of_wheel.find(|alike| alike.teeth.contains(&first))),
             damaged: standing_out,
-            errors_mm: errors.map(|errors| match name {
+            errors_mm: profile_errors.as_ref().map(|errors| match name {
                 WheelName::Pinion => &errors.pinion_profile_errors_mm,
                 WheelName::Gear => &errors.gear_profile_errors_mm,
             }),

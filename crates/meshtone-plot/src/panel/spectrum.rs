@@ -31,9 +31,9 @@ pub(super) struct InputSpectrum<'a> {
 /// Draws the spectrum of a pair; also at changing speed, where it is of the signal over the pinion's angle.
 pub(super) fn of_pair(canvas: &mut Canvas, area: Area, stages: &Stages, channels: &Channels) {
     let (quantity, signal) = super::average::leading(channels);
-    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let shafts = SimulatedShafts::of_stages(stages, channels.start_s, channels.len());
     let angular = shafts.angular(signal, WheelName::Pinion, &ChainSettings::default());
-    let [pinion, gear] = WheelName::BOTH.map(|wheel| f64::from(stages.teeth.wheel(wheel).teeth));
+    let [pinion, gear] = WheelName::BOTH.map(|wheel| f64::from(stages.layout.gears[0].teeth(wheel)));
     let spectrum = InputSpectrum {
         quantity: (&quantity, "g"),
         shaft: "pinion",

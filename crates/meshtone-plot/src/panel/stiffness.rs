@@ -60,7 +60,7 @@ struct DamagedPairs {
 impl DamagedPairs {
     fn new(stages: &Stages) -> Self {
         let wheels = WheelName::BOTH.map(|wheel| {
-            let teeth = i64::from(stages.teeth.wheel(wheel).teeth.max(1));
+            let teeth = i64::from(stages.layout.gears[0].teeth(wheel).max(1));
             (teeth, DamagedTooth::of_stages(stages, wheel))
         });
         let damaged = wheels.iter().flat_map(|(_, damaged)| damaged);

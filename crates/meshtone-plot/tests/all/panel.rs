@@ -5,7 +5,7 @@
 use crate::support::check;
 use meshtone::scenario::*;
 use meshtone::sensor::Channels;
-use meshtone::{GearboxSimulation, Simulation, simulate, simulate_gearbox};
+use meshtone::{Simulation, simulate};
 use meshtone_plot::{Figure, PlotError, panel};
 
 /// (bytes) Of an SVG.
@@ -20,7 +20,7 @@ fn simulated(scenario: &Scenario) -> Simulation {
 
 fn drawn(scenario: &Scenario) -> Figure {
     let simulation = simulated(scenario);
-    let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
+    let figure = panel::draw(&simulation).unwrap();
     check(&figure, LARGEST);
     figure
 }
@@ -229,16 +229,13 @@ fn damage_is_at_the_end_from_which_the_load_moves_away() {
         let mut scenario = of_example(Some(damage));
         scenario.model = Model::Linear;
         let simulation = simulated(&scenario);
-        assert_shows(
-            &panel::draw(&simulation.stages, &simulation.channels).unwrap(),
-            &["chamfer", "linear model"],
-        );
+        assert_shows(&panel::draw(&simulation).unwrap(), &["chamfer", "linear model"]);
         let states = &simulation.stages.meshes[0].classes[1].states;
         assert!(
             states.iter().any(|state| state.face_centre_m < 0.0)
                 && states.iter().all(|state| state.face_centre_m <= 0.0)
         );
-        let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
+        let figure = panel::draw(&simulation).unwrap();
         let face_middle = figure.labels().iter().filter(|label| label.text == "Face width, z (mm)");
         let face_middle = face_middle.map(|label| (label.left + label.right) / 2.0).fold(0.0, f64::max);
         let document = roxmltree::Document::parse(figure.svg()).unwrap();
@@ -270,7 +267,7 @@ fn a_rough_flank_below_the_start_of_contact() {
 #[test]
 fn published_model_and_given_errors() {
     let (_, mut scenario) = crate::support::gallery().remove(4);
-    let errors = meshtone::stages(&scenario).unwrap().profile_errors;
+    let errors = meshtone::stages(&scenario).unwrap().pairs[0].profile_errors.clone();
     scenario.quality = Quality::of_errors(errors.unwrap());
     scenario.model = Model::Published;
     assert_shows(&drawn(&scenario), &["model as published", "given profile errors"]);
@@ -300,7 +297,7 @@ fn kept_signals_that_start_within_a_revolution() {
     let Simulation { stages, channels, .. } = simulated(&scenario);
     let per_gear = stages.time.samples_per_pinion_revolution * 38 / 17;
     assert_ne!(stages.time.first_kept_sample % per_gear, 0);
-    check(&panel::draw(&stages, &channels).unwrap(), LARGEST);
+    check(&panel::draw(&stages.with_channels(channels)).unwrap(), LARGEST);
 }
 
 // The angle follows from the scenario, not from the channels that are kept.
@@ -310,17 +307,17 @@ fn a_gearbox_whose_speed_changes_has_an_order_spectrum() {
     gearbox.operation.drive.speed_profile_hz =
         Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
     gearbox.solver.settings.duration_s = Some(0.3);
-    let mut simulation = simulate_gearbox(&gearbox).unwrap();
-    let known = panel::draw_gearbox(&simulation).unwrap();
+    let mut simulation = meshtone::simulate(&gearbox).unwrap();
+    let known = panel::draw(&simulation).unwrap();
     let is_of_revolutions =
         |label: &str| label.starts_with("Order spectrum") && label.contains("revolutions of the input");
     assert!(known.labels().iter().any(|label| is_of_revolutions(&label.text)));
     simulation.channels.signals.retain(|signal| !signal.name.starts_with("speed_hz"));
-    assert_eq!(panel::draw_gearbox(&simulation).unwrap().svg(), known.svg());
+    assert_eq!(panel::draw(&simulation).unwrap().svg(), known.svg());
 }
 
 /// A gearbox of three stages with one tooth missing from each of the first wheels.
-fn with_damaged_wheels(damaged: usize) -> GearboxSimulation {
+fn with_damaged_wheels(damaged: usize) -> Simulation {
     let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
     let name = |of: &str, n: usize| format!("{of}{n}");
     let coupled = [Coupled::Motor, Coupled::Nothing, Coupled::Nothing, Coupled::Brake];
@@ -346,14 +343,14 @@ fn with_damaged_wheels(damaged: usize) -> GearboxSimulation {
     };
     gearbox.faults = (0..damaged).map(fault).collect();
     gearbox.solver.settings.duration_s = Some(1.0);
-    simulate_gearbox(&gearbox).unwrap()
+    meshtone::simulate(&gearbox).unwrap()
 }
 
 #[test]
 fn damaged_wheels_of_a_gearbox_are_drawn_as_far_as_there_is_room() {
     for damaged in [1, 2, 3, 5] {
         let simulation = with_damaged_wheels(damaged);
-        let figure = panel::draw_gearbox(&simulation).unwrap();
+        let figure = panel::draw(&simulation).unwrap();
         check(&figure, LARGEST);
         let shows = |text: &str| figure.labels().iter().any(|label| label.text.contains(text));
         let drawn = damaged.min(4);
@@ -379,11 +376,11 @@ fn damaged_wheels_of_a_gearbox_are_drawn_as_far_as_there_is_room() {
 fn a_wheel_without_a_profile_is_named() {
     let mut simulation = with_damaged_wheels(1);
     simulation.stages.pairs[0].teeth.pinion_profile.x_mm.truncate(1);
-    let error = panel::draw_gearbox(&simulation).map(drop).unwrap_err();
+    let error = panel::draw(&simulation).map(drop).unwrap_err();
     assert_eq!(error.to_string(), "z1's tooth profile has 1 points; at least 2 are needed to draw it");
     let Simulation { mut stages, channels, .. } = simulated(&of_example(None));
-    stages.teeth.gear_profile.x_mm.truncate(1);
-    let error = panel::draw(&stages, &channels).map(drop).unwrap_err();
+    stages.pairs[0].teeth.gear_profile.x_mm.truncate(1);
+    let error = panel::draw(&stages.with_channels(channels)).map(drop).unwrap_err();
     assert_eq!(error.to_string(), "the gear's tooth profile has 1 points; at least 2 are needed to draw it");
 }
 
@@ -397,7 +394,7 @@ fn awkward_signals() {
         like
     };
     let panel = |channels: &Channels| {
-        let figure = panel::draw(&stages, channels).unwrap();
+        let figure = panel::draw(&stages.clone().with_channels(channels.clone())).unwrap();
         check(&figure, LARGEST);
         figure.png().unwrap();
         figure
@@ -416,7 +413,7 @@ fn awkward_signals() {
 fn signals_of_another_rate_are_refused() {
     let Simulation { stages, mut channels, .. } = simulated(&of_example(None));
     channels.sampling_rate_hz /= 2.0;
-    let error = panel::draw(&stages, &channels).unwrap_err();
+    let error = panel::draw(&stages.with_channels(channels)).unwrap_err();
     assert!(matches!(error, PlotError::SamplingRate { .. }), "{error}");
 }
 
@@ -425,7 +422,7 @@ fn no_samples_at_changing_speed() {
     let mut scenario = of_example(None);
     scenario.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![20.0, 40.0] });
     let simulation = simulated(&scenario);
-    let figure = panel::draw(&simulation.stages, &Channels::default()).unwrap();
+    let figure = panel::draw(&simulation.stages.with_channels(Channels::default())).unwrap();
     check(&figure, LARGEST);
     assert_shows(&figure, &["no samples were kept"]);
 }

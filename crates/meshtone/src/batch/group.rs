@@ -30,9 +30,8 @@ pub(super) fn simulate_group<K: Keep>(
     let mut results = Vec::with_capacity(scenarios.len());
     let mut ready = Vec::with_capacity(scenarios.len());
     for (index, scenario) in scenarios {
-        match stages(&scenario)
-            .and_then(|stages| keep.outputs(&stages.scenario).map(|outputs| (stages, outputs)))
-        {
+        let outputs = keep.outputs(&scenario.without_ignored_keys());
+        match stages(scenario).and_then(|stages| Ok((stages, outputs?))) {
             Ok((stages, outputs)) => {
                 let recorder = keep.recorder(&stages);
                 ready.push(Ready { index, stages, outputs, recorder });

@@ -1,7 +1,7 @@
 //! What is kept of each simulation.
 
 use crate::error::ScenarioError;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, ScenarioForm};
 use crate::sensor::{Channel, ChannelKind, Channels};
 use crate::simulate::{Simulation, Stages};
 use crate::solver::{Block, Output, Recorder};
@@ -56,7 +56,7 @@ impl Keep for KeepSimulation {
     type Kept = Simulation;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        Ok(scenario.outputs())
+        Ok(ScenarioForm::from(scenario).outputs())
     }
 
     fn recorder(&self, stages: &Stages) -> Channels {
@@ -65,8 +65,7 @@ impl Keep for KeepSimulation {
 
     fn keep(&self, _: usize, stages: Stages, channels: Channels) -> Simulation {
         let channels = stages.measured(channels);
-        let timings = stages.timings.clone();
-        Simulation { stages, channels, timings }
+        stages.with_channels(channels)
     }
 }
 

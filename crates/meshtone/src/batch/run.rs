@@ -9,9 +9,9 @@ use super::keep::Keep;
 use super::plan::groups;
 use crate::error::Error;
 use crate::machine::KnownModes;
-use crate::scenario::{Gearbox, Scenario};
+use crate::scenario::{Gearbox, MemoryLimit, Scenario};
 use crate::simd::InstructionSet;
-use crate::simulate::{GearboxSimulation, gearbox_stages_with};
+use crate::simulate::{Simulation, stages_with};
 use crate::solver::LANES;
 use crate::threads;
 
@@ -89,7 +89,7 @@ pub fn simulate_many<K: Keep>(
 /// Returns how many were handed to `take`: all of them, unless cancelled.
 pub fn simulate_many_gearboxes<T: Send>(
     gearboxes: impl IntoIterator<Item = Gearbox, IntoIter: Send>,
-    keep: &(impl Fn(usize, GearboxSimulation) -> T + Sync),
+    keep: &(impl Fn(usize, Simulation) -> T + Sync),
     control: &Control,
     take: impl FnMut(usize, Result<T, Error>) + Send,
 ) -> usize {
@@ -138,7 +138,7 @@ struct Gearboxes<'a, F> {
     known: KnownModes,
 }
 
-impl<T: Send, F: Fn(usize, GearboxSimulation) -> T + Sync> Many for Gearboxes<'_, F> {
+impl<T: Send, F: Fn(usize, Simulation) -> T + Sync> Many for Gearboxes<'_, F> {
     type Scenario = Gearbox;
     type Kept = T;
 
@@ -152,9 +152,10 @@ impl<T: Send, F: Fn(usize, GearboxSimulation) -> T + Sync> Many for Gearboxes<'_
     }
 
     fn simulate(&self, group: Vec<Numbered<Gearbox>>) -> Vec<NumberedResult<T>> {
-        let simulated = |gearbox: &Gearbox| gearbox_stages_with(gearbox, &self.known)?.simulate();
+        let simulated =
+            |gearbox: Gearbox| stages_with(gearbox.into(), MemoryLimit::default(), &self.known)?.simulate();
         let kept =
-            |(index, gearbox)| (index, simulated(&gearbox).map(|simulation| (self.keep)(index, simulation)));
+            |(index, gearbox)| (index, simulated(gearbox).map(|simulation| (self.keep)(index, simulation)));
         group.into_iter().map(kept).collect()
     }
 }

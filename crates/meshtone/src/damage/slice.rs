@@ -81,7 +81,7 @@ mod tests {
     fn damaged(damage: impl Into<crate::damage::Damage>) -> crate::damage::DamagedTooth {
         let mut scenario = Scenario::new(GearPair::example());
         scenario.faults = vec![Fault::on_first_gear_tooth(damage)];
-        stages(&scenario).unwrap().damaged.swap_remove(0)
+        stages(&scenario).unwrap().pairs[0].damaged.swap_remove(0)
     }
 
     #[test]

@@ -28,5 +28,7 @@ pub use parts::{LineOfAction, Spring};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use support::{Support, SupportSprings};
 pub(crate) use train::turn_planes;
-pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, SupportMode, Supports, Train, WHEELS};
+pub use train::{
+    GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, SupportMode, Supports, Train, WHEELS, support_modes,
+};
 pub use turning_force::{Bow, TurningForce, Unbalance};

@@ -92,29 +92,29 @@ pub struct SupportMode {
 /// (-) Part of the kinetic energy from which on the supports move much.
 const MUCH: f64 = 1.0 / 6.0;
 
-impl Train {
-    /// The modes in which the supports move much, in rising order; none where they are held.
-    ///
-    /// # Arguments
-    /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
-    pub fn support_modes(&self, mesh_stiffness_n_per_m: &[f64]) -> Vec<SupportMode> {
-        let machine = &self.machine;
-        if machine.coordinates() == WITHOUT_SUPPORTS {
-            return Vec::new();
-        }
-        let (frequencies_hz, shapes) = machine.closed_modes(mesh_stiffness_n_per_m);
-        let mode = |(&frequency_hz, shape): (&f64, DVector<f64>)| {
-            let gear = [shape[X_GEAR_SUPPORT], shape[Y_GEAR_SUPPORT]];
-            let pinion = [shape[X_PINION_SUPPORT], shape[Y_PINION_SUPPORT]];
-            let mass = machine.mass[(X_GEAR_SUPPORT, X_GEAR_SUPPORT)];
-            let share = mass * gear.iter().chain(&pinion).map(|motion| motion * motion).sum::<f64>();
-            let is_alike = gear[0] * pinion[0] + gear[1] * pinion[1] > 0.0;
-            SupportMode { frequency_hz, share, is_alike }
-        };
-        let shapes = shapes.column_iter().map(|shape| shape.into_owned());
-        frequencies_hz.iter().zip(shapes).map(mode).filter(|mode| mode.share > MUCH).collect()
+/// The modes in which the supports of a rig move much, in rising order; none of a machine without supports that move.
+///
+/// # Arguments
+/// * `machine` - of a rig, or any other
+/// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
+pub fn support_modes(machine: &Machine, mesh_stiffness_n_per_m: &[f64]) -> Vec<SupportMode> {
+    if machine.names.get(X_GEAR_SUPPORT).is_none_or(|name| name != NAMES[X_GEAR_SUPPORT]) {
+        return Vec::new();
     }
+    let (frequencies_hz, shapes) = machine.closed_modes(mesh_stiffness_n_per_m);
+    let mode = |(&frequency_hz, shape): (&f64, DVector<f64>)| {
+        let gear = [shape[X_GEAR_SUPPORT], shape[Y_GEAR_SUPPORT]];
+        let pinion = [shape[X_PINION_SUPPORT], shape[Y_PINION_SUPPORT]];
+        let mass = machine.mass[(X_GEAR_SUPPORT, X_GEAR_SUPPORT)];
+        let share = mass * gear.iter().chain(&pinion).map(|motion| motion * motion).sum::<f64>();
+        let is_alike = gear[0] * pinion[0] + gear[1] * pinion[1] > 0.0;
+        SupportMode { frequency_hz, share, is_alike }
+    };
+    let shapes = shapes.column_iter().map(|shape| shape.into_owned());
+    frequencies_hz.iter().zip(shapes).map(mode).filter(|mode| mode.share > MUCH).collect()
+}
 
+impl Train {
     /// Assembles the rig of one gear pair.
     ///
     /// Springs and supports are first written in vertical and horizontal coordinates, as a rig's numbers are given, and then turned to

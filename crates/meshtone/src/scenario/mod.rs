@@ -6,6 +6,7 @@
 //! The names are the same everywhere (Rust fields, TOML keys, Python arguments).
 
 mod edit;
+mod form;
 mod from_toml;
 mod gearbox;
 mod ignored_keys;
@@ -33,10 +34,11 @@ pub use crate::wheel::{
     ProfileErrors, Quality, ReliefShape, WheelDeviations, WheelName,
 };
 pub use edit::{ScenarioNumber, names_or_numbers, split_key};
+pub use form::ScenarioForm;
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use gearbox::{
     Gearbox, GearboxFault, GearboxLayout, GearboxMesh, GearboxOperation, GearboxRig, GearboxSensor,
-    GearboxSolver, GearboxWheel, Ratio, Ripple, ScenarioForm, gearbox_sections, gearbox_template,
+    GearboxSolver, GearboxWheel, Ratio, Ripple, gearbox_sections, gearbox_template,
 };
 pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};

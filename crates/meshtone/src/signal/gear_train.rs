@@ -3,6 +3,7 @@
 use super::{SeparationSettings, ShaftPhase, SignalError, TrainBearing};
 use crate::error::ScenarioError;
 use crate::scenario::{Bearing, Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
+use crate::simulate::Stages;
 use crate::wheel::WheelName;
 
 /// A shaft of a train.
@@ -152,6 +153,20 @@ impl GearTrain {
         match form {
             ScenarioForm::Pair(scenario) => Ok(Self::of_pair(scenario)),
             ScenarioForm::Gearbox(gearbox) => Self::of_gearbox(gearbox),
+        }
+    }
+
+    /// The shafts of a simulation.
+    ///
+    /// # Arguments
+    /// * `stages` - of the simulation
+    pub fn of_stages(stages: &Stages) -> Self {
+        match stages.scenario.gearbox() {
+            Some(gearbox) => Self::of_layout(gearbox, &stages.layout),
+            None => {
+                let gears = &stages.layout.gears[0];
+                Self::of_wheels(WheelName::BOTH.map(|wheel| (wheel.name(), gears.teeth(wheel))))
+            }
         }
     }
 

@@ -5,10 +5,11 @@ use super::{
     AngleZero, AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError,
     SynchronousAverage, angular_resample, process_angular_segments, process_average, revolution_average,
 };
-use crate::operation::Motion;
+use crate::operation::{Motion, TimeGrid};
 use crate::scenario::{Gearbox, Scenario};
 use crate::sensor::Channels;
-use crate::wheel::WheelName;
+use crate::simulate::Stages;
+use crate::wheel::{Gears, WheelName};
 
 /// Angles of the shafts of a simulated pair at its kept samples. At whole revolutions the wheel's first tooth
 /// enters contact.
@@ -38,8 +39,20 @@ impl SimulatedShafts {
     pub fn new(scenario: &Scenario, start_s: f64, samples: usize) -> Self {
         let scenario = scenario.without_ignored_keys();
         let time = scenario.time_grid();
+        Self::moving(&scenario.gears, &time, scenario.motion(&time), (start_s, samples))
+    }
+
+    /// The shafts of the wheels of a simulation's first mesh.
+    ///
+    /// # Arguments
+    /// * `stages` - of the simulation
+    /// * `start_s`, `samples` - as of [`Self::new`]
+    pub fn of_stages(stages: &Stages, start_s: f64, samples: usize) -> Self {
+        Self::moving(&stages.layout.gears[0], &stages.time, stages.motion(), (start_s, samples))
+    }
+
+    fn moving(gears: &Gears, time: &TimeGrid, motion: Motion, (start_s, samples): (f64, usize)) -> Self {
         let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
-        let motion = scenario.motion(&time);
         let turning = if motion.is_steady() {
             let samples_per_pinion_revolution = time.samples_per_pinion_revolution;
             SimulatedAngle::Steady { start, samples_per_pinion_revolution }
@@ -48,7 +61,7 @@ impl SimulatedShafts {
                 motion.skip(start).take(samples).map(|sample| sample.revolutions).collect(),
             )
         };
-        let teeth = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+        let teeth = [gears.pinion_teeth, gears.gear_teeth];
         Self { teeth, sampling_rate_hz: time.sampling_rate_hz, samples, turning }
     }
 

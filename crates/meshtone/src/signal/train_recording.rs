@@ -63,7 +63,7 @@ impl TrainTurning {
 ///
 /// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
 /// gearbox.solver.settings.duration_s = Some(1.0);
-/// let channels = meshtone::simulate_gearbox(&gearbox)?.channels;
+/// let channels = meshtone::simulate(&gearbox)?.channels;
 /// let train = GearTrain::of_gearbox(&gearbox)?;
 /// let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len())?;
 /// let turning = TrainTurning::Shaft { shaft: train.input(), phase, stated: StatedTurning::Other };

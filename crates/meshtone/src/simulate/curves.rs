@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
-use super::Stages;
+use super::{MeshedPair, Stages};
 use crate::error::ScenarioError;
 use crate::mesh::{Mesh, MeshCurve, PairKind};
 
@@ -42,7 +42,7 @@ impl Stages {
         &self,
         pitches: Option<Range<i64>>,
     ) -> Result<Vec<MeshCurve>, ScenarioError> {
-        let points = NonZeroUsize::new(self.cycle.points_per_pitch).unwrap_or(NonZeroUsize::MIN);
+        let points = NonZeroUsize::new(self.pairs[0].cycle.points_per_pitch).unwrap_or(NonZeroUsize::MIN);
         Ok(self.curves_of(&self.meshes_at(points)?, pitches))
     }
 
@@ -52,7 +52,7 @@ impl Stages {
     /// * `positions_rev` - (rev) pinion revolutions since the pair entered contact
     pub(super) fn mesh_pair_stiffness_n_per_mm(&self, positions_rev: &[f64]) -> [Option<Vec<f64>>; 2] {
         let Some(mesh) = self.meshes.first() else { return [None, None] };
-        let (pairs, pitches) = (self.pairs(), f64::from(self.teeth.pinion.teeth));
+        let (pairs, pitches) = (self.tooth_pairs(), f64::from(self.layout.gears[0].pinion_teeth));
         let is_first =
             |kind: &&PairKind| matches!((kind.pinion, kind.gear), (Some(0), None) | (None, Some(0)));
         let classes = mesh.sequence.classes();
@@ -69,7 +69,8 @@ impl Stages {
     /// # Arguments
     /// * `pitches` - counted from the start of the simulation
     pub fn pair_forces_n(&self, pitches: Range<i64>) -> Vec<(i64, Vec<f64>)> {
-        let of_mesh = |mesh: &Mesh| mesh.shared_n(self.static_force_n(), pitches.clone());
-        self.meshes.iter().flat_map(of_mesh).collect()
+        let of_mesh =
+            |(mesh, pair): (&Mesh, &MeshedPair)| mesh.shared_n(pair.static_force_n, pitches.clone());
+        self.meshes.iter().zip(&self.pairs).flat_map(of_mesh).collect()
     }
 }

@@ -3,79 +3,99 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::Stages;
+use super::{AssembledMachine, MeshedPair, Stages};
+use crate::bearing::{BearingTurning, RollingBearing};
 use crate::error::Error;
-use crate::machine::{ClosedMesh, DecayingMode, Modes, SupportMode, Train, WheelBody};
+use crate::machine::{ClosedMesh, SupportMode, WheelBody, support_modes};
 use crate::mesh::{Forcing, Mesh, MeshCurve, PairDeviations};
 use crate::published::{self, Published};
+use crate::scenario::Scenario;
 use crate::simd::InstructionSet;
-use crate::solver::{InitialMotion, ModalMachine, Output, Problem, Recorder, SteppedAlone, integrate};
+use crate::solver::{ModalMachine, Output, Problem, Recorder, SteppedAlone, integrate};
 use crate::trace_fields::Trace;
-use crate::wheel::WheelName;
 
 /// The equations of motion.
 #[doc(hidden)]
 #[derive(Clone, PartialEq)]
 pub enum Equations {
-    /// A machine around meshes, and its modes without these.
-    Machine(Box<Train>, Modes),
+    /// A machine around meshes, and the same in the modes that are stepped.
+    Machine(Box<AssembledMachine>, Box<ModalMachine>),
     /// Those of the published model, with its mesh.
     Published(Box<Published>),
 }
 
 impl Stages {
-    /// The machine around the meshes and its modes; none under the published model.
-    pub(super) fn train(&self) -> Option<(&Train, &Modes)> {
+    /// The machine around the meshes, and the same in the modes that are stepped; none under the published model.
+    pub(crate) fn machine(&self) -> Option<(&AssembledMachine, &ModalMachine)> {
         match &self.equations {
-            Equations::Machine(train, modes) => Some((train, modes)),
+            Equations::Machine(machine, modal) => Some((machine, modal)),
             Equations::Published(_) => None,
         }
+    }
+
+    /// The machine around the meshes, and its modes without them; none under the published model.
+    #[cfg(feature = "internals")]
+    #[doc(hidden)]
+    pub fn machine_and_modes(&self) -> Option<(&crate::machine::Machine, &crate::machine::Modes)> {
+        self.machine().map(|(machine, _)| (&machine.machine, &*machine.modes))
     }
 
     /// Number of the coordinates in which the equations of motion are written.
     pub(crate) fn coordinates(&self) -> usize {
         match &self.equations {
-            Equations::Machine(train, _) => train.machine.coordinates(),
+            Equations::Machine(machine, _) => machine.machine.coordinates(),
             Equations::Published(published) => published.machine.mass.len(),
         }
     }
 
-    /// Mass and inertias of the pinion and of the gear.
-    pub(crate) fn wheel_bodies(&self) -> [WheelBody; 2] {
+    /// Mass and inertias of each wheel.
+    pub(crate) fn wheel_bodies(&self) -> Vec<WheelBody> {
         match &self.equations {
-            Equations::Machine(train, _) => train.wheels,
-            Equations::Published(published) => [published.machine.pinion, published.machine.gear],
+            Equations::Machine(machine, _) => machine.wheels.clone(),
+            Equations::Published(published) => vec![published.machine.pinion, published.machine.gear],
         }
     }
 
-    /// (N m/rad) Torsional stiffness of the pinion's and of the gear's shaft.
-    pub(crate) fn shaft_stiffness_nm_per_rad(&self) -> [f64; 2] {
+    /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to.
+    pub(crate) fn shaft_stiffness_nm_per_rad(&self) -> Vec<f64> {
         match &self.equations {
-            Equations::Machine(train, _) => train.shaft_stiffness_nm_per_rad,
-            Equations::Published(published) => published.machine.shaft_stiffness_nm_per_rad,
+            Equations::Machine(machine, _) => machine.shaft_stiffness_nm_per_rad.clone(),
+            Equations::Published(published) => published.machine.shaft_stiffness_nm_per_rad.to_vec(),
         }
     }
 
-    /// (Hz) Natural frequencies, rising: of the mean meshes, closed.
+    /// (Hz) Natural frequencies of the machine with its meshes closed at their mean stiffness, rising; 0 of the whole train's free rotation,
+    /// where nothing holds it.
     pub fn natural_frequencies_hz(&self) -> Vec<f64> {
         match &self.equations {
-            Equations::Machine(train, _) => train.machine.closed_modes(&self.mean_stiffness_n_per_m()).0,
+            Equations::Machine(..) => self.natural_frequencies_with_hz(&self.mean_stiffness_n_per_m()),
             Equations::Published(published) => published.natural_frequencies_hz(),
         }
+    }
+
+    /// (Hz) The same with other mesh stiffnesses; none under the published model.
+    ///
+    /// # Arguments
+    /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh
+    pub fn natural_frequencies_with_hz(&self, mesh_stiffness_n_per_m: &[f64]) -> Vec<f64> {
+        let of = |(machine, _): (&AssembledMachine, &ModalMachine)| {
+            machine.machine.closed_modes(mesh_stiffness_n_per_m).0
+        };
+        self.machine().map_or_else(Vec::new, of)
     }
 
     /// Mode shapes in the order of [`Self::natural_frequencies_hz`], of unit modal mass: for each mode a number for each coordinate.
     pub fn mode_shapes(&self) -> Vec<Vec<f64>> {
         match &self.equations {
-            Equations::Machine(train, _) => {
-                let (_, shapes) = train.machine.closed_modes(&self.mean_stiffness_n_per_m());
+            Equations::Machine(machine, _) => {
+                let (_, shapes) = machine.machine.closed_modes(&self.mean_stiffness_n_per_m());
                 shapes.column_iter().map(|shape| shape.iter().copied().collect()).collect()
             }
             Equations::Published(published) => published.mode_shapes(),
         }
     }
 
-    /// The modes in which the supports move much, in rising order, of the mean meshes, closed; none where the supports are held.
+    /// The modes in which the supports of a rig move much, in rising order, of the mean meshes, closed; none where the supports are held.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -86,11 +106,13 @@ impl Stages {
     /// # Ok::<(), meshtone::Error>(())
     /// ```
     pub fn support_modes(&self) -> Vec<SupportMode> {
-        self.train().map_or_else(Vec::new, |(train, _)| train.support_modes(&self.mean_stiffness_n_per_m()))
+        self.machine().map_or_else(Vec::new, |(machine, _)| {
+            support_modes(&machine.machine, &self.mean_stiffness_n_per_m())
+        })
     }
 
     /// (N/m) Mean stiffness of each mesh.
-    pub(crate) fn mean_stiffness_n_per_m(&self) -> Vec<f64> {
+    pub fn mean_stiffness_n_per_m(&self) -> Vec<f64> {
         match &self.equations {
             Equations::Machine(..) => self.meshes.iter().map(|mesh| mesh.mean_stiffness_n_per_m).collect(),
             Equations::Published(published) => vec![published.mean_stiffness_n_per_m()],
@@ -109,9 +131,9 @@ impl Stages {
         match &self.equations {
             Equations::Machine(..) => {
                 // Every tooth of both has met another by then.
-                let pitches = WheelName::BOTH.map(|wheel| self.teeth.wheel(wheel).teeth as usize);
-                let over = 0..pitches[0].max(pitches[1]);
-                self.meshes.iter().flat_map(|mesh| mesh.stiffness_n_per_mm(over.clone())).collect()
+                let pitches = |pair: &MeshedPair| pair.teeth.pinion.teeth.max(pair.teeth.gear.teeth) as usize;
+                let each = self.meshes.iter().zip(&self.pairs);
+                each.flat_map(|(mesh, pair)| mesh.stiffness_n_per_mm(0..pitches(pair))).collect()
             }
             Equations::Published(published) => published.mesh_curve(None).stiffness_n_per_mm,
         }
@@ -130,8 +152,7 @@ impl Stages {
 
     /// Traces the matrices of the machine without the meshes, and with the mean ones closed.
     pub(crate) fn trace_matrices(&self, trace: &mut Trace) {
-        let Some((train, modes)) = self.train() else { return };
-        let machine = &train.machine;
+        let Some((AssembledMachine { machine, modes, .. }, _)) = self.machine() else { return };
         let size = machine.coordinates();
         trace.vector("mass_diagonal", machine.mass.diagonal().iter().copied());
         let mean = machine.closed_stiffness(&self.mean_stiffness_n_per_m());
@@ -144,20 +165,27 @@ impl Stages {
         }
     }
 
+    /// Traces a machine of beams and its modes.
+    pub(crate) fn trace_modes(&self, trace: &mut Trace) {
+        let Some((AssembledMachine { machine, modes, .. }, modal)) = self.machine() else { return };
+        let size = machine.coordinates();
+        trace.vector("open_frequencies_hz", modes.angular_frequencies.iter().map(|omega| omega / TAU));
+        trace.vector("damping_ratio", modes.damping_ratio.iter().copied());
+        trace.scalar("stepped_modes", modal.modes() as f64);
+        let mean = machine.closed_stiffness(&self.mean_stiffness_n_per_m());
+        for (name, matrix) in [
+            ("mass_matrix", &machine.mass),
+            ("stiffness_matrix_open", &machine.stiffness()),
+            ("stiffness_matrix_mean", &mean),
+        ] {
+            trace.matrix(name, size, size, |r, c| matrix[(r, c)]);
+        }
+    }
+
     /// Traces what only the published model has: its matrices, the fault and the forces.
     pub(crate) fn trace_of_published(&self, trace: &mut Trace) {
         if let Equations::Published(published) = &self.equations {
             published.trace(trace);
-        }
-    }
-
-    /// The slowest mode in motion, with the mean meshes closed.
-    pub(crate) fn slowest_mode(&self) -> DecayingMode {
-        match &self.equations {
-            Equations::Machine(train, modes) => {
-                self.modal_machine(train, modes).slowest_closed(&self.closed_meshes(), f64::INFINITY)
-            }
-            Equations::Published(published) => published.slowest_mode(),
         }
     }
 
@@ -175,8 +203,8 @@ impl Stages {
         recorder: &mut dyn Recorder,
     ) -> Result<(), Error> {
         let result = match &self.equations {
-            Equations::Machine(train, modes) => {
-                integrate(self.problem(train, modes, outputs, first_sample), instructions, recorder)
+            Equations::Machine(machine, modal) => {
+                integrate(self.problem(machine, modal, outputs, first_sample), instructions, recorder)
             }
             Equations::Published(published) => {
                 published::integrate(published, outputs, first_sample, recorder)
@@ -193,15 +221,15 @@ impl Stages {
     /// # Errors
     /// It is solved alone, with the reason.
     pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Result<Problem<'a>, SteppedAlone> {
-        let (train, modes) = self.train().ok_or(SteppedAlone::PublishedModel)?;
-        let problem = self.problem(train, modes, outputs, self.time.first_kept_sample);
+        let (machine, modal) = self.machine().ok_or(SteppedAlone::PublishedModel)?;
+        let problem = self.problem(machine, modal, outputs, self.time.first_kept_sample);
         problem.stepped_alone().map_or(Ok(problem), Err)
     }
 
     /// Why a batch steps the simulation alone, which takes several times as long; none where it steps it side by side with others.
     pub fn stepped_alone(&self) -> Option<SteppedAlone> {
-        match self.train() {
-            Some((train, modes)) => SteppedAlone::of(&self.modal_machine(train, modes), self.meshes.iter()),
+        match self.machine() {
+            Some((_, modal)) => SteppedAlone::of(modal, self.meshes.iter()),
             None => Some(SteppedAlone::PublishedModel),
         }
     }
@@ -209,62 +237,55 @@ impl Stages {
     /// The simulation as the solver sees it.
     fn problem<'a>(
         &'a self,
-        train: &Train,
-        modes: &Modes,
+        machine: &AssembledMachine,
+        modal: &ModalMachine,
         outputs: &'a [Output],
         first_sample: usize,
     ) -> Problem<'a> {
-        let operation = &self.scenario.operation;
-        let deviations = || PairDeviations {
-            teeth: &self.teeth,
-            errors: self.profile_errors.as_ref(),
-            eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
-            run_out: self.run_out,
+        let operation = self.scenario.operation();
+        let deviations = |pair: &'a MeshedPair| PairDeviations {
+            teeth: &pair.teeth,
+            errors: pair.profile_errors.as_ref(),
+            eccentricity_m: pair.eccentricity_mm * 1e-3,
+            run_out: pair.run_out,
+        };
+        let turning = |(number, bearing): &(usize, RollingBearing)| {
+            let shaft = self.layout.shaft_of_bearing[*number];
+            BearingTurning::new(bearing, self.layout.ratios[shaft].value(), self.scenario.seed(), *number)
         };
         Problem {
             time: &self.time,
-            machine: self.modal_machine(train, modes),
-            bearings: Vec::new(),
+            machine: modal.clone(),
             laws: self.meshes.iter().map(Mesh::law).collect(),
+            bearings: self.bearings.iter().map(|(_, bearing)| bearing.clone()).collect(),
             forcing: Forcing::new(
-                self.scenario.motion(&self.time),
+                self.motion(),
                 &self.time,
                 [operation.pinion_speed_hz, operation.brake_torque_nm],
                 self.time.first_simulated_sample,
-                self.meshes.iter().map(|mesh| (mesh, deviations())),
+                self.meshes.iter().zip(self.pairs.iter().map(deviations)),
             )
-            .with_turning_forces(&train.machine.turning_forces),
+            .with_bearings(self.bearings.iter().map(turning).collect())
+            .with_turning_forces(&machine.machine.turning_forces),
             is_steady: self.is_steady(),
-            hunting_period_samples: self
-                .is_steady()
-                .then(|| self.time.hunting_period_samples(&self.scenario.gears)),
+            hunting_period_samples: self.cycle_samples(),
             outputs,
             first_sample,
         }
     }
 
-    /// The machine in the modes that take part in the motion.
-    pub(crate) fn modal_machine(&self, train: &Train, modes: &Modes) -> ModalMachine {
-        let operation = &self.scenario.operation;
-        let first_speed = operation.speed_profile_hz.as_ref().map(|profile| profile.value[0]);
-        let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
-        let start = InitialMotion {
-            nominal_rad_per_s: TAU * operation.pinion_speed_hz,
-            brake_torque_nm: operation.brake_torque_nm,
-            motor_rad_per_s: TAU * first_speed.unwrap_or(operation.pinion_speed_hz),
-            velocity: self.scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
-        };
-        ModalMachine::new(&train.machine, modes, &face_reach_m, start)
-    }
-
     /// The key of the damping that a growing motion lacks, and the damping ratios.
     pub(super) fn damping(&self) -> (&'static str, Vec<f64>) {
-        match self.train() {
+        match (self.machine(), self.scenario.pair()) {
+            (Some((machine, _)), None) => ("bearing.damping_ratio", machine.modes.damping_ratio.clone()),
             // The shafts' as well.
-            Some((_, modes)) if self.teeth_part() => {
-                ("rig.support.damping_ratio", modes.damping_ratio.clone())
+            (Some((machine, _)), Some(_)) if self.teeth_part() => {
+                ("rig.support.damping_ratio", machine.modes.damping_ratio.clone())
             }
-            _ => ("rig.damping_ratio", self.scenario.rig.damping_ratio.per_mode().to_vec()),
+            (_, pair) => {
+                let of_pair = |pair: &Scenario| pair.rig.damping_ratio.per_mode().to_vec();
+                ("rig.damping_ratio", pair.map_or_else(Vec::new, of_pair))
+            }
         }
     }
 }

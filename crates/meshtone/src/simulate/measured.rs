@@ -1,35 +1,79 @@
 //! Stage 8: the channels, with what sensors make of them.
 
 use super::Stages;
-use crate::scenario::{Scenario, ScenarioForm};
+use crate::machine::Axis;
+use crate::scenario::{Gearbox, GearboxMesh, GearboxSensor, GearboxShaft, Scenario, ScenarioForm};
 use crate::sensor::{
-    Channel, ChannelKind, Channels, Measurement, NamedSignal, Sensor, SignalSource, measure,
+    Channel, ChannelKind, Channels, GRAVITY_M_PER_S2, Measurement, NamedSignal, Sensor, SignalSource, measure,
 };
 use crate::solver::{Block, Output, Recorder, StepCounts};
-
-impl Scenario {
-    /// The signals that a simulation has, without their samples, in the order of files: sensors first.
-    pub fn signals(&self) -> Vec<NamedSignal> {
-        let of_sensor = |(number, sensor): (usize, &Sensor)| {
-            NamedSignal::new(sensor.channel(), SignalSource::Sensor(number))
-        };
-        let sensors = self.sensors.iter().enumerate().map(of_sensor);
-        sensors.chain(ChannelKind::ALL.map(NamedSignal::from)).collect()
-    }
-
-    /// What each of [`Self::signals`] is of the solution.
-    pub(crate) fn outputs(&self) -> Vec<Output> {
-        self.sensors.iter().map(Sensor::output).chain(ChannelKind::ALL.map(ChannelKind::output)).collect()
-    }
-}
+use std::f64::consts::TAU;
 
 impl ScenarioForm {
     /// The signals that a simulation has, without their samples, in the order of files: sensors first.
     pub fn signals(&self) -> Vec<NamedSignal> {
+        self.signals_and_outputs().into_iter().map(|(signal, _)| signal).collect()
+    }
+
+    /// What each of [`Self::signals`] is of the solution.
+    pub(crate) fn outputs(&self) -> Vec<Output> {
+        self.signals_and_outputs().into_iter().map(|(_, output)| output).collect()
+    }
+
+    fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
         match self {
-            Self::Pair(scenario) => scenario.signals(),
-            Self::Gearbox(gearbox) => gearbox.signals(),
+            Self::Pair(scenario) => scenario.signals_and_outputs(),
+            Self::Gearbox(gearbox) => gearbox.signals_and_outputs(),
         }
+    }
+}
+
+impl Scenario {
+    /// The signals of a simulation, each with what it is of the solution.
+    fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
+        let of_sensor = |(number, sensor): (usize, &Sensor)| {
+            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), sensor.output())
+        };
+        let fixed = ChannelKind::ALL.map(|kind| (NamedSignal::from(kind), kind.output()));
+        self.sensors.iter().enumerate().map(of_sensor).chain(fixed).collect()
+    }
+}
+
+/// Name of the speed of a shaft.
+pub(super) fn speed_name(shaft: &str) -> String {
+    format!("speed_hz.{shaft}")
+}
+
+/// Name of the transmission error of a mesh.
+pub(super) fn transmission_error_name(mesh: &str) -> String {
+    format!("transmission_error_um.{mesh}")
+}
+
+impl Gearbox {
+    /// The signals of a simulation, each with what it is of the solution.
+    fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
+        let sensor = |(number, sensor): (usize, GearboxSensor)| {
+            let (place, axis) = (sensor.name().into(), sensor.axis());
+            let output = Output::Acceleration { place, axis, factor: 1.0 / GRAVITY_M_PER_S2 };
+            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), output)
+        };
+        let mesh = |(mesh, of): (usize, &GearboxMesh)| {
+            let (name, axis) = (transmission_error_name(&of.name()), Axis::Rotation);
+            let error = Output::Displacement { place: name.clone().into(), axis, factor: 1e6 };
+            let force = NamedSignal::new(format!("force_n.{}", of.name()), SignalSource::MeshForce(mesh));
+            [
+                (force, Output::MeshForce { mesh }),
+                (NamedSignal::new(name, SignalSource::TransmissionError(mesh)), error),
+            ]
+        };
+        let shaft = |(shaft, of): (usize, &GearboxShaft)| {
+            let (name, axis) = (speed_name(&of.name), Axis::Rotation);
+            let output = Output::Velocity { place: name.clone().into(), axis, factor: 1.0 / TAU };
+            (NamedSignal::new(name, SignalSource::ShaftSpeed(shaft)), output)
+        };
+        let sensors = self.all_sensors().into_iter().enumerate().map(sensor);
+        let meshes = self.meshes.iter().enumerate().flat_map(mesh);
+        sensors.chain(meshes).chain(self.shafts.iter().enumerate().map(shaft)).collect()
     }
 }
 
@@ -41,7 +85,7 @@ impl Stages {
 
     /// The channels whose sensors recorded the motion of their places, with what they show of it.
     pub(crate) fn measured(&self, mut channels: Channels) -> Channels {
-        channels.measure(self.scenario.sensors.iter(), &self.measurement(0));
+        channels.measure(self.sensors.iter(), &self.measurement(0));
         channels
     }
 
@@ -52,7 +96,7 @@ impl Stages {
     /// * `motion` - (g, or N where the sensor's response is to the mesh force) all kept samples
     pub fn shown(&self, channel: &Channel, motion: Vec<f64>) -> Vec<f64> {
         let is_meant = |sensor: &Sensor| matches!(channel, Channel::Sensor(name) if sensor.name() == *name);
-        match self.scenario.sensors.iter().enumerate().find(|(_, sensor)| is_meant(sensor)) {
+        match self.sensors.iter().enumerate().find(|(_, sensor)| is_meant(sensor)) {
             Some((index, sensor)) => measure(motion, sensor, &self.measurement(index)),
             None => motion,
         }
@@ -61,14 +105,13 @@ impl Stages {
     /// On what the signal of a sensor depends besides.
     fn measurement(&self, index: usize) -> Measurement {
         let is_periodic = self.is_periodic();
-        let (sampling_rate_hz, seed) = (self.time.sampling_rate_hz, self.scenario.seed);
+        let (sampling_rate_hz, seed) = (self.time.sampling_rate_hz, self.scenario.seed());
         Measurement { sampling_rate_hz, is_periodic, seed, index }
     }
 
     /// Whether what is kept is a steady motion over whole turns after which the same teeth meet again.
     fn is_periodic(&self) -> bool {
-        let period = self.time.hunting_period_samples(&self.scenario.gears);
-        self.is_steady() && self.time.kept_samples().is_multiple_of(period)
+        self.cycle_samples().is_some_and(|cycle| self.time.kept_samples().is_multiple_of(cycle))
     }
 }
 

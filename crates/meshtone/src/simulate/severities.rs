@@ -1,10 +1,9 @@
 //! Severities of a scenario's faults.
 
-use super::gearbox::teeth_of_mesh;
 use super::healthy_teeth;
 use crate::damage::Fault;
 use crate::error::ScenarioError;
-use crate::scenario::{Gearbox, GearboxFault, GearboxLayout, Scenario, ScenarioForm};
+use crate::scenario::{Gearbox, GearboxFault, GearboxLayout, Model, Scenario, ScenarioForm};
 use crate::wheel::Teeth;
 
 impl Scenario {
@@ -44,7 +43,8 @@ impl Scenario {
     }
 
     fn healthy_teeth(&self) -> Teeth {
-        healthy_teeth(&self.without_ignored_keys())
+        let honoured = self.without_ignored_keys();
+        healthy_teeth(honoured.model, &GearboxLayout::of_pair(&honoured)).swap_remove(0)
     }
 }
 
@@ -76,9 +76,8 @@ impl Gearbox {
         self.validate()?;
         let layout = GearboxLayout::new(self)?;
         let mut answers: Vec<T> = self.faults.iter().map(|_| T::default()).collect();
-        for mesh in 0..self.meshes.len() {
-            let teeth = teeth_of_mesh(self, &layout, mesh);
-            for (number, fault) in layout.faults_of_mesh(self, mesh) {
+        for (mesh, teeth) in healthy_teeth(Model::Contact, &layout).into_iter().enumerate() {
+            for (number, fault) in layout.faults_of_mesh(&self.placed_faults(), mesh) {
                 answers[number] = ask(&fault, &teeth);
             }
         }

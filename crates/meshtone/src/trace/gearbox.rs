@@ -1,15 +1,17 @@
 //! Every stage's output of a gearbox.
 
 use super::stages::helix;
-use crate::simulate::GearboxSimulation;
+use crate::scenario::Gearbox;
+use crate::simulate::Simulation;
 use crate::trace_fields::Trace;
 use crate::wheel::WheelName;
 
-/// The fields of a gearbox's trace: those of the train, of each mesh under its name, of the machine, of the steps, and all signals.
+/// Fields of a gearbox: those of the train, of each mesh under its name, of the machine, of the steps, and all signals.
 ///
 /// # Arguments
-/// * `simulation` - of a gearbox
-pub fn gearbox_trace(simulation: &GearboxSimulation) -> Trace {
+/// * `gearbox` - what was simulated
+/// * `simulation` - of it
+pub(super) fn gearbox_trace(gearbox: &Gearbox, simulation: &Simulation) -> Trace {
     let mut trace = Trace::default();
     let (stages, channels) = (&simulation.stages, &simulation.channels);
     let layout = &stages.layout;
@@ -23,7 +25,7 @@ pub fn gearbox_trace(simulation: &GearboxSimulation) -> Trace {
     trace.matrix("shaft_position_mm", positions.len(), 2, |shaft, axis| positions[shaft][axis] * 1e3);
     trace.vector("phase", layout.phases.iter().copied());
     trace.vector("static_force_n", stages.pairs.iter().map(|pair| pair.static_force_n));
-    let of_file = stages.gearbox.meshes.iter().zip(&layout.gears);
+    let of_file = gearbox.meshes.iter().zip(&layout.gears);
     for ((mesh, pair), (of_file, gears)) in stages.meshes.iter().zip(&stages.pairs).zip(of_file) {
         let named = |quantity: &str| format!("{quantity}.{}", of_file.name());
         helix(&mut trace, &named(""), gears, pair.static_force_n);
@@ -50,11 +52,11 @@ pub fn gearbox_trace(simulation: &GearboxSimulation) -> Trace {
         }
     }
     for (number, bearing) in &stages.bearings {
-        let named = |quantity: &str| format!("{quantity}.{}", stages.gearbox.bearings[*number].seat_name());
+        let named = |quantity: &str| format!("{quantity}.{}", gearbox.bearings[*number].seat_name());
         trace.vector(&named("bearing_load_n"), bearing.static_load_n);
         trace.vector(&named("bearing_spring_n_per_m"), bearing.spring_n_per_m.into_iter().flatten());
     }
-    stages.trace_machine(&mut trace);
+    stages.trace_modes(&mut trace);
     trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
     for (name, count) in ["steps", "newton_iterations", "most_newton_iterations", "line_searches"]
         .into_iter()

@@ -6,8 +6,7 @@ mod run;
 mod stages;
 
 pub(crate) use average::wheel_record;
-pub use gearbox::gearbox_trace;
-pub use run::{trace, trace_at};
+pub use run::{simulation_trace, trace, trace_at, trace_of};
 use stages::static_stages;
 
 pub use crate::trace_fields::{Trace, TraceField};

@@ -5,9 +5,10 @@ use std::ops::Range;
 use web_time::Instant;
 
 use super::average::average;
-use super::{Trace, static_stages};
+use super::gearbox::gearbox_trace;
+use super::{Trace, stage_trace, static_stages};
 use crate::error::Error;
-use crate::scenario::Scenario;
+use crate::scenario::ScenarioForm;
 use crate::sensor::{ChannelKind, Channels};
 use crate::simulate::{Simulation, Stages, stages};
 use crate::solver::{Block, Output, Recorder};
@@ -30,11 +31,11 @@ const AVERAGE_RATE_HZ: f64 = 25e3;
 ///
 /// The average's fields are at 25 kS/s; [`trace_at`] takes another rate. They are missing where there is no average: fewer
 /// than two revolutions of the gear, a vertical signal that is 0, a mesh frequency beyond half of that rate.
-pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), Error> {
+pub fn trace(scenario: impl Into<ScenarioForm>) -> Result<(Simulation, Trace), Error> {
     trace_at(scenario, AVERAGE_RATE_HZ)
 }
 
-/// As [`trace`], with the average's fields at a rate of one's own.
+/// As [`trace`], with the average's fields at a rate of one's own; of a gearbox nothing is averaged.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
@@ -43,9 +44,42 @@ pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), Error> {
 ///
 /// # Errors
 /// As [`crate::simulate`].
-pub fn trace_at(scenario: &Scenario, average_rate_hz: f64) -> Result<(Simulation, Trace), Error> {
+pub fn trace_at(
+    scenario: impl Into<ScenarioForm>,
+    average_rate_hz: f64,
+) -> Result<(Simulation, Trace), Error> {
+    traced(stages(scenario)?, average_rate_hz)
+}
+
+/// Does what [`trace`] does, for those who have looked at the stages.
+///
+/// # Arguments
+/// * `stages` - of what is simulated
+///
+/// # Errors
+/// A motion that grows without bound.
+pub fn trace_of(stages: Stages) -> Result<(Simulation, Trace), Error> {
+    traced(stages, AVERAGE_RATE_HZ)
+}
+
+/// The fields of a simulation's trace that its stages and its signals show: of a pair those before the time loop.
+///
+/// # Arguments
+/// * `simulation` - what was simulated
+pub fn simulation_trace(simulation: &Simulation) -> Trace {
+    match simulation.stages.scenario.gearbox() {
+        Some(gearbox) => gearbox_trace(gearbox, simulation),
+        None => stage_trace(&simulation.stages),
+    }
+}
+
+fn traced(stages: Stages, average_rate_hz: f64) -> Result<(Simulation, Trace), Error> {
+    if stages.scenario.gearbox().is_some() {
+        let simulation = stages.simulate()?;
+        let trace = simulation_trace(&simulation);
+        return Ok((simulation, trace));
+    }
     let start = Instant::now();
-    let stages = stages(scenario)?;
     let mut trace = Trace::default();
     static_stages(&mut trace, &stages);
     let mut recorder = StateRecorder::new(&stages);
@@ -55,8 +89,7 @@ pub fn trace_at(scenario: &Scenario, average_rate_hz: f64) -> Result<(Simulation
     let channels = stages.measured(recorder.finish(&mut trace));
     average(&mut trace, &stages, &channels, average_rate_hz);
     trace.scalar("elapsed_s", start.elapsed().as_secs_f64());
-    let timings = stages.timings.clone();
-    Ok((Simulation { stages, channels, timings }, trace))
+    Ok((stages.with_channels(channels), trace))
 }
 
 /// The outputs that are recorded beside the channels: acceleration, velocity and displacement of every coordinate.

@@ -3,7 +3,7 @@
 use super::Trace;
 use crate::damage::QuantityValue;
 use crate::mesh::MeshCurve;
-use crate::simulate::Stages;
+use crate::simulate::{MeshedPair, Stages};
 use crate::trace_fields::FAULT_STRIDE;
 use crate::wheel::{Gears, Mounting, WheelName};
 
@@ -18,19 +18,20 @@ const FIRST_INDEX: usize = 1;
 /// Fields of stages 2 to 6.
 pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
     wheels(trace, stages);
-    let grid = &stages.cycle;
+    let MeshedPair { cycle: grid, teeth, static_force_n, .. } = &stages.pairs[0];
+    let gears = &stages.layout.gears[0];
     trace.scalar("sampling_rate_hz", stages.time.sampling_rate_hz);
     trace.scalar("fine_step_rev", grid.fine_step_rev);
     trace.scalar("coarse_step_rev", grid.coarse_step_rev);
     trace.scalar("first_kept_sample", stages.time.first_kept_sample as f64);
     trace.scalar("kept_samples", stages.time.kept_samples() as f64);
     trace.scalar("pinion_revolutions", stages.pinion_revolutions());
-    trace.scalar("contact_ratio", stages.teeth.contact.contact_ratio);
-    let mounting = Mounting::new(&stages.scenario.gears);
+    trace.scalar("contact_ratio", teeth.contact.contact_ratio);
+    let mounting = Mounting::new(gears);
     trace.scalar("working_pressure_angle_rad", mounting.working_pressure_angle_rad);
     trace.scalar("centre_distance_mm", mounting.centre_distance_mm);
-    trace.scalar("normal_backlash_mm", stages.scenario.gears.normal_backlash_mm());
-    helix(trace, "", &stages.scenario.gears, stages.static_force_n());
+    trace.scalar("normal_backlash_mm", gears.normal_backlash_mm());
+    helix(trace, "", gears, *static_force_n);
     bodies(trace, stages);
     stiffness(trace, stages);
     trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
@@ -56,7 +57,7 @@ pub(super) fn helix(trace: &mut Trace, suffix: &str, gears: &Gears, static_force
 }
 
 fn wheels(trace: &mut Trace, stages: &Stages) {
-    let teeth = &stages.teeth;
+    let MeshedPair { teeth, profile_errors, .. } = &stages.pairs[0];
     for which in WheelName::BOTH {
         let (name, wheel, profile) = (which.name(), teeth.wheel(which), teeth.profile(which));
         let every = |values: &[f64]| values.iter().copied().step_by(PROFILE_STRIDE).collect::<Vec<_>>();
@@ -80,7 +81,7 @@ fn wheels(trace: &mut Trace, stages: &Stages) {
         let contact_index = teeth.initial_contact_index(which) + FIRST_INDEX;
         trace.scalar(&format!("{name}_initial_contact_index"), contact_index as f64);
     }
-    if let Some(errors) = &stages.profile_errors {
+    if let Some(errors) = profile_errors {
         for (name, table) in
             [("pinion", &errors.pinion_profile_errors_mm), ("gear", &errors.gear_profile_errors_mm)]
         {
@@ -103,8 +104,8 @@ fn bodies(trace: &mut Trace, stages: &Stages) {
 
 /// Pair and mesh stiffness on the grids of the published code, under every model.
 fn stiffness(trace: &mut Trace, stages: &Stages) {
-    let grid = &stages.cycle;
-    let points = grid.fine_points_in(stages.teeth.contact.span_rev);
+    let MeshedPair { cycle: grid, teeth, .. } = &stages.pairs[0];
+    let points = grid.fine_points_in(teeth.contact.span_rev);
     // None for stages that somebody has changed so that they do not fit together.
     let Ok(meshes) = stages.mesh_curves_on_coarse_grid(None) else { return };
     let positions: Vec<f64> =
@@ -131,8 +132,8 @@ fn numbered(name: &str, number: usize) -> String {
 
 /// What the damages are: fields `fault_…` of the first, `fault_2_…` of the next.
 fn damages(trace: &mut Trace, stages: &Stages) {
-    let all =
-        stages.damaged.iter().flat_map(|tooth| tooth.descriptions.iter().map(move |damage| (tooth, damage)));
+    let damaged = stages.pairs.iter().flat_map(|pair| &pair.damaged);
+    let all = damaged.flat_map(|tooth| tooth.descriptions.iter().map(move |damage| (tooth, damage)));
     for (number, (tooth, damage)) in all.enumerate() {
         let prefix = numbered("fault", number);
         for (name, value) in &damage.quantities {

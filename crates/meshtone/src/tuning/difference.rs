@@ -62,9 +62,9 @@ impl DifferenceChain {
         pinion_speed_hz: &[f64],
     ) -> Result<Record, HybridError> {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
-        let teeth = stages.scenario.gears.teeth(self.wheel) as usize;
+        let teeth = stages.layout.gears[0].teeth(self.wheel) as usize;
         let separation = self.separation.clone().map(|settings| SeparationSettings { teeth, ..settings });
-        let angular = Self::angular_settings(stages.scenario.model);
+        let angular = Self::angular_settings(stages.scenario.model());
         let settings = ChainSettings { angular, separation };
         Ok(crate::trace::wheel_record(stages, self.wheel, signal, pinion_speed_hz, rate_hz, settings)?)
     }

@@ -1,6 +1,6 @@
 //! Warnings about a simulation: before the time loop, and by its signals.
 
-mod gearbox;
+mod mesh_resonance;
 mod observer;
 mod of_signals;
 mod step_error;
@@ -13,16 +13,16 @@ use std::f64::consts::TAU;
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{DecayingMode, Shaft, WheelBody};
 use crate::operation::{Operation, Solver, TimeGrid};
-use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
+use crate::scenario::{MemoryLimit, Scenario, ScenarioForm, SensorPlace};
 use crate::simulate::{Stages, stages_within};
-use crate::wheel::{Gears, NamedGears, unused_slices};
+use crate::wheel::{Gears, unused_slices};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
 /// (-) Part of the module by which the nominal load may press the teeth together without a warning.
 const TOLERATED_DEFLECTION: f64 = 0.1;
 
-/// Runs stages 1 to 6, as [`stages_within`] does, and reports all that deserves attention before the time loop.
+/// Runs every stage before the time loop, as [`stages_within`] does, and reports all that deserves attention before the time loop.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
@@ -38,11 +38,12 @@ const TOLERATED_DEFLECTION: f64 = 0.1;
 /// let (stages, warnings) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default())?;
 /// assert_eq!(warnings[0].key, "gears.pinion_teeth");
 /// // What the signals show comes after.
-/// assert!(stages.simulate()?.warnings_of_signals().iter().all(|warning| warning.key == "operation.brake_torque_nm"));
+/// let of_signals = stages.simulate()?.warnings_of_signals(meshtone::StepJudgement::Repeated);
+/// assert!(of_signals.iter().all(|warning| warning.key == "operation.brake_torque_nm"));
 /// # Ok::<(), meshtone::Error>(())
 /// ```
 pub fn stages_and_warnings(
-    scenario: &Scenario,
+    scenario: impl Into<ScenarioForm>,
     limit: MemoryLimit,
 ) -> Result<(Stages, Vec<ScenarioWarning>), ScenarioError> {
     let stages = stages_within(scenario, limit)?;
@@ -51,29 +52,41 @@ pub fn stages_and_warnings(
 }
 
 impl Stages {
-    /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, slices
-    /// that the face is not cut into, wheels whose accelerations, or whose supports', cancel in the channels, a settling too short for the slowest mode, a load that would
-    /// break the teeth, and under a linear mesh places at which none meet.
+    /// Warnings about stages that can be simulated: those of [`ScenarioForm::validate`], keys that the model ignores, slices that the faces
+    /// are not cut into, wheels of a rig whose accelerations, or whose supports', cancel in the channels, a settling too short for the
+    /// slowest mode, a load that would break teeth, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
+    /// frequency of shafts of beams.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
-        let gears = NamedGears::of_pair(&self.scenario.gears);
-        let unused = self.meshes.first().and_then(|mesh| unused_slices(&gears, mesh.slices()));
-        let doubtful =
-            [unused, self.equal_wheels(), self.unsettled(), self.overload(), self.without_contact()];
-        self.warnings_of_scenario.iter().cloned().chain(doubtful.into_iter().flatten()).collect()
+        let unused = self.meshes.iter().enumerate().filter_map(|(number, mesh)| {
+            unused_slices(&self.scenario.named_gears(&self.layout, number), mesh.slices())
+        });
+        let of_scenario = self.warnings_of_scenario.iter().cloned();
+        of_scenario
+            .chain(unused)
+            .chain(self.equal_wheels())
+            .chain(self.unsettled())
+            .chain(self.overloads())
+            .chain(self.without_contact())
+            .chain(self.mesh_resonances())
+            .collect()
     }
 
-    /// Teeth that the load would bend off.
-    fn overload(&self) -> Option<ScenarioWarning> {
-        let (key, torque_nm) = largest_torque(&self.scenario.operation);
-        let force_n = self.force_of_torque_n(torque_nm);
-        let weakest_n_per_m = self.mean_stiffness_n_per_m().into_iter().fold(f64::INFINITY, f64::min);
-        overload("the teeth", key, torque_nm, force_n, weakest_n_per_m, &self.scenario.gears)
+    /// Teeth that the load would bend off, mesh by mesh.
+    fn overloads(&self) -> impl Iterator<Item = ScenarioWarning> {
+        let (key, torque_nm) = largest_torque(self.scenario.operation());
+        let forces_n = self.forces_of_torque_n(torque_nm).into_iter().zip(self.mean_stiffness_n_per_m());
+        let meshes = self.layout.mesh_names.iter().zip(&self.layout.gears);
+        forces_n.zip(meshes).filter_map(move |((force_n, stiffness_n_per_m), (name, gears))| {
+            let of_mesh = name.as_ref().map_or_else(String::new, |name| format!(" of mesh {name}"));
+            let teeth = format!("the teeth{of_mesh}");
+            overload(&teeth, key.clone(), torque_nm, force_n, stiffness_n_per_m, gears)
+        })
     }
 
     /// Places at which no pair of teeth meets: nothing holds the wheels there, where real teeth would touch with their tips'
     /// corners. Under `contact` they do.
     fn without_contact(&self) -> Option<ScenarioWarning> {
-        if self.damaged.is_empty() || self.teeth_part() {
+        if self.teeth_part() || self.pairs.iter().all(|pair| pair.damaged.is_empty()) {
             return None;
         }
         let stiffness = self.stiffness_over_a_turn_n_per_mm();
@@ -92,26 +105,23 @@ impl Stages {
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.
     pub fn transient_remainder(&self) -> f64 {
         let settling_s = self.time.kept_from_s();
-        (-self.slowest_mode().decay_per_s * settling_s).exp()
+        (-self.slowest_mode.decay_per_s * settling_s).exp()
     }
 
     fn equal_wheels(&self) -> Option<ScenarioWarning> {
-        if !self.scenario.model.has_meshes() {
-            return None;
-        }
-        let rig = &self.scenario.rig;
+        let Scenario { rig, sensors, .. } = self.scenario.pair().filter(|pair| pair.model.has_meshes())?;
         let side = |body: &WheelBody, shaft: &Shaft| {
             let bearing = shaft.bearing_stiffness_n_per_m.unwrap_or(rig.bearing_stiffness_n_per_m);
             let bends =
                 [shaft.radius_mm, shaft.bearing_span_mm, shaft.wheel_at, shaft.damping_ratio, bearing];
             (body.mass_kg, body.transverse_kgm2, bends)
         };
-        let [pinion, gear] = self.wheel_bodies();
+        let [pinion, gear] = self.wheel_bodies()[..] else { return None };
         if side(&pinion, &rig.pinion_shaft) != side(&gear, &rig.gear_shaft) {
             return None;
         }
         let (moving, channels) = if self.teeth_part() {
-            if !self.scenario.sensors.iter().any(|sensor| sensor.at == SensorPlace::Support) {
+            if !sensors.iter().any(|sensor| sensor.at == SensorPlace::Support) {
                 return None;
             }
             ("they and their supports", "sensors at the mean of both supports")
@@ -128,8 +138,7 @@ impl Stages {
 
     fn unsettled(&self) -> Option<ScenarioWarning> {
         let named = if self.teeth_part() { words_of } else { |_: &DecayingMode| String::new() };
-        let Scenario { operation, solver, .. } = &self.scenario;
-        unsettled(&self.slowest_mode(), &self.time, operation, solver, named)
+        unsettled(&self.slowest_mode, &self.time, self.scenario.operation(), self.scenario.solver(), named)
     }
 }
 

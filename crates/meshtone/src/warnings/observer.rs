@@ -65,8 +65,8 @@ impl Observer {
 /// Returns whether a steady vibration is reached whose lines can be looked at. A fluctuation is drawn for every sample: with a finer step it
 /// is another one.
 fn lasts(stages: &Stages) -> bool {
-    let operation = &stages.scenario.operation;
-    stages.scenario.model.has_meshes()
+    let operation = stages.scenario.operation();
+    stages.scenario.model().has_meshes()
         && operation.speed_profile_hz.is_none()
         && operation.speed_fluctuation_hz == 0.0
         && operation.torque_fluctuation_nm == 0.0
@@ -173,9 +173,9 @@ pub(super) struct WheelTurnSums {
 
 impl WheelTurnSums {
     fn new(stages: &Stages) -> Self {
-        let (time, teeth) = (&stages.time, &stages.teeth);
+        let (time, gears) = (&stages.time, &stages.layout.gears[0]);
         let of_pinion = time.samples_per_pinion_revolution;
-        let of_gear = of_pinion / teeth.pinion.teeth as usize * teeth.gear.teeth as usize;
+        let of_gear = time.samples_per_pitch(gears) * gears.gear_teeth as usize;
         let turns = |samples_per_turn| TurnSum::new(samples_per_turn, time.kept_samples());
         Self { samples: 0, squares: Sum::default(), of_gear: turns(of_gear), of_pinion: turns(of_pinion) }
     }

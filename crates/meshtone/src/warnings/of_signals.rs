@@ -2,9 +2,12 @@
 
 use super::largest_torque;
 use super::observer::{ForceFigures, Observer};
-use super::step_error::{StepError, StepJudgement, step_error};
+use super::step_error::{StepError, StepJudgement, step_error, step_error_of_signals};
 use crate::error::{ScenarioWarning, WarningKind};
+use crate::scenario::Gearbox;
+use crate::sensor::SignalSource;
 use crate::simulate::{Simulation, Stages};
+use crate::wheel::Gears;
 
 /// (-) Part of the time that the mesh may pull without a warning.
 const TOLERATED_TENSION: f64 = 0.01;
@@ -21,32 +24,63 @@ const TOLERATED_STEP: f64 = 0.02;
 
 impl Simulation {
     /// Warnings that the signals cause: a mesh that pulls (not under `contact`, whose teeth part:
-    /// [`Simulation::contact_figures`] says for how long), a resonance beyond all measure, a mean force
+    /// [`Simulation::contact_figures`] says for how long), a mesh force beyond all measure, a mean force
     /// that the published model's damping changes, a shaft that does not turn at the speed
-    /// that it is driven at, a step too long for a resonance. Where the latter is suspected the simulation is repeated with half the
-    /// step.
-    pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
-        let mut observer = Observer::new(&self.stages);
-        observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
-        self.stages.warnings_of_signals(&observer, StepJudgement::Repeated)
+    /// that it is driven at, a step too long for a resonance.
+    ///
+    /// # Arguments
+    /// * `judgement` - how the step is judged where a resonance is suspected
+    pub fn warnings_of_signals(&self, judgement: StepJudgement) -> Vec<ScenarioWarning> {
+        match self.stages.scenario.gearbox() {
+            Some(gearbox) => self.warnings_of_gearbox(gearbox, judgement),
+            None => {
+                let mut observer = Observer::new(&self.stages);
+                observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
+                self.stages.warnings_of_signals(&observer, judgement)
+            }
+        }
+    }
+
+    /// The same of a gearbox: of the force of each mesh and the speed of each shaft.
+    fn warnings_of_gearbox(&self, gearbox: &Gearbox, judgement: StepJudgement) -> Vec<ScenarioWarning> {
+        let (stages, channels) = (&self.stages, &self.channels);
+        let (_, torque_nm) = largest_torque(stages.scenario.operation());
+        let static_n = stages.forces_of_torque_n(torque_nm);
+        let meshes = stages.layout.mesh_names.iter().zip(static_n).enumerate();
+        let forces = meshes.filter_map(|(number, (mesh, static_n))| {
+            let force_n = channels.of(SignalSource::MeshForce(number));
+            let largest_n = force_n.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+            let name = mesh.as_ref().map_or_else(|| "the mesh".to_owned(), |mesh| format!("mesh {mesh}"));
+            resonance(&name, stages.scenario.speed_key(), largest_n, static_n)
+        });
+        let driven = stages.motion().skip(stages.time.first_kept_sample).take(channels.len());
+        let driven_hz = driven.map(|motion| motion.speed_hz).sum::<f64>() / channels.len() as f64;
+        let shafts = gearbox.shafts.iter().zip(&stages.layout.ratios).enumerate();
+        let speeds = shafts.filter_map(|(number, (shaft, ratio))| {
+            let speed_hz = channels.of(SignalSource::ShaftSpeed(number));
+            let mean_hz = speed_hz.iter().sum::<f64>() / speed_hz.len() as f64;
+            other_speed(&format!("shaft {:?}", shaft.name), driven_hz * ratio.value().abs(), mean_hz.abs())
+        });
+        let rate_hz = channels.sampling_rate_hz;
+        let step = step_error_of_signals(self, judgement).and_then(|error| long_step(error, rate_hz));
+        forces.chain(speeds).chain(step).collect()
     }
 }
 
 impl Stages {
-    /// Does what [`Simulation::warnings_of_signals`] does, for signals that need not be kept.
+    /// Does what [`Simulation::warnings_of_signals`] does of a pair, for signals that need not be kept.
     ///
     /// # Arguments
     /// * `observer` - it has seen all kept samples
     /// * `judgement` - how the step is judged where a resonance is suspected
     pub fn warnings_of_signals(&self, observer: &Observer, judgement: StepJudgement) -> Vec<ScenarioWarning> {
-        let is_damaged = !self.damaged.is_empty();
+        let is_damaged = self.pairs.iter().any(|pair| !pair.damaged.is_empty());
         let pulling = (!self.teeth_part()).then(|| tension(&observer.force, is_damaged)).flatten();
         let rate_hz = self.time.sampling_rate_hz;
         let step = step_error(self, observer, judgement).and_then(|error| long_step(error, rate_hz));
-        let (_, torque_nm) = largest_torque(&self.scenario.operation);
-        let static_n = self.force_of_torque_n(torque_nm);
-        let resonance =
-            resonance("the mesh", "operation.pinion_speed_hz", observer.force.largest_n, static_n);
+        let (_, torque_nm) = largest_torque(self.scenario.operation());
+        let static_n = self.forces_of_torque_n(torque_nm)[0];
+        let resonance = resonance("the mesh", self.scenario.speed_key(), observer.force.largest_n, static_n);
         let braked = self.braked_rotation(observer.force.mean_n());
         let doubtful = [pulling, resonance, braked, self.other_speed(observer), step];
         doubtful.into_iter().flatten().collect()
@@ -56,7 +90,7 @@ impl Stages {
     fn braked_rotation(&self, mean_n: f64) -> Option<ScenarioWarning> {
         let static_n = self.static_force_n();
         let is_off = (mean_n - static_n).abs() > TOLERATED_MEAN_FORCE * static_n.abs();
-        (!self.scenario.model.has_meshes() && is_off).then(|| {
+        (!self.scenario.model().has_meshes() && is_off).then(|| {
             let message = format!(
                 "the mean mesh force is {mean_n:.0} N, but the load's is {static_n:.0} N: the published \
                  model's damping brakes the rotation of the whole machine as well as its vibration, and the \
@@ -69,15 +103,17 @@ impl Stages {
     /// A shaft whose mean speed is not what it is driven at.
     fn other_speed(&self, observer: &Observer) -> Option<ScenarioWarning> {
         let [pinion_hz, gear_hz] = observer.mean_speeds_hz();
-        let driven_hz = match self.scenario.operation.speed_profile_hz {
-            None => self.scenario.operation.pinion_speed_hz,
+        let operation = self.scenario.operation();
+        let driven_hz = match operation.speed_profile_hz {
+            None => operation.pinion_speed_hz,
             Some(_) => {
-                let kept = self.scenario.motion(&self.time).skip(self.time.first_kept_sample);
+                let kept = self.motion().skip(self.time.first_kept_sample);
                 let driven = kept.take(observer.force.samples).map(|motion| motion.speed_hz);
                 driven.sum::<f64>() / observer.force.samples as f64
             }
         };
-        let ratio = f64::from(self.teeth.pinion.teeth) / f64::from(self.teeth.gear.teeth);
+        let Gears { pinion_teeth, gear_teeth, .. } = self.layout.gears[0];
+        let ratio = f64::from(pinion_teeth) / f64::from(gear_teeth);
         let turning = [("pinion", driven_hz, pinion_hz), ("gear", driven_hz * ratio, gear_hz)];
         let mean =
             |(wheel, driven_hz, hz): (&str, f64, f64)| other_speed(&format!("the {wheel}"), driven_hz, hz);
@@ -90,7 +126,7 @@ impl Stages {
 /// # Arguments
 /// * `what` - turns
 /// * `driven_hz`, `hz` - (rev/s) the speed that it is driven at, and its own on average
-pub(super) fn other_speed(what: &str, driven_hz: f64, hz: f64) -> Option<ScenarioWarning> {
+fn other_speed(what: &str, driven_hz: f64, hz: f64) -> Option<ScenarioWarning> {
     ((hz / driven_hz - 1.0).abs() > TOLERATED_SPEED).then(|| {
         let message = format!(
             "{what} turns at {hz:.4} Hz on average, while the motor drives it at {driven_hz:.4} Hz: the motion has not \
@@ -107,7 +143,7 @@ pub(super) fn other_speed(what: &str, driven_hz: f64, hz: f64) -> Option<Scenari
 /// * `mesh` - what it is called
 /// * `key` - of the speed
 /// * `largest_n`, `static_n` - (N) the largest force, and that which holds the largest torque
-pub(super) fn resonance(mesh: &str, key: &str, largest_n: f64, static_n: f64) -> Option<ScenarioWarning> {
+fn resonance(mesh: &str, key: &str, largest_n: f64, static_n: f64) -> Option<ScenarioWarning> {
     (static_n > 0.0 && largest_n > TOLERATED_RESONANCE * static_n).then(|| {
         let message = format!(
             "the force of {mesh} reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
@@ -123,7 +159,7 @@ pub(super) fn resonance(mesh: &str, key: &str, largest_n: f64, static_n: f64) ->
 /// # Arguments
 /// * `error` - its estimate
 /// * `rate_hz` - (S/s) the simulation's sampling rate
-pub(super) fn long_step(error: StepError, rate_hz: f64) -> Option<ScenarioWarning> {
+fn long_step(error: StepError, rate_hz: f64) -> Option<ScenarioWarning> {
     let (error, shown) = match error {
         StepError::Suspected(error) => (error, format!("and the rms may be wrong by {:.1} %", 100.0 * error)),
         StepError::Shown { gain, finer_rate_hz } => {

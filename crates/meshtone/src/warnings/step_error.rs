@@ -7,10 +7,9 @@ use crate::error::Error;
 use crate::machine::{Axis, PINION_SUPPORT};
 use crate::operation::greatest_common_divisor;
 use crate::sensor::{ChannelKind, Sensor, SignalSource};
-use crate::simulate::{
-    Equations, GearboxSimulation, GearboxStages, Stages, gearbox_stages_within, stages_within,
-};
+use crate::simulate::{Simulation, Stages, stages_within};
 use crate::solver::{Block, MeanMachine, Output, Recorder};
+use crate::wheel::Gears;
 use meshtone_fourier::real_spectrum;
 
 use super::observer::{Observer, TurnSum, WheelTurnSums};
@@ -92,7 +91,7 @@ pub(super) fn step_error(
     let estimate = estimate(stages, [acceleration, force]);
     judged(estimate, judgement, &[acceleration.rms(), force.rms()], || {
         let mut scenario = stages.scenario.clone();
-        scenario.solver.sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
+        scenario.solver_mut().sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
         let finer = stages_within(&scenario, stages.memory_limit)?;
         let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
         let mut squares = SquareSums::of(outputs.len());
@@ -132,12 +131,9 @@ impl Recorder for SquareSums {
 /// makes of its own, [`MeanMachine::squared_growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
 /// that part it says nothing: their motion has no resonance that lasts.
 fn estimate(stages: &Stages, signals: [&WheelTurnSums; 2]) -> f64 {
-    let (Equations::Machine(train, modes), [mesh]) = (&stages.equations, &stages.meshes[..]) else {
-        return 0.0;
-    };
-    let model = stages.modal_machine(train, modes);
+    let (Some((_, modal)), [mesh]) = (stages.machine(), &stages.meshes[..]) else { return 0.0 };
     let sensor = [(PINION_SUPPORT.into(), Axis::Y)];
-    let machine = MeanMachine::new(&model, vec![mesh.law()], stages.time.step_s(), &sensor);
+    let machine = MeanMachine::new(modal, vec![mesh.law()], stages.time.step_s(), &sensor);
     growth(&machine, lines(stages, signals), &signals.map(|signal| signal.rms().powi(2)))
 }
 
@@ -178,15 +174,10 @@ struct Line {
     powers: Vec<f64>,
 }
 
-/// The error of a gearbox's step: by its plain sensors and the forces of its meshes, whose spectra have the lines.
-pub(super) fn step_error_of_gearbox(
-    simulation: &GearboxSimulation,
-    judgement: StepJudgement,
-) -> Option<StepError> {
-    let GearboxSimulation { stages, channels, .. } = simulation;
-    if !stages.is_steady() {
-        return None;
-    }
+/// The error of the step by its signals themselves: by its plain sensors and the forces of its meshes, whose spectra have the lines.
+pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudgement) -> Option<StepError> {
+    let Simulation { stages, channels, .. } = simulation;
+    let (_, modal) = stages.machine().filter(|_| stages.is_steady())?;
     let is_judged: Vec<bool> = channels.signals.iter().map(|of| is_judged(of.source, stages)).collect();
     let judged_ones = || channels.signals.iter().zip(&is_judged).filter(|(_, is)| **is).map(|(of, _)| of);
     let powers: Vec<f64> = judged_ones().map(|signal| mean_square(&signal.values)).collect();
@@ -199,21 +190,20 @@ pub(super) fn step_error_of_gearbox(
     let is_strong =
         |line: &Line| line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole);
     let lines = (1..channels.len().div_ceil(2)).map(line).filter(is_strong);
-    let plain = stages.sensors.iter().filter(|of| is_plain(&of.sensor));
-    let sensors: Vec<_> = plain.map(|sensor| (sensor.name().into(), sensor.axis())).collect();
+    let plain = stages.sensors.iter().filter(|sensor| is_plain(sensor));
+    let sensors: Vec<_> = plain.map(|sensor| (sensor.name().into(), sensor.direction.axis())).collect();
     let laws = stages.meshes.iter().map(|mesh| mesh.law()).collect();
-    let machine = MeanMachine::new(stages.modal_machine(), laws, stages.time.step_s(), &sensors);
+    let machine = MeanMachine::new(modal, laws, stages.time.step_s(), &sensors);
     let coarse: Vec<f64> = powers.iter().map(|power| power.sqrt()).collect();
     judged(growth(&machine, lines, &powers), judgement, &coarse, || {
-        let mut gearbox = stages.gearbox.clone();
-        // The same machine, whose highest mode follows the rate where it is not stated.
-        gearbox.solver.highest_mode_hz = Some(gearbox.solver.highest_mode_hz(channels.sampling_rate_hz));
-        gearbox.solver.settings.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
-        let finer = gearbox_stages_within(&gearbox, stages.memory_limit)?;
-        let outputs = gearbox.outputs().into_iter().zip(&is_judged).filter(|(_, is)| **is);
+        let mut scenario = stages.scenario.clone();
+        scenario.keep_highest_mode(channels.sampling_rate_hz);
+        scenario.solver_mut().sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
+        let finer = stages_within(&scenario, stages.memory_limit)?;
+        let outputs = scenario.outputs().into_iter().zip(&is_judged).filter(|(_, is)| **is);
         let outputs: Vec<Output> = outputs.map(|(output, _)| output).collect();
         let mut squares = SquareSums::of(outputs.len());
-        finer.integrate(&outputs, &mut squares)?;
+        finer.integrate(&outputs, finer.time.first_kept_sample, &mut squares)?;
         Ok((finer.time.sampling_rate_hz, squares))
     })
 }
@@ -222,9 +212,9 @@ pub(super) fn step_error_of_gearbox(
 const STRONG_PART: f64 = 1e-4;
 
 /// Whether a signal's power says something of the step: that of a plain sensor, and the force of a mesh.
-fn is_judged(source: SignalSource, stages: &GearboxStages) -> bool {
+fn is_judged(source: SignalSource, stages: &Stages) -> bool {
     match source {
-        SignalSource::Sensor(number) => stages.sensors.get(number).is_some_and(|of| is_plain(&of.sensor)),
+        SignalSource::Sensor(number) => stages.sensors.get(number).is_some_and(is_plain),
         SignalSource::MeshForce(_) => true,
         _ => false,
     }
@@ -252,8 +242,8 @@ fn power_spectrum(values: &[f64]) -> Vec<f64> {
 
 /// The sines of acceleration and force that repeat with every turn of the gear, and those that do with the pinion's.
 fn lines(stages: &Stages, signals: [&WheelTurnSums; 2]) -> impl Iterator<Item = Line> {
-    let [pinion, gear] = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
-    let speed_hz = stages.scenario.operation.pinion_speed_hz;
+    let Gears { pinion_teeth: pinion, gear_teeth: gear, .. } = stages.layout.gears[0];
+    let speed_hz = stages.scenario.operation().pinion_speed_hz;
     // Orders of the pinion that are orders of the gear too.
     let shared = (pinion / greatest_common_divisor(pinion, gear)) as usize;
     let gear_speed_hz = speed_hz * f64::from(pinion) / f64::from(gear);

@@ -647,9 +647,9 @@ fn mesh_sums_every_pair_in_contact() {
     scenario.model = Model::Linear;
     scenario.gears = gears.clone();
     let stages = meshtone::stages(&scenario).unwrap();
-    let ratio = stages.teeth.path.contact_ratio;
+    let ratio = stages.pairs[0].teeth.path.contact_ratio;
     assert!(ratio > 2.2, "{ratio}");
-    let pairs = stages.pairs();
+    let pairs = stages.tooth_pairs();
     let mesh = mesh(&stages);
     let pitch = mesh.points_per_pitch;
     // A point stands for the interval around it: where the path ends within it, the pair counts for the part on the path.

@@ -69,7 +69,8 @@ fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
     linear.solver.sampling_rate_hz = 2e5;
     rigid(&mut linear);
     if deviates {
-        linear.quality = Quality::of_errors(stages(&of_rig(6)).unwrap().profile_errors.unwrap());
+        linear.quality =
+            Quality::of_errors(stages(&of_rig(6)).unwrap().pairs[0].profile_errors.clone().unwrap());
         linear.rig.eccentricity_mm = 0.004;
     }
     let mut contact = linear.clone();
@@ -107,16 +108,14 @@ fn motor_and_brake_put_in_what_damping_takes() {
     scenario.operation.torque_profile_nm =
         Some(Profile { time_s: vec![0.0, 0.2, 0.3, 1.0, 3.0], value: vec![10.0, 10.0, 25.0, 8.0, 12.0] });
     let mut stages = stages(&scenario).unwrap();
-    let torque: Vec<f64> =
-        stages.scenario.motion(&stages.time).take(stages.time.samples).map(|now| now.torque_nm).collect();
+    let torque: Vec<f64> = stages.motion().take(stages.time.samples).map(|now| now.torque_nm).collect();
     let mesh = &mut stages.meshes[0];
     let stiffness = mesh.mean_stiffness_n_per_m;
     mesh.points_before = 0;
     // One more than a pitch has, for the interpolation.
     let closed = PairState { stiffness_n_per_m: stiffness, separation_m: 0.0, face_centre_m: 0.0 };
     mesh.classes[0].states = vec![closed; mesh.points_per_pitch + 1];
-    let (train, modes) = machine_of(&stages);
-    let machine = &train.machine;
+    let (machine, modes) = machine_of(&stages);
     let n = machine.coordinates();
     let force = [Output::MeshForce { mesh: 0 }];
     let outputs: Vec<Output> = coordinates(machine, 0).chain(coordinates(machine, 1)).chain(force).collect();
@@ -161,7 +160,7 @@ fn a_deviation_of_all_teeth_is_a_rotation() {
     scenario.operation.brake_torque_nm = 200.0;
     scenario.quality.run_out_share = 0.0;
     let drawn = simulate(&scenario).unwrap();
-    let mut errors = drawn.stages.profile_errors.clone().unwrap();
+    let mut errors = drawn.stages.pairs[0].profile_errors.clone().unwrap();
     errors.pinion_profile_errors_mm = errors.pinion_profile_errors_mm.map(|error| error + 0.01);
     scenario.quality.profile_errors = Some(errors);
     scenario.quality.din_grade = 0;
@@ -257,7 +256,8 @@ fn varying_speed_is_the_steady_one_where_it_does_not_vary() {
 #[test]
 fn given_pitches_are_deviations_of_whole_flanks() {
     let mut scenario = of_rig(6);
-    scenario.quality = Quality::of_errors(stages(&scenario).unwrap().profile_errors.unwrap());
+    scenario.quality =
+        Quality::of_errors(stages(&scenario).unwrap().pairs[0].profile_errors.clone().unwrap());
     let mut by_flanks = scenario.clone();
     let pitches_um: Vec<f64> = (0..38).map(|tooth| f64::from(tooth % 5) - 2.0).collect();
     let cos = 20f64.to_radians().cos();
@@ -280,13 +280,13 @@ fn given_pitches_are_deviations_of_whole_flanks() {
 #[test]
 fn given_pitches_have_the_run_out_in_them() {
     let mut scenario = of_rig(6);
-    let drawn = stages(&scenario).unwrap().run_out;
+    let drawn = stages(&scenario).unwrap().pairs[0].run_out;
     scenario.quality.gear_deviations.cumulative_pitch_um = Some(vec![0.0; 38]);
-    let given = stages(&scenario).unwrap().run_out;
+    let given = stages(&scenario).unwrap().pairs[0].run_out;
     assert_eq!((given[0], given[1].run_out_um), (drawn[0], 0.0));
     assert!(drawn[1].run_out_um > 0.0);
     scenario.quality.gear_deviations.run_out_um = Some(7.0);
-    assert_eq!(stages(&scenario).unwrap().run_out[1].run_out_um, 7.0);
+    assert_eq!(stages(&scenario).unwrap().pairs[0].run_out[1].run_out_um, 7.0);
 }
 
 // Misalignment and helix slopes are one: what the shafts take the flanks' metal can make up for.

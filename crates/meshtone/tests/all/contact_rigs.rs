@@ -97,7 +97,7 @@ fn the_rigs_indicators_of_many_draws() {
 fn fall(mut scenario: Scenario) -> [f64; 2] {
     scenario.quality.din_grade = 0;
     let stages = meshtone::stages(&scenario).unwrap();
-    let machine = &machine_of(&stages).0.machine;
+    let machine = machine_of(&stages).0;
     let line = &machine.turn * &machine.lines[0].at_middle;
     let mut outputs: Vec<Output> = coordinates(machine, 0).collect();
     outputs.push(ChannelKind::Vertical.output());

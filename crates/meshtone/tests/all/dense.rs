@@ -4,24 +4,21 @@
 
 use std::f64::consts::TAU;
 
+use meshtone::Stages;
 use meshtone::interpolation::NotAKnotSpline;
-use meshtone::machine::{Drive, Machine, Modes, Train};
+use meshtone::machine::{Drive, Machine, Modes};
 use meshtone::mesh::{Contact, Mesh, PairDeviations, PairState};
 use meshtone::operation::{MotionSample, TimeGrid};
 use meshtone::solver::{Block, InitialMotion, Output, Recorder};
 use meshtone::wheel::WheelName;
-use meshtone::{Equations, Stages};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Most of Newton's iterations in a step.
 const MOST_ITERATIONS: usize = 50;
 
-/// The rig of a simulation, and its modes without the mesh.
-pub fn machine_of(stages: &Stages) -> (&Train, &Modes) {
-    match &stages.equations {
-        Equations::Machine(train, modes) => (train, modes),
-        Equations::Published(_) => panic!("the published model has a machine of its own"),
-    }
+/// The machine of a simulation, and its modes without the meshes.
+pub fn machine_of(stages: &Stages) -> (&Machine, &Modes) {
+    stages.machine_and_modes().expect("the published model has a machine of its own")
 }
 
 /// The outputs of a solution, each at all recorded samples.
@@ -51,10 +48,10 @@ pub fn coordinates(machine: &Machine, derivative: usize) -> impl Iterator<Item =
 /// The deviations of the flanks of a simulation.
 pub fn deviations_of(stages: &Stages) -> PairDeviations<'_> {
     PairDeviations {
-        teeth: &stages.teeth,
-        errors: stages.profile_errors.as_ref(),
-        eccentricity_m: stages.scenario.rig.eccentricity_mm * 1e-3,
-        run_out: stages.run_out,
+        teeth: &stages.pairs[0].teeth,
+        errors: stages.pairs[0].profile_errors.as_ref(),
+        eccentricity_m: stages.pairs[0].eccentricity_mm * 1e-3,
+        run_out: stages.pairs[0].run_out,
     }
 }
 
@@ -274,21 +271,21 @@ pub struct Dense<'a> {
 impl<'a> Dense<'a> {
     /// The machine of a simulation, over its first samples.
     pub fn of(stages: &'a Stages, samples: usize) -> Self {
-        let (train, modes) = machine_of(stages);
-        let operation = &stages.scenario.operation;
+        let (machine, modes) = machine_of(stages);
+        let operation = stages.scenario.operation();
         let profile = operation.speed_profile_hz.as_ref();
         Self {
-            machine: &train.machine,
+            machine,
             modes,
             meshes: stages.meshes.iter().map(|mesh| DenseMesh::new(mesh, deviations_of(stages))).collect(),
             time: &stages.time,
-            motion: stages.scenario.motion(&stages.time).take(samples).collect(),
+            motion: stages.motion().take(samples).collect(),
             is_steady: stages.is_steady(),
             start: InitialMotion {
                 nominal_rad_per_s: TAU * operation.pinion_speed_hz,
                 brake_torque_nm: operation.brake_torque_nm,
                 motor_rad_per_s: TAU * profile.map_or(operation.pinion_speed_hz, |profile| profile.value[0]),
-                velocity: stages.scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
+                velocity: stages.scenario.solver().initial_velocity.as_ref().map(|given| given.as_slice()),
             },
         }
     }

@@ -119,7 +119,7 @@ fn faults_on_different_teeth_are_each_its_own() {
     let meshes =
         [vec![], vec![one.clone()], vec![two.clone()], vec![one.clone(), two.clone()]].map(|faults| {
             let stages = stages(&pair(faults)).unwrap();
-            (stages.damaged.len(), mesh(&stages).stiffness_n_per_mm(0..17 * 38))
+            (stages.pairs[0].damaged.len(), mesh(&stages).stiffness_n_per_mm(0..17 * 38))
         });
     assert_eq!(meshes.each_ref().map(|(damaged, _)| *damaged), [0, 1, 1, 2]);
     let [(_, sound), (_, of_one), (_, of_two), (_, of_both)] = &meshes;
@@ -152,7 +152,8 @@ fn faults_on_different_teeth_are_each_its_own() {
 fn teeth_that_are_alike_make_one_class() {
     let of = |faults: Vec<Fault>| {
         let stages = stages(&pair(faults)).unwrap();
-        let teeth: Vec<Vec<usize>> = stages.damaged.iter().map(|tooth| tooth.teeth.clone()).collect();
+        let teeth: Vec<Vec<usize>> =
+            stages.pairs[0].damaged.iter().map(|tooth| tooth.teeth.clone()).collect();
         let mesh = mesh(&stages);
         (teeth, mesh.classes.len(), mesh.stiffness_n_per_mm(0..17 * 38))
     };
@@ -193,19 +194,19 @@ fn a_tooth_may_be_broken_and_ground() {
         on_tooth(&[ground().into()]),
         on_tooth(&[chip().into(), ground().into()]),
     ];
-    let [tooth] = &both.damaged[..] else { panic!("one tooth") };
+    let [tooth] = &both.pairs[0].damaged[..] else { panic!("one tooth") };
     assert_eq!((tooth.wheel, &tooth.teeth[..]), (WheelName::Gear, &[4][..]));
     let kinds = tooth.descriptions.iter().map(|damage| damage.kind);
     assert_eq!(kinds.collect::<Vec<_>>(), ["tooth-breakage", "tooth-destruction"]);
-    assert_eq!(tooth.missing_width_mm, broken.damaged[0].missing_width_mm);
-    assert_eq!(tooth.flank_y_mm, flat.damaged[0].flank_y_mm);
+    assert_eq!(tooth.missing_width_mm, broken.pairs[0].damaged[0].missing_width_mm);
+    assert_eq!(tooth.flank_y_mm, flat.pairs[0].damaged[0].flank_y_mm);
     let [set_back, of_both] = [&flat, &both].map(|stages| &sound_and_damaged(mesh(stages))[1].states);
     for (both, flat) in of_both.iter().zip(set_back).filter(|(both, _)| both.stiffness_n_per_m > 0.0) {
         assert_eq!(both.separation_m, flat.separation_m);
     }
     let kind = sound_and_damaged(mesh(&both))[1].kind;
     let [broken, flat, both] = [&broken, &flat, &both].map(|stages| {
-        let (pairs, ratio) = (stages.pairs(), stages.teeth.path.contact_ratio);
+        let (pairs, ratio) = (stages.tooth_pairs(), stages.pairs[0].teeth.path.contact_ratio);
         (0..=500).map(|k| pairs.at(&kind, ratio * f64::from(k) / 500.0)).collect::<Vec<_>>()
     });
     let mut softer = 0;
@@ -257,7 +258,7 @@ fn a_ground_flank_ends_before_the_point_where_the_line_meets_it() {
         let line = DestructionLine::End(13.2 / 14.0);
         let ground = ToothDestruction { start: -0.6 / 14.0, line, offset_mm: 0.0, noise_mm: 0.0 };
         scenario.faults = vec![Fault::on_first_gear_tooth(ground)];
-        let tooth = &stages(&scenario).unwrap().damaged[0];
+        let tooth = &stages(&scenario).unwrap().pairs[0].damaged[0];
         assert_eq!(tooth.descriptions[0].numbers("indices"), [2815.0, 9587.0], "{model:?}");
     }
 }
@@ -317,9 +318,10 @@ fn the_mate_of_a_pit_touches_its_edges() {
     let mut scenario = pair(vec![Fault::on_first_gear_tooth(ThroughFace { pit: pit(0.2, 0.8) })]);
     scenario.gears.points_per_tooth = 20_000;
     let stages = stages(&scenario).unwrap();
-    let damaged = &damaged_teeth(&scenario.faults, &stages.teeth, 1).unwrap()[0];
-    let (path, width_mm) = (stages.teeth.path, scenario.gears.face_width_mm);
-    let (gear, pinion) = (stages.teeth.flank(WheelName::Gear), stages.teeth.flank(WheelName::Pinion));
+    let damaged = &damaged_teeth(&scenario.faults, &stages.pairs[0].teeth, 1).unwrap()[0];
+    let (path, width_mm) = (stages.pairs[0].teeth.path, scenario.gears.face_width_mm);
+    let (gear, pinion) =
+        (stages.pairs[0].teeth.flank(WheelName::Gear), stages.pairs[0].teeth.flank(WheelName::Pinion));
     let sound = LoadedFlank::new(pinion, None, Material::Steel, &scenario.gears.foundation);
     let pitted = LoadedFlank::new(gear, Some(damaged), Material::Steel, &scenario.gears.foundation);
     let compliance = |flank: &LoadedFlank, point: FlankPoint| {
@@ -336,7 +338,8 @@ fn the_mate_of_a_pit_touches_its_edges() {
         let expected = own
             + compliance(&pitted, gear.at_curvature(edge_mm))
             + hertz_compliance_mm_per_n(Material::Steel, width_mm);
-        let away_mm = (rho_mm * rho_mm - edge_mm * edge_mm) / (2.0 * stages.teeth.gear.base_radius_mm);
+        let away_mm =
+            (rho_mm * rho_mm - edge_mm * edge_mm) / (2.0 * stages.pairs[0].teeth.gear.base_radius_mm);
         let gap_mm = away_mm * away_mm / (2.0 * rho_mm * (path.line_mm - rho_mm) / path.line_mm);
         let position = path.position(WheelName::Gear, rho_mm);
         let state = damaged_pair.states[mesh.points_before + (position * 5_000.0).round() as usize];
@@ -367,7 +370,7 @@ fn two_ground_lines_have_their_own_roughness() {
     let faults = [line(-0.1, 0.3), line(0.55, 0.95)].map(Fault::on_first_gear_tooth).to_vec();
     let scenario = pair(faults);
     let stages = stages(&scenario).unwrap();
-    let damaged = &damaged_teeth(&scenario.faults, &stages.teeth, 1).unwrap()[0];
+    let damaged = &damaged_teeth(&scenario.faults, &stages.pairs[0].teeth, 1).unwrap()[0];
     let cuts = damaged.descriptions.iter().map(|damage| damage.numbers("indices"));
     let [first, second] = cuts
         .map(|indices| {

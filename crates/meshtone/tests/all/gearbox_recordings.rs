@@ -52,7 +52,7 @@ fn record_at<const SENSORS: usize>(
         let time_s = vec![0.0, 2.0 * duration_s];
         gearbox.operation.drive.speed_profile_hz = Some(Profile { time_s, value: value.to_vec() });
     }
-    let channels = meshtone::simulate_gearbox(&gearbox).unwrap().channels;
+    let channels = meshtone::simulate(&gearbox).unwrap().channels;
     let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap();
     let angle = phase.revolutions;
     let from_rev = (angle[0] / cycle_rev).ceil() * cycle_rev;
@@ -149,7 +149,7 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
         let mut gearbox = gearbox.clone();
         gearbox.solver.settings.duration_s = Some(3.0);
         gearbox.sensors = ["input:0", "middle:1", "output:1"].map(GearboxSensor::new).to_vec();
-        let channels = meshtone::simulate_gearbox(&gearbox).unwrap().channels;
+        let channels = meshtone::simulate(&gearbox).unwrap().channels;
         let train = GearTrain::of_gearbox(&gearbox).unwrap();
         let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap();
         let turning =

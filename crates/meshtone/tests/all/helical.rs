@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 use meshtone::mesh::Mesh;
 use meshtone::scenario::*;
 use meshtone::wheel::{Root, Wheel, tooth_profile};
-use meshtone::{Stages, gearbox_stages, simulate, simulate_gearbox, stages, stages_and_warnings};
+use meshtone::{Stages, simulate, stages, stages_and_warnings};
 
 /// A pair of solid steel wheels without chamfers, whose bores are as large a part of the root circle as asked.
 fn pair(teeth: [u32; 2], module_mm: f64, face_width_mm: f64, helix_angle_deg: f64) -> Scenario {
@@ -48,7 +48,7 @@ fn with_former_foundation(scenario: &Scenario) -> Stages {
     let mut stages = stages(scenario).unwrap();
     let points = scenario.gears.points_per_tooth;
     let profile = |section: &Wheel| tooth_profile(section, points, 0.0, None, Root::Published(None));
-    let teeth = &mut stages.teeth;
+    let teeth = &mut stages.pairs[0].teeth;
     (teeth.pinion_profile, teeth.gear_profile) =
         (profile(&teeth.pinion_section), profile(&teeth.gear_section));
     stages
@@ -66,7 +66,7 @@ fn stiffness(stages: &Stages) -> [f64; 3] {
     let mesh = mesh_of(stages, 1000);
     let [least, _, most] = extent(&mesh.healthy_stiffness_n_per_mm());
     let mean = mesh.mean_stiffness_n_per_m * 1e-3;
-    [least, mean, most].map(|value| value * 1e-3 / stages.teeth.gear.face_width_mm)
+    [least, mean, most].map(|value| value * 1e-3 / stages.pairs[0].teeth.gear.face_width_mm)
 }
 
 /// The stiffness of four pairs at four angles by an independent program in numpy, with the foundation of teeth that begin on their base
@@ -207,7 +207,7 @@ fn crowned_and_sloped_faces_are_those_of_an_independent_program() {
         for shaft in [&mut scenario.rig.pinion_shaft, &mut scenario.rig.gear_shaft] {
             *shaft = Shaft { bearing_span_mm: 1.0, ..Shaft::new(200.0, 7.9375) };
         }
-        let base_radius_m = stages(&scenario).unwrap().teeth.gear.base_radius_mm * 1e-3;
+        let base_radius_m = stages(&scenario).unwrap().pairs[0].teeth.gear.base_radius_mm * 1e-3;
         scenario.operation.brake_torque_nm = force_n * base_radius_m;
         for slices in [11, 31] {
             scenario.gears.slices = slices;
@@ -242,7 +242,7 @@ fn crowned_and_sloped_faces_are_those_of_an_independent_program() {
 #[test]
 fn thrust_is_the_transverse_force_times_the_tangent_of_the_base_helix_angle() {
     let gearbox = Gearbox::from_toml(&gearbox_template(Some(GearboxRig::Phm2009Helical))).unwrap();
-    let stages = gearbox_stages(&gearbox).unwrap();
+    let stages = stages(&gearbox).unwrap();
     let expected = [20.0 * 16.0 / 48.0 * 24.0 / 40.0 / (3.175e-3 * 8.0), 20.0 / (3.175e-3 * 20.0)];
     let transverse_rad = (20f64.to_radians().tan() / 20f64.to_radians().cos()).atan();
     let thrust: Vec<f64> = (stages.pairs.iter().zip(expected).zip(&stages.layout.gears))
@@ -256,8 +256,8 @@ fn thrust_is_the_transverse_force_times_the_tangent_of_the_base_helix_angle() {
     assert!((thrust[0].abs() - 57.32).abs() < 0.01 && (thrust[1].abs() - 114.64).abs() < 0.01);
     // What the machine's lines of action push the middle shaft along its axis with.
     let on_middle_n = |gearbox: &Gearbox| {
-        let stages = gearbox_stages(gearbox).unwrap();
-        let machine = stages.machine_and_modes().0;
+        let stages = meshtone::stages(gearbox).unwrap();
+        let machine = stages.machine_and_modes().unwrap().0;
         let axial = machine.names.iter().enumerate().filter(|(_, name)| name.starts_with("z_middle_"));
         let pushed = axial.flat_map(|(n, _)| {
             machine
@@ -318,7 +318,7 @@ fn hand_and_slices_without_effect_are_warned_of() {
     assert_eq!(keys(&crowned), [""; 0]);
     let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
     (gearbox.meshes[1].hand, gearbox.meshes[1].slices) = (Hand::Left, 11);
-    let warnings = gearbox_stages(&gearbox).unwrap().warnings();
+    let warnings = stages(&gearbox).unwrap().warnings();
     for key in ["mesh[1].hand", "mesh[1].slices"] {
         assert!(
             warnings.iter().any(|warning| warning.key == key && warning.kind == WarningKind::IgnoredKey),
@@ -336,7 +336,7 @@ fn the_number_of_slices_does_not_matter() {
             // Flat within a millionth of what the load presses.
             (mesh.slices, mesh.lead_crowning_um) = (slices, 1e-6);
         }
-        let simulation = simulate_gearbox(&gearbox).unwrap();
+        let simulation = meshtone::simulate(&gearbox).unwrap();
         assert!(simulation.stages.meshes.iter().all(|mesh| mesh.slices() == slices as usize));
         let seats = simulation.channels.signals.iter().filter(|signal| signal.unit == "g");
         seats.map(|signal| rms(&signal.values)).collect()

@@ -41,7 +41,7 @@ fn mesh_stiffness_does_not_depend_on_the_points() {
     assert_eq!(curve.points_per_pitch * 17, stages.time.samples_per_pinion_revolution);
     let points = NonZeroUsize::new(3 * own.len()).unwrap();
     let fine = stages.meshes_at(points).unwrap()[0].healthy_stiffness_n_per_mm();
-    let leaves = (stages.teeth.path.contact_ratio * own.len() as f64) as usize % own.len();
+    let leaves = (stages.pairs[0].teeth.path.contact_ratio * own.len() as f64) as usize % own.len();
     let changes = [0, leaves, leaves + 1];
     let alike = own.iter().zip(fine.iter().step_by(3)).enumerate().filter(|(i, _)| !changes.contains(i));
     assert_close("every third point", 1e-9, alike.map(|(_, (a, b))| (*a, *b)));
@@ -75,7 +75,7 @@ fn a_deviation_of_all_teeth_is_a_rotation() {
     scenario.quality.din_grade = 7;
     scenario.quality.run_out_share = 0.0;
     let drawn = simulate(&scenario).unwrap();
-    let mut errors = drawn.stages.profile_errors.clone().unwrap();
+    let mut errors = drawn.stages.pairs[0].profile_errors.clone().unwrap();
     errors.pinion_profile_errors_mm = errors.pinion_profile_errors_mm.map(|error| error + 0.01);
     scenario.quality.profile_errors = Some(errors);
     scenario.quality.din_grade = 0;

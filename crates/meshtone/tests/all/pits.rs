@@ -208,13 +208,13 @@ fn drawn_pits_may_be_listed() {
     let fault = Fault::new(WheelName::Pinion, vec![2, 9], drawn(8.0));
     let of = |seed: u64| stages(&scenario(Model::Contact, vec![fault.clone()]).with_seed(seed)).unwrap();
     let stages_of_one = of(1);
-    let teeth = damages_of_fault(&stages_of_one.damaged, 0);
+    let teeth = damages_of_fault(&stages_of_one.pairs[0].damaged, 0);
     assert_eq!(teeth.iter().map(|(tooth, _)| *tooth).collect::<Vec<_>>(), [2, 9]);
     assert!(teeth[0].1 != teeth[1].1 && !teeth[0].1.numbers("at").is_empty());
     let again = of(1);
-    assert_eq!(damages_of_fault(&again.damaged, 0), teeth);
+    assert_eq!(damages_of_fault(&again.pairs[0].damaged, 0), teeth);
     let other = of(2);
-    assert!(damages_of_fault(&other.damaged, 0) != teeth);
+    assert!(damages_of_fault(&other.pairs[0].damaged, 0) != teeth);
     // What was drawn is written down as a list, and gives the same signal.
     let list = |pits: &DamageDescription| Pits::Listed {
         at: pits.numbers("at"),

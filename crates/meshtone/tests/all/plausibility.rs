@@ -48,7 +48,7 @@ fn a_braked_rotation_is_reported_under_the_published_model_alone() {
         let mut scenario = pair();
         scenario.model = model;
         let simulation = simulate(&scenario).unwrap();
-        let warnings = simulation.warnings_of_signals();
+        let warnings = simulation.warnings_of_signals(meshtone::StepJudgement::Repeated);
         let braked = warnings.into_iter().find(|warning| warning.kind == WarningKind::BrakedRotation);
         (braked.map(|warning| warning.message), simulation.stages.static_force_n())
     };
@@ -132,11 +132,14 @@ fn a_shaft_that_turns_at_another_speed_is_told() {
     let mut scenario = pair();
     scenario.solver.sampling_rate_hz = 3e4;
     let mut simulation = simulate(&scenario).unwrap();
-    assert_eq!(about(&simulation.warnings_of_signals(), "solver.settle_fraction"), None);
+    assert_eq!(
+        about(&simulation.warnings_of_signals(meshtone::StepJudgement::Repeated), "solver.settle_fraction"),
+        None
+    );
     let of_gear = |signal: &&mut NamedSignal| signal.source == SignalSource::ShaftSpeed(1);
     let signal = simulation.channels.signals.iter_mut().find(of_gear).unwrap();
     signal.values.iter_mut().for_each(|speed_hz| *speed_hz *= 0.75);
-    let warnings = simulation.warnings_of_signals();
+    let warnings = simulation.warnings_of_signals(meshtone::StepJudgement::Repeated);
     let told = about(&warnings, "solver.settle_fraction").unwrap();
     let words = "the gear turns at 13.4211 Hz on average, while the motor drives it at 17.8947 Hz";
     assert!(told.starts_with(words), "{told}");
@@ -153,7 +156,7 @@ fn resonant(damping_ratio: f64, harmonic: f64) -> Scenario {
     // Their mesh cycle is short, so that the step can be long.
     (scenario.gears.pinion_teeth, scenario.gears.gear_teeth) = (18, 36);
     let stages = meshtone::stages(&scenario).unwrap();
-    let machine = &machine_of(&stages).0.machine;
+    let machine = machine_of(&stages).0;
     let line = &machine.turn * &machine.lines[0].at_middle;
     let of_mesh = |shape: &[f64]| line.dot(&DVector::from_column_slice(shape)).abs();
     // The mode in which the mesh deflects most.
@@ -175,7 +178,7 @@ fn at_rate(scenario: &Scenario, sampling_rate_hz: f64) -> Simulation {
 
 /// What the warning of a long step tells: how far the rms changes with half of it, and a rate that mends it.
 fn long_step(simulation: &Simulation) -> Option<(f64, f64)> {
-    let warnings = simulation.warnings_of_signals();
+    let warnings = simulation.warnings_of_signals(meshtone::StepJudgement::Repeated);
     let told = about(&warnings, "solver.sampling_rate_hz")?;
     let number = |after: &str| {
         let rest = told.split(after).nth(1).unwrap();
@@ -260,7 +263,7 @@ fn examples_at_their_own_rate_are_not_warned_of() {
     for model in [Model::Linear, Model::Contact] {
         let mut scenario = pair();
         scenario.model = model;
-        let warnings = simulate(&scenario).unwrap().warnings_of_signals();
+        let warnings = simulate(&scenario).unwrap().warnings_of_signals(meshtone::StepJudgement::Repeated);
         assert_eq!(about(&warnings, "solver.sampling_rate_hz"), None, "{}", model.name());
         assert_eq!(about(&warnings, "operation.pinion_speed_hz"), None, "{}", model.name());
     }
@@ -268,7 +271,7 @@ fn examples_at_their_own_rate_are_not_warned_of() {
     let mut fluctuating = pair();
     fluctuating.model = Model::Linear;
     fluctuating.operation.speed_fluctuation_hz = 0.5;
-    let warnings = simulate(&fluctuating).unwrap().warnings_of_signals();
+    let warnings = simulate(&fluctuating).unwrap().warnings_of_signals(meshtone::StepJudgement::Repeated);
     assert_eq!(about(&warnings, "solver.sampling_rate_hz"), None);
 }
 
@@ -278,7 +281,7 @@ fn a_resonance_beyond_all_measure_is_told() {
     scenario.operation.brake_torque_nm = 0.05;
     scenario.quality.din_grade = 7;
     let simulation = simulate(&scenario).unwrap();
-    let warnings = simulation.warnings_of_signals();
+    let warnings = simulation.warnings_of_signals(meshtone::StepJudgement::Repeated);
     let told = about(&warnings, "operation.pinion_speed_hz").unwrap();
     assert!(
         told.contains("times the static 0.9853 N: a resonance that no machine survives, or a load too light"),

@@ -21,13 +21,13 @@ fn means(scenario: &Scenario) -> [f64; 3] {
         outputs_from(first, &stages, &outputs).try_into().unwrap();
     assert_eq!(pinion_rad.len(), stages.time.kept_samples());
     let (motor_rad, [motor, brake]): (Vec<f64>, _) = match &stages.equations {
-        Equations::Machine(train, _) => (
+        Equations::Machine(machine, _) => (
             scenario
                 .motion(&stages.time)
                 .map(|motion| TAU * motion.revolutions)
                 .take(stages.time.samples)
                 .collect(),
-            train.shaft_stiffness_nm_per_rad,
+            [0, 1].map(|shaft| machine.shaft_stiffness_nm_per_rad[shaft]),
         ),
         Equations::Published(published) => (
             published.forcing().map(|forcing| forcing.motor_angle_rad).take(stages.time.samples).collect(),

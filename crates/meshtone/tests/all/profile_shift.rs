@@ -185,7 +185,12 @@ impl Recorder for Kept {
 #[test]
 fn the_mesh_pushes_at_the_working_pressure_angle() {
     let stages = meshtone::stages(&scenario(Model::Linear)).unwrap();
-    let train = Train::new(&stages.scenario.gears, &stages.scenario.rig, &stages.teeth, Supports::Held);
+    let train = Train::new(
+        &stages.layout.gears[0],
+        &stages.scenario.pair().unwrap().rig,
+        &stages.pairs[0].teeth,
+        Supports::Held,
+    );
     let coordinate = |name: &str| {
         let number = train.machine.names.iter().position(|other| *other == name).unwrap();
         Output::Coordinate { number, derivative: 0 }

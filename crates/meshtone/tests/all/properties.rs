@@ -1,14 +1,14 @@
 //! What must hold whatever the scenario, on random ones.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
-use crate::dense::{machine_of, outputs_from};
+use crate::dense::outputs_from;
 use crate::physics::*;
 use meshtone::operation::CycleGrid;
 use meshtone::published::machine::coordinates::{COORDINATES, CoordinateMatrix, Y_GEAR, Y_PINION};
 use meshtone::scenario::*;
 use meshtone::sensor::{ChannelKind, Channels, GRAVITY_M_PER_S2};
 use meshtone::solver::Output;
-use meshtone::{Equations, Stages, simulate, stages};
+use meshtone::{AssembledMachine, Equations, Stages, simulate, stages};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -254,6 +254,12 @@ struct Matrices<'a> {
     points: usize,
 }
 
+/// (kg) Mass of a pair's gear.
+fn gear_mass_kg(stages: &Stages) -> f64 {
+    let Equations::Machine(machine, _) = &stages.equations else { panic!("the published model") };
+    machine.wheels[1].mass_kg
+}
+
 /// A matrix of a fixed size.
 fn dynamic(matrix: &CoordinateMatrix) -> DMatrix<f64> {
     DMatrix::from_column_slice(COORDINATES, COORDINATES, matrix.as_slice())
@@ -273,11 +279,11 @@ impl<'a> Matrices<'a> {
                     angular_frequencies: frequencies_hz * std::f64::consts::TAU,
                     damping_ratio: DVector::from_column_slice(&machine.damping_ratio),
                     at: Box::new(|point| dynamic(&machine.stiffness_matrix_at(&published.mesh.load, point))),
-                    points: stages.cycle.points_per_gear_revolution,
+                    points: stages.pairs[0].cycle.points_per_gear_revolution,
                 }
             }
-            Equations::Machine(train, modes) => {
-                let machine = &train.machine;
+            Equations::Machine(assembled, _) => {
+                let AssembledMachine { machine, modes, .. } = &**assembled;
                 let cycle_n_per_mm = mesh(stages).stiffness_n_per_mm(0..mesh(stages).sequence.cycle());
                 Self {
                     mass_diagonal: machine.mass.diagonal(),
@@ -386,10 +392,10 @@ proptest! {
         // The modes with the mean mesh: it is the mean over a pitch of sound teeth.
         let frequencies_hz = stages.natural_frequencies_hz();
         prop_assert!(frequencies_hz[0] > 0.0 && frequencies_hz.windows(2).all(|pair| pair[0] <= pair[1]));
-        if let Equations::Machine(train, _) = &stages.equations {
+        if let Some((machine, _)) = stages.machine_and_modes() {
             let curve = &stages.mesh_curves()[0];
             prop_assert!(deviation(mean(&curve.healthy_stiffness_n_per_mm), curve.mean_stiffness_n_per_mm).abs() < 1e-12);
-            let closed = train.machine.turn_back(&train.machine.closed_stiffness(&[curve.mean_stiffness_n_per_mm * 1e3]));
+            let closed = machine.turn_back(&machine.closed_stiffness(&[curve.mean_stiffness_n_per_mm * 1e3]));
             for (shape, frequency_hz) in stages.mode_shapes().iter().zip(&frequencies_hz) {
                 let shape = DVector::from_column_slice(shape);
                 let omega = frequency_hz * std::f64::consts::TAU;
@@ -415,7 +421,7 @@ proptest! {
         prop_assume!(scenario.gears.pinion_teeth != scenario.gears.gear_teeth);
         let mut scenario = scenario;
         scenario.quality.din_grade = 7;
-        let drawn = fitting(&scenario)?.profile_errors.unwrap();
+        let drawn = fitting(&scenario)?.pairs[0].profile_errors.clone().unwrap();
         let mut thicker = drawn.clone();
         match wheel {
             WheelName::Pinion => thicker.pinion_profile_errors_mm = drawn.pinion_profile_errors_mm.map(|error| error + 0.01),
@@ -438,22 +444,22 @@ proptest! {
         let first = simulate(&scenario).unwrap();
         prop_assert_eq!(&first.channels, &simulate(&scenario).unwrap().channels);
 
-        let drawn = first.stages.profile_errors.clone();
+        let drawn = first.stages.pairs[0].profile_errors.clone();
         let mut given = scenario.clone();
         given.quality = drawn.clone().map_or_else(Quality::default, Quality::of_errors);
-        [given.quality.pinion_deviations, given.quality.gear_deviations] = first.stages.wheel_deviations();
+        [given.quality.pinion_deviations, given.quality.gear_deviations] = first.stages.wheel_deviations().swap_remove(0);
         prop_assert_eq!(&first.channels, &simulate(&given).unwrap().channels);
 
         let mut reseeded = scenario.clone();
         reseeded.seed = scenario.seed.wrapping_add(1);
         let other = simulate(&reseeded).unwrap();
-        prop_assert!(first.channels != other.channels && drawn != other.stages.profile_errors);
+        prop_assert!(first.channels != other.channels && drawn != other.stages.pairs[0].profile_errors);
         prop_assert_eq!(&first.stages.meshes, &other.stages.meshes);
         prop_assert!(first.stages.equations == other.stages.equations);
 
         let mut healthy = scenario.clone();
         healthy.faults.clear();
-        prop_assert_eq!(drawn, stages(&healthy).unwrap().profile_errors);
+        prop_assert_eq!(&drawn, &stages(&healthy).unwrap().pairs[0].profile_errors);
     }
 
     // Ideal wheels: everything that moves beside the rigid rotation is proportional to the torque, sample by sample.
@@ -484,7 +490,7 @@ proptest! {
             hold_the_points_of_the_cycle(&mut scenario);
         }
         scenario.quality.din_grade = 6;
-        let drawn = fitting(&scenario)?.profile_errors.unwrap();
+        let drawn = fitting(&scenario)?.pairs[0].profile_errors.clone().unwrap();
         let scaled = |factor: f64| signals(&with_errors(&scenario, &drawn, factor));
         let (ideal, once, mirrored, more) = (scaled(0.0), scaled(1.0), scaled(-1.0), scaled(factor));
         prop_assert!(rms(&ideal[2].iter().zip(&once[2]).map(|(a, b)| a - b).collect::<Vec<f64>>()) > 1.0);
@@ -503,7 +509,7 @@ proptest! {
         let mut scenario = scenario;
         scenario.operation.brake_torque_nm = 0.0;
         scenario.quality.din_grade = 6;
-        let drawn = fitting(&scenario)?.profile_errors.unwrap();
+        let drawn = fitting(&scenario)?.pairs[0].profile_errors.clone().unwrap();
         let scaled = |factor: f64| simulate(&with_errors(&scenario, &drawn, factor)).unwrap().channels;
         let (once, mirrored, quarter, ideal) = (scaled(1.0), scaled(-1.0), scaled(0.25), scaled(0.0));
         prop_assert!(rms(&once["mesh_force_n"]) > 1.0);
@@ -538,7 +544,7 @@ proptest! {
         prop_assert!(own > 1e-3, "each wheel moves: {own:.2e} g");
         prop_assert!(sum < 1e-10 * own, "{sum:.2e} of {own:.2e} g");
         if !published {
-            scenario.rig.gear_inertia.mass_kg = Some(1.5 * machine_of(&fitting(&scenario)?).0.wheels[1].mass_kg);
+            scenario.rig.gear_inertia.mass_kg = Some(1.5 * gear_mass_kg(&fitting(&scenario)?));
             let (own, sum) = own_and_summed_accelerations(&fitting(&scenario)?);
             prop_assert!(sum > 1e-3 * own, "{sum:.2e} of {own:.2e} g");
         }

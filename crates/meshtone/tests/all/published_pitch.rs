@@ -16,14 +16,14 @@ fn some_pitches_have_a_point_more() {
             Scenario::new(GearPair { module_mm, pinion_teeth, gear_teeth, ..GearPair::example() });
         scenario.model = Model::Published;
         let stages = stages(&scenario).unwrap();
-        let cycle = &stages.cycle;
+        let cycle = &stages.pairs[0].cycle;
         assert_eq!(cycle.fine_points_per_pitch, 50 * cycle.points_per_pitch + usize::from(longer));
         let points = stage_trace(&stages).get("mesh_stiffness_len").unwrap().values[0] as usize;
         assert_eq!(points, length.unwrap_or(cycle.points_per_pitch * gear_teeth as usize));
         assert_eq!(points, stages.mesh_curves()[0].stiffness_n_per_mm.len());
         // The other models' cycle is whole.
         scenario.model = Model::Linear;
-        let cycle = meshtone::stages(&scenario).unwrap().cycle;
+        let cycle = meshtone::stages(&scenario).unwrap().pairs[0].cycle;
         assert_eq!(cycle.fine_points_per_pitch, 50 * cycle.points_per_pitch);
     }
 }
@@ -67,7 +67,7 @@ fn a_longer_cycle_is_turned_as_a_whole() {
         let stages = stages(&published(teeth, 40.0, through(start, end))).unwrap();
         let own = own_stages(&stages);
         let nominal = own.mesh.load.nominal.pressure_angle_rad;
-        let turned: Vec<usize> = (0..stages.cycle.points_per_gear_revolution)
+        let turned: Vec<usize> = (0..stages.pairs[0].cycle.points_per_gear_revolution)
             .filter(|&point| own.mesh.load.state(point).pressure_angle_rad != nominal)
             .collect();
         // The first and the last angle are the nominal one: the mate has not turned yet, and no more.
@@ -94,7 +94,7 @@ fn a_displacement_does_not_know_of_the_longer_cycle() {
 #[test]
 fn the_fine_grid_follows_the_nominal_rate() {
     let stages = stages(&published([40, 41], 100.0, MissingTooth)).unwrap();
-    assert!((1.0 / stages.cycle.fine_step_rev - 1_066_000.0).abs() < 1e-6);
+    assert!((1.0 / stages.pairs[0].cycle.fine_step_rev - 1_066_000.0).abs() < 1e-6);
     assert!(stages.time.sampling_rate_hz > 1_100_000.0);
 }
 
@@ -106,7 +106,7 @@ fn a_destruction_begins_in_contact() {
     let stages = stages(&published([18, 35], 45.0, destruction)).unwrap();
     let first = stage_trace(&stages).get("fault_indices").unwrap().values[0];
     // Indices count from 1.
-    assert_eq!(first as usize, stages.teeth.contact.initial_contact_index + 1);
+    assert_eq!(first as usize, stages.pairs[0].teeth.contact.initial_contact_index + 1);
 }
 
 // Every kind of damage that the published code knows, with teeth whose cycle is longer, shorter or whole, runs.

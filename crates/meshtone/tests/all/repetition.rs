@@ -27,7 +27,7 @@ fn first_repeated(signal: &[f64], period: usize) -> Option<usize> {
 #[test]
 fn a_settled_motion_is_repeated() {
     let long = simulate(&scenario(10.0, 40.0)).unwrap();
-    let period = long.stages.time.hunting_period_samples(&long.stages.scenario.gears);
+    let period = long.stages.time.hunting_period_samples(&long.stages.layout.gears[0]);
     assert_eq!(period, 2 * long.stages.time.samples_per_pinion_revolution);
     let signal = &long.channels["vertical_g"];
     // Of 20 periods some are simulated until two agree.

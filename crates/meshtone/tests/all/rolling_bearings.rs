@@ -7,7 +7,7 @@ use meshtone::machine::Axis;
 use meshtone::scenario::*;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{FrequencyBand, ShaftPhase, squared_envelope, squared_envelope_order_spectrum};
-use meshtone::{GearboxSimulation, gearbox_stages, simulate_gearbox};
+use meshtone::{Simulation, stages};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// A rig with teeth without deviations, whose first bearing, at the input, is a ball bearing.
@@ -21,12 +21,12 @@ fn rig(rig: GearboxRig, bearing: &str) -> Gearbox {
     gearbox
 }
 
-fn simulate(gearbox: &Gearbox) -> GearboxSimulation {
-    simulate_gearbox(gearbox).unwrap()
+fn simulate(gearbox: &Gearbox) -> Simulation {
+    meshtone::simulate(gearbox).unwrap()
 }
 
 /// (m/s²) Acceleration of the seat of the first bearing.
-fn seat(simulation: &GearboxSimulation) -> Vec<f64> {
+fn seat(simulation: &Simulation) -> Vec<f64> {
     let signal = simulation.channels.signals.iter().find(|signal| signal.unit == "g").unwrap();
     signal.values.iter().map(|value| value * GRAVITY_M_PER_S2).collect()
 }
@@ -57,13 +57,13 @@ fn spalls_shake_the_seat_as_in_an_independent_solution() {
         println!("{} {defect}: {found:.2} m/s², {expected}", of_rig.name());
         assert!((found / expected - 1.0).abs() < 0.15);
     }
-    let load_n = gearbox_stages(&rig(GearboxRig::Phm2009Helical, "")).unwrap().bearings[0].1.static_load_n;
+    let load_n = stages(&rig(GearboxRig::Phm2009Helical, "")).unwrap().bearings[0].1.static_load_n;
     assert!((load_n[0].hypot(load_n[1]) - 124.7).abs() < 0.1, "{load_n:?}");
     // A shaft that may slide along itself has the same loads across it.
     let mut sliding = rig(GearboxRig::Phm2009Spur, "");
-    let held_n = gearbox_stages(&sliding).unwrap().bearings[0].1.static_load_n;
+    let held_n = stages(&sliding).unwrap().bearings[0].1.static_load_n;
     sliding.bearings.iter_mut().for_each(|bearing| bearing.axial_stiffness_n_per_m = 0.0);
-    let sliding_n = gearbox_stages(&sliding).unwrap().bearings[0].1.static_load_n;
+    let sliding_n = stages(&sliding).unwrap().bearings[0].1.static_load_n;
     assert!(held_n.iter().zip(sliding_n).all(|(held, sliding)| (held - sliding).abs() < 1e-4 * held.abs()));
 }
 
@@ -154,13 +154,13 @@ fn wide_spalls_make_double_pulses() {
 /// A bearing with neither clearance nor a defect has the natural frequencies of a linear one of its stiffness.
 #[test]
 fn a_sound_bearing_has_the_frequencies_of_a_linear_one() {
-    let stages = gearbox_stages(&rig(GearboxRig::Phm2009Helical, "clearance_um = 0.0")).unwrap();
+    let stages = stages(&rig(GearboxRig::Phm2009Helical, "clearance_um = 0.0")).unwrap();
     let [[xx, _], [_, yy]] = stages.bearings[0].1.spring_n_per_m;
     let linear = |stiffness: f64| {
         let mut gearbox = rig(GearboxRig::Phm2009Helical, "");
         gearbox.bearings[0] = Bearing::new("input", 0.0);
         gearbox.bearings[0].stiffness_n_per_m = stiffness;
-        gearbox_stages(&gearbox).unwrap().natural_frequencies_hz()
+        meshtone::stages(&gearbox).unwrap().natural_frequencies_hz()
     };
     let [softer, stiffer] = [linear(xx.min(yy) * 0.5), linear(xx.max(yy) * 2.0)];
     let found = stages.natural_frequencies_hz();
@@ -237,7 +237,7 @@ fn impossible_bearings_say_what_is_allowed() {
 }
 
 /// (m/s²) Amplitude of the first order of a shaft in the seat's signal, over whole revolutions.
-fn first_order(simulation: &GearboxSimulation, speed_hz: f64) -> f64 {
+fn first_order(simulation: &Simulation, speed_hz: f64) -> f64 {
     let signal = seat(simulation);
     let rate_hz = simulation.channels.sampling_rate_hz;
     let turn = |k: usize| TAU * speed_hz * k as f64 / rate_hz;
@@ -268,8 +268,8 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
     let bent: fn(&mut Gearbox) = |gearbox| gearbox.shafts[0].bow = Bow { middle_um: 20.0, angle_deg: 10.0 };
     for (name, change) in [("wheel", unbalanced), ("shaft", of_shaft), ("bent", bent)] {
         let gearbox = gearbox(change);
-        let stages = gearbox_stages(&gearbox).unwrap();
-        let (machine, modes) = stages.machine_and_modes();
+        let stages = stages(&gearbox).unwrap();
+        let (machine, modes) = stages.machine_and_modes().unwrap();
         let omega = TAU * gearbox.operation.drive.pinion_speed_hz;
         let complex = |matrix: DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
         let dynamic = complex(machine.closed_stiffness(&stages.mean_stiffness_n_per_m()))

@@ -194,7 +194,7 @@ fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) ->
     drive.pinion_speed_hz = (from_hz + to_hz) / 2.0;
     drive.speed_profile_hz = Some(Profile { time_s: vec![0.5, 0.5 + length_s], value: vec![from_hz, to_hz] });
     machine.solver.settings.discard_and_keep(0.5, length_s);
-    let channels = meshtone::simulate_gearbox(&machine).unwrap().channels;
+    let channels = meshtone::simulate(&machine).unwrap().channels;
     let input = ShaftPhase::of_simulated_input(&machine, channels.start_s, channels.len()).unwrap();
     at_rate_of_recordings(&channels.signals[0].values, &input.revolutions, channels.sampling_rate_hz)
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use meshtone::scenario::*;
-use meshtone::{gearbox_stages, simulate, stages_and_warnings};
+use meshtone::{simulate, stages, stages_and_warnings};
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|x| x * x).sum::<f64>().sqrt()
@@ -143,7 +143,7 @@ fn a_gearbox_whose_profile_ends_says_how_it_can_last() {
         Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
     (gearbox.solver.settings.duration_s, gearbox.solver.settings.settle_fraction) = (Some(0.5), 0.5);
     let warnings = |gearbox: &Gearbox| {
-        let warnings = gearbox_stages(gearbox).unwrap().warnings();
+        let warnings = stages(gearbox).unwrap().warnings();
         warnings.into_iter().filter(is_of_start).collect::<Vec<_>>()
     };
     let before = warnings(&gearbox);

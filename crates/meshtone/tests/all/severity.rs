@@ -65,7 +65,7 @@ fn few(cases: u32) -> ProptestConfig {
 
 /// The sizes of a severity have that severity again, and can be.
 fn assert_inverse(scenario: &Scenario, wheel: WheelName, drawn: f64) -> Result<(), TestCaseError> {
-    let teeth = stages(scenario).unwrap().teeth;
+    let teeth = stages(scenario).unwrap().pairs.swap_remove(0).teeth;
     for damage in graded() {
         for severity in [drawn, 1e-7, 1e-3, 0.02, 0.5, 1.0] {
             let given = with_severity(scenario, &damage, wheel, severity);
@@ -180,7 +180,7 @@ fn of_damaged_pair(scenario: &Scenario) -> [Vec<f64>; 2] {
     let stages = stages(scenario).unwrap();
     let mesh = &stages.meshes_at(NonZeroUsize::new(200).unwrap()).unwrap()[0];
     let [_, damaged] = sound_and_damaged(mesh);
-    let (pairs, ratio) = (stages.pairs(), stages.teeth.path.contact_ratio);
+    let (pairs, ratio) = (stages.tooth_pairs(), stages.pairs[0].teeth.path.contact_ratio);
     let stiffness = |k: i32| pairs.at(&damaged.kind, ratio * f64::from(k) / 200.0).stiffness_n_per_mm;
     [(0..=200).map(stiffness).collect(), damaged.states.iter().map(|state| state.separation_m).collect()]
 }
@@ -221,7 +221,8 @@ fn a_severity_follows_the_wheels() {
     let larger = scenario.with_numbers(&[("gears.module_mm", 6.0), ("fault.severity", 0.25)]).unwrap();
     assert!(relative(depth_mm(&larger), depth_mm(&scenario)) < 1e-3);
     // What is simulated has the sizes beside the severity.
-    let simulated = stages(&scenario).unwrap().scenario;
+    let stages = stages(&scenario).unwrap();
+    let simulated = stages.scenario.pair().unwrap();
     let Damage::RootCrack(RootCrack { depth_mm: of_stages, .. }) = simulated.faults[0].damage else {
         panic!("no crack")
     };
@@ -297,7 +298,7 @@ fn severities_of_sizes_by_hand() {
     let simulated =
         stages(&healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(ThroughFace { pit: circle })]))
             .unwrap();
-    let length_fraction = simulated.damaged[0].descriptions[0].numbers("length_fraction")[0];
+    let length_fraction = simulated.pairs[0].damaged[0].descriptions[0].numbers("length_fraction")[0];
     assert!((simulated.fault_severities[0] - length_fraction / 0.9).abs() < 0.01);
     // The table of cracks: the fillet's point is 3.0109 mm from the centre line.
     let crack = |depth_mm, length_mm| Damage::from(RootCrack { depth_mm, angle_deg: 45.0, length_mm });

@@ -8,7 +8,6 @@ use meshtone::signal::{
     Alternative, AngularSettings, GearTrain, Mismatch, ShaftPhase, StatedTurning, angular_resample,
     find_train_mismatch,
 };
-use meshtone::simulate_gearbox;
 use rayon::prelude::*;
 
 use crate::signal::noise;
@@ -38,7 +37,7 @@ fn recording(seed: u64) -> Option<Recording> {
     let input_hz = draws.between(10.0, 40.0);
     gearbox.operation.drive.pinion_speed_hz = input_hz;
     gearbox.solver.settings.duration_s = Some(draws.in_octaves(1.5, 4.0));
-    let channels = simulate_gearbox(&gearbox).ok()?.channels;
+    let channels = meshtone::simulate(&gearbox).ok()?.channels;
     let mut signal = channels.signals[0].values.clone();
     let rms = (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt();
     let amplitude = rms * 10f64.powf(draws.one(&[-40.0, -20.0, -10.0, -5.0]) / 20.0);

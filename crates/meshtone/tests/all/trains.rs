@@ -175,16 +175,16 @@ fn check_pairs_side_by_side(scenarios: &[Scenario; 2], first_pitch: [f64; 2]) ->
         stages
     };
     let pairs = [of_pair(0), of_pair(1)];
-    let machines = pairs.each_ref().map(|stages| &machine_of(stages).0.machine);
+    let machines = pairs.each_ref().map(|stages| machine_of(stages).0);
     let alone = [0, 1].map(|pair| outputs_from(0, &pairs[pair], &outputs(machines[pair])));
     let machine = side_by_side(machines);
     let mut meshes = pairs.each_ref().map(|stages| stages.meshes[0].clone());
     meshes[1].turning.pitches_per_revolution *= SPEED_RATIO;
     let Stages { scenario, time, .. } = &pairs[0];
-    let operation = &scenario.operation;
+    let operation = scenario.operation();
     let nominal = [operation.pinion_speed_hz, operation.brake_torque_nm];
     let forcing = Forcing::new(
-        scenario.motion(time),
+        pairs[0].motion(),
         time,
         nominal,
         0,
@@ -510,7 +510,7 @@ fn against_dense(pairs: &[Stages; 2]) -> (f64, Vec<Vec<f64>>) {
     let (machine, time) = (driven_two_stages(), time_of_two_stages());
     let modes = Modes::damped_by_springs(&machine);
     let meshes = pairs.each_ref().map(|stages| stages.meshes[0].clone());
-    let motion = || pairs[0].scenario.motion(&time);
+    let motion = || pairs[0].scenario.pair().unwrap().motion(&time);
     let deviations = || pairs.each_ref().map(deviations_of);
     let forcing = Forcing::new(motion(), &time, [INPUT_HZ, BRAKE_NM], 0, meshes.iter().zip(deviations()));
     let velocity = &machine.rigid_rotation * (TAU * INPUT_HZ) + DVector::from_column_slice(&PUSH);

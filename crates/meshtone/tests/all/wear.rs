@@ -312,8 +312,9 @@ fn worn_teeth_may_have_other_damage() {
         let other = Fault::new(WheelName::Gear, 3, other);
         let of = |faults: Vec<Fault>| {
             let stages = stages(&scenario(Model::Linear, 40.0, 0, faults)).unwrap();
-            let of_third = stages.damaged.iter().find(|tooth| tooth.teeth.contains(&2)).unwrap().clone();
-            (of_third, stages.damaged.len(), mesh(&stages).stiffness_n_per_mm(0..38))
+            let of_third =
+                stages.pairs[0].damaged.iter().find(|tooth| tooth.teeth.contains(&2)).unwrap().clone();
+            (of_third, stages.pairs[0].damaged.len(), mesh(&stages).stiffness_n_per_mm(0..38))
         };
         // In whichever order they are named, and as much is left as either leaves.
         let (both, reversed) = (of(vec![worn.clone(), other.clone()]), of(vec![other.clone(), worn.clone()]));

@@ -75,9 +75,9 @@ fn at_rest(all: &[Slice], force: f64) -> f64 {
 
 /// (m/s²) Mean vertical acceleration of both supports.
 fn by_slices(stages: &Stages, face: &Face, samples: usize) -> Vec<f64> {
-    let (train, modes) = machine_of(stages);
-    let (machine, mesh) = (&train.machine, mesh(stages));
-    let width_m = stages.teeth.gear.face_width_mm * 1e-3;
+    let (machine, modes) = machine_of(stages);
+    let mesh = mesh(stages);
+    let width_m = stages.pairs[0].teeth.gear.face_width_mm * 1e-3;
     let (n, h) = (machine.coordinates(), stages.time.step_s() / 2.0);
     let omega2 = DVector::from_fn(n, |m, _| modes.angular_frequencies[m].powi(2));
     let damping = DVector::from_fn(n, |m, _| modes.damping_per_s(m));
@@ -89,7 +89,7 @@ fn by_slices(stages: &Stages, face: &Face, samples: usize) -> Vec<f64> {
     let gamma =
         Matrix2::from_fn(|r, c| lead * h * h * (0..n).map(|m| lines[r][m] * e[m] * lines[c][m]).sum::<f64>());
     let force = stages.static_force_n();
-    let torque = stages.scenario.operation.brake_torque_nm;
+    let torque = stages.scenario.operation().brake_torque_nm;
     let Drive::Brake { coordinate, .. } = machine.drives[1] else { panic!("no brake") };
     let brake = modes.shapes.row(coordinate).transpose() * torque;
     let steady = DVector::from_fn(n, |m, _| {

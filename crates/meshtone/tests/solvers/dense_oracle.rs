@@ -127,7 +127,7 @@ fn modal_and_dense_solutions_agree() {
                     scenario.faults.push(Fault::new(wheel, 5, beside));
                 }
                 let stages = stages(&scenario).unwrap();
-                let outputs: Vec<Output> = coordinates(&machine_of(&stages).0.machine, 2).collect();
+                let outputs: Vec<Output> = coordinates(machine_of(&stages).0, 2).collect();
                 let mut modal = outputs_from(0, &stages, &outputs);
                 modal.iter_mut().for_each(|values| values.truncate(SAMPLES));
                 let dense = Dense::of(&stages, SAMPLES).accelerations();
@@ -181,7 +181,7 @@ fn helical_teeth_agree_with_the_dense_solution() {
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
         let stages = stages(&scenario).unwrap();
         assert_eq!(stages.meshes[0].slices(), if case == 0 { 1 } else { 21 });
-        let outputs: Vec<Output> = coordinates(&machine_of(&stages).0.machine, 2).collect();
+        let outputs: Vec<Output> = coordinates(machine_of(&stages).0, 2).collect();
         let mut modal = outputs_from(0, &stages, &outputs);
         modal.iter_mut().for_each(|values| values.truncate(300));
         let dense = Dense::of(&stages, 300).accelerations();

@@ -5,14 +5,12 @@ use meshtone::sensor::NamedSignal;
 use std::f64::consts::TAU;
 
 use crate::dense::{Dense, DenseMesh};
+use meshtone::batch::{Control, simulate_many_gearboxes};
 use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
 use meshtone::solver::InitialMotion;
 use meshtone::wheel::ErrorTable;
-use meshtone::{
-    GearboxSimulation, GearboxStages, MeshedPair, StepJudgement, gearbox_stages, gearbox_stages_within,
-    simulate_gearbox, simulate_gearboxes,
-};
+use meshtone::{MeshedPair, Simulation, Stages, StepJudgement, stages, stages_within};
 
 fn gearbox(rig: Option<GearboxRig>) -> Gearbox {
     Gearbox::from_toml(&gearbox_template(rig)).unwrap()
@@ -38,12 +36,12 @@ fn two_stages() -> Gearbox {
     gearbox
 }
 
-fn simulate(gearbox: &Gearbox) -> GearboxSimulation {
-    simulate_gearbox(gearbox).unwrap()
+fn simulate(gearbox: &Gearbox) -> Simulation {
+    meshtone::simulate(gearbox).unwrap()
 }
 
 /// The accelerations of the six seats.
-fn accelerations(simulation: &GearboxSimulation) -> impl Iterator<Item = &NamedSignal> {
+fn accelerations(simulation: &Simulation) -> impl Iterator<Item = &NamedSignal> {
     let signals = simulation.channels.signals.iter().filter(|signal| signal.unit == "g");
     assert_eq!(signals.clone().count(), 6);
     signals
@@ -139,7 +137,7 @@ fn gearbox_moves_as_with_dense_matrices() {
     gearbox.solver.settings.duration_s = Some(0.003);
     let simulation = simulate(&gearbox);
     let stages = &simulation.stages;
-    let (machine, modes) = stages.machine_and_modes();
+    let (machine, modes) = stages.machine_and_modes().unwrap();
     let time = &stages.time;
     let nominal_rad_per_s = TAU * gearbox.operation.drive.pinion_speed_hz;
     let deviations = |mesh: usize| PairDeviations {
@@ -314,7 +312,7 @@ fn errors_of_meshes(gearbox: &Gearbox) -> Vec<Option<[ErrorTable; 2]>> {
     let of_pair = |pair: MeshedPair| {
         pair.profile_errors.map(|of| [of.pinion_profile_errors_mm, of.gear_profile_errors_mm])
     };
-    gearbox_stages(gearbox).unwrap().pairs.into_iter().map(of_pair).collect()
+    stages(gearbox).unwrap().pairs.into_iter().map(of_pair).collect()
 }
 
 // The given errors are those of the flanks that work in the wheel's first mesh.
@@ -381,7 +379,7 @@ fn one_pair() -> Gearbox {
 
 #[test]
 fn one_pair_has_the_forces_and_stiffness_of_the_short_form() {
-    let long: GearboxStages = gearbox_stages(&one_pair()).unwrap();
+    let long: Stages = stages(&one_pair()).unwrap();
     let scenario = Scenario::new(GearPair::example());
     let short = meshtone::stages(&scenario).unwrap();
     assert!((long.pairs[0].static_force_n / short.static_force_n() - 1.0).abs() < 1e-9);
@@ -439,7 +437,7 @@ fn a_missing_tooth_of_any_wheel_is_felt_once_a_revolution() {
     assert_eq!(pitches, [4, 5, 52, 53]);
     gearbox.faults.clear();
     let sound = simulate(&gearbox);
-    let force = |of: &GearboxSimulation| of.channels.signal("force_n.z3-z4").unwrap().to_vec();
+    let force = |of: &Simulation| of.channels.signal("force_n.z3-z4").unwrap().to_vec();
     let (broken_n, sound_n) = (force(&simulation), force(&sound));
     // The pairs beside the gap catch the wheels: flanks part, and meet again.
     assert!(broken_n.contains(&0.0) && !sound_n.contains(&0.0));
@@ -569,7 +567,7 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let warnings = |change: &dyn Fn(&mut Gearbox)| {
         let mut gearbox = settled.clone();
         change(&mut gearbox);
-        gearbox_stages(&gearbox).unwrap().warnings()
+        stages(&gearbox).unwrap().warnings()
     };
     assert!(warnings(&|_| ()).is_empty());
     let unsettled = warnings(&|gearbox| gearbox.solver.settings.discard_and_keep(1.0, 0.1));
@@ -667,7 +665,7 @@ fn a_shaft_that_turns_at_another_speed_is_told() {
     let mut gearbox = gearbox(None);
     gearbox.solver.settings.duration_s = Some(0.2);
     let mut simulation = simulate(&gearbox);
-    let slipping = |simulation: &GearboxSimulation| {
+    let slipping = |simulation: &Simulation| {
         let warnings = simulation.warnings_of_signals(StepJudgement::Estimated);
         warnings.into_iter().filter(|warning| warning.kind == WarningKind::OtherSpeed).collect::<Vec<_>>()
     };
@@ -691,9 +689,11 @@ fn a_batch_gives_each_what_it_gives_alone() {
     let mut wrong = short.clone();
     wrong.wheels[0].at = 0.5;
     let boxes = [short.clone(), stiffer, wrong, short];
-    let together = simulate_gearboxes(&boxes, |simulation| simulation.channels);
+    let mut together = Vec::new();
+    let keep = |_: usize, simulation: Simulation| simulation.channels;
+    simulate_many_gearboxes(boxes.clone(), &keep, &Control::default(), |_, kept| together.push(kept));
     for (gearbox, together) in boxes.iter().zip(&together) {
-        match (simulate_gearbox(gearbox).map(|simulation| simulation.channels), together) {
+        match (meshtone::simulate(gearbox).map(|simulation| simulation.channels), together) {
             (Ok(alone), Ok(together)) => assert_eq!(alone, *together),
             (Err(alone), Err(together)) => assert_eq!(alone, *together),
             other => panic!("{other:?}"),
@@ -709,7 +709,7 @@ fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
     gearbox.solver.settings.discard_and_keep(5.0, 0.1);
     let mut reported = |speed_hz: f64| {
         gearbox.operation.drive.pinion_speed_hz = speed_hz;
-        gearbox_stages(&gearbox).unwrap().warnings().pop()
+        stages(&gearbox).unwrap().warnings().pop()
     };
     assert_eq!(reported(30.0), None);
     let warning = reported(1479.2 / 32.0 * 1.009).unwrap();
@@ -734,7 +734,7 @@ fn a_step_that_is_too_long_is_reported() {
     // What the repetition may need is limited as the first simulation is: without it there is the estimate alone.
     gearbox.solver.settings.sampling_rate_hz = 2e4;
     let limited = |bytes: u64| {
-        let stages = gearbox_stages_within(&gearbox, MemoryLimit::Given { bytes }).unwrap();
+        let stages = stages_within(&gearbox, MemoryLimit::Given { bytes }).unwrap();
         stages.simulate().unwrap().warnings_of_signals(StepJudgement::Repeated)
     };
     let [once, twice] = [2_000_000, 4_000_000].map(limited);
@@ -749,7 +749,7 @@ fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
     let missing = Fault::new(WheelName::Gear, (1..48).collect::<Vec<u32>>(), MissingTooth);
     gearbox.faults = vec![GearboxFault { wheel: "z3".to_owned(), fault: missing }];
     gearbox.solver.settings.duration_s = Some(8.0);
-    let error = simulate_gearbox(&gearbox).map(drop).unwrap_err();
+    let error = meshtone::simulate(&gearbox).map(drop).unwrap_err();
     let text = error.to_string();
     assert!(text.starts_with("the motion grows without bound within") && text.len() < 250, "{text}");
     assert!(text.contains("with bearing.damping_ratio = 0.0 to 0.02;"), "{text}");
@@ -762,9 +762,9 @@ fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
     let mut gearbox = idler([24, 36, 30], [180.0, 0.0]);
     gearbox.shafts[1].couples_to = Coupled::Brake;
     gearbox.shafts[2].couples_to = Coupled::Nothing;
-    assert!(gearbox_stages(&gearbox).is_ok());
+    assert!(stages(&gearbox).is_ok());
     gearbox.wheels[2].deviations.helix_slope_um = Some(5.0);
-    let error = gearbox_stages(&gearbox).map(drop).unwrap_err();
+    let error = stages(&gearbox).map(drop).unwrap_err();
     assert_eq!(error.key, "mesh[1].wheels");
     assert!(error.problem.starts_with("the mesh is unloaded"), "{error}");
     assert!(error.help.unwrap().contains("set wheel[1].helix_slope_um and wheel[2].helix_slope_um to 0"));

@@ -63,7 +63,7 @@ fn of_constant_stiffness(scenario: &Scenario, seconds: f64) -> Stages {
 
 /// Displacement, velocity and acceleration of all coordinates at every sample, relative to the rigid rotation.
 fn solve(stages: &Stages) -> [Vec<DVector<f64>>; 3] {
-    let machine = &machine_of(stages).0.machine;
+    let machine = machine_of(stages).0;
     let speed = &machine.rigid_rotation * (TAU * PINION_SPEED_HZ);
     [0, 1, 2].map(|derivative| {
         let outputs: Vec<Output> = coordinates(machine, derivative).collect();
@@ -84,17 +84,17 @@ const SWING_RAD_PER_S: f64 = TAU * 3000.0;
 /// The exact motion under the nominal torque and one that swings as its cosine, `swing` times as large: of
 /// `M ü + C u̇ + K u = F (1 + swing cos Ωt)` as a linear system of the first order, a matrix exponential further at every sample.
 fn exact(stages: &Stages, swing: f64) -> [Vec<DVector<f64>>; 3] {
-    let (train, modes) = machine_of(stages);
-    let (machine, mesh) = (&train.machine, mesh(stages));
+    let (machine, modes) = machine_of(stages);
+    let mesh = mesh(stages);
     let n = machine.coordinates();
     let line = &machine.turn * &machine.lines[0].at_middle;
     let of_mesh = &line * line.transpose() * mesh.mean_stiffness_n_per_m;
     let stiffness = machine.turn_back(&machine.stiffness()) + &of_mesh;
     let damping = modes.damping_matrix(machine) + of_mesh * mesh.damping_time_s;
     let mut force = DVector::zeros(n);
-    force[THETA_BRAKE] = stages.scenario.operation.brake_torque_nm;
+    force[THETA_BRAKE] = stages.scenario.operation().brake_torque_nm;
     let at_rest = stiffness.clone().lu().solve(&force).unwrap();
-    let velocity = DVector::from_row_slice(&stages.scenario.solver.initial_velocity.unwrap())
+    let velocity = DVector::from_row_slice(&stages.scenario.solver().initial_velocity.unwrap())
         - &machine.rigid_rotation * (TAU * PINION_SPEED_HZ);
     // Displacements times 1e5/s, and both times √m, so that all are about as large.
     let (rate, root) =
@@ -240,7 +240,7 @@ fn energy_is_kept_without_damping_and_forcing() {
     let mut scenario = pushed(1e5, 0.0, 0.0);
     scenario.rig.mesh_damping_ratio = 0.0;
     let stages = of_constant_stiffness(&scenario, 1.0);
-    let machine = &machine_of(&stages).0.machine;
+    let machine = machine_of(&stages).0;
     let stiffness = machine.turn_back(&machine.closed_stiffness(&[mesh(&stages).mean_stiffness_n_per_m]));
     let own_mass = machine.mass.diagonal();
     let steps = Dense::of(&stages, 1).steps();

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{Gearbox, GearboxFault, GearboxMesh, GearboxWheel};
+use super::super::Scenario;
+use super::{Gearbox, GearboxMesh, GearboxWheel};
 use crate::damage::Fault;
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::Coupled;
@@ -92,6 +93,10 @@ fn greatest_common_divisor(a: i128, b: i128) -> i128 {
 pub struct GearboxLayout {
     /// Number of the shaft of each wheel.
     pub shaft_of_wheel: Vec<usize>,
+    /// (mm) Radius of each wheel's bore, that of its shaft there.
+    pub bore_radii_mm: Vec<f64>,
+    /// Name of each mesh; none of a pair's, which has only one.
+    pub mesh_names: Vec<Option<String>>,
     /// Numbers of the driving and of the driven wheel of each mesh.
     pub wheels_of_mesh: Vec<[usize; 2]>,
     /// Number of the shaft of each bearing.
@@ -142,7 +147,11 @@ impl GearboxLayout {
                 Ok([number(0)?, number(1)?])
             })
             .collect::<Result<_, ScenarioError>>()?;
+        let bore_radius_mm =
+            |(wheel, &shaft): (&GearboxWheel, &usize)| gearbox.shafts[shaft].radius_at_mm(wheel.at);
         let mut this = Self {
+            bore_radii_mm: gearbox.wheels.iter().zip(&shaft_of_wheel).map(bore_radius_mm).collect(),
+            mesh_names: gearbox.meshes.iter().map(|mesh| Some(mesh.name())).collect(),
             gears: Vec::new(),
             positions_m: Vec::new(),
             ratios: Vec::new(),
@@ -162,6 +171,29 @@ impl GearboxLayout {
         this.check_room(gearbox)?;
         this.phases = this.find_phases(gearbox);
         Ok(this)
+    }
+
+    /// A pair: the pinion on the first shaft, and the gear beside it on the second.
+    ///
+    /// # Arguments
+    /// * `scenario` - a valid one
+    pub fn of_pair(scenario: &Scenario) -> Self {
+        let Scenario { gears, rig, .. } = scenario;
+        let centre_distance_m = Mounting::new(gears).centre_distance_mm * 1e-3;
+        Self {
+            shaft_of_wheel: vec![0, 1],
+            bore_radii_mm: vec![rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm],
+            mesh_names: vec![None],
+            wheels_of_mesh: vec![[0, 1]],
+            shaft_of_bearing: Vec::new(),
+            gears: vec![gears.clone()],
+            positions_m: vec![[0.0; 2], [centre_distance_m, 0.0]],
+            ratios: vec![
+                Ratio::ONE,
+                Ratio::ONE.times(-i64::from(gears.pinion_teeth), i64::from(gears.gear_teeth)),
+            ],
+            phases: vec![0.0],
+        }
     }
 
     /// A wheel in several meshes has one helix.
@@ -493,18 +525,17 @@ impl GearboxLayout {
         self.ratios.iter().copied().fold(Ratio::ONE, Ratio::common_measure).denominator
     }
 
-    /// The faults of a mesh's wheels as of a pair, each with its number in the gearbox.
+    /// The faults of a mesh's wheels as of a pair, each with its number in the scenario.
     ///
     /// # Arguments
-    /// * `gearbox` - whose layout this is
+    /// * `faults` - all of the scenario, each with the number of its wheel
     /// * `mesh` - number of the mesh
-    pub fn faults_of_mesh(&self, gearbox: &Gearbox, mesh: usize) -> Vec<(usize, Fault)> {
-        let names = self.wheels_of_mesh[mesh].map(|wheel| gearbox.wheels[wheel].name.as_str());
-        let of_mesh = |(number, GearboxFault { wheel, fault }): (usize, &GearboxFault)| {
-            let side = names.iter().position(|name| name == wheel)?;
+    pub fn faults_of_mesh(&self, faults: &[(usize, &Fault)], mesh: usize) -> Vec<(usize, Fault)> {
+        let of_mesh = |(number, &(wheel, fault)): (usize, &(usize, &Fault))| {
+            let side = self.wheels_of_mesh[mesh].iter().position(|of| *of == wheel)?;
             Some((number, Fault { wheel: WheelName::BOTH[side], ..fault.clone() }))
         };
-        gearbox.faults.iter().enumerate().filter_map(of_mesh).collect()
+        faults.iter().enumerate().filter_map(of_mesh).collect()
     }
 
     /// The quality of a mesh's wheels as of a pair, with the shares of the wheel that is drawn.

@@ -16,16 +16,16 @@ use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable};
 
 use super::from_toml::{Numbers, ScenarioFiles, located};
 use super::validate::{DrivenSpeed, pitch_line_mm};
-use super::{MemoryLimit, Scenario, ScenarioError, ScenarioWarning, SectionDescription, Sensor, WarningKind};
+use super::{MemoryLimit, ScenarioError, ScenarioWarning, SectionDescription, WarningKind};
 use crate::bearing::RollingParts;
 use crate::damage::{Fault, check_faults};
 use crate::keys::{
     KeyRow, Keys, NoFiles, NumberFiles, check_keys, describe, field, read_keys, row, write_keys,
 };
 use crate::machine::{Bearing, GearboxShaft, Housing};
-use crate::operation::{Operation, Solver, TimeGrid};
+use crate::operation::TimeGrid;
+use crate::wheel::Material;
 use crate::wheel::quality::{check_errors, one_source};
-use crate::wheel::{Material, WheelName};
 use layout::{entry_key, find, section};
 use parts::list;
 
@@ -108,16 +108,6 @@ const OF_GEARBOX: [&str; 5] = ["shaft", "wheel", "mesh", "bearing", "housing"];
 /// Names of the sections that only a pair has.
 const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
 
-/// A scenario file, as what it is read.
-#[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a file has only one")]
-pub enum ScenarioForm {
-    /// The short form: one pair of gears.
-    Pair(Scenario),
-    /// The long form: a gearbox.
-    Gearbox(Gearbox),
-}
-
 impl Gearbox {
     /// A gearbox with every other key at its default.
     ///
@@ -147,7 +137,7 @@ impl Gearbox {
     }
 
     /// Whether a table has the sections of a gearbox.
-    fn is_table(root: &TomlTable<'_>) -> ReadResult<bool> {
+    pub(super) fn is_table(root: &TomlTable<'_>) -> ReadResult<bool> {
         let has = |names: &[&'static str]| names.iter().find(|name| root.has(name)).copied();
         match (has(&OF_GEARBOX), has(&OF_PAIR)) {
             (Some(gearbox), Some(pair)) => {
@@ -205,7 +195,7 @@ impl Gearbox {
         gearbox.validate_within(limit).map(|_| gearbox).map_err(|error| located(&document, error))
     }
 
-    fn from_table(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Self> {
+    pub(super) fn from_table(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Self> {
         let mut gearbox = Self::start();
         if let Some(model) = root.optional("model") {
             let name = model.string()?;
@@ -418,6 +408,12 @@ impl Gearbox {
         Ok(())
     }
 
+    /// The faults, each with the number of its wheel.
+    pub(crate) fn placed_faults(&self) -> Vec<(usize, &Fault)> {
+        let number = |fault: &GearboxFault| self.wheels.iter().position(|of| of.name == fault.wheel);
+        self.faults.iter().filter_map(|fault| Some((number(fault)?, &fault.fault))).collect()
+    }
+
     fn check_faults(&self, layout: &GearboxLayout) -> Result<(), ScenarioError> {
         let names: Vec<&str> = self.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
         for (index, GearboxFault { wheel, .. }) in self.faults.iter().enumerate() {
@@ -426,7 +422,7 @@ impl Gearbox {
         }
         for mesh in 0..self.meshes.len() {
             let (numbers, faults): (Vec<usize>, Vec<Fault>) =
-                layout.faults_of_mesh(self, mesh).into_iter().unzip();
+                layout.faults_of_mesh(&self.placed_faults(), mesh).into_iter().unzip();
             check_faults(&faults, &numbers, self.faults.len(), &layout.named_gears(self, mesh))?;
         }
         Ok(())
@@ -528,232 +524,4 @@ fn check_list<S: Keys>(name: &str, entries: &[S]) -> Result<(), ScenarioError> {
         check_keys(entry, name).map_err(|error| error.in_entry(name, index, entries.len()))
     };
     entries.iter().enumerate().try_for_each(check)
-}
-
-impl ScenarioForm {
-    /// Reads and validates either form of a scenario that names no other file.
-    ///
-    /// # Arguments
-    /// * `text` - the scenario file's text
-    ///
-    /// # Errors
-    /// The first thing that is wrong, with its line; sections of both forms.
-    pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
-        if Gearbox::is_written_in(text)? {
-            return Gearbox::from_toml(text).map(Self::Gearbox);
-        }
-        let scenario = Scenario::from_toml(text)?;
-        scenario.validate().map(|_| Self::Pair(scenario))
-    }
-
-    /// Reads either form that is a table of another file, without validating it.
-    ///
-    /// # Arguments
-    /// * `table` - with the sections of a scenario file
-    /// * `files` - loads the files that it names
-    ///
-    /// # Errors
-    /// An unknown or missing key, a value of the wrong type, what `files` reports; sections of both forms.
-    pub fn from_table(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Self> {
-        if Gearbox::is_table(table)? {
-            Gearbox::from_table(table, &Numbers(files)).map(Self::Gearbox)
-        } else {
-            Scenario::from_table(table, files).map(Self::Pair)
-        }
-    }
-
-    /// The scenario file, defaults explicitly.
-    pub fn to_toml(&self) -> String {
-        match self {
-            Self::Pair(scenario) => scenario.to_toml(),
-            Self::Gearbox(gearbox) => gearbox.to_toml(),
-        }
-    }
-
-    /// Checks every value, alone and against the others.
-    ///
-    /// # Errors
-    /// Those of [`Scenario::validate`] and [`Gearbox::validate`].
-    pub fn validate(&self) -> Result<Vec<ScenarioWarning>, ScenarioError> {
-        match self {
-            Self::Pair(scenario) => scenario.validate(),
-            Self::Gearbox(gearbox) => gearbox.validate(),
-        }
-    }
-
-    /// Speed and load.
-    pub fn operation(&self) -> &Operation {
-        match self {
-            Self::Pair(scenario) => &scenario.operation,
-            Self::Gearbox(gearbox) => &gearbox.operation.drive,
-        }
-    }
-
-    /// Speed and load, to be changed.
-    pub fn operation_mut(&mut self) -> &mut Operation {
-        match self {
-            Self::Pair(scenario) => &mut scenario.operation,
-            Self::Gearbox(gearbox) => &mut gearbox.operation.drive,
-        }
-    }
-
-    /// Sampling and settling.
-    pub fn solver(&self) -> &Solver {
-        match self {
-            Self::Pair(scenario) => &scenario.solver,
-            Self::Gearbox(gearbox) => &gearbox.solver.settings,
-        }
-    }
-
-    /// Sampling and settling, to be changed.
-    pub fn solver_mut(&mut self) -> &mut Solver {
-        match self {
-            Self::Pair(scenario) => &mut scenario.solver,
-            Self::Gearbox(gearbox) => &mut gearbox.solver.settings,
-        }
-    }
-
-    /// Whether motor and brake are steady.
-    pub fn is_steady(&self) -> bool {
-        match self {
-            Self::Pair(scenario) => scenario.operation.is_steady(),
-            Self::Gearbox(gearbox) => gearbox.operation.is_steady(),
-        }
-    }
-
-    /// Division of time.
-    pub fn time_grid(&self) -> TimeGrid {
-        match self {
-            Self::Pair(scenario) => scenario.time_grid(),
-            Self::Gearbox(gearbox) => gearbox.time_grid(),
-        }
-    }
-
-    /// The listed sensors, each with its name.
-    pub fn sensors(&self) -> Vec<(String, &Sensor)> {
-        match self {
-            Self::Pair(scenario) => scenario.sensors.iter().map(|sensor| (sensor.name(), sensor)).collect(),
-            Self::Gearbox(gearbox) => {
-                gearbox.sensors.iter().map(|sensor| (sensor.name(), &sensor.sensor)).collect()
-            }
-        }
-    }
-
-    /// The listed sensors, to be changed.
-    pub fn sensors_mut(&mut self) -> Vec<&mut Sensor> {
-        match self {
-            Self::Pair(scenario) => scenario.sensors.iter_mut().collect(),
-            Self::Gearbox(gearbox) => gearbox.sensors.iter_mut().map(|sensor| &mut sensor.sensor).collect(),
-        }
-    }
-
-    /// Puts the sensor of a channel before the others, since a recording is compared with the first one.
-    ///
-    /// # Arguments
-    /// * `channel` - name of the channel, with its unit or without
-    ///
-    /// Returns whether another sensor is the first one now. A channel that no listed sensor has changes nothing.
-    ///
-    /// ```
-    /// use meshtone::scenario::{GearPair, Scenario, ScenarioForm, Sensor};
-    ///
-    /// let named = ["foot", "cover", "flange"].map(|name| {
-    ///     let mut sensor = Sensor::default();
-    ///     sensor.name = Some(name.to_owned());
-    ///     sensor
-    /// });
-    /// let mut form = ScenarioForm::Pair(Scenario::new(GearPair::example()).with_sensors(named.to_vec()));
-    /// assert!(form.lead_with_sensor("cover_g") && !form.lead_with_sensor("cover") && !form.lead_with_sensor("wall"));
-    /// let names: Vec<String> = form.sensors_mut().iter().map(|sensor| sensor.name()).collect();
-    /// assert_eq!(names, ["cover", "foot", "flange"]);
-    /// ```
-    pub fn lead_with_sensor(&mut self, channel: &str) -> bool {
-        let is = |name: String| channel == name || channel.strip_suffix("_g") == Some(&name);
-        let at = match self {
-            Self::Pair(scenario) => scenario.sensors.iter().position(|sensor| is(sensor.name())),
-            Self::Gearbox(gearbox) => gearbox.sensors.iter().position(|sensor| is(sensor.name())),
-        };
-        let Some(at) = at else { return false };
-        match self {
-            Self::Pair(scenario) => scenario.sensors[..=at].rotate_right(1),
-            Self::Gearbox(gearbox) => gearbox.sensors[..=at].rotate_right(1),
-        }
-        at > 0
-    }
-
-    /// Returns the scenario with other faults.
-    ///
-    /// # Arguments
-    /// * `faults` - each with the number of its wheel, of a pair 0 the pinion and 1 the gear; the wheel that it names itself does not count
-    #[must_use]
-    pub fn with_faults(mut self, faults: Vec<(usize, Fault)>) -> Self {
-        match &mut self {
-            Self::Pair(scenario) => {
-                let on_wheel =
-                    |(wheel, fault): (usize, Fault)| Fault { wheel: WheelName::BOTH[wheel.min(1)], ..fault };
-                scenario.faults = faults.into_iter().map(on_wheel).collect();
-            }
-            Self::Gearbox(gearbox) => {
-                let name =
-                    |wheel: usize| gearbox.wheels.get(wheel).map_or_else(String::new, |of| of.name.clone());
-                let on_wheel = |(wheel, fault): (usize, Fault)| GearboxFault { wheel: name(wheel), fault };
-                gearbox.faults = faults.into_iter().map(on_wheel).collect();
-            }
-        }
-        self
-    }
-
-    /// The faults, each with the number of its wheel.
-    pub fn faults(&self) -> Vec<(usize, &Fault)> {
-        match self {
-            Self::Pair(scenario) => {
-                scenario.faults.iter().map(|fault| (fault.wheel as usize, fault)).collect()
-            }
-            Self::Gearbox(gearbox) => {
-                let number =
-                    |fault: &GearboxFault| gearbox.wheels.iter().position(|of| of.name == fault.wheel);
-                gearbox.faults.iter().filter_map(|fault| Some((number(fault)?, &fault.fault))).collect()
-            }
-        }
-    }
-
-    /// Number of the faults.
-    pub fn fault_count(&self) -> usize {
-        match self {
-            Self::Pair(scenario) => scenario.faults.len(),
-            Self::Gearbox(gearbox) => gearbox.faults.len(),
-        }
-    }
-
-    /// (-) How severe each fault is, from 0, none, to 1, the largest that the tooth allows: as given, or by its sizes.
-    ///
-    /// # Errors
-    /// Those of [`Self::validate`].
-    pub fn fault_severities(&self) -> Result<Vec<f64>, ScenarioError> {
-        match self {
-            Self::Pair(scenario) => scenario.fault_severities(),
-            Self::Gearbox(gearbox) => gearbox.fault_severities(),
-        }
-    }
-
-    /// Reads and validates either form.
-    ///
-    /// # Arguments
-    /// * `text` - the scenario file's text
-    /// * `files` - loads the files that the text names
-    /// * `limit` - most memory that the simulation may need
-    ///
-    /// # Errors
-    /// Those of [`Scenario::from_toml_within`] and [`Gearbox::from_toml_within`]; sections of both forms.
-    pub fn from_toml_within(
-        text: &str,
-        files: &dyn ScenarioFiles,
-        limit: MemoryLimit,
-    ) -> Result<Self, ScenarioError> {
-        if Gearbox::is_written_in(text)? {
-            Gearbox::from_toml_within(text, files, limit).map(Self::Gearbox)
-        } else {
-            Scenario::from_toml_within(text, files, limit).map(Self::Pair)
-        }
-    }
 }

@@ -21,13 +21,13 @@ use recording::{InputRecording, Piece, pieces};
 use smoothing::{CellLevel, smooth};
 
 use super::ExperimentControl;
-use crate::batch::{Control, Keep, simulate_many};
+use crate::batch::{Control, Keep, simulate_many, simulate_many_gearboxes};
 use crate::error::{Error, ScenarioError};
 use crate::random::{Draws, Purpose};
 use crate::scenario::{Gearbox, Quality, Scenario, ScenarioForm, Sensor};
 use crate::sensor::{Channel, FrequencyResponse, ResponseInput};
 use crate::signal::{AngularSettings, GearTrain, SignalError, angular_resample, lines_off_shafts};
-use crate::simulate::{Stages, simulate_gearboxes};
+use crate::simulate::{Simulation, Stages};
 use crate::solver::{Block, Output, Recorder};
 
 /// (s) What is simulated before a piece of a recording, for the vibration to settle.
@@ -338,11 +338,12 @@ fn simulated_gearboxes(
         }
         let of_piece = gearbox_at_speed_of(gearbox, piece);
         let drawn: Vec<Gearbox> = seeds.iter().map(|&seed| Gearbox { seed, ..of_piece.clone() }).collect();
-        let of_draws = simulate_gearboxes(&drawn, |simulation| {
-            let channels = &simulation.channels;
+        let keep = |_: usize, Simulation { channels, .. }: Simulation| {
             let shown = channels.signals.first().map_or(&[][..], |signal| &signal.values);
             cells.powers(number, &cells.spectra(number, shown, channels.sampling_rate_hz))
-        });
+        };
+        let mut of_draws = Vec::with_capacity(drawn.len());
+        simulate_many_gearboxes(drawn, &keep, &Control::default(), |_, powers| of_draws.push(powers));
         for (sums, of_draw) in powers.iter_mut().zip(of_draws) {
             sums.iter_mut().zip(of_draw?).for_each(|(sum, power)| *sum += power);
         }
@@ -474,7 +475,7 @@ impl Keep for KeepPowers<'_> {
     }
 
     fn keep(&self, index: usize, stages: Stages, motion: Motion) -> Vec<f64> {
-        let shown = stages.shown(&Channel::leading(&stages.scenario.sensors), motion.0);
+        let shown = stages.shown(&Channel::leading(&stages.sensors), motion.0);
         let piece = index / self.draws;
         self.cells.powers(piece, &self.cells.spectra(piece, &shown, stages.time.sampling_rate_hz))
     }

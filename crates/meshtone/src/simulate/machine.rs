@@ -1,0 +1,185 @@
+//! Stage 3: the machine around the meshes, of the maker for its structure.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::bearing::{RollingBearing, RollingParts};
+use crate::error::ScenarioError;
+use crate::machine::{
+    Disc, GearboxMachine, GearboxParts, GearboxShaft, KnownModes, Machine, MeshLine, Modes, PlacedUnbalance,
+    SeatedBearing, Supports, Train, WheelBody,
+};
+use crate::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioForm};
+use crate::solver::{InitialMotion, ModalMachine};
+use crate::wheel::{Teeth, WheelName};
+
+use super::measured::{speed_name, transmission_error_name};
+
+/// The machine around the meshes, and its modes without these.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssembledMachine {
+    /// With the places that outputs read.
+    pub machine: Machine,
+    /// Without the meshes.
+    pub modes: Arc<Modes>,
+    /// Mass and inertias of each wheel.
+    pub wheels: Vec<WheelBody>,
+    /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to.
+    pub shaft_stiffness_nm_per_rad: Vec<f64>,
+    /// (kg) The mass that the wheels' rotation has along each line of action.
+    pub mesh_mass_kg: Vec<f64>,
+    /// (-) Damping ratio of each mesh.
+    pub mesh_damping_ratio: Vec<f64>,
+}
+
+/// The rolling bearings of a machine: each with its number in the scenario.
+pub(super) type Bearings = Vec<(usize, RollingBearing)>;
+
+/// Puts the machine together: a rig of one pair on condensed shafts, or shafts of beams in bearings.
+///
+/// # Arguments
+/// * `scenario`, `layout` - what is simulated, and how it stands and turns
+/// * `teeth` - of each mesh
+/// * `known` - modes of machines of the same masses and springs
+///
+/// Returns the machine with its rolling bearings.
+///
+/// # Errors
+/// Rolling bearings that do not fit, a sensor at a place that there is not.
+pub(super) fn assembled(
+    scenario: &ScenarioForm,
+    layout: &GearboxLayout,
+    teeth: &[Teeth],
+    known: &KnownModes,
+) -> Result<(AssembledMachine, Bearings), ScenarioError> {
+    match scenario {
+        ScenarioForm::Pair(pair) => Ok((rig(pair, &teeth[0]), Vec::new())),
+        ScenarioForm::Gearbox(gearbox) => shafts_of_beams(gearbox, layout, teeth, known),
+    }
+}
+
+/// The rig of one pair. Flanks that may pull stand in supports that are held, and all their modes are damped alike.
+fn rig(Scenario { gears, rig, model, .. }: &Scenario, teeth: &Teeth) -> AssembledMachine {
+    let supports = if model.teeth_part() { Supports::Moving } else { Supports::Held };
+    let Train { machine, wheels, shaft_stiffness_nm_per_rad, mesh_mass_kg } =
+        Train::new(gears, rig, teeth, supports);
+    let modes = match supports {
+        Supports::Moving => Modes::damped_by_springs(&machine),
+        Supports::Held => Modes::damped_alike(&machine, rig.damping_ratio.of_all_modes()),
+    };
+    AssembledMachine {
+        modes: Arc::new(modes),
+        wheels: wheels.to_vec(),
+        shaft_stiffness_nm_per_rad: shaft_stiffness_nm_per_rad.to_vec(),
+        mesh_mass_kg: vec![mesh_mass_kg],
+        mesh_damping_ratio: vec![rig.mesh_damping_ratio],
+        machine,
+    }
+}
+
+/// Shafts of beams in bearings. Rolling bearings have the stiffness of linear ones first, which gives their static loads, and these the
+/// linear springs in their places.
+fn shafts_of_beams(
+    gearbox: &Gearbox,
+    layout: &GearboxLayout,
+    teeth: &[Teeth],
+    known: &KnownModes,
+) -> Result<(AssembledMachine, Bearings), ScenarioError> {
+    let sensors = gearbox.all_sensors();
+    let shafts: Vec<_> = gearbox.shafts.iter().zip(layout.positions_m.iter().copied()).collect();
+    let discs: Vec<Disc> = (gearbox.wheels.iter().enumerate())
+        .map(|(number, wheel)| {
+            // Every wheel is in a mesh, as the layout has checked.
+            let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
+            let mut tooth = *teeth[mesh].wheel(side);
+            tooth.face_width_mm = wheel.face_width_mm;
+            let body = WheelBody::new(&tooth, layout.gears[mesh].material, &wheel.inertia);
+            Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
+        })
+        .collect();
+    let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears))
+        .map(|((teeth, &wheels), gears)| MeshLine {
+            wheels,
+            base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
+            working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
+            thrust: gears.thrust(),
+        })
+        .collect();
+    let mass_kg = lines.iter().map(|line| {
+        let both = line.wheels.iter().zip(line.base_radii_m);
+        1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
+    });
+    let linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(&gearbox.bearings))
+        .map(|(&shaft, bearing)| SeatedBearing::linear(shaft, bearing))
+        .collect();
+    let rolling: Vec<(usize, RollingParts)> = gearbox.rolling_bearings()?;
+    let ratios: Vec<f64> = layout.ratios.iter().map(|ratio| ratio.value()).collect();
+    let of_wheels = (gearbox.wheels.iter().zip(&layout.shaft_of_wheel))
+        .map(|(wheel, &shaft)| PlacedUnbalance { shaft, at: wheel.at, unbalance: &wheel.unbalance });
+    let of_shafts = (gearbox.shafts.iter().enumerate()).map(|(shaft, of)| PlacedUnbalance {
+        shaft,
+        at: 0.5,
+        unbalance: &of.unbalance,
+    });
+    let unbalances: Vec<_> = of_wheels.chain(of_shafts).filter(|of| of.unbalance.g_mm > 0.0).collect();
+    let mut parts = GearboxParts {
+        shafts: &shafts,
+        speed_ratios: &ratios,
+        discs: &discs,
+        meshes: &lines,
+        bearings: &linear,
+        housing: gearbox.housing.as_ref(),
+        material: gearbox.material,
+        unbalances: &unbalances,
+        brake_inertia_kgm2: gearbox.operation.brake_inertia_kgm2,
+    };
+    let mut machine = GearboxMachine::new(&parts);
+    let (mut seated, mut bearings) = (linear.clone(), Vec::new());
+    if !rolling.is_empty() {
+        let loads_n = machine.static_bearing_loads_n(&parts, gearbox.operation.drive.brake_torque_nm);
+        for ((number, rolling), load_n) in rolling.into_iter().zip(loads_n) {
+            let bearing = RollingBearing::new(rolling, load_n);
+            seated[number].radial_n_per_m = bearing.spring_n_per_m;
+            bearings.push((number, bearing));
+        }
+        parts.bearings = &seated;
+        machine = GearboxMachine::new(&parts);
+    }
+    for (sensor, place) in sensors.iter().zip(gearbox.places(layout)?) {
+        machine.add_place(sensor.name(), place);
+    }
+    for (number, shaft) in gearbox.shafts.iter().enumerate() {
+        machine.add_rotation(speed_name(&shaft.name), number);
+    }
+    for (number, mesh) in gearbox.meshes.iter().enumerate() {
+        machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
+    }
+    let assembled = AssembledMachine {
+        wheels: discs.iter().map(|disc| disc.body).collect(),
+        shaft_stiffness_nm_per_rad: gearbox.shafts.iter().map(GearboxShaft::coupling_nm_per_rad).collect(),
+        mesh_damping_ratio: gearbox.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
+        mesh_mass_kg: mass_kg.collect(),
+        modes: known.damped_by_springs(&machine.machine),
+        machine: machine.machine,
+    };
+    Ok((assembled, bearings))
+}
+
+impl AssembledMachine {
+    /// The machine in the modes that take part in the motion.
+    ///
+    /// # Arguments
+    /// * `scenario` - nominal speed and load, and the motion at the start
+    /// * `face_reach_m` - (m) for each mesh, how far from the middle of its face the load acts at most
+    pub(super) fn modal(&self, scenario: &ScenarioForm, face_reach_m: &[f64]) -> ModalMachine {
+        let operation = scenario.operation();
+        let first_hz = operation.speed_profile_hz.as_ref().map(|profile| profile.value[0]);
+        let start = InitialMotion {
+            nominal_rad_per_s: TAU * operation.pinion_speed_hz,
+            brake_torque_nm: operation.brake_torque_nm,
+            motor_rad_per_s: TAU * first_hz.unwrap_or(operation.pinion_speed_hz),
+            velocity: scenario.solver().initial_velocity.as_ref().map(|given| given.as_slice()),
+        };
+        ModalMachine::new(&self.machine, &self.modes, face_reach_m, start)
+    }
+}

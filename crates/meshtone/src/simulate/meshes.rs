@@ -1,0 +1,173 @@
+//! Stage 6: the meshes with their tables.
+
+use std::num::NonZeroUsize;
+
+use super::{AssembledMachine, MeshedPair};
+use crate::damage::DamagedTooth;
+use crate::error::ScenarioError;
+use crate::mesh::{
+    Contact, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
+    place_on_face,
+};
+use crate::operation::TimeGrid;
+use crate::scenario::{GearboxLayout, ScenarioForm};
+use crate::wheel::NamedGears;
+
+/// The meshes of a scenario.
+///
+/// # Arguments
+/// * `scenario`, `layout`, `time` - what is simulated, how it stands and turns, and its division of time
+/// * `pairs`, `machine` - the wheels of each mesh, and the machine around them
+/// * `points_per_pitch` - from one pair of teeth to the next; none for those that the time loop has
+///
+/// # Errors
+/// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load, and a mesh that cannot carry any.
+pub(super) fn meshes(
+    scenario: &ScenarioForm,
+    layout: &GearboxLayout,
+    time: &TimeGrid,
+    (pairs, machine): (&[MeshedPair], &AssembledMachine),
+    points_per_pitch: Option<NonZeroUsize>,
+) -> Result<Vec<Mesh>, ScenarioError> {
+    let contact = if scenario.model().teeth_part() { Contact::Unilateral } else { Contact::Bilateral };
+    let mesh = |(number, pair): (usize, &MeshedPair)| {
+        let ratio = layout.ratios[layout.shaft_of_wheel[layout.wheels_of_mesh[number][0]]].value();
+        let turning = Turning {
+            pitches_per_revolution: f64::from(layout.gears[number].pinion_teeth) * ratio.abs(),
+            first_pitch: layout.phases[number],
+        };
+        let mesh = MeshOf {
+            gears: &scenario.named_gears(layout, number),
+            pair,
+            machine,
+            number,
+            // Flanks that may pull bear on the whole face.
+            closer_um: match contact {
+                Contact::Unilateral => pair.misalignment_um + pair.helix_slope_um.iter().sum::<f64>(),
+                Contact::Bilateral => 0.0,
+            },
+            contact,
+            turning,
+            sense: ratio.signum(),
+        };
+        let of_time = || points_of(time, scenario.is_steady(), &turning, pair);
+        mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))
+    };
+    pairs.iter().enumerate().map(mesh).collect()
+}
+
+/// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of
+/// the cycle, between which the tables are read.
+fn points_of(time: &TimeGrid, is_steady: bool, turning: &Turning, pair: &MeshedPair) -> NonZeroUsize {
+    let samples = time.samples_per_pinion_revolution as f64 / turning.pitches_per_revolution;
+    let is_whole = (samples.round() / samples - 1.0).abs() < 1e-12;
+    let is_each = is_whole && turning.first_pitch == 0.0 && is_steady;
+    let points = if is_each { samples.round() as usize } else { pair.cycle.points_per_pitch };
+    NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN)
+}
+
+/// The mesh, unless it can carry nothing, or has more pairs at once than a step looks at.
+fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
+    if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
+        return Err(ScenarioError::not_stiff(gears.foundation()));
+    }
+    if mesh.contact_ratio <= 0.0 {
+        let problem = "the tips' chamfers and the active profile's shortening leave no path of contact";
+        let help =
+            format!("lower {} or {}", gears.key("tip_chamfer_mm"), gears.key("active_profile_shortening"));
+        return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
+    }
+    if mesh.overlap == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
+        let keys = [gears.whole(), gears.key("pressure_angle_deg")];
+        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
+    }
+    let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
+    if mesh.classes.iter().any(meets) { Ok(mesh) } else { Err(ScenarioError::nothing_left()) }
+}
+
+/// What a mesh is made of.
+struct MeshOf<'a> {
+    gears: &'a NamedGears<'a>,
+    pair: &'a MeshedPair,
+    machine: &'a AssembledMachine,
+    /// Of the mesh in the machine.
+    number: usize,
+    /// (µm) By how much more the flanks close at one end of the face than at the other.
+    closer_um: f64,
+    contact: Contact,
+    turning: Turning,
+    /// 1 where the driving wheel turns about positive z, −1 where it turns the other way.
+    sense: f64,
+}
+
+impl MeshOf<'_> {
+    /// The mesh with its tables.
+    ///
+    /// # Errors
+    /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load, and a mesh that cannot carry any.
+    fn with_tables(&self, points_per_pitch: NonZeroUsize) -> Result<Mesh, ScenarioError> {
+        let &Self { gears, machine, number, closer_um, .. } = self;
+        let &MeshedPair { ref teeth, ref damaged, static_force_n, .. } = self.pair;
+        let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, damaged)?;
+        if closer_um != 0.0 && static_force_n <= 0.0 {
+            return Err(ScenarioError::no_load_along_the_face(gears.load()));
+        }
+        let width_m = gears.face_width_mm * 1e-3;
+        let face = || FaceSlope {
+            slope: closer_um * 1e-6 / width_m,
+            width_m,
+            tilt_rad_per_m: machine.modes.tilt_rad_per_nm(&machine.machine, number) * static_force_n,
+        };
+        let slices = if self.gap_varies_along_face() { gears.slices as usize } else { 1 };
+        let parameters = MeshParameters {
+            contact: self.contact,
+            turning: self.turning,
+            damping_ratio: machine.mesh_damping_ratio[number],
+            mesh_mass_kg: machine.mesh_mass_kg[number],
+            // Across the teeth, as it is measured; in the transverse section it is larger.
+            backlash_m: gears.normal_backlash_mm() * 1e-3 / gears.base_helix_angle_rad().cos(),
+            static_force_n,
+            face: (closer_um != 0.0).then(face),
+            overlap: self.sense * gears.hand.sign() * gears.overlap_ratio(),
+            face_width_m: width_m,
+            gaps_m: (0..slices)
+                .map(|slice| [slice, slice + 1].map(|edge| place_on_face(edge as f64, slices)))
+                .map(|ends| gears.mean_gap_mm(ends) * 1e-3)
+                .collect(),
+        };
+        let shape = TipShape {
+            chamfer_mm: gears.chamfer_mm(),
+            active_profile_shortening: match self.contact {
+                Contact::Unilateral => gears.active_profile_shortening,
+                Contact::Bilateral => 0.0,
+            },
+            relief: gears.flank_relief,
+        };
+        let tabulated =
+            |faces: &[Pairs]| checked(Mesh::new(faces, shape, sequence, points_per_pitch, parameters), gears);
+        if slices == 1 {
+            return tabulated(&[Pairs::new(teeth, damaged, gears.material, &gears.foundation)]);
+        }
+        let width_mm = gears.face_width_mm;
+        let of_slice = teeth.with_face_width(width_mm / slices as f64);
+        let damaged: Vec<Vec<DamagedTooth>> = (0..slices)
+            .map(|slice| [slice, slice + 1].map(|edge| width_mm * place_on_face(edge as f64, slices)))
+            .map(|ends_mm| damaged.iter().map(|tooth| tooth.slice(ends_mm, width_mm)).collect())
+            .collect();
+        let sound = Pairs::new(&of_slice, &[], gears.material, &gears.foundation);
+        tabulated(&damaged.iter().map(|damaged| sound.with_damaged(damaged)).collect::<Vec<_>>())
+    }
+
+    /// Whether the gap between two flanks differs along the face, so that its slices touch one after the other. A slope of spur wheels'
+    /// flanks and what is lost of their faces need no slices: see [`FaceSlope`] and [`Pairs`].
+    fn gap_varies_along_face(&self) -> bool {
+        let gears = self.gears;
+        let is_crowned = gears.lead_crowning_um > 0.0 || gears.end_relief.amount_um > 0.0;
+        let varies_along_contact_lines = || {
+            self.closer_um != 0.0
+                || gears.flank_relief.amount_um > 0.0
+                || self.pair.damaged.iter().any(DamagedTooth::varies_over_face)
+        };
+        is_crowned || gears.is_helical() && varies_along_contact_lines()
+    }
+}
