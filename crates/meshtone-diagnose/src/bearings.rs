@@ -261,7 +261,7 @@ mod tests {
             gearbox.bearings[0].defect = spall.into_iter().collect();
             gearbox.solver.settings.sampling_rate_hz = 25_600.0;
             gearbox.solver.settings.duration_s = Some(3.0);
-            let channels = meshtone::simulate_gearbox(&gearbox).unwrap().channels;
+            let channels = meshtone::simulate(&gearbox).unwrap().channels;
             let form = ScenarioForm::Gearbox(gearbox.clone());
             let train = GearTrain::of_form(&form).unwrap();
             let turning = TrainTurning::of_simulated(&form, channels.start_s, channels.len()).unwrap();
