@@ -15,6 +15,7 @@ from . import _core, _display, _progress
 from ._names import hint
 from ._warnings import typed, warn, warn_of_signal
 from .faults import in_words
+from .gearbox import Gearbox, GearboxSimulation, simulate_gearbox
 from .scenario import Scenario, native_scenario
 from .signal import Record, resample
 from .signal.indicators import INDICATORS
@@ -760,17 +761,21 @@ def _process(
     return Record(parts, teeth=teeth, name=channel)
 
 
-def simulate(scenario: Scenario) -> Simulation:
+@overload
+def simulate(scenario: Scenario) -> Simulation: ...
+@overload
+def simulate(scenario: Gearbox) -> GearboxSimulation: ...
+def simulate(scenario: Scenario | Gearbox) -> Simulation | GearboxSimulation:
     """Simulate a scenario. Each doubt about it is a :class:`~meshtone.MeshtoneWarning`.
 
     Parameters
     ----------
-    scenario : Scenario
+    scenario : Scenario or Gearbox
         What is simulated.
 
     Returns
     -------
-    Simulation
+    Simulation, or of a gearbox GearboxSimulation
 
     Raises
     ------
@@ -785,6 +790,8 @@ def simulate(scenario: Scenario) -> Simulation:
     >>> simulate(broken)
     <Simulation of 17/38 teeth, tooth-breakage: 95608 samples at 100640 S/s>
     """
+    if isinstance(scenario, Gearbox):
+        return simulate_gearbox(scenario)
     native = _core.simulate(native_scenario(scenario))
     warn(native.warnings, native.warning_codes)
     return Simulation(scenario, native)

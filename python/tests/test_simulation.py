@@ -135,7 +135,7 @@ def test_what_is_not_a_scenario() -> None:
         with pytest.raises(TypeError, match="a Scenario is needed, not 'healthy.toml'; Scenario.from_file"):
             call(name)
     with pytest.raises(TypeError, match="; simulate_many takes several"):
-        simulate([examples.healthy()])  # type: ignore[arg-type]
+        simulate([examples.healthy()])  # type: ignore[call-overload]
     with pytest.raises(ValueError, match="average_rate_hz = -1: must be more than 0"):
         meshtone.trace(examples.healthy(), average_rate_hz=-1)
 
