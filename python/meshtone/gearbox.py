@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _progress
 from ._gearbox_keys import (
     GearboxBearing,
     GearboxHousing,
@@ -182,6 +182,16 @@ class GearboxSimulation:
         samples = len(next(iter(self.channels.values())))
         return self.start_s + np.arange(samples) / self.sampling_rate_hz
 
+    @property
+    def scenario(self) -> Gearbox:
+        """What was simulated: :attr:`gearbox`, by the name that a simulation of a pair has for it."""
+        return self.gearbox
+
+    @property
+    def warning_codes(self) -> list[str]:
+        """What each of :attr:`warnings` is about, for programs to distinguish."""
+        return self._native.warning_codes
+
     def process(self, channel: str | None = None, *, sidebands: int | None = None) -> TrainRecord:
         """Take one of the signals to the averages and indicators of every wheel.
 
@@ -302,7 +312,11 @@ def simulate_gearbox(gearbox: Gearbox) -> GearboxSimulation:
 
 
 def simulate_gearboxes(
-    gearboxes: Iterable[Gearbox], *, on_error: Literal["raise", "return"] = "raise"
+    gearboxes: Iterable[Gearbox],
+    *,
+    on_error: Literal["raise", "return"] = "raise",
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], None] = False,
 ) -> list[Any]:
     """Simulate many gearboxes, in all cores. None is simulated a second time with half the step, as :func:`simulate_gearbox` does where the
     step is doubtful: the estimate of its error decides alone, whatever the number of gearboxes.
@@ -312,7 +326,12 @@ def simulate_gearboxes(
     gearboxes : iterable of Gearbox
         What is simulated.
     on_error : {'raise', 'return'}
-        What becomes of the error of a gearbox that cannot be simulated: it is raised, or it stands in the place of the simulation.
+        What becomes of the error of a gearbox that cannot be simulated: it is raised, and what has not begun is not simulated any more; or it
+        stands in the place of the simulation.
+    threads : int, optional
+        How many; all cores by default. Results do not depend on it.
+    progress : bool or callable, optional
+        True for a line on the terminal or a bar in a notebook; or called with the numbers of those that are finished and of all.
 
     Returns
     -------
@@ -325,9 +344,17 @@ def simulate_gearboxes(
         As :func:`simulate_gearbox`.
     TypeError
         Something that is no gearbox.
+    KeyboardInterrupt
+        Ctrl-C stops the simulations.
     """
     gearboxes = list(gearboxes)
-    results = _core.simulate_gearboxes([_checked(gearbox, f"gearboxes[{index}]") for index, gearbox in enumerate(gearboxes)])
+    # It is in a package that needs a gearbox itself.
+    from .signal._arguments import whole
+
+    native = [_checked(gearbox, f"gearboxes[{index}]") for index, gearbox in enumerate(gearboxes)]
+    ask = _progress.shown("simulations") if progress is True else (progress or None)
+    most = None if threads is None else whole("threads", threads, 1)
+    results = _core.simulate_gearboxes(native, most, on_error == "raise", ask)
     made: list[Union[GearboxSimulation, ValueError]] = []
     for gearbox, result in zip(gearboxes, results):
         if isinstance(result, Exception):

@@ -286,7 +286,7 @@ def native_scenario(scenario: Scenario) -> _core.Scenario:
     """The compiled module's scenario."""
     if not isinstance(scenario, Scenario):
         if type(scenario).__name__ == "Gearbox":
-            raise TypeError(f"a Scenario of one pair is needed, not {scenario!r}; simulate_gearbox and simulate_gearboxes take gearboxes")
+            raise TypeError(f"a Scenario of one pair is needed, not {scenario!r}; simulate and simulate_gearboxes take gearboxes")
         several = "; simulate_many takes several" if isinstance(scenario, (list, tuple)) else ""
         raise TypeError(f"a Scenario is needed, not {scenario!r}; Scenario.from_file reads one from a file{several}")
     return scenario._native

@@ -15,6 +15,7 @@ from . import _core, _display, _progress
 from ._names import hint
 from ._warnings import typed, warn, warn_of_signal
 from .faults import in_words
+from .gearbox import Gearbox, GearboxSimulation, simulate_gearbox
 from .scenario import Scenario, native_scenario
 from .signal import Record, resample
 from .signal.indicators import INDICATORS
@@ -760,17 +761,21 @@ def _process(
     return Record(parts, teeth=teeth, name=channel)
 
 
-def simulate(scenario: Scenario) -> Simulation:
+@overload
+def simulate(scenario: Scenario) -> Simulation: ...
+@overload
+def simulate(scenario: Gearbox) -> GearboxSimulation: ...
+def simulate(scenario: Scenario | Gearbox) -> Simulation | GearboxSimulation:
     """Simulate a scenario. Each doubt about it is a :class:`~meshtone.MeshtoneWarning`.
 
     Parameters
     ----------
-    scenario : Scenario
+    scenario : Scenario or Gearbox
         What is simulated.
 
     Returns
     -------
-    Simulation
+    Simulation, or of a gearbox GearboxSimulation
 
     Raises
     ------
@@ -785,6 +790,8 @@ def simulate(scenario: Scenario) -> Simulation:
     >>> simulate(broken)
     <Simulation of 17/38 teeth, tooth-breakage: 95608 samples at 100640 S/s>
     """
+    if isinstance(scenario, Gearbox):
+        return simulate_gearbox(scenario)
     native = _core.simulate(native_scenario(scenario))
     warn(native.warnings, native.warning_codes)
     return Simulation(scenario, native)
@@ -916,6 +923,7 @@ def simulate_many(
     results = _core.simulate_many(native, list(channels), most, raises, ask)
     if raises:
         _raise_first(results)
+    _warn_of_stepped_alone([result.pop("stepped_alone") for result in results if isinstance(result, dict)])
     made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
     _warn_of_many([result for result in made if isinstance(result, Signals)])
     if rate_hz is None:
@@ -929,6 +937,14 @@ def _raise_first(results: Sequence[dict[str, Any] | ValueError]) -> None:
     for index, result in enumerate(results):
         if isinstance(result, ValueError):
             raise ValueError(f"scenarios[{index}]: {result}") from result
+
+
+def _warn_of_stepped_alone(reasons: list[str | None]) -> None:
+    """One warning of all simulations of a batch that are not stepped side by side with others."""
+    alone = [reason for reason in reasons if reason is not None]
+    if len(reasons) > 1 and alone:
+        of = f"{len(alone)} of {len(reasons)} simulations"
+        warn([f"{of} were stepped alone, which takes several times as long as side by side: {alone[0]}"], ["stepped-alone"])
 
 
 def _warn_of_rate(rate_hz: float, scenarios: Sequence[Scenario]) -> None:

@@ -59,8 +59,12 @@ def test_is_kept_and_read_back() -> None:
 
 def test_batch_gives_the_same_as_alone() -> None:
     boxes = [gearbox(seed=seed, wheels=[{**wheel, "iso_class": 6} for wheel in gearbox().sections["wheel"]]) for seed in (1, 2)]
-    alone = [mt.simulate_gearbox(box) for box in boxes]
-    together = mt.simulate_gearboxes(boxes)
+    alone = [mt.simulate(box) for box in boxes]
+    reported: list[tuple[int, int]] = []
+    together = mt.simulate_gearboxes(boxes, threads=2, progress=lambda done, of: reported.append((done, of)))
+    assert reported[-1] == (2, 2) and [of.scenario for of in together] == boxes
+    with pytest.raises(ValueError, match="threads"):
+        mt.simulate_gearboxes(boxes, threads=0)
     for one, other in zip(alone, together):
         for name, values in one.channels.items():
             assert np.array_equal(values, other[name])
@@ -100,8 +104,8 @@ def test_mistakes_are_named() -> None:
         gearbox(bearings=[{"shaft": "input", "at": 0.0, "stiffnes_n_per_m": 1e8}])
     with pytest.raises(TypeError, match="must be a sequence of dictionaries"):
         gearbox(shafts={"name": "input"})
-    with pytest.raises(TypeError, match="simulate_gearbox and simulate_gearboxes take gearboxes"):
-        mt.simulate(gearbox())  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="simulate and simulate_gearboxes take gearboxes"):
+        mt.trace(gearbox())  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="is of a gearbox"):
         mt.Scenario.from_toml(mt.gearbox_template())
     with pytest.raises(ValueError, match="must be one of phm2009-spur, phm2009-helical, uconn, tecnalia"):

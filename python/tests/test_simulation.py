@@ -135,7 +135,7 @@ def test_what_is_not_a_scenario() -> None:
         with pytest.raises(TypeError, match="a Scenario is needed, not 'healthy.toml'; Scenario.from_file"):
             call(name)
     with pytest.raises(TypeError, match="; simulate_many takes several"):
-        simulate([examples.healthy()])  # type: ignore[arg-type]
+        simulate([examples.healthy()])  # type: ignore[call-overload]
     with pytest.raises(ValueError, match="average_rate_hz = -1: must be more than 0"):
         meshtone.trace(examples.healthy(), average_rate_hz=-1)
 
@@ -340,3 +340,14 @@ def test_what_is_not_installed_is_named_with_its_extra(missing: str, extra: str,
     program = f"import sys; sys.modules['{missing}'] = None\nimport meshtone\n{use}"
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", program], capture_output=True, text=True, check=False)
     assert f"ModuleNotFoundError: {missing} is not installed: pip install 'meshtone[{extra}]'" in done.stderr
+
+
+def test_a_batch_says_once_what_it_steps_alone() -> None:
+    healthy = examples.healthy().copy(sampling_rate_hz=2e4)
+    crowned = healthy.copy(lead_crowning_um=5.0)
+    with pytest.warns(meshtone.MeshtoneWarning, match="2 of 3 simulations were stepped alone.*slices") as caught:
+        results = simulate_many([crowned, healthy, crowned.copy(seed=2)])
+    told = [warning.message for warning in caught if isinstance(warning.message, meshtone.MeshtoneWarning)]
+    assert [warning.code for warning in told] == ["stepped-alone"]
+    # It is no doubt about the signals.
+    assert [result.warning_codes for result in results] == [[], [], []]

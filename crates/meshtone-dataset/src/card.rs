@@ -67,10 +67,10 @@ fn head(set: &Finished) -> String {
         ScenarioForm::Gearbox(_) => "gearboxes",
         _ => "pairs of wheels",
     };
-    let ([plan, scenario, ..], version) = (PlanFile::NAMES, env!("CARGO_PKG_VERSION"));
+    let ([plan, scenario, ..], made_by) = (PlanFile::NAMES, meshtone::made_by());
     format!(
-        "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made with \
-         Meshtone {version} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\
+        "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made from \
+         `{plan}` by {made_by}, by which the plan makes the same bytes again; the base scenario is `{scenario}`.\n\n\
          **Licence of the data: {}.** Cite as: {}.\n\n\
          ![Examples of each class, distributions of the keys, indicators by class]({})\n\n",
         about.licence,

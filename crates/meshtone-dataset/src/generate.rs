@@ -371,7 +371,7 @@ impl Run<'_> {
     ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
         let columns = shard::columns(self.plan);
         let summary_columns = SummaryColumns::new(&columns, self.shards);
-        let mut listing = Listing::new(self.to, self.plan.hash(), self.part);
+        let mut listing = Listing::new(self.to, self.plan.hash().to_owned(), self.part);
         let mut done = 0;
         let mut next = || {
             if self.control.cancelled.load(Ordering::Relaxed) {
@@ -405,7 +405,7 @@ impl Run<'_> {
         next: impl FnMut() -> Option<Item>,
     ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
         let records = self.shards.len(shard);
-        let metadata = ShardMetadata { plan: self.plan.hash(), records, failures: Vec::new() };
+        let metadata = ShardMetadata { plan: self.plan.hash().to_owned(), records, failures: Vec::new() };
         let content = &self.plan.content;
         let written = self.to.write(&self.shards.name(shard), |file: &mut File| {
             let mut hashing = Hashing::new(&mut *file);

@@ -313,7 +313,7 @@ mod tests {
         let start = processor_s();
         for number in 1..=64 {
             let part = Part { number, of: 64 };
-            let mut listing = Listing::new(&to, plan.hash(), part);
+            let mut listing = Listing::new(&to, plan.hash().to_owned(), part);
             let made = (0..shards).filter(|&shard| part.has(shard)).map(|shard| {
                 let name = all.name(shard);
                 let digest = Digest { bytes: 1000 + shard % 7, ..Digest::of(name.as_bytes()) };

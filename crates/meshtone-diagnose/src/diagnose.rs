@@ -226,7 +226,7 @@ fn place(
     }
     // Those that resemble the recording most show how far the burst is behind.
     let point = learned.outside.point(&row.values);
-    let near = learned.outside.nearest(&point, |other| learned.class_of[other] == class, 60);
+    let near = learned.outside.nearest(&point, &|other| learned.class_of[other] == class, 60);
     let behind = near.iter().filter_map(|&(_, other)| {
         let tooth = f64::from(learned.records[other].fault.as_ref()?.tooth) - 1.0;
         let pitches = learned.rows[other].burst_rev[wheel] * teeth - tooth;
@@ -304,7 +304,7 @@ impl<'a> WheelView<'a> {
     /// The simulations of a class that resemble the recording most, nearest first.
     fn nearest(&self, class: usize, count: usize) -> impl Iterator<Item = usize> {
         let nearest =
-            self.learned.outside.nearest(&self.point, |other| self.learned.class_of[other] == class, count);
+            self.learned.outside.nearest(&self.point, &|other| self.learned.class_of[other] == class, count);
         nearest.into_iter().map(|(_, record)| record)
     }
 

@@ -35,7 +35,7 @@ pub fn export(form: &str, scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> 
     };
     let text = |ending, media_type, text: String| Exported { ending, media_type, bytes: text.into_bytes() };
     match form {
-        "toml" => Ok(text("toml", "application/toml", scenario.to_toml())),
+        "toml" => Ok(text("toml", "application/toml", meshtone::written_out(&scenario.to_toml()))),
         "python" => Ok(text("py", "text/x-python", python(scenario))),
         "svg" => {
             let simulation = simulated()?;

@@ -43,7 +43,10 @@ impl WheelLines {
         Self { separation, lines }
     }
 
-    /// The last order that is looked at, of a wheel of so many teeth.
+    /// The last order that is looked at.
+    ///
+    /// # Arguments
+    /// * `teeth` - of the wheel
     pub fn most(teeth: usize) -> usize {
         MESH_ORDERS * teeth + teeth / 2
     }
@@ -92,12 +95,18 @@ impl WheelLines {
     }
 }
 
-/// What is regular in the average of a wheel of so many teeth, alone on its shaft.
+/// What is regular in the average of a wheel that is alone on its shaft.
+///
+/// # Arguments
+/// * `teeth` - of the wheel
 pub fn separation(teeth: u32) -> SeparationSettings {
     SeparationSettings { mean: MeanPart::Removed, ..SeparationSettings::new(teeth as usize) }
 }
 
-/// What is regular in the average of each wheel of a train.
+/// What is regular in the average of each wheel of a train, in its order.
+///
+/// # Arguments
+/// * `train` - the machine by its tooth counts
 pub fn separations(train: &GearTrain) -> Vec<SeparationSettings> {
     let of = |wheel: usize| train.separation(wheel, &separation(train.wheels[wheel].teeth));
     (0..train.wheels.len()).map(of).collect()

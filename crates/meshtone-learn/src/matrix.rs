@@ -96,6 +96,9 @@ impl RandomFeatures {
     }
 
     /// The features of some rows, a column each: random ones, linear ones, and 1.
+    ///
+    /// # Arguments
+    /// * `rows` - standardised features of signals
     pub fn of(&self, rows: &[Vec<f64>]) -> DMatrix<f64> {
         let (width, count) = self.directions.shape();
         let linear = DMatrix::from_fn(width, rows.len(), |feature, row| rows[row][feature]);

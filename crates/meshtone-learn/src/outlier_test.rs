@@ -68,6 +68,8 @@ impl Ranking {
 }
 
 impl OutlierTest {
+    /// The test against some simulations.
+    ///
     /// # Arguments
     /// * `rows` - features of the simulations
     /// * `units` - the pair of wheels of each
@@ -121,6 +123,9 @@ impl OutlierTest {
     }
 
     /// Coordinates of a signal among the simulations.
+    ///
+    /// # Arguments
+    /// * `row` - features of the signal
     pub fn point(&self, row: &[f64]) -> Vec<f64> {
         let standard = self.standard.within(row, FARTHEST);
         let components = || self.components.column_iter();
@@ -137,7 +142,8 @@ impl OutlierTest {
     }
 
     fn distance(&self, point: &[f64], but: Option<u64>) -> f64 {
-        let nearest = self.nearest(point, |row| self.counts[row] && Some(self.units[row]) != but, NEIGHBOURS);
+        let nearest =
+            self.nearest(point, &|row| self.counts[row] && Some(self.units[row]) != but, NEIGHBOURS);
         nearest.iter().map(|(distance, _)| distance).sum::<f64>() / nearest.len().max(1) as f64
     }
 
@@ -154,8 +160,13 @@ impl OutlierTest {
         self.by_distance.p_value(distance).min(self.by_feature.p_value(beyond))
     }
 
-    /// The nearest simulations among some, with their distances, nearest first.
-    pub fn nearest(&self, point: &[f64], among: impl Fn(usize) -> bool, count: usize) -> Vec<(f64, usize)> {
+    /// The nearest simulations among some: the distance and the number of each, nearest first.
+    ///
+    /// # Arguments
+    /// * `point` - coordinates of a signal
+    /// * `among` - whether a simulation counts, by its number
+    /// * `count` - how many at most
+    pub fn nearest(&self, point: &[f64], among: &dyn Fn(usize) -> bool, count: usize) -> Vec<(f64, usize)> {
         let mut nearest: Vec<(f64, usize)> = Vec::with_capacity(count + 1);
         for (row, other) in self.points.iter().enumerate().filter(|(row, _)| among(*row)) {
             let square: f64 = other.iter().zip(point).map(|(a, b)| (a - b) * (a - b)).sum();

@@ -55,7 +55,10 @@ impl Softmax {
         Ok(Self { parameters, classes: count })
     }
 
-    /// The probabilities of all classes.
+    /// (-) The probabilities of all classes.
+    ///
+    /// # Arguments
+    /// * `scores` - of a signal, one for each class
     pub fn probabilities(&self, scores: &[f64]) -> Vec<f64> {
         probabilities(&self.parameters, self.classes, scores)
     }

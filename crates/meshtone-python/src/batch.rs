@@ -27,29 +27,57 @@ pub fn simulate_many<'py>(
     let sensors = listed(scenarios.iter().map(|scenario| &scenario.0));
     let kept = channels.iter().map(|name| channel(name, &sensors)).collect::<PyResult<Vec<_>>>()?;
     let scenarios: Vec<_> = scenarios.iter().map(|scenario| scenario.0.clone()).collect();
-    let mut pool = rayon::ThreadPoolBuilder::new();
-    match threads {
-        Some(0) => return Err(value_error("threads = 0: must be at least 1")),
-        Some(threads) => pool = pool.num_threads(threads),
-        None => {}
-    }
-    let pool = pool.build().map_err(|error| PyOSError::new_err(error.to_string()))?;
-    let all = scenarios.len() as u64;
-    let results = interruptible(py, progress, all, |cancelled, report| {
-        let progress = |count| report(count as u64, all);
-        let control = Control { progress: &progress, cancelled, ..Control::default() };
-        let mut results = Vec::with_capacity(scenarios.len());
-        pool.install(|| {
-            simulate(scenarios, &KeepObserved::new(kept), &control, |_, result| {
-                if stop_at_error && result.is_err() {
+    let batch = Batch { all: scenarios.len(), threads, stop_at_error };
+    let results = batch.run(py, progress, |control, take| {
+        simulate(scenarios, &KeepObserved::new(kept), control, take);
+    })?;
+    results.into_iter().map(|result| signals(py, &channels, result)).collect()
+}
+
+/// Many simulations that a caller waits for.
+pub struct Batch {
+    /// Number of simulations.
+    pub all: usize,
+    /// Number of threads; none: of all cores.
+    pub threads: Option<usize>,
+    /// Whether what has not begun is left out after the first error.
+    pub stop_at_error: bool,
+}
+
+impl Batch {
+    /// Runs the simulations in threads of their own, while Python can interrupt them.
+    ///
+    /// # Arguments
+    /// * `progress` - called with the numbers of those that are finished and of all
+    /// * `simulate` - simulates all; given what controls them, and who takes the results in their order
+    pub fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        progress: Option<Bound<'_, PyAny>>,
+        simulate: impl FnOnce(&Control, &mut (dyn FnMut(usize, Result<T, meshtone::Error>) + Send)) + Send,
+    ) -> PyResult<Vec<Result<T, meshtone::Error>>> {
+        let mut pool = rayon::ThreadPoolBuilder::new();
+        match self.threads {
+            Some(0) => return Err(value_error("threads = 0: must be at least 1")),
+            Some(threads) => pool = pool.num_threads(threads),
+            None => {}
+        }
+        let pool = pool.build().map_err(|error| PyOSError::new_err(error.to_string()))?;
+        let all = self.all as u64;
+        interruptible(py, progress, all, |cancelled, report| {
+            let progress = |count| report(count as u64, all);
+            let control = Control { progress: &progress, cancelled, ..Control::default() };
+            let mut results = Vec::with_capacity(self.all);
+            let mut take = |_: usize, result: Result<T, meshtone::Error>| {
+                if self.stop_at_error && result.is_err() {
                     cancelled.store(true, Ordering::Relaxed);
                 }
                 results.push(result);
-            });
-        });
-        results
-    })?;
-    results.into_iter().map(|result| signals(py, &channels, result)).collect()
+            };
+            pool.install(|| simulate(&control, &mut take));
+            results
+        })
+    }
 }
 
 /// The sensors of some scenarios, each name once.
@@ -74,15 +102,16 @@ fn signals<'py>(
     names: &[String],
     result: Result<ObservedSignals, meshtone::Error>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (signals, warnings) = match result {
-        Ok(observed) => (observed.signals, observed.observation.warnings),
+    let (signals, observation) = match result {
+        Ok(observed) => (observed.signals, observed.observation),
         Err(error) => return Ok(simulation_error(&error).into_value(py).into_bound(py).into_any()),
     };
     let all = PyDict::new(py);
     all.set_item("sampling_rate_hz", signals.sampling_rate_hz)?;
     all.set_item("start_s", signals.start_s)?;
-    let (messages, codes): (Vec<_>, Vec<_>) =
-        warnings.iter().map(|warning| (warning.to_string(), warning.kind.code())).unzip();
+    all.set_item("stepped_alone", observation.stepped_alone.map(|reason| reason.to_string()))?;
+    let warnings = observation.warnings.iter().map(|warning| (warning.to_string(), warning.kind.code()));
+    let (messages, codes): (Vec<_>, Vec<_>) = warnings.unzip();
     all.set_item("warnings", messages)?;
     all.set_item("warning_codes", codes)?;
     for (name, channel) in names.iter().zip(signals.channels) {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use meshtone::StepJudgement;
-use meshtone::batch::{Control, simulate_many_gearboxes};
+use meshtone::batch::simulate_many_gearboxes;
 use meshtone::scenario::{self, GearboxRig, ScenarioForm, ScenarioWarning};
 use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::array::{field, named_arrays};
+use crate::batch::Batch;
 use crate::error::{read_error, scenario_error, simulation_error, value_error};
 use crate::signals_file::write;
 use crate::value::table;
@@ -65,7 +66,7 @@ impl Gearbox {
 
     /// The text of a scenario file.
     fn to_toml(&self) -> String {
-        self.0.to_toml()
+        meshtone::written_out(&self.0.to_toml())
     }
 
     /// The sections with all their keys, defaults included.
@@ -181,18 +182,22 @@ pub fn simulate_gearbox(py: Python<'_>, gearbox: &Gearbox) -> PyResult<GearboxSi
     GearboxSimulation::new(py, simulation, warnings)
 }
 
-/// Simulates gearboxes, in all threads, none a second time; the error of one stands in its place.
+/// Simulates gearboxes, none a second time; the error of one stands in its place. Where the first error is that of all, what has not begun is
+/// left out then.
 #[pyfunction]
 pub fn simulate_gearboxes<'py>(
     py: Python<'py>,
     gearboxes: Vec<PyRef<'py, Gearbox>>,
+    threads: Option<usize>,
+    stop_at_error: bool,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Py<PyAny>>> {
     let gearboxes: Vec<scenario::Gearbox> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
     let estimated = |_: usize, of| with_warnings(of, StepJudgement::Estimated);
-    let mut results = Vec::with_capacity(gearboxes.len());
-    py.detach(|| {
-        simulate_many_gearboxes(gearboxes, &estimated, &Control::default(), |_, result| results.push(result))
-    });
+    let batch = Batch { all: gearboxes.len(), threads, stop_at_error };
+    let results = batch.run(py, progress, |control, take| {
+        simulate_many_gearboxes(gearboxes, &estimated, control, take);
+    })?;
     let made = results.into_iter().map(|result| match result {
         Ok((simulation, warnings)) => {
             Ok(Py::new(py, GearboxSimulation::new(py, simulation, warnings)?)?.into_any())

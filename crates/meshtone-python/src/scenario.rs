@@ -64,7 +64,7 @@ impl Scenario {
 
     /// The text of a scenario file.
     fn to_toml(&self) -> String {
-        self.0.to_toml()
+        meshtone::written_out(&self.0.to_toml())
     }
 
     /// The sections with all their keys, defaults included, but for the profile errors.

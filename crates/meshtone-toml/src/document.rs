@@ -34,6 +34,29 @@ impl<'i> TomlDocument<'i> {
         TomlTable::new(self.text, String::new(), None, Some(&self.root))
     }
 
+    /// The text without layout and comments: whole numbers are numbers like others, and keys are in the order of their names. Texts that
+    /// state the same keys and values have the same canonical one.
+    ///
+    /// # Arguments
+    /// * `but` - top-level keys to leave out
+    ///
+    /// ```
+    /// use meshtone_toml::TomlDocument;
+    ///
+    /// let canonical = |text| TomlDocument::parse(text).map(|document| document.canonical(&["title"]));
+    /// assert_eq!(canonical("b = 2 # two\na = [1.0]\ntitle = 'x'")?, canonical("a = [\n1,\n]\nb = 2.0")?);
+    /// assert_ne!(canonical("seed = 18446744073709551615")?, canonical("seed = 18446744073709551614")?);
+    /// # Ok::<(), meshtone_toml::TomlError>(())
+    /// ```
+    pub fn canonical(&self, but: &[&str]) -> String {
+        let mut keys: Vec<_> =
+            self.root.iter().filter(|(key, _)| !but.contains(&key.get_ref().as_ref())).collect();
+        keys.sort_by(|a, b| a.0.get_ref().cmp(b.0.get_ref()));
+        keys.into_iter()
+            .map(|(key, value)| format!("{:?} = {}\n", key.get_ref(), canonical(value.get_ref())))
+            .collect()
+    }
+
     /// The 1-based line of a key; where the text leaves the key out, that of the nearest table
     /// around it; none where it has neither.
     ///
@@ -116,6 +139,40 @@ fn with_decimal_point(value: &str) -> Option<String> {
     let (whole, part) = number.split_once(',')?;
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     (digits(whole.trim_start_matches(['-', '+'])) && digits(part)).then(|| format!("{whole}.{part}"))
+}
+
+/// A value on one line, as [`TomlDocument::canonical`] has it.
+fn canonical(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("{text:?}"),
+        DeValue::Integer(integer) => {
+            let number = i128::from_str_radix(integer.as_str(), integer.radix());
+            // A seed may have more digits than a float.
+            match number {
+                Ok(number) if (number as f64) as i128 == number => format!("{:?}", number as f64),
+                Ok(number) => number.to_string(),
+                Err(_) => integer.as_str().to_owned(),
+            }
+        }
+        DeValue::Float(float) => match float.as_str().parse::<f64>() {
+            Ok(number) => format!("{number:?}"),
+            Err(_) => float.as_str().to_owned(),
+        },
+        DeValue::Boolean(value) => value.to_string(),
+        DeValue::Datetime(value) => value.to_string(),
+        DeValue::Array(values) => {
+            let values: Vec<String> = values.iter().map(|value| canonical(value.get_ref())).collect();
+            format!("[{}]", values.join(", "))
+        }
+        DeValue::Table(table) => {
+            let mut keys: Vec<_> = table.iter().collect();
+            keys.sort_by(|a, b| a.0.get_ref().cmp(b.0.get_ref()));
+            let of_key = |(key, value): (&Spanned<std::borrow::Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+                format!("{:?} = {}", key.get_ref(), canonical(value.get_ref()))
+            };
+            format!("{{{}}}", keys.into_iter().map(of_key).collect::<Vec<_>>().join(", "))
+        }
+    }
 }
 
 /// The 1-based line of a byte position.

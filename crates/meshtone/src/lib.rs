@@ -71,7 +71,24 @@ mod stiffness;
 
 /// Version of the numbers that a scenario gives. It grows with every change of the simulation that changes them, whatever the version of
 /// the program: what is kept of an older one, as a data set that is continued or a set of reference simulations, is made anew.
-pub const PHYSICS_VERSION: u32 = 3;
+pub const PHYSICS_VERSION: u32 = 4;
+
+/// The program and the numbers by which a file was made, as a data card states them.
+///
+/// ```
+/// assert!(meshtone::made_by().starts_with("Meshtone 0."));
+/// ```
+pub fn made_by() -> String {
+    format!("Meshtone {}, physics version {PHYSICS_VERSION}", env!("CARGO_PKG_VERSION"))
+}
+
+/// The text of a scenario file that is written out: what made it stands in its first line.
+///
+/// # Arguments
+/// * `toml` - the scenario, as [`scenario::ScenarioForm::to_toml`] has it
+pub fn written_out(toml: &str) -> String {
+    format!("# Made by {}.\n{toml}", made_by())
+}
 
 pub use error::Error;
 pub use simd::InstructionSet;

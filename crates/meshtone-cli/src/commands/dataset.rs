@@ -274,8 +274,11 @@ impl Scenario {
         let label = &plan.content.classes[record.class].label;
         let split = plan.content.splits.names()[record.split];
         let mut head = format!(
-            "# Record {} of {name}: \"{label}\", severity {}, unit {}, {split}.\n",
-            self.record, record.severity, record.unit
+            "# Record {} of {name}: \"{label}\", severity {}, unit {}, {split}. Made by {}.\n",
+            self.record,
+            record.severity,
+            record.unit,
+            meshtone::made_by()
         );
         if scenario.fault_count() > 0 {
             head += "# Teeth count from where the first two meet; in the data set, fault_tooth counts from the record's start.\n";

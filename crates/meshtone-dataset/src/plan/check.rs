@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use meshtone::batch::SteppedAlone;
 use meshtone::scenario::{ScenarioError, ScenarioForm, ScenarioWarning};
 use meshtone::signal::FEWEST_REVOLUTIONS;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
@@ -12,6 +13,7 @@ use super::{
 use crate::draw::{DrawnRecord, NOISE_KEYS, Sampler, is_of_plan};
 use crate::record::Turning;
 use crate::shard::FailedRecord;
+use crate::words::counted;
 
 /// Largest number of records that are drawn to check a plan.
 const DRAWN: u64 = 5_000;
@@ -23,6 +25,8 @@ const TRIED: usize = 24;
 const FEWEST_OF_A_RUN: u64 = 3;
 /// Largest number of values of choices and grids that are tried.
 const MOST_VALUES: usize = 2_000;
+/// Largest number of records whose stages are made to see whether they are simulated one by one.
+const LOOKED_AT: u64 = 16;
 
 /// Checks that rules, units and splits agree.
 pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
@@ -191,13 +195,34 @@ impl Plan {
         (0..self.records().min(DRAWN)).filter_map(cannot).collect()
     }
 
-    /// Warnings about what the plan asks for: runs to failure of only one or two records, and values of units or mountings that no
-    /// record of the training has.
+    /// Warnings about what the plan asks for: runs to failure of only one or two records, values of units or mountings that no
+    /// record of the training has, and pairs that are simulated one by one.
     pub fn warnings(&self) -> Vec<String> {
         let units = self.content.units;
         let short = self.content.classes.iter().filter_map(|class| short_runs(class, units));
-        short.chain(unlearned(self).unwrap_or_default()).collect()
+        short.chain(unlearned(self).unwrap_or_default()).chain(stepped_alone(self)).collect()
     }
+}
+
+/// A warning about pairs that a batch steps alone, where it steps most side by side.
+///
+/// The first records tell, the whole stages of each of which are made: twice as many as a plan has classes, and no more than some.
+fn stepped_alone(plan: &Plan) -> Option<String> {
+    let sampler = Sampler::new(&plan.content).ok()?;
+    let reason = |index: u64| {
+        let ScenarioForm::Pair(pair) = sampler.scenario(&sampler.record(index).ok()?).ok()? else {
+            return None;
+        };
+        meshtone::stages(&pair).ok()?.stepped_alone()
+    };
+    let looked_at = plan.records().min(2 * plan.content.classes.len() as u64).min(LOOKED_AT);
+    let reasons: Vec<SteppedAlone> = (0..looked_at).filter_map(reason).collect();
+    let first = reasons.first()?;
+    Some(format!(
+        "of the first {}, {} cannot be simulated side by side with others, which takes several times as long: {first}",
+        counted(looked_at, "record"),
+        reasons.len()
+    ))
 }
 
 /// A warning about runs to failure that are too short to show a damage grow.

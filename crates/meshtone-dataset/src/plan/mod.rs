@@ -20,7 +20,7 @@ use std::path::PathBuf;
 
 use meshtone::scenario::ScenarioForm;
 use meshtone_io::experiment::Tuned;
-use meshtone_toml::TomlError;
+use meshtone_toml::{TomlDocument, TomlError};
 
 pub use background::Background;
 pub(crate) use class::kinds;
@@ -69,6 +69,8 @@ pub struct Plan {
     pub files: Vec<PlanFile>,
     /// All files that were read.
     pub sources: Vec<PathBuf>,
+    /// See [`Self::hash`].
+    identity: String,
 }
 
 /// A text that belongs to a plan.
@@ -98,17 +100,13 @@ impl PlanFile {
         "background",
     ];
 
-    /// The text as it is compared: TOML without layout, comments and the keys that change no record.
+    /// The text as it is compared.
     fn canonical(&self) -> String {
-        match self.text.parse::<toml::Table>() {
-            Ok(mut table) => {
-                if self.name == Self::NAMES[0] {
-                    Self::BESIDE_CONTENT.iter().for_each(|key| drop(table.remove(*key)));
-                }
-                canonical(table.into()).to_string()
-            }
-            // The samples of a background are no TOML.
-            Err(_) => self.text.clone(),
+        let but = if self.name == Self::NAMES[0] { &Self::BESIDE_CONTENT[..] } else { &[] };
+        match TomlDocument::parse(&self.text) {
+            Ok(document) if self.name != Self::NAMES[3] => document.canonical(but),
+            // Samples of a background are compared as they are written.
+            _ => self.text.clone(),
         }
     }
 }
@@ -205,29 +203,25 @@ impl Plan {
         self.content.classes.iter().map(|class| class.count).sum()
     }
 
-    /// The plan's identity, in hexadecimal digits: the SHA-256 of its canonical TOML and that of its files, and of the versions of the program and of
-    /// its numbers.
+    /// The plan's identity, in hexadecimal digits: the SHA-256 of its canonical TOML and that of its files as they were read, and of the versions
+    /// of the program, of its numbers and of what it makes of a plan.
     ///
     /// Plans with the same keys and values have the same hash, whatever their layout, comments and description. A default that is written out is
-    /// another key. Another version of the program may compute other numbers, and therefore gives another hash.
-    pub fn hash(&self) -> String {
-        let versions = format!("{} {}", env!("CARGO_PKG_VERSION"), meshtone::PHYSICS_VERSION);
-        let files = self.files.iter().map(|file| format!("\n{}\n{}", file.name, file.canonical()));
-        Digest::of((versions + &files.collect::<String>()).as_bytes()).sha256.to_string()
+    /// another key.
+    pub fn hash(&self) -> &str {
+        &self.identity
     }
 }
 
-/// A value of TOML as it is compared: whole numbers are numbers like others, and keys are in the order of their names.
-fn canonical(value: toml::Value) -> toml::Value {
-    match value {
-        // A seed may have more digits than a float.
-        toml::Value::Integer(number) if (number as f64) as i64 == number => toml::Value::Float(number as f64),
-        toml::Value::Array(values) => toml::Value::Array(values.into_iter().map(canonical).collect()),
-        toml::Value::Table(table) => {
-            table.into_iter().map(|(key, value)| (key, canonical(value))).collect::<toml::Table>().into()
-        }
-        other => other,
-    }
+/// Version of what the program makes of a plan. It grows with every change of a default, or of what a key of a plan stands for, so that a data
+/// set is not continued with other records.
+const PLAN_VERSION: u32 = 1;
+
+/// The identity of a plan that consists of some files.
+fn identity(files: &[PlanFile]) -> String {
+    let versions = format!("{} {} {PLAN_VERSION}", env!("CARGO_PKG_VERSION"), meshtone::PHYSICS_VERSION);
+    let files = files.iter().map(|file| format!("\n{}\n{}", file.name, file.canonical()));
+    Digest::of((versions + &files.collect::<String>()).as_bytes()).sha256.to_string()
 }
 
 /// A commented plan: every key with its meaning.
@@ -283,7 +277,7 @@ mod tests {
 
     #[test]
     fn a_plan_is_identified_by_its_keys_and_values() {
-        let hash = |text: String| Plan::read_text(text, Path::new("plan.toml")).unwrap().hash();
+        let hash = |text: String| Plan::read_text(text, Path::new("plan.toml")).unwrap().hash().to_owned();
         let plan = template().to_owned();
         let first = hash(plan.clone());
         assert_eq!(hash(plan.replace("\n[", "\n\n# Another layout.\n[")), first);
@@ -293,9 +287,18 @@ mod tests {
             assert!(plan.contains(there), "{there}");
             assert_ne!(hash(plan.replace(there, instead)), first, "{there}");
         }
-        let seeds = [9_007_199_254_740_993u64, 9_007_199_254_740_992];
-        let [one, other] =
-            seeds.map(|seed| hash(format!("seed = {seed}\n{}", plan.replace("seed =", "# seed ="))));
-        assert_ne!(one, other);
+        let first_keys = "records = 600\nunits = 20\n";
+        let reordered = "units = 20\nrecords = 600\n";
+        let short = |keys: &str, rest: &str| {
+            format!("{keys}{rest}{}", plan[plan.find("[scenario").unwrap()..].to_owned())
+        };
+        assert_eq!(hash(short(first_keys, "")), hash(short(reordered, "")));
+        // More digits than a float has, and more than a signed number.
+        for [one, other] in [[9_007_199_254_740_993, 9_007_199_254_740_992], [u64::MAX, u64::MAX - 1]] {
+            let seeded =
+                |seed: u64, comment: &str| hash(short(first_keys, &format!("seed = {seed}{comment}\n")));
+            assert_ne!(seeded(one, ""), seeded(other, ""));
+            assert_eq!(seeded(one, ""), seeded(one, " # the same"));
+        }
     }
 }

@@ -363,6 +363,14 @@ fn doubtful_plans_are_warned_of() {
         "{unlearned:?}"
     );
     assert_eq!(teeth("38"), [""; 0]);
+    // A batch steps a face that is cut into slices alone.
+    let crowned =
+        plan(&FAST.replacen("face_width_mm = 15.0", "face_width_mm = 15.0\nlead_crowning_um = 5.0", 1))
+            .warnings();
+    assert!(
+        crowned.len() == 1 && crowned[0].contains("side by side") && crowned[0].contains("slices"),
+        "{crowned:?}"
+    );
 }
 
 #[test]

@@ -153,7 +153,7 @@ impl GearboxState {
         );
         let mut said = json!({
             "detail": if self.options.detail == Detail::Full { "full" } else { "coarse" },
-            "toml": self.gearbox.to_toml(),
+            "toml": meshtone::written_out(&self.gearbox.to_toml()),
             "scenario": gearbox_sections_json(&self.gearbox),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
             "figures": self.figures(force, &tones),

@@ -183,7 +183,10 @@ fn wheel_signals(
 ) -> (usize, impl Fn(WheelName) -> WheelSignals + Send) {
     let Simulation { stages, channels, .. } = simulation;
     let named = channels.signals.iter().position(|signal| name == Some(&signal.name));
-    let leading = || channels.signals.iter().position(|signal| Some(signal) == channels.leading());
+    let leading = || {
+        let source = channels.leading()?.source;
+        channels.signals.iter().position(|signal| signal.source == source)
+    };
     let number = named.or_else(leading).unwrap_or(0);
     let signal = &channels.signals[number].values;
     let shafts = SimulatedShafts::of_stages(stages, channels.start_s, channels.len());

@@ -191,9 +191,12 @@ fn severity_healthy_and_files_are_answered() {
     // It is remembered.
     let (said, _) = server.post("answer", &asked).packet();
     assert_eq!(said["healthy"], healthy["healthy"]);
-    for (form, start) in
-        [("toml", &b"model"[..]), ("python", b"import meshtone"), ("svg", b"<"), ("parquet", b"PAR1")]
-    {
+    for (form, start) in [
+        ("toml", &b"# Made by Meshtone"[..]),
+        ("python", b"import meshtone"),
+        ("svg", b"<"),
+        ("parquet", b"PAR1"),
+    ] {
         let file = server.post(&format!("export/{form}"), &asked);
         assert!(file.body.starts_with(start), "{form}: {}", file.status);
         assert!(file.head.contains("attachment; filename="), "{form}");

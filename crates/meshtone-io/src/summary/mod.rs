@@ -41,6 +41,8 @@ pub struct Summary {
     pub format_version: u32,
     /// Version of Meshtone.
     pub meshtone_version: &'static str,
+    /// Version of the numbers that a scenario gives: [`meshtone::PHYSICS_VERSION`].
+    pub physics_version: u32,
     /// Identity of the run, which all its files carry.
     #[serde(serialize_with = "json::run")]
     pub run: RunIdentity,
@@ -282,6 +284,7 @@ impl Summary {
         Self {
             format_version: FORMAT_VERSION,
             meshtone_version: env!("CARGO_PKG_VERSION"),
+            physics_version: meshtone::PHYSICS_VERSION,
             run,
             sampling_rate_hz: channels.sampling_rate_hz,
             samples: channels.len(),

@@ -61,7 +61,7 @@ const LONGEST_NAME: usize = 28;
 pub(super) fn leading(channels: &Channels) -> (String, &[f64]) {
     let signal = channels.leading();
     let quantity = match signal.filter(|signal| matches!(signal.source, SignalSource::Sensor(_))) {
-        Some(sensor) => match sensor.name.trim_end_matches("_g") {
+        Some(sensor) => match sensor.name.strip_suffix("_g").unwrap_or(&sensor.name) {
             name if name.len() > LONGEST_NAME => "first sensor".to_owned(),
             name => name.replace('_', " "),
         },

@@ -50,34 +50,48 @@ pub(super) fn simulate_group<K: Keep>(
 /// Fewest simulations that are faster side by side than one after the other.
 const FEWEST_LANES: usize = 2;
 
-/// Integrates the simulations of a group: side by side, or where they are too few or solved otherwise, one after the other.
+/// A simulation of a group: its place in it, its stages, its outputs, and who takes them.
+type Placed<'a> = (usize, &'a Stages, &'a [Output], &'a mut dyn Recorder);
+
+/// Integrates the simulations of a group: side by side those that can be, and the others one after the other, as all where they are too
+/// few.
 fn integrate_ready<R: Recorder>(
     ready: &mut [Ready<R>],
     instructions: InstructionSet,
 ) -> Vec<Result<(), Error>> {
-    let (mut simulations, mut recorders) = (Vec::with_capacity(LANES), Vec::<&mut dyn Recorder>::new());
-    for Ready { stages, outputs, recorder, .. } in ready {
-        simulations.push((&*stages, outputs.as_slice()));
-        recorders.push(recorder);
+    let count = ready.len();
+    let (mut together, mut problems, mut alone) = (Vec::<Placed>::new(), Vec::new(), Vec::<Placed>::new());
+    for (place, Ready { stages, outputs, recorder, .. }) in ready.iter_mut().enumerate() {
+        let (stages, outputs) = (&*stages, outputs.as_slice());
+        let lane = (count >= FEWEST_LANES).then(|| stages.lane(outputs).ok()).flatten();
+        let side = if lane.is_some() { &mut together } else { &mut alone };
+        side.push((place, stages, outputs, recorder));
+        problems.extend(lane);
     }
-    if simulations.len() >= FEWEST_LANES {
-        // A lane that is left over repeats the last simulation.
-        let last = simulations.len() - 1;
-        let lanes = (0..LANES).filter_map(|lane| {
-            let (stages, outputs) = simulations[lane.min(last)];
-            stages.lane(outputs)
-        });
-        if let Ok(problems) = <[Problem; LANES]>::try_from(lanes.collect::<Vec<_>>()) {
-            let results = integrate_side_by_side(problems, instructions, recorders);
-            let each = results.into_iter().zip(simulations);
-            return each
-                .map(|(result, (stages, _))| result.map_err(|error| stages.divergence(error)))
-                .collect();
+    let mut results = Vec::with_capacity(count);
+    // A lane that is left over repeats the last simulation.
+    if let Some((_, stages, outputs, _)) = together.last().filter(|_| together.len() >= FEWEST_LANES) {
+        let (stages, outputs) = (*stages, *outputs);
+        problems.extend((problems.len()..LANES).filter_map(|_| stages.lane(outputs).ok()));
+    }
+    match <[Problem; LANES]>::try_from(problems) {
+        Ok(problems) => {
+            let (placed, recorders): (Vec<_>, Vec<_>) = (together.into_iter())
+                .map(|(place, stages, _, recorder)| ((place, stages), recorder))
+                .unzip();
+            let each = integrate_side_by_side(problems, instructions, recorders).into_iter().zip(placed);
+            results.extend(
+                each.map(|(result, (place, stages))| {
+                    (place, result.map_err(|error| stages.divergence(error)))
+                }),
+            );
         }
+        Err(_) => alone.extend(together),
     }
-    let each = simulations.into_iter().zip(recorders);
-    let alone = |((stages, outputs), recorder): ((&Stages, &[Output]), &mut dyn Recorder)| {
-        stages.integrate_with(instructions, outputs, stages.time.first_kept_sample, recorder)
-    };
-    each.map(alone).collect()
+    results.extend(alone.into_iter().map(|(place, stages, outputs, recorder)| {
+        let first_sample = stages.time.first_kept_sample;
+        (place, stages.integrate_with(instructions, outputs, first_sample, recorder))
+    }));
+    results.sort_by_key(|(place, _)| *place);
+    results.into_iter().map(|(_, result)| result).collect()
 }

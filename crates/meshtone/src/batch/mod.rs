@@ -12,7 +12,7 @@ mod plan;
 mod run;
 
 pub use crate::machine::Axis;
-pub use crate::solver::{Block, Output, Recorder};
+pub use crate::solver::{Block, Output, Recorder, SteppedAlone};
 pub use keep::{Keep, KeepChannels, KeepSimulation, SignalRecorder, Signals};
 pub use observed::{KeepObserved, Observation, ObservedRecorder, ObservedSignals};
 pub use run::{Control, simulate_many, simulate_many_gearboxes};

@@ -5,7 +5,7 @@ use crate::error::{ScenarioError, ScenarioWarning};
 use crate::scenario::Scenario;
 use crate::sensor::Channel;
 use crate::simulate::Stages;
-use crate::solver::{Block, Output, Recorder};
+use crate::solver::{Block, Output, Recorder, SteppedAlone};
 use crate::warnings::{Observer, StepJudgement};
 
 /// Keeps some of the channels, as [`KeepChannels`] does, and the warnings that a user of [`crate::simulate`] gets.
@@ -51,6 +51,8 @@ pub struct ObservedSignals {
 pub struct Observation {
     /// What deserves attention: of the scenario and its stages, then of the signals.
     pub warnings: Vec<ScenarioWarning>,
+    /// Why the simulation cannot be stepped side by side with others, so that it takes several times as long; none where it can.
+    pub stepped_alone: Option<SteppedAlone>,
     /// (-) Part of the kept time in which no teeth touch.
     pub apart_fraction: f64,
     /// (-) Part of the kept time in which the mesh force is negative.
@@ -79,6 +81,7 @@ impl ObservedRecorder {
         let observer = &self.observer;
         Observation {
             warnings: [stages.warnings(), stages.warnings_of_signals(observer, judgement)].concat(),
+            stepped_alone: stages.stepped_alone(),
             apart_fraction: observer.apart_fraction(),
             tension_fraction: observer.tension_fraction(),
         }

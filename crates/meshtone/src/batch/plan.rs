@@ -11,19 +11,29 @@ struct Cost {
     alone: bool,
     /// Whether motor or brake vary: the step is compiled apart for it, and costs too much to mix with the rest.
     varies: bool,
+    /// Whether its face is probably cut into slices, so that it is simulated alone: it would leave a lane of the rest idle.
+    is_sliced: bool,
+    /// Whether it has more modes than spur wheels alone: helical ones, or a force that turns with a shaft.
+    has_more_modes: bool,
     /// Whether some damage moves the forces of its pairs.
     moves_forces: bool,
 }
 
 impl Cost {
     fn of(scenario: &Scenario) -> Self {
-        let operation = &scenario.operation;
+        let Scenario { gears, rig, operation, .. } = scenario;
         let steady = operation.speed_profile_hz.is_none()
             && operation.torque_profile_nm.is_none()
             && operation.speed_fluctuation_hz == 0.0
             && operation.torque_fluctuation_nm == 0.0;
         Self {
             alone: !scenario.model.has_meshes(),
+            is_sliced: gears.lead_crowning_um > 0.0
+                || gears.end_relief.amount_um > 0.0
+                || gears.is_helical() && (gears.flank_relief.amount_um > 0.0 || !scenario.faults.is_empty()),
+            has_more_modes: gears.is_helical()
+                || rig.pinion_unbalance.g_mm > 0.0
+                || rig.gear_unbalance.g_mm > 0.0,
             varies: !steady || scenario.solver.initial_velocity.is_some(),
             moves_forces: scenario.faults.iter().any(|fault| fault.damage.moves_forces()),
         }
@@ -31,7 +41,7 @@ impl Cost {
 
     /// Whether simulations of both costs may be in one group.
     fn goes_with(self, other: Self) -> bool {
-        !self.alone && !other.alone && self.varies == other.varies
+        !self.alone && !other.alone && self.varies == other.varies && self.is_sliced == other.is_sliced
     }
 }
 

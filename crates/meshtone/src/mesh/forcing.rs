@@ -36,7 +36,7 @@ pub struct ExternalBlock {
     pub speed_deviation_rad_per_s: Vec<f64>,
     /// Of each force that turns with a shaft: the cosine and the sine of the shaft's angle, times the square of its speed where the force
     /// grows with it.
-    pub(crate) turning: Vec<Vec<[f64; 2]>>,
+    pub(crate) turning: Vec<[Vec<f64>; 2]>,
 }
 
 impl ExternalBlock {
@@ -101,8 +101,7 @@ pub struct Forcing<'a> {
     nominal_torque_nm: f64,
     meshes: Vec<MeshForcing<'a>>,
     bearings: Vec<BearingTurning>,
-    /// Rotation of the shaft of each turning force over that of the motor, and whether the force grows with the square of its speed.
-    turning_forces: Vec<(f64, bool)>,
+    turning_forces: Vec<TurningShaft>,
     /// (rev) Rotation of the motor at the samples of a block, where a mesh or a bearing needs it.
     revolutions: Vec<f64>,
 }
@@ -166,14 +165,17 @@ impl<'a> Forcing<'a> {
     /// # Arguments
     /// * `turning_forces` - of the machine
     pub(crate) fn with_turning_forces(self, turning_forces: &[TurningForce]) -> Self {
-        let turning_forces =
-            turning_forces.iter().map(|force| (force.speed_ratio, force.of_square_speed)).collect();
-        Self { turning_forces, ..self }
+        let turning_forces = turning_forces.iter().map(|force| TurningShaft {
+            speed_ratio: force.speed_ratio,
+            of_square_speed: force.of_square_speed,
+            turned: Default::default(),
+        });
+        Self { turning_forces: turning_forces.collect(), ..self }
     }
 
-    /// Number of springs of each mesh.
-    pub(crate) fn springs(&self) -> impl Iterator<Item = usize> {
-        self.meshes.iter().map(|forcing| forcing.mesh.springs())
+    /// The meshes.
+    pub(crate) fn meshes(&self) -> impl Iterator<Item = &Mesh> + Clone {
+        self.meshes.iter().map(|forcing| forcing.mesh)
     }
 
     /// Sets a block to the next `samples` samples.
@@ -185,7 +187,8 @@ impl<'a> Forcing<'a> {
         self.revolutions.clear();
         if !self.is_steady {
             self.follow_motion(samples, &mut block.external);
-        } else if self.follows_shafts() || self.meshes.iter().any(|mesh| mesh.reading != Reading::EveryPoint)
+        } else if !self.bearings.is_empty()
+            || self.meshes.iter().any(|mesh| mesh.reading != Reading::EveryPoint)
         {
             let turned = |k: usize| (self.sample + k) as f64 / self.samples_per_revolution;
             self.revolutions.extend((0..samples).map(turned));
@@ -198,25 +201,33 @@ impl<'a> Forcing<'a> {
         for (bearing, elements) in self.bearings.iter_mut().zip(&mut block.bearings) {
             bearing.next_block(&self.revolutions, elements);
         }
-        self.turn_with_shafts(&mut block.external);
+        self.turn_with_shafts(samples, &mut block.external);
         self.sample += samples;
     }
 
-    /// Whether bearings or turning forces need the angle of the motor.
-    fn follows_shafts(&self) -> bool {
-        !self.bearings.is_empty() || !self.turning_forces.is_empty()
-    }
-
-    fn turn_with_shafts(&self, block: &mut ExternalBlock) {
-        block.turning.resize_with(self.turning_forces.len(), Vec::new);
-        for (values, &(speed_ratio, of_square_speed)) in block.turning.iter_mut().zip(&self.turning_forces) {
-            values.clear();
-            for (k, motor) in self.revolutions.iter().enumerate() {
-                let deviation_rad_per_s = block.speed_deviation_rad_per_s.get(k).copied().unwrap_or(0.0);
-                let speed_rad_per_s = speed_ratio * (TAU * self.nominal_speed_hz + deviation_rad_per_s);
-                let factor = if of_square_speed { speed_rad_per_s * speed_rad_per_s } else { 1.0 };
-                let (sin, cos) = (TAU * speed_ratio * motor).sin_cos();
-                values.push([factor * cos, factor * sin]);
+    /// Sets the angles of all shafts with a turning force. While the motor is steady only that of a block's first sample is computed: the
+    /// shaft turns on from it as in every block before, so that a sample takes four products and no sine.
+    fn turn_with_shafts(&mut self, samples: usize, block: &mut ExternalBlock) {
+        block.turning.resize_with(self.turning_forces.len(), Default::default);
+        for ([cos, sin], shaft) in block.turning.iter_mut().zip(&mut self.turning_forces) {
+            cos.clear();
+            sin.clear();
+            if self.is_steady {
+                shaft.turn_evenly(samples, 1.0 / self.samples_per_revolution);
+                let factor = shaft.factor(TAU * self.nominal_speed_hz);
+                let first = shaft.direction(self.sample as f64 / self.samples_per_revolution);
+                let [cos_0, sin_0] = first.map(|direction| factor * direction);
+                let [cos_k, sin_k] = shaft.turned.each_ref().map(|turned| &turned[..samples]);
+                cos.extend(cos_k.iter().zip(sin_k).map(|(cos_k, sin_k)| cos_0 * cos_k - sin_0 * sin_k));
+                sin.extend(cos_k.iter().zip(sin_k).map(|(cos_k, sin_k)| sin_0 * cos_k + cos_0 * sin_k));
+                continue;
+            }
+            for (motor, deviation_rad_per_s) in self.revolutions.iter().zip(&block.speed_deviation_rad_per_s)
+            {
+                let factor = shaft.factor(TAU * self.nominal_speed_hz + deviation_rad_per_s);
+                let direction = shaft.direction(*motor);
+                cos.push(factor * direction[0]);
+                sin.push(factor * direction[1]);
             }
         }
     }
@@ -231,6 +242,48 @@ impl<'a> Forcing<'a> {
             block.motor_lead_rad.push(TAU * (motion.revolutions - rotation));
             block.torque_deviation_nm.push(motion.torque_nm - self.nominal_torque_nm);
             block.speed_deviation_rad_per_s.push(TAU * (motion.speed_hz - self.nominal_speed_hz));
+        }
+    }
+}
+
+/// A shaft with which a force turns.
+struct TurningShaft {
+    /// (-) Its rotation over that of the motor.
+    speed_ratio: f64,
+    /// Whether the force grows with the square of its speed.
+    of_square_speed: bool,
+    /// The cosine and the sine of what it has turned since the first sample of a block, where the motor is steady.
+    turned: [Vec<f64>; 2],
+}
+
+impl TurningShaft {
+    /// The cosine and the sine of its angle.
+    ///
+    /// # Arguments
+    /// * `motor_revolutions` - (rev) rotation of the motor
+    fn direction(&self, motor_revolutions: f64) -> [f64; 2] {
+        let (sin, cos) = (TAU * self.speed_ratio * motor_revolutions).sin_cos();
+        [cos, sin]
+    }
+
+    /// (rad²/s², or 1) What the force is per unit.
+    ///
+    /// # Arguments
+    /// * `motor_rad_per_s` - (rad/s) speed of the motor
+    fn factor(&self, motor_rad_per_s: f64) -> f64 {
+        if self.of_square_speed { (self.speed_ratio * motor_rad_per_s).powi(2) } else { 1.0 }
+    }
+
+    /// Tabulates what it turns from the first sample of a block to the others, up to the longest block so far.
+    ///
+    /// # Arguments
+    /// * `samples` - number of samples of the block
+    /// * `step_revolutions` - (rev) rotation of the motor in a sample
+    fn turn_evenly(&mut self, samples: usize, step_revolutions: f64) {
+        for k in self.turned[0].len()..samples {
+            let [cos, sin] = self.direction(k as f64 * step_revolutions);
+            self.turned[0].push(cos);
+            self.turned[1].push(sin);
         }
     }
 }

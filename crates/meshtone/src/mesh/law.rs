@@ -12,7 +12,7 @@
 //! Where two teeth meet at speed the force begins when `x + τ ẋ` crosses 0, which is earlier than x does by τ, a few
 //! microseconds: so the force has no jump, and the equation always a solution.
 
-use super::forcing::{PAIRS, PairsBlock};
+use super::forcing::PairsBlock;
 use crate::simd::{Instructions, Lanes};
 
 /// How two flanks touch.
@@ -42,30 +42,34 @@ impl Contact {
     }
 }
 
-/// The pairs of a mesh at one sample.
+/// The pairs of a mesh at one sample, of which `P` are looked at together. Aligned so that eight numbers side by side never straddle two
+/// cache lines.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PairsSample<const L: usize> {
+#[repr(align(64))]
+pub(crate) struct PairsSample<const L: usize, const P: usize> {
     /// (N/m) Stiffness of each pair; 0 where there is none.
-    pub(crate) stiffness: [Lanes<L>; PAIRS],
+    pub(crate) stiffness: [Lanes<L>; P],
     /// (m) What deviations, damage and separation add to the deflection, with the damping's lead: `o + τ ȯ`, `o = e − S`.
-    pub(crate) offset: [Lanes<L>; PAIRS],
+    pub(crate) offset: [Lanes<L>; P],
     /// (m) Where along the face the load acts.
     pub(crate) face_centre: Lanes<L>,
 }
 
-impl<const L: usize> PairsSample<L> {
+impl<const L: usize, const P: usize> PairsSample<L, P> {
     /// No pairs.
-    pub(crate) const NONE: Self = Self {
-        stiffness: [Lanes([0.0; L]); PAIRS],
-        offset: [Lanes([0.0; L]); PAIRS],
-        face_centre: Lanes([0.0; L]),
-    };
+    pub(crate) const NONE: Self =
+        Self { stiffness: [Lanes([0.0; L]); P], offset: [Lanes([0.0; L]); P], face_centre: Lanes([0.0; L]) };
 
-    /// Lines the blocks of `L` simulations up, sample by sample: all lanes of a number lie in one line of the cache.
+    /// Lines the blocks of `L` simulations up, sample by sample: all lanes of a number lie in one line of the cache. Places that a
+    /// simulation has not got hold no pair.
     pub(crate) fn line_up(samples: &mut [Self], blocks: &[&PairsBlock; L]) {
-        for place in 0..PAIRS {
-            line_up(samples, blocks, |pairs| &pairs.stiffness[place], |sample| &mut sample.stiffness[place]);
-            line_up(samples, blocks, |pairs| &pairs.offset[place], |sample| &mut sample.offset[place]);
+        let none = vec![0.0; samples.len()];
+        for place in 0..P {
+            let part = |of: fn(&PairsBlock) -> &Vec<Vec<f64>>| {
+                blocks.map(|pairs| of(pairs).get(place).map_or(&none[..], Vec::as_slice))
+            };
+            line_up(samples, part(|pairs| &pairs.stiffness), |sample| &mut sample.stiffness[place]);
+            line_up(samples, part(|pairs| &pairs.offset), |sample| &mut sample.offset[place]);
         }
         for (lane, pairs) in blocks.iter().enumerate() {
             for (sample, z) in samples.iter_mut().zip(&pairs.face_centre) {
@@ -78,15 +82,18 @@ impl<const L: usize> PairsSample<L> {
 /// Samples that are lined up at once: so many numbers fill a line of the cache.
 const CHUNK: usize = 8;
 
-/// Lines one part of the blocks up.
+/// Lines one number of `L` simulations up, sample by sample.
+///
+/// # Arguments
+/// * `samples` - are given the number
+/// * `parts` - the number of each simulation at these samples
+/// * `set` - the place of the number in a sample
 #[inline(always)]
-fn line_up<'a, const L: usize>(
-    samples: &mut [PairsSample<L>],
-    blocks: &[&'a PairsBlock; L],
-    of: impl Fn(&'a PairsBlock) -> &'a Vec<f64>,
-    set: impl Fn(&mut PairsSample<L>) -> &mut Lanes<L>,
+pub(crate) fn line_up<T, const L: usize>(
+    samples: &mut [T],
+    parts: [&[f64]; L],
+    set: impl Fn(&mut T) -> &mut Lanes<L>,
 ) {
-    let parts: [&[f64]; L] = std::array::from_fn(|lane| of(blocks[lane]).as_slice());
     let length = parts.iter().map(|part| part.len()).min().unwrap_or(0).min(samples.len());
     let (chunks, rest) = samples[..length].as_chunks_mut::<CHUNK>();
     let whole = chunks.len() * CHUNK;
@@ -258,12 +265,12 @@ impl<const L: usize> LawLanes<L> {
     /// * `sample` - the pairs at the step's end
     /// * `touching` - the pairs that touched at the step's start; set to those that do at its end
     #[inline(always)]
-    pub(crate) fn force<I: Instructions, const R: usize>(
+    pub(crate) fn force<I: Instructions, const R: usize, const P: usize>(
         &self,
         simd: I,
         free: &[Lanes<L>; R],
         compliance: &[[Lanes<L>; R]; R],
-        sample: &PairsSample<L>,
+        sample: &PairsSample<L, P>,
         touching: &mut Touching<L>,
     ) -> [Lanes<L>; R] {
         let (z, gamma) = (sample.face_centre, compliance);
@@ -315,16 +322,17 @@ impl<const L: usize> LawLanes<L> {
     /// * `sample`, `compliance`, `own`, `load` - the pairs, Γ, a and b
     /// * `touching` - the pairs that may touch; set to those that do
     #[inline(always)]
-    fn solve<I: Instructions>(
+    fn solve<I: Instructions, const P: usize>(
         &self,
         simd: I,
-        sample: &PairsSample<L>,
+        sample: &PairsSample<L, P>,
         [compliance, own, load]: [Lanes<L>; 3],
         touching: &mut Touching<L>,
     ) -> (Lanes<L>, [Lanes<L>; 2]) {
         let mut sums = sums_over(simd, sample, touching);
         let mut deflection = load;
-        for _ in 0..MOST_ITERATIONS {
+        // Pairs can leave one after the other, and one iteration sees that none does.
+        for _ in 0..P + 2 {
             let share = Lanes::splat(1.0).div(simd, compliance.mul_add(simd, sums[0], own));
             deflection = compliance.negative_mul_add(simd, sums[1], load).mul(simd, share);
             let now = self.touching_at(simd, sample, deflection);
@@ -344,14 +352,14 @@ impl<const L: usize> LawLanes<L> {
 
     /// The pairs that touch at a deflection.
     #[inline(always)]
-    fn touching_at<I: Instructions>(
+    fn touching_at<I: Instructions, const P: usize>(
         &self,
         simd: I,
-        sample: &PairsSample<L>,
+        sample: &PairsSample<L, P>,
         deflection: Lanes<L>,
     ) -> Touching<L> {
         let mut touching = [0; L];
-        for n in 0..PAIRS {
+        for n in 0..P {
             let penetration = deflection.add(simd, sample.offset[n]);
             for l in 0..L {
                 touching[l] |= usize::from(penetration.0[l] > self.lets_go.0[l]) << n;
@@ -361,22 +369,19 @@ impl<const L: usize> LawLanes<L> {
     }
 }
 
-/// Most iterations of a step: pairs that can leave, one after the other, and one that sees that none does.
-const MOST_ITERATIONS: usize = PAIRS + 2;
-
 /// Which pairs touch, of each simulation: a bit for each place.
 pub(crate) type Touching<const L: usize> = [usize; L];
 
 /// Sums over pairs: of k, and of k times the offset.
 #[inline(always)]
-fn sums_over<I: Instructions, const L: usize>(
+fn sums_over<I: Instructions, const L: usize, const P: usize>(
     simd: I,
-    sample: &PairsSample<L>,
+    sample: &PairsSample<L, P>,
     touching: &Touching<L>,
 ) -> [Lanes<L>; 2] {
     let zero = Lanes::splat(0.0);
     let mut sums = [zero; 2];
-    for n in 0..PAIRS {
+    for n in 0..P {
         let mut stiffness = zero;
         for l in 0..L {
             // All bits or none: unlike a choice it compiles to no branch.
@@ -419,6 +424,7 @@ pub(crate) fn deflection_at_rest(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::PAIRS;
     use crate::simd::{InstructionSet, Task};
 
     /// Flanks that push, without damping and with coast flanks out of reach.
@@ -529,7 +535,7 @@ mod tests {
         assert!((least + 0.51).abs() < 2e-4 && (most - 0.01).abs() < 2e-4, "{least} {most}");
     }
 
-    fn sample(stiffness: [f64; PAIRS], offset: [f64; PAIRS]) -> PairsSample<1> {
+    fn sample(stiffness: [f64; PAIRS], offset: [f64; PAIRS]) -> PairsSample<1, PAIRS> {
         PairsSample {
             stiffness: stiffness.map(Lanes::splat),
             offset: offset.map(Lanes::splat),
@@ -565,7 +571,7 @@ mod tests {
             law: &'a LawLanes<1>,
             free: f64,
             compliance: f64,
-            pairs: &'a PairsSample<1>,
+            pairs: &'a PairsSample<1, PAIRS>,
         }
         impl Task for Solve<'_> {
             type Output = f64;

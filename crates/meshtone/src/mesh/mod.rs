@@ -26,7 +26,7 @@ pub use forcing::{Forcing, Turning};
 pub(crate) use gear_mesh::MeshParameters;
 pub use gear_mesh::{Mesh, PairTable};
 pub use law::{Contact, MeshLaw};
-pub(crate) use law::{LawLanes, PairsSample, SpringSamples, Springs, Touching, deflection_at_rest};
+pub(crate) use law::{LawLanes, PairsSample, SpringSamples, Springs, Touching, deflection_at_rest, line_up};
 pub use pair::{LoadedPair, Pairs};
 pub use path_table::PairState;
 pub(crate) use path_table::TipShape;

@@ -13,7 +13,7 @@ use crate::solver::{Block, Recorder};
 pub enum SignalSource {
     /// (g) What a sensor shows.
     Sensor(usize),
-    /// (g) Acceleration of the support of the pinion's shaft or, where supports do not move, the sum of both wheels'.
+    /// (g) Acceleration of the support of the pinion's shaft or, along the shafts and where supports do not move, the sum of both wheels'.
     Supports(SensorDirection),
     /// (N) Force of a mesh along its line of action.
     MeshForce(usize),
@@ -63,7 +63,7 @@ impl NamedSignal {
     pub fn new(name: impl Into<Cow<'static, str>>, source: SignalSource) -> Self {
         let meaning = match source {
             SignalSource::Sensor(_) => Self::MEANING_OF_SENSOR,
-            SignalSource::Supports(_) => "acceleration of the supports, over 9.81 m/s²",
+            SignalSource::Supports(_) => "acceleration of the supports or the wheels, over 9.81 m/s²",
             SignalSource::MeshForce(_) => {
                 "force along the line of action of the mesh; negative where coast flanks touch"
             }

@@ -68,21 +68,27 @@ impl<const L: usize> Lanes<L> {
     }
 }
 
-/// `base + Σ a_n b_n` in four interleaved chains: a quarter of the time until the sum is there.
-#[inline(always)]
-pub(crate) fn dot<I: Instructions, const L: usize, const N: usize>(
-    simd: I,
-    base: Lanes<L>,
-    a: &[Lanes<L>; N],
-    b: &[Lanes<L>; N],
-) -> Lanes<L> {
-    let mut chains = [Lanes::splat(0.0); CHAINS];
-    for n in 0..N {
-        let chain = &mut chains[n % CHAINS];
-        *chain = if n < CHAINS { a[n].mul(simd, b[n]) } else { a[n].mul_add(simd, b[n], *chain) };
-    }
-    let [first, second, third, fourth] = chains;
-    first.add(simd, third).add(simd, second.add(simd, fourth)).add(simd, base)
-}
+/// `Σ a_n b_n` in four interleaved chains: a quarter of the time until the sum is there.
+#[derive(Clone, Copy)]
+pub(crate) struct Chains<const L: usize>([Lanes<L>; CHAINS]);
 
 const CHAINS: usize = 4;
+
+impl<const L: usize> Chains<L> {
+    /// No products.
+    pub(crate) const NONE: Self = Self([Lanes([0.0; L]); CHAINS]);
+
+    /// Adds product number `n`, from 0 on in order.
+    #[inline(always)]
+    pub(crate) fn add<I: Instructions>(&mut self, simd: I, n: usize, a: Lanes<L>, b: Lanes<L>) {
+        let chain = &mut self.0[n % CHAINS];
+        *chain = if n < CHAINS { a.mul(simd, b) } else { a.mul_add(simd, b, *chain) };
+    }
+
+    /// The sum, on top of a base.
+    #[inline(always)]
+    pub(crate) fn total<I: Instructions>(&self, simd: I, base: Lanes<L>) -> Lanes<L> {
+        let [first, second, third, fourth] = self.0;
+        first.add(simd, third).add(simd, second.add(simd, fourth)).add(simd, base)
+    }
+}

@@ -5,4 +5,4 @@ mod lanes;
 
 pub use instruction_set::InstructionSet;
 pub(crate) use instruction_set::{Instructions, Task};
-pub(crate) use lanes::{Lanes, dot};
+pub(crate) use lanes::{Chains, Lanes};

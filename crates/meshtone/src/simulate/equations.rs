@@ -11,7 +11,7 @@ use crate::mesh::{Forcing, Mesh, MeshCurve, PairDeviations};
 use crate::published::{self, Published};
 use crate::scenario::Scenario;
 use crate::simd::InstructionSet;
-use crate::solver::{ModalMachine, Output, Problem, Recorder, integrate};
+use crate::solver::{ModalMachine, Output, Problem, Recorder, SteppedAlone, integrate};
 use crate::trace_fields::Trace;
 
 /// The equations of motion.
@@ -213,15 +213,25 @@ impl Stages {
         result.map_err(|diverged| self.divergence(diverged))
     }
 
-    /// The simulation as it is solved side by side with others; none where it is solved alone: under the published model,
-    /// and machines of several meshes.
+    /// The simulation as it is solved side by side with others.
     ///
     /// # Arguments
     /// * `outputs` - what is read off the solution, of the kept samples
-    pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Option<Problem<'a>> {
-        let (machine, modal) = self.machine()?;
+    ///
+    /// # Errors
+    /// It is solved alone, with the reason.
+    pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Result<Problem<'a>, SteppedAlone> {
+        let (machine, modal) = self.machine().ok_or(SteppedAlone::PublishedModel)?;
         let problem = self.problem(machine, modal, outputs, self.time.first_kept_sample);
-        problem.fits_a_lane().then_some(problem)
+        problem.stepped_alone().map_or(Ok(problem), Err)
+    }
+
+    /// Why a batch steps the simulation alone, which takes several times as long; none where it steps it side by side with others.
+    pub fn stepped_alone(&self) -> Option<SteppedAlone> {
+        match self.machine() {
+            Some((_, modal)) => SteppedAlone::of(modal, self.meshes.iter()),
+            None => Some(SteppedAlone::PublishedModel),
+        }
     }
 
     /// The simulation as the solver sees it.

@@ -415,7 +415,7 @@ impl State {
             }
         }
         for ([cos, sin], values) in constants.turning.iter().zip(&sample.block.external.turning) {
-            let [of_cos, of_sin] = values[sample.k].map(Lanes::splat);
+            let [of_cos, of_sin] = values.each_ref().map(|values| Lanes::splat(values[sample.k]));
             for ((LotState([.., acceleration]), cos), sin) in self.lots.iter_mut().zip(cos).zip(sin) {
                 *acceleration = cos.0.mul_add(simd, of_cos, sin.0.mul_add(simd, of_sin, *acceleration));
             }
@@ -430,7 +430,8 @@ impl State {
             }
             let sum = of_displacement.add(simd, of_velocity);
             let turned = column.of_turning.iter().zip(&sample.block.external.turning);
-            let turned: f64 = turned.map(|(of, values)| dot(of, &values[sample.k])).sum();
+            let turned: f64 =
+                turned.map(|(of, [cos, sin])| of[0] * cos[sample.k] + of[1] * sin[sample.k]).sum();
             *free = column.static_deflection + dot(&column.of_external, &self.external) + turned + total(sum);
         }
         constants.contact_forces(sample, self);

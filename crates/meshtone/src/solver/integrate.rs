@@ -1,5 +1,7 @@
 //! Integration of one simulation, or of several side by side.
 
+use std::fmt;
+
 use super::coupled;
 use super::history::{BLOCK, History, OutputTerms};
 use super::lane_outputs::LaneOutputs;
@@ -7,9 +9,12 @@ use super::modal::ModalMachine;
 use super::outputs::{EXTERNALS, Output};
 use super::prepare::Prepared;
 use super::repetition::Repeating;
-use super::step::{Coefficients, MOST_MODES, MOST_STEADY_MODES, Size, State, StepBlock, law_lanes};
+use super::step::{
+    Coefficients, MOST_MODES, MOST_PAIRS, MOST_STEADY_MODES, MOST_TURNING_MODES, MOST_UNDRIVEN_MODES,
+    MOVED_IN_PLANE, Size, State, StepBlock, TurningSample, law_lanes,
+};
 use crate::bearing::RollingBearing;
-use crate::mesh::{Forcing, ForcingBlock, MeshLaw, PAIRS, PairsSample};
+use crate::mesh::{Forcing, ForcingBlock, Mesh, MeshLaw, PAIRS, PairsSample, line_up};
 use crate::operation::TimeGrid;
 use crate::simd::{InstructionSet, Lanes};
 
@@ -107,17 +112,65 @@ pub struct Problem<'a> {
     pub first_sample: usize,
 }
 
+/// Why a simulation is stepped alone, and not side by side with others of a batch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum SteppedAlone {
+    /// The published model has a solver of its own.
+    PublishedModel,
+    /// The machine has several meshes, whose deflections are solved together.
+    SeveralMeshes,
+    /// The machine has rolling bearings, whose stretches are solved together with the mesh.
+    RollingBearings,
+    /// The face is cut into slices, each of which is a spring.
+    SlicedFace,
+    /// More pairs of helical teeth overlap than a step side by side looks at.
+    ManyPairs,
+    /// The machine has more modes than a step side by side, or such that follow as at rest.
+    ManyModes,
+}
+
+impl SteppedAlone {
+    /// The reason of a machine around some meshes; none where it is stepped side by side with others.
+    pub(crate) fn of<'m>(
+        machine: &ModalMachine,
+        mut meshes: impl Iterator<Item = &'m Mesh> + Clone,
+    ) -> Option<Self> {
+        if machine.lines.len() != 1 {
+            Some(Self::SeveralMeshes)
+        } else if !machine.bearings.is_empty() {
+            Some(Self::RollingBearings)
+        } else if meshes.clone().any(|mesh| mesh.slices() > 1) {
+            Some(Self::SlicedFace)
+        } else if meshes.any(|mesh| mesh.springs() > MOST_PAIRS) {
+            Some(Self::ManyPairs)
+        } else if machine.modes() > MOST_MODES || !machine.residual.is_empty() {
+            Some(Self::ManyModes)
+        } else {
+            None
+        }
+    }
+}
+
+impl fmt::Display for SteppedAlone {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PublishedModel => formatter.write_str("the published model has a solver of its own"),
+            Self::SeveralMeshes => formatter.write_str("it has several meshes"),
+            Self::RollingBearings => formatter.write_str("it has rolling bearings"),
+            Self::SlicedFace => formatter.write_str("its face is cut into slices"),
+            Self::ManyPairs => write!(formatter, "more than {MOST_PAIRS} pairs of its teeth overlap"),
+            Self::ManyModes => {
+                write!(formatter, "it has more than {MOST_MODES} modes, or such that follow as at rest")
+            }
+        }
+    }
+}
+
 impl Problem<'_> {
-    /// Whether the steps that are compiled for simulations side by side hold it: one mesh of as many springs as spur wheels have pairs, no
-    /// rolling bearings or unbalance, and no more modes than the largest has, all of which are stepped.
-    pub(crate) fn fits_a_lane(&self) -> bool {
-        let machine = &self.machine;
-        machine.lines.len() == 1
-            && machine.bearings.is_empty()
-            && machine.turning_forces.is_empty()
-            && self.forcing.springs().eq([PAIRS])
-            && machine.modes() <= MOST_MODES
-            && machine.residual.is_empty()
+    /// Why the steps that are compiled for simulations side by side do not hold it; none where they do.
+    pub(crate) fn stepped_alone(&self) -> Option<SteppedAlone> {
+        SteppedAlone::of(&self.machine, self.forcing.meshes())
     }
 }
 
@@ -149,11 +202,10 @@ pub fn integrate(
     recorder: &mut dyn Recorder,
 ) -> Result<(), Diverged> {
     let recorder = &mut Repeating::new(&problem, recorder);
-    if !problem.fits_a_lane() {
+    if problem.stepped_alone().is_some() {
         return coupled::integrate(problem, instructions, recorder);
     }
-    let size = Size::of(&problem);
-    let [result] = of_size(size, [problem], instructions, vec![recorder]);
+    let [result] = of_size([problem], instructions, vec![recorder]);
     result
 }
 
@@ -170,23 +222,31 @@ pub fn integrate_side_by_side(
     instructions: InstructionSet,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; LANES] {
-    let size = problems.each_ref().map(Size::of).into_iter().max().unwrap_or(Size::General);
     let mut repeating: Vec<Repeating> =
         problems.iter().zip(recorders).map(|(problem, recorder)| Repeating::new(problem, recorder)).collect();
     let recorders = repeating.iter_mut().map(|recorder| recorder as &mut dyn Recorder).collect();
-    of_size(size, problems, instructions, recorders)
+    of_size(problems, instructions, recorders)
 }
 
 fn of_size<const L: usize>(
-    size: Size,
     problems: [Problem; L],
     instructions: InstructionSet,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
-    match size {
-        Size::Flat => run::<L, 8, 1>(problems, instructions, recorders),
-        Size::Tilting => run::<L, MOST_STEADY_MODES, 2>(problems, instructions, recorders),
-        Size::General => run::<L, MOST_MODES, 2>(problems, instructions, recorders),
+    match Size::of(&problems) {
+        Size::Flat => run::<L, 8, 8, 1, PAIRS>(problems, instructions, recorders),
+        Size::Tilting => {
+            const N: usize = MOST_UNDRIVEN_MODES;
+            run::<L, N, N, 2, PAIRS>(problems, instructions, recorders)
+        }
+        Size::Turning => {
+            run::<L, MOST_TURNING_MODES, MOVED_IN_PLANE, 1, PAIRS>(problems, instructions, recorders)
+        }
+        Size::Steady => {
+            const N: usize = MOST_STEADY_MODES;
+            run::<L, N, N, 2, PAIRS>(problems, instructions, recorders)
+        }
+        Size::General => run::<L, MOST_MODES, MOST_MODES, 2, MOST_PAIRS>(problems, instructions, recorders),
     }
 }
 
@@ -194,13 +254,13 @@ fn of_size<const L: usize>(
 ///
 /// Time is divided into blocks of samples. For each block the forcing is tabulated first, then all steps are made, and then the outputs
 /// are computed from the states of the block, so that each of the three loops is short and its numbers stay in the cache.
-fn run<const L: usize, const N: usize, const R: usize>(
+fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize>(
     mut problems: [Problem; L],
     instructions: InstructionSet,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
     let prepared: [Prepared; L] = problems.each_ref().map(Prepared::new);
-    let coefficients = Coefficients::<L, N, R>::new(&prepared);
+    let coefficients = Coefficients::<L, N, M, R>::new(&prepared);
     let law = law_lanes(&prepared);
     let start = Lanes::from_fn(|l| problems[l].time.first_simulated_sample as f64);
     let outputs = prepared.iter().map(|of| of.outputs.len()).max().unwrap_or(0);
@@ -208,7 +268,7 @@ fn run<const L: usize, const N: usize, const R: usize>(
         .map(|output| OutputTerms::new::<N, R>(prepared.each_ref().map(|of| of.outputs.get(output)), start))
         .collect();
     let mut out = LaneOutputs::new(problems.each_ref(), outputs, BLOCK, recorders);
-    let mut forcing = LaneForcing::new();
+    let mut forcing = LaneForcing::<L, P>::new(problems.each_ref());
     forcing.fill(&mut problems, 1);
     let first = std::array::from_fn(|l| {
         let external = forcing.external[0].map(|external| external.0[l]);
@@ -226,7 +286,8 @@ fn run<const L: usize, const N: usize, const R: usize>(
             law: &law,
             state: &mut state,
             pairs: &forcing.pairs[..steps],
-            external: &forcing.external[..steps],
+            external: forcing.is_driven.then_some(&forcing.external[..steps]),
+            turning: &forcing.turning,
             history: recorded.then_some(&mut history),
         });
         if recorded {
@@ -243,20 +304,33 @@ fn run<const L: usize, const N: usize, const R: usize>(
     out.results
 }
 
+/// What a force brings about that a simulation has not got.
+const NO_FORCE: &[f64] = &[0.0; BLOCK];
+
 /// Forcing of one block of samples of `L` simulations, side by side.
-struct LaneForcing<const L: usize> {
+struct LaneForcing<const L: usize, const P: usize> {
     /// The pairs of the one mesh.
-    pairs: Vec<PairsSample<L>>,
+    pairs: Vec<PairsSample<L, P>>,
+    /// Whether any motor or brake is not steady.
+    is_driven: bool,
     /// Motor lead, torque deviation and speed deviation; 0 while motor and brake are steady.
     external: Vec<[Lanes<L>; EXTERNALS]>,
+    /// Each force that turns with a shaft; 0 where a simulation has fewer than others.
+    turning: Vec<Vec<TurningSample<L>>>,
     blocks: [ForcingBlock; L],
 }
 
-impl<const L: usize> LaneForcing<L> {
-    fn new() -> Self {
+impl<const L: usize, const P: usize> LaneForcing<L, P> {
+    fn new(problems: [&Problem; L]) -> Self {
+        let turning_forces = problems.map(|problem| problem.machine.turning_forces.len());
         Self {
             pairs: vec![PairsSample::NONE; BLOCK],
+            is_driven: problems.iter().any(|problem| !problem.is_steady),
             external: vec![[Lanes::splat(0.0); EXTERNALS]; BLOCK],
+            turning: vec![
+                vec![TurningSample([Lanes::splat(0.0); 2]); BLOCK];
+                turning_forces.into_iter().max().unwrap_or(0)
+            ],
             blocks: std::array::from_fn(|_| ForcingBlock::default()),
         }
     }
@@ -275,5 +349,104 @@ impl<const L: usize> LaneForcing<L> {
             &mut self.pairs[..samples],
             &self.blocks.each_ref().map(|block| &block.meshes[0]),
         );
+        for (force, turning) in self.turning.iter_mut().enumerate() {
+            for side in 0..2 {
+                let parts = self.blocks.each_ref().map(|block| {
+                    block.external.turning.get(force).map_or(NO_FORCE, |of| of[side].as_slice())
+                });
+                line_up(&mut turning[..samples], parts, |sample| &mut sample.0[side]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::Unbalance;
+    use crate::scenario::{Fault, GearPair, MissingTooth, Scenario, ToothBreakage};
+    use crate::sensor::ChannelKind;
+    use crate::simulate::stages;
+
+    /// All outputs.
+    #[derive(Default)]
+    struct All(Vec<Vec<f64>>);
+
+    impl Recorder for All {
+        fn record(&mut self, block: &Block) {
+            self.0.resize_with(block.outputs().len(), Vec::new);
+            self.0.iter_mut().zip(block.outputs()).for_each(|(all, block)| all.extend_from_slice(block));
+        }
+    }
+
+    /// Checks that the steps for simulations side by side and the steps for any machine make the same of a scenario.
+    fn check_both_steppers(scenario: &Scenario, expected: Size, name: &str) {
+        let stages = stages(scenario).unwrap();
+        let outputs = ChannelKind::ALL.map(ChannelKind::output);
+        let problem = || stages.lane(&outputs).unwrap();
+        assert_eq!(Size::of(&[problem()]), expected, "{name}");
+        let instructions = InstructionSet::fastest();
+        let [mut side_by_side, mut alone] = [All::default(), All::default()];
+        let [result] = of_size([problem()], instructions, vec![&mut side_by_side]);
+        result.unwrap();
+        coupled::integrate(problem(), instructions, &mut alone).unwrap();
+        assert_eq!((side_by_side.0.len(), alone.0.len()), (outputs.len(), outputs.len()), "{name}");
+        for (number, (side_by_side, alone)) in side_by_side.0.iter().zip(&alone.0).enumerate() {
+            let largest =
+                |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, x: f64| x.abs().max(most));
+            let most = largest(&mut alone.iter().copied());
+            let difference = largest(&mut side_by_side.iter().zip(alone).map(|(a, b)| a - b));
+            assert_eq!(side_by_side.len(), alone.len(), "{name}, output {number}");
+            assert!(side_by_side.iter().all(|value| value.is_finite()), "{name}, output {number}");
+            // Spur wheels do not move along their shafts.
+            assert!(most > 0.0 || number == 2, "{name}, output {number}");
+            assert!(difference <= 1e-12 * most, "{name}, output {number}: {difference:e} of {most}");
+        }
+    }
+
+    fn pair(helix_angle_deg: f64, face_width_mm: f64) -> Scenario {
+        let mut scenario = Scenario::new(GearPair { face_width_mm, ..GearPair::example() });
+        scenario.gears.helix_angle_deg = helix_angle_deg;
+        scenario.quality.din_grade = 7;
+        scenario.solver.sampling_rate_hz = 5e4;
+        scenario
+    }
+
+    fn unbalanced(mut scenario: Scenario) -> Scenario {
+        scenario.rig.pinion_unbalance = Unbalance { g_mm: 20.0, angle_deg: 30.0 };
+        scenario.rig.gear_unbalance = Unbalance { g_mm: 50.0, angle_deg: -100.0 };
+        scenario
+    }
+
+    #[test]
+    fn unbalance_moves_both_steppers_alike() {
+        let one = {
+            let mut scenario = pair(0.0, 15.0);
+            scenario.rig.gear_unbalance.g_mm = 1e-9;
+            scenario
+        };
+        check_both_steppers(&one, Size::Turning, "a trace of unbalance");
+        check_both_steppers(&unbalanced(pair(0.0, 15.0)), Size::Turning, "two wheels");
+        let chip = ToothBreakage { chip_height_mm: 3.0, chip_width_mm: 9.0, tip_loss_mm: 0.0 };
+        let mut tilting = unbalanced(pair(0.0, 15.0));
+        tilting.faults = vec![Fault::on_first_gear_tooth(chip)];
+        check_both_steppers(&tilting, Size::Steady, "tilting wheels");
+        let mut varying = unbalanced(pair(0.0, 15.0));
+        varying.operation.speed_fluctuation_hz = 0.3;
+        check_both_steppers(&varying, Size::General, "a speed that varies");
+    }
+
+    #[test]
+    fn helical_teeth_move_both_steppers_alike() {
+        check_both_steppers(&pair(5.0, 15.0), Size::Steady, "two pairs at once");
+        check_both_steppers(&pair(20.0, 30.0), Size::Steady, "three pairs at once");
+        check_both_steppers(&pair(25.0, 60.0), Size::General, "more pairs at once");
+        check_both_steppers(&unbalanced(pair(20.0, 15.0)), Size::General, "unbalanced wheels");
+        let mut missing = pair(20.0, 15.0);
+        missing.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
+        check_both_steppers(&missing, Size::Steady, "a missing tooth");
+        let mut varying = pair(20.0, 15.0);
+        varying.operation.speed_fluctuation_hz = 0.3;
+        check_both_steppers(&varying, Size::General, "a speed that varies");
     }
 }

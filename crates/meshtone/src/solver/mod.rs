@@ -20,7 +20,7 @@ mod steady_sine;
 mod step;
 
 pub(crate) use coupled::{MOST_MESHES, MOST_ROLLING_BEARINGS};
-pub use integrate::{Block, Diverged, Problem, Recorder, StepCounts, integrate};
+pub use integrate::{Block, Diverged, Problem, Recorder, StepCounts, SteppedAlone, integrate};
 pub(crate) use integrate::{LANES, integrate_side_by_side};
 #[cfg(feature = "internals")]
 pub use modal::ModalLine;

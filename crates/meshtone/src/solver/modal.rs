@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::outputs::dot;
 use crate::machine::{Axis, ClosedMesh, DecayingMode, Drive, Machine, Modes, Place, weights};
 
-/// A machine without its meshes, in the modes that take part in the motion.
+/// A machine without its meshes, in the modes that take part in the motion: first those that the meshes move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalMachine {
     /// Mass-normalised shapes of the active modes, in the machine's coordinates.
@@ -209,7 +209,11 @@ impl ModalMachine {
                 lines.iter().flatten().chain(bearings.iter().flatten()).chain(turning.iter().flatten());
             [&motor, &brake, &rigid, &velocity].into_iter().chain(columns).any(|v| v[n] != 0.0)
         };
-        let active: Vec<usize> = (0..machine.coordinates()).filter(|&n| moved(n)).collect();
+        // Modes that no mesh moves come last.
+        let moved_by_meshes = |n: usize| lines.iter().flatten().any(|column| column[n] != 0.0);
+        let (mut active, others): (Vec<usize>, Vec<usize>) =
+            (0..machine.coordinates()).filter(|&n| moved(n)).partition(|&n| moved_by_meshes(n));
+        active.extend(others);
         let pick = |vector: &DVector<f64>| active.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
         let mut this = Self {
             shapes: turned_back(&machine.turn, &modes.shapes, &active),
@@ -372,6 +376,13 @@ impl ModalMachine {
     /// Number of active modes.
     pub fn modes(&self) -> usize {
         self.stiffness.len()
+    }
+
+    /// Number of the modes that the meshes move, which come first.
+    pub(super) fn modes_moved_by_meshes(&self) -> usize {
+        let columns = self.lines.iter().flat_map(|line| &line.columns);
+        let moved = columns.filter_map(|column| column.iter().rposition(|entry| *entry != 0.0));
+        moved.max().map_or(0, |last| last + 1)
     }
 
     /// Weights of the machine's coordinates in the motion of a place, as [`Machine::weights`].

@@ -176,7 +176,8 @@ impl Prepared {
     fn turned_at_rest(&self, model: &ModalMachine, block: &ForcingBlock) -> Vec<f64> {
         let forces = || model.turning_forces.iter().zip(&block.external.turning);
         let of_mode = |(n, stiffness): (usize, &f64)| {
-            let force: f64 = forces().map(|(of, at)| of.at[0][n] * at[0][0] + of.at[1][n] * at[0][1]).sum();
+            let force: f64 =
+                forces().map(|(of, [cos, sin])| of.at[0][n] * cos[0] + of.at[1][n] * sin[0]).sum();
             if *stiffness > 0.0 { force / stiffness } else { 0.0 }
         };
         model.stiffness.iter().enumerate().map(of_mode).collect()
@@ -248,7 +249,7 @@ impl Prepared {
                 let driven: f64 =
                     self.external_push.iter().zip(external).map(|(push, external)| push[n] * external).sum();
                 let turned: f64 = (self.turning_push.iter().zip(&block.external.turning))
-                    .map(|([cos, sin], values)| cos[n] * values[0][0] + sin[n] * values[0][1])
+                    .map(|(push, [cos, sin])| push[0][n] * cos[0] + push[1][n] * sin[0])
                     .sum();
                 let scaled_force = (meshes + driven + turned) / step.yielding();
                 step.acceleration(displacement[n], model.initial_velocity[n] * self.step_s, scaled_force)

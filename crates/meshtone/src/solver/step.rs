@@ -21,36 +21,60 @@ use super::history::History;
 use super::integrate::{Problem, is_bounded};
 use super::outputs::EXTERNALS;
 use super::prepare::{FirstState, Prepared};
-use crate::mesh::{LawLanes, PairsSample, Touching};
-use crate::simd::{Instructions, Lanes, Task, dot};
+use crate::mesh::{LawLanes, Mesh, PAIRS, PairsSample, Touching};
+use crate::simd::{Chains, Instructions, Lanes, Task};
 
-/// Number of modes above which a step is compiled for any motion of motor and brake; up to it, both are steady. A pair whose load tilts
-/// the wheels has as many, wherever they sit on their shafts.
-pub(super) const MOST_STEADY_MODES: usize = 9;
+/// Number of modes above which a step is compiled for forces that turn with the shafts; up to it, the mesh alone moves the machine. A
+/// pair whose load tilts the wheels has as many, wherever they sit on their shafts.
+pub(super) const MOST_UNDRIVEN_MODES: usize = 9;
+
+/// Number of modes that the mesh of a pair moves whose wheels do not tilt.
+pub(super) const MOVED_IN_PLANE: usize = 7;
+
+/// Number of modes of the same pair with forces that turn with the shafts.
+pub(super) const MOST_TURNING_MODES: usize = 11;
+
+/// Number of modes above which a step is compiled for any motion of motor and brake; up to it, both are steady. A pair of helical teeth
+/// has as many whose wheels sit midway on their shafts.
+pub(super) const MOST_STEADY_MODES: usize = 13;
 
 /// Number of modes of the largest machine that a step is compiled for; larger ones are stepped by [`super::coupled`].
 pub(super) const MOST_MODES: usize = 17;
 
-/// Constants of one simulation (`L` = 1) or of several side by side: `N` modes, and `R` columns of the mesh's line of action, one at the
+/// Most pairs of helical teeth that a step is compiled for: as many as overlap where the contact ratios of profile and face add up to 5.
+pub(super) const MOST_PAIRS: usize = 6;
+
+/// Constants of one simulation (`L` = 1) or of several side by side: `N` modes, of which the mesh moves the first `M`, and `R` columns of the mesh's line of action, one at the
 /// middle of the face, and one for what is added per m along it. What they mean is said at [`Prepared`].
 ///
-/// Aligned so that eight numbers side by side never straddle two cache lines; likewise [`State`].
-#[repr(align(64))]
-pub(super) struct Coefficients<const L: usize, const N: usize, const R: usize> {
+/// Aligned so that eight numbers side by side never straddle two cache lines; likewise [`State`]. Its fields stay in this order, so that
+/// the list at the end shifts no numbers.
+#[repr(C, align(64))]
+pub(super) struct Coefficients<const L: usize, const N: usize, const M: usize, const R: usize> {
     restore: [Lanes<L>; N],
     damp: [Lanes<L>; N],
-    push: [[Lanes<L>; N]; R],
+    push: [[Lanes<L>; M]; R],
     external_push: [[Lanes<L>; N]; EXTERNALS],
     compliance: [[Lanes<L>; R]; R],
     static_deflection: [Lanes<L>; R],
     /// The deflection at a step's end from the state at its start: see [`Column`](super::prepare::Column).
-    prediction: Prediction<L, N, R>,
+    prediction: Prediction<L, M, R>,
+    /// Of each force that turns with a shaft.
+    turning: Vec<TurningPush<L, N, R>>,
+}
+
+/// What a force that turns with a shaft brings about: per unit along the shaft's direction at the start, and a quarter of a revolution on.
+#[repr(align(64))]
+struct TurningPush<const L: usize, const N: usize, const R: usize> {
+    push: [[Lanes<L>; N]; 2],
+    /// Of the deflection at the step's end.
+    of_deflection: [[Lanes<L>; 2]; R],
 }
 
 /// What predicts the deflection at a step's end, with its damping's lead and without the step's own force.
-struct Prediction<const L: usize, const N: usize, const R: usize> {
-    of_displacement: [[Lanes<L>; N]; R],
-    of_velocity: [[Lanes<L>; N]; R],
+struct Prediction<const L: usize, const M: usize, const R: usize> {
+    of_displacement: [[Lanes<L>; M]; R],
+    of_velocity: [[Lanes<L>; M]; R],
     of_force: [[Lanes<L>; R]; R],
     of_external: [[Lanes<L>; EXTERNALS]; R],
 }
@@ -73,15 +97,25 @@ pub(super) struct State<const L: usize, const N: usize, const R: usize> {
     touching: Touching<L>,
 }
 
-impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
-    /// Whether motor and brake are steady, so that externals are 0 and are not read.
-    const STEADY: bool = N <= MOST_STEADY_MODES;
+impl<const L: usize, const N: usize, const M: usize, const R: usize> Coefficients<L, N, M, R> {
+    /// Whether a force may turn with a shaft.
+    const TURNS: bool = N > MOST_UNDRIVEN_MODES;
+    /// Whether motor or brake may vary; otherwise externals are 0 and are not read.
+    const VARIES: bool = N > MOST_STEADY_MODES;
 
     /// Lines the constants of `L` simulations up. Modes and columns that a simulation has not got are 0.
     pub(super) fn new(prepared: &[Prepared; L]) -> Self {
         let modes = |of: &dyn Fn(&Prepared) -> &[f64]| items(&|l, n| at(of(&prepared[l]), n));
         let column = |r: usize, l: usize| prepared[l].columns.get(r);
+        let turning = |t: usize| TurningPush {
+            push: rows(&|l, x, n| prepared[l].turning_push.get(t).map_or(0.0, |push| at(&push[x], n))),
+            of_deflection: rows(&|l, r, x| {
+                column(r, l).and_then(|column| column.of_turning.get(t)).map_or(0.0, |of| of[x])
+            }),
+        };
+        let turning_forces = prepared.iter().map(|of| of.turning_push.len()).max().unwrap_or(0);
         Self {
+            turning: (0..turning_forces).map(turning).collect(),
             restore: modes(&|prepared| &prepared.restore),
             damp: modes(&|prepared| &prepared.damp),
             push: rows(&|l, r, n| column(r, l).map_or(0.0, |column| at(&column.push, n))),
@@ -110,7 +144,7 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
         let force = items(&|l, r| at(&first[l].force, r));
         let predicted = |l: usize, r: usize| {
             let mut predicted = self.static_deflection[r].0[l];
-            for n in 0..N {
+            for n in 0..M {
                 let share: f64 = (0..R).map(|s| self.push[s][n].0[l] * force[s].0[l]).sum();
                 let next_velocity = velocity[n].0[l] + acceleration[n].0[l] - share;
                 let next_displacement = displacement[n].0[l] + next_velocity;
@@ -127,7 +161,7 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
         state.displacement.iter().chain(&state.velocity).all(|mode| is_bounded(mode.0[l]))
     }
 
-    /// Makes a step.
+    /// Makes a step of a mesh of which `P` pairs are looked at together.
     ///
     /// The acceleration without the mesh's new force comes first, and the deflection that it leads to a step later. The deflection of
     /// this step is known but for the last step's force ([`Prediction`]), so that the law can begin. Its force is then added to every
@@ -136,58 +170,62 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
     /// # Arguments
     /// * `law` - the mesh
     /// * `state` - moves on by one sample
-    /// * `pairs`, `external` - at the step's end
+    /// * `pairs`, `driven` - at the step's end
     #[inline(always)]
-    fn step<I: Instructions>(
+    fn step<I: Instructions, const P: usize>(
         &self,
         simd: I,
         law: &LawLanes<L>,
         state: &mut State<L, N, R>,
-        pairs: &PairsSample<L>,
-        external: &[Lanes<L>; EXTERNALS],
+        pairs: &PairsSample<L, P>,
+        driven: DrivenSample<L>,
     ) {
-        let zero = Lanes::splat(0.0);
-        let (mut next_displacement, mut next_velocity) = ([zero; N], [zero; N]);
+        let mut ahead = Ahead::new();
         for n in 0..N {
             state.velocity[n] = state.velocity[n].add(simd, state.acceleration[n]);
             state.displacement[n] = state.displacement[n].add(simd, state.velocity[n]);
             let damped = self.damp[n].mul(simd, state.velocity[n]);
-            let mut acceleration = self.restore[n].mul_add(simd, state.displacement[n], damped);
-            if !Self::STEADY {
-                for x in 0..EXTERNALS {
-                    acceleration = self.external_push[x][n].mul_add(simd, external[x], acceleration);
-                }
+            state.acceleration[n] = self.restore[n].mul_add(simd, state.displacement[n], damped);
+            if !Self::TURNS && n < M {
+                ahead.look(simd, n, state, &self.prediction);
             }
-            state.acceleration[n] = acceleration;
-            next_velocity[n] = state.velocity[n].add(simd, acceleration);
-            next_displacement[n] = state.displacement[n].add(simd, next_velocity[n]);
         }
-        let deflection = self.free_deflection(simd, state, external);
-        let predicted = self.predict(simd, &next_displacement, &next_velocity);
+        if Self::TURNS {
+            self.drive(simd, &mut state.acceleration, driven);
+            for n in 0..M {
+                ahead.look(simd, n, state, &self.prediction);
+            }
+        }
+        let deflection = self.free_deflection(simd, state, driven);
+        state.predicted = ahead.predict(simd, &self.static_deflection, &self.prediction);
         let force = law.force(simd, &deflection, &self.compliance, pairs, &mut state.touching);
-        for n in 0..N {
+        for n in 0..M {
             for r in 0..R {
                 state.acceleration[n] = self.push[r][n].mul_add(simd, force[r], state.acceleration[n]);
             }
         }
         state.force = force;
-        state.predicted = predicted;
     }
 
-    /// What [`Prediction`] makes of predictions without the share of the last force.
+    /// Adds what motor, brake and the forces that turn with the shafts bring about.
     #[inline(always)]
-    fn predict<I: Instructions>(
-        &self,
-        simd: I,
-        displacement: &[Lanes<L>; N],
-        velocity: &[Lanes<L>; N],
-    ) -> [Lanes<L>; R] {
-        let mut predicted = self.static_deflection;
-        for r in 0..R {
-            predicted[r] = dot(simd, predicted[r], &self.prediction.of_displacement[r], displacement);
-            predicted[r] = dot(simd, predicted[r], &self.prediction.of_velocity[r], velocity);
+    fn drive<I: Instructions>(&self, simd: I, acceleration: &mut [Lanes<L>; N], driven: DrivenSample<L>) {
+        if Self::VARIES
+            && let Some(external) = driven.external
+        {
+            for n in 0..N {
+                for x in 0..EXTERNALS {
+                    acceleration[n] = self.external_push[x][n].mul_add(simd, external[x], acceleration[n]);
+                }
+            }
         }
-        predicted
+        for (of, samples) in self.turning.iter().zip(driven.turning) {
+            let TurningSample([of_cos, of_sin]) = samples[driven.sample];
+            for n in 0..N {
+                let pushed = of.push[1][n].mul_add(simd, of_sin, acceleration[n]);
+                acceleration[n] = of.push[0][n].mul_add(simd, of_cos, pushed);
+            }
+        }
     }
 
     /// The deflection at a step's end, with its damping's lead, without the step's own force.
@@ -196,14 +234,23 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
         &self,
         simd: I,
         state: &State<L, N, R>,
-        external: &[Lanes<L>; EXTERNALS],
+        driven: DrivenSample<L>,
     ) -> [Lanes<L>; R] {
         let mut deflection = state.predicted;
         for r in 0..R {
-            if !Self::STEADY {
+            if Self::VARIES
+                && let Some(external) = driven.external
+            {
                 for x in 0..EXTERNALS {
                     deflection[r] =
                         self.prediction.of_external[r][x].mul_add(simd, external[x], deflection[r]);
+                }
+            }
+            if Self::TURNS {
+                for (of, samples) in self.turning.iter().zip(driven.turning) {
+                    for (of, value) in of.of_deflection[r].iter().zip(samples[driven.sample].0) {
+                        deflection[r] = of.mul_add(simd, value, deflection[r]);
+                    }
                 }
             }
             for s in 0..R {
@@ -214,31 +261,121 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
     }
 }
 
+/// What is predicted for the next step, without the share of this step's force, of the modes that the mesh moves.
+struct Ahead<const L: usize, const M: usize, const R: usize> {
+    displacement: [Lanes<L>; M],
+    velocity: [Lanes<L>; M],
+    /// Of a single column: what displacements and velocities add to the deflection.
+    sums: [Chains<L>; 2],
+}
+
+impl<const L: usize, const M: usize, const R: usize> Ahead<L, M, R> {
+    #[inline(always)]
+    fn new() -> Self {
+        let none = [Lanes::splat(0.0); M];
+        Self { displacement: none, velocity: none, sums: [Chains::NONE; 2] }
+    }
+
+    /// Looks at mode `n`, whose acceleration is known but for the step's force.
+    #[inline(always)]
+    fn look<I: Instructions, const N: usize>(
+        &mut self,
+        simd: I,
+        n: usize,
+        state: &State<L, N, R>,
+        prediction: &Prediction<L, M, R>,
+    ) {
+        self.velocity[n] = state.velocity[n].add(simd, state.acceleration[n]);
+        self.displacement[n] = state.displacement[n].add(simd, self.velocity[n]);
+        if R == 1 {
+            self.sum(simd, n, 0, prediction);
+        }
+    }
+
+    #[inline(always)]
+    fn sum<I: Instructions>(&mut self, simd: I, n: usize, r: usize, prediction: &Prediction<L, M, R>) {
+        self.sums[0].add(simd, n, prediction.of_displacement[r][n], self.displacement[n]);
+        self.sums[1].add(simd, n, prediction.of_velocity[r][n], self.velocity[n]);
+    }
+
+    /// The deflection in each column. The sums of several columns are made one after the other, as they do not fit in the registers together.
+    #[inline(always)]
+    fn predict<I: Instructions>(
+        &mut self,
+        simd: I,
+        static_deflection: &[Lanes<L>; R],
+        prediction: &Prediction<L, M, R>,
+    ) -> [Lanes<L>; R] {
+        let mut predicted = *static_deflection;
+        for r in 0..R {
+            if R > 1 {
+                self.sums = [Chains::NONE; 2];
+                for n in 0..M {
+                    self.sum(simd, n, r, prediction);
+                }
+            }
+            for sum in &self.sums {
+                predicted[r] = sum.total(simd, predicted[r]);
+            }
+        }
+        predicted
+    }
+}
+
+/// What drives the machine at a sample beside its mesh.
+#[derive(Clone, Copy)]
+struct DrivenSample<'a, const L: usize> {
+    /// Motor and brake; none while they are steady.
+    external: Option<&'a [Lanes<L>; EXTERNALS]>,
+    /// As of [`StepBlock`].
+    turning: &'a [Vec<TurningSample<L>>],
+    /// Number of the sample in the block.
+    sample: usize,
+}
+
+/// A force that turns with a shaft: how much of it points along the shaft's direction at the start, and a quarter of a revolution on.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct TurningSample<const L: usize>(pub(super) [Lanes<L>; 2]);
+
 /// The steps of one block of samples: all that is compiled for each instruction set.
-pub(super) struct StepBlock<'a, const L: usize, const N: usize, const R: usize> {
-    pub(super) coefficients: &'a Coefficients<L, N, R>,
+pub(super) struct StepBlock<
+    'a,
+    const L: usize,
+    const N: usize,
+    const M: usize,
+    const R: usize,
+    const P: usize,
+> {
+    pub(super) coefficients: &'a Coefficients<L, N, M, R>,
     pub(super) law: &'a LawLanes<L>,
     pub(super) state: &'a mut State<L, N, R>,
     /// Pairs at the samples after the state's.
-    pub(super) pairs: &'a [PairsSample<L>],
-    /// Externals at the same.
-    pub(super) external: &'a [[Lanes<L>; EXTERNALS]],
+    pub(super) pairs: &'a [PairsSample<L, P>],
+    /// Externals at the same; none while all motors and brakes are steady.
+    pub(super) external: Option<&'a [[Lanes<L>; EXTERNALS]]>,
+    /// Each force that turns with a shaft, at the same.
+    pub(super) turning: &'a [Vec<TurningSample<L>>],
     /// Takes the states before each step.
     pub(super) history: Option<&'a mut History<L, N, R>>,
 }
 
-impl<const L: usize, const N: usize, const R: usize> Task for StepBlock<'_, L, N, R> {
+impl<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize> Task
+    for StepBlock<'_, L, N, M, R, P>
+{
     type Output = ();
 
     #[inline(always)]
     fn run<I: Instructions>(mut self, simd: I) {
         // A copy, which the compiler can keep in registers.
         let mut state = *self.state;
-        for (k, (pairs, external)) in self.pairs.iter().zip(self.external).enumerate() {
+        for (k, pairs) in self.pairs.iter().enumerate() {
             if let Some(history) = &mut self.history {
                 history.store(k, &state);
             }
-            self.coefficients.step(simd, self.law, &mut state, pairs, external);
+            let external = self.external.and_then(|external| external.get(k));
+            let driven = DrivenSample { external, turning: self.turning, sample: k };
+            self.coefficients.step(simd, self.law, &mut state, pairs, driven);
         }
         *self.state = state;
     }
@@ -252,27 +389,41 @@ pub(super) fn law_lanes<const L: usize>(prepared: &[Prepared; L]) -> LawLanes<L>
     )
 }
 
-/// How large a machine a step is compiled for, the smaller sizes first. Fixed sizes let the compiler unroll the step and keep it in
-/// registers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+/// How large a machine a step is compiled for. Fixed sizes let the compiler unroll the step and keep it in registers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Size {
     /// The load acts midway along the face: 8 modes.
     Flat,
-    /// The load moves along the face and tilts the wheels: [`MOST_STEADY_MODES`]. Two of these modes are the tilts, and leaving out
+    /// The load moves along the face and tilts the wheels: [`MOST_UNDRIVEN_MODES`]. Two of these modes are the tilts, and leaving out
     /// either one changes the acceleration by up to 3 % (10 and 100 N m, 5 and 20 µm of misalignment).
     Tilting,
-    /// Any motion of motor and brake, or any initial velocity: [`MOST_MODES`].
+    /// A load midway along the face, and forces that turn with the shafts: as many modes as a pair has then whose wheels sit midway on their
+    /// shafts, [`MOVED_IN_PLANE`] along the line of action and four across it.
+    Turning,
+    /// A load that moves along the face, with forces that turn with the shafts or of helical teeth: [`MOST_STEADY_MODES`].
+    Steady,
+    /// Any motion of motor and brake, any initial velocity, and any pair of helical teeth: [`MOST_MODES`] and [`MOST_PAIRS`].
     General,
 }
 
 impl Size {
-    /// The smallest size that holds a simulation of one mesh.
-    pub(super) fn of(problem: &Problem) -> Self {
-        let columns = problem.machine.lines[0].columns.len();
-        match (problem.is_steady, problem.machine.modes(), columns) {
-            (true, 0..=8, 1) => Self::Flat,
-            (true, 0..=MOST_STEADY_MODES, _) => Self::Tilting,
-            _ => Self::General,
+    /// The smallest size that holds simulations of one mesh.
+    pub(super) fn of(problems: &[Problem]) -> Self {
+        let most = |of: fn(&Problem) -> usize| problems.iter().map(of).max().unwrap_or(0);
+        let modes = most(|problem| problem.machine.modes());
+        let moved = most(|problem| problem.machine.modes_moved_by_meshes());
+        let columns = most(|problem| problem.machine.lines[0].columns.len());
+        let is_steady = problems.iter().all(|problem| problem.is_steady);
+        let springs = most(|problem| problem.forcing.meshes().map(Mesh::springs).max().unwrap_or(0));
+        let turning_forces = most(|problem| problem.machine.turning_forces.len());
+        if !is_steady || springs > PAIRS || modes > MOST_STEADY_MODES {
+            return Self::General;
+        }
+        match (turning_forces, modes, columns) {
+            (0, 0..=8, 1) => Self::Flat,
+            (0, 0..=MOST_UNDRIVEN_MODES, _) => Self::Tilting,
+            (_, 0..=MOST_TURNING_MODES, 1) if moved <= MOVED_IN_PLANE => Self::Turning,
+            _ => Self::Steady,
         }
     }
 }

@@ -5,10 +5,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use meshtone::InstructionSet;
-use meshtone::batch::{Control, KeepChannels, KeepSimulation, simulate_many};
+use meshtone::batch::{Control, KeepChannels, KeepObserved, KeepSimulation, SteppedAlone, simulate_many};
 use meshtone::scenario::*;
-use meshtone::sensor::{Channels, NamedSignal};
-use meshtone::simulate;
+use meshtone::sensor::{ChannelKind, Channels, NamedSignal};
+use meshtone::{simulate, stages};
 
 fn small(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
     let mut scenario = Scenario::new(GearPair {
@@ -118,6 +118,41 @@ fn mixed_in_contact() -> Vec<Scenario> {
     scenarios
 }
 
+/// What has more modes than spur wheels alone, or is stepped alone: unbalanced wheels, helical ones, both, and such with sliced faces; with
+/// steady and other drives, and one that is refused.
+fn mixed_in_space() -> Vec<Scenario> {
+    let mut scenarios = Vec::new();
+    for (n, helix_angle_deg) in [0.0, 8.0, 20.0, 30.0].into_iter().enumerate() {
+        let three = [None, Some(MissingTooth.into()), damages().swap_remove(2)];
+        for (k, damage) in three.into_iter().enumerate() {
+            for unbalances in 0..3 {
+                let mut scenario = small(20, 30 + n as u32, damage.clone());
+                scenario.seed = (100 * n + 10 * k + unbalances) as u64;
+                scenario.model = if k == 1 && n == 2 { Model::Linear } else { Model::Contact };
+                scenario.gears.helix_angle_deg = helix_angle_deg;
+                scenario.gears.face_width_mm = [15.0, 30.0, 60.0][k];
+                if unbalances > 0 {
+                    scenario.rig.gear_unbalance = Unbalance { g_mm: 80.0, angle_deg: 20.0 };
+                }
+                if unbalances > 1 {
+                    scenario.rig.pinion_unbalance = Unbalance { g_mm: 30.0, angle_deg: -70.0 };
+                    scenario.rig.pinion_shaft.wheel_at = 0.3;
+                    scenario.operation.speed_fluctuation_hz = if k == 1 { 0.3 } else { 0.0 };
+                }
+                scenarios.push(scenario);
+            }
+        }
+    }
+    let mut wide = small(20, 30, None);
+    wide.model = Model::Contact;
+    (wide.gears.helix_angle_deg, wide.gears.face_width_mm) = (30.0, 60.0);
+    scenarios.push(wide);
+    let mut refused = small(17, 38, None);
+    refused.gears.module_mm = -1.0;
+    scenarios.push(refused);
+    scenarios
+}
+
 /// An order that depends on `seed` alone.
 fn shuffled<T>(mut items: Vec<T>, seed: u64) -> Vec<T> {
     let mut state = seed;
@@ -176,6 +211,48 @@ fn the_same_bits_alone_in_any_lane_and_any_thread() {
 #[test]
 fn the_same_bits_alone_in_any_lane_and_any_thread_in_contact() {
     expect_the_same_bits(mixed_in_contact());
+}
+
+#[test]
+fn the_same_bits_alone_in_any_lane_and_any_thread_with_unbalance_and_helical_teeth() {
+    let scenarios = mixed_in_space();
+    let is_side_by_side =
+        |scenario: &&Scenario| stages(*scenario).is_ok_and(|stages| stages.stepped_alone().is_none());
+    // All but nine chipped helical pairs, whose faces are cut into slices.
+    assert_eq!(scenarios.iter().filter(is_side_by_side).count(), 28);
+    expect_the_same_bits(scenarios);
+}
+
+/// What cannot be stepped side by side says why, by itself and in a batch.
+#[test]
+fn what_is_stepped_alone_has_a_reason() {
+    let reason = |scenario: &Scenario| stages(scenario).unwrap().stepped_alone();
+    let mut unbalanced = small(20, 40, None);
+    unbalanced.model = Model::Contact;
+    unbalanced.rig.pinion_unbalance.g_mm = 1e-9;
+    let mut helical = unbalanced.clone();
+    helical.gears.helix_angle_deg = 20.0;
+    let mut published = small(20, 40, None);
+    published.model = Model::Published;
+    let mut crowned = helical.clone();
+    crowned.gears.lead_crowning_um = 3.0;
+    let mut wide = helical.clone();
+    (wide.gears.helix_angle_deg, wide.gears.face_width_mm) = (30.0, 120.0);
+    let scenarios = [unbalanced, helical, published, crowned, wide];
+    let expected = [
+        None,
+        None,
+        Some(SteppedAlone::PublishedModel),
+        Some(SteppedAlone::SlicedFace),
+        Some(SteppedAlone::ManyPairs),
+    ];
+    assert_eq!(scenarios.each_ref().map(reason), expected);
+    let mut told = Vec::new();
+    let keep = KeepObserved::new([ChannelKind::Vertical]);
+    simulate_many(scenarios, &keep, &Control::default(), |_, observed| {
+        told.push(observed.unwrap().observation.stepped_alone);
+    });
+    assert_eq!(told, expected);
 }
 
 /// Without fused multiply-add the products round apart, and teeth that let go make a motion of which that is seen.

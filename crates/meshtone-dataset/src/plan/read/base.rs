@@ -31,7 +31,9 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
         file.scenario
     };
     // Also of one that is written in the plan: it may name files.
-    reading.files.push(PlanFile { name: PlanFile::NAMES[1], text: scenario.to_toml() });
+    reading
+        .files
+        .push(PlanFile { name: PlanFile::NAMES[1], text: meshtone::written_out(&scenario.to_toml()) });
     if let Some(ignored) = scenario.ignored_by_model().into_iter().next() {
         return Err(TomlError::new(format!("{KEY}.{}", ignored.key), "", ignored.message));
     }

@@ -16,7 +16,7 @@ use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::scenario_file::{FileKind, ReadScenarioError, read_text};
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
-use super::{About, Class, Content, Plan, PlanFile, Question, Rule, Variation, check};
+use super::{About, Class, Content, Plan, PlanFile, Question, Rule, Variation, check, identity};
 use crate::expression::Condition;
 use crate::sampling::Design;
 
@@ -88,6 +88,7 @@ fn read(text: String, path: &Path, is_copy: bool) -> Result<Plan, ReadScenarioEr
     match (read, reading.elsewhere) {
         (Ok(mut plan), _) => {
             plan.files.insert(0, PlanFile { name: PlanFile::NAMES[0], text });
+            plan.identity = identity(&plan.files);
             Ok(plan)
         }
         (Err(_), Some(error)) => Err(error),
@@ -154,6 +155,7 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         content,
         files: std::mem::take(&mut reading.files),
         sources: std::mem::take(&mut reading.sources),
+        identity: String::new(),
     })
 }
 
