@@ -25,9 +25,9 @@ use wheels::{healthy_teeth, sound_pair};
 use crate::bearing::RollingBearing;
 use crate::damage::{DamagedTooth, ToothPart};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{DecayingMode, KnownModes};
+use crate::machine::{DecayingMode, Drive, KnownModes};
 use crate::mesh::{Contact, Mesh, Pairs};
-use crate::operation::{Motion, Solver, TimeGrid, TorqueHarmonic};
+use crate::operation::{Motion, TimeGrid, TorqueHarmonic};
 use crate::published::Published;
 use crate::scenario::{GearboxLayout, MemoryLimit, Ripple, Scenario, ScenarioForm};
 use crate::sensor::{Channels, ContactFigures, Sensor, SignalSource};
@@ -89,8 +89,8 @@ pub struct Simulation {
     pub stages: Stages,
     /// The kept signals.
     pub channels: Channels,
-    /// Steps, iterations of Newton's method, most of them in a step, and steps in which a search along the line was needed; 0 where the
-    /// simulation was stepped side by side with others.
+    /// Steps, iterations of Newton's method, most of them in a step, and steps in which a search along the line was needed, of a machine that
+    /// [`Stages::simulate`] steps alone ([`SteppedAlone`](crate::batch::SteppedAlone)); 0 of all others.
     pub step_counts: [u64; 4],
     /// Time that each stage took, the time loop included.
     pub timings: Vec<StageTime>,
@@ -181,10 +181,10 @@ pub(crate) fn stages_with(
         _ => machine_parts(&scenario, &layout, &time, teeth, known, &mut clock)?,
     };
     let Parts { pairs, meshes, bearings, equations, slowest_mode } = parts;
-    let Solver { settle_tolerance, initial_velocity, .. } = scenario.solver();
+    let settle_tolerance = scenario.solver().settle_tolerance;
     // Only a steady motion that starts in equilibrium: what is left out is then a motion like the one that follows.
-    if scenario.model().has_meshes() && initial_velocity.is_none() && scenario.is_steady() {
-        time.first_simulated_sample = start_of_settling(&time, *settle_tolerance, &slowest_mode);
+    if scenario.model().has_meshes() && scenario.initial_velocity().is_none() && scenario.is_steady() {
+        time.first_simulated_sample = start_of_settling(&time, settle_tolerance, &slowest_mode);
     }
     let severities = pairs
         .iter()
@@ -308,7 +308,7 @@ fn start_of_settling(time: &TimeGrid, settle_tolerance: f64, slowest: &DecayingM
 }
 
 impl Simulation {
-    /// How the teeth touched; none where the flanks may pull.
+    /// How the teeth of the first mesh touched; none where the flanks may pull.
     pub fn contact_figures(&self) -> Option<ContactFigures> {
         let force_n = self.channels.of(SignalSource::MeshForce(0));
         self.stages.teeth_part().then(|| ContactFigures::of_force(force_n))
@@ -396,9 +396,12 @@ impl Stages {
 
     /// Motion of motor and brake, sample by sample from the start of the simulation.
     pub fn motion(&self) -> Motion<'_> {
-        let brake = self.machine().map_or(1.0, |(machine, _)| {
-            let rotation = &machine.machine.rigid_rotation;
-            rotation[rotation.len() - 1].abs()
+        let brake = self.machine().map_or(1.0, |(AssembledMachine { machine, .. }, _)| {
+            let of_brake = machine.drives.iter().find_map(|drive| match drive {
+                Drive::Brake { coordinate, .. } => Some(machine.rigid_rotation[*coordinate].abs()),
+                Drive::Motor { .. } => None,
+            });
+            of_brake.unwrap_or(1.0)
         });
         let harmonic = |ripple: &Ripple| TorqueHarmonic {
             order: ripple.order * brake,

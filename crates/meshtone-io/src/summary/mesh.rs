@@ -60,7 +60,7 @@ impl MeshSummary {
             face_load_factor: curve.face_load_factor,
             static_force_n: pair.static_force_n,
             mesh_stiffness: MeshStiffness::of(&curve.stiffness_n_per_mm),
-            mesh_force: MeshForce::of(force_n, simulation.contact_figures().is_some()),
+            mesh_force: MeshForce::of(force_n, stages.scenario.model().teeth_part()),
             transmission_error_um: error,
         }
     }

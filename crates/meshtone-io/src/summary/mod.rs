@@ -124,7 +124,7 @@ pub struct FaultSummary {
     pub tooth: FaultyTeeth,
     /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
     pub severity: f64,
-    /// What it has done to each of its teeth; only of a pair's fault that takes spots of their flanks.
+    /// What it has done to each of its teeth; only of a fault that takes spots of their flanks.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "json::pitted_teeth")]
     pub pitted_teeth: Vec<PittedTooth>,
 }
@@ -177,16 +177,17 @@ impl FaultSummary {
     /// The faults of teeth.
     fn all(stages: &Stages, train: &GearTrain) -> Vec<Self> {
         let faults = stages.scenario.faults().into_iter().zip(&stages.fault_severities).enumerate();
-        let of_pair = |number: usize| -> Vec<PittedTooth> {
-            damages_of_fault(&stages.pairs[0].damaged, number)
+        // A wheel is damaged alike in all its meshes.
+        let pitted = |wheel: usize, number: usize| -> Vec<PittedTooth> {
+            let Some((mesh, _)) = stages.layout.mesh_of(wheel) else { return Vec::new() };
+            damages_of_fault(&stages.pairs[mesh].damaged, number)
                 .into_iter()
                 .filter(|(_, damage)| damage.part == ToothPart::FlankSpots)
                 .map(|(tooth, damage)| (tooth, damage.quantities.clone()))
                 .collect()
         };
-        let is_pair = stages.scenario.pair().is_some();
         let summary = |(number, ((wheel, fault), &severity)): (usize, ((usize, &Fault), &f64))| Self {
-            pitted_teeth: if is_pair { of_pair(number) } else { Vec::new() },
+            pitted_teeth: pitted(wheel, number),
             ..Self::new(fault, &train.wheels[wheel].name, severity)
         };
         faults.map(summary).collect()

@@ -74,6 +74,7 @@ const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH
 /// ```
 pub fn draw(simulation: &Simulation) -> Result<Figure, PlotError> {
     let Simulation { stages, channels, .. } = simulation;
+    check_rate(stages, channels)?;
     match &stages.scenario {
         ScenarioForm::Gearbox(gearbox) => gearbox::draw(gearbox, simulation),
         ScenarioForm::Pair(pair) => draw_pair(pair, stages, channels),
@@ -81,7 +82,6 @@ pub fn draw(simulation: &Simulation) -> Result<Figure, PlotError> {
 }
 
 fn draw_pair(scenario: &Scenario, stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
-    check_rate(stages, channels)?;
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     let title = heading::title(scenario, stages);
     heading::draw(&mut canvas, &title, scenario);

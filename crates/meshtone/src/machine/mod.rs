@@ -1,4 +1,4 @@
-//! Stage 6: the machine around the meshes, `M ü + C u̇ + K u = F(t) − Σ g f(gᵀu, t)`.
+//! The machine around the meshes, `M ü + C u̇ + K u = F(t) − Σ g f(gᵀu, t)`.
 //!
 //! A [`Machine`] is a list of parts in any number of coordinates. The meshes are not among them: they act along its lines of action,
 //! and the solver closes or opens them. Only `train` names the coordinates of a rig.

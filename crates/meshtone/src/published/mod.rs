@@ -47,7 +47,7 @@ pub struct Published {
 }
 
 impl Published {
-    /// Stages 4 to 6.
+    /// What the published model has of its own before the time loop: fault, mesh and machine.
     ///
     /// # Arguments
     /// * `scenario` - valid, with what the model ignores at its default

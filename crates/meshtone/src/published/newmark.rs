@@ -25,7 +25,7 @@ const BLOCK: usize = 512;
 type Vector<const N: usize> = [f64; N];
 type Matrix<const N: usize> = [[f64; N]; N];
 
-/// Stage 7: integrates the equations of motion of a simulation from its start.
+/// Integrates the equations of motion of a simulation from its start.
 ///
 /// # Arguments
 /// * `published` - the simulation

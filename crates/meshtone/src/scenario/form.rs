@@ -201,6 +201,11 @@ impl ScenarioForm {
         }
     }
 
+    /// (m/s, rad/s) Velocities at the start, of a pair in the order of its coordinates; none where it starts in equilibrium, as a gearbox does.
+    pub(crate) fn initial_velocity(&self) -> Option<&[f64]> {
+        self.pair()?.solver.initial_velocity.as_ref().map(|given| given.as_slice())
+    }
+
     /// Sampling and settling.
     pub fn solver(&self) -> &Solver {
         match self {

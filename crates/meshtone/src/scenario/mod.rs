@@ -1,4 +1,4 @@
-//! Stage 1: what the user asks for.
+//! What the user asks for.
 //!
 //! A [`Scenario`] says everything that a simulation depends on: the two wheels, how they are
 //! driven, how well they are made, what is broken, the rig they run in and how the equations are

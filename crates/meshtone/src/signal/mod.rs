@@ -1,4 +1,4 @@
-//! Stage 8: the signals; and the chain from a recording, simulated or measured, to condition indicators.
+//! The signals; and the chain from a recording, simulated or measured, to condition indicators.
 //!
 //! [`process_channel`] is the chain on one page. Each of its steps can be used alone:
 //!

@@ -42,15 +42,16 @@ impl SimulatedShafts {
         Self::moving(&scenario.gears, &time, scenario.motion(&time), (start_s, samples))
     }
 
-    /// The shafts of the wheels of a simulation's first mesh.
+    /// The shafts of a simulated pair. Those of a gearbox turn at other ratios and phases: see [`TrainRecording`](super::TrainRecording).
     ///
     /// # Arguments
-    /// * `stages` - of the simulation
+    /// * `stages` - of the pair's simulation
     /// * `start_s`, `samples` - as of [`Self::new`]
     pub fn of_stages(stages: &Stages, start_s: f64, samples: usize) -> Self {
         Self::moving(&stages.layout.gears[0], &stages.time, stages.motion(), (start_s, samples))
     }
 
+    /// The shafts of a pair that turn as a motion says, from a time on for some samples.
     fn moving(gears: &Gears, time: &TimeGrid, motion: Motion, (start_s, samples): (f64, usize)) -> Self {
         let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
         let turning = if motion.is_steady() {

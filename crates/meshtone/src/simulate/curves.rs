@@ -42,8 +42,12 @@ impl Stages {
         &self,
         pitches: Option<Range<i64>>,
     ) -> Result<Vec<MeshCurve>, ScenarioError> {
-        let points = NonZeroUsize::new(self.pairs[0].cycle.points_per_pitch).unwrap_or(NonZeroUsize::MIN);
-        Ok(self.curves_of(&self.meshes_at(points)?, pitches))
+        let mut meshes = Vec::with_capacity(self.meshes.len());
+        for (number, pair) in self.pairs.iter().enumerate() {
+            let points = NonZeroUsize::new(pair.cycle.points_per_pitch).unwrap_or(NonZeroUsize::MIN);
+            meshes.extend(self.meshes_at(points)?.into_iter().nth(number));
+        }
+        Ok(self.curves_of(&meshes, pitches))
     }
 
     /// (N/mm) Stiffness of a sound pair of teeth of the first mesh, and of the first damaged tooth with a sound mate, where there is one.
@@ -62,8 +66,8 @@ impl Stages {
         })
     }
 
-    /// (N) How the pairs share the nominal load at rest, at every point of some pitches: the number of each pair that is in contact
-    /// there, with its force. Pair n enters contact n pitches after the start of the simulation. None of the published model,
+    /// (N) How the pairs of the first mesh share the nominal load at rest, at every point of some pitches: the number of each pair that is in
+    /// contact there, with its force. Pair n enters contact n pitches after the start of the simulation. None of the published model,
     /// whose pairs share nothing.
     ///
     /// # Arguments
@@ -71,6 +75,6 @@ impl Stages {
     pub fn pair_forces_n(&self, pitches: Range<i64>) -> Vec<(i64, Vec<f64>)> {
         let of_mesh =
             |(mesh, pair): (&Mesh, &MeshedPair)| mesh.shared_n(pair.static_force_n, pitches.clone());
-        self.meshes.iter().zip(&self.pairs).flat_map(of_mesh).collect()
+        self.meshes.iter().zip(&self.pairs).take(1).flat_map(of_mesh).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! Stage 3: the machine around the meshes, of the maker for its structure.
+//! The machine around the meshes, of the maker for its structure.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -180,7 +180,7 @@ impl AssembledMachine {
             nominal_rad_per_s: TAU * operation.pinion_speed_hz,
             brake_torque_nm: operation.brake_torque_nm,
             motor_rad_per_s: TAU * first_hz.unwrap_or(operation.pinion_speed_hz),
-            velocity: scenario.solver().initial_velocity.as_ref().map(|given| given.as_slice()),
+            velocity: scenario.initial_velocity(),
         };
         ModalMachine::new(&self.machine, &self.modes, face_reach_m, start)
     }

@@ -1,4 +1,4 @@
-//! Stage 8: the channels, with what sensors make of them.
+//! The channels, with what sensors make of them.
 
 use super::Stages;
 use crate::machine::Axis;

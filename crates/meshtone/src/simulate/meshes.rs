@@ -1,4 +1,4 @@
-//! Stage 6: the meshes with their tables.
+//! The meshes with their tables.
 
 use std::num::NonZeroUsize;
 

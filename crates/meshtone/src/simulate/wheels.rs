@@ -1,4 +1,4 @@
-//! Stages 2 and 5: the teeth of each mesh, and the deviations and damage of its wheels.
+//! The teeth of each mesh, and the deviations and damage of its wheels.
 
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::ScenarioError;
@@ -26,7 +26,7 @@ pub struct MeshedPair {
     pub helix_slope_um: [f64; 2],
     /// (µm) Misalignment of the shafts over the face width.
     pub misalignment_um: f64,
-    /// (mm) Eccentricity of the driving wheel's seat, without the wheel's own run-out.
+    /// (mm) Eccentricity of the seats of both wheels, beside their run-out.
     pub eccentricity_mm: f64,
     /// The damaged teeth.
     pub damaged: Vec<DamagedTooth>,

@@ -1,4 +1,4 @@
-//! Stage 7: time integration by methods of Newmark's family, in the modes of the machine without its meshes.
+//! Time integration by methods of Newmark's family, in the modes of the machine without its meshes.
 //!
 //! In these mass-normalised modes the machine is a row of decoupled oscillators, and only the deflections of its meshes are unknown: one
 //! number for each. A step costs a diagonal update and the solution of as many scalar equations, which are piecewise linear

@@ -1,4 +1,4 @@
-//! Stage 5: mesh stiffness by strain energy.
+//! Mesh stiffness by strain energy.
 //!
 //! A compliance is the displacement along the line of action under a unit force there; a tooth's is [`LoadedFlank`]'s, a pair's
 //! stiffness the inverse of both teeth's and the contact's ([`crate::mesh::Pairs`]), and the mesh's the sum of the pairs in

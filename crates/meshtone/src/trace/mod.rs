@@ -13,7 +13,7 @@ pub use crate::trace_fields::{Trace, TraceField};
 
 use crate::simulate::Stages;
 
-/// The fields of a trace that belong to the stages before the time loop.
+/// The fields of a trace that belong to the stages before the time loop: of a pair, or of the first mesh of a gearbox.
 ///
 /// # Arguments
 /// * `stages` - of a simulation

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use web_time::Instant;
+use web_time::{Duration, Instant};
 
 use super::average::average;
 use super::gearbox::gearbox_trace;
@@ -88,7 +88,8 @@ fn traced(stages: Stages, average_rate_hz: f64) -> Result<(Simulation, Trace), E
     stages.integrate(&outputs, stages.time.first_kept_sample, &mut recorder)?;
     let channels = stages.measured(recorder.finish(&mut trace));
     average(&mut trace, &stages, &channels, average_rate_hz);
-    trace.scalar("elapsed_s", start.elapsed().as_secs_f64());
+    let of_stages: Duration = stages.timings.iter().map(|time| time.elapsed).sum();
+    trace.scalar("elapsed_s", (of_stages + start.elapsed()).as_secs_f64());
     Ok((stages.with_channels(channels), trace))
 }
 

@@ -1,4 +1,4 @@
-//! Stage 2: the healthy tooth and the line along which two teeth touch.
+//! The healthy tooth and the line along which two teeth touch.
 
 mod contact;
 mod flank;
@@ -37,7 +37,7 @@ pub use quality::{
 pub use radii::Wheel;
 pub(crate) use rules::{HALF_THICKNESS, unused_slices};
 
-/// Stage 2's result: both wheels with their teeth, ready to mesh.
+/// Both wheels with their teeth, ready to mesh.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Teeth {

@@ -87,7 +87,7 @@ fn greatest_common_divisor(a: i128, b: i128) -> i128 {
     a
 }
 
-/// A gearbox with its names resolved.
+/// How the parts of a machine stand and turn, by their numbers: of a gearbox with its names resolved, or of a pair, which has no bearings here.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct GearboxLayout {

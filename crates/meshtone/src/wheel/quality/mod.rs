@@ -1,4 +1,4 @@
-//! Stage 3: manufacturing errors of the tooth profiles.
+//! Manufacturing errors of the tooth profiles.
 
 mod deviations;
 mod din3962;
