@@ -220,7 +220,7 @@ impl Contents {
         let hash = plan.hash();
         for name in PartList::names(files) {
             // Another part may have completed the data set meanwhile.
-            if let Some(list) = PartList::read(place, name, &hash)? {
+            if let Some(list) = PartList::read(place, name, hash)? {
                 listed.extend(list.shards.iter().map(|(&shard, contents)| (shard, contents.file)));
                 list.shards.into_iter().for_each(|(shard, contents)| self.add_shard(shard, contents));
                 self.summary.add(list.summary);

@@ -15,7 +15,7 @@ const LEAST_ENERGY: f64 = 1e-3;
 impl Stages {
     /// Modes of shafts of beams that the meshes deform and whose frequency is nearly a multiple of a mesh frequency.
     pub(super) fn mesh_resonances(&self) -> Option<ScenarioWarning> {
-        // A rig's modes are so heavily damped and so few that its speed is chosen by them, or meant to meet them.
+        // A pair on a rig is not looked at: this would be a warning that its scenarios have never had.
         let (_, modal) = self.machine().filter(|_| self.is_steady() && self.scenario.gearbox().is_some())?;
         let speed_hz = self.scenario.operation().pinion_speed_hz;
         let mesh_hz: Vec<f64> =
