@@ -71,7 +71,7 @@ impl DamagedTooth {
         Self::of_pair(&stages.pairs[0], wheel)
     }
 
-    /// The same of two wheels in mesh.
+    /// The damaged teeth of one of two wheels in mesh.
     pub(crate) fn of_pair(MeshedPair { teeth, damaged, .. }: &MeshedPair, wheel: WheelName) -> Vec<Self> {
         let contact_pitches = teeth.contact_span_pitches();
         let of_wheel = damaged.iter().filter(|alike| alike.wheel == wheel).enumerate();

@@ -11,12 +11,13 @@ use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_io::signals::SignalTable;
 use meshtone_io::summary::Summary;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::PyDict;
 
-use crate::array::{field, named_arrays};
+use crate::array::named_arrays;
 use crate::batch::Batch;
 use crate::error::{read_error, scenario_error, simulation_error, value_error};
 use crate::signals_file::write;
+use crate::simulation::{fields, simulated};
 use crate::value::table;
 
 /// A gearbox as the library has it.
@@ -147,9 +148,7 @@ impl GearboxSimulation {
 
     /// Every stage's output by name.
     fn trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let trace = py.detach(|| meshtone::simulation_trace(&self.simulation));
-        let named = trace.fields.into_iter().map(|entry| Ok((entry.name.clone(), field(py, entry)?)));
-        named.collect::<PyResult<Vec<_>>>()?.into_py_dict(py)
+        fields(py, py.detach(|| meshtone::simulation_trace(&self.simulation)))
     }
 
     /// (Hz) Natural frequencies with other mesh stiffnesses in N/m.
@@ -174,11 +173,7 @@ impl GearboxSimulation {
 /// Simulates a gearbox; it is simulated a second time where its step is doubtful.
 #[pyfunction]
 pub fn simulate_gearbox(py: Python<'_>, gearbox: &Gearbox) -> PyResult<GearboxSimulation> {
-    let simulated = py.detach(|| {
-        let stages = meshtone::stages_within(&gearbox.0, memory::limit())?;
-        stages.simulate().map(|of| with_warnings(of, StepJudgement::Repeated))
-    });
-    let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
+    let (simulation, warnings) = simulated(py, &gearbox.0)?;
     GearboxSimulation::new(py, simulation, warnings)
 }
 
@@ -193,7 +188,10 @@ pub fn simulate_gearboxes<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Py<PyAny>>> {
     let gearboxes: Vec<scenario::Gearbox> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
-    let estimated = |_: usize, of| with_warnings(of, StepJudgement::Estimated);
+    let estimated = |_: usize, of: meshtone::Simulation| {
+        let warnings = [of.stages.warnings(), of.warnings_of_signals(StepJudgement::Estimated)].concat();
+        (of, warnings)
+    };
     let batch = Batch { all: gearboxes.len(), threads, stop_at_error };
     let results = batch.run(py, progress, |control, take| {
         simulate_many_gearboxes(gearboxes, &estimated, control, take);
@@ -205,15 +203,6 @@ pub fn simulate_gearboxes<'py>(
         Err(error) => Ok(simulation_error(&error).into_value(py).into_any()),
     });
     made.collect()
-}
-
-/// A simulation with all its warnings.
-fn with_warnings(
-    simulation: meshtone::Simulation,
-    judgement: StepJudgement,
-) -> (meshtone::Simulation, Vec<ScenarioWarning>) {
-    let warnings = [simulation.stages.warnings(), simulation.warnings_of_signals(judgement)].concat();
-    (simulation, warnings)
 }
 
 /// A commented gearbox, or what is published of a rig.

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 
 use meshtone::damage::{DamageDescription, DamagedTooth, ToothPart};
-use meshtone::scenario::ScenarioWarning;
+use meshtone::scenario::{ScenarioForm, ScenarioWarning};
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::SimulatedShafts;
 use meshtone::wheel::{WheelDeviations, WheelName};
@@ -55,14 +55,22 @@ pub struct Simulation {
 /// Simulates a scenario.
 #[pyfunction]
 pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
+    let (simulation, warnings) = simulated(py, &scenario.0)?;
+    Simulation::new(py, simulation, &warnings)
+}
+
+/// Simulates a scenario of either form, and collects all warnings; it is simulated a second time where its step is doubtful.
+pub fn simulated(
+    py: Python<'_>,
+    scenario: impl Into<ScenarioForm> + Send,
+) -> PyResult<(meshtone::Simulation, Vec<ScenarioWarning>)> {
     let simulated = py.detach(|| {
-        let (stages, mut warnings) = meshtone::stages_and_warnings(&scenario.0, memory::limit())?;
+        let (stages, mut warnings) = meshtone::stages_and_warnings(scenario, memory::limit())?;
         let simulation = stages.simulate()?;
         warnings.extend(simulation.warnings_of_signals(StepJudgement::Repeated));
         Ok((simulation, warnings))
     });
-    let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
-    Simulation::new(py, simulation, &warnings)
+    simulated.map_err(|error| simulation_error(&error))
 }
 
 /// Simulates a scenario and gives every stage's output by name.
@@ -81,7 +89,8 @@ pub fn trace<'py>(
     fields(py, trace)
 }
 
-fn fields(py: Python<'_>, trace: Trace) -> PyResult<Bound<'_, PyDict>> {
+/// The fields of a trace by their names.
+pub fn fields(py: Python<'_>, trace: Trace) -> PyResult<Bound<'_, PyDict>> {
     let named = trace.fields.into_iter().map(|entry| Ok((entry.name.clone(), field(py, entry)?)));
     named.collect::<PyResult<Vec<_>>>()?.into_py_dict(py)
 }

@@ -49,12 +49,7 @@ impl<'i> TomlDocument<'i> {
     /// # Ok::<(), meshtone_toml::TomlError>(())
     /// ```
     pub fn canonical(&self, but: &[&str]) -> String {
-        let mut keys: Vec<_> =
-            self.root.iter().filter(|(key, _)| !but.contains(&key.get_ref().as_ref())).collect();
-        keys.sort_by(|a, b| a.0.get_ref().cmp(b.0.get_ref()));
-        keys.into_iter()
-            .map(|(key, value)| format!("{:?} = {}\n", key.get_ref(), canonical(value.get_ref())))
-            .collect()
+        canonical_keys(&self.root, but).into_iter().map(|key| key + "\n").collect()
     }
 
     /// The 1-based line of a key; where the text leaves the key out, that of the nearest table
@@ -164,15 +159,21 @@ fn canonical(value: &DeValue<'_>) -> String {
             let values: Vec<String> = values.iter().map(|value| canonical(value.get_ref())).collect();
             format!("[{}]", values.join(", "))
         }
-        DeValue::Table(table) => {
-            let mut keys: Vec<_> = table.iter().collect();
-            keys.sort_by(|a, b| a.0.get_ref().cmp(b.0.get_ref()));
-            let of_key = |(key, value): (&Spanned<std::borrow::Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
-                format!("{:?} = {}", key.get_ref(), canonical(value.get_ref()))
-            };
-            format!("{{{}}}", keys.into_iter().map(of_key).collect::<Vec<_>>().join(", "))
-        }
+        DeValue::Table(table) => format!("{{{}}}", canonical_keys(table, &[]).join(", ")),
     }
+}
+
+/// The keys of a table with their values, in the order of their names.
+///
+/// # Arguments
+/// * `but` - keys to leave out
+fn canonical_keys(table: &DeTable<'_>, but: &[&str]) -> Vec<String> {
+    let kept = table.iter().filter(|(key, _)| !but.contains(&key.get_ref().as_ref()));
+    let mut keys: Vec<_> = kept.collect();
+    keys.sort_by(|a, b| a.0.get_ref().cmp(b.0.get_ref()));
+    keys.into_iter()
+        .map(|(key, value)| format!("{:?} = {}", key.get_ref(), canonical(value.get_ref())))
+        .collect()
 }
 
 /// The 1-based line of a byte position.

@@ -46,7 +46,8 @@ pub struct GearboxState {
 /// * `is_wanted` - whether the answer still is, asked between the stages
 ///
 /// # Errors
-/// As [`meshtone::simulate`]; a simulation that needs more memory than one for the page may; no longer wanted.
+/// The scenario cannot be simulated ([`meshtone::simulate`]), a simulation needs more memory than one for the page may, or nobody waits for
+/// the answer any longer.
 pub fn gearbox_answer(
     gearbox: &Gearbox,
     options: &AnswerOptions,

@@ -126,7 +126,8 @@ pub struct State {
 /// * `is_wanted` - whether the answer still is: asked between stages, and many times while the simulation runs
 ///
 /// # Errors
-/// As [`meshtone::simulate`]; a simulation that needs more memory than one for the page may; no longer wanted.
+/// The scenario cannot be simulated ([`meshtone::simulate`]), a simulation needs more memory than one for the page may, or nobody waits for
+/// the answer any longer.
 ///
 /// ```
 /// use meshtone::scenario::Scenario;

@@ -1,4 +1,4 @@
-//! What the summary says of rolling bearings.
+//! The rolling bearings in the summary of a simulation.
 
 use meshtone::bearing::{RollingBearing, Spall};
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! What the summary says of meshes.
+//! The meshes in the summary of a simulation.
 
 use meshtone::Simulation;
 use meshtone::mesh::MeshCurve;
@@ -43,8 +43,6 @@ impl MeshSummary {
         let (layout, pair) = (&stages.layout, &stages.pairs[number]);
         let wheels = layout.wheels_of_mesh[number];
         let gears = &layout.gears[number];
-        let ratio = layout.ratios[layout.shaft_of_wheel[wheels[0]]].value().abs();
-        let pitches_per_revolution = f64::from(gears.pinion_teeth) * ratio;
         let error_um = channels.of(SignalSource::TransmissionError(number));
         let error = stages.meshes.get(number).filter(|_| !error_um.is_empty()).map(|tables| {
             let revolution = 0..tables.sequence.gear_teeth();
@@ -54,7 +52,8 @@ impl MeshSummary {
         let force_n = channels.of(SignalSource::MeshForce(number));
         Self {
             wheels: wheels.map(|wheel| train.wheels[wheel].name.clone()),
-            mesh_frequency_hz: pitches_per_revolution * stages.scenario.operation().pinion_speed_hz,
+            mesh_frequency_hz: layout.pitches_per_revolution(number)
+                * stages.scenario.operation().pinion_speed_hz,
             contact_ratio: pair.teeth.contact.contact_ratio,
             helix: HelixSummary::of(gears, pair.static_force_n),
             face_load_factor: curve.face_load_factor,
@@ -66,7 +65,7 @@ impl MeshSummary {
     }
 }
 
-/// How far the wheels of a mesh turn against one another, along the line of action.
+/// Transmission error of a mesh: the rotation of its wheels against one another, along the line of action.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct TransmissionError {
@@ -82,7 +81,7 @@ pub struct TransmissionError {
     pub static_peak_to_peak: f64,
 }
 
-/// What only helical wheels have.
+/// Overlap and thrust of a helical mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct HelixSummary {
@@ -95,7 +94,7 @@ pub struct HelixSummary {
 }
 
 impl HelixSummary {
-    /// Of two wheels; none of spur wheels.
+    /// Overlap and thrust of two wheels; none of spur wheels, which have neither.
     pub(super) fn of(gears: &Gears, static_force_n: f64) -> Option<Self> {
         gears.is_helical().then(|| Self {
             overlap_ratio: gears.overlap_ratio(),
@@ -130,7 +129,7 @@ pub struct MeshForce {
     /// (-) Part of the time in which the mesh pulls; none under `contact`, whose teeth never do.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tension_fraction: Option<f64>,
-    /// How the teeth touched; only under `contact`.
+    /// Contact of the teeth; none where the model is not `contact`.
     #[serde(flatten)]
     pub contact: Option<ContactFigures>,
 }
@@ -143,7 +142,11 @@ impl MeshStiffness {
 }
 
 impl MeshForce {
-    /// Of the force of a mesh whose teeth part when they are pulled, or do not.
+    /// The numbers of a mesh's force.
+    ///
+    /// # Arguments
+    /// * `force_n` - (N) the force at every kept sample
+    /// * `teeth_part` - whether teeth that are pulled part
     pub(super) fn of(force_n: &[f64], teeth_part: bool) -> Self {
         let [min_n, mean_n, max_n] = extremes(force_n);
         let figures = ContactFigures::of_force(force_n);
@@ -178,7 +181,7 @@ pub struct OneMesh {
 }
 
 impl OneMesh {
-    /// Of the only mesh; none where there are several.
+    /// The numbers of the only mesh; none where there are several.
     pub(super) fn of(meshes: &[MeshSummary], samples_per_pinion_revolution: usize) -> Option<Self> {
         let [mesh] = meshes else { return None };
         let MeshSummary { contact_ratio, helix, face_load_factor, mesh_stiffness, mesh_force, .. } = *mesh;

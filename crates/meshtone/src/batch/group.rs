@@ -30,8 +30,11 @@ pub(super) fn simulate_group<K: Keep>(
     let mut results = Vec::with_capacity(scenarios.len());
     let mut ready = Vec::with_capacity(scenarios.len());
     for (index, scenario) in scenarios {
-        let outputs = keep.outputs(&scenario.without_ignored_keys());
-        match stages(scenario).and_then(|stages| Ok((stages, outputs?))) {
+        let prepared = stages(scenario).and_then(|stages| {
+            let outputs = stages.scenario.pair().map_or_else(|| Ok(Vec::new()), |pair| keep.outputs(pair))?;
+            Ok((stages, outputs))
+        });
+        match prepared {
             Ok((stages, outputs)) => {
                 let recorder = keep.recorder(&stages);
                 ready.push(Ready { index, stages, outputs, recorder });

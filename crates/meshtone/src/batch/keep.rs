@@ -1,7 +1,7 @@
 //! What is kept of each simulation.
 
 use crate::error::ScenarioError;
-use crate::scenario::{Scenario, ScenarioForm};
+use crate::scenario::Scenario;
 use crate::sensor::{Channel, ChannelKind, Channels};
 use crate::simulate::{Simulation, Stages};
 use crate::solver::{Block, Output, Recorder};
@@ -56,7 +56,7 @@ impl Keep for KeepSimulation {
     type Kept = Simulation;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        Ok(ScenarioForm::from(scenario).outputs())
+        Ok(scenario.signals_and_outputs().into_iter().map(|(_, output)| output).collect())
     }
 
     fn recorder(&self, stages: &Stages) -> Channels {

@@ -11,7 +11,7 @@ use crate::damage::Fault;
 use crate::operation::{Operation, Solver, TimeGrid};
 use crate::wheel::{NamedGears, Teeth, WheelName};
 
-/// A scenario file, as what it is read.
+/// A scenario in the form in which its file is written.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a file has only one")]
 pub enum ScenarioForm {

@@ -30,7 +30,7 @@ impl ScenarioForm {
 
 impl Scenario {
     /// The signals of a simulation, each with what it is of the solution.
-    fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
+    pub(crate) fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
         let of_sensor = |(number, sensor): (usize, &Sensor)| {
             (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), sensor.output())
         };

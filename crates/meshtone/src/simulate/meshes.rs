@@ -31,9 +31,8 @@ pub(super) fn meshes(
 ) -> Result<Vec<Mesh>, ScenarioError> {
     let contact = if scenario.model().teeth_part() { Contact::Unilateral } else { Contact::Bilateral };
     let mesh = |(number, pair): (usize, &MeshedPair)| {
-        let ratio = layout.ratios[layout.shaft_of_wheel[layout.wheels_of_mesh[number][0]]].value();
         let turning = Turning {
-            pitches_per_revolution: f64::from(layout.gears[number].pinion_teeth) * ratio.abs(),
+            pitches_per_revolution: layout.pitches_per_revolution(number),
             first_pitch: layout.phases[number],
         };
         let mesh = MeshOf {
@@ -48,7 +47,7 @@ pub(super) fn meshes(
             },
             contact,
             turning,
-            sense: ratio.signum(),
+            sense: layout.driving_ratio(number).signum(),
         };
         let of_time = || points_of(time, scenario.is_steady(), &turning, pair);
         mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))

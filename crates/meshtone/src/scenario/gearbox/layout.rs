@@ -451,6 +451,22 @@ impl GearboxLayout {
         NamedGears::of_mesh(gears, section("mesh", mesh, gearbox.meshes.len()), wheels)
     }
 
+    /// (-) Rotation of a mesh's driving wheel over that of the input; negative where it turns against the input.
+    ///
+    /// # Arguments
+    /// * `mesh` - number of the mesh
+    pub fn driving_ratio(&self, mesh: usize) -> f64 {
+        self.ratios[self.shaft_of_wheel[self.wheels_of_mesh[mesh][0]]].value()
+    }
+
+    /// (-) Pairs of teeth that enter a mesh while the input turns once.
+    ///
+    /// # Arguments
+    /// * `mesh` - number of the mesh
+    pub fn pitches_per_revolution(&self, mesh: usize) -> f64 {
+        f64::from(self.gears[mesh].pinion_teeth) * self.driving_ratio(mesh).abs()
+    }
+
     /// The first mesh that a wheel is in, and on which side.
     pub fn mesh_of(&self, wheel: usize) -> Option<(usize, WheelName)> {
         self.meshes_of(wheel).next()

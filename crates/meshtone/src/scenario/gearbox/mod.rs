@@ -480,9 +480,8 @@ impl Gearbox {
     }
 
     fn driven_speed(&self, layout: &GearboxLayout) -> DrivenSpeed<'_> {
-        let pitch_lines_mm = layout.gears.iter().zip(&layout.wheels_of_mesh).map(|(gears, [driving, _])| {
-            let ratio = layout.ratios[layout.shaft_of_wheel[*driving]].value().abs();
-            pitch_line_mm(gears.transverse_module_mm(), gears.pinion_teeth) * ratio
+        let pitch_lines_mm = layout.gears.iter().enumerate().map(|(mesh, gears)| {
+            pitch_line_mm(gears.transverse_module_mm(), gears.pinion_teeth) * layout.driving_ratio(mesh).abs()
         });
         DrivenSpeed {
             operation: &self.operation.drive,
