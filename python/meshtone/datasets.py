@@ -47,14 +47,16 @@ import json
 import operator
 import os
 import re
+import shutil
 import stat
 import tempfile
+import weakref
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -89,6 +91,9 @@ KNOWN = ("pinion_speed_hz", "input_speed_hz", "brake_torque_nm")
 
 KNOWN_OF_WHEELS = re.compile(r"(?!fault|latent).*(teeth|module_mm|face_width_mm|helix_angle_deg|pressure_angle_deg)")
 """Likewise, of each wheel or mesh."""
+
+TARGETS = re.compile(r"label|severity.*|fault.*|remaining_rev")
+"""Columns of the damage that was simulated."""
 
 OVER_A_REVOLUTION = ("average_g", "difference_g", "enhanced_relative_difference")
 """Columns of signals at equal angles of one revolution; the others are at equal times."""
@@ -443,6 +448,10 @@ class Dataset:
         self._empty = empty_columns
         self._rows: Rows | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        # What is mapped into memory is of this process.
+        return {**vars(self), "_rows": None}
+
     @property
     def path(self) -> Path:
         """Its directory.
@@ -517,27 +526,98 @@ class Dataset:
             self._length = int(self._native.count_rows(filter=self._filter))
         return self._length
 
-    def __getitem__(self, index: int) -> dict[str, Any]:
-        """A record, by its place among these, as :meth:`records` gives it; the last file that was read is kept in memory.
+    @overload
+    def __getitem__(self, index: SupportsIndex) -> dict[str, Any]: ...
+    @overload
+    def __getitem__(self, index: slice) -> Dataset: ...
+    @overload
+    def __getitem__(self, index: str) -> npt.NDArray[Any] | list[FloatSignal]: ...
+    def __getitem__(self, index: SupportsIndex | slice | str) -> Any:
+        """A record by its place among these, records by a slice, or a column by its name.
+
+        The first access to a file's records decodes it, the later ones take microseconds in any order.
 
         Parameters
         ----------
-        index : int
+        index : int, slice or str
             From 0, or from -1 backwards.
 
         Returns
         -------
-        dict
-            A value or an array of float32 for each column.
+        dict, Dataset, or what :meth:`column` or :meth:`signals` returns
+            Of a record a value or an array of float32 for each column.
 
         Raises
         ------
         IndexError
             There are not so many records.
+        ValueError
+            A column that there is not.
         """
+        if isinstance(index, str):
+            self._check([index])
+            return self.signals(index) if index in self.signal_columns else self.column(index)
+        if isinstance(index, slice):
+            return self.take(range(len(self))[index])
         if self._rows is None:
             self._rows = Rows(self, self.columns)
         return self._rows[index]
+
+    def take(self, places: Sequence[int] | npt.NDArray[np.integer[Any]]) -> Dataset:
+        """Records by their places among these, in that order.
+
+        Parameters
+        ----------
+        places : sequence of int
+            From 0; a place may occur more than once.
+
+        Returns
+        -------
+        Dataset
+            In memory, with all columns.
+
+        Raises
+        ------
+        IndexError
+            There are not so many records.
+
+        Examples
+        --------
+        ::
+
+            first, shuffled = gears[:10], gears.take(np.random.default_rng(0).permutation(len(gears)))
+        """
+        import pyarrow.dataset
+
+        numbers = np.asarray(places, dtype=np.int64)
+        if numbers.size and not 0 <= numbers.min() <= numbers.max() < len(self):
+            raise IndexError(f"places of {len(self)} records are from 0 to {len(self) - 1}")
+        table = self._native.take(numbers, filter=self._filter)
+        return Dataset(self.place, pyarrow.dataset.dataset(table), None, self.empty_columns)
+
+    def sample(self, records: int, *, seed: int = 0) -> Dataset:
+        """Some of the records, drawn without replacement and in their order.
+
+        Parameters
+        ----------
+        records : int
+            How many.
+        seed : int
+            Of the draw: the same seed draws the same places.
+
+        Returns
+        -------
+        Dataset
+            In memory, with all columns.
+
+        Raises
+        ------
+        ValueError
+            There are not so many records.
+        """
+        if not 0 <= whole("records", records) <= len(self):
+            raise ValueError(f"records = {records}: there are {len(self)}")
+        return self.take(np.sort(np.random.default_rng(seed).permutation(len(self))[:records]))
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return self.records()
@@ -561,13 +641,25 @@ class Dataset:
         )
 
     def filter(self, expression: pyarrow.dataset.Expression) -> Dataset:
-        """The records for which an expression holds.
+        """The records for which an expression holds; nothing is read before it is asked for.
 
         Parameters
         ----------
         expression : pyarrow.dataset.Expression
-            ``pyarrow.dataset.field("pinion_speed_hz") > 30``.
+            ``pyarrow.dataset.field("pinion_speed_hz") > 30``. :meth:`take` takes records that a function of Python chose.
+
+        Raises
+        ------
+        TypeError
+            Something else, such as a function.
         """
+        import pyarrow.dataset
+
+        if not isinstance(expression, pyarrow.dataset.Expression):
+            raise TypeError(
+                f"expression = {expression!r}: must be one of pyarrow, such as pyarrow.dataset.field('pinion_speed_hz') > 30; "
+                "take(numpy.flatnonzero(dataset['pinion_speed_hz'] > 30)) does without one"
+            )
         both = expression if self._filter is None else self._filter & expression
         return Dataset(self.place, self._native, both, self._empty)
 
@@ -681,6 +773,18 @@ class Dataset:
         """Names of the columns of what is known of a machine without its vibration: speed, torque, teeth, module, face width, angles."""
         names = [name for name in self.scalar_columns if name in KNOWN or KNOWN_OF_WHEELS.fullmatch(name)]
         return [name for name in names if name not in self.empty_columns]
+
+    @property
+    def target_columns(self) -> list[str]:
+        """Names of the columns that say what is damaged, and how much: a learner may learn these, and nothing from them."""
+        return [name for name in self._value_columns() if TARGETS.fullmatch(name)]
+
+    @property
+    def indicator_columns(self) -> list[str]:
+        """Names of the columns of condition indicators, which a recording has too: with :attr:`condition_columns` all from which a
+        learner may learn."""
+        fields = {name: self._native.schema.field(name).metadata or {} for name in self._value_columns()}
+        return [name for name, metadata in fields.items() if metadata.get(b"description", b"").startswith(b"indicator ")]
 
     def _value_columns(self) -> list[str]:
         empty = set(self.empty_columns)
@@ -850,8 +954,8 @@ class Dataset:
     ) -> TorchDataset:
         """A ``torch.utils.data.Dataset`` of (signals, target), or of ((signals, conditions), target) with conditions.
 
-        Needs torch: ``pip install 'meshtone[torch]'``. Targets and conditions are read at once; of the signals, the last file that was
-        asked for is kept in memory, so that reading in order is fast.
+        Needs torch: ``pip install 'meshtone[torch]'``. Targets and conditions are read at once, the signals when they are asked
+        for, in any order: shuffled epochs are as fast as ordered ones after the first.
 
         Parameters
         ----------
@@ -1055,7 +1159,11 @@ class Dataset:
 
 
 class Rows:
-    """Records of a data set by their places; the last file that was read is kept in memory, so that reading in order is fast.
+    """Records of a data set by their places, in any order.
+
+    The first access to a file writes what is wanted of it, uncompressed, to a temporary file in Arrow's format, which is mapped into
+    memory: each file is decoded once, in whatever order records are read, and the system keeps in memory what fits there. Processes that are
+    forked from this one, such as a ``DataLoader``'s workers, share the files.
 
     Parameters
     ----------
@@ -1066,30 +1174,75 @@ class Rows:
     """
 
     def __init__(self, dataset: Dataset, columns: Sequence[str]) -> None:
-        self._columns, self._filter = list(columns), dataset._filter
+        self._dataset, self._columns = dataset, list(columns)
         self._fragments = list(dataset.arrow.get_fragments())
-        self._ends = np.cumsum([fragment.count_rows(filter=self._filter) for fragment in self._fragments], dtype=int)
-        self._read: tuple[int, list[dict[str, Any]]] | None = None
+        self._ends = np.cumsum([fragment.count_rows(filter=dataset._filter) for fragment in self._fragments], dtype=int)
+        self._mapped: dict[int, list[tuple[str, Any, Any]]] = {}
+        self._folder = _TemporaryFolder()
+
+    def __reduce__(self) -> tuple[type[Rows], tuple[Dataset, list[str]]]:
+        # A process that is not forked from this one has no claim to its temporary files.
+        return Rows, (self._dataset, self._columns)
 
     def __len__(self) -> int:
         return int(self._ends[-1]) if self._ends.size else 0
 
-    def __getitem__(self, index: int) -> dict[str, Any]:
+    def __getitem__(self, index: SupportsIndex) -> dict[str, Any]:
         try:
             number = operator.index(index)
         except TypeError:
-            raise TypeError(f"record {index!r}: must be a whole number; filter and split give several records") from None
+            raise TypeError(f"record {index!r}: must be a whole number; slices, take, filter and split give several") from None
         if not -len(self) <= number < len(self):
             raise IndexError(f"record {number} of {len(self)}")
         number %= len(self)
         place = int(np.searchsorted(self._ends, number, side="right"))
-        # Other threads may put another shard there meanwhile.
-        read = self._read
-        if read is None or read[0] != place:
-            batches = self._fragments[place].to_batches(columns=self._columns, filter=self._filter)
-            self._read = read = (place, [record for batch in batches for record in _records_of(batch)])
-        first = int(self._ends[place - 1]) if place else 0
-        return dict(read[1][number - first])
+        row = number - (int(self._ends[place - 1]) if place else 0)
+        return {
+            name: values[row].as_py() if ends is None else values[ends[row] : ends[row + 1]]
+            for name, values, ends in self._columns_of(place)
+        }
+
+    def _columns_of(self, place: int) -> list[tuple[str, Any, Any]]:
+        """Of each wanted column of a file its name and its values; of signals also where each one ends."""
+        if place not in self._mapped:
+            import pyarrow
+
+            table = self._fragments[place].to_table(columns=self._columns, filter=self._dataset._filter).combine_chunks()
+            # Another thread may do the same at the same time: each writes a file of its own.
+            file = self._folder.new_file()
+            with pyarrow.OSFile(file, "wb") as sink, pyarrow.ipc.new_file(sink, table.schema) as writer:
+                writer.write_table(table)
+            batches = pyarrow.ipc.open_file(pyarrow.memory_map(file)).read_all().combine_chunks().to_batches()
+            self._mapped[place] = [_mapped_column(name, batches[0].column(name)) for name in table.column_names]
+        return self._mapped[place]
+
+
+class _TemporaryFolder:
+    """A folder that is removed with the object, by the process that made it only."""
+
+    def __init__(self) -> None:
+        self._name: str | None = None
+
+    def new_file(self) -> str:
+        if self._name is None:
+            self._name = tempfile.mkdtemp(prefix="meshtone-")
+            weakref.finalize(self, _remove_as, os.getpid(), self._name)
+        handle, name = tempfile.mkstemp(dir=self._name)
+        os.close(handle)
+        return name
+
+
+def _remove_as(process: int, folder: str) -> None:
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _mapped_column(name: str, column: Any) -> tuple[str, Any, Any]:
+    import pyarrow.types
+
+    if not pyarrow.types.is_list(column.type):
+        return name, column, None
+    return name, column.values.to_numpy(zero_copy_only=False), column.offsets.to_numpy()
 
 
 def with_points(name: str, values: FloatSignal, points: int) -> FloatSignal:

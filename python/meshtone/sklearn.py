@@ -16,7 +16,7 @@ from .signal.train import Machine
 
 with extra("sklearn"):
     from sklearn.base import BaseEstimator, TransformerMixin
-    from sklearn.utils.validation import check_is_fitted
+    from sklearn.utils.validation import check_is_fitted, validate_data
 
 __all__ = ["DatasetTransformer", "IndicatorTransformer"]
 
@@ -36,8 +36,8 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
     teeth : int
         Of the wheel.
     indicators : sequence of str, optional
-        Names of those that are wanted, as ``record.indicators`` has them; all by default. Units, formulas and sources:
-        :class:`meshtone.signal.Indicators`.
+        Names of those that are wanted, as ``record.indicators`` has them; by default all that are defined at this rate, speed and tooth
+        count (octaves above half the sampling rate are not). Units, formulas and sources: :class:`meshtone.signal.Indicators`.
     sidebands : int, optional
         Sidebands on either side of each mesh harmonic that belong to the regular part; 2 by default.
 
@@ -70,7 +70,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         self.sidebands = sidebands
 
     def fit(self, X: npt.ArrayLike, y: Any = None) -> IndicatorTransformer:
-        """Look at the first record: which indicators there are does not depend on the data.
+        """Find which indicators are defined for records of this length: nothing is learnt of their values.
 
         Parameters
         ----------
@@ -81,16 +81,18 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         Raises
         ------
         ValueError
-            An array of another number of dimensions, or without records; masked values; an indicator that there is not; a first record
-            that :func:`meshtone.process_channel` refuses.
+            An array of another number of dimensions, or without records; values that are masked or not finite; an indicator that there is
+            not; records that :func:`meshtone.process_channel` refuses.
         """
-        records = _records(X)
-        self.n_features_in_ = records.shape[1]
-        known = list(self._record(records[0]).indicators)
-        asked = known if self.indicators is None else list(self.indicators)
-        unknown = [name for name in asked if name not in known]
-        if unknown:
-            raise ValueError(f"indicators: there is no '{unknown[0]}'; there are {', '.join(known)}{hint(unknown[0], known)}")
+        samples = _records(self, X, reset=True).shape[1]
+        # A mesh tone in noise, of which all indicators are finite that are defined for such records.
+        tone = np.cos(2 * np.pi * self.shaft_hz * self.teeth / self.sampling_rate_hz * np.arange(samples))
+        defined = self._record(tone + 0.1 * np.random.default_rng(0).standard_normal(samples)).indicators
+        asked = [name for name, value in defined.items() if np.isfinite(value)] if self.indicators is None else list(self.indicators)
+        if unknown := [name for name in asked if name not in defined]:
+            raise ValueError(
+                f"indicators: there is no '{unknown[0]}'; there are {', '.join(defined)}{hint(unknown[0], list(defined))}"
+            )
         self.names_ = asked
         return self
 
@@ -100,12 +102,13 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         Parameters
         ----------
         X : array_like, shape (records, samples)
-            (any unit) The records; they may be longer or shorter than those of ``fit``.
+            (any unit) The records, as long as those of ``fit``.
 
         Returns
         -------
         array, shape (records, indicators)
-            Rms and peak-to-peak in the records' unit, the others without one; NaN where one is not defined.
+            Rms and peak-to-peak in the records' unit, the others without one; NaN where one is not defined for a record, such as the
+            kurtosis of zeros (``sklearn.impute.SimpleImputer`` replaces it).
 
         Raises
         ------
@@ -115,9 +118,8 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
             :meth:`fit` has not been called.
         """
         check_is_fitted(self)
-        names = self.names_
-        rows = [[self._record(record).indicators[name] for name in names] for record in _records(X)]
-        return np.array(rows, dtype=np.float64)
+        rows = [self._record(record).indicators for record in _records(self, X)]
+        return np.array([[row[name] for name in self.names_] for row in rows], dtype=np.float64)
 
     def get_feature_names_out(self, input_features: Any = None) -> npt.NDArray[np.object_]:
         """Names of the columns."""
@@ -179,7 +181,7 @@ class DatasetTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         ValueError
             An array of another number of dimensions, or without records; masked values; a column that the data set does not have.
         """
-        self.n_features_in_ = _records(X).shape[1]
+        _records(self, X, reset=True)
         self.dataset._check_values(self.columns)
         self.names_ = list(self.columns)
         return self
@@ -205,7 +207,7 @@ class DatasetTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
             :meth:`fit` has not been called.
         """
         check_is_fitted(self)
-        records = _records(X)
+        records = _records(self, X)
         phase = ShaftPhase.constant(self.shaft_hz, self.sampling_rate_hz, records.shape[1])
         rows = self.dataset.like(list(records), [phase] * len(records), self.machine, self.sampling_rate_hz)
         values, number = rows.matrix(self.names_), rows.column("unit")
@@ -216,12 +218,7 @@ class DatasetTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         return np.array(self.names_, dtype=object)
 
 
-def _records(X: npt.ArrayLike) -> npt.NDArray[Any]:
-    records = np.asarray(X)
+def _records(transformer: BaseEstimator, X: npt.ArrayLike, *, reset: bool = False) -> npt.NDArray[np.float64]:
     if np.ma.is_masked(X):
         raise ValueError("records have no masked values: fill them, or leave such records out")
-    if records.ndim != 2:
-        raise ValueError(f"records are rows of an array of two dimensions; given is one of shape {records.shape}")
-    if len(records) == 0:
-        raise ValueError("there are no records")
-    return records
+    return validate_data(transformer, X, reset=reset, dtype=np.float64)  # type: ignore[no-any-return]

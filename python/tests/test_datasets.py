@@ -6,6 +6,7 @@ import errno
 import hashlib
 import importlib.util
 import json
+import pickle
 import re
 import shutil
 import subprocess
@@ -123,14 +124,29 @@ def test_a_record_by_its_place(gears: datasets.Dataset) -> None:
             record = dataset[place]
             assert record["record"] == records[place]["record"]
             assert np.array_equal(record["vertical_g"], records[place]["vertical_g"])
+        drawn = dataset.take([7, 2, 7])
+        assert drawn["record"].tolist() == [records[place]["record"] for place in (7, 2, 7)]
+        assert np.array_equal(drawn[0]["vertical_g"], records[7]["vertical_g"]) and len(dataset[2:9:3]) == 3
+        assert dataset.sample(5, seed=1)["record"].tolist() == sorted(dataset.sample(5, seed=1)["record"], key=dataset["record"].tolist().index)
+    with pytest.raises(IndexError, match="places of 24 records are from 0 to 23"):
+        gears.take([24])
+    with pytest.raises(ValueError, match="records = 25: there are 24"):
+        gears.sample(25)
+    with pytest.raises(TypeError, match="take"):
+        gears.filter(lambda record: record["label"] == "healthy")  # type: ignore[arg-type]
+    # Another process maps files of its own.
+    assert pickle.loads(pickle.dumps(datasets.Rows(test, ["record"])))[0] == {"record": int(test["record"][0])}
+    groups = [gears.indicator_columns, gears.condition_columns, gears.target_columns]
+    assert [name in group for group, name in zip(groups, ("fm4", "pinion_speed_hz", "fault_severity"))] == [True] * 3
+    assert len({name for group in groups for name in group}) == sum(map(len, groups)) and "seed" not in sum(groups, [])
     # What is done to a record is done to no other.
     test[0]["label"] = "mended"
     assert test[0]["label"] in ("healthy", "tooth-breakage")
     for place in (len(gears), -len(gears) - 1):
         with pytest.raises(IndexError, match=f"record {place} of 24"):
             gears[place]
-    with pytest.raises(TypeError, match="filter and split give several records"):
-        gears[:3]  # type: ignore[index]
+    with pytest.raises(TypeError, match="slices, take, filter and split give several"):
+        gears[1.5]  # type: ignore[call-overload]
 
 
 def test_tables(gears: datasets.Dataset) -> None:
