@@ -1137,6 +1137,33 @@ class Dataset:
         with written_whole(file) as stream:
             scipy.io.savemat(stream, {"records": array}, do_compression=True, long_field_names=True)
 
+    def to_bearing_datasets(self, folder: str | PathLike[str]) -> None:
+        """Write the raw channels in the schema, version 2, of the Python package ``bearing-datasets`` 0.3.0.
+
+        ``metadata.parquet`` has a row for each signal, and ``signals/`` the samples: the book's chapter "Data sets" lists the columns.
+
+        Parameters
+        ----------
+        folder : str or path
+            The folder, which must be empty or not exist; its name is that of the written data set.
+
+        Raises
+        ------
+        ValueError
+            A data set that is not complete or keeps no raw channel; a bearing of its base scenario with a spall, which no class labels; a
+            folder that has files in it.
+
+        Examples
+        --------
+        ::
+
+            gears.split("test").to_bearing_datasets("sets/gears")
+            bearing_datasets.open("gears", "sets").signal("record-17/vertical_g")
+        """
+        from ._bearing_datasets import write_bearing_datasets
+
+        write_bearing_datasets(self, Path(folder))
+
     def _check_signals(self, columns: Sequence[str]) -> None:
         self._check(columns)
         for name in columns:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import importlib
 import importlib.util
 import json
 import pickle
@@ -23,6 +24,7 @@ import scipy.io
 
 import meshtone
 from meshtone import datasets
+from meshtone._bearing_datasets import Base
 from meshtone._published import PUBLISHED
 
 PLAN = """\
@@ -623,3 +625,68 @@ def test_a_published_set_is_unpacked_and_compared(
     with pytest.raises(ValueError, match="is no whole archive of benchmark-1"):
         datasets.load("benchmark-1", tmp_path / "text.zip")
     assert not (tmp_path / "benchmark-1").exists()
+
+
+CLASSES_WITH_TWO = """
+[[class]]
+label = "two"
+fault = [{ kind = "missing-tooth", wheel = "pinion" }, { kind = "missing-tooth", tooth = 3 }]
+"""
+
+
+def test_the_schema_of_bearing_datasets(tmp_path: Path, gears: datasets.Dataset) -> None:
+    """The package itself validates the set, checks every sample, and reads what the records hold."""
+    bd = pytest.importorskip("bearing_datasets", reason="bearing-datasets is not installed: pip install bearing-datasets==0.3.0")
+    cli, schema = (importlib.import_module(f"bearing_datasets.{name}") for name in ("cli", "schema"))
+    plan = write_plan(tmp_path)
+    plan.write_text(PLAN.replace("[[vary]]", CLASSES_WITH_TWO + "[[vary]]", 1), encoding="utf-8")
+    dataset = datasets.generate_dataset(plan, tmp_path / "set")
+    dataset.to_bearing_datasets(tmp_path / "sets/gears")
+    written = bd.open("gears", tmp_path / "sets")
+    metadata = written.metadata()
+    assert written.manifest["schema_version"] == schema.SCHEMA_VERSION == 2
+    schema.validate(metadata, written.manifest["columns"])
+    assert list(metadata.columns[: len(schema.REQUIRED)]) == list(schema.REQUIRED)
+    assert (metadata["sensor_at_fault"] == schema.at_fault(metadata["sensor_location"], metadata["fault_location"])).all()
+    both = metadata[metadata["native_label"] == "two"]
+    words = [("missing-tooth+missing-tooth", "gear+gear", "gearbox_gear_input+gearbox_gear_output", "pinion+gear")]
+    assert list({*zip(*(both[f"fault_{name}"] for name in ("kind", "type", "location", "wheel")))}) == words
+    with pytest.raises(SystemExit) as end:
+        cli.main(["--root", str(tmp_path / "sets"), "verify", "gears"])
+    assert end.value.code in (0, None)
+    for record in dataset:
+        rows = metadata[metadata["recording_id"] == f"record-{record['record']}"]
+        assert list(rows["channel"]) == ["horizontal_g", "vertical_g"]
+        row = rows.iloc[1]
+        assert (written.signal(row["signal_id"]) == record["vertical_g"]).all()
+        assert row["n_samples"] == len(record["vertical_g"]) and row["fs"] == record["sampling_rate_hz"]
+        assert row["native_label"] == record["label"] and row["split"] == record["split"] and row["unit_id"] == record["unit"]
+        assert row["speed_rpm"] == 60 * record["pinion_speed_hz"] and row["load"] == record["brake_torque_nm"]
+        assert (row["fault_severity_level"] > 0) == (record["label"] != "healthy")
+    recording = meshtone.read_recording(tmp_path / "sets/gears", variable="record-1")
+    assert list(recording) == ["horizontal_g", "vertical_g"] and recording.units["vertical_g"] == "g"
+    # A filter leaves its records; nothing is written over what is there.
+    part = gears.split("test")
+    part.to_bearing_datasets(tmp_path / "sets/part")
+    assert len(bd.open("part", tmp_path / "sets").metadata()) == 2 * len(part)
+    with pytest.raises(ValueError, match="part has files in it"):
+        part.to_bearing_datasets(tmp_path / "sets/part")
+
+
+def test_what_the_schema_of_bearing_datasets_cannot_have(tmp_path: Path) -> None:
+    plan = write_plan(tmp_path)
+    datasets.generate_dataset(plan, tmp_path / "half", part=(1, 2))
+    with pytest.warns(UserWarning, match="not complete"):
+        half = datasets.load_dataset(tmp_path / "half")
+    bearing = Base(
+        meshtone.gearbox_template().replace("at = 0.0", 'at = 0.0\nkind = "ball"\nname = "ER-10K"\ndefect = [{ race = "outer", width_mm = 0.5 }]', 1)
+    )
+    refused = [(half, "is not complete")]
+    plan.write_text(PLAN.replace("[keep]", "[keep]\nchannels = []"), encoding="utf-8")
+    refused.append((datasets.generate_dataset(plan, tmp_path / "bare"), "keeps no raw channels"))
+    for dataset, words in refused:
+        with pytest.raises(ValueError, match=words):
+            dataset.to_bearing_datasets(tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(ValueError, match=r"bearing\[input:0\] of the base scenario has a spall"):
+        bearing.check_healthy()

@@ -5,7 +5,6 @@
 mod budgets;
 mod checks;
 mod compilations;
-mod dependencies;
 mod dist;
 mod docs;
 mod environment;
@@ -47,8 +46,6 @@ Tasks:
                Python), and check that the package has its SHA-256
   generate     Write what follows from the rows of the library's keys: Python's arguments and classes, the guide's tables
   check-rooms  Only the check that no folder of the library imports against the direction of the data
-  check-dependencies
-               Only the check that dependencies are such as deny.toml allows
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
   fuzz         Try wrong input on every reader: --minutes 10, --seed 7 for the same again
@@ -78,7 +75,6 @@ fn main() -> ExitCode {
         ["benchmark"] => dist::benchmark(&row),
         ["generate"] => checks::generate(&linted),
         ["check-rooms"] => row.check("rooms check", rooms::problems),
-        ["check-dependencies"] => row.check("dependencies check", dependencies::problems),
         ["check-docs"] => row.check("docs check", docs::problems),
         ["help" | "-h" | "--help"] => {
             print!("{HELP}");

@@ -160,7 +160,7 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
 /// One signal of one record.
 fn signal(to: &Destination, shard: &str, row: usize, column: &str) -> Vec<f64> {
     let read = to.read_shard(shard, Wanted::Signal { column, row });
-    read.ok().and_then(|read| read.signals.into_iter().next()).unwrap_or_default()
+    read.map(|read| read.signal).unwrap_or_default()
 }
 
 /// Teeth, speed, load and severity of one record, in words.

@@ -11,7 +11,6 @@ mod croissant;
 pub mod digest;
 pub mod draw;
 mod error;
-pub mod export;
 pub mod expression;
 mod finish;
 pub mod generate;

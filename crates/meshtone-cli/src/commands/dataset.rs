@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use meshtone_dataset::draw::Sampler;
-use meshtone_dataset::export::export_bearing_datasets;
 use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
 use meshtone_dataset::merge::merge;
 use meshtone_dataset::plan::Plan;
@@ -44,7 +43,6 @@ enum Action {
     Merge(Merge),
     Verify(Verify),
     Scenario(Scenario),
-    Export(Export),
 }
 
 #[derive(Debug, Args)]
@@ -111,33 +109,6 @@ struct Scenario {
     record: u64,
 }
 
-/// Write the raw channels of a data set in the schema of another library
-///
-/// `bearing-datasets` is the schema, version 2, of the Python package of that name, 0.3.0: the table metadata.parquet has a row for each
-/// signal, and signals/ has the samples. Every tooth fault is `gear` there, a spall of a bearing by its place; our kind of damage stands in the
-/// column fault_kind.
-#[derive(Debug, Args)]
-struct Export {
-    /// Directory or URL of the data set
-    #[arg(value_name = "DIR")]
-    place: String,
-    /// The schema
-    #[arg(long, value_enum)]
-    schema: Schema,
-    /// Directory to write to; its name is the exported set's. [default: <DIR>_bearing_datasets in the current directory]
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
-    /// Print no summary
-    #[arg(short, long)]
-    quiet: bool,
-}
-
-/// A schema of data sets.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Schema {
-    BearingDatasets,
-}
-
 const EXAMPLES: &str = "\
 Examples:
   meshtone init dataset -o plan.toml                     a commented plan to start from
@@ -145,7 +116,9 @@ Examples:
   meshtone dataset plan.toml -o gears_2 --part 2/8       one eighth of it
   meshtone dataset merge gears_1 gears_2 … -o gears      all eighths together
   meshtone dataset verify gears                          whether every byte is as it was written
-  meshtone dataset scenario plan.toml 17 > record.toml   what record 17 is";
+  meshtone dataset scenario plan.toml 17 > record.toml   what record 17 is
+
+In Python, meshtone.Dataset.to_bearing_datasets writes one in the schema of the package bearing-datasets";
 
 /// Reads `I/N`.
 fn part(text: &str) -> Result<Part, String> {
@@ -162,7 +135,6 @@ impl Dataset {
             (Some(Action::Merge(arguments)), _) => arguments.run(),
             (Some(Action::Verify(arguments)), _) => arguments.run(),
             (Some(Action::Scenario(arguments)), _) => arguments.run(),
-            (Some(Action::Export(arguments)), _) => arguments.run(),
             (None, Some(arguments)) => arguments.run(),
             (None, None) => Failure::refuse("name a plan", "see meshtone dataset --help"),
         }
@@ -284,18 +256,6 @@ impl Scenario {
             head += "# Teeth count from where the first two meet; in the data set, fault_tooth counts from the record's start.\n";
         }
         print(&(head + &scenario.to_toml()))
-    }
-}
-
-impl Export {
-    fn run(&self) -> Result<(), Failure> {
-        let from = Destination::parse(&self.place)?;
-        let default = || named_after(Path::new(&self.place), "bearing_datasets");
-        let to = self.output.clone().unwrap_or_else(default);
-        let exported = match self.schema {
-            Schema::BearingDatasets => export_bearing_datasets(&from, &to)?,
-        };
-        print_unless(self.quiet, &format!("  {exported}\n\n{}\n", to.display()))
     }
 }
 

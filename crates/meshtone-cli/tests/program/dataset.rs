@@ -295,32 +295,6 @@ fn the_template_makes_a_data_set() {
     }
 }
 
-#[test]
-fn a_data_set_is_exported_and_its_recordings_are_read() {
-    let workplace = workplace();
-    let plan = PLAN.replace("uniform = [30.0, 60.0]", "fixed = 40.0").replace("records = 96", "records = 12");
-    workplace.write("plan.toml", &plan);
-    workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]);
-    let export = ["dataset", "export", "set", "--schema", "bearing-datasets"];
-    let said = stdout(&workplace.succeeds(&export));
-    assert!(said.contains("24 signals of 12 records") && said.contains("set_bearing_datasets"), "{said}");
-    workplace.fails(2, &export, &["set_bearing_datasets has files in it", "-o"]);
-    let indicators = [
-        "indicators",
-        "set_bearing_datasets",
-        "--channel",
-        "vertical_g",
-        "--teeth",
-        "40",
-        "--shaft-hz",
-        "20",
-    ];
-    workplace.fails(2, &indicators, &["choose one by its recording_id (--variable): record-"]);
-    workplace.succeeds(&[&indicators[..], &["--variable", "record-5"]].concat());
-    let found = String::from_utf8(workplace.read("set_bearing_datasets_indicators/indicators.json")).unwrap();
-    assert!(found.contains("fm4"), "{found}");
-}
-
 /// A limit of the size of files stands in for a full disk: writing beyond it fails just so.
 #[cfg(unix)]
 #[test]

@@ -192,13 +192,13 @@ fn wrong_experiments_are_refused() {
     refused(
         &workplace,
         &with("severity = 2", "severity = 7"),
-        &["table.csv", "severity 7", "missing", "rms at the severities 0, 1, 2"],
+        &["table.csv", "severity 7", "missing", "rig measured rms 2"],
     );
     refused(&workplace, &with("severity = 2", "severity = 1"), &["case[2]", "must have its own"]);
     refused(
         &workplace,
         &with("experiment = \"rig\"", "experiment = \"gir\""),
-        &["table.csv", "experiment gir", "the experiments rig", "the series measured"],
+        &["table.csv", "has no rms of severity 0", "it holds rig measured"],
     );
     refused(&workplace, &with("tip_loss_mm = 1.0", "tip_loss_mm = 40.0"), &["case[1]", "tip_loss_mm"]);
     refused(&workplace, &with("fast.toml", "slow.toml"), &["rig.toml", "line 1", "slow.toml"]);
@@ -231,7 +231,7 @@ fn wrong_experiments_are_refused() {
     );
     refused(&workplace, &good, &["table.csv", "line 25", "NaN", "finite"]);
     workplace.write("table.csv", "indicator,value\n");
-    refused(&workplace, &good, &["no column severity", "indicator, value"]);
+    refused(&workplace, &good, &["missing field `severity`"]);
     workplace.fails(2, &["tune", "absent.toml"], &["absent.toml"]);
 }
 

@@ -8,7 +8,6 @@ use meshtone::scenario::{Model, ScenarioFiles, WheelName};
 use meshtone::sensor::{Channel, ChannelKind};
 use meshtone::tuning::Enhancement;
 use meshtone_dataset::draw::Sampler;
-use meshtone_dataset::export::export_bearing_datasets;
 use meshtone_dataset::generate::{GenerateControl, Part, generate};
 use meshtone_dataset::plan::Plan;
 use meshtone_dataset::store::Destination;
@@ -18,6 +17,7 @@ use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
 use meshtone_io::signals::{SignalTable, read_signals};
 use meshtone_io::summary::read_run;
+use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
 
 /// A reader.
 pub struct Reader {
@@ -124,10 +124,10 @@ pub fn readers(work: &Path) -> Vec<Reader> {
         reader("parts", "list of a part", &["part/parts/part-1-2-000000.json"], Box::new(verified)),
         reader("shard", "shard of a data set", &["set/data/train-000000.parquet"], Box::new(verified)),
         reader(
-            "exported",
-            "recording of an exported data set",
-            &["exported/metadata.parquet", "exported/signals/part-float32.parquet"],
-            Box::new(of_exported_set),
+            "signal_set",
+            "recording of a set of bearing-datasets",
+            &["signal_set/metadata.parquet", "signal_set/signals/part-float32.parquet"],
+            Box::new(of_signal_set),
         ),
     ]
 }
@@ -184,8 +184,37 @@ fn make_others(work: &Path) {
         generate(&plan, &Destination::directory(work.join(name)), part, &control)
             .unwrap_or_else(|error| panic!("{error}"));
     }
-    export_bearing_datasets(&Destination::directory(work.join("set")), &work.join("exported"))
-        .unwrap_or_else(|error| panic!("{error}"));
+    make_signal_set(&work.join("signal_set"));
+}
+
+/// A recording of two channels in the schema of bearing-datasets.
+fn make_signal_set(folder: &Path) {
+    fs::create_dir_all(folder.join("signals")).expect("it can be written");
+    let make = |name: &str, columns: Vec<(&str, CellType, Cells)>| {
+        let file = fs::File::create(folder.join(name)).expect("it can be written");
+        let names = columns.iter().map(|(name, kind, _)| TableColumn::new(name, *kind)).collect();
+        let mut table = TableWriter::new(file, names, Default::default()).expect("it can be written");
+        table.write_rows(columns.into_iter().map(|(.., cells)| cells).collect()).expect("it can be written");
+        table.close().expect("it can be written");
+    };
+    let texts = |texts: [&str; 2]| Cells::Text(texts.map(|text| Some(text.to_owned())).to_vec());
+    let whole = |numbers: [i64; 2]| Cells::Int64(numbers.map(Some).to_vec());
+    let samples = [[0.5_f32; 40], [-0.25; 40]];
+    let signals = Cells::Float32List(samples.iter().map(|signal| &signal[..]).collect());
+    make("signals/part-float32.parquet", vec![("signal", CellType::Float32List, signals)]);
+    make(
+        "metadata.parquet",
+        vec![
+            ("recording_id", CellType::Text, texts(["record-1"; 2])),
+            ("channel", CellType::Text, texts(["a_g", "b_g"])),
+            ("fs", CellType::Float64, Cells::Float64(vec![Some(1e4); 2])),
+            ("n_samples", CellType::Int64, whole([40; 2])),
+            ("unit", CellType::Text, texts(["g"; 2])),
+            ("signal_file", CellType::Text, texts(["part-float32.parquet"; 2])),
+            ("signal_row_group", CellType::Int64, whole([0; 2])),
+            ("signal_row", CellType::Int64, whole([0, 1])),
+        ],
+    );
 }
 
 /// A small data set.
@@ -274,8 +303,8 @@ fn beside(path: &Path, read: impl Fn(&FilesBeside, &str) -> bool) -> bool {
     read(&FilesBeside::new(path.parent().unwrap_or(Path::new(""))), &name)
 }
 
-/// A recording of the exported data set that a file belongs to.
-fn of_exported_set(path: &Path) -> bool {
+/// A recording of the set that a file belongs to.
+fn of_signal_set(path: &Path) -> bool {
     let is_one = |folder: &&Path| folder.join("metadata.parquet").exists();
     let folder = path.ancestors().skip(1).find(is_one).unwrap_or(path);
     let options = RecordingOptions { variable: Some("record-1".to_owned()), ..RecordingOptions::default() };

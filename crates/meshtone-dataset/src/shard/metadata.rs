@@ -62,10 +62,8 @@ pub(crate) struct ReadShard {
     pub schema: Vec<FoundColumn>,
     numbers: BTreeMap<String, Vec<f64>>,
     texts: BTreeMap<String, Vec<String>>,
-    /// Number of groups of rows.
-    pub groups: usize,
-    /// The signals of one row, or of a group of rows.
-    pub signals: Vec<Vec<f64>>,
+    /// The signal of one row.
+    pub signal: Vec<f64>,
 }
 
 impl ReadShard {
@@ -92,13 +90,6 @@ pub(crate) enum Wanted<'n> {
         /// The row.
         row: usize,
     },
-    /// The signals of a group of rows.
-    Group {
-        /// Name of the column.
-        column: &'n str,
-        /// Number of the group.
-        group: usize,
-    },
 }
 
 /// Reads the metadata of a shard and some of its values.
@@ -118,9 +109,7 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
     }
     let (numbers, texts) = (BTreeMap::new(), BTreeMap::new());
     let schema = table.columns().to_vec();
-    let mut read =
-        ReadShard { metadata, rows, schema, numbers, texts, groups: table.groups(), signals: Vec::new() };
-    let signals = |name: &str| table.column(name).ok_or_else(|| io::Error::other("has no such column"));
+    let mut read = ReadShard { metadata, rows, schema, numbers, texts, signal: Vec::new() };
     match wanted {
         Wanted::Columns(names) => {
             for column in names.iter().filter_map(|name| table.column(name)) {
@@ -135,10 +124,8 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
             }
         }
         Wanted::Signal { column, row } => {
-            read.signals = vec![table.list(signals(column)?, row).map_err(into_io)?];
-        }
-        Wanted::Group { column, group } => {
-            read.signals = table.lists(signals(column)?, group).map_err(into_io)?;
+            let column = table.column(column).ok_or_else(|| io::Error::other("has no such column"))?;
+            read.signal = table.list(column, row).map_err(into_io)?;
         }
     }
     Ok(read)

@@ -1,19 +1,15 @@
 //! Data sets of a gearbox whose bearings have spalls.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-use std::collections::BTreeSet;
-use std::fs::File;
 use std::path::Path;
 
 use meshtone::scenario::{DefectPlace, GearboxRig, ScenarioForm, gearbox_template};
 use meshtone::signal::{FrequencyBand, ShaftPhase, squared_envelope_order_spectrum};
 use meshtone_dataset::draw::Sampler;
-use meshtone_dataset::export::export_bearing_datasets;
 use meshtone_dataset::plan::{Plan, gearbox_template as gearbox_plan};
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
 use meshtone_io::scenario_file::ReadScenarioError;
-use meshtone_io::table::TableReader;
 use parquet::record::Field;
 
 use crate::records::made;
@@ -79,7 +75,7 @@ fn line(signal: &[f64], order: f64) -> f64 {
     near.iter().copied().fold(0.0, f64::max) / low[low.len() / 2]
 }
 
-/// Labels, columns, signals and the exported set say the same about a healthy gearbox, one with a spall, and one with a missing tooth and a spall.
+/// Labels, columns and signals say the same about a healthy gearbox, one with a spall, and one with a missing tooth and a spall.
 #[test]
 fn records_say_which_bearing_has_which_spall_and_their_envelopes_show_it() {
     let made = made(&plan(BALL, CLASSES).unwrap_or_else(|error| panic!("{error}")));
@@ -136,27 +132,6 @@ fn records_say_which_bearing_has_which_spall_and_their_envelopes_show_it() {
     assert!(verify(&set, Check::Bytes).unwrap().is_good());
     let card = std::fs::read_to_string(made.directory.path().join("set/README.md")).unwrap();
     assert!(card.contains("missing-tooth of z3 + inner-race of input:0"), "{card}");
-    let folder = made.directory.path().join("bearings");
-    export_bearing_datasets(&set, &folder).unwrap();
-    let table = TableReader::new(File::open(folder.join("metadata.parquet")).unwrap()).unwrap();
-    let texts = |name: &str| table.texts(table.column(name).unwrap()).unwrap();
-    let rows: BTreeSet<[String; 4]> = (0..6)
-        .map(|row| {
-            ["fault_type", "fault_location", "fault_kind", "fault_bearing"]
-                .map(|name| texts(name)[row].clone().unwrap_or_default())
-        })
-        .collect();
-    let expected = [
-        ["normal", "none", "none", "none"],
-        ["outer", "gearbox_bearing_input", "outer-race", "input:0"],
-        [
-            "gear+inner",
-            "gearbox_gear_intermediate+gearbox_bearing_input",
-            "missing-tooth+inner-race",
-            "none+input:0",
-        ],
-    ];
-    assert_eq!(rows, expected.map(|row| row.map(str::to_owned)).into());
 }
 
 /// The scenario has the keys of a spall at its bearing, after the spalls that all records share, and counts the faults of teeth alone.

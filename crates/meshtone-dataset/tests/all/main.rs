@@ -3,7 +3,6 @@
 mod bearings;
 mod drawn;
 mod exact;
-mod exported;
 mod gearbox;
 #[cfg(feature = "objects")]
 mod objects;

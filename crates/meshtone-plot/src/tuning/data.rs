@@ -78,12 +78,6 @@ impl<'a> Data<'a> {
         let gaps = MOST_SIGNALS - 1;
         (0..=gaps).map(|k| (k * (cases - 1) + gaps / 2) / gaps).collect()
     }
-
-    /// Mean error (Eq. 7) of another enhancement.
-    pub(super) fn error(&self, enhancement: &Enhancement) -> Result<f64, HybridError> {
-        let predicted = self.result.simulated().predict(self.measured().indicators(), enhancement)?;
-        Ok(self.measured().mean_error(&predicted))
-    }
 }
 
 /// Signals by case and draw of the noise, over the healthy rms that is expected.

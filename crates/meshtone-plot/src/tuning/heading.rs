@@ -3,7 +3,6 @@
 use meshtone::tuning::Tuning;
 
 use super::data::Data;
-use super::key_words::in_words;
 use crate::drawing::{BETWEEN_FACTS, Canvas, TextStyle, number};
 
 const TITLE_BASELINE: f64 = 34.0;
@@ -27,8 +26,7 @@ pub(super) fn draw(canvas: &mut Canvas, title: &str, data: &Data) {
 /// The figure in a sentence, for readers who cannot see it.
 pub(super) fn description(data: &Data) -> String {
     format!(
-        "Simulated difference signals tuned to measured ones, {} cases: indicators, errors, signals, and the error \
-         around the optimum. {}. {}.",
+        "Simulated difference signals tuned to measured ones, {} cases: indicators, errors and signals. {}. {}.",
         data.cases(),
         [parameters(data), keys(data)].concat().join(", "),
         errors(data).join(", ")
@@ -61,7 +59,7 @@ fn parameters(data: &Data) -> Vec<String> {
 fn keys(data: &Data) -> Vec<String> {
     let Some(keys) = &data.result.with_keys else { return Vec::new() };
     let values = data.experiment.keys.iter().zip(&keys.values);
-    values.map(|(key, &value)| in_words(&key.key, value)).collect()
+    values.map(|(key, &value)| format!("{} = {}", key.key, number(value))).collect()
 }
 
 fn errors(data: &Data) -> Vec<String> {
@@ -76,7 +74,7 @@ fn errors(data: &Data) -> Vec<String> {
 }
 
 /// Three significant digits.
-pub(super) fn short(value: f64) -> String {
+fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return number(value);
     }

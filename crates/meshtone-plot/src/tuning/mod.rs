@@ -1,17 +1,14 @@
 //! An experiment of the hybrid stage on one page.
 //!
-//! On the left, above each other and with the cases as their common horizontal axis, the indicators, the error of each
-//! case, and the difference signals of the original simulation, enhanced and, where recordings or difference signals were given,
-//! measured; on the right the error around the optimum. Indicators and signals are compared as in Figure 6 of arXiv:2410.05073.
+//! Above each other and with the cases as their common horizontal axis stand the indicators, the error of each case, and the difference
+//! signals of the original simulation, enhanced and, where recordings or difference signals were given, measured: what Figure 6 of
+//! arXiv:2410.05073 compares.
 
 mod cases;
 mod data;
 mod differences;
 mod heading;
-mod key_words;
-mod surface;
 mod symbols;
-mod width;
 
 use meshtone::tuning::{Experiment, ExperimentResult};
 
@@ -25,9 +22,7 @@ const HEIGHT: u32 = 1000;
 const MORE_SIGNALS: u32 = 136;
 
 const LEFT: f64 = 74.0;
-const CASES_WIDTH: f64 = 1010.0;
-const ERRORS_LEFT: f64 = 1178.0;
-const ERRORS_WIDTH: f64 = 396.0;
+const CASES_WIDTH: f64 = 1500.0;
 /// (px) From the frame of a plot to the baseline of its vertical axis' name.
 const NAME_LEFT: f64 = 48.0;
 /// (px) Left edge of title and facts.
@@ -49,9 +44,6 @@ const DIFFERENCES_GAP: f64 = 28.0;
 /// (px) Greatest height of a plot of an indicator, and room for the title above the next one.
 const TALLEST: f64 = 173.0;
 const TITLE_HEIGHT: f64 = 27.0;
-
-const SURFACE_SIZE: [f64; 2] = [312.0, 312.0];
-const WIDTH_PLOT_HEIGHT: f64 = 326.0;
 
 /// Draws an experiment of the hybrid stage: what was measured, simulated and enhanced.
 ///
@@ -127,10 +119,5 @@ pub fn tuning_figure(
     let areas: Vec<Area> = areas.grid([1, signals], [0.0, DIFFERENCES_GAP], f64::INFINITY).collect();
     differences::draw(&mut canvas, &areas, &data);
 
-    canvas.section((ERRORS_LEFT, HEADING_BASELINE), ERRORS_WIDTH, "Error around the optimum", RULE_BELOW);
-    let [width, height] = SURFACE_SIZE;
-    surface::draw(&mut canvas, Area::new(ERRORS_LEFT, first_top, width, height), &data)?;
-    let top = BOTTOM - WIDTH_PLOT_HEIGHT;
-    width::draw(&mut canvas, Area::new(ERRORS_LEFT, top, ERRORS_WIDTH, figure_bottom - top), &data)?;
     Ok(canvas.finish(title, &heading::description(&data)))
 }
