@@ -300,7 +300,7 @@ class ToothDestruction:
         (mm) How far inside the flank the line begins. Allowed: ≥ 0; less than π/4 modules, half the tooth's thickness.
         Default: 0.0.
     noise_mm : float, optional
-        (mm) The half width of a uniform roughness of the ground flank. Allowed: ≥ 0; likewise. Default: 0.0.
+        (mm) The amplitude of the uniform random roughness of the ground flank. Allowed: ≥ 0; likewise. Default: 0.0.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional

@@ -396,9 +396,11 @@ class GearboxOperation(TypedDict, total=False):
     brake_torque_nm : float
         (N m) The nominal torque of the brake on the shaft that is coupled to it. Allowed: ≥ 0, ≤ 1e9.
     speed_fluctuation_hz : float
-        (Hz) The half width of a uniform error of every sample's speed. Allowed: ≥ 0; less than the lowest speed.
+        (Hz) The amplitude of the uniform random error of every sample's speed. Allowed: ≥ 0; less than the lowest
+        speed.
     torque_fluctuation_nm : float
-        (N m) The half width of a uniform error of every sample's torque. Allowed: ≥ 0; less than the lowest torque.
+        (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
+        torque.
     speed_profile_hz : dict of time_s and value
         (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between the
         points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at least 2

@@ -560,11 +560,11 @@ class ScenarioKeys:
             The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
             Duverger (2004). Ignored by published.
         speed_fluctuation_hz : float, optional
-            (Hz) The half width of a uniform error of every sample's speed. Allowed: ≥ 0; less than the lowest speed.
-            Default: 0.0.
+            (Hz) The amplitude of the uniform random error of every sample's speed. Allowed: ≥ 0; less than the lowest
+            speed. Default: 0.0.
         torque_fluctuation_nm : float, optional
-            (N m) The half width of a uniform error of every sample's torque. Allowed: ≥ 0; less than the lowest torque.
-            Default: 0.0.
+            (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
+            torque. Default: 0.0.
         speed_profile_hz : dict of time_s and value, optional
             (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between
             the points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at

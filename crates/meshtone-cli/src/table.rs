@@ -39,7 +39,7 @@ fn of_whole(summary: &Summary) -> [(&'static str, String); 7] {
         ("fault", faults(machine)),
         ("sampling", format!("{samples} samples, {duration_s:.3} s at {rate} S/s")),
         ("shaft speeds, rev/s", shafts.collect::<Vec<_>>().join(", ")),
-        ("repeats after", format!("{} revolutions of the input", machine.cycle_input_revolutions)),
+        ("hunting-tooth period", format!("{} revolutions of the input", machine.cycle_input_revolutions)),
         ("natural frequencies, Hz", shown.join(" ") + more),
         ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
     ]

@@ -172,7 +172,7 @@ fn pulses() {
     refused(
         &workplace,
         &with(&["--pulse-times", "nan.txt"]),
-        &["nan.txt: line 2 of column column 1 is NaN", "fill the gap\n"],
+        &["nan.txt: line 2 of column 1 is NaN", "fill the gap\n"],
     );
     workplace.write("pulses.txt", "0.1\n0.3\n0.2\n0.4\n");
     refused(&workplace, &with(&["--pulse-times", "pulses.txt"]), &["pulses.txt", "order of time"]);

@@ -205,9 +205,9 @@ impl GearboxState {
             (of_mesh("mean stiffness"), mesh.mean_stiffness_n_per_m * 1e-6, "N/µm"),
             (of_mesh("static force"), pair.static_force_n, "N"),
             (of_mesh("largest force"), largest_n, "N"),
-            (of_mesh("teeth apart"), 100.0 * apart, "% of the time"),
+            (of_mesh("contact loss"), 100.0 * apart, "% of the time"),
             (
-                "the train repeats after".to_owned(),
+                "hunting-tooth period".to_owned(),
                 stages.layout.cycle_revolutions() as f64,
                 "revolutions of the input",
             ),

@@ -154,8 +154,7 @@ impl Tones {
             if self.shafts.iter().any(|(_, speed_hz)| tolerance_hz >= LEAST_RESOLVED * speed_hz) {
                 return "beside a mesh harmonic; of which shaft, a longer signal would show".to_owned();
             }
-            return "no sideband of a shaft: a mode that rings, or two teeth that meet again only later"
-                .to_owned();
+            return "not identified (natural frequency or hunting-tooth line)".to_owned();
         };
         let mut names: Vec<String> =
             found.into_iter().filter(|(count, _)| *count == fewest).map(|(_, name)| name).collect();

@@ -230,12 +230,12 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
     figures.extend(
         simulation
             .contact_figures()
-            .map(|contact| ("teeth apart", 100.0 * contact.apart_fraction, "% of the time")),
+            .map(|contact| ("contact loss", 100.0 * contact.apart_fraction, "% of the time")),
     );
     figures.extend(lowest.map(|frequency| ("lowest natural frequency", frequency, "Hz")));
     if let Some(pair) = scenario.pair().filter(|pair| pair.model == Model::Contact) {
-        let [alike, against] = pair.rig.support.frequencies_hz();
-        figures.extend([("bare supports, alike", alike, "Hz"), ("against each other", against, "Hz")]);
+        let [in_phase, out_of_phase] = pair.rig.support.frequencies_hz();
+        figures.extend([("support modes: in phase", in_phase, "Hz"), ("out of phase", out_of_phase, "Hz")]);
     }
     figures.push(("sampling rate", channels.sampling_rate_hz, "S/s"));
     figures

@@ -258,7 +258,7 @@ function showProblem(error) {
 const plot = (id, options) => new Plot(byId(id), options);
 const plots = {
   waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "signal (g)" }),
-  spectrum: plot("spectrum", { title: "Spectrum: harmonics of the mesh that is looked at dashed", x: "frequency (Hz)", y: "amplitude (g)" }),
+  spectrum: plot("spectrum", { title: "Spectrum (dashed: harmonics of the selected mesh)", x: "frequency (Hz)", y: "amplitude (g)" }),
   average: plot("average", { title: "Average of the signal", x: "angle (°)", y: "signal (g)" }),
   envelope: plot("envelope", { title: "Squared envelope", x: "order of the shaft", y: "amplitude (g²)" }),
   force: plot("force", { title: "Force", x: "time (s)", y: "force (N)" }),

@@ -71,6 +71,11 @@ impl From<io::Error> for Problem {
     }
 }
 
+/// What a message calls a column; one without a name is already called by its number.
+pub(super) fn column_words(name: &str) -> String {
+    if name.starts_with("column ") { name.to_owned() } else { format!("column {name}") }
+}
+
 impl Problem {
     /// The error of a file.
     ///
@@ -127,8 +132,9 @@ impl Problem {
     /// * `what` - what stands there
     pub(super) fn gap(place: String, column: &str, what: &str) -> Self {
         Self::Refused(format!(
-            "{place} of column {column} is {what}; every sample must be a finite number: cut the recording there, fill the gap, or \
-             choose other columns (option channels)"
+            "{place} of {} is {what}; every sample must be a finite number: cut the recording there, fill the gap, or \
+             choose other columns (option channels)",
+            column_words(column)
         ))
     }
 

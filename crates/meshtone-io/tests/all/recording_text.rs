@@ -177,9 +177,9 @@ fn bad_lines_are_named() {
             "a;b\n1;2.5\n3;4.5\n5;6.5\n7;8,5\n",
             "line 5, column b: `8,5` is no number; the first lines are read with",
         ),
-        ("0.1x2\n0.2\n0.3\n0.4\n", "line 1, column column 1: `0.1x2` is no number; if the line belongs"),
+        ("0.1x2\n0.2\n0.3\n0.4\n", "line 1, column 1: `0.1x2` is no number; if the line belongs"),
         ("a\n0.1x2\n0.2\n0.3\n0.4\n", "line 2, column a: `0.1x2` is no number"),
-        ("1;0,1x2\n2;0,2\n3;0,3\n4;0,4\n", "line 1, column column 2: `0,1x2` is no number"),
+        ("1;0,1x2\n2;0,2\n3;0,3\n4;0,4\n", "line 1, column 2: `0,1x2` is no number"),
         ("a\n1\n\n3\n", "line 3 of column a is empty"),
         ("a,b\n", "holds no line of numbers"),
     ];

@@ -107,7 +107,7 @@ fn facts(gearbox: &Gearbox, stages: &Stages) -> Vec<String> {
         .chain([
             format!("input {} Hz", number(drive.pinion_speed_hz)),
             format!("brake torque {} N·m", number(drive.brake_torque_nm)),
-            format!("repeats after {} revolutions of the input", stages.layout.cycle_revolutions()),
+            format!("hunting-tooth period {} revolutions of the input", stages.layout.cycle_revolutions()),
         ])
         .collect()
 }

@@ -63,7 +63,7 @@ impl Keys for ToothDestruction {
             row(
                 "noise_mm",
                 "mm",
-                "the half width of a uniform roughness of the ground flank",
+                "the amplitude of the uniform random roughness of the ground flank",
                 field!(noise_mm),
             )
             .range(Range::not_negative())

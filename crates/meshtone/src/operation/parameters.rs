@@ -108,7 +108,7 @@ impl Keys for Operation {
             row(
                 "speed_fluctuation_hz",
                 "Hz",
-                "the half width of a uniform error of every sample's speed",
+                "the amplitude of the uniform random error of every sample's speed",
                 field!(speed_fluctuation_hz),
             )
             .range(Range::not_negative())
@@ -116,7 +116,7 @@ impl Keys for Operation {
             row(
                 "torque_fluctuation_nm",
                 "N m",
-                "the half width of a uniform error of every sample's torque",
+                "the amplitude of the uniform random error of every sample's torque",
                 field!(torque_fluctuation_nm),
             )
             .range(Range::not_negative())

@@ -79,11 +79,9 @@ pub enum SignalWarning {
     DoesNotFit(Mismatch),
     /// The average holds hardly more than noise would leave.
     #[error(
-        "the average of {0} revolutions of the wheel of {teeth} teeth holds {1:.2} % of the recording's mean \
-         square, and noise alone leaves {2:.2} %: nothing in the recording clearly repeats with its shaft in \
-         {0} revolutions, and its indicators are meaningless; the recording is too short or too noisy for \
-         this wheel, its sensor is too far from it, the sampling rate, the speed, the pulses or a tooth \
-         count is wrong, or the speed changes and must be known from a tachometer",
+        "no signal is synchronous with the wheel of {teeth} teeth: the average of {0} revolutions holds {1:.2} % of the recording's \
+         mean square, noise alone leaves {2:.2} %; its indicators are meaningless. Check the tooth counts, the pulses per revolution, \
+         the speed and whether it is steady, the sampling rate, and the recording's length and noise",
         part.revolutions, 100.0 * part.of_mean_square, 100.0 / part.revolutions as f64
     )]
     NothingSynchronous {

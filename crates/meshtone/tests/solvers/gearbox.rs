@@ -625,7 +625,7 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     });
     // 32/97 · 48/79 in lowest terms.
     assert_eq!(codes(&long), ["long-cycle"]);
-    assert!(long[0].message.contains("repeats after 7663 revolutions"), "{}", long[0]);
+    assert!(long[0].message.contains("hunting-tooth period is 7663 revolutions"), "{}", long[0]);
     let ended = warnings(&|gearbox| {
         gearbox.operation.drive.torque_profile_nm =
             Some(Profile { time_s: vec![0.0, 1.0], value: vec![20.0, 21.0] });

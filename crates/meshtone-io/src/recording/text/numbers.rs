@@ -6,7 +6,7 @@
 use super::cells::{Cell, Dialect, byte_of, decoded};
 use super::head::{Head, is_passed};
 use crate::recording::Separator;
-use crate::recording::error::Problem;
+use crate::recording::error::{Problem, column_words};
 
 /// Stands for a point where the comma is the decimal sign, so that a point is not taken for one.
 const NOT_DECIMAL: u8 = 1;
@@ -194,7 +194,11 @@ impl<'h> Numbers<'h> {
         } else {
             "mend it, or choose other columns (option channels)".to_string()
         };
-        Problem::Refused(format!("line {}, column {column}: `{text}` is no number; {help}", self.line))
+        Problem::Refused(format!(
+            "line {}, {}: `{text}` is no number; {help}",
+            self.line,
+            column_words(column)
+        ))
     }
 }
 

@@ -214,10 +214,10 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         "seed = 1\nmaterial = \"steel\"\n".to_owned(),
         format!(
             "# Shafts run along z, from 0 to their length. Without position_mm they stand side by side.\n{}",
-            shaft("input", "The motor turns it.", "couples_to = \"motor\"\n")
+            shaft("input", "The input shaft, which the motor drives.", "couples_to = \"motor\"\n")
         ),
-        shaft("middle", "It carries the second wheel of the first stage and the first one of the second.", ""),
-        shaft("output", "The brake holds it.", "couples_to = \"brake\"\n"),
+        shaft("middle", "The middle shaft, with the driven wheel of the first stage and the driving wheel of the second.", ""),
+        shaft("output", "The output shaft, which the brake loads.", "couples_to = \"brake\"\n"),
         format!("# at is the place along the shaft, as a part of its length.\n{}", wheel("z1", "input", 0.25, z1)),
         wheel("z2", "middle", 0.25, z2),
         wheel("z3", "middle", 0.75, z3),

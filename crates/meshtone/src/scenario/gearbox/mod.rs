@@ -464,7 +464,7 @@ impl Gearbox {
         let long = (cycle > LONG_CYCLE).then(|| {
             let kept = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
             let message = format!(
-                "the machine repeats after {cycle} revolutions of the input only; the kept signal covers {:.1} % of them",
+                "the hunting-tooth period is {cycle} revolutions of the input; the kept signal covers {:.1} % of them",
                 100.0 * kept / cycle as f64
             );
             ScenarioWarning::new(WarningKind::LongCycle, "solver.duration_s", message)

@@ -46,8 +46,7 @@ impl Display for Mismatch {
                 ),
                 None => write!(
                     f,
-                    "{} rather of the other shaft, that of the wheel with {mate_teeth} teeth: exchange the tooth counts \
-                     {teeth} and {mate_teeth}",
+                    "{} of the other shaft, with the wheel of {mate_teeth} teeth: exchange the tooth counts {teeth} and {mate_teeth}",
                     self.source()
                 ),
             },
