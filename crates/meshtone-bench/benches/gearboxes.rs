@@ -50,7 +50,7 @@ fn two_stages(seed: u64) -> Gearbox {
     let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).expect("the template is valid");
     gearbox.seed = seed;
     gearbox.sensors.clear();
-    gearbox.solver.settings.settle_fraction = 0.0;
+    gearbox.solver.settle_fraction = 0.0;
     gearbox
 }
 

@@ -1,6 +1,6 @@
 //! The data card: README.md.
 
-use meshtone::scenario::{ScenarioForm, WarningKind};
+use meshtone::scenario::{Fault, ScenarioForm, WarningKind};
 use meshtone_io::table::CellType;
 use serde_json::json;
 
@@ -8,7 +8,7 @@ use crate::croissant::citation;
 use crate::finish::Finished;
 use crate::manifest::PREVIEW;
 use crate::plan::{
-    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, ToothFault, Wheel, wheel_words,
+    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, Wheel, wheel_words,
 };
 use crate::sampling::Design;
 use crate::shard::{Column, Topic, WARNINGS, column_name, varied_keys};
@@ -164,7 +164,7 @@ fn classes(set: &Finished) -> String {
     let is_pair = set.plan.content.base.pair().is_some();
     let fault = |fault: &ClassFault| match fault {
         ClassFault::Teeth(_) if is_pair => fault.kind().to_owned(),
-        ClassFault::Teeth(ToothFault { wheel, .. }) => format!("{} of {}", fault.kind(), wheel.name()),
+        ClassFault::Teeth(Fault { wheel, .. }) => format!("{} of {wheel}", fault.kind()),
         ClassFault::Bearing { bearing, .. } => format!("{} of {bearing}", fault.kind()),
     };
     let row = |class: &Class| {

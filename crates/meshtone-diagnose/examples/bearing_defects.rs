@@ -157,9 +157,9 @@ impl Simulated {
             return Err("of a pair".into());
         };
         gearbox.sensors.clear();
-        gearbox.solver.settings.sampling_rate_hz = RATE_HZ;
-        gearbox.solver.settings.duration_s = Some(DURATION_S);
-        gearbox.solver.settings.pinion_revolutions = None;
+        gearbox.solver.sampling_rate_hz = RATE_HZ;
+        gearbox.solver.duration_s = Some(DURATION_S);
+        gearbox.solver.pinion_revolutions = None;
         if let Some((bearing, race, size)) = defect {
             gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
         }

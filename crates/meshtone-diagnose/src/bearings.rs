@@ -259,8 +259,8 @@ mod tests {
             gearbox.bearings[0].kind = BearingKind::Ball;
             gearbox.bearings[0].name = Some("ER-10K".to_owned());
             gearbox.bearings[0].defect = spall.into_iter().collect();
-            gearbox.solver.settings.sampling_rate_hz = 25_600.0;
-            gearbox.solver.settings.duration_s = Some(3.0);
+            gearbox.solver.sampling_rate_hz = 25_600.0;
+            gearbox.solver.duration_s = Some(3.0);
             let channels = meshtone::simulate(&gearbox).unwrap().channels;
             let form = ScenarioForm::Gearbox(gearbox.clone());
             let train = GearTrain::of_form(&form).unwrap();

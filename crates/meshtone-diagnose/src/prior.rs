@@ -363,7 +363,7 @@ fn once(gearbox: &mut Gearbox) -> Result<(), ScenarioError> {
     let needed = cycle.min(kept.max(FEWEST_TURNS / slowest));
     if gearbox.operation.is_steady() && needed != kept {
         let settled = revolutions(time.first_kept_sample);
-        let solver = &mut gearbox.solver.settings;
+        let solver = &mut gearbox.solver;
         solver.duration_s = None;
         solver.pinion_revolutions = Some(needed);
         solver.settle_fraction = settled / (settled + needed);
@@ -435,7 +435,7 @@ impl Prior {
             let least = LEAST_SEVERITY;
             let drawn = least + (1.0 - least) * own.uniform(0.5, 0.5);
             let severity = if of_kind.sizes.is_empty() { 1.0 } else { drawn };
-            let fault = Fault::new(usual.wheel, teeth.clone(), of_kind.example.clone());
+            let fault = Fault::new(&usual.wheel, teeth.clone(), of_kind.example.clone());
             let faults = vec![(wheel, fault.with_severity(severity))];
             let sized = healthy.clone().with_faults(faults).with_own_sizes()?;
             if sized.fault_count() == 0 {
@@ -548,7 +548,7 @@ mod tests {
         for number in 0..classes.div_ceil(6) * RECORDS_PER_UNIT {
             let drawn = prior.draw(number).unwrap();
             let ScenarioForm::Gearbox(gearbox) = &drawn.scenario else { panic!("{drawn:?}") };
-            seats.insert(gearbox.sensors[0].at.clone());
+            seats.insert(gearbox.sensors[0].at.name().to_owned());
             assert_eq!((gearbox.sensors.len(), gearbox.wheels[3].teeth), (1, 48));
             let Some(fault) = drawn.fault else { continue };
             let wheels: Vec<usize> = drawn.scenario.faults().iter().map(|(wheel, _)| *wheel).collect();

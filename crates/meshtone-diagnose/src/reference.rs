@@ -193,7 +193,7 @@ mod tests {
         let record = build_reference(&prior, 2..3, &Control::default()).remove(0);
         let drawn = prior.draw(2).unwrap();
         let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else { panic!("{drawn:?}") };
-        let solver = &mut gearbox.solver.settings;
+        let solver = &mut gearbox.solver;
         let cycle = solver.pinion_revolutions.unwrap();
         let settled = cycle * solver.settle_fraction / (1.0 - solver.settle_fraction);
         solver.pinion_revolutions = Some(5.0 * cycle);

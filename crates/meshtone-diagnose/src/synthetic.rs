@@ -30,7 +30,7 @@ pub fn gearbox_prior() -> Prior {
     // Shafts damped so that little of the start-up is left after half of the time.
     gearbox.shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.2);
     gearbox.sensors.clear();
-    let solver = &mut gearbox.solver.settings;
+    let solver = &mut gearbox.solver;
     (solver.sampling_rate_hz, solver.duration_s, solver.settle_fraction) = (2.5e4, Some(0.8), 0.5);
     Prior::new(&ScenarioForm::Gearbox(gearbox)).unwrap()
 }

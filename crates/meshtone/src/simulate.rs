@@ -114,7 +114,7 @@ pub struct Simulation {
 /// assert!((mean(&simulation.channels["mesh_force_n"]) / 187.0 - 1.0).abs() < 0.01);
 ///
 /// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
-/// gearbox.solver.settings.duration_s = Some(0.1);
+/// gearbox.solver.duration_s = Some(0.1);
 /// let simulation = meshtone::simulate(&gearbox)?;
 /// let static_force_n = simulation.stages.pairs[1].static_force_n;
 /// assert!((mean(&simulation.channels["force_n.z3-z4"]) / static_force_n - 1.0).abs() < 0.05);
@@ -537,7 +537,7 @@ impl Stages {
         let missing = missing(wheel);
         let faults = scenario.faults.iter().enumerate();
         let of_wheel =
-            faults.filter(|(_, fault)| fault.wheel == wheel && fault.damage.part() == ToothPart::Whole);
+            faults.filter(|(_, fault)| fault.side() == wheel && fault.damage.part() == ToothPart::Whole);
         let named: Vec<String> = of_wheel.map(|(n, _)| format!("fault[{n}]")).collect();
         let (named, wheel) = (named.join(", "), wheel.name());
         let problem = format!(

@@ -527,13 +527,13 @@ impl std::fmt::Display for Exported {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use meshtone::scenario::{Bearing, BearingDefect, DefectPlace, Gearbox, GearboxOperation};
+    use meshtone::scenario::{Bearing, BearingDefect, DefectPlace, Gearbox, Operation};
 
     #[test]
     fn records_with_a_spall_are_not_exported_as_normal() {
         let mut bearing = Bearing::new("input", 0.5);
         let base = |bearing: &Bearing| {
-            let operation = GearboxOperation::new(25.0, 10.0);
+            let operation = Operation::new(25.0, 10.0);
             ScenarioForm::Gearbox(Gearbox::new(vec![], vec![], vec![], vec![bearing.clone()], operation))
         };
         assert!(refuse_spalls(&base(&bearing)).is_ok());

@@ -93,8 +93,8 @@ fn sensor_facts(channel: &str, base: &ScenarioForm) -> (String, &'static str, &'
             let Some(sensor) = sensors.iter().find(|sensor| sensor.channel() == channel) else {
                 return ("unknown".to_owned(), "unknown", "unknown");
             };
-            let axis = sensor.sensor.direction.name();
-            match sensor.at.split(':').collect::<Vec<_>>()[..] {
+            let axis = sensor.direction.name();
+            match sensor.at.name().split(':').collect::<Vec<_>>()[..] {
                 ["shaft", shaft, _] => (format!("gearbox_shaft_{}", stage(gearbox, shaft)), "shaft", axis),
                 ["housing", ..] => ("gearbox".to_owned(), "casing", axis),
                 [shaft, ..] => (format!("gearbox_bearing_{}", stage(gearbox, shaft)), "casing", axis),
@@ -111,6 +111,7 @@ fn sensor_facts(channel: &str, base: &ScenarioForm) -> (String, &'static str, &'
                 SensorPlace::PinionSupport => ("gearbox_bearing_input", "pedestal"),
                 SensorPlace::GearSupport => ("gearbox_bearing_output", "pedestal"),
                 SensorPlace::Wheels => ("gearbox_gear", "unknown"),
+                SensorPlace::Of(_) => ("gearbox", "unknown"),
             };
             (location.to_owned(), mounting, sensor.direction.name())
         }

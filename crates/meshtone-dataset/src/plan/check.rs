@@ -376,7 +376,7 @@ fn refuse_length(content: &Content, scenario: &ScenarioForm) -> ReadResult<()> {
         return Err(error.with_help("shorten it, or leave it out: a record is then as long as that"));
     }
     let turning = Turning::of(scenario)?;
-    let of_wheel = |wheel: &Wheel| &turning.wheels[turning.number(wheel)];
+    let of_wheel = |wheel: &Wheel| &turning.wheels[turning.number(wheel.name())];
     let first = of_wheel(&wheel.all()[0]);
     // The slowest has the fewest revolutions; its first one begins up to a pitch after the record.
     let slowest = wheel.all().iter().map(of_wheel).min_by(|a, b| a.speed_hz.total_cmp(&b.speed_hz));

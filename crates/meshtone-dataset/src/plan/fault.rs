@@ -1,28 +1,17 @@
 //! The faults of a class: damaged teeth and spalls of rolling bearings, and where the scenarios of its records have them.
 
 use meshtone::scenario::{
-    BearingDefect, Fault, Gearbox, GearboxFault, ScenarioError, ScenarioForm, ScenarioNumber,
-    names_or_numbers,
+    BearingDefect, Fault, Gearbox, ScenarioError, ScenarioForm, ScenarioNumber, names_or_numbers,
 };
 use meshtone_toml::{ReadResult, TomlTable};
 
-use super::Wheel;
 use crate::draw::is_of_plan;
-
-/// Damage to teeth of a wheel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ToothFault {
-    /// The damaged wheel.
-    pub wheel: Wheel,
-    /// What is wrong with which of its teeth; on a gearbox the wheel that it names itself does not count.
-    pub fault: Fault,
-}
 
 /// A fault of a class, before its varied keys are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ClassFault {
     /// Damage to teeth.
-    Teeth(ToothFault),
+    Teeth(Fault),
     /// A spall of a rolling bearing of a gearbox.
     Bearing {
         /// Name of the bearing, as it stands in the brackets of its keys: `input:0`.
@@ -32,40 +21,17 @@ pub enum ClassFault {
     },
 }
 
-impl ToothFault {
-    /// A fault of a pair.
-    pub(crate) fn of_pair(fault: Fault) -> Self {
-        Self { wheel: fault.wheel.into(), fault }
-    }
-
-    /// A fault of a gearbox.
-    pub(crate) fn of_gearbox(fault: GearboxFault) -> Self {
-        Self { wheel: fault.wheel.into(), fault: fault.fault }
-    }
-
-    /// The damaged teeth of a scenario.
-    ///
-    /// # Arguments
-    /// * `scenario` - of a record
-    pub(crate) fn all_of(scenario: &ScenarioForm) -> Vec<Self> {
-        let wheels = Wheel::all(scenario);
-        let of_wheel =
-            |(wheel, fault): (usize, &Fault)| Self { wheel: wheels[wheel].clone(), fault: fault.clone() };
-        scenario.faults().into_iter().map(of_wheel).collect()
-    }
-}
-
 impl ClassFault {
     /// Its kind of damage, as the columns of records have it.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Teeth(of) => of.fault.damage.kind(),
+            Self::Teeth(of) => of.damage.kind(),
             Self::Bearing { defect, .. } => defect.race.kind(),
         }
     }
 
     /// The damage to teeth; none of a bearing's.
-    pub(crate) fn teeth(&self) -> Option<&ToothFault> {
+    pub(crate) fn teeth(&self) -> Option<&Fault> {
         match self {
             Self::Teeth(of) => Some(of),
             Self::Bearing { .. } => None,
@@ -80,22 +46,21 @@ impl ClassFault {
     pub(super) fn read_all(table: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<Vec<Self>> {
         let ScenarioForm::Gearbox(gearbox) = base else {
             let faults = Fault::list_from_table(table)?.into_iter();
-            return Ok(faults.map(|fault| Self::Teeth(ToothFault::of_pair(fault))).collect());
+            return Ok(faults.map(Self::Teeth).collect());
         };
         let read = |of: &TomlTable<'_>| match of.optional("bearing") {
             Some(_) => Self::of_bearing(of, gearbox),
-            None => Ok(Self::Teeth(ToothFault::of_gearbox(GearboxFault::from_table(of)?))),
+            None => Fault::on_named_wheel(of).map(Self::Teeth),
         };
         let faults: Vec<Self> =
             table.tables("fault")?.into_iter().map(|of| of.read(read)).collect::<Result<_, _>>()?;
-        let wheels = Wheel::all(base);
-        match faults.iter().filter_map(Self::teeth).find(|fault| !wheels.contains(&fault.wheel)) {
+        let names = base.wheel_names();
+        match faults.iter().filter_map(Self::teeth).find(|fault| !names.contains(&fault.wheel.as_str())) {
             None => Ok(faults),
             Some(fault) => {
-                let names: Vec<&str> = wheels.iter().map(Wheel::name).collect();
                 let problem = format!(
                     "is on the wheel {:?}, which does not exist; must be one of {}",
-                    fault.wheel.name(),
+                    fault.wheel,
                     names.join(", ")
                 );
                 Err(table.error("fault", problem))
@@ -171,7 +136,7 @@ impl FaultyBase {
         let of_teeth = faults.iter().filter_map(ClassFault::teeth);
         let places: Vec<FaultPlace> = match &mut scenario {
             ScenarioForm::Pair(pair) => {
-                pair.faults = of_teeth.map(|of| of.fault.clone()).collect();
+                pair.faults = of_teeth.cloned().collect();
                 (0..pair.faults.len()).map(FaultPlace::Teeth).collect()
             }
             ScenarioForm::Gearbox(gearbox) => {
@@ -227,8 +192,8 @@ impl FaultyBase {
 /// Puts a fault into a gearbox. Returns where; none of a bearing that there is not.
 fn put_into(gearbox: &mut Gearbox, bearings: &[String], fault: &ClassFault) -> Option<FaultPlace> {
     match fault {
-        ClassFault::Teeth(ToothFault { wheel, fault }) => {
-            gearbox.faults.push(GearboxFault { wheel: wheel.name().to_owned(), fault: fault.clone() });
+        ClassFault::Teeth(fault) => {
+            gearbox.faults.push(fault.clone());
             Some(FaultPlace::Teeth(gearbox.faults.len() - 1))
         }
         ClassFault::Bearing { bearing, defect } => {

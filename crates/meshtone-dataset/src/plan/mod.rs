@@ -25,7 +25,7 @@ use meshtone_toml::{TomlDocument, TomlError};
 pub use background::Background;
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
-pub use fault::{ClassFault, ToothFault};
+pub use fault::ClassFault;
 pub(crate) use fault::{FaultPlace, FaultyBase, with_faults};
 pub use growth::{Growth, Law, RunPosition};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};

@@ -103,7 +103,7 @@ fn neighbours(base: &ScenarioForm, grade: &ScenarioNumber) -> Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use meshtone::scenario::{Bearing, BearingKind, GearPair, Gearbox, GearboxOperation, Scenario};
+    use meshtone::scenario::{Bearing, BearingKind, GearPair, Gearbox, Operation, Scenario};
 
     /// Springs vary by their stiffness; balls and rollers, which have no such key in effect, vary by their clearance.
     #[test]
@@ -111,7 +111,7 @@ mod tests {
         let mut bearings: Vec<Bearing> = [0.0, 1.0, 1.0].map(|at| Bearing::new("input", at)).to_vec();
         bearings[0].kind = BearingKind::Ball;
         bearings[2].kind = BearingKind::Roller;
-        let operation = GearboxOperation::new(25.0, 10.0);
+        let operation = Operation::new(25.0, 10.0);
         let base = ScenarioForm::Gearbox(Gearbox::new(vec![], vec![], vec![], bearings, operation));
         let rules = Variation::UnknownRig.rules(&base);
         let of = |end: &str| -> Vec<&str> {

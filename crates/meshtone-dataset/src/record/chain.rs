@@ -7,7 +7,7 @@ use std::error::Error;
 
 use meshtone::batch::{Observation, SignalRecorder};
 use meshtone::damage::damages_of_fault;
-use meshtone::scenario::{ScenarioWarning, Sensor};
+use meshtone::scenario::{Fault, ScenarioWarning, Sensor};
 use meshtone::sensor::{Channel, ContactFigures, SignalSource};
 use meshtone::signal::{AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
 use meshtone::tuning::DifferenceChain;
@@ -17,7 +17,7 @@ use super::kept::KeptChain;
 use super::window::Window;
 use super::{Record, RecordFault, RecordSpall, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{Content, FaultPlace, FaultyBase, Keep, ToothFault, Wheel};
+use crate::plan::{Content, FaultPlace, FaultyBase, Keep, Wheel};
 
 /// Makes a record of the simulation of a pair.
 pub(super) fn record(
@@ -112,8 +112,8 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
 /// # Arguments
 /// * `stages` - of the simulation
 /// * `number` - of the fault
-fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(ToothFault, f64)> {
-    let fault = ToothFault::all_of(&stages.scenario).into_iter().nth(number);
+fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(&Fault, f64)> {
+    let fault = stages.scenario.faults().into_iter().nth(number).map(|(_, fault)| fault);
     fault.zip(stages.fault_severities.get(number).copied())
 }
 
@@ -199,7 +199,7 @@ impl<'a> View<'a> {
 
     /// How a wheel turns.
     fn wheel(&self, wheel: &Wheel) -> &TurningWheel {
-        &self.window.turning.wheels[self.window.turning.number(wheel)]
+        &self.window.turning.wheels[self.window.turning.number(wheel.name())]
     }
 
     /// The fault at a place; none of a healthy twin.
@@ -209,9 +209,9 @@ impl<'a> View<'a> {
                 let (fault, severity) = fault_of_teeth(self.simulated, number)?;
                 let pairs = self.simulated.pairs.iter();
                 Some(RecordFault {
-                    kind: fault.fault.damage.kind(),
-                    wheel: Some(fault.wheel.name().to_owned()),
-                    tooth: start::tooth(&fault, &self.window.turning, &self.window.counted_from),
+                    kind: fault.damage.kind(),
+                    wheel: Some(fault.wheel.clone()),
+                    tooth: start::tooth(fault, &self.window.turning, &self.window.counted_from),
                     severity,
                     area_percent: (pairs.flat_map(|pair| damages_of_fault(&pair.damaged, number)))
                         .flat_map(|(_, damage)| damage.numbers("area_percent"))
@@ -335,7 +335,7 @@ impl<'a> View<'a> {
             return ShaftPhase::constant(self.wheel(wheel).speed_hz, rate_hz, samples);
         }
         // The wheels of a pair turn with the marked one.
-        let number = if turning.enter_together { turning.marked } else { turning.number(wheel) };
+        let number = if turning.enter_together { turning.marked } else { turning.number(wheel.name()) };
         let turns = f64::from(turning.wheels[number].teeth) / f64::from(self.wheel(wheel).teeth);
         let angles = self.angles(number, usize::MAX);
         let step = self.simulated.time.sampling_rate_hz / rate_hz;

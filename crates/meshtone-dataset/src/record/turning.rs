@@ -1,9 +1,7 @@
 //! How the wheels of a scenario turn, of a pair and of a gearbox alike.
 
 use meshtone::operation::greatest_common_divisor;
-use meshtone::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioError, ScenarioForm, WheelName};
-
-use crate::plan::{ToothFault, Wheel};
+use meshtone::scenario::{Fault, Gearbox, GearboxLayout, Scenario, ScenarioError, ScenarioForm, WheelName};
 
 /// How the wheels of a scenario turn.
 ///
@@ -79,7 +77,7 @@ impl Turning {
 
     /// How the wheels of a gearbox turn.
     pub fn of_gearbox(gearbox: &Gearbox, layout: &GearboxLayout) -> Self {
-        let input_hz = gearbox.operation.drive.pinion_speed_hz;
+        let input_hz = gearbox.operation.pinion_speed_hz;
         let wheel = |number: usize| {
             let (of, shaft) = (&gearbox.wheels[number], layout.shaft_of_wheel[number]);
             let ratio = layout.ratios[shaft].value().abs();
@@ -109,17 +107,17 @@ impl Turning {
     /// Number of a wheel.
     ///
     /// # Arguments
-    /// * `wheel` - of the scenario
-    pub fn number(&self, wheel: &Wheel) -> usize {
-        self.wheels.iter().position(|known| known.name == wheel.name()).unwrap_or(0)
+    /// * `wheel` - name of a wheel of the scenario
+    pub fn number(&self, wheel: &str) -> usize {
+        self.wheels.iter().position(|known| known.name == wheel).unwrap_or(0)
     }
 
     /// Number of the wheel of a fault and the index of its tooth, of several of the first.
     ///
     /// # Arguments
     /// * `fault` - of a record
-    pub fn place_of(&self, fault: &ToothFault) -> (usize, u64) {
-        (self.number(&fault.wheel), fault.fault.tooth_index() as u64)
+    pub fn place_of(&self, fault: &Fault) -> (usize, u64) {
+        (self.number(&fault.wheel), fault.tooth_index() as u64)
     }
 }
 

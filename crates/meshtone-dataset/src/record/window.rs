@@ -9,7 +9,7 @@ use meshtone::signal::{AntiAliasing, SignalError};
 
 use super::{Turning, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{Keep, ToothFault};
+use crate::plan::Keep;
 
 /// (samples) How far a whole number of samples may come out beside it.
 const ROUNDING: f64 = 1e-6;
@@ -45,7 +45,7 @@ pub(crate) fn simulated_scenario(
     let (time, is_steady) = (scenario.time_grid(), scenario.is_steady());
     let turning = Turning::of(&scenario)?;
     let per_revolution = time.samples_per_pinion_revolution as f64;
-    let start = start::start(keep, drawn, &ToothFault::all_of(&scenario), &turning, is_steady);
+    let start = start::start(keep, drawn, &scenario.faults(), &turning, is_steady);
     let margin = if is_steady { margin(keep, drawn, &scenario, &turning, &time)? } else { 0 };
     let mut first = time.first_kept_sample;
     let counted_from = if is_steady {
@@ -91,7 +91,7 @@ fn margin(
 fn kept_samples(keep: &Keep, turning: &Turning, is_steady: bool, time: &TimeGrid) -> usize {
     match (keep.over_angle, keep.duration_s) {
         (Some(angle), _) => {
-            let wheel = &turning.wheels[turning.number(&keep.wheel.all()[0])];
+            let wheel = &turning.wheels[turning.number(keep.wheel.all()[0].name())];
             // Its first tooth may come a pitch after the record's start.
             let before = if turning.enter_together { 0.0 } else { 1.0 };
             let pitches = angle.revolutions as f64 * f64::from(wheel.teeth) + before;

@@ -252,7 +252,7 @@ fn of_record(content: &Content) -> Vec<Column> {
         if any(&is_of_bearing) {
             columns.extend(of_spall(number));
         }
-        let has_area = |fault: &ClassFault| fault.teeth().is_some_and(|of| of.fault.damage.has_area());
+        let has_area = |fault: &ClassFault| fault.teeth().is_some_and(|of| of.damage.has_area());
         if any(&has_area) {
             let name = format!("{}_area_percent", name_in_list("fault", number));
             let column = Column::float64(&name, "%", move |r| r.faults.get(number)?.area_percent);

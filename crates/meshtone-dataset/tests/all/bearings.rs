@@ -184,7 +184,7 @@ choice = [7, 9]
         };
         assert_eq!((shared.race, shared.width_mm), (DefectPlace::Outer, Some(0.5)));
         assert_eq!((own.race, own.severity), (DefectPlace::Element, Some(record.values[0].1)));
-        assert_eq!(gearbox.faults[0].fault.tooth.only().map(f64::from), Some(record.values[1].1));
+        assert_eq!(gearbox.faults[0].tooth.only().map(f64::from), Some(record.values[1].1));
     }
 }
 

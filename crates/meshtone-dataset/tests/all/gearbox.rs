@@ -247,13 +247,13 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         let drawn = sampler.record(made.integer("record", row) as u64).unwrap();
         let ScenarioForm::Gearbox(mut gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
         let Some(tooth) = made.tooth(row) else { continue };
-        let of_scenario = gearbox.faults[0].fault.tooth.only().unwrap();
+        let of_scenario = gearbox.faults[0].tooth.only().unwrap();
         let wheel = made.text("fault_wheel", row);
         let number = WHEELS.iter().position(|name| *name == wheel).unwrap();
         let teeth = gearbox.wheels[number].teeth;
         // A cycle of the train, 15 revolutions of the input, after what is left of the wheel's first revolution.
         let speed_hz = made.number(&format!("{wheel}_speed_hz"), row);
-        gearbox.solver.settings.duration_s = Some(0.5005 + 1.0 / speed_hz);
+        gearbox.solver.duration_s = Some(0.5005 + 1.0 / speed_hz);
         let simulation = meshtone::simulate(&gearbox).unwrap();
         let channels = &simulation.channels;
         let signal = channels.signal("output_1_vertical_g").unwrap();

@@ -56,7 +56,7 @@ pub fn gearbox_answer(
     let mut simulated = gearbox.clone();
     let kept_s = simulated.time_grid().kept_samples() as f64 * simulated.time_grid().step_s();
     if options.detail == Detail::Coarse && gearbox.operation.is_steady() && kept_s > SHORT_S {
-        let settings = &mut simulated.solver.settings;
+        let settings = &mut simulated.solver;
         settings.discard_and_keep(gearbox.time_grid().kept_from_s(), SHORT_S);
         settings.settle_tolerance = settings.settle_tolerance.max(SHORT_TOLERANCE);
     }

@@ -359,8 +359,8 @@ fn geared(defect: &str) -> String {
     let template = gearbox_template(None).replace("[[bearing]]\nshaft = \"input\"\nat = 0.0\n", &bearing);
     let mut gearbox = Gearbox::from_toml(&template).unwrap();
     gearbox.faults.clear();
-    gearbox.solver.settings.sampling_rate_hz = 2e4;
-    gearbox.solver.settings.duration_s = Some(2.0);
+    gearbox.solver.sampling_rate_hz = 2e4;
+    gearbox.solver.duration_s = Some(2.0);
     gearbox.to_toml()
 }
 

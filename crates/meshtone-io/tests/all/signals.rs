@@ -113,8 +113,8 @@ fn wav_files_are_what_players_expect() {
 fn signals_of_a_gearbox_have_names_that_matlab_accepts() {
     let directory = tempdir().unwrap();
     let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
-    gearbox.solver.settings.sampling_rate_hz = 2e4;
-    gearbox.solver.settings.duration_s = Some(0.2);
+    gearbox.solver.sampling_rate_hz = 2e4;
+    gearbox.solver.duration_s = Some(0.2);
     let simulation = meshtone::stages(&gearbox).unwrap().simulate().unwrap();
     let table = SignalTable::of_scenario(&gearbox, &simulation.channels);
     let names = |format: SignalFormat| -> Vec<String> {

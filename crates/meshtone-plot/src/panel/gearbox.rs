@@ -75,8 +75,8 @@ pub(super) fn draw(gearbox: &Gearbox, simulation: &Simulation) -> Result<Figure,
 
 fn title(gearbox: &Gearbox) -> String {
     let faults = gearbox.faults.iter().map(|of| {
-        let kind = of.fault.damage.kind().replace('-', " ");
-        format!("{kind} on {} of {}", of.fault.tooth.in_words(), of.wheel)
+        let kind = of.damage.kind().replace('-', " ");
+        format!("{kind} on {} of {}", of.tooth.in_words(), of.wheel)
     });
     let spalls = gearbox.bearings.iter().flat_map(|bearing| {
         let at = bearing.seat_name();
@@ -101,7 +101,7 @@ fn facts(gearbox: &Gearbox, stages: &Stages) -> Vec<String> {
             heading::helix(gears).map_or_else(String::new, |helix| format!(", {helix}"))
         )
     };
-    let drive = &gearbox.operation.drive;
+    let drive = &gearbox.operation;
     (0..gearbox.meshes.len())
         .map(stage)
         .chain([

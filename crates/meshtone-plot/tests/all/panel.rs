@@ -304,9 +304,8 @@ fn kept_signals_that_start_within_a_revolution() {
 #[test]
 fn a_gearbox_whose_speed_changes_has_an_order_spectrum() {
     let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
-    gearbox.operation.drive.speed_profile_hz =
-        Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
-    gearbox.solver.settings.duration_s = Some(0.3);
+    gearbox.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
+    gearbox.solver.duration_s = Some(0.3);
     let mut simulation = meshtone::simulate(&gearbox).unwrap();
     let known = panel::draw(&simulation).unwrap();
     let is_of_revolutions =
@@ -337,12 +336,9 @@ fn with_damaged_wheels(damaged: usize) -> Simulation {
     gearbox.bearings = bearings.collect();
     gearbox.housing = None;
     gearbox.sensors.clear();
-    let fault = |n: usize| GearboxFault {
-        wheel: name("z", n + 1),
-        fault: Fault::new(WheelName::Gear, 3, MissingTooth),
-    };
+    let fault = |n: usize| Fault::new(name("z", n + 1), 3, MissingTooth);
     gearbox.faults = (0..damaged).map(fault).collect();
-    gearbox.solver.settings.duration_s = Some(1.0);
+    gearbox.solver.duration_s = Some(1.0);
     meshtone::simulate(&gearbox).unwrap()
 }
 

@@ -45,8 +45,8 @@ pub(crate) use names::by_name;
 pub(crate) use range::Range;
 pub(crate) use row::{KeyRow, documented, row, sub_table};
 pub(crate) use table::{
-    Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, essential,
-    essential_rows, read_keys, read_rows, rows_but, write_keys, write_rows,
+    Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, describe_rows,
+    essential, essential_rows, read_keys, read_rows, rows_but, write_keys, write_rows,
 };
 pub(crate) use text::{array, comment};
 pub(crate) use value::{KeyValue, Written};

@@ -108,7 +108,7 @@ pub(crate) fn describe_from<S: Keys>(start: &S) -> Vec<KeyDescription> {
 /// * `rows` - the keys
 /// * `start` - the section with its defaults
 /// * `section` - its name; empty for other tables
-pub(super) fn describe_rows<S>(rows: &[KeyRow<S>], start: &S, section: &str) -> Vec<KeyDescription> {
+pub(crate) fn describe_rows<S>(rows: &[KeyRow<S>], start: &S, section: &str) -> Vec<KeyDescription> {
     let mut keys = Vec::new();
     for row in rows {
         keys.extend(row.head.describe(row.write(start), row.cell.inside(start), section));

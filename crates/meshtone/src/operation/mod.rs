@@ -6,7 +6,7 @@ mod rules;
 mod settings;
 
 pub use motion::{Motion, MotionSample, TorqueHarmonic};
-pub use parameters::{Operation, Profile};
+pub use parameters::{Operation, Profile, Ripple};
 pub use settings::{LengthKey, Solver};
 
 use crate::wheel::Gears;

@@ -308,7 +308,7 @@ impl Gearbox {
 
     fn table(&self) -> Result<Table, ScenarioError> {
         let own = [("seed".to_owned(), Some(self.seed)), ("wheels_seed".to_owned(), self.wheels_seed)];
-        check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter().map(|sensor| &sensor.sensor))))?;
+        check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter())))?;
         parsed(&self.to_toml())
     }
 }

@@ -4,8 +4,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::from_toml::{Numbers, ScenarioFiles};
 use super::{
-    Gearbox, GearboxFault, GearboxLayout, GearboxSensor, MemoryLimit, Model, Ripple, Scenario, ScenarioError,
-    ScenarioWarning, Sensor,
+    Gearbox, GearboxLayout, MemoryLimit, Model, Ripple, Scenario, ScenarioError, ScenarioWarning, Sensor,
 };
 use crate::damage::Fault;
 use crate::operation::{Operation, Solver, TimeGrid};
@@ -189,7 +188,7 @@ impl ScenarioForm {
     pub fn operation(&self) -> &Operation {
         match self {
             Self::Pair(scenario) => &scenario.operation,
-            Self::Gearbox(gearbox) => &gearbox.operation.drive,
+            Self::Gearbox(gearbox) => &gearbox.operation,
         }
     }
 
@@ -197,7 +196,7 @@ impl ScenarioForm {
     pub fn operation_mut(&mut self) -> &mut Operation {
         match self {
             Self::Pair(scenario) => &mut scenario.operation,
-            Self::Gearbox(gearbox) => &mut gearbox.operation.drive,
+            Self::Gearbox(gearbox) => &mut gearbox.operation,
         }
     }
 
@@ -210,7 +209,7 @@ impl ScenarioForm {
     pub fn solver(&self) -> &Solver {
         match self {
             Self::Pair(scenario) => &scenario.solver,
-            Self::Gearbox(gearbox) => &gearbox.solver.settings,
+            Self::Gearbox(gearbox) => &gearbox.solver,
         }
     }
 
@@ -218,7 +217,7 @@ impl ScenarioForm {
     pub fn solver_mut(&mut self) -> &mut Solver {
         match self {
             Self::Pair(scenario) => &mut scenario.solver,
-            Self::Gearbox(gearbox) => &mut gearbox.solver.settings,
+            Self::Gearbox(gearbox) => &mut gearbox.solver,
         }
     }
 
@@ -239,9 +238,7 @@ impl ScenarioForm {
     pub fn sensors(&self) -> Vec<(String, &Sensor)> {
         match self {
             Self::Pair(scenario) => scenario.sensors.iter().map(|sensor| (sensor.name(), sensor)).collect(),
-            Self::Gearbox(gearbox) => {
-                gearbox.sensors.iter().map(|sensor| (sensor.name(), &sensor.sensor)).collect()
-            }
+            Self::Gearbox(gearbox) => gearbox.sensors.iter().map(|sensor| (sensor.name(), sensor)).collect(),
         }
     }
 
@@ -249,7 +246,7 @@ impl ScenarioForm {
     pub fn sensors_mut(&mut self) -> Vec<&mut Sensor> {
         match self {
             Self::Pair(scenario) => scenario.sensors.iter_mut().collect(),
-            Self::Gearbox(gearbox) => gearbox.sensors.iter_mut().map(|sensor| &mut sensor.sensor).collect(),
+            Self::Gearbox(gearbox) => gearbox.sensors.iter_mut().collect(),
         }
     }
 
@@ -258,7 +255,7 @@ impl ScenarioForm {
         match self {
             Self::Pair(scenario) => scenario.sensors.clone(),
             Self::Gearbox(gearbox) => {
-                let named = |of: GearboxSensor| Sensor { name: Some(of.name()), ..of.sensor };
+                let named = |of: Sensor| Sensor { name: Some(of.name()), ..of };
                 gearbox.all_sensors().into_iter().map(named).collect()
             }
         }
@@ -323,14 +320,16 @@ impl ScenarioForm {
     pub fn with_faults(mut self, faults: Vec<(usize, Fault)>) -> Self {
         match &mut self {
             Self::Pair(scenario) => {
-                let on_wheel =
-                    |(wheel, fault): (usize, Fault)| Fault { wheel: WheelName::BOTH[wheel.min(1)], ..fault };
+                let on_wheel = |(wheel, fault): (usize, Fault)| Fault {
+                    wheel: WheelName::BOTH[wheel.min(1)].into(),
+                    ..fault
+                };
                 scenario.faults = faults.into_iter().map(on_wheel).collect();
             }
             Self::Gearbox(gearbox) => {
                 let name =
                     |wheel: usize| gearbox.wheels.get(wheel).map_or_else(String::new, |of| of.name.clone());
-                let on_wheel = |(wheel, fault): (usize, Fault)| GearboxFault { wheel: name(wheel), fault };
+                let on_wheel = |(wheel, fault): (usize, Fault)| Fault { wheel: name(wheel), ..fault };
                 gearbox.faults = faults.into_iter().map(on_wheel).collect();
             }
         }
@@ -341,7 +340,7 @@ impl ScenarioForm {
     pub fn faults(&self) -> Vec<(usize, &Fault)> {
         match self {
             Self::Pair(scenario) => {
-                scenario.faults.iter().map(|fault| (fault.wheel as usize, fault)).collect()
+                scenario.faults.iter().map(|fault| (fault.side() as usize, fault)).collect()
             }
             Self::Gearbox(gearbox) => gearbox.placed_faults(),
         }

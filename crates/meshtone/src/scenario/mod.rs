@@ -27,7 +27,7 @@ pub use crate::machine::{
     SupportSprings, Unbalance, WheelInertia,
 };
 pub use crate::model::Model;
-pub use crate::operation::{Operation, Profile, Solver};
+pub use crate::operation::{Operation, Profile, Ripple, Solver};
 pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPath, SensorPlace};
 pub use crate::wheel::{
     ERROR_POINTS, EndRelief, FlankRelief, FoundationCoefficients, Gears, Hand, Material, MaterialConstants,
@@ -37,8 +37,7 @@ pub use edit::{ScenarioNumber, names_or_numbers, split_key};
 pub use form::ScenarioForm;
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use gearbox::{
-    Gearbox, GearboxFault, GearboxLayout, GearboxMesh, GearboxOperation, GearboxRig, GearboxSensor,
-    GearboxSolver, GearboxWheel, Ratio, Ripple, gearbox_sections, gearbox_template,
+    Gearbox, GearboxLayout, GearboxMesh, GearboxRig, GearboxWheel, Ratio, gearbox_sections, gearbox_template,
 };
 pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};

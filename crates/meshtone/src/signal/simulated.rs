@@ -297,7 +297,7 @@ impl ShaftPhase {
     pub fn of_simulated_input(gearbox: &Gearbox, start_s: f64, samples: usize) -> Result<Self, SignalError> {
         let time = gearbox.time_grid();
         let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
-        let motion = Motion::new(&gearbox.operation.drive, gearbox.seed, &time);
+        let motion = Motion::new(&gearbox.operation, gearbox.seed, &time);
         let revolutions = motion.skip(start).take(samples).map(|sample| sample.revolutions).collect();
         Ok(Self::new(0, revolutions)?.with_zero(AngleZero::Simulated))
     }

@@ -62,7 +62,7 @@ impl TrainTurning {
 /// use meshtone::signal::{GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainSettings, TrainTurning};
 ///
 /// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
-/// gearbox.solver.settings.duration_s = Some(1.0);
+/// gearbox.solver.duration_s = Some(1.0);
 /// let channels = meshtone::simulate(&gearbox)?.channels;
 /// let train = GearTrain::of_gearbox(&gearbox)?;
 /// let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len())?;

@@ -138,7 +138,7 @@ fn shafts_of_beams(
     let mut machine = GearboxMachine::new(&parts);
     let (mut seated, mut bearings) = (linear.clone(), Vec::new());
     if !rolling.is_empty() {
-        let loads_n = machine.static_bearing_loads_n(&parts, gearbox.operation.drive.brake_torque_nm);
+        let loads_n = machine.static_bearing_loads_n(&parts, gearbox.operation.brake_torque_nm);
         for ((number, rolling), load_n) in rolling.into_iter().zip(loads_n) {
             let bearing = RollingBearing::new(rolling, load_n);
             seated[number].radial_n_per_m = bearing.spring_n_per_m;

@@ -2,7 +2,7 @@
 
 use super::Stages;
 use crate::machine::Axis;
-use crate::scenario::{Gearbox, GearboxMesh, GearboxSensor, GearboxShaft, Scenario, ScenarioForm};
+use crate::scenario::{Gearbox, GearboxMesh, GearboxShaft, Scenario, ScenarioForm};
 use crate::sensor::{
     Channel, ChannelKind, Channels, GRAVITY_M_PER_S2, Measurement, NamedSignal, Sensor, SignalSource, measure,
 };
@@ -52,8 +52,8 @@ pub(super) fn transmission_error_name(mesh: &str) -> String {
 impl Gearbox {
     /// The signals of a simulation, each with what it is of the solution.
     fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
-        let sensor = |(number, sensor): (usize, GearboxSensor)| {
-            let (place, axis) = (sensor.name().into(), sensor.axis());
+        let sensor = |(number, sensor): (usize, Sensor)| {
+            let (place, axis) = (sensor.name().into(), sensor.direction.axis());
             let output = Output::Acceleration { place, axis, factor: 1.0 / GRAVITY_M_PER_S2 };
             (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), output)
         };

@@ -22,7 +22,7 @@ impl ScenarioForm {
     /// Those of [`ScenarioForm::validate`].
     pub fn with_own_sizes(&self) -> Result<Self, ScenarioError> {
         let sized = |fault: &Fault, teeth: &Teeth| {
-            Some(Fault::new(fault.wheel, fault.tooth.clone(), fault.sized(teeth)?))
+            Some(Fault::new(&fault.wheel, fault.tooth.clone(), fault.sized(teeth)?))
         };
         let sized = self.faults().into_iter().zip(self.of_faults(sized)?);
         let faults = sized.filter_map(|((wheel, _), fault)| Some((wheel, fault?))).collect();
@@ -54,7 +54,7 @@ impl Scenario {
     /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario, ToothBreakage};
     ///
     /// let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 0.0 };
-    /// let faults = vec![Fault::on_first_gear_tooth(chip), Fault::new(Default::default(), 2, MissingTooth)];
+    /// let faults = vec![Fault::on_first_gear_tooth(chip), Fault::new("gear", 2, MissingTooth)];
     /// let scenario = Scenario::new(GearPair::example()).with_faults(faults);
     /// let severities = scenario.fault_severities()?;
     /// assert!((severities[0] - 0.40).abs() < 0.01);

@@ -289,7 +289,7 @@ fn ideal_gearbox() -> Gearbox {
     for wheel in &mut gearbox.wheels {
         (wheel.iso_class, wheel.tip_chamfer_mm, wheel.active_profile_shortening) = (0, Some(0.0), 0.0);
     }
-    gearbox.solver.settings.duration_s = Some(0.2);
+    gearbox.solver.duration_s = Some(0.2);
     gearbox.sensors.clear();
     gearbox
 }

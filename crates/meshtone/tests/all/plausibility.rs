@@ -104,7 +104,7 @@ fn a_load_that_breaks_teeth_is_warned_of_with_their_deflection() {
 #[test]
 fn places_at_which_no_teeth_meet_are_told() {
     for (wheel, teeth) in [(WheelName::Gear, 38), (WheelName::Pinion, 17)] {
-        let fault = Fault { wheel, tooth: 9.into(), ..Fault::on_first_gear_tooth(MissingTooth) };
+        let fault = Fault { wheel: wheel.into(), tooth: 9.into(), ..Fault::on_first_gear_tooth(MissingTooth) };
         let mut broken = pair().with_faults(vec![fault]);
         broken.model = Model::Linear;
         let stages = meshtone::stages(&broken).unwrap();

@@ -15,8 +15,8 @@ fn rig(rig: GearboxRig, bearing: &str) -> Gearbox {
     let text = gearbox_template(Some(rig)).replace("iso_class = 6", "iso_class = 0");
     let first = format!("[[bearing]]\nkind = \"ball\"\nname = \"ER-10K\"\n{bearing}\n");
     let mut gearbox = Gearbox::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap();
-    gearbox.solver.settings.sampling_rate_hz = 100_000.0;
-    gearbox.solver.settings.duration_s = Some(1.0);
+    gearbox.solver.sampling_rate_hz = 100_000.0;
+    gearbox.solver.duration_s = Some(1.0);
     gearbox.sensors.clear();
     gearbox
 }
@@ -79,7 +79,7 @@ fn envelope_orders(gearbox: &Gearbox) -> impl Fn(f64) -> f64 + use<> {
     let simulation = simulate(gearbox);
     let rate_hz = simulation.channels.sampling_rate_hz;
     let signal = seat(&simulation);
-    let phase = ShaftPhase::constant(gearbox.operation.drive.pinion_speed_hz, rate_hz, signal.len()).unwrap();
+    let phase = ShaftPhase::constant(gearbox.operation.pinion_speed_hz, rate_hz, signal.len()).unwrap();
     let band = FrequencyBand { from_hz: 2000.0, to_hz: 9000.0 };
     let spectrum = squared_envelope_order_spectrum(&signal, rate_hz, Some(band), &phase).unwrap();
     move |order| line(&spectrum.amplitudes, spectrum.step, order)
@@ -90,7 +90,7 @@ fn envelope_orders(gearbox: &Gearbox) -> impl Fn(f64) -> f64 + use<> {
 fn envelopes_have_the_lines_of_the_defect() {
     let without_slip = |defect: &str| {
         let mut gearbox = rig(GearboxRig::Phm2009Helical, &format!("slip_percent = 0.0\n{defect}"));
-        gearbox.solver.settings.duration_s = Some(2.0);
+        gearbox.solver.duration_s = Some(2.0);
         envelope_orders(&gearbox)
     };
     let outer = without_slip(OUTER);
@@ -111,8 +111,8 @@ fn envelopes_have_the_lines_of_the_defect() {
 fn halving_the_step_changes_the_rms_by_less_than_two_percent() {
     let at = |rate_hz: f64| {
         let mut gearbox = rig(GearboxRig::Phm2009Helical, OUTER);
-        gearbox.solver.settings.sampling_rate_hz = rate_hz;
-        gearbox.solver.settings.duration_s = Some(0.5);
+        gearbox.solver.sampling_rate_hz = rate_hz;
+        gearbox.solver.duration_s = Some(0.5);
         seat_rms(&gearbox)
     };
     let [once, twice, four_times] = [100_000.0, 200_000.0, 400_000.0].map(at);
@@ -191,7 +191,7 @@ fn rollers_bear_the_load_too() {
 fn the_same_seed_slips_alike_and_another_one_does_not() {
     let of_seed = |seed: u64| {
         let mut gearbox = rig(GearboxRig::Phm2009Spur, OUTER);
-        (gearbox.seed, gearbox.solver.settings.duration_s) = (seed, Some(0.1));
+        (gearbox.seed, gearbox.solver.duration_s) = (seed, Some(0.1));
         seat(&simulate(&gearbox))
     };
     assert_eq!(of_seed(1), of_seed(1));
@@ -255,7 +255,7 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
         let text =
             gearbox_template(Some(GearboxRig::Phm2009Helical)).replace("iso_class = 6", "iso_class = 0");
         let mut gearbox = Gearbox::from_toml(&text).unwrap();
-        gearbox.sensors = vec![GearboxSensor::new("shaft:input:0.5")];
+        gearbox.sensors = vec![Sensor::at_place("shaft:input:0.5")];
         change(&mut gearbox);
         gearbox
     };
@@ -270,7 +270,7 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
         let gearbox = gearbox(change);
         let stages = stages(&gearbox).unwrap();
         let (machine, modes) = stages.machine_and_modes().unwrap();
-        let omega = TAU * gearbox.operation.drive.pinion_speed_hz;
+        let omega = TAU * gearbox.operation.pinion_speed_hz;
         let complex = |matrix: DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
         let dynamic = complex(machine.closed_stiffness(&stages.mean_stiffness_n_per_m()))
             - complex(machine.mass.clone()) * Complex::new(omega * omega, 0.0)
@@ -284,7 +284,7 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
         let place = stages.sensors[0].name();
         let weights = machine.weights(&place, Axis::Y).map(|weight| Complex::new(weight, 0.0));
         let expected = weights.dot(&displacement).norm() * omega * omega;
-        let found = first_order(&simulate(&gearbox), gearbox.operation.drive.pinion_speed_hz);
+        let found = first_order(&simulate(&gearbox), gearbox.operation.pinion_speed_hz);
         println!("{name}: {found:.5} m/s², {expected:.5}");
         assert!((found / expected - 1.0).abs() < 0.05);
     }

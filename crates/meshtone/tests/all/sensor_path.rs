@@ -178,8 +178,8 @@ fn gearbox() -> Gearbox {
     gearbox.faults.clear();
     gearbox.sensors.truncate(1);
     gearbox.wheels.iter_mut().for_each(|wheel| (wheel.iso_class, wheel.din_grade) = (6, 0));
-    gearbox.solver.settings.sampling_rate_hz = 1e5;
-    gearbox.operation.drive.brake_torque_nm = 100.0;
+    gearbox.solver.sampling_rate_hz = 1e5;
+    gearbox.operation.brake_torque_nm = 100.0;
     gearbox
 }
 
@@ -187,13 +187,13 @@ fn gearbox() -> Gearbox {
 fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) -> HealthyRecording {
     let mut machine = gearbox();
     machine.seed = seed;
-    let sensor = &mut machine.sensors[0].sensor;
+    let sensor = &mut machine.sensors[0];
     sensor.frequency_response = Some(hidden_response());
     sensor.noise_density_g_per_rthz = 2e-6;
-    let drive = &mut machine.operation.drive;
+    let drive = &mut machine.operation;
     drive.pinion_speed_hz = (from_hz + to_hz) / 2.0;
     drive.speed_profile_hz = Some(Profile { time_s: vec![0.5, 0.5 + length_s], value: vec![from_hz, to_hz] });
-    machine.solver.settings.discard_and_keep(0.5, length_s);
+    machine.solver.discard_and_keep(0.5, length_s);
     let channels = meshtone::simulate(&machine).unwrap().channels;
     let input = ShaftPhase::of_simulated_input(&machine, channels.start_s, channels.len()).unwrap();
     at_rate_of_recordings(&channels.signals[0].values, &input.revolutions, channels.sampling_rate_hz)

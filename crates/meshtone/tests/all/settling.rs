@@ -139,9 +139,8 @@ fn advice_on_settling_and_profiles_can_be_followed_together() {
 #[test]
 fn a_gearbox_whose_profile_ends_says_how_it_can_last() {
     let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
-    gearbox.operation.drive.speed_profile_hz =
-        Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
-    (gearbox.solver.settings.duration_s, gearbox.solver.settings.settle_fraction) = (Some(0.5), 0.5);
+    gearbox.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
+    (gearbox.solver.duration_s, gearbox.solver.settle_fraction) = (Some(0.5), 0.5);
     let warnings = |gearbox: &Gearbox| {
         let warnings = stages(gearbox).unwrap().warnings();
         warnings.into_iter().filter(is_of_start).collect::<Vec<_>>()
@@ -149,7 +148,7 @@ fn a_gearbox_whose_profile_ends_says_how_it_can_last() {
     let before = warnings(&gearbox);
     assert!(before.iter().any(|warning| warning.kind == WarningKind::ProfileEnded), "{before:?}");
     assert!(before.iter().any(|warning| warning.kind == WarningKind::Unsettled), "{before:?}");
-    follow(&before, &mut gearbox.operation.drive, &mut gearbox.solver.settings);
+    follow(&before, &mut gearbox.operation, &mut gearbox.solver);
     let after = warnings(&gearbox);
     assert!(after.is_empty(), "{before:?}\n{after:?}");
 }

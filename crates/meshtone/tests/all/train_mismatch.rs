@@ -31,12 +31,12 @@ fn recording(seed: u64) -> Option<Recording> {
     gearbox.faults.clear();
     if draws.chance(0.5) {
         let wheel = draws.one(&["z1", "z2", "z3", "z4"]).to_owned();
-        gearbox.faults.push(GearboxFault { wheel, fault: Fault::new(WheelName::Gear, 5, MissingTooth) });
+        gearbox.faults.push(Fault::new(wheel, 5, MissingTooth));
     }
-    gearbox.sensors = vec![GearboxSensor::new(draws.one(&["input:0", "middle:1", "output:0"]))];
+    gearbox.sensors = vec![Sensor::at_place(draws.one(&["input:0", "middle:1", "output:0"]))];
     let input_hz = draws.between(10.0, 40.0);
-    gearbox.operation.drive.pinion_speed_hz = input_hz;
-    gearbox.solver.settings.duration_s = Some(draws.in_octaves(1.5, 4.0));
+    gearbox.operation.pinion_speed_hz = input_hz;
+    gearbox.solver.duration_s = Some(draws.in_octaves(1.5, 4.0));
     let channels = meshtone::simulate(&gearbox).ok()?.channels;
     let mut signal = channels.signals[0].values.clone();
     let rms = (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt();

@@ -58,8 +58,7 @@ fn rms(values: &[f64]) -> f64 {
 #[test]
 fn files_are_read_back() {
     let mut broken = gearbox(None);
-    broken.faults =
-        vec![GearboxFault { wheel: "z3".to_owned(), fault: Fault::new(WheelName::Gear, 7, MissingTooth) }];
+    broken.faults = vec![Fault::new("z3", 7, MissingTooth)];
     broken.operation.torque_ripple = vec![Ripple { order: 2.0, amplitude: 0.1, phase_deg: 30.0 }];
     let feet = vec![Foot { at_mm: [0.0, -100.0, 0.0], stiffness_n_per_m: 5e7 }];
     broken.housing.as_mut().unwrap().feet = feet;
@@ -75,7 +74,7 @@ fn files_are_read_back() {
 fn published_rigs_carry_their_torque() {
     for rig in GearboxRig::ALL {
         let mut gearbox = gearbox(Some(rig));
-        gearbox.solver.settings.duration_s = Some(0.5);
+        gearbox.solver.duration_s = Some(0.5);
         let simulation = simulate(&gearbox);
         let stages = &simulation.stages;
         let base_m =
@@ -130,16 +129,16 @@ fn gearbox_moves_as_with_dense_matrices() {
     let mut gearbox = two_stages();
     gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 4);
     // 105 samples for a pitch of the first mesh, 210 for one of the second.
-    gearbox.solver.settings.sampling_rate_hz = 105.0 * 32.0 * 30.0;
+    gearbox.solver.sampling_rate_hz = 105.0 * 32.0 * 30.0;
     gearbox.housing = None;
     gearbox.solver.highest_mode_hz = Some(1e9);
-    gearbox.solver.settings.settle_fraction = 0.0;
-    gearbox.solver.settings.duration_s = Some(0.003);
+    gearbox.solver.settle_fraction = 0.0;
+    gearbox.solver.duration_s = Some(0.003);
     let simulation = simulate(&gearbox);
     let stages = &simulation.stages;
     let (machine, modes) = stages.machine_and_modes().unwrap();
     let time = &stages.time;
-    let nominal_rad_per_s = TAU * gearbox.operation.drive.pinion_speed_hz;
+    let nominal_rad_per_s = TAU * gearbox.operation.pinion_speed_hz;
     let deviations = |mesh: usize| PairDeviations {
         teeth: &stages.pairs[mesh].teeth,
         errors: stages.pairs[mesh].profile_errors.as_ref(),
@@ -160,7 +159,7 @@ fn gearbox_moves_as_with_dense_matrices() {
         is_steady: true,
         start: InitialMotion {
             nominal_rad_per_s,
-            brake_torque_nm: gearbox.operation.drive.brake_torque_nm,
+            brake_torque_nm: gearbox.operation.brake_torque_nm,
             motor_rad_per_s: nominal_rad_per_s,
             velocity: None,
         },
@@ -179,7 +178,7 @@ fn gearbox_moves_as_with_dense_matrices() {
 fn high_modes_are_flexibility_enough() {
     let mut gearbox = two_stages();
     gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
-    gearbox.solver.settings.duration_s = Some(0.3);
+    gearbox.solver.duration_s = Some(0.3);
     let truncated = simulate(&gearbox);
     gearbox.solver.highest_mode_hz = Some(1e9);
     let whole = simulate(&gearbox);
@@ -195,11 +194,10 @@ fn high_modes_are_flexibility_enough() {
 fn few_modes_leave_transmission_errors_as_they_are() {
     let mut steady = two_stages();
     steady.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
-    steady.solver.settings.duration_s = Some(0.2);
+    steady.solver.duration_s = Some(0.2);
     let mut run_up = steady.clone();
-    run_up.operation.drive.speed_profile_hz =
-        Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
-    (run_up.solver.settings.duration_s, run_up.solver.settings.settle_fraction) = (None, 0.5);
+    run_up.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
+    (run_up.solver.duration_s, run_up.solver.settle_fraction) = (None, 0.5);
     for (gearbox, highest_hz, vibration_um) in
         [(&steady, 5e3, 0.03), (&steady, 500.0, 0.6), (&run_up, 5e3, 0.03)]
     {
@@ -225,9 +223,9 @@ fn few_modes_leave_transmission_errors_as_they_are() {
 #[test]
 fn half_the_step_changes_little() {
     let mut gearbox = two_stages();
-    gearbox.solver.settings.duration_s = Some(0.3);
+    gearbox.solver.duration_s = Some(0.3);
     let [coarse, fine] = [1e5, 2e5].map(|rate_hz| {
-        gearbox.solver.settings.sampling_rate_hz = rate_hz;
+        gearbox.solver.sampling_rate_hz = rate_hz;
         simulate(&gearbox)
     });
     for (coarse, fine) in accelerations(&coarse).zip(accelerations(&fine)) {
@@ -241,8 +239,8 @@ fn half_the_step_changes_little() {
 #[test]
 fn motion_repeats_after_a_cycle() {
     let mut gearbox = two_stages();
-    gearbox.solver.settings.discard_and_keep(2.0, 1.0);
-    gearbox.solver.settings.settle_tolerance = 0.0;
+    gearbox.solver.discard_and_keep(2.0, 1.0);
+    gearbox.solver.settle_tolerance = 0.0;
     let simulation = simulate(&gearbox);
     assert_eq!(simulation.stages.layout.cycle_revolutions(), 15);
     let cycle = 15 * simulation.stages.time.samples_per_pinion_revolution;
@@ -279,7 +277,7 @@ fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Gearbox {
         wheels.collect(),
         vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)],
         bearings.collect(),
-        GearboxOperation::new(30.0, 10.0),
+        Operation::new(30.0, 10.0),
     )
 }
 
@@ -345,7 +343,7 @@ fn a_wheel_on_the_same_side_of_two_meshes_has_its_profile_errors_in_both() {
         shafts.map(|(name, ..)| GearboxWheel::new(&format!("z{name}"), name, 0.5, 24, 20.0)).to_vec(),
         [["za", "zb"], ["za", "zc"], ["zb", "zd"], ["zc", "zd"]].map(|of| GearboxMesh::new(of, 2.0)).to_vec(),
         shafts.iter().flat_map(|(name, ..)| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]).collect(),
-        GearboxOperation::new(30.0, 10.0),
+        Operation::new(30.0, 10.0),
     );
     let (first, last) = (profile_errors(24, 1e-3), profile_errors(24, 2e-3));
     gearbox.wheels[0].profile_errors_mm = Some(first.clone());
@@ -373,7 +371,7 @@ fn one_pair() -> Gearbox {
         ],
         vec![GearboxMesh::new(["z1", "z2"], 3.0)],
         bearings.collect(),
-        GearboxOperation::new(40.0, 10.0),
+        Operation::new(40.0, 10.0),
     )
 }
 
@@ -395,7 +393,7 @@ fn one_pair_has_the_forces_and_stiffness_of_the_short_form() {
 fn a_ripple_of_the_torque_comes_with_the_brakes_shaft() {
     let mut gearbox = one_pair();
     gearbox.operation.torque_ripple = vec![Ripple { order: 1.0, amplitude: 0.2, phase_deg: 0.0 }];
-    gearbox.solver.settings.discard_and_keep(1.0, 0.95);
+    gearbox.solver.discard_and_keep(1.0, 0.95);
     let simulation = simulate(&gearbox);
     let force = simulation.channels.signal("force_n.z1-z2").unwrap();
     // 38 revolutions of the input are 17 of the brake.
@@ -419,9 +417,8 @@ fn a_missing_tooth_of_any_wheel_is_felt_once_a_revolution() {
     let mut gearbox = two_stages();
     // Without chamfers the tip corners of the neighbours hold the wheels.
     gearbox.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = None);
-    gearbox.solver.settings.duration_s = Some(0.5);
-    gearbox.faults =
-        vec![GearboxFault { wheel: "z3".to_owned(), fault: Fault::new(WheelName::Gear, 5, MissingTooth) }];
+    gearbox.solver.duration_s = Some(0.5);
+    gearbox.faults = vec![Fault::new("z3", 5, MissingTooth)];
     let simulation = simulate(&gearbox);
     assert_eq!(simulation.stages.fault_severities, [1.0]);
     let mesh = &simulation.stages.meshes[1];
@@ -543,7 +540,7 @@ fn wheels_of_other_shafts_do_not_run_into_one_another() {
             (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, [40, 20, 40][n], 20.0));
         let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
         let meshes = vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)];
-        Gearbox::new(shafts, wheels.collect(), meshes, bearings.collect(), GearboxOperation::new(30.0, 10.0))
+        Gearbox::new(shafts, wheels.collect(), meshes, bearings.collect(), Operation::new(30.0, 10.0))
     };
     assert!(with_last_at(180.0).validate().is_ok());
     let error = with_last_at(80.0).validate().unwrap_err();
@@ -563,22 +560,22 @@ fn codes(warnings: &[ScenarioWarning]) -> Vec<&'static str> {
 #[test]
 fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let mut settled = gearbox(None);
-    settled.solver.settings.discard_and_keep(5.0, 0.1);
+    settled.solver.discard_and_keep(5.0, 0.1);
     let warnings = |change: &dyn Fn(&mut Gearbox)| {
         let mut gearbox = settled.clone();
         change(&mut gearbox);
         stages(&gearbox).unwrap().warnings()
     };
     assert!(warnings(&|_| ()).is_empty());
-    let unsettled = warnings(&|gearbox| gearbox.solver.settings.discard_and_keep(1.0, 0.1));
+    let unsettled = warnings(&|gearbox| gearbox.solver.discard_and_keep(1.0, 0.1));
     assert_eq!(codes(&unsettled), ["unsettled"]);
-    let overload = warnings(&|gearbox| gearbox.operation.drive.brake_torque_nm = 4000.0);
+    let overload = warnings(&|gearbox| gearbox.operation.brake_torque_nm = 4000.0);
     assert_eq!(codes(&overload), ["overload", "overload"]);
     assert!(overload.iter().any(|warning| warning.message.contains("at most 3020 N m")), "{overload:?}");
     // Each mesh that would break is named; without a nominal torque the profile's counts all the same.
     let both = warnings(&|gearbox| {
-        gearbox.operation.drive.brake_torque_nm = 0.0;
-        gearbox.operation.drive.torque_profile_nm =
+        gearbox.operation.brake_torque_nm = 0.0;
+        gearbox.operation.torque_profile_nm =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 20_000.0] });
     });
     let named = |of: &str, kind| {
@@ -589,10 +586,10 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
         assert_eq!(named(mesh, WarningKind::Overload), 1, "{both:?}");
     }
     assert!(both.iter().any(|warning| warning.key == "operation.torque_profile_nm.value[1]"), "{both:?}");
-    let fast = warnings(&|gearbox| gearbox.operation.drive.pinion_speed_hz = 110.0);
+    let fast = warnings(&|gearbox| gearbox.operation.pinion_speed_hz = 110.0);
     assert!(codes(&fast).contains(&"gyroscopic"), "{fast:?}");
     let run_up = warnings(&|gearbox| {
-        gearbox.operation.drive.speed_profile_hz =
+        gearbox.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 105.0] });
     });
     let of_run_up = run_up.iter().find(|warning| warning.kind == WarningKind::Gyroscopic).unwrap();
@@ -627,7 +624,7 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     assert_eq!(codes(&long), ["long-cycle"]);
     assert!(long[0].message.contains("repeats after 7663 revolutions"), "{}", long[0]);
     let ended = warnings(&|gearbox| {
-        gearbox.operation.drive.torque_profile_nm =
+        gearbox.operation.torque_profile_nm =
             Some(Profile { time_s: vec![0.0, 1.0], value: vec![20.0, 21.0] });
     });
     assert_eq!(codes(&ended), ["profile-ended"]);
@@ -637,9 +634,9 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     });
     assert!(undercut.iter().any(|warning| warning.key == "wheel[2].teeth"), "{undercut:?}");
     let slow = warnings(&|gearbox| {
-        gearbox.operation.drive.speed_profile_hz =
+        gearbox.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 20.0] });
-        (gearbox.solver.settings.duration_s, gearbox.solver.settings.settle_fraction) = (None, 0.9);
+        (gearbox.solver.duration_s, gearbox.solver.settle_fraction) = (None, 0.9);
     });
     assert_eq!(codes(&slow), ["speed-profile-off"]);
     assert!(slow[0].message.contains("operation.input_speed_hz"), "{}", slow[0]);
@@ -649,8 +646,8 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
 #[test]
 fn forces_far_beyond_the_load_are_reported_of_each_mesh() {
     let mut gearbox = gearbox(None);
-    gearbox.solver.settings.duration_s = Some(0.2);
-    gearbox.operation.drive.brake_torque_nm = 1e-3;
+    gearbox.solver.duration_s = Some(0.2);
+    gearbox.operation.brake_torque_nm = 1e-3;
     let warnings = simulate(&gearbox).warnings_of_signals(StepJudgement::Estimated);
     let resonances: Vec<_> =
         warnings.iter().filter(|warning| warning.kind == WarningKind::Resonance).collect();
@@ -663,7 +660,7 @@ fn forces_far_beyond_the_load_are_reported_of_each_mesh() {
 #[test]
 fn a_shaft_that_turns_at_another_speed_is_told() {
     let mut gearbox = gearbox(None);
-    gearbox.solver.settings.duration_s = Some(0.2);
+    gearbox.solver.duration_s = Some(0.2);
     let mut simulation = simulate(&gearbox);
     let slipping = |simulation: &Simulation| {
         let warnings = simulation.warnings_of_signals(StepJudgement::Estimated);
@@ -683,7 +680,7 @@ fn a_shaft_that_turns_at_another_speed_is_told() {
 #[test]
 fn a_batch_gives_each_what_it_gives_alone() {
     let mut short = two_stages();
-    short.solver.settings.duration_s = Some(0.05);
+    short.solver.duration_s = Some(0.05);
     let mut stiffer = short.clone();
     stiffer.bearings[0].stiffness_n_per_m *= 2.0;
     let mut wrong = short.clone();
@@ -706,9 +703,9 @@ fn a_batch_gives_each_what_it_gives_alone() {
 #[test]
 fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
     let mut gearbox = gearbox(None);
-    gearbox.solver.settings.discard_and_keep(5.0, 0.1);
+    gearbox.solver.discard_and_keep(5.0, 0.1);
     let mut reported = |speed_hz: f64| {
-        gearbox.operation.drive.pinion_speed_hz = speed_hz;
+        gearbox.operation.pinion_speed_hz = speed_hz;
         stages(&gearbox).unwrap().warnings().pop()
     };
     assert_eq!(reported(30.0), None);
@@ -722,17 +719,17 @@ fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
 #[test]
 fn a_step_that_is_too_long_is_reported() {
     let mut gearbox = gearbox(Some(GearboxRig::Uconn));
-    gearbox.solver.settings.duration_s = Some(0.5);
+    gearbox.solver.duration_s = Some(0.5);
     let simulation = simulate(&gearbox);
     let warnings = simulation.warnings_of_signals(StepJudgement::Repeated);
     assert_eq!(codes(&warnings), ["step-error"], "{warnings:?}");
     assert!(warnings[0].message.contains("at 40020 S/s the rms is"), "{}", warnings[0]);
-    gearbox.solver.settings.sampling_rate_hz = 4e5;
-    gearbox.solver.settings.duration_s = Some(0.2);
+    gearbox.solver.sampling_rate_hz = 4e5;
+    gearbox.solver.duration_s = Some(0.2);
     let warnings = simulate(&gearbox).warnings_of_signals(StepJudgement::Repeated);
     assert!(warnings.is_empty(), "{warnings:?}");
     // What the repetition may need is limited as the first simulation is: without it there is the estimate alone.
-    gearbox.solver.settings.sampling_rate_hz = 2e4;
+    gearbox.solver.sampling_rate_hz = 2e4;
     let limited = |bytes: u64| {
         let stages = stages_within(&gearbox, MemoryLimit::Given { bytes }).unwrap();
         stages.simulate().unwrap().warnings_of_signals(StepJudgement::Repeated)
@@ -747,8 +744,8 @@ fn a_step_that_is_too_long_is_reported() {
 fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
     let mut gearbox = gearbox(None);
     let missing = Fault::new(WheelName::Gear, (1..48).collect::<Vec<u32>>(), MissingTooth);
-    gearbox.faults = vec![GearboxFault { wheel: "z3".to_owned(), fault: missing }];
-    gearbox.solver.settings.duration_s = Some(8.0);
+    gearbox.faults = vec![missing];
+    gearbox.solver.duration_s = Some(8.0);
     let error = meshtone::simulate(&gearbox).map(drop).unwrap_err();
     let text = error.to_string();
     assert!(text.starts_with("the motion grows without bound within") && text.len() < 250, "{text}");

@@ -7,7 +7,7 @@ use meshtone_toml::{ErrorKind, ReadResult, TomlDocument, TomlTable};
 pub use self::files::ScenarioFiles;
 
 pub(super) use self::files::Numbers;
-use super::{Fault, Gearbox, MemoryLimit, Scenario, ScenarioError, Sensor};
+use super::{Fault, Gearbox, MemoryLimit, Scenario, ScenarioError, gearbox};
 use crate::keys::{Keys, NoFiles, NumberFiles, read_keys};
 use crate::wheel::WheelDeviations;
 
@@ -129,7 +129,7 @@ fn read_scenario(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Sc
     section(&mut scenario.quality, root, "quality", files)?;
     scenario.faults = Fault::list_from_table(root)?;
     section(&mut scenario.rig, root, "rig", files)?;
-    scenario.sensors = Sensor::list_from_table(root, files)?;
+    scenario.sensors = gearbox::list(root, "sensor", files)?;
     section(&mut scenario.solver, root, "solver", files)?;
     Ok(scenario)
 }

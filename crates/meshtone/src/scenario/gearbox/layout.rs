@@ -549,7 +549,7 @@ impl GearboxLayout {
     pub fn faults_of_mesh(&self, faults: &[(usize, &Fault)], mesh: usize) -> Vec<(usize, Fault)> {
         let of_mesh = |(number, &(wheel, fault)): (usize, &(usize, &Fault))| {
             let side = self.wheels_of_mesh[mesh].iter().position(|of| *of == wheel)?;
-            Some((number, Fault { wheel: WheelName::BOTH[side], ..fault.clone() }))
+            Some((number, Fault { wheel: WheelName::BOTH[side].into(), ..fault.clone() }))
         };
         faults.iter().enumerate().filter_map(of_mesh).collect()
     }

@@ -8,9 +8,7 @@ mod room;
 
 pub use example::{GearboxRig, gearbox_template};
 pub use layout::{GearboxLayout, Ratio};
-pub use parts::{
-    GearboxFault, GearboxMesh, GearboxOperation, GearboxSensor, GearboxSolver, GearboxWheel, Ripple,
-};
+pub use parts::{GearboxMesh, GearboxWheel};
 
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable};
 
@@ -20,14 +18,16 @@ use super::{MemoryLimit, ScenarioError, ScenarioWarning, SectionDescription, War
 use crate::bearing::RollingParts;
 use crate::damage::{Fault, check_faults};
 use crate::keys::{
-    KeyRow, Keys, NoFiles, NumberFiles, check_keys, describe, field, read_keys, row, write_keys,
+    KeyRow, Keys, NoFiles, NumberFiles, check_keys, check_rows, describe, describe_rows, field, read_keys,
+    read_rows, row, write_keys, write_rows,
 };
 use crate::machine::{Bearing, GearboxShaft, Housing};
-use crate::operation::TimeGrid;
+use crate::operation::{Operation, Solver, TimeGrid};
+use crate::sensor::Sensor;
 use crate::wheel::Material;
 use crate::wheel::quality::{check_errors, one_source};
 use layout::{entry_key, find, section};
-use parts::list;
+pub(super) use parts::list;
 
 /// Everything that a simulation of a gearbox depends on.
 ///
@@ -59,13 +59,13 @@ pub struct Gearbox {
     /// The housing; none where the bearings' seats stand on the ground.
     pub housing: Option<Housing>,
     /// Speed and load.
-    pub operation: GearboxOperation,
+    pub operation: Operation,
     /// Faults.
-    pub faults: Vec<GearboxFault>,
+    pub faults: Vec<Fault>,
     /// Listed sensors; without one, a vertical one sits on every bearing's seat.
-    pub sensors: Vec<GearboxSensor>,
+    pub sensors: Vec<Sensor>,
     /// Sampling and settling.
-    pub solver: GearboxSolver,
+    pub solver: Solver,
 }
 
 /// The keys above the sections.
@@ -80,10 +80,10 @@ impl Keys for Gearbox {
             meshes: Vec::new(),
             bearings: Vec::new(),
             housing: None,
-            operation: GearboxOperation::start(),
+            operation: Operation::start(),
             faults: Vec::new(),
             sensors: Vec::new(),
-            solver: GearboxSolver::start(),
+            solver: Solver::start(),
         }
     }
 
@@ -119,7 +119,7 @@ impl Gearbox {
         wheels: Vec<GearboxWheel>,
         meshes: Vec<GearboxMesh>,
         bearings: Vec<Bearing>,
-        operation: GearboxOperation,
+        operation: Operation,
     ) -> Self {
         Self { shafts, wheels, meshes, bearings, operation, ..Self::start() }
     }
@@ -217,10 +217,18 @@ impl Gearbox {
             root.table_or_empty("housing")?.read(|table| read_keys(&mut housing, table, files))?;
             gearbox.housing = Some(housing);
         }
-        root.table_or_empty("operation")?.read(|table| read_keys(&mut gearbox.operation, table, files))?;
-        gearbox.faults = GearboxFault::list_from_table(root)?;
-        gearbox.sensors = list(root, "sensor", files)?;
-        root.table_or_empty("solver")?.read(|table| read_keys(&mut gearbox.solver, table, files))?;
+        let operation = Operation::rows_of_shafts();
+        root.table_or_empty("operation")?
+            .read(|table| read_rows(&operation, &mut gearbox.operation, table, files))?;
+        gearbox.faults = faults(root)?;
+        let sensor = |table: &TomlTable<'_>| {
+            let mut sensor = Sensor::at_place("");
+            read_rows(&Sensor::rows_of_shafts(), &mut sensor, table, files).map(|()| sensor)
+        };
+        gearbox.sensors =
+            root.tables("sensor")?.into_iter().map(|table| table.read(sensor)).collect::<ReadResult<_>>()?;
+        let solver = Solver::rows_of_shafts();
+        root.table_or_empty("solver")?.read(|table| read_rows(&solver, &mut gearbox.solver, table, files))?;
         Ok(gearbox)
     }
 
@@ -235,11 +243,11 @@ impl Gearbox {
         sections.extend(entries("mesh", self.meshes.iter().map(write_keys).collect()));
         sections.extend(entries("bearing", self.bearings.iter().map(write_keys).collect()));
         sections.extend(self.housing.iter().map(|housing| format!("[housing]\n{}", write_keys(housing))));
-        sections.push(format!("[operation]\n{}", write_keys(&self.operation)));
-        sections
-            .extend(entries("fault", self.faults.iter().map(|of| of.fault.write_on(&of.wheel)).collect()));
-        sections.extend(entries("sensor", self.sensors.iter().map(write_keys).collect()));
-        sections.push(format!("[solver]\n{}", write_keys(&self.solver)));
+        sections.push(format!("[operation]\n{}", write_rows(&Operation::rows_of_shafts(), &self.operation)));
+        sections.extend(entries("fault", self.faults.iter().map(Fault::write).collect()));
+        let sensor = |sensor: &Sensor| write_rows(&Sensor::rows_of_shafts(), sensor);
+        sections.extend(entries("sensor", self.sensors.iter().map(sensor).collect()));
+        sections.push(format!("[solver]\n{}", write_rows(&Solver::rows_of_shafts(), &self.solver)));
         sections.join("\n")
     }
 
@@ -267,16 +275,19 @@ impl Gearbox {
         check_list("wheel", &self.wheels)?;
         check_list("mesh", &self.meshes)?;
         check_list("bearing", &self.bearings)?;
-        check_list("sensor", &self.sensors)?;
+        for (index, sensor) in self.sensors.iter().enumerate() {
+            check_rows(&Sensor::rows_of_shafts(), sensor, "sensor")
+                .map_err(|error| error.in_entry("sensor", index, self.sensors.len()))?;
+        }
         if let Some(housing) = &self.housing {
             check_keys(housing, "housing")?;
         }
-        check_keys(&self.operation, "operation")?;
-        check_keys(&self.solver, "solver")?;
+        check_rows(&Operation::rows_of_shafts(), &self.operation, "operation")?;
+        check_rows(&Solver::rows_of_shafts(), &self.solver, "solver")?;
         self.check_counts()?;
         self.check_shafts()?;
         self.rolling_bearings()?;
-        self.check_operation()?;
+        self.operation.check()?;
         self.check_length(limit)?;
         let layout = GearboxLayout::new(self)?;
         self.driven_speed(&layout).check()?;
@@ -360,30 +371,15 @@ impl Gearbox {
         Ok(())
     }
 
-    fn check_operation(&self) -> Result<(), ScenarioError> {
-        let renamed = |mut error: ScenarioError| {
-            error.key = error.key.replace("pinion_speed_hz", "input_speed_hz");
-            error
-        };
-        self.operation.drive.check().map_err(renamed)?;
-        let amplitudes: f64 = self.operation.torque_ripple.iter().map(|ripple| ripple.amplitude).sum();
-        if amplitudes >= 1.0 {
-            let problem = "amplitudes add up to 1 or more: the brake would drive; must be less";
-            return Err(ScenarioError::new("operation.torque_ripple", amplitudes, problem));
-        }
-        Ok(())
-    }
-
     /// The kept signal has one length and at least two samples, and there is memory for it.
     fn check_length(&self, limit: MemoryLimit) -> Result<(), ScenarioError> {
-        let settings = &self.solver.settings;
+        let settings = &self.solver;
         if let (Some(duration_s), Some(_)) = (settings.duration_s, settings.pinion_revolutions) {
             let problem = "given beside solver.input_revolutions; the length has only one source";
             return Err(ScenarioError::new("solver.duration_s", duration_s, problem)
                 .with_help("remove one of the two"));
         }
-        if let (Some(revolutions), Some(_)) =
-            (settings.pinion_revolutions, &self.operation.drive.speed_profile_hz)
+        if let (Some(revolutions), Some(_)) = (settings.pinion_revolutions, &self.operation.speed_profile_hz)
         {
             let problem = "given with operation.speed_profile_hz, whose speeds vary";
             return Err(ScenarioError::new("solver.input_revolutions", revolutions, problem)
@@ -410,13 +406,13 @@ impl Gearbox {
 
     /// The faults, each with the number of its wheel.
     pub(crate) fn placed_faults(&self) -> Vec<(usize, &Fault)> {
-        let number = |fault: &GearboxFault| self.wheels.iter().position(|of| of.name == fault.wheel);
-        self.faults.iter().filter_map(|fault| Some((number(fault)?, &fault.fault))).collect()
+        let number = |fault: &Fault| self.wheels.iter().position(|of| of.name == fault.wheel);
+        self.faults.iter().filter_map(|fault| Some((number(fault)?, fault))).collect()
     }
 
     fn check_faults(&self, layout: &GearboxLayout) -> Result<(), ScenarioError> {
         let names: Vec<&str> = self.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
-        for (index, GearboxFault { wheel, .. }) in self.faults.iter().enumerate() {
+        for (index, Fault { wheel, .. }) in self.faults.iter().enumerate() {
             let key = entry_key("fault", index, self.faults.len(), "wheel");
             find(&names, wheel, "wheel").map_err(|error| error.with_key(key))?;
         }
@@ -473,7 +469,7 @@ impl Gearbox {
         let wheels = self.wheels.len();
         let of_wheel = |number: usize| self.wheels[number].ignored_shares(&section("wheel", number, wheels));
         let of_shares = (0..wheels).flat_map(of_wheel);
-        let ended = self.operation.drive.ended_profiles(time.kept_from_s());
+        let ended = self.operation.ended_profiles(time.kept_from_s());
         let of_speed = self.driven_speed(layout).warnings();
         let of_teeth = of_teeth.into_iter().chain(layout.added_thrusts(self));
         of_teeth.chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()
@@ -484,7 +480,7 @@ impl Gearbox {
             pitch_line_mm(gears.transverse_module_mm(), gears.pinion_teeth) * layout.driving_ratio(mesh).abs()
         });
         DrivenSpeed {
-            operation: &self.operation.drive,
+            operation: &self.operation,
             key: "operation.input_speed_hz",
             pitch_line_mm: pitch_lines_mm.fold(0.0, f64::max),
         }
@@ -492,7 +488,7 @@ impl Gearbox {
 
     /// Division of time: a whole number of samples per revolution of the input.
     pub fn time_grid(&self) -> TimeGrid {
-        TimeGrid::of_input(&self.operation.drive, &self.solver.settings)
+        TimeGrid::of_input(&self.operation, &self.solver)
     }
 }
 
@@ -511,10 +507,15 @@ pub fn gearbox_sections() -> Vec<SectionDescription> {
         section("mesh", describe::<GearboxMesh>()),
         section("bearing", describe::<Bearing>()),
         section("housing", describe::<Housing>()),
-        section("operation", describe::<GearboxOperation>()),
-        section("sensor", describe::<GearboxSensor>()),
-        section("solver", describe::<GearboxSolver>()),
+        section("operation", describe_rows(&Operation::rows_of_shafts(), &Operation::start(), "operation")),
+        section("sensor", describe_rows(&Sensor::rows_of_shafts(), &Sensor::at_place(""), "sensor")),
+        section("solver", describe_rows(&Solver::rows_of_shafts(), &Solver::start(), "solver")),
     ]
+}
+
+/// The faults of a table, on wheels of any names.
+fn faults(table: &TomlTable<'_>) -> ReadResult<Vec<Fault>> {
+    table.tables("fault")?.into_iter().map(|table| table.read(Fault::on_named_wheel)).collect()
 }
 
 /// Each key alone, of every entry of a list.

@@ -1,25 +1,26 @@
 //! Where the sensors of a gearbox sit.
 
 use super::layout::entry_key;
-use super::{Gearbox, GearboxLayout, GearboxSensor};
+use super::{Gearbox, GearboxLayout};
 use crate::error::ScenarioError;
 use crate::machine::GearboxPlace;
+use crate::sensor::Sensor;
 
 /// (-) How far from a bearing's place, as a part of the shaft's length, a sensor that names it may be.
 const SAME_PLACE: f64 = 1e-6;
 
 impl Gearbox {
     /// The sensors: the listed ones, or a vertical one on every bearing's seat.
-    pub fn all_sensors(&self) -> Vec<GearboxSensor> {
+    pub fn all_sensors(&self) -> Vec<Sensor> {
         if !self.sensors.is_empty() {
             return self.sensors.clone();
         }
-        self.bearings.iter().map(|bearing| GearboxSensor::new(&bearing.seat_name())).collect()
+        self.bearings.iter().map(|bearing| Sensor::at_place(&bearing.seat_name())).collect()
     }
 
     /// The channel of the first of [`Self::all_sensors`].
     pub fn leading_channel(&self) -> String {
-        self.all_sensors().first().map(GearboxSensor::channel).unwrap_or_default()
+        self.all_sensors().first().map(Sensor::channel).unwrap_or_default()
     }
 
     /// Where each of [`Self::all_sensors`] sits.
@@ -41,10 +42,11 @@ impl Gearbox {
                 let error = ScenarioError::new(key, format!("{name:?}"), problem);
                 return Err(error.with_help("give it a name of its own"));
             }
-            let place = self.place(&sensor.at, layout);
+            let place = self.place(sensor.at.name(), layout);
             places.push(place.map_err(|problem| {
                 let at = entry_key("sensor", index, entries, "at");
-                ScenarioError::new(at, format!("{:?}", sensor.at), problem).with_help(self.known_places())
+                ScenarioError::new(at, format!("{:?}", sensor.at.name()), problem)
+                    .with_help(self.known_places())
             })?);
         }
         Ok(places)

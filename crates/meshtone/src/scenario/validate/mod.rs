@@ -90,6 +90,7 @@ impl Scenario {
 /// Every value, whether or not the model honours it.
 fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {
     scenario.gears.check()?;
+    check_keys(&scenario.operation, "operation")?;
     scenario.operation.check()?;
     scenario.quality.check(&scenario.gears)?;
     let numbers: Vec<usize> = (0..scenario.faults.len()).collect();

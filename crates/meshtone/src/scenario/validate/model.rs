@@ -78,8 +78,8 @@ fn refuse_unknown_to_published(scenario: &Scenario) -> Check {
         [fault] if !KINDS_OF_PUBLISHED.contains(&fault.damage.kind()) => {
             return Err(unknown_kind(&fault.damage));
         }
-        [fault] if fault.wheel != WheelName::Gear => {
-            ScenarioError::new("fault.wheel", format!("\"{}\"", fault.wheel.name()), ONE_PLACE)
+        [fault] if fault.side() != WheelName::Gear => {
+            ScenarioError::new("fault.wheel", format!("{:?}", fault.wheel), ONE_PLACE)
         }
         [fault] if fault.tooth.only() != Some(1) => {
             ScenarioError::new("fault.tooth", &fault.tooth, ONE_PLACE)

@@ -79,7 +79,7 @@ impl Scenario {
             let mut kinds = BTreeSet::new();
             for tooth in 1..=self.gears.teeth(wheel) {
                 let on_tooth =
-                    |(_, fault): &(usize, &Fault)| fault.wheel == wheel && fault.tooth.contains(tooth);
+                    |(_, fault): &(usize, &Fault)| fault.side() == wheel && fault.tooth.contains(tooth);
                 let on_tooth: Vec<(usize, &Fault)> =
                     self.faults.iter().enumerate().filter(on_tooth).collect();
                 let is_drawn = on_tooth.iter().any(|(_, fault)| fault.damage.is_drawn());

@@ -356,12 +356,12 @@ fn gearbox_at_speed_of(gearbox: &Gearbox, piece: &Piece) -> Gearbox {
     // Each draw has wheels of its own.
     healthy.wheels_seed = None;
     healthy.sensors = gearbox.all_sensors().into_iter().take(1).collect();
-    healthy.sensors.iter_mut().for_each(|of| of.sensor = without_path(of.sensor.clone()));
-    let drive = &mut healthy.operation.drive;
+    healthy.sensors.iter_mut().for_each(|sensor| *sensor = without_path(sensor.clone()));
+    let drive = &mut healthy.operation;
     drive.pinion_speed_hz = piece.mean_speed_hz();
     drive.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
     drive.torque_profile_nm = None;
-    healthy.solver.settings.discard_and_keep(SETTLING_S, piece.length_s);
+    healthy.solver.discard_and_keep(SETTLING_S, piece.length_s);
     healthy
 }
 
