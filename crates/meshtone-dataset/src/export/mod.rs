@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::{Component, Path};
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::properties::WriterProperties;
@@ -114,9 +114,8 @@ fn name_of(folder: &Path) -> Option<String> {
 }
 
 /// Refuses a base scenario whose bearings have spalls, because its healthy records would be exported as `normal`.
-fn refuse_spalls(base: &ScenarioForm) -> Result<(), DatasetError> {
-    let ScenarioForm::Gearbox(gearbox) = base else { return Ok(()) };
-    let Some(bearing) = gearbox.bearings.iter().find(|bearing| !bearing.defect.is_empty()) else {
+fn refuse_spalls(base: &Scenario) -> Result<(), DatasetError> {
+    let Some(bearing) = base.bearings().iter().find(|bearing| !bearing.defect.is_empty()) else {
         return Ok(());
     };
     Err(DatasetError::refused(
@@ -348,7 +347,7 @@ impl Export<'_> {
         let speed = self.content.base.speed_key().trim_start_matches("operation.");
         let (speed_hz, torque_nm) = (read.numbers(speed), read.numbers("brake_torque_nm"));
         let rate_hz = self.sampling_rates(read);
-        let profile = if self.content.base.is_steady() { "constant" } else { "varying" };
+        let profile = if self.content.base.operation.is_steady() { "constant" } else { "varying" };
         let place = |row: usize| signals.places[first + row];
         let mut rows = vec![
             text("dataset", "name of the data set", &|_, _| self.name.clone()),
@@ -471,7 +470,7 @@ impl ReadFault {
     }
 
     /// Where the damaged part sits, in the schema's words.
-    fn location(&self, base: &ScenarioForm) -> String {
+    fn location(&self, base: &Scenario) -> String {
         match (&self.wheel, &self.bearing) {
             (_, Some(bearing)) => bearing_location(bearing, base),
             (wheel, None) => wheel_location(wheel.as_deref().unwrap_or_default(), base),
@@ -527,14 +526,14 @@ impl std::fmt::Display for Exported {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use meshtone::scenario::{Bearing, BearingDefect, DefectPlace, Gearbox, Operation};
+    use meshtone::scenario::{Bearing, BearingDefect, DefectPlace, Operation, Scenario};
 
     #[test]
     fn records_with_a_spall_are_not_exported_as_normal() {
         let mut bearing = Bearing::new("input", 0.5);
         let base = |bearing: &Bearing| {
             let operation = Operation::new(25.0, 10.0);
-            ScenarioForm::Gearbox(Gearbox::new(vec![], vec![], vec![], vec![bearing.clone()], operation))
+            Scenario::of_shafts(vec![], vec![], vec![], vec![bearing.clone()], operation)
         };
         assert!(refuse_spalls(&base(&bearing)).is_ok());
         bearing.defect.push(BearingDefect::new(DefectPlace::Outer, 0.2));

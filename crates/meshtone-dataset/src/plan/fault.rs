@@ -1,8 +1,6 @@
 //! The faults of a class: damaged teeth and spalls of rolling bearings, and where the scenarios of its records have them.
 
-use meshtone::scenario::{
-    BearingDefect, Fault, Gearbox, ScenarioError, ScenarioForm, ScenarioNumber, names_or_numbers,
-};
+use meshtone::scenario::{BearingDefect, Fault, Scenario, ScenarioError, ScenarioNumber, names_or_numbers};
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::draw::is_of_plan;
@@ -43,14 +41,11 @@ impl ClassFault {
     /// # Arguments
     /// * `table` - the class
     /// * `base` - the scenario whose wheels and bearings are damaged
-    pub(super) fn read_all(table: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<Vec<Self>> {
-        let ScenarioForm::Gearbox(gearbox) = base else {
-            let faults = Fault::list_from_table(table)?.into_iter();
-            return Ok(faults.map(Self::Teeth).collect());
-        };
-        let read = |of: &TomlTable<'_>| match of.optional("bearing") {
-            Some(_) => Self::of_bearing(of, gearbox),
-            None => Fault::on_named_wheel(of).map(Self::Teeth),
+    pub(super) fn read_all(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<Vec<Self>> {
+        let read = |of: &TomlTable<'_>| match (of.optional("bearing"), base.rig()) {
+            (_, Some(_)) => Fault::from_table(of).map(Self::Teeth),
+            (Some(_), None) => Self::of_bearing(of, base),
+            (None, None) => Fault::on_named_wheel(of).map(Self::Teeth),
         };
         let faults: Vec<Self> =
             table.tables("fault")?.into_iter().map(|of| of.read(read)).collect::<Result<_, _>>()?;
@@ -69,14 +64,14 @@ impl ClassFault {
     }
 
     /// Reads a spall of a bearing.
-    fn of_bearing(table: &TomlTable<'_>, gearbox: &Gearbox) -> ReadResult<Self> {
+    fn of_bearing(table: &TomlTable<'_>, gearbox: &Scenario) -> ReadResult<Self> {
         let value =
             table.required("bearing", "the name of the damaged bearing: its shaft and place, as input:0")?;
         let (bearing, names) = (value.string()?.to_owned(), bearing_names(gearbox));
         let Some(number) = names.iter().position(|name| *name == bearing) else {
             return Err(value.error(format!("does not exist; must be one of {}", names.join(", "))));
         };
-        if gearbox.bearings[number].element().is_none() {
+        if gearbox.bearings()[number].element().is_none() {
             let help = format!(
                 "set kind = \"ball\" or kind = \"roller\" of bearing[{bearing}] of the base scenario"
             );
@@ -87,9 +82,9 @@ impl ClassFault {
 }
 
 /// The names of a gearbox's bearings in the keys of a plan: shaft and place, or the number where two are at one place.
-fn bearing_names(gearbox: &Gearbox) -> Vec<String> {
+fn bearing_names(gearbox: &Scenario) -> Vec<String> {
     let seats: Vec<Option<String>> =
-        gearbox.bearings.iter().map(|bearing| Some(bearing.seat_name())).collect();
+        gearbox.bearings().iter().map(|bearing| Some(bearing.seat_name())).collect();
     names_or_numbers(&seats)
 }
 
@@ -98,7 +93,7 @@ fn bearing_names(gearbox: &Gearbox) -> Vec<String> {
 /// # Arguments
 /// * `base` - healthy
 /// * `faults` - of the class
-pub(crate) fn with_faults(base: &ScenarioForm, faults: &[ClassFault]) -> ScenarioForm {
+pub(crate) fn with_faults(base: &Scenario, faults: &[ClassFault]) -> Scenario {
     FaultyBase::new(base, faults).scenario
 }
 
@@ -118,7 +113,7 @@ pub(crate) enum FaultPlace {
 #[derive(Debug, Clone)]
 pub(crate) struct FaultyBase {
     /// The scenario.
-    pub scenario: ScenarioForm,
+    pub scenario: Scenario,
     /// Where it has each fault.
     pub places: Vec<FaultPlace>,
     /// The beginnings of each fault's keys in the plan and in the scenario.
@@ -131,20 +126,12 @@ impl FaultyBase {
     /// # Arguments
     /// * `base` - in which no tooth is damaged; spalls that it has are no faults of the class
     /// * `faults` - of the class
-    pub fn new(base: &ScenarioForm, faults: &[ClassFault]) -> Self {
+    pub fn new(base: &Scenario, faults: &[ClassFault]) -> Self {
         let mut scenario = base.clone();
-        let of_teeth = faults.iter().filter_map(ClassFault::teeth);
-        let places: Vec<FaultPlace> = match &mut scenario {
-            ScenarioForm::Pair(pair) => {
-                pair.faults = of_teeth.cloned().collect();
-                (0..pair.faults.len()).map(FaultPlace::Teeth).collect()
-            }
-            ScenarioForm::Gearbox(gearbox) => {
-                gearbox.faults.clear();
-                let names = bearing_names(gearbox);
-                faults.iter().filter_map(|fault| put_into(gearbox, &names, fault)).collect()
-            }
-        };
+        scenario.faults.clear();
+        let names = bearing_names(&scenario);
+        let places: Vec<FaultPlace> =
+            faults.iter().filter_map(|fault| put_into(&mut scenario, &names, fault)).collect();
         let sections = sections(&scenario, &places);
         Self { scenario, places, sections }
     }
@@ -165,7 +152,7 @@ impl FaultyBase {
     ///
     /// # Errors
     /// Values that the scenario does not allow.
-    pub fn with_values(&self, values: &[(String, f64)]) -> Result<ScenarioForm, ScenarioError> {
+    pub fn with_values(&self, values: &[(String, f64)]) -> Result<Scenario, ScenarioError> {
         let of_scenario = values.iter().filter(|(key, _)| !is_of_plan(key));
         let sections = || self.sections.iter().map(|[plan, scenario]| [plan, scenario]);
         let renamed: Vec<(String, f64)> =
@@ -175,22 +162,21 @@ impl FaultyBase {
     }
 
     /// (-) How severe each fault is in a scenario of [`Self::with_values`]; none where that cannot be.
-    pub fn severities(&self, scenario: &ScenarioForm) -> Option<Vec<f64>> {
+    pub fn severities(&self, scenario: &Scenario) -> Option<Vec<f64>> {
         let of_teeth = scenario.fault_severities().ok()?;
-        let severity = |place: &FaultPlace| match (*place, scenario) {
-            (FaultPlace::Teeth(number), _) => of_teeth.get(number).copied(),
-            (FaultPlace::Spall { bearing, number }, ScenarioForm::Gearbox(gearbox)) => {
-                let parts = gearbox.bearings.get(bearing)?.rolling().ok()??;
+        let severity = |place: &FaultPlace| match *place {
+            FaultPlace::Teeth(number) => of_teeth.get(number).copied(),
+            FaultPlace::Spall { bearing, number } => {
+                let parts = scenario.bearings().get(bearing)?.rolling().ok()??;
                 parts.spalls.get(number).map(|spall| spall.severity)
             }
-            _ => None,
         };
         self.places.iter().map(severity).collect()
     }
 }
 
 /// Puts a fault into a gearbox. Returns where; none of a bearing that there is not.
-fn put_into(gearbox: &mut Gearbox, bearings: &[String], fault: &ClassFault) -> Option<FaultPlace> {
+fn put_into(gearbox: &mut Scenario, bearings: &[String], fault: &ClassFault) -> Option<FaultPlace> {
     match fault {
         ClassFault::Teeth(fault) => {
             gearbox.faults.push(fault.clone());
@@ -198,7 +184,7 @@ fn put_into(gearbox: &mut Gearbox, bearings: &[String], fault: &ClassFault) -> O
         }
         ClassFault::Bearing { bearing, defect } => {
             let bearing = bearings.iter().position(|name| name == bearing)?;
-            let defects = &mut gearbox.bearings[bearing].defect;
+            let defects = &mut gearbox.bearings_mut()[bearing].defect;
             defects.push(defect.clone());
             Some(FaultPlace::Spall { bearing, number: defects.len() - 1 })
         }
@@ -206,18 +192,16 @@ fn put_into(gearbox: &mut Gearbox, bearings: &[String], fault: &ClassFault) -> O
 }
 
 /// The beginnings of the keys of faults in the plan and in the scenario.
-fn sections(scenario: &ScenarioForm, places: &[FaultPlace]) -> Vec<[String; 2]> {
+fn sections(scenario: &Scenario, places: &[FaultPlace]) -> Vec<[String; 2]> {
     let of_list = |number: usize, entries: usize| match entries {
         1 => "fault".to_owned(),
         _ => format!("fault[{number}]"),
     };
-    let of_scenario = |place: &FaultPlace| match (*place, scenario) {
-        (FaultPlace::Spall { bearing, number }, ScenarioForm::Gearbox(gearbox)) => {
-            format!("bearing[{}].defect[{number}]", bearing_names(gearbox)[bearing])
+    let of_scenario = |place: &FaultPlace| match *place {
+        FaultPlace::Spall { bearing, number } => {
+            format!("bearing[{}].defect[{number}]", bearing_names(scenario)[bearing])
         }
-        (FaultPlace::Teeth(number) | FaultPlace::Spall { number, .. }, _) => {
-            of_list(number, scenario.fault_count())
-        }
+        FaultPlace::Teeth(number) => of_list(number, scenario.faults.len()),
     };
     let both = |(number, place)| [of_list(number, places.len()), of_scenario(place)];
     places.iter().enumerate().map(both).collect()

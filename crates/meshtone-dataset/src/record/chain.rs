@@ -30,13 +30,13 @@ pub(super) fn record(
 ) -> Result<Record, Box<dyn Error>> {
     let view = View::new(content, window, stages);
     let samples = view.before_linear_sensors(stages, recorder);
-    let parts = stages.scenario.model().teeth_part();
+    let parts = stages.scenario.model.teeth_part();
     let slack = if parts { observation.apart_fraction } else { observation.tension_fraction };
     view.record(content, drawn, &samples, &observation.warnings, vec![slack])
 }
 
-/// Makes a record of the simulation of a gearbox, whose sensors are applied already.
-pub(super) fn gearbox_record(
+/// Makes a record of the simulation of a train, whose sensors are applied already.
+pub(super) fn record_of_train(
     content: &Content,
     drawn: DrawnRecord,
     window: Window,
@@ -113,7 +113,7 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
 /// * `stages` - of the simulation
 /// * `number` - of the fault
 fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(&Fault, f64)> {
-    let fault = stages.scenario.faults().into_iter().nth(number).map(|(_, fault)| fault);
+    let fault = stages.scenario.placed_faults().into_iter().nth(number).map(|(_, fault)| fault);
     fault.zip(stages.fault_severities.get(number).copied())
 }
 
@@ -124,11 +124,10 @@ fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(&Fault, f64)> {
 /// * `bearing` - number of the bearing
 /// * `number` - of the spall among those of its bearing
 fn spall(stages: &Stages, bearing: usize, number: usize) -> Option<RecordSpall> {
-    let gearbox = stages.scenario.gearbox()?;
     let (_, rolling) = stages.bearings.iter().find(|(other, _)| *other == bearing)?;
     let sizes = *rolling.parts.spalls.get(number)?;
     let order = rolling.parts.geometry.defect_orders().of_defect(sizes.place);
-    Some(RecordSpall { bearing: gearbox.bearings[bearing].seat_name(), sizes, order })
+    Some(RecordSpall { bearing: stages.scenario.bearings()[bearing].seat_name(), sizes, order })
 }
 
 /// (rev) Angle of the input at every sample from one on.
@@ -165,7 +164,7 @@ impl<'a> View<'a> {
         let keep = self.keep;
         let simulated = keep.simulated();
         if self.is_steady() {
-            let damping_key = match self.simulated.scenario.pair() {
+            let damping_key = match self.simulated.scenario.rig() {
                 Some(_) => "rig.damping_ratio",
                 None => "damping_ratio of meshes, shafts and bearings",
             };
@@ -242,7 +241,7 @@ impl<'a> View<'a> {
             speed_hz: wheel.speed_hz,
             angle_rev: if starts_at_tooth { 0.0 } else { self.angles(number, 1)[0] },
         };
-        let operation = self.simulated.scenario.operation();
+        let operation = &self.simulated.scenario.operation;
         Record {
             drawn,
             faults: places.into_iter().filter_map(|place| self.fault(place)).collect(),
@@ -278,9 +277,10 @@ impl<'a> View<'a> {
 
     /// The sensor of a channel, where its signal is a linear function of its place's motion and not made yet.
     fn linear_sensor(&self, channel: &Channel) -> Option<&'a Sensor> {
-        let pair = self.simulated.scenario.pair()?;
+        // Those of shafts of beams are applied in the simulation.
+        self.simulated.scenario.rig()?;
         let is_of = |sensor: &&Sensor| *channel == Channel::Sensor(sensor.name());
-        pair.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
+        self.simulated.scenario.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
     }
 
     /// The channels at the data set's rate, behind their sensors and the record's path.
@@ -366,7 +366,7 @@ impl<'a> View<'a> {
         }
         let stages = self.simulated;
         // The same settings as those of the signals that the enhancement was tuned with.
-        let angular = DifferenceChain::angular_settings(stages.scenario.model());
+        let angular = DifferenceChain::angular_settings(stages.scenario.model);
         let train = GearTrain::of_stages(stages);
         Ok(self.chain(&train)?.analyse(signal, 0, angular, MeanPart::Removed)?.parts.difference)
     }

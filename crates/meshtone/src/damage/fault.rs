@@ -183,7 +183,14 @@ impl Fault {
         fault.read_damage(table)
     }
 
-    fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
+    /// Reads a fault of a pair.
+    ///
+    /// # Arguments
+    /// * `table` - its section
+    ///
+    /// # Errors
+    /// As [`Self::list_from_table`].
+    pub fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
         let mut fault = Self::at_usual_place(Damage::start_of(table)?);
         read_keys(&mut fault, table, &NoFiles)?;
         fault.read_damage(table)
@@ -221,7 +228,12 @@ impl Fault {
     pub(crate) fn commented(&self) -> String {
         let kind = format!("# {}\nkind = \"{}\"\n", self.damage.summary(), self.damage.kind());
         let keys = self.damage.commented(self.left_out());
-        [kind, keys, commented_rows(&Self::rows(), self, &Self::at_usual_place(self.damage.clone()))].concat()
+        [
+            kind,
+            keys,
+            commented_rows(&Self::rows(), self, &Self::at_usual_place(self.damage.clone()), Self::SECTION),
+        ]
+        .concat()
     }
 
     /// The lines of its section that matter, without the header.

@@ -10,8 +10,8 @@ use meshtone::signal::{
     tachometer_pulses,
 };
 
-fn healthy(rig: Option<GearboxRig>) -> Gearbox {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(rig)).unwrap();
+fn healthy(rig: Option<GearboxRig>) -> Scenario {
+    let mut gearbox = Scenario::from_toml(&gearbox_template(rig)).unwrap();
     gearbox.faults.clear();
     for wheel in &mut gearbox.wheels {
         if wheel.din_grade == 0 {
@@ -30,21 +30,21 @@ struct Recorded {
     input_rev: Vec<f64>,
 }
 
-fn record(gearbox: &Gearbox, sensor: &str, cycles: usize, profile_hz: Option<[f64; 2]>) -> Recorded {
+fn record(gearbox: &Scenario, sensor: &str, cycles: usize, profile_hz: Option<[f64; 2]>) -> Recorded {
     let [recorded] = record_at(gearbox, [sensor], cycles, profile_hz);
     recorded
 }
 
 /// What several sensors record of one simulation.
 fn record_at<const SENSORS: usize>(
-    gearbox: &Gearbox,
+    gearbox: &Scenario,
     sensors: [&str; SENSORS],
     cycles: usize,
     profile_hz: Option<[f64; 2]>,
 ) -> [Recorded; SENSORS] {
     let mut gearbox = gearbox.clone();
     gearbox.sensors = sensors.map(Sensor::at_place).to_vec();
-    let cycle_rev = GearboxLayout::new(&gearbox).unwrap().cycle_revolutions() as f64;
+    let cycle_rev = gearbox.layout().unwrap().cycle_revolutions() as f64;
     let speed_hz = gearbox.operation.pinion_speed_hz;
     let duration_s = (cycles + 1) as f64 * cycle_rev / speed_hz + 0.01;
     gearbox.solver.duration_s = Some(duration_s);
@@ -61,7 +61,7 @@ fn record_at<const SENSORS: usize>(
     let of_sensors: Vec<&str> = channels.signals[..SENSORS].iter().map(|signal| signal.unit).collect();
     assert_eq!(of_sensors, ["g"; SENSORS]);
     std::array::from_fn(|sensor| Recorded {
-        train: GearTrain::of_gearbox(&gearbox).unwrap(),
+        train: GearTrain::of_scenario(&gearbox).unwrap(),
         rate_hz: channels.sampling_rate_hz,
         signal: channels.signals[sensor].values[from..to].to_vec(),
         input_rev: angle[from..to].to_vec(),
@@ -150,7 +150,7 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
         gearbox.solver.duration_s = Some(3.0);
         gearbox.sensors = ["input:0", "middle:1", "output:1"].map(Sensor::at_place).to_vec();
         let channels = meshtone::simulate(&gearbox).unwrap().channels;
-        let train = GearTrain::of_gearbox(&gearbox).unwrap();
+        let train = GearTrain::of_scenario(&gearbox).unwrap();
         let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap();
         let turning =
             TrainTurning::Shaft { shaft: train.input(), phase: phase.clone(), stated: StatedTurning::Other };

@@ -23,7 +23,7 @@ struct Recording {
 
 fn recording(seed: u64) -> Option<Recording> {
     let draws = &mut Draws::new(seed);
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
     for wheel in &mut gearbox.wheels {
         wheel.teeth = draws.count(20, 90);
         wheel.iso_class = draws.count(5, 8) as u8;
@@ -44,7 +44,7 @@ fn recording(seed: u64) -> Option<Recording> {
     let noise = noise(seed, signal.len());
     signal.iter_mut().zip(noise).for_each(|(x, noise)| *x += amplitude * noise);
     Some(Recording {
-        train: GearTrain::of_gearbox(&gearbox).unwrap(),
+        train: GearTrain::of_scenario(&gearbox).unwrap(),
         input: ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap(),
         input_hz,
         signal,

@@ -5,19 +5,19 @@ use meshtone::sensor::NamedSignal;
 use std::f64::consts::TAU;
 
 use crate::dense::{Dense, DenseMesh};
-use meshtone::batch::{Control, simulate_many_gearboxes};
+use meshtone::batch::{Control, KeepOf, simulate_many};
 use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
 use meshtone::solver::InitialMotion;
 use meshtone::wheel::ErrorTable;
 use meshtone::{MeshedPair, Simulation, Stages, StepJudgement, stages, stages_within};
 
-fn gearbox(rig: Option<GearboxRig>) -> Gearbox {
-    Gearbox::from_toml(&gearbox_template(rig)).unwrap()
+fn gearbox(rig: Option<GearboxRig>) -> Scenario {
+    Scenario::from_toml(&gearbox_template(rig)).unwrap()
 }
 
 /// Two stages with teeth that have pitch deviations and run-out and no chamfer, of the references' steel.
-fn two_stages() -> Gearbox {
+fn two_stages() -> Scenario {
     let mut gearbox = gearbox(None);
     gearbox.material = Material::Given(MaterialConstants {
         youngs_modulus_gpa: 206.0,
@@ -36,7 +36,7 @@ fn two_stages() -> Gearbox {
     gearbox
 }
 
-fn simulate(gearbox: &Gearbox) -> Simulation {
+fn simulate(gearbox: &Scenario) -> Simulation {
     meshtone::simulate(gearbox).unwrap()
 }
 
@@ -61,11 +61,12 @@ fn files_are_read_back() {
     broken.faults = vec![Fault::new("z3", 7, MissingTooth)];
     broken.operation.torque_ripple = vec![Ripple { order: 2.0, amplitude: 0.1, phase_deg: 30.0 }];
     let feet = vec![Foot { at_mm: [0.0, -100.0, 0.0], stiffness_n_per_m: 5e7 }];
-    broken.housing.as_mut().unwrap().feet = feet;
-    broken.shafts[1].radius_mm = None;
-    broken.shafts[1].segments = vec![[100.0, 8.0], [140.0, 10.0]];
+    let parts = broken.structure.shafts_mut().unwrap();
+    parts.housing.as_mut().unwrap().feet = feet;
+    parts.shafts[1].radius_mm = None;
+    parts.shafts[1].segments = vec![[100.0, 8.0], [140.0, 10.0]];
     for gearbox in [broken, two_stages(), gearbox(Some(GearboxRig::Tecnalia))] {
-        assert_eq!(Gearbox::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
+        assert_eq!(Scenario::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
     }
 }
 
@@ -127,10 +128,10 @@ fn stiffness_and_vibration_have_the_size_of_the_reference() {
 #[test]
 fn gearbox_moves_as_with_dense_matrices() {
     let mut gearbox = two_stages();
-    gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 4);
+    gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 4);
     // 105 samples for a pitch of the first mesh, 210 for one of the second.
     gearbox.solver.sampling_rate_hz = 105.0 * 32.0 * 30.0;
-    gearbox.housing = None;
+    gearbox.structure.shafts_mut().unwrap().housing = None;
     gearbox.solver.highest_mode_hz = Some(1e9);
     gearbox.solver.settle_fraction = 0.0;
     gearbox.solver.duration_s = Some(0.003);
@@ -177,7 +178,7 @@ fn gearbox_moves_as_with_dense_matrices() {
 #[test]
 fn high_modes_are_flexibility_enough() {
     let mut gearbox = two_stages();
-    gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
+    gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
     gearbox.solver.duration_s = Some(0.3);
     let truncated = simulate(&gearbox);
     gearbox.solver.highest_mode_hz = Some(1e9);
@@ -193,7 +194,7 @@ fn high_modes_are_flexibility_enough() {
 #[test]
 fn few_modes_leave_transmission_errors_as_they_are() {
     let mut steady = two_stages();
-    steady.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
+    steady.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
     steady.solver.duration_s = Some(0.2);
     let mut run_up = steady.clone();
     run_up.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
@@ -255,7 +256,7 @@ fn motion_repeats_after_a_cycle() {
 }
 
 /// An idler with its mates in given directions.
-fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Gearbox {
+fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Scenario {
     let radius_mm = |wheel: usize| f64::from(teeth[wheel]);
     let at = |direction_deg: f64, distance_mm: f64| {
         let (sin, cos) = direction_deg.to_radians().sin_cos();
@@ -270,12 +271,12 @@ fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Gearbox {
         (shaft.position_mm, shaft.couples_to) = (Some(positions[n]), coupled[n]);
         shaft
     });
-    let wheels = (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
+    let wheels = (0..3).map(|n| ScenarioWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
     let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-    Gearbox::new(
+    Scenario::of_shafts(
         shafts.collect(),
         wheels.collect(),
-        vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)],
+        vec![ScenarioMesh::new(["z1", "z2"], 2.0), ScenarioMesh::new(["z2", "z3"], 2.0)],
         bearings.collect(),
         Operation::new(30.0, 10.0),
     )
@@ -292,7 +293,7 @@ fn idler_phases_are_those_of_its_flanks() {
         ([20, 40, 25], [180.0, -70.0], 0.226837),
         ([23, 41, 57], [200.0, -33.0], 0.065243),
     ] {
-        let layout = GearboxLayout::new(&idler(teeth, [-first_deg, -second_deg])).unwrap();
+        let layout = idler(teeth, [-first_deg, -second_deg]).layout().unwrap();
         let found = (layout.phases[1] - layout.phases[0]).rem_euclid(1.0);
         println!("{teeth:?}: {found:.6}, not {expected}");
         assert!((found - expected).abs() < 1e-6, "{teeth:?}: {found:.6}, not {expected}");
@@ -306,7 +307,7 @@ fn profile_errors(teeth: u32, of: f64) -> ErrorTable {
 }
 
 /// The profile errors of the driving and of the driven wheel of each mesh; none of ideal wheels.
-fn errors_of_meshes(gearbox: &Gearbox) -> Vec<Option<[ErrorTable; 2]>> {
+fn errors_of_meshes(gearbox: &Scenario) -> Vec<Option<[ErrorTable; 2]>> {
     let of_pair = |pair: MeshedPair| {
         pair.profile_errors.map(|of| [of.pinion_profile_errors_mm, of.gear_profile_errors_mm])
     };
@@ -338,10 +339,12 @@ fn a_wheel_on_the_same_side_of_two_meshes_has_its_profile_errors_in_both() {
         (shaft.position_mm, shaft.couples_to) = (Some(position_mm), couples_to);
         shaft
     };
-    let mut gearbox = Gearbox::new(
+    let mut gearbox = Scenario::of_shafts(
         shafts.map(shaft).to_vec(),
-        shafts.map(|(name, ..)| GearboxWheel::new(&format!("z{name}"), name, 0.5, 24, 20.0)).to_vec(),
-        [["za", "zb"], ["za", "zc"], ["zb", "zd"], ["zc", "zd"]].map(|of| GearboxMesh::new(of, 2.0)).to_vec(),
+        shafts.map(|(name, ..)| ScenarioWheel::new(&format!("z{name}"), name, 0.5, 24, 20.0)).to_vec(),
+        [["za", "zb"], ["za", "zc"], ["zb", "zd"], ["zc", "zd"]]
+            .map(|of| ScenarioMesh::new(of, 2.0))
+            .to_vec(),
         shafts.iter().flat_map(|(name, ..)| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]).collect(),
         Operation::new(30.0, 10.0),
     );
@@ -354,7 +357,7 @@ fn a_wheel_on_the_same_side_of_two_meshes_has_its_profile_errors_in_both() {
 }
 
 /// A gearbox of the one pair of the short form's example.
-fn one_pair() -> Gearbox {
+fn one_pair() -> Scenario {
     let names = ["input", "output"];
     let coupled = [Coupled::Motor, Coupled::Brake];
     let shafts = (0..2).map(|n| {
@@ -363,13 +366,13 @@ fn one_pair() -> Gearbox {
         shaft
     });
     let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-    Gearbox::new(
+    Scenario::of_shafts(
         shafts.collect(),
         vec![
-            GearboxWheel::new("z1", "input", 0.5, 17, 15.0),
-            GearboxWheel::new("z2", "output", 0.5, 38, 15.0),
+            ScenarioWheel::new("z1", "input", 0.5, 17, 15.0),
+            ScenarioWheel::new("z2", "output", 0.5, 38, 15.0),
         ],
-        vec![GearboxMesh::new(["z1", "z2"], 3.0)],
+        vec![ScenarioMesh::new(["z1", "z2"], 3.0)],
         bearings.collect(),
         Operation::new(40.0, 10.0),
     )
@@ -450,7 +453,7 @@ fn mistakes_are_named_with_their_key_and_line() {
     let text = gearbox_template(None);
     let change = |from: &str, to: &str| {
         assert!(text.contains(from), "{from}");
-        Gearbox::from_toml(&text.replacen(from, to, 1)).unwrap_err()
+        Scenario::from_toml(&text.replacen(from, to, 1)).unwrap_err()
     };
     for (from, to, key, problem) in [
         ("shaft = \"input\"", "shaft = \"inptu\"", "wheel[0].shaft", "is no shaft's name"),
@@ -488,8 +491,8 @@ fn mistakes_are_named_with_their_key_and_line() {
         let missing = from.starts_with("couples_to");
         assert!(error.line.is_some() || missing, "{error}");
     }
-    let overlapping = Gearbox::from_toml(&text.replace("at = 0.75", "at = 0.3")).unwrap_err();
-    let outside = Gearbox::from_toml(&text.replace("at = 0.25", "at = 0.03")).unwrap_err();
+    let overlapping = Scenario::from_toml(&text.replace("at = 0.75", "at = 0.3")).unwrap_err();
+    let outside = Scenario::from_toml(&text.replace("at = 0.25", "at = 0.03")).unwrap_err();
     assert_eq!((outside.key.as_str(), outside.line), ("wheel[0].at", Some(33)));
     assert!(outside.problem.contains("would reach from z = -2.325 to 16.725 mm"), "{outside}");
     assert_eq!(overlapping.key, "wheel[2].at");
@@ -497,7 +500,7 @@ fn mistakes_are_named_with_their_key_and_line() {
     let placed =
         text.replacen("couples_to = \"motor\"", "couples_to = \"motor\"\nposition_mm = [0.0, 0.0]", 1);
     let placed = placed.replacen("name = \"middle\"", "name = \"middle\"\nposition_mm = [90.0, 0.0]", 1);
-    let error = Gearbox::from_toml(&placed).unwrap_err();
+    let error = Scenario::from_toml(&placed).unwrap_err();
     assert_eq!(error.key, "shaft[1].position_mm");
     assert!(
         error
@@ -537,10 +540,10 @@ fn wheels_of_other_shafts_do_not_run_into_one_another() {
         ];
         let names = ["input", "middle", "output"];
         let wheels =
-            (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, [40, 20, 40][n], 20.0));
+            (0..3).map(|n| ScenarioWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, [40, 20, 40][n], 20.0));
         let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-        let meshes = vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)];
-        Gearbox::new(shafts, wheels.collect(), meshes, bearings.collect(), Operation::new(30.0, 10.0))
+        let meshes = vec![ScenarioMesh::new(["z1", "z2"], 2.0), ScenarioMesh::new(["z2", "z3"], 2.0)];
+        Scenario::of_shafts(shafts, wheels.collect(), meshes, bearings.collect(), Operation::new(30.0, 10.0))
     };
     assert!(with_last_at(180.0).validate().is_ok());
     let error = with_last_at(80.0).validate().unwrap_err();
@@ -561,7 +564,7 @@ fn codes(warnings: &[ScenarioWarning]) -> Vec<&'static str> {
 fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let mut settled = gearbox(None);
     settled.solver.discard_and_keep(5.0, 0.1);
-    let warnings = |change: &dyn Fn(&mut Gearbox)| {
+    let warnings = |change: &dyn Fn(&mut Scenario)| {
         let mut gearbox = settled.clone();
         change(&mut gearbox);
         stages(&gearbox).unwrap().warnings()
@@ -610,10 +613,10 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     assert!(ignored[0].message.contains("beside given profile errors"), "{}", ignored[0]);
     assert!(ignored[2].message.contains("remove run_out_share, or the run-outs"), "{}", ignored[2]);
     let undamped = warnings(&|gearbox| {
-        gearbox.shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.0);
-        gearbox.bearings.iter_mut().for_each(|bearing| bearing.damping_ratio = 0.0);
+        gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.0);
+        gearbox.bearings_mut().iter_mut().for_each(|bearing| bearing.damping_ratio = 0.0);
         gearbox.meshes.iter_mut().for_each(|mesh| mesh.damping_ratio = 0.0);
-        gearbox.housing = None;
+        gearbox.structure.shafts_mut().unwrap().housing = None;
     });
     assert_eq!(codes(&undamped), ["unsettled"]);
     assert!(undamped[0].message.ends_with("it never decays: a mode has no damping"), "{}", undamped[0]);
@@ -682,13 +685,13 @@ fn a_batch_gives_each_what_it_gives_alone() {
     let mut short = two_stages();
     short.solver.duration_s = Some(0.05);
     let mut stiffer = short.clone();
-    stiffer.bearings[0].stiffness_n_per_m *= 2.0;
+    stiffer.bearings_mut()[0].stiffness_n_per_m *= 2.0;
     let mut wrong = short.clone();
     wrong.wheels[0].at = 0.5;
     let boxes = [short.clone(), stiffer, wrong, short];
     let mut together = Vec::new();
-    let keep = |_: usize, simulation: Simulation| simulation.channels;
-    simulate_many_gearboxes(boxes.clone(), &keep, &Control::default(), |_, kept| together.push(kept));
+    let keep = KeepOf(|_: usize, simulation: Simulation| simulation.channels);
+    simulate_many(boxes.clone(), &keep, &Control::default(), |_, kept| together.push(kept));
     for (gearbox, together) in boxes.iter().zip(&together) {
         match (meshtone::simulate(gearbox).map(|simulation| simulation.channels), together) {
             (Ok(alone), Ok(together)) => assert_eq!(alone, *together),
@@ -757,8 +760,8 @@ fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
 #[test]
 fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
     let mut gearbox = idler([24, 36, 30], [180.0, 0.0]);
-    gearbox.shafts[1].couples_to = Coupled::Brake;
-    gearbox.shafts[2].couples_to = Coupled::Nothing;
+    gearbox.structure.shafts_mut().unwrap().shafts[1].couples_to = Coupled::Brake;
+    gearbox.structure.shafts_mut().unwrap().shafts[2].couples_to = Coupled::Nothing;
     assert!(stages(&gearbox).is_ok());
     gearbox.wheels[2].deviations.helix_slope_um = Some(5.0);
     let error = stages(&gearbox).map(drop).unwrap_err();
@@ -771,9 +774,9 @@ fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
 #[test]
 fn a_locked_train_names_both_ratios() {
     let mut gearbox = one_pair();
-    gearbox.wheels.push(GearboxWheel::new("z3", "input", 0.2, 18, 15.0));
-    gearbox.wheels.push(GearboxWheel::new("z4", "output", 0.2, 37, 15.0));
-    gearbox.meshes.push(GearboxMesh::new(["z3", "z4"], 3.0));
+    gearbox.wheels.push(ScenarioWheel::new("z3", "input", 0.2, 18, 15.0));
+    gearbox.wheels.push(ScenarioWheel::new("z4", "output", 0.2, 37, 15.0));
+    gearbox.meshes.push(ScenarioMesh::new(["z3", "z4"], 3.0));
     let error = gearbox.validate().unwrap_err();
     assert_eq!(error.key, "mesh[1].wheels");
     assert!(error.problem.contains("-18/37") && error.problem.contains("-17/38"), "{error}");

@@ -1,4 +1,4 @@
-//! The wheels and meshes of a gearbox.
+//! A wheel of a scenario.
 
 use std::ops::Bound::Included;
 
@@ -9,12 +9,14 @@ use crate::keys::{KeyKind, KeyRow, Keys, NumberFiles, Range, documented, field, 
 use crate::machine::{Unbalance, WheelInertia};
 use crate::wheel::quality::{file_deviations, ignored_shares};
 use crate::wheel::rows::*;
-use crate::wheel::{EndRelief, ErrorTable, FlankRelief, Hand, Material, WheelDeviations, WheelName};
+use crate::wheel::{ErrorTable, FlankRelief, Material, WheelDeviations, WheelName};
 
-/// A wheel on a shaft of a gearbox.
+use super::ScenarioMesh;
+
+/// A wheel on a shaft: of a rig the pinion or the gear.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct GearboxWheel {
+pub struct ScenarioWheel {
     /// Its name.
     pub name: String,
     /// Name of its shaft.
@@ -31,7 +33,7 @@ pub struct GearboxWheel {
     pub addendum: f64,
     /// (-) Dedendum coefficient of the basic rack. Default 1.25.
     pub dedendum: f64,
-    /// (mm) Height of the tips' chamfer; none for 0.2 modules. Mates have the same.
+    /// (mm) Height of the tips' chamfer; none for 0.23 modules. Mates have the same.
     pub tip_chamfer_mm: Option<f64>,
     /// (base pitches) By how much the path of contact is shorter than the tips between their chamfers make it, half at either end.
     /// Default 0.1. Mates have the same.
@@ -40,22 +42,27 @@ pub struct GearboxWheel {
     pub uniform_flank_reduction_mm: f64,
     /// Relief of the flank near the tip, as a gap. Default none. Mates have the same.
     pub flank_relief: FlankRelief,
-    /// Material; none for the gearbox's. Mates have the same.
+    /// Material; none for the scenario's. Mates have the same.
     pub material: Option<Material>,
     /// Mass and inertias, instead of those of a solid disc.
     pub inertia: WheelInertia,
     /// Unbalance. Default none.
     pub unbalance: Unbalance,
+    /// (mm) Eccentricity of its seat, beside its run-out. Default 0. Mates have the same.
+    pub eccentricity_mm: f64,
     /// Grade of DIN 3961 of its deviations, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,
     /// Class of ISO 1328-1:2013 instead, 1 (best) to 11; 0 for none. Default 0.
     pub iso_class: u8,
-    /// (-) Part of the tolerances of slope and form that a tooth has of its own. Default 0.4.
+    /// (-) Part of the tolerances of slope and form that a tooth has of its own; the rest all teeth of a wheel have in common. Default 0.4, in a
+    /// rig 0.5.
     pub tooth_share: f64,
-    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.15.
+    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.15, in a rig 0.25.
     pub pitch_share: f64,
     /// (-) Run-out as a part of its tolerance. Default 0.3.
     pub run_out_share: f64,
+    /// (-) Largest helix slope deviation as a part of its tolerance. Default 0.
+    pub helix_share: f64,
     /// (mm) Profile errors of its teeth that are given instead of drawn: 100 rows of one number a tooth, in the order in which a tooth
     /// passes through contact in the wheel's first mesh; flanks that work in another sense have none.
     pub profile_errors_mm: Option<ErrorTable>,
@@ -63,7 +70,7 @@ pub struct GearboxWheel {
     pub deviations: WheelDeviations,
 }
 
-impl GearboxWheel {
+impl ScenarioWheel {
     /// A wheel with the rest at its default.
     ///
     /// # Arguments
@@ -80,7 +87,7 @@ impl GearboxWheel {
     /// * `files` - loads the file that it names
     pub(super) fn read(
         table: &TomlTable<'_>,
-        meshes: &[GearboxMesh],
+        meshes: &[ScenarioMesh],
         files: &dyn NumberFiles,
     ) -> ReadResult<Self> {
         let mut wheel = Self::start();
@@ -90,7 +97,7 @@ impl GearboxWheel {
                 return Err(table.error("errors_file", problem).with_help("remove one of the two"));
             }
             let name = table.optional("name").map(|name| name.string().map(str::to_owned)).transpose()?;
-            let drives = |mesh: &GearboxMesh| mesh.wheels.iter().position(|of| Some(of) == name.as_ref());
+            let drives = |mesh: &ScenarioMesh| mesh.wheels.iter().position(|of| Some(of) == name.as_ref());
             let side = WheelName::BOTH[meshes.iter().find_map(drives).unwrap_or(0)];
             let own = |key: &'static str| key.strip_prefix(side.name())?.strip_prefix('_');
             let [pinion, gear] = load(&file, |name| files.matrices(name))?;
@@ -111,6 +118,7 @@ impl GearboxWheel {
             ("tooth_share", self.tooth_share != default.tooth_share, false),
             ("pitch_share", self.pitch_share != default.pitch_share, given.cumulative_pitch_um.is_some()),
             ("run_out_share", self.run_out_share != default.run_out_share, given.run_out_um.is_some()),
+            ("helix_share", self.helix_share != default.helix_share, given.helix_slope_um.is_some()),
         ];
         ignored_shares(section, self.profile_errors_mm.is_some(), &shares)
     }
@@ -120,7 +128,7 @@ impl GearboxWheel {
 const ALONG: Range = Range::between(Included(0.0), Included(1.0))
     .message("must be from 0 to 1, the part of the shaft's length from the end at z = 0");
 
-impl Keys for GearboxWheel {
+impl Keys for ScenarioWheel {
     const SECTION: &str = "wheel";
 
     fn start() -> Self {
@@ -140,11 +148,13 @@ impl Keys for GearboxWheel {
             material: None,
             inertia: WheelInertia::default(),
             unbalance: Unbalance::default(),
+            eccentricity_mm: 0.0,
             din_grade: 0,
             iso_class: 0,
             tooth_share: 0.4,
             pitch_share: 0.15,
             run_out_share: 0.3,
+            helix_share: 0.0,
             profile_errors_mm: None,
             deviations: WheelDeviations::default(),
         }
@@ -179,6 +189,9 @@ impl Keys for GearboxWheel {
                 .otherwise("those of a solid disc of pitch radius")
                 .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
             row("unbalance", "", "its unbalance", field!(unbalance)).otherwise("none").alternative("{ g_mm = 50.0 }"),
+            row("eccentricity_mm", "mm", "the eccentricity of its seat", field!(eccentricity_mm))
+                .range(Range::not_negative())
+                .rule("less than the module; the same of both wheels of a mesh"),
             row("din_grade", "", "the grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade))
                 .range(Range::from_to(0.0, 12.0)),
             row("iso_class", "", "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none", field!(iso_class))
@@ -194,6 +207,8 @@ impl Keys for GearboxWheel {
             row("pitch_share", "-", "its largest single pitch deviation over its tolerance f_p", field!(pitch_share))
                 .range(SHARE),
             row("run_out_share", "-", "its run-out over its tolerance F_r", field!(run_out_share)).range(SHARE),
+            row("helix_share", "-", "its largest helix slope deviation, of either sign, over its tolerance f_Hβ", field!(helix_share))
+                .range(SHARE),
             documented(
                 "errors_file",
                 "an .npz with its deviations, as `meshtone wheels` writes it: the pinion's of a wheel that drives in its first mesh, the \
@@ -238,113 +253,4 @@ impl Keys for GearboxWheel {
             .alternative("0.0"),
         ]
     }
-}
-
-/// Two wheels in mesh.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct GearboxMesh {
-    /// Names of the driving and of the driven wheel.
-    pub wheels: [String; 2],
-    /// (mm) Module, of helical wheels in the normal section.
-    pub module_mm: f64,
-    /// (°) Pressure angle at the pitch circle, of helical wheels in the normal section. Default 20.
-    pub pressure_angle_deg: f64,
-    /// (°) Helix angle at the pitch circle. Default 0: spur wheels.
-    pub helix_angle_deg: f64,
-    /// Hand of the driving wheel's helix; the driven one's is the other one. Default right.
-    pub hand: Hand,
-    /// (µm) Lead crowning of both wheels together. Default 0.
-    pub lead_crowning_um: f64,
-    /// Relief of the flanks towards both ends of the face. Default none.
-    pub end_relief: EndRelief,
-    /// Number of slices of the face where the gap varies along it. Default 21.
-    pub slices: u32,
-    /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
-    pub centre_distance_mm: Option<f64>,
-    /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`.
-    pub backlash_mm: Option<f64>,
-    /// (base pitches) Position of the first pair at the start; none for 0, and for what the teeth of an idler make it.
-    pub phase: Option<f64>,
-    /// (-) Damping of the contact over the critical one of the wheels' rotation on the mean mesh. Default 0.08.
-    pub damping_ratio: f64,
-}
-
-impl GearboxMesh {
-    /// A mesh with the rest at its default.
-    ///
-    /// # Arguments
-    /// They are the fields of the same names.
-    pub fn new(wheels: [&str; 2], module_mm: f64) -> Self {
-        Self { wheels: wheels.map(str::to_owned), module_mm, ..Self::start() }
-    }
-
-    /// Name of the mesh, of which those of its channels are made: `z1-z2`.
-    pub fn name(&self) -> String {
-        self.wheels.join("-")
-    }
-}
-
-impl Keys for GearboxMesh {
-    const SECTION: &str = "mesh";
-
-    fn start() -> Self {
-        Self {
-            wheels: [String::new(), String::new()],
-            module_mm: f64::NAN,
-            pressure_angle_deg: 20.0,
-            helix_angle_deg: 0.0,
-            hand: Hand::Right,
-            lead_crowning_um: 0.0,
-            end_relief: EndRelief::default(),
-            slices: 21,
-            centre_distance_mm: None,
-            backlash_mm: None,
-            phase: None,
-            damping_ratio: 0.08,
-        }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("wheels", "", "the names of the driving and of the driven wheel", field!(wheels)).required(),
-            module_row(field!(module_mm)),
-            pressure_angle_row(field!(pressure_angle_deg)),
-            helix_angle_row(field!(helix_angle_deg)),
-            hand_row("the hand of the driving wheel's helix; the driven one's is the other one", field!(hand)),
-            lead_crowning_row(field!(lead_crowning_um)),
-            end_relief_row(field!(end_relief)),
-            slices_row(field!(slices)),
-            centre_distance_row(field!(centre_distance_mm)),
-            backlash_row(field!(backlash_mm)),
-            row(
-                "phase",
-                "base pitches",
-                "where on its path of contact the first pair of teeth is at the start",
-                field!(phase),
-            )
-            .otherwise("0; for a wheel in two meshes, the phase that follows from the other mesh")
-            .alternative("0.0"),
-            row(
-                "damping_ratio",
-                "-",
-                "the damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh stiffness",
-                field!(damping_ratio),
-            )
-            .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
-        ]
-    }
-}
-
-/// Reads a list of sections of a name.
-pub(in crate::scenario) fn list<S: Keys>(
-    table: &TomlTable<'_>,
-    name: &'static str,
-    files: &dyn NumberFiles,
-) -> ReadResult<Vec<S>> {
-    let read = |table: &TomlTable<'_>| {
-        let mut section = S::start();
-        read_keys(&mut section, table, files).map(|()| section)
-    };
-    table.tables(name)?.into_iter().map(|table| table.read(read)).collect()
 }
