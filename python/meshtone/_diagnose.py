@@ -188,7 +188,7 @@ def diagnose(
         given = f"tuned = {tuned!r}" if tuned is not None else f"signal = '{signal}'"
         raise ValueError(f"{given}: needs the scenario of a pair; leave it out with a gearbox, and give whole recordings")
     rig = native_machine(scenario)
-    if tuned is not None and isinstance(rig, _core.Scenario):
+    if tuned is not None:
         rig = _core.tuned_rig(rig, tuned)
     now = _observations("recordings", recordings, scenario, signal)
     before = [] if healthy is None else _observations("healthy", healthy, scenario, signal, now[0])

@@ -39,7 +39,7 @@ class Explorer:
             The page is of a gearbox.
         """
         native = self._server.scenario
-        if isinstance(native, _core.Gearbox):
+        if not native.is_pair:
             raise TypeError("the page is of a gearbox: read .gearbox")
         return Scenario._wrap(native)
 
@@ -53,7 +53,7 @@ class Explorer:
             The page is of a pair.
         """
         native = self._server.scenario
-        if not isinstance(native, _core.Gearbox):
+        if native.is_pair:
             raise TypeError("the page is of a pair: read .scenario")
         return Gearbox.from_toml(native.to_toml())
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from . import _core
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
@@ -16,9 +18,9 @@ class ScenarioText:
 
     __slots__ = ()
 
-    _native_class: ClassVar[Any]
-    """The compiled module's class of the form."""
-    _native: Any
+    _is_pair: ClassVar[bool]
+    """Whether it is the form of one pair."""
+    _native: _core.Scenario
 
     def _set(self, native: Any) -> None:
         raise NotImplementedError
@@ -53,7 +55,7 @@ class ScenarioText:
         """
         if "\n" not in text and text.endswith(".toml"):
             raise ValueError(f"'{text}' is the name of a file, not its text: {cls.__name__}.from_file reads it")
-        return cls._wrap(cls._native_class.from_toml(text))
+        return cls._wrap(_core.Scenario.from_toml(text, cls._is_pair))
 
     @classmethod
     def from_file(cls, path: str | PathLike[str]) -> Self:
@@ -71,7 +73,7 @@ class ScenarioText:
         ValueError
             As :meth:`from_toml`.
         """
-        return cls._wrap(cls._native_class.from_file(path))
+        return cls._wrap(_core.Scenario.from_file(path, cls._is_pair))
 
     def to_toml(self) -> str:
         """The text of a scenario file, with every key.
@@ -81,5 +83,4 @@ class ScenarioText:
         str
             What :meth:`from_toml` reads back exactly.
         """
-        text: str = self._native.to_toml()
-        return text
+        return self._native.to_toml()

@@ -87,8 +87,8 @@ class Gearbox(ScenarioText):
 
     __slots__ = ("_native", "_sections")
 
-    _native_class = _core.Gearbox
-    _native: _core.Gearbox
+    _is_pair = False
+    _native: _core.Scenario
     _sections: dict[str, Any]
 
     def __init__(
@@ -115,9 +115,9 @@ class Gearbox(ScenarioText):
                 sections[name] = [_plain(entry) for entry in entries]
         tables: dict[str, Any] = {"housing": housing, "solver": solver}
         sections.update({name: _plain(table) for name, table in tables.items() if table is not None})
-        self._set(_core.Gearbox(sections))
+        self._set(_core.Scenario(sections))
 
-    def _set(self, native: _core.Gearbox) -> None:
+    def _set(self, native: _core.Scenario) -> None:
         self._native = native
         self._sections = native.sections()
 
@@ -366,7 +366,7 @@ def simulate_gearboxes(
     return made
 
 
-def _checked(gearbox: Gearbox, name: str) -> _core.Gearbox:
+def _checked(gearbox: Gearbox, name: str) -> _core.Scenario:
     """The gearbox as the compiled module has it."""
     if not isinstance(gearbox, Gearbox):
         raise TypeError(f"{name} = {gearbox!r}: must be a Gearbox")

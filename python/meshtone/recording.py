@@ -139,7 +139,7 @@ def read_recording(
     time = None if time is None else _column("time", time)
     read = _core.read_recording(path, chosen, rate_hz, variable, time, calibrations)
     text = read["scenario_toml"]
-    is_gearbox = text is not None and _core.Gearbox.is_written_in(text)
+    is_gearbox = text is not None and _core.Scenario.is_of_gearbox(text)
     return Recording(
         sampling_rate_hz=read["sampling_rate_hz"],
         start_s=read["start_s"],

@@ -47,7 +47,7 @@ brake_torque_nm=10.0, din_grade=7)
 
     __slots__ = ("_flat", "_native")
 
-    _native_class = _core.Scenario
+    _is_pair = True
     _flat: dict[str, Any]
     _native: _core.Scenario
 

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use meshtone::batch::{Control, simulate_many_gearboxes};
-use meshtone::scenario::{BearingKind, Gearbox, gearbox_template};
+use meshtone::batch::{Control, KeepOf, simulate_many};
+use meshtone::scenario::{BearingKind, Scenario, gearbox_template};
 use meshtone::{Simulation, StepJudgement, stages};
 
 /// Time that this thread had the processor.
@@ -46,11 +46,11 @@ impl Measurement for ProcessorTime {
 }
 
 /// The example of `meshtone init gearbox` with a sensor on every seat.
-fn two_stages(seed: u64) -> Gearbox {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).expect("the template is valid");
+fn two_stages(seed: u64) -> Scenario {
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).expect("the template is valid");
     gearbox.seed = seed;
     gearbox.sensors.clear();
-    gearbox.solver.settings.settle_fraction = 0.0;
+    gearbox.solver.settle_fraction = 0.0;
     gearbox
 }
 
@@ -68,8 +68,8 @@ fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
     let made = stages(&gearbox).expect("the template is valid");
     group.bench_function("time loop", |bencher| bencher.iter(|| black_box(&made).clone().simulate()));
     let mut with_ball_bearing = gearbox.clone();
-    with_ball_bearing.bearings[0].kind = BearingKind::Ball;
-    with_ball_bearing.bearings[0].name = Some("ER-10K".to_owned());
+    with_ball_bearing.bearings_mut()[0].kind = BearingKind::Ball;
+    with_ball_bearing.bearings_mut()[0].name = Some("ER-10K".to_owned());
     let with_ball_bearing = stages(&with_ball_bearing).expect("the bearing is valid");
     group.bench_function("time loop, one ball bearing", |bencher| {
         bencher.iter(|| black_box(&with_ball_bearing).clone().simulate());
@@ -80,14 +80,16 @@ fn gearboxes(criterion: &mut Criterion<ProcessorTime>) {
             warnings(&simulation, StepJudgement::Repeated)
         });
     });
-    let many: Vec<Gearbox> = (1..=16).map(two_stages).collect();
+    let many: Vec<Scenario> = (1..=16).map(two_stages).collect();
     group.throughput(Throughput::Elements(many.len() as u64));
     group.bench_function("16 simulations, 1 thread", |bencher| {
         bencher.iter(|| {
             pool.install(|| {
-                let keep = |_: usize, simulation: Simulation| warnings(&simulation, StepJudgement::Estimated);
+                let keep = KeepOf(|_: usize, simulation: Simulation| {
+                    warnings(&simulation, StepJudgement::Estimated)
+                });
                 let mut kept = Vec::with_capacity(many.len());
-                simulate_many_gearboxes(many.clone(), &keep, &Control::default(), |_, of| kept.push(of));
+                simulate_many(many.clone(), &keep, &Control::default(), |_, of| kept.push(of));
                 kept
             })
         });

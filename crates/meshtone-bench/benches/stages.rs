@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use meshtone::damage::damaged_teeth;
-use meshtone::machine::{Modes, Supports, Train};
+use meshtone::machine::{Modes, RigMachine, RigParts, Supports};
 use meshtone::scenario::{Model, Scenario};
 use meshtone::solver::{Block, Output, Recorder};
 use meshtone::wheel::quality::profile_errors;
@@ -28,14 +28,14 @@ impl Recorder for Nothing {
 fn before_the_time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenario) {
     let mut group = criterion.benchmark_group(format!("stages/{name}"));
     let whole = stages(scenario).expect("an example is valid");
-    let (gears, rig) = (&scenario.gears, &scenario.rig);
+    let (gears, rig) = (&scenario.gears(), scenario.rig().expect("a pair"));
     let sound = &whole.pairs[0].teeth;
     group.bench_function("scenario", |bencher| bencher.iter(|| black_box(scenario).validate()));
     group.bench_function("tooth profiles", |bencher| {
         bencher.iter(|| teeth(black_box(gears), [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm]));
     });
     group.bench_function("profile errors", |bencher| {
-        bencher.iter(|| profile_errors(&scenario.quality, black_box(sound), scenario.seed));
+        bencher.iter(|| profile_errors(&scenario.quality(), black_box(sound), scenario.seed));
     });
     if !scenario.faults.is_empty() {
         group.bench_function("fault", |bencher| {
@@ -48,7 +48,14 @@ fn before_the_time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenar
     });
     group.bench_function("equations of motion, modes", |bencher| {
         bencher.iter(|| {
-            let train = Train::new(gears, rig, black_box(sound), Supports::Held);
+            let parts = RigParts {
+                gears,
+                rig,
+                inertias: [&scenario.wheels[0].inertia, &scenario.wheels[1].inertia],
+                unbalances: [&scenario.wheels[0].unbalance, &scenario.wheels[1].unbalance],
+                brake_inertia_kgm2: scenario.operation.brake_inertia_kgm2,
+            };
+            let train = RigMachine::new(parts, black_box(sound), Supports::Held);
             Modes::damped_alike(&train.machine, 0.07)
         });
     });

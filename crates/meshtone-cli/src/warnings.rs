@@ -11,7 +11,7 @@ use meshtone_io::scenario_file::ScenarioFile;
 use crate::terminal::warn;
 
 /// Prints warnings about a scenario with its file and line.
-pub fn print<S>(file: &ScenarioFile<S>, warnings: &[ScenarioWarning]) {
+pub fn print(file: &ScenarioFile, warnings: &[ScenarioWarning]) {
     for warning in warnings {
         let line = line_of_key(&file.text, &warning.key);
         let line = line.map(|line| format!("line {line}: ")).unwrap_or_default();

@@ -1,6 +1,6 @@
 //! The data card: README.md.
 
-use meshtone::scenario::{ScenarioForm, WarningKind};
+use meshtone::scenario::{Fault, WarningKind};
 use meshtone_io::table::CellType;
 use serde_json::json;
 
@@ -8,7 +8,7 @@ use crate::croissant::citation;
 use crate::finish::Finished;
 use crate::manifest::PREVIEW;
 use crate::plan::{
-    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, ToothFault, Wheel, wheel_words,
+    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, Wheel, wheel_words,
 };
 use crate::sampling::Design;
 use crate::shard::{Column, Topic, WARNINGS, column_name, varied_keys};
@@ -63,10 +63,7 @@ fn head(set: &Finished) -> String {
     let mounted = if mountings > 1 { format!(", each mounted {mountings} times") } else { String::new() };
     let records = counted(set.records(), "simulated record");
     let units = counted(set.plan.content.units, "unit");
-    let kind = match set.plan.content.base {
-        ScenarioForm::Gearbox(_) => "gearboxes",
-        _ => "pairs of wheels",
-    };
+    let [_, kind] = set.plan.content.base.nouns();
     let ([plan, scenario, ..], made_by) = (PlanFile::NAMES, meshtone::made_by());
     format!(
         "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made from \
@@ -100,10 +97,7 @@ fn counts(set: &Finished) -> String {
     for Class { label, .. } in &plan.content.classes {
         text += &row(label, &|split| contents.counts.get(split)?.get(label).copied());
     }
-    let kind = match plan.content.base {
-        ScenarioForm::Gearbox(_) => "gearbox",
-        _ => "pair of wheels",
-    };
+    let [kind, _] = plan.content.base.nouns();
     let (divided, meaning) = match plan.content.splits.by {
         SplitBy::Unit => (
             "unit",
@@ -161,10 +155,10 @@ fn warnings(set: &Finished) -> String {
 }
 
 fn classes(set: &Finished) -> String {
-    let is_pair = set.plan.content.base.pair().is_some();
+    let is_pair = set.plan.content.base.rig().is_some();
     let fault = |fault: &ClassFault| match fault {
         ClassFault::Teeth(_) if is_pair => fault.kind().to_owned(),
-        ClassFault::Teeth(ToothFault { wheel, .. }) => format!("{} of {}", fault.kind(), wheel.name()),
+        ClassFault::Teeth(Fault { wheel, .. }) => format!("{} of {wheel}", fault.kind()),
         ClassFault::Bearing { bearing, .. } => format!("{} of {bearing}", fault.kind()),
     };
     let row = |class: &Class| {

@@ -114,8 +114,8 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
     let shown = |label: &str| {
         let keep = &plan.content.keep;
         let class = plan.content.classes.iter().find(|class| class.label == *label);
-        let damaged = class.and_then(|class| class.faults.first()?.teeth()).map(|of| &of.wheel);
-        let averaged = keep.wheel.all().iter().find(|wheel| damaged == Some(*wheel));
+        let damaged = class.and_then(|class| class.faults.first()?.teeth()).map(|of| of.wheel.as_str());
+        let averaged = keep.wheel.all().iter().find(|wheel| damaged == Some(wheel.name()));
         let prefix = keep.wheel.prefix(averaged.unwrap_or(&keep.wheel.all()[0]));
         let of_revolution = SHOWN.iter().find_map(|name| of_name(&format!("{prefix}{name}")));
         of_revolution.or_else(|| columns.iter().find(|column| column.is_signal()))

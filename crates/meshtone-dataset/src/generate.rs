@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
-use meshtone::batch::{Control, simulate_many, simulate_many_gearboxes};
-use meshtone::scenario::{ScenarioError, ScenarioForm, WarningKind};
+use meshtone::batch::{Control, KeepOf, simulate_many};
+use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
 use rayon::prelude::*;
 
 use crate::contents::{Contents, SummaryColumns, WRONG_BYTES, WarningCounts, add_warnings};
@@ -313,29 +313,18 @@ impl Run<'_> {
                 (Err(_), Role::HealthyTwin(..)) => {}
             }
         };
-        match self.plan.content.base {
-            ScenarioForm::Gearbox(_) => {
-                let gearboxes = scenarios.filter_map(|form| match form {
-                    ScenarioForm::Gearbox(gearbox) => Some(gearbox),
-                    _ => None,
-                });
-                let of = |number, simulation| keep.of_gearbox(number, simulation);
-                simulate_many_gearboxes(gearboxes, &of, &control, take)
-            }
-            _ => {
-                let pairs = scenarios.filter_map(|form| match form {
-                    ScenarioForm::Pair(pair) => Some(pair),
-                    _ => None,
-                });
-                simulate_many(pairs, &keep, &control, take)
-            }
-        };
+        if self.plan.content.base.rig().is_some() {
+            simulate_many(scenarios, &keep, &control, take);
+        } else {
+            let keep = KeepOf(|number, simulation| keep.of_train(number, simulation));
+            simulate_many(scenarios, &keep, &control, take);
+        }
         let rest = std::mem::take(&mut lock(&asked).failed);
         rest.into_iter().for_each(|failed| send(Item::Failed(failed)));
     }
 
     /// Draws a record and asks for its simulations: a faulty record that is enhanced has its healthy twin before it.
-    fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<ScenarioForm> {
+    fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<Scenario> {
         let drawn = self.sampler.record(index).map_err(|error| error.problem).and_then(|record| {
             let of_scenario = |error: ScenarioError| explained(&error, error.help.as_deref());
             let scenario = self.sampler.scenario(&record).map_err(of_scenario)?;
@@ -353,7 +342,7 @@ impl Run<'_> {
             }
         };
         let mut scenarios = vec![scenario];
-        if self.plan.content.tuned.is_some() && scenarios[0].fault_count() > 0 {
+        if self.plan.content.tuned.is_some() && scenarios[0].faults.len() > 0 {
             asked.add(Role::HealthyTwin(record.clone(), window.clone()));
             scenarios.insert(0, with_faults(&scenarios[0], &[]));
         }

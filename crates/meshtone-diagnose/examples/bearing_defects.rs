@@ -15,7 +15,7 @@ use std::fs;
 
 use meshtone::Simulation;
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{Bearing, BearingDefect, BearingKind, DefectPlace, Gearbox, ScenarioForm};
+use meshtone::scenario::{Bearing, BearingDefect, BearingKind, DefectPlace, Scenario};
 use meshtone::signal::{
     BearingDefects, BearingSettings, DefectKind, FrequencyBand, GearTrain, RaceTest, TrainRecording,
     TrainTurning,
@@ -63,7 +63,7 @@ type Asked = (Truth, Vec<BearingAnswer>);
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, count, output] = &arguments[..] else { return Err("needs COUNT OUTPUT.csv".into()) };
-    let prior = Prior { seed: SEED, ..Prior::new(&ScenarioForm::Gearbox(rig()?))? };
+    let prior = Prior { seed: SEED, ..Prior::new(&rig()?)? };
     let asked = (0..count.parse()?)
         .into_par_iter()
         .map(|number| ask(&prior, number).map_err(|error| error.to_string()));
@@ -94,15 +94,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The gearbox of the examples, on ball bearings.
-fn rig() -> Result<Gearbox, Box<dyn Error>> {
-    let mut gearbox = Gearbox::from_toml(include_str!("../../../examples/gearbox.toml"))?;
+fn rig() -> Result<Scenario, Box<dyn Error>> {
+    let mut gearbox = Scenario::from_toml(include_str!("../../../examples/gearbox.toml"))?;
     let bearing = |(shaft, at, name): (&str, f64, &str)| {
         let mut bearing = Bearing::new(shaft, at);
         bearing.kind = BearingKind::Ball;
         bearing.name = Some(name.to_owned());
         bearing
     };
-    gearbox.bearings = BEARINGS.map(bearing).into();
+    gearbox.structure.shafts_mut().unwrap().bearings = BEARINGS.map(bearing).into();
     gearbox.sensors.clear();
     Ok(gearbox)
 }
@@ -140,8 +140,8 @@ fn ask(prior: &Prior, number: u64) -> Result<Vec<Asked>, Box<dyn Error>> {
 /// A simulated rig.
 struct Simulated {
     drawn: Drawn,
-    gearbox: Gearbox,
-    form: ScenarioForm,
+    gearbox: Scenario,
+    form: Scenario,
     simulation: Simulation,
 }
 
@@ -153,18 +153,16 @@ impl Simulated {
         defect: Option<(usize, usize, f64)>,
     ) -> Result<Option<Self>, Box<dyn Error>> {
         let drawn = prior.draw(record)?;
-        let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else {
-            return Err("of a pair".into());
-        };
+        let mut gearbox = drawn.scenario.clone();
         gearbox.sensors.clear();
-        gearbox.solver.settings.sampling_rate_hz = RATE_HZ;
-        gearbox.solver.settings.duration_s = Some(DURATION_S);
-        gearbox.solver.settings.pinion_revolutions = None;
+        gearbox.solver.sampling_rate_hz = RATE_HZ;
+        gearbox.solver.duration_s = Some(DURATION_S);
+        gearbox.solver.pinion_revolutions = None;
         if let Some((bearing, race, size)) = defect {
-            gearbox.bearings[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
+            gearbox.bearings_mut()[bearing].defect = vec![BearingDefect::new(RACES[race].0, size)];
         }
         let Ok(simulation) = meshtone::simulate(&gearbox) else { return Ok(None) };
-        let form = ScenarioForm::Gearbox(gearbox.clone());
+        let form = gearbox.clone();
         Ok(Some(Self { drawn, gearbox, form, simulation }))
     }
 
@@ -178,7 +176,7 @@ impl Simulated {
         let channels = &self.simulation.channels;
         let band =
             band.map(|band| FrequencyBand { to_hz: band.to_hz.min(0.5 * channels.sampling_rate_hz), ..band });
-        let train = GearTrain::of_form(&self.form)?;
+        let train = GearTrain::of_scenario(&self.form)?;
         let turning = TrainTurning::of_simulated(&self.form, channels.start_s, channels.len())?;
         let bearings: Vec<_> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
         let mut of_seat = self.gearbox.clone();

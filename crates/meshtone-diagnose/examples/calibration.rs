@@ -19,7 +19,7 @@ use std::fs;
 
 use meshtone::batch::Control;
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::{
     AngleZero, BearingDefects, GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainTurning,
 };
@@ -49,13 +49,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let signal = SignalKind::NAMES.into_iter().find(|(name, _)| name == signal).ok_or("no such signal")?.1;
     let has_healthy = healthy == "healthy";
-    let prior = Prior::new(&ScenarioForm::from_toml(&fs::read_to_string(rig)?)?)?;
+    let prior = Prior::new(&Scenario::from_toml(&fs::read_to_string(rig)?)?)?;
     let store = ReferenceStore::new(std::env::temp_dir().join("meshtone-calibration"));
     let control = Control::default();
-    let [learnt, asked] = match prior.base {
-        ScenarioForm::Pair(_) => [LEARNT, ASKED],
-        ScenarioForm::Gearbox(_) => OF_GEARBOX,
-    };
+    let [learnt, asked] = if prior.base.rig().is_some() { [LEARNT, ASKED] } else { OF_GEARBOX };
     let mut reference = store.get(&prior, learnt, &control)?;
     let asked = store.get(&Prior { seed: ASKED_SEED, ..prior.clone() }, asked, &control)?;
     let name = |record: &ReferenceRecord| {
@@ -70,7 +67,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A kind is left out alone and beside another.
     let has_other = |record: &ReferenceRecord| {
         let drawn = prior.draw(record.number);
-        let has = |form: &ScenarioForm| form.faults().iter().any(|(_, fault)| fault.damage.kind() == other);
+        let has =
+            |form: &Scenario| form.placed_faults().iter().any(|(_, fault)| fault.damage.kind() == other);
         drawn.is_ok_and(|drawn| has(&drawn.scenario))
     };
     reference
@@ -100,7 +98,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let Some(before) = asked.records.iter().find(|before| before.number == record.number / 8 * 8) else {
             continue;
         };
-        let operation = |number| asked.prior.draw(number).map(|drawn| drawn.scenario.operation().clone());
+        let operation = |number| asked.prior.draw(number).map(|drawn| drawn.scenario.operation.clone());
         let (then, at) = (operation(before.number)?, operation(record.number)?);
         let apart = [
             (at.pinion_speed_hz / then.pinion_speed_hz).ln(),
@@ -276,13 +274,13 @@ fn no_gear(signal: &mut Vec<f64>, kind: &str, level_g: f64, rate_hz: f64, draws:
 fn strange(prior: &Prior, number: u64, what: &str, level_g: f64) -> Result<Observation, Box<dyn Error>> {
     let mut draws = Draws::new(99, Purpose::DiagnosisNoise, number);
     let drawn = prior.draw(number)?;
-    let ScenarioForm::Pair(mut scenario) = drawn.scenario.clone() else { return Err("of a pair".into()) };
-    let stated = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+    let mut scenario = drawn.scenario.clone();
+    let stated = [scenario.wheels[0].teeth, scenario.wheels[1].teeth];
     match what {
-        "teeth" => scenario.gears.pinion_teeth += 2,
+        "teeth" => scenario.wheels[0].teeth += 2,
         // Another torque on the same wheels, from 1 to 100 N m.
         "load" => scenario.operation.brake_torque_nm = 10.0 * draws.uniform(0.0, 2.3).exp(),
-        "ratio" => scenario.gears.gear_teeth = (f64::from(stated[1]) * draws.uniform(0.8, 0.1)) as u32,
+        "ratio" => scenario.wheels[1].teeth = (f64::from(stated[1]) * draws.uniform(0.8, 0.1)) as u32,
         _ => {}
     }
     let simulation = meshtone::simulate(&scenario)?;

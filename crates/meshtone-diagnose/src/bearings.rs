@@ -192,7 +192,7 @@ pub(crate) fn notes(answers: &[BearingAnswer]) -> Vec<String> {
 mod tests {
     use crate::observation::Observation;
     use meshtone::random::{Draws, Purpose};
-    use meshtone::scenario::{BearingDefect, BearingKind, DefectPlace, Gearbox, ScenarioForm};
+    use meshtone::scenario::{BearingDefect, BearingKind, DefectPlace, Scenario};
     use meshtone::signal::{TrainRecording, TrainTurning};
 
     use super::*;
@@ -255,16 +255,15 @@ mod tests {
     #[test]
     fn spall_of_a_simulated_bearing_is_a_defect_and_a_sound_bearing_is_none() {
         let observed = |spall: Option<BearingDefect>, other: Option<&Observation>| {
-            let mut gearbox = Gearbox::from_toml(include_str!("../../../examples/gearbox.toml")).unwrap();
-            gearbox.bearings[0].kind = BearingKind::Ball;
-            gearbox.bearings[0].name = Some("ER-10K".to_owned());
-            gearbox.bearings[0].defect = spall.into_iter().collect();
-            gearbox.solver.settings.sampling_rate_hz = 25_600.0;
-            gearbox.solver.settings.duration_s = Some(3.0);
+            let mut gearbox = Scenario::from_toml(include_str!("../../../examples/gearbox.toml")).unwrap();
+            gearbox.bearings_mut()[0].kind = BearingKind::Ball;
+            gearbox.bearings_mut()[0].name = Some("ER-10K".to_owned());
+            gearbox.bearings_mut()[0].defect = spall.into_iter().collect();
+            gearbox.solver.sampling_rate_hz = 25_600.0;
+            gearbox.solver.duration_s = Some(3.0);
             let channels = meshtone::simulate(&gearbox).unwrap().channels;
-            let form = ScenarioForm::Gearbox(gearbox.clone());
-            let train = GearTrain::of_form(&form).unwrap();
-            let turning = TrainTurning::of_simulated(&form, channels.start_s, channels.len()).unwrap();
+            let train = GearTrain::of_scenario(&gearbox).unwrap();
+            let turning = TrainTurning::of_simulated(&gearbox, channels.start_s, channels.len()).unwrap();
             let mut draws = Draws::new(1, Purpose::DiagnosisNoise, u64::from(other.is_none()));
             let signal = channels.signal(&gearbox.leading_channel()).unwrap();
             let signal: Vec<f64> = signal.iter().map(|value| value + 0.1 * draws.normal()).collect();

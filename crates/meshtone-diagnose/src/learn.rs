@@ -165,7 +165,7 @@ impl Layout {
             has_healthy: !question.healthy.is_empty(),
             last,
             noises: [question.now, question.healthy].map(noise_of),
-            nominal_hz: reference.prior.base.operation().pinion_speed_hz,
+            nominal_hz: reference.prior.base.operation.pinion_speed_hz,
             knows_speed: question.now.iter().any(|asked| asked.input_speed_hz.is_some()),
         })
     }

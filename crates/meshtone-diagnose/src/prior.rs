@@ -2,10 +2,7 @@
 
 use meshtone::damage::{Fault, FaultyTeeth, damage_kinds};
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{
-    DamageKind, Gearbox, GearboxLayout, ScenarioError, ScenarioForm, Sensor, SensorPath, SensorPlace,
-    log_deviation,
-};
+use meshtone::scenario::{DamageKind, Scenario, ScenarioError, Sensor, SensorPath, log_deviation};
 use meshtone::signal::GearTrain;
 
 use crate::answer::SEVERAL;
@@ -67,7 +64,7 @@ pub struct Focus {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     /// The rig, healthy; its wheels are one draw of those that may be.
-    pub base: ScenarioForm,
+    pub base: Scenario,
     /// Shafts and wheels of the rig.
     pub train: GearTrain,
     /// Spreads of what is not known well: stiffnesses, frequencies, masses, spans, dampings, tip chamfer, backlash.
@@ -114,7 +111,7 @@ pub struct DrawnFault {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// The scenario that is simulated.
-    pub scenario: ScenarioForm,
+    pub scenario: Scenario,
     /// The damage; none of a healthy record.
     pub fault: Option<DrawnFault>,
     /// The wall and the housing between the simulated sensor and the rig's.
@@ -131,30 +128,21 @@ impl Prior {
     ///
     /// # Errors
     /// Those of [`GearTrain::of_form`].
-    pub fn new(rig: &ScenarioForm) -> Result<Self, ScenarioError> {
+    pub fn new(rig: &Scenario) -> Result<Self, ScenarioError> {
         let mut base = rig.clone().with_faults(Vec::new());
-        let has_any_sensor = match &mut base {
-            ScenarioForm::Pair(pair) => {
-                pair.sensors.truncate(1);
-                let anywhere = pair.clone().with_sensors(vec![unstated_sensor()]);
-                let has_any_sensor = pair.sensors.is_empty() && anywhere.validate().is_ok();
-                if has_any_sensor {
-                    *pair = anywhere;
-                }
-                has_any_sensor
-            }
-            ScenarioForm::Gearbox(gearbox) => {
-                gearbox.sensors.truncate(1);
-                once(gearbox)?;
-                gearbox.sensors.is_empty()
-            }
-        };
+        base.sensors.truncate(1);
+        let has_any_sensor = base.sensors.is_empty();
+        if base.rig().is_none() {
+            once(&mut base)?;
+        } else if has_any_sensor {
+            base.sensors = vec![unstated(Sensor::default())];
+        }
         let deviations =
             base.numbers().into_iter().map(|number| (log_deviation(&base, &number.key), number.key));
         let spreads = deviations.filter_map(|(deviation, key)| Some(Spread { key, deviation: deviation? }));
         Ok(Self {
             spreads: spreads.collect(),
-            train: GearTrain::of_form(&base)?,
+            train: GearTrain::of_scenario(&base)?,
             base,
             has_any_sensor,
             grade_steps: 1,
@@ -175,7 +163,7 @@ impl Prior {
     pub fn narrowed(&self, focus: Focus, input_speed_hz: Option<f64>) -> Self {
         let mut narrowed = Self { seed: self.seed.wrapping_add(1), focus: Some(focus), ..self.clone() };
         if let Some(speed_hz) = input_speed_hz {
-            narrowed.base.operation_mut().pinion_speed_hz = speed_hz;
+            narrowed.base.operation.pinion_speed_hz = speed_hz;
             narrowed.speed_spread = KNOWN_SPEED_SPREAD;
         }
         narrowed
@@ -193,11 +181,17 @@ impl Prior {
     pub fn kinds(&self) -> Vec<DamageKind> {
         let of_kind = |kind: &DamageKind| {
             let fault = Fault::at_usual_place(kind.example.clone()).with_severity(1.0);
-            let is_possible =
-                |wheel: usize| self.base.clone().with_faults(vec![(wheel, fault.clone())]).validate().is_ok();
+            let is_possible = |wheel: usize| {
+                self.base.clone().with_faults(vec![self.on_wheel(wheel, &fault)]).validate().is_ok()
+            };
             (0..self.train.wheels.len()).rev().any(is_possible)
         };
         damage_kinds().into_iter().filter(of_kind).collect()
+    }
+
+    /// A fault on a wheel of the rig.
+    fn on_wheel(&self, wheel: usize, fault: &Fault) -> Fault {
+        Fault { wheel: self.base.wheels[wheel].name.clone(), ..fault.clone() }
     }
 
     /// A record, the same whatever else is drawn.
@@ -255,27 +249,18 @@ impl Prior {
         let [speed_change, load_change] = self.draw_change(number);
         let speed = 0.7 * self.speed_spread * common.uniform(0.0, 1.0) + speed_change;
         let load = self.load_spread * common.uniform(0.0, 1.0) + load_change;
-        let operation = self.base.operation();
+        let operation = &self.base.operation;
         let speed_hz = operation.pinion_speed_hz * speed.exp();
         let load_nm = operation.brake_torque_nm * load.exp();
         let mut scenario = self.base.with_numbers(&numbers)?;
-        let operation = scenario.operation_mut();
+        let operation = &mut scenario.operation;
         (operation.pinion_speed_hz, operation.brake_torque_nm) = (speed_hz, load_nm);
         // Other wheels than those of the rig's own, and the sensor anywhere where no place is stated.
-        match &mut scenario {
-            ScenarioForm::Pair(pair) => {
-                (pair.seed, pair.quality.seed) = (seed, None);
-                let sensor = pair.sensors.first_mut().filter(|_| self.has_any_sensor && place < 0.5);
-                if let Some(sensor) = sensor {
-                    sensor.at = SensorPlace::GearSupport;
-                }
-            }
-            ScenarioForm::Gearbox(gearbox) => {
-                (gearbox.seed, gearbox.wheels_seed) = (seed, None);
-                let seats = gearbox.all_sensors();
-                let at = ((place * seats.len() as f64) as usize).min(seats.len().saturating_sub(1));
-                gearbox.sensors = seats.into_iter().skip(at).take(1).collect();
-            }
+        (scenario.seed, scenario.wheels_seed) = (seed, None);
+        if self.has_any_sensor {
+            let places = scenario.sensor_places();
+            let at = ((place * places.len() as f64) as usize).min(places.len().saturating_sub(1));
+            scenario.sensors = places.into_iter().skip(at).take(1).map(unstated).collect();
         }
         let within = self.focus.as_ref().map(|focus| focus.severity);
         let (scenario, fault) = match self.class(kinds, number) {
@@ -325,8 +310,7 @@ impl Prior {
 }
 
 /// The sensor of a rig that names none: on a support, its wall is drawn.
-fn unstated_sensor() -> Sensor {
-    let mut sensor = Sensor::default();
+fn unstated(mut sensor: Sensor) -> Sensor {
     sensor.name = Some("support".to_owned());
     sensor.path = SensorPath::RIGID;
     sensor
@@ -353,8 +337,8 @@ const FEWEST_TURNS: f64 = 8.0;
 
 /// Changes how long a steady gearbox is simulated: until the same teeth meet again on all shafts, since what follows repeats it; where that
 /// takes longer than the scenario's own time, that time, but [`FEWEST_TURNS`] of the slowest shaft at least. It settles as long as before.
-fn once(gearbox: &mut Gearbox) -> Result<(), ScenarioError> {
-    let layout = GearboxLayout::new(gearbox)?;
+fn once(gearbox: &mut Scenario) -> Result<(), ScenarioError> {
+    let layout = gearbox.layout()?;
     let cycle = layout.cycle_revolutions() as f64;
     let slowest = layout.ratios.iter().map(|ratio| ratio.value().abs()).fold(1.0, f64::min);
     let time = gearbox.time_grid();
@@ -363,7 +347,7 @@ fn once(gearbox: &mut Gearbox) -> Result<(), ScenarioError> {
     let needed = cycle.min(kept.max(FEWEST_TURNS / slowest));
     if gearbox.operation.is_steady() && needed != kept {
         let settled = revolutions(time.first_kept_sample);
-        let solver = &mut gearbox.solver.settings;
+        let solver = &mut gearbox.solver;
         solver.duration_s = None;
         solver.pinion_revolutions = Some(needed);
         solver.settle_fraction = settled / (settled + needed);
@@ -377,9 +361,9 @@ impl Prior {
         &self,
         kinds: &[DamageKind],
         wheel: usize,
-        healthy: &ScenarioForm,
+        healthy: &Scenario,
         own: &mut Draws,
-    ) -> Result<(ScenarioForm, DrawnFault), ScenarioError> {
+    ) -> Result<(Scenario, DrawnFault), ScenarioError> {
         let mut problem = None;
         for _ in 0..MOST_PAIRS {
             let other = (own.bits() % self.train.wheels.len() as u64) as usize;
@@ -394,8 +378,7 @@ impl Prior {
                     continue;
                 }
             };
-            let faults = [&one, &other].map(ScenarioForm::faults).concat();
-            let faults = faults.into_iter().map(|(wheel, fault)| (wheel, fault.clone())).collect();
+            let faults = [one.faults, other.faults].concat();
             let both = healthy.clone().with_faults(faults);
             // Two damages of one tooth may not go together.
             if first.severity >= second.severity && both.validate().is_ok() {
@@ -423,9 +406,9 @@ impl Prior {
         of_kind: &DamageKind,
         (kind, wheel): (usize, usize),
         within: Option<[f64; 2]>,
-        healthy: &ScenarioForm,
+        healthy: &Scenario,
         own: &mut Draws,
-    ) -> Result<(ScenarioForm, DrawnFault), ScenarioError> {
+    ) -> Result<(Scenario, DrawnFault), ScenarioError> {
         let usual = Fault::at_usual_place(of_kind.example.clone());
         let tooth = 1 + (own.bits() % u64::from(self.train.wheels[wheel].teeth)) as u32;
         let is_on_one_tooth = usual.tooth == FaultyTeeth::One(1);
@@ -435,10 +418,10 @@ impl Prior {
             let least = LEAST_SEVERITY;
             let drawn = least + (1.0 - least) * own.uniform(0.5, 0.5);
             let severity = if of_kind.sizes.is_empty() { 1.0 } else { drawn };
-            let fault = Fault::new(usual.wheel, teeth.clone(), of_kind.example.clone());
-            let faults = vec![(wheel, fault.with_severity(severity))];
+            let fault = Fault::new(&usual.wheel, teeth.clone(), of_kind.example.clone());
+            let faults = vec![self.on_wheel(wheel, &fault.with_severity(severity))];
             let sized = healthy.clone().with_faults(faults).with_own_sizes()?;
-            if sized.fault_count() == 0 {
+            if sized.faults.len() == 0 {
                 continue;
             }
             let spread = if attempt + 1 < attempts { SIZE_SPREAD } else { 0.0 };
@@ -488,7 +471,7 @@ mod tests {
             assert_eq!(drawn.fault.is_none(), number % 8 < 2);
             if let Some(fault) = drawn.fault {
                 counts[2 * fault.kind + fault.wheel] += 1;
-                assert_eq!(drawn.scenario.fault_count(), if fault.kind + 1 < kinds { 1 } else { 2 });
+                assert_eq!(drawn.scenario.faults.len(), if fault.kind + 1 < kinds { 1 } else { 2 });
                 assert!((0.0..=1.0).contains(&fault.severity));
             }
         }
@@ -502,7 +485,7 @@ mod tests {
     #[test]
     fn loads_of_a_pair_are_the_same_near_each_other_or_far_apart() {
         let prior = prior();
-        let operation = |number| prior.draw_among(&[], number).unwrap().scenario.operation().clone();
+        let operation = |number| prior.draw_among(&[], number).unwrap().scenario.operation.clone();
         let of_units = (0..1000).map(|unit| [operation(8 * unit + 1), operation(8 * unit)]);
         let (speeds, apart): (Vec<f64>, Vec<f64>) = of_units
             .map(|[now, healthy]| {
@@ -529,7 +512,7 @@ mod tests {
         let narrowed = prior.narrowed(focus, Some(43.0));
         for number in 0..24 {
             let drawn = narrowed.draw(number).unwrap();
-            assert!((drawn.scenario.operation().pinion_speed_hz / 43.0 - 1.0).abs() < 0.003);
+            assert!((drawn.scenario.operation.pinion_speed_hz / 43.0 - 1.0).abs() < 0.003);
             let Some(fault) = drawn.fault else { continue };
             assert_eq!((fault.kind, fault.wheel, number % 8 > 0), (kind, 0, true));
             assert!((0.3..=0.5).contains(&fault.severity), "{}", fault.severity);
@@ -547,11 +530,11 @@ mod tests {
         let mut seats = std::collections::BTreeSet::new();
         for number in 0..classes.div_ceil(6) * RECORDS_PER_UNIT {
             let drawn = prior.draw(number).unwrap();
-            let ScenarioForm::Gearbox(gearbox) = &drawn.scenario else { panic!("{drawn:?}") };
-            seats.insert(gearbox.sensors[0].at.clone());
+            let gearbox = &drawn.scenario;
+            seats.insert(gearbox.sensors[0].at.name().to_owned());
             assert_eq!((gearbox.sensors.len(), gearbox.wheels[3].teeth), (1, 48));
             let Some(fault) = drawn.fault else { continue };
-            let wheels: Vec<usize> = drawn.scenario.faults().iter().map(|(wheel, _)| *wheel).collect();
+            let wheels: Vec<usize> = drawn.scenario.placed_faults().iter().map(|(wheel, _)| *wheel).collect();
             assert!(wheels.contains(&fault.wheel), "{wheels:?} {fault:?}");
             seen.insert((fault.kind, fault.wheel));
         }

@@ -1,16 +1,14 @@
 //! Simulations of what may be.
 
-use meshtone::batch::{
-    Control, Keep, KeepChannels, Output, SignalRecorder, Signals, simulate_many, simulate_many_gearboxes,
-};
-use meshtone::scenario::{Gearbox, Scenario, ScenarioError, ScenarioForm};
+use meshtone::batch::{Control, Keep, KeepChannels, Output, SignalRecorder, Signals, simulate_many};
+use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
-    AngularSettings, ChainSettings, GearTrain, SeparationSettings, SignalError, SimulatedShafts,
-    SynchronousAverage, TrainRecording, TrainTurning, TrainWheel, synchronous_average,
+    AngularSettings, ChainSettings, GearTrain, SeparationSettings, SignalError, SynchronousAverage,
+    TrainRecording, TrainTurning, TrainWheel, synchronous_average,
 };
 use meshtone::wheel::WheelName;
-use meshtone::{Error, Simulation, Stages};
+use meshtone::{Error, Stages};
 use meshtone_learn::{WheelLines, separations};
 
 use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
@@ -83,24 +81,9 @@ pub fn build_reference(
             records.push(record(prior, *number, drawn, &averages));
         }
     };
-    let (mut pairs, mut gearboxes): (Vec<Scenario>, Vec<Gearbox>) = (Vec::new(), Vec::new());
-    for (_, drawn) in &drawn {
-        match &drawn.scenario {
-            ScenarioForm::Pair(pair) => pairs.push(pair.clone()),
-            ScenarioForm::Gearbox(gearbox) => gearboxes.push(gearbox.clone()),
-        }
-    }
-    // All are of the form of the rig.
-    match &prior.base {
-        ScenarioForm::Pair(pair) => {
-            let keep = KeepAverages { channel: KeepChannels::new([Channel::leading(&pair.sensors)]) };
-            simulate_many(pairs, &keep, control, take);
-        }
-        ScenarioForm::Gearbox(_) => {
-            let keep = |_: usize, simulation: Simulation| averages(&simulation, &prior.train);
-            simulate_many_gearboxes(gearboxes, &keep, control, take);
-        }
-    }
+    let scenarios: Vec<Scenario> = drawn.iter().map(|(_, drawn)| drawn.scenario.clone()).collect();
+    let keep = KeepAverages { train: &prior.train };
+    simulate_many(scenarios, &keep, control, take);
     records
 }
 
@@ -109,7 +92,7 @@ type Averages = Result<Vec<SynchronousAverage>, SignalError>;
 
 /// A record of what was simulated: the lines of its averages behind the path to the sensor.
 fn record(prior: &Prior, number: u64, drawn: &Drawn, averages: &[SynchronousAverage]) -> ReferenceRecord {
-    let input_speed_hz = drawn.scenario.operation().pinion_speed_hz;
+    let input_speed_hz = drawn.scenario.operation.pinion_speed_hz;
     let GearTrain { wheels, shafts, .. } = &prior.train;
     let of = |((average, separation), wheel): ((&SynchronousAverage, SeparationSettings), &TrainWheel)| {
         let mut of_wheel = WheelLines::of_average(average, separation);
@@ -122,52 +105,57 @@ fn record(prior: &Prior, number: u64, drawn: &Drawn, averages: &[SynchronousAver
     ReferenceRecord { number, fault: drawn.fault.clone(), input_speed_hz, wheels }
 }
 
-/// Keeps the wheels' averages of each of many simulations of a pair.
-struct KeepAverages {
-    channel: KeepChannels,
+/// Keeps the averages of all wheels over the first sensor of each of many simulations.
+struct KeepAverages<'a> {
+    train: &'a GearTrain,
 }
 
-impl Keep for KeepAverages {
+/// The channel of the first sensor.
+fn leading(scenario: &Scenario) -> KeepChannels {
+    KeepChannels::new([Channel::leading(&scenario.all_sensors())])
+}
+
+impl Keep for KeepAverages<'_> {
     type Recorder = SignalRecorder;
     type Kept = Averages;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        self.channel.outputs(scenario)
+        leading(scenario).outputs(scenario)
     }
 
     fn recorder(&self, stages: &Stages) -> SignalRecorder {
-        self.channel.recorder(stages)
+        leading(&stages.scenario).recorder(stages)
     }
 
     fn keep(&self, _: usize, stages: Stages, recorder: SignalRecorder) -> Self::Kept {
         let Signals { start_s, channels, .. } = recorder.finish(&stages);
         let signal: Vec<f64> = channels.into_iter().flatten().map(f64::from).collect();
-        let shafts = SimulatedShafts::of_stages(&stages, start_s, signal.len());
-        let average = |shaft: WheelName| shafts.average(&signal, shaft, &ChainSettings::default());
-        WheelName::BOTH.into_iter().map(average).collect()
+        averages(&stages, self.train, start_s, signal)
     }
 }
 
-/// Times that a gearbox's simulation of one cycle is repeated, so that the ends that resampling needs are outside whole cycles.
+/// Times that a train's simulation of one cycle is repeated, so that the ends that resampling needs are outside whole cycles.
 const REPEATED: usize = 3;
 
-/// The averages of a gearbox's first sensor.
+/// The averages of a signal.
 ///
-/// Where the simulation is one cycle, after which the same teeth meet again, it is repeated and averaged over whole cycles: then the lines of
-/// each shaft are free of the others'.
-fn averages(simulation: &Simulation, train: &GearTrain) -> Averages {
-    let Simulation { stages, channels, .. } = simulation;
-    let first = channels.signals.first().map_or(&[][..], |signal| &signal.values);
+/// Where the simulation of a train is one cycle, after which the same teeth meet again, it is repeated and averaged over whole cycles: then the
+/// lines of each shaft are free of the others'. The revolutions of two wheels that start together have whole numbers of samples, and need no
+/// resampling.
+fn averages(stages: &Stages, train: &GearTrain, start_s: f64, mut signal: Vec<f64>) -> Averages {
     let cycle = train.revolutions_of_a_cycle(train.input());
-    let is_cycle = stages.is_steady() && first.len() == cycle * stages.time.samples_per_pinion_revolution;
-    let signal = if is_cycle { first.repeat(REPEATED) } else { first.to_vec() };
-    let turning = TrainTurning::of_simulated(&stages.scenario, channels.start_s, signal.len())?;
-    let recording = TrainRecording {
-        signal: &signal,
-        sampling_rate_hz: channels.sampling_rate_hz,
-        train,
-        turning: &turning,
-    };
+    let is_cycle = stages.is_steady() && signal.len() == cycle * stages.time.samples_per_pinion_revolution;
+    let mut turning = TrainTurning::of_simulated(&stages.scenario, start_s, signal.len())?;
+    if let TrainTurning::SimulatedPair(shafts) = turning {
+        let average = |shaft: WheelName| shafts.average(&signal, shaft, &ChainSettings::default());
+        return WheelName::BOTH.into_iter().map(average).collect();
+    }
+    if is_cycle {
+        signal = signal.repeat(REPEATED);
+        turning = TrainTurning::of_simulated(&stages.scenario, start_s, signal.len())?;
+    }
+    let sampling_rate_hz = stages.time.sampling_rate_hz;
+    let recording = TrainRecording { signal: &signal, sampling_rate_hz, train, turning: &turning };
     let average = |wheel: usize| {
         let mut angular = recording.angular(wheel, &AngularSettings::default())?;
         if is_cycle {
@@ -192,8 +180,8 @@ mod tests {
         let prior = gearbox_prior();
         let record = build_reference(&prior, 2..3, &Control::default()).remove(0);
         let drawn = prior.draw(2).unwrap();
-        let ScenarioForm::Gearbox(mut gearbox) = drawn.scenario.clone() else { panic!("{drawn:?}") };
-        let solver = &mut gearbox.solver.settings;
+        let mut gearbox = drawn.scenario.clone();
+        let solver = &mut gearbox.solver;
         let cycle = solver.pinion_revolutions.unwrap();
         let settled = cycle * solver.settle_fraction / (1.0 - solver.settle_fraction);
         solver.pinion_revolutions = Some(5.0 * cycle);
@@ -201,8 +189,7 @@ mod tests {
         let simulation = meshtone::simulate(&gearbox).unwrap();
         let channels = &simulation.channels;
         let signal = &channels.signals[0].values;
-        let form = ScenarioForm::Gearbox(gearbox);
-        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len()).unwrap();
+        let turning = TrainTurning::of_simulated(&gearbox, channels.start_s, signal.len()).unwrap();
         let (sampling_rate_hz, train) = (channels.sampling_rate_hz, &prior.train);
         let recording = TrainRecording { signal, sampling_rate_hz, train, turning: &turning };
         let observed = Observation::of_recording(&recording, None).unwrap();

@@ -1,7 +1,5 @@
 //! A check that simulations of the rig can be compared with a recording, and cover its speed.
 
-use meshtone::scenario::ScenarioForm;
-
 use crate::DiagnoseError;
 use crate::learn::{Layout, Question};
 use crate::prior::Prior;
@@ -23,7 +21,7 @@ impl Question<'_> {
     /// # Errors
     /// A recording whose speed is far from those of the simulations; recordings of other wheels, of too few orders or of different kinds.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
-        let nominal_hz = prior.base.operation().pinion_speed_hz;
+        let nominal_hz = prior.base.operation.pinion_speed_hz;
         for (asked, speed_hz) in self.all().filter_map(|asked| Some((asked, asked.input_speed_hz?))) {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
@@ -46,15 +44,12 @@ impl Question<'_> {
 
 /// The shaft that drives in words, and the key of its speed.
 fn driving(prior: &Prior) -> (&'static str, &'static str) {
-    match prior.base {
-        ScenarioForm::Pair(_) => ("the pinion", "operation.pinion_speed_hz"),
-        ScenarioForm::Gearbox(_) => ("the input", "operation.input_speed_hz"),
-    }
+    (prior.base.driven_in_words(), prior.base.speed_key())
 }
 
 /// (Hz) Least and largest speed of the shaft that drives in the simulations.
 fn simulated_hz(prior: &Prior) -> [f64; 2] {
-    let nominal_hz = prior.base.operation().pinion_speed_hz;
+    let nominal_hz = prior.base.operation.pinion_speed_hz;
     [-1.0, 1.0].map(|sign: f64| nominal_hz * (sign * prior.speed_spread).exp())
 }
 
@@ -62,10 +57,7 @@ fn simulated_hz(prior: &Prior) -> [f64; 2] {
 fn reason(ratio: f64, prior: &Prior) -> Option<String> {
     let is = |other: f64| (ratio / other - 1.0).abs() < NEAR;
     let train = &prior.train;
-    let name = |shaft: usize| match prior.base {
-        ScenarioForm::Pair(_) => format!("the {}'s shaft", train.shafts[shaft].name),
-        ScenarioForm::Gearbox(_) => format!("shaft {}", train.shafts[shaft].name),
-    };
+    let name = |shaft: usize| prior.base.shaft_in_words(&train.shafts[shaft].name);
     let of_shaft = |shaft: usize, other: usize| {
         format!("that is their ratio of speeds: the speed may be of {}, not of {}", name(shaft), name(other))
     };
@@ -93,7 +85,7 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
 /// * `prior` - of the simulations
 pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let [least, most] = simulated_hz(prior);
-    let nominal_hz = prior.base.operation().pinion_speed_hz;
+    let nominal_hz = prior.base.operation.pinion_speed_hz;
     let ((shaft, key), mut doubts) = (driving(prior), Vec::new());
     let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
     for speed_hz in question.all().filter_map(|asked| asked.input_speed_hz).filter(beside) {

@@ -1,7 +1,7 @@
 //! Reference sets that need no simulation, for tests.
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{DamageKind, GearPair, Gearbox, Scenario, ScenarioForm};
+use meshtone::scenario::{DamageKind, GearPair, Scenario};
 use meshtone::signal::{AngleZero, BearingDefects};
 use meshtone_fourier::Complex64;
 use meshtone_learn::{WheelLines, separations};
@@ -16,23 +16,23 @@ const LAST_MESH: u32 = 6;
 /// The prior of a rig: the example's pair of grade 7 under 20 N m.
 pub fn prior() -> Prior {
     let mut rig = Scenario::new(GearPair { brake_torque_nm: 20.0, ..GearPair::example() });
-    rig.quality.din_grade = 7;
-    Prior::new(&ScenarioForm::Pair(rig)).unwrap()
+    rig.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
+    Prior::new(&rig).unwrap()
 }
 
 /// The prior of a gearbox of two stages, coarsely sampled, whose same teeth meet again after four revolutions of the input.
 pub fn gearbox_prior() -> Prior {
     let text = meshtone::scenario::gearbox_template(None);
-    let mut gearbox = Gearbox::from_toml(&text).unwrap();
+    let mut gearbox = Scenario::from_toml(&text).unwrap();
     for (wheel, teeth) in gearbox.wheels.iter_mut().zip([24, 48, 24, 48]) {
         wheel.teeth = teeth;
     }
     // Shafts damped so that little of the start-up is left after half of the time.
-    gearbox.shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.2);
+    gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.2);
     gearbox.sensors.clear();
-    let solver = &mut gearbox.solver.settings;
+    let solver = &mut gearbox.solver;
     (solver.sampling_rate_hz, solver.duration_s, solver.settle_fraction) = (2.5e4, Some(0.8), 0.5);
-    Prior::new(&ScenarioForm::Gearbox(gearbox)).unwrap()
+    Prior::new(&gearbox).unwrap()
 }
 
 /// Records of a prior: deviations of the wheels' own, and of a damage a ringing on its tooth as large as it is severe, whose order
@@ -81,7 +81,7 @@ fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
         WheelLines { separation, lines }
     });
     let wheels = wheels.collect();
-    ReferenceRecord { number, fault, input_speed_hz: prior.base.operation().pinion_speed_hz, wheels }
+    ReferenceRecord { number, fault, input_speed_hz: prior.base.operation.pinion_speed_hz, wheels }
 }
 
 /// A set of them.

@@ -3,7 +3,6 @@
 use std::fmt::{self, Display, Formatter};
 
 use meshtone::damage::damage_kinds;
-use meshtone::scenario::{Scenario, ScenarioForm};
 
 use crate::answer::{Answer, p_in_words};
 use crate::diagnose::{OUTSIDE, diagnose};
@@ -110,7 +109,7 @@ impl Question<'_> {
                 warnings.push(warning);
             }
         };
-        if has_ideal_wheels(&prior.base) {
+        if prior.base.has_ideal_wheels() {
             warn(
                 IdealWheels,
                 "wheels of the scenario have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; \
@@ -132,19 +131,6 @@ impl Question<'_> {
             );
         }
         warnings
-    }
-}
-
-/// Whether a wheel of a rig has no deviations.
-fn has_ideal_wheels(rig: &ScenarioForm) -> bool {
-    match rig {
-        ScenarioForm::Pair(Scenario { quality, .. }) => {
-            quality.din_grade == 0 && quality.iso_class == 0 && quality.profile_errors.is_none()
-        }
-        ScenarioForm::Gearbox(gearbox) => gearbox
-            .wheels
-            .iter()
-            .any(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0 && wheel.profile_errors_mm.is_none()),
     }
 }
 

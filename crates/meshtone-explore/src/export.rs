@@ -83,11 +83,12 @@ pub fn without_defaults(scenario: &Scenario) -> Map<String, Value> {
 
 /// A scenario of the same gears, speed and load, with every other key at its default.
 fn with_defaults(scenario: &Scenario) -> Scenario {
+    let gears = scenario.gears();
     Scenario::new(GearPair {
-        module_mm: scenario.gears.module_mm,
-        pinion_teeth: scenario.gears.pinion_teeth,
-        gear_teeth: scenario.gears.gear_teeth,
-        face_width_mm: scenario.gears.face_width_mm,
+        module_mm: gears.module_mm,
+        pinion_teeth: gears.pinion_teeth,
+        gear_teeth: gears.gear_teeth,
+        face_width_mm: gears.face_width_mm,
         pinion_speed_hz: scenario.operation.pinion_speed_hz,
         brake_torque_nm: scenario.operation.brake_torque_nm,
     })
@@ -109,7 +110,7 @@ fn sections(scenario: &Scenario) -> Map<String, Value> {
 fn python(scenario: &Scenario) -> String {
     let head = "import meshtone as mt\n\n";
     let tail = "\nsimulation = mt.simulate(scenario)\n";
-    if scenario.quality.profile_errors.is_some() {
+    if scenario.quality().profile_errors.is_some() {
         // Thousands of numbers read better in a file.
         let toml = scenario.to_toml();
         return format!("{head}scenario = mt.Scenario.from_toml(\n    \"\"\"\n{toml}\"\"\"\n)\n{tail}");

@@ -1,7 +1,7 @@
 //! A scenario as the page sends it.
 
 use meshtone::scenario::{
-    FileProblem, Gearbox, MemoryLimit, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles,
+    FileProblem, MemoryLimit, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles,
 };
 use meshtone_io::memory;
 use serde_json::Value;
@@ -24,18 +24,21 @@ pub fn memory_limit() -> MemoryLimit {
 /// # Arguments
 /// * `question` - with `toml`, a scenario file's text, or `scenario`, its sections and keys
 pub fn scenario(question: &Value) -> Result<Scenario, Refusal> {
-    read_with(question, |text| Scenario::from_toml_within(text, &NoFiles, memory_limit()))
+    read_with(question, |text| Scenario::pair_from_toml_within(text, &NoFiles, memory_limit()))
 }
 
 /// Reads and checks a gearbox, as [`scenario`] does a pair.
 ///
 /// # Arguments
 /// * `question` - with `toml`, a scenario file's text, or `scenario`, its sections and keys
-pub fn gearbox(question: &Value) -> Result<Gearbox, Refusal> {
-    read_with(question, |text| Gearbox::from_toml_within(text, &NoFiles, memory_limit()))
+pub fn gearbox(question: &Value) -> Result<Scenario, Refusal> {
+    read_with(question, |text| Scenario::from_toml_within(text, &NoFiles, memory_limit()))
 }
 
-fn read_with<S>(question: &Value, read: impl Fn(&str) -> Result<S, ScenarioError>) -> Result<S, Refusal> {
+fn read_with(
+    question: &Value,
+    read: impl Fn(&str) -> Result<Scenario, ScenarioError>,
+) -> Result<Scenario, Refusal> {
     match (question.get("toml"), question.get("scenario")) {
         (Some(Value::String(text)), _) => read(text).map_err(Refusal::from),
         (_, Some(sections)) => {
@@ -96,7 +99,7 @@ mod tests {
         let gears = json!({ "module_mm": 3, "pinion_teeth": 17, "gear_teeth": 38, "face_width_mm": 15.5, "backlash_mm": null });
         let operation = json!({ "pinion_speed_hz": 40.0, "brake_torque_nm": 10 });
         let read = scenario(&json!({ "scenario": { "gears": gears, "operation": operation } })).unwrap();
-        assert_eq!((read.gears.module_mm, read.gears.face_width_mm), (3.0, 15.5));
+        assert_eq!((read.meshes[0].module_mm, read.wheels[0].face_width_mm), (3.0, 15.5));
         assert_eq!(scenario(&json!({ "toml": read.to_toml() })), Ok(read));
     }
 

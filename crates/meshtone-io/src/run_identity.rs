@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 
 /// What every file of a run carries, so that files of different runs can be distinguished.
 ///
@@ -37,7 +37,7 @@ impl RunIdentity {
     ///
     /// # Arguments
     /// * `scenario` - what is simulated, as the user asked for it
-    pub fn of(scenario: impl Into<ScenarioForm>) -> Self {
+    pub fn of(scenario: impl Into<Scenario>) -> Self {
         Self::of_toml(&scenario.into().to_toml())
     }
 

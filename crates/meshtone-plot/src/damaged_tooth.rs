@@ -45,7 +45,7 @@ impl DamagedTooth {
     /// ```
     pub fn of_wheel(faults: &[Fault], wheel: WheelName, gears: &Gears) -> Vec<Self> {
         let (teeth, contact_pitches) = (gears.teeth(wheel), gears.contact_span_pitches());
-        let is_damage = |fault: &&Fault| fault.wheel == wheel && fault.severity != Some(0.0);
+        let is_damage = |fault: &&Fault| fault.side() == wheel && fault.severity != Some(0.0);
         let faults: Vec<&Fault> = faults.iter().filter(is_damage).collect();
         let mut on_teeth: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (number, fault) in faults.iter().enumerate() {

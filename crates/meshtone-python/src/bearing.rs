@@ -11,7 +11,8 @@ use pyo3::types::PyDict;
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
 use crate::phase::ShaftPhase;
-use crate::process::{Machine, shaft_number, stated_shaft, turning, typed};
+use crate::process::{shaft_number, stated_shaft, train, turning, typed};
+use crate::scenario::Scenario;
 
 /// Number of elements, their diameter, the pitch diameter, and the contact angle.
 type Geometry = (u32, f64, f64, f64);
@@ -66,7 +67,7 @@ pub fn bearings_of_train<'py>(
     py: Python<'py>,
     signal: Signal<'py>,
     phase: &ShaftPhase,
-    machine: Option<Machine<'py>>,
+    machine: Option<PyRef<'py, Scenario>>,
     sampling_rate_hz: f64,
     shaft: Option<&str>,
     bearings: Option<Vec<(Geometry, Option<String>)>>,
@@ -74,7 +75,7 @@ pub fn bearings_of_train<'py>(
     band_hz: Option<(f64, f64)>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let signal = samples(&signal)?;
-    let train = machine.map_or_else(|| Ok(GearTrain::of_shaft("shaft")), |machine| machine.train())?;
+    let train = machine.map_or_else(|| Ok(GearTrain::of_shaft("shaft")), |machine| train(&machine))?;
     let turning = turning(&train, phase, shaft)?;
     let own = stated_shaft(&train, shaft)?;
     let place = |(of, shaft): (Geometry, Option<String>)| -> PyResult<TrainBearing> {

@@ -19,7 +19,8 @@ use crate::array::{Signal, samples};
 use crate::error::{os_error, read_error, value_error, with_help};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::process::{Machine, TypedWarning, typed};
+use crate::process::{TypedWarning, typed};
+use crate::scenario::Scenario;
 
 /// The commented plan.
 #[pyfunction]
@@ -94,7 +95,7 @@ pub fn rows_like<'py>(
     py: Python<'py>,
     plan: PathBuf,
     recordings: Vec<Recorded<'py>>,
-    machine: Machine<'py>,
+    machine: PyRef<'py, Scenario>,
     sampling_rate_hz: f64,
     shaft: Option<&str>,
 ) -> PyResult<(Bound<'py, PyBytes>, Vec<TypedWarning>)> {
@@ -106,7 +107,7 @@ pub fn rows_like<'py>(
     };
     let channels = recordings.iter().map(|(channels, _)| channels.iter().map(single).collect());
     let channels = channels.collect::<PyResult<Vec<Vec<(String, Vec<f32>)>>>>()?;
-    let machine = machine.form();
+    let machine = machine.0.clone();
     let phases: Vec<_> = recordings.iter().map(|(_, phase)| &phase.0).collect();
     let rows = py.detach(|| {
         let recordings = channels.iter().zip(phases).map(|(channels, phase)| MachineRecording {

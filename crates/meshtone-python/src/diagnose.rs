@@ -16,7 +16,7 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{file_error, read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::process::{Machine, stated_of_rig};
+use crate::process::stated_of_rig;
 use crate::scenario::Scenario;
 
 /// Features of a recording.
@@ -29,14 +29,14 @@ impl Observation {
     #[staticmethod]
     fn of_simulated(
         py: Python<'_>,
-        machine: Machine<'_>,
+        machine: PyRef<'_, Scenario>,
         signal: Signal<'_>,
         start_s: f64,
         other: Option<&Self>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        let form = machine.form();
-        let train = GearTrain::of_form(&form).map_err(|error| scenario_error(&error))?;
+        let form = machine.0.clone();
+        let train = GearTrain::of_scenario(&form).map_err(|error| scenario_error(&error))?;
         let observe = || {
             let turning = TrainTurning::of_simulated(&form, start_s, signal.len())?;
             let sampling_rate_hz = form.time_grid().sampling_rate_hz;
@@ -55,12 +55,12 @@ impl Observation {
         sampling_rate_hz: f64,
         phase: &ShaftPhase,
         shaft: Option<&str>,
-        machine: Machine<'_>,
+        machine: PyRef<'_, Scenario>,
         other: Option<&Self>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        let form = machine.form();
-        let train = GearTrain::of_form(&form).map_err(|error| scenario_error(&error))?;
+        let form = machine.0.clone();
+        let train = GearTrain::of_scenario(&form).map_err(|error| scenario_error(&error))?;
         let (shaft, stated) = stated_of_rig(&form, &train, phase, shaft)?;
         let turning = TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated };
         let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
@@ -97,12 +97,12 @@ pub fn tuned_rig(scenario: &Scenario, path: PathBuf) -> PyResult<Scenario> {
 #[pyfunction]
 pub fn check_diagnosis(
     py: Python<'_>,
-    machine: Machine<'_>,
+    machine: PyRef<'_, Scenario>,
     now: Vec<PyRef<'_, Observation>>,
     healthy: Vec<PyRef<'_, Observation>>,
 ) -> PyResult<Vec<(&'static str, String)>> {
     let [now, healthy] = [now, healthy].map(observed);
-    let prior = Prior::new(&machine.form()).map_err(|error| scenario_error(&error))?;
+    let prior = Prior::new(&machine.0).map_err(|error| scenario_error(&error))?;
     let check = || {
         let question = Question { now: &now, healthy: &healthy };
         question.check(&prior)?;
@@ -120,7 +120,7 @@ fn observed(all: Vec<PyRef<'_, Observation>>) -> Vec<Observed> {
 #[pyfunction]
 pub fn diagnose<'py>(
     py: Python<'py>,
-    machine: Machine<'py>,
+    machine: PyRef<'py, Scenario>,
     now: Vec<PyRef<'py, Observation>>,
     healthy: Vec<PyRef<'py, Observation>>,
     reference: Option<PathBuf>,
@@ -132,7 +132,7 @@ pub fn diagnose<'py>(
         value_error("reference: the environment names no home directory; name a folder for the simulations")
     })?;
     let [now, healthy] = [now, healthy].map(observed);
-    let prior = Prior::new(&machine.form()).map_err(|error| scenario_error(&error))?;
+    let prior = Prior::new(&machine.0).map_err(|error| scenario_error(&error))?;
     let store = ReferenceStore::new(folder);
     let answer = interruptible(py, progress, records, |cancelled, report| {
         let progress = |count| report((count as u64).min(records), records);

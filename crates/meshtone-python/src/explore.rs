@@ -2,13 +2,11 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use meshtone::scenario::ScenarioForm;
 use meshtone_diagnose::ReferenceStore;
 use meshtone_explore::{Embedding, Server, ServerSettings};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 
-use crate::gearbox::Gearbox;
 use crate::scenario::Scenario;
 
 /// A page that is served in a thread of its own, which never needs the interpreter.
@@ -20,19 +18,16 @@ pub struct ExploreServer {
 /// The server, or the last scenario of one that was closed.
 enum Served {
     Now(Server),
-    Before(Box<ScenarioForm>),
+    Before(Box<meshtone::scenario::Scenario>),
 }
 
 #[pymethods]
 impl ExploreServer {
     /// Serves a page; port 0 is any that is free.
     #[new]
-    fn new(scenario: &Bound<'_, PyAny>, port: u16, in_notebook: bool) -> PyResult<Self> {
+    fn new(scenario: &Scenario, port: u16, in_notebook: bool) -> PyResult<Self> {
         let embedding = if in_notebook { Embedding::Notebook } else { Embedding::Refused };
-        let scenario = match scenario.cast::<Gearbox>() {
-            Ok(gearbox) => ScenarioForm::Gearbox(gearbox.get().0.clone()),
-            Err(_) => ScenarioForm::Pair(scenario.cast::<Scenario>()?.get().0.clone()),
-        };
+        let scenario = scenario.0.clone();
         let reference = ReferenceStore::default_folder();
         let settings = ServerSettings { scenario, port, embedding, reference };
         let server = Server::start(settings).map_err(|error| {
@@ -52,14 +47,10 @@ impl ExploreServer {
 
     /// The scenario on the page, or the last one.
     #[getter]
-    fn scenario(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        let form = match &*self.served.lock().unwrap_or_else(PoisonError::into_inner) {
-            Served::Now(server) => server.scenario(),
-            Served::Before(scenario) => (**scenario).clone(),
-        };
-        match form {
-            ScenarioForm::Pair(scenario) => Ok(Py::new(py, Scenario(scenario))?.into_any()),
-            ScenarioForm::Gearbox(gearbox) => Ok(Py::new(py, Gearbox(gearbox))?.into_any()),
+    fn scenario(&self) -> Scenario {
+        match &*self.served.lock().unwrap_or_else(PoisonError::into_inner) {
+            Served::Now(server) => Scenario(server.scenario()),
+            Served::Before(scenario) => Scenario((**scenario).clone()),
         }
     }
 

@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 
 use meshtone::StepJudgement;
-use meshtone::batch::simulate_many_gearboxes;
-use meshtone::scenario::{self, GearboxRig, ScenarioForm, ScenarioWarning};
-use meshtone_io::memory;
+use meshtone::batch::{KeepOf, simulate_many};
+use meshtone::scenario::{self, GearboxRig, ScenarioWarning};
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_io::signals::SignalTable;
 use meshtone_io::summary::Summary;
 use pyo3::prelude::*;
@@ -15,74 +13,10 @@ use pyo3::types::PyDict;
 
 use crate::array::named_arrays;
 use crate::batch::Batch;
-use crate::error::{read_error, scenario_error, simulation_error, value_error};
+use crate::error::{simulation_error, value_error};
+use crate::scenario::Scenario;
 use crate::signals_file::write;
 use crate::simulation::{fields, simulated};
-use crate::value::table;
-
-/// A gearbox as the library has it.
-#[pyclass(frozen, eq, module = "meshtone._core")]
-#[derive(Clone, PartialEq)]
-pub struct Gearbox(pub scenario::Gearbox);
-
-#[pymethods]
-impl Gearbox {
-    /// From the sections of a scenario file.
-    #[new]
-    fn new(sections: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let text = table(sections)?.to_string();
-        let read = scenario::Gearbox::from_toml(&text);
-        read.map(Self).map_err(|error| scenario_error(&error.at_line(None)))
-    }
-
-    /// From the text of a scenario file.
-    #[staticmethod]
-    fn from_toml(text: &str) -> PyResult<Self> {
-        scenario::Gearbox::from_toml(text).map(Self).map_err(|error| scenario_error(&error))
-    }
-
-    /// From a scenario file, and the files that it names.
-    #[staticmethod]
-    fn from_file(path: PathBuf) -> PyResult<Self> {
-        let file = ScenarioFile::read_form(&path).map_err(|error| read_error(&path, &error))?;
-        match file.scenario {
-            ScenarioForm::Gearbox(gearbox) => Ok(Self(gearbox)),
-            _ => Err(value_error(format!(
-                "{}: is of one pair of gears; Scenario.from_file reads it",
-                path.display()
-            ))),
-        }
-    }
-
-    /// Whether a scenario file's text is of a gearbox.
-    #[staticmethod]
-    fn is_written_in(text: &str) -> PyResult<bool> {
-        scenario::Gearbox::is_written_in(text).map_err(|error| scenario_error(&error))
-    }
-
-    /// The name of the channel of its first sensor.
-    fn leading_channel(&self) -> String {
-        self.0.leading_channel()
-    }
-
-    /// The text of a scenario file.
-    fn to_toml(&self) -> String {
-        meshtone::written_out(&self.0.to_toml())
-    }
-
-    /// The sections with all their keys, defaults included.
-    fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let sections: toml::Table = self.0.to_toml().parse().map_err(value_error)?;
-        let json = serde_json::to_string(&sections).map_err(value_error)?;
-        Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
-    }
-
-    /// Warnings about it, as far as they can be known before the time loop.
-    fn warnings(&self) -> PyResult<Vec<String>> {
-        let warnings = self.0.validate_within(memory::limit()).map_err(|error| scenario_error(&error))?;
-        Ok(warnings.iter().map(ToString::to_string).collect())
-    }
-}
 
 /// A simulation of a gearbox.
 #[pyclass(frozen, module = "meshtone._core")]
@@ -172,7 +106,7 @@ impl GearboxSimulation {
 
 /// Simulates a gearbox; it is simulated a second time where its step is doubtful.
 #[pyfunction]
-pub fn simulate_gearbox(py: Python<'_>, gearbox: &Gearbox) -> PyResult<GearboxSimulation> {
+pub fn simulate_gearbox(py: Python<'_>, gearbox: &Scenario) -> PyResult<GearboxSimulation> {
     let (simulation, warnings) = simulated(py, &gearbox.0)?;
     GearboxSimulation::new(py, simulation, warnings)
 }
@@ -182,19 +116,19 @@ pub fn simulate_gearbox(py: Python<'_>, gearbox: &Gearbox) -> PyResult<GearboxSi
 #[pyfunction]
 pub fn simulate_gearboxes<'py>(
     py: Python<'py>,
-    gearboxes: Vec<PyRef<'py, Gearbox>>,
+    gearboxes: Vec<PyRef<'py, Scenario>>,
     threads: Option<usize>,
     stop_at_error: bool,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Py<PyAny>>> {
-    let gearboxes: Vec<scenario::Gearbox> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
-    let estimated = |_: usize, of: meshtone::Simulation| {
+    let gearboxes: Vec<scenario::Scenario> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
+    let estimated = KeepOf(|_: usize, of: meshtone::Simulation| {
         let warnings = [of.stages.warnings(), of.warnings_of_signals(StepJudgement::Estimated)].concat();
         (of, warnings)
-    };
+    });
     let batch = Batch { all: gearboxes.len(), threads, stop_at_error };
     let results = batch.run(py, progress, |control, take| {
-        simulate_many_gearboxes(gearboxes, &estimated, control, take);
+        simulate_many(gearboxes, &estimated, control, take);
     })?;
     let made = results.into_iter().map(|result| match result {
         Ok((simulation, warnings)) => {

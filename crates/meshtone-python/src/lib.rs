@@ -44,7 +44,7 @@ mod _core {
         },
         diagnose::{Observation, check_diagnosis, diagnose, tuned_rig},
         explore::ExploreServer,
-        gearbox::{Gearbox, GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes},
+        gearbox::{GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes},
         hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune},
         memory::set_memory_limit,
         phase::{ShaftPhase, repair_pulses, tachometer_pulses},

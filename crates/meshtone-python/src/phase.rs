@@ -6,7 +6,6 @@ use pyo3::prelude::*;
 
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
-use crate::gearbox::Gearbox;
 use crate::process::{TypedWarning, typed};
 use crate::scenario::Scenario;
 
@@ -36,7 +35,7 @@ impl ShaftPhase {
 
     /// Returns the phase of the input in a simulation of a gearbox.
     #[staticmethod]
-    fn of_simulated_input(gearbox: &Gearbox, start_s: f64, samples: usize) -> PyResult<Self> {
+    fn of_simulated_input(gearbox: &Scenario, start_s: f64, samples: usize) -> PyResult<Self> {
         signal::ShaftPhase::of_simulated_input(&gearbox.0, start_s, samples).map(Self).map_err(value_error)
     }
 

@@ -1,6 +1,5 @@
 //! From a channel to its indicators.
 
-use meshtone::scenario::ScenarioForm;
 use meshtone::signal::{
     self, AngleZero, AngularSettings, ChainSettings, ForeignTone, GearTrain, SeparationSettings, SignalError,
     SignalWarning, StatedFacts, StatedTurning, SynchronousPart, TrainRecording, TrainRecords, TrainSettings,
@@ -11,7 +10,6 @@ use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::array::{Signal, array, samples};
 use crate::error::{scenario_error, value_error};
-use crate::gearbox::Gearbox;
 use crate::phase::ShaftPhase;
 use crate::scenario::Scenario;
 
@@ -91,26 +89,9 @@ pub fn process_channel<'py>(
     record_parts(py, record.map_err(value_error)?)
 }
 
-/// A pair or a gearbox.
-#[derive(FromPyObject)]
-pub enum Machine<'py> {
-    Pair(PyRef<'py, Scenario>),
-    Gearbox(PyRef<'py, Gearbox>),
-}
-
-impl Machine<'_> {
-    /// Its shafts and wheels.
-    pub fn train(&self) -> PyResult<GearTrain> {
-        GearTrain::of_form(&self.form()).map_err(|error| scenario_error(&error))
-    }
-
-    /// The scenario as the library has it.
-    pub fn form(&self) -> ScenarioForm {
-        match self {
-            Self::Pair(scenario) => ScenarioForm::Pair(scenario.0.clone()),
-            Self::Gearbox(gearbox) => ScenarioForm::Gearbox(gearbox.0.clone()),
-        }
-    }
+/// The shafts and wheels of a scenario.
+pub fn train(scenario: &Scenario) -> PyResult<GearTrain> {
+    GearTrain::of_scenario(&scenario.0).map_err(|error| scenario_error(&error))
 }
 
 /// Number of a shaft by its name.
@@ -134,7 +115,7 @@ pub fn turning(train: &GearTrain, phase: &ShaftPhase, shaft: Option<&str>) -> Py
 /// The shaft that the phase of a rig's recording is of, and what is stated about it: a phase from a mesh tone, whose zero is chance, has the
 /// scenario's speed beside it.
 pub fn stated_of_rig(
-    rig: &ScenarioForm,
+    rig: &meshtone::scenario::Scenario,
     train: &GearTrain,
     phase: &ShaftPhase,
     shaft: Option<&str>,
@@ -142,7 +123,7 @@ pub fn stated_of_rig(
     let shaft = stated_shaft(train, shaft)?;
     let ratio = train.speed_ratio(shaft, train.input()).value();
     let stated = match phase.0.zero {
-        AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: rig.operation().pinion_speed_hz * ratio },
+        AngleZero::Chance => StatedTurning::MeshTone { nominal_hz: rig.operation.pinion_speed_hz * ratio },
         _ => StatedTurning::Other,
     };
     Ok((shaft, stated))
@@ -157,14 +138,14 @@ pub fn process_train<'py>(
     py: Python<'py>,
     signal: Signal<'py>,
     phase: &ShaftPhase,
-    machine: Machine<'py>,
+    machine: PyRef<'py, Scenario>,
     sampling_rate_hz: f64,
     shaft: Option<&str>,
     sidebands: Option<usize>,
     shaft_orders: Option<Vec<usize>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let signal = samples(&signal)?;
-    let train = machine.train()?;
+    let train = train(&machine)?;
     let turning = turning(&train, phase, shaft)?;
     let separation = separation(1, sidebands, shaft_orders);
     let settings = TrainSettings { separation, ..TrainSettings::default() };

@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use meshtone::scenario::{self, ProfileErrors, ScenarioError};
-use meshtone::sensor::Channel;
 use meshtone::wheel::ErrorTable;
 use meshtone_io::memory;
-use meshtone_io::scenario_file::read_scenario;
+use meshtone_io::scenario_file::ScenarioFile;
 use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,7 +21,7 @@ pub struct Scenario(pub scenario::Scenario);
 
 #[pymethods]
 impl Scenario {
-    /// From the sections of a scenario file.
+    /// From the sections of a scenario file, of either form.
     #[new]
     #[pyo3(signature = (sections, pinion_profile_errors_mm=None, gear_profile_errors_mm=None))]
     fn new(
@@ -34,10 +33,9 @@ impl Scenario {
         let mut scenario = scenario::Scenario::from_toml(&text).map_err(without_line)?;
         match (pinion_profile_errors_mm, gear_profile_errors_mm) {
             (Some(pinion), Some(gear)) => {
-                scenario.quality.profile_errors = Some(ProfileErrors {
-                    pinion_profile_errors_mm: error_table(&pinion),
-                    gear_profile_errors_mm: error_table(&gear),
-                });
+                for (wheel, errors) in scenario.wheels.iter_mut().zip([pinion, gear]) {
+                    wheel.profile_errors_mm = Some(error_table(&errors));
+                }
                 scenario.validate().map_err(|error| scenario_error(&error))?;
             }
             (None, None) => {}
@@ -50,16 +48,41 @@ impl Scenario {
         Ok(Self(scenario))
     }
 
-    /// From the text of a scenario file.
+    /// From the text of a scenario file, of one pair or of a gearbox.
     #[staticmethod]
-    fn from_toml(text: &str) -> PyResult<Self> {
-        scenario::Scenario::from_toml(text).map(Self).map_err(|error| scenario_error(&error))
+    fn from_toml(text: &str, of_pair: bool) -> PyResult<Self> {
+        let read = if of_pair {
+            scenario::Scenario::pair_from_toml(text)
+        } else {
+            scenario::Scenario::from_toml(text)
+        };
+        read.map(Self).map_err(|error| scenario_error(&error))?.of_form(of_pair, "from_toml")
     }
 
-    /// From a scenario file, and the files that it names.
+    /// From a scenario file, and the files that it names, of one pair or of a gearbox.
     #[staticmethod]
-    fn from_file(path: PathBuf) -> PyResult<Self> {
-        read_scenario(&path).map(Self).map_err(|error| read_error(&path, &error))
+    fn from_file(path: PathBuf, of_pair: bool) -> PyResult<Self> {
+        let read = if of_pair { ScenarioFile::read_pair(&path) } else { ScenarioFile::read(&path) };
+        let file = read.map_err(|error| read_error(&path, &error))?;
+        let named = |error: PyErr| value_error(format!("{}: {error}", path.display()));
+        Self(file.scenario).of_form(of_pair, "from_file").map_err(named)
+    }
+
+    /// Whether a scenario file's text is of a gearbox.
+    #[staticmethod]
+    fn is_of_gearbox(text: &str) -> PyResult<bool> {
+        scenario::Scenario::is_long_form(text).map_err(|error| scenario_error(&error))
+    }
+
+    /// Whether it is of one pair.
+    #[getter]
+    fn is_pair(&self) -> bool {
+        self.0.rig().is_some()
+    }
+
+    /// The name of the channel of its first sensor.
+    fn leading_channel(&self) -> String {
+        self.0.leading_channel()
     }
 
     /// The text of a scenario file.
@@ -70,7 +93,9 @@ impl Scenario {
     /// The sections with all their keys, defaults included, but for the profile errors.
     fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut small = self.0.clone();
-        small.quality.profile_errors = None;
+        if self.is_pair() {
+            small.wheels.iter_mut().for_each(|wheel| wheel.profile_errors_mm = None);
+        }
         // Python's reader of JSON makes all the values at once; the numbers stay what they are.
         let json = serde_json::to_string(&small).map_err(value_error)?;
         Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
@@ -78,12 +103,12 @@ impl Scenario {
 
     /// The names of its simulation's channels, sensors first.
     fn channels(&self) -> Vec<String> {
-        Channel::all(&self.0.sensors).iter().map(|channel| channel.name().into_owned()).collect()
+        self.0.signals().iter().map(|signal| signal.name.to_string()).collect()
     }
 
     /// Pinion's and gear's profile errors, where they were given.
     fn profile_errors_mm<'py>(&self, py: Python<'py>) -> PyResult<Option<BothWheels<'py>>> {
-        self.0.quality.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
+        self.0.quality().profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
     }
 
     /// Severity of each fault, from 0 to 1.
@@ -101,6 +126,16 @@ impl Scenario {
         let checked = py.detach(|| meshtone::stages_and_warnings(&self.0, memory::limit()));
         let (_, warnings) = checked.map_err(|error| scenario_error(&error))?;
         Ok(warnings.iter().map(ToString::to_string).collect())
+    }
+}
+
+impl Scenario {
+    /// The scenario, where it has the form that is asked for.
+    fn of_form(self, of_pair: bool, constructor: &str) -> PyResult<Self> {
+        if self.is_pair() == of_pair {
+            return Ok(self);
+        }
+        Err(value_error(format!("is of one pair of gears; Scenario.{constructor} reads it")))
     }
 }
 

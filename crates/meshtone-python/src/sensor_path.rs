@@ -11,7 +11,8 @@ use crate::array::{Array, Signal, array, samples};
 use crate::error::{scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
-use crate::process::{Machine, stated_of_rig};
+use crate::process::stated_of_rig;
+use crate::scenario::Scenario;
 
 /// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
 type Estimated<'py> = ([Array<'py>; 5], [f64; 2], String);
@@ -23,14 +24,14 @@ type Recorded<'py> = (Signal<'py>, f64, PyRef<'py, ShaftPhase>, Option<String>);
 #[pyfunction]
 pub fn estimate_path<'py>(
     py: Python<'py>,
-    machine: Machine<'py>,
+    machine: PyRef<'py, Scenario>,
     recordings: Vec<Recorded<'py>>,
     draws: usize,
     seed: u64,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Estimated<'py>> {
-    let (rig, settings) = (machine.form(), PathSettings { draws, seed });
-    let train = GearTrain::of_form(&rig).map_err(|error| scenario_error(&error))?;
+    let (rig, settings) = (machine.0.clone(), PathSettings { draws, seed });
+    let train = GearTrain::of_scenario(&rig).map_err(|error| scenario_error(&error))?;
     let healthy = |(values, sampling_rate_hz, phase, shaft): &Recorded<'py>| {
         let values_g = samples(values)?.to_vec();
         let (shaft, stated) = stated_of_rig(&rig, &train, phase, shaft.as_deref())?;

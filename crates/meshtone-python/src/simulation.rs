@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 
 use meshtone::damage::{DamageDescription, DamagedTooth, ToothPart};
-use meshtone::scenario::{ScenarioForm, ScenarioWarning};
+use meshtone::scenario::ScenarioWarning;
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::SimulatedShafts;
 use meshtone::wheel::{WheelDeviations, WheelName};
@@ -59,10 +59,10 @@ pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
     Simulation::new(py, simulation, &warnings)
 }
 
-/// Simulates a scenario of either form, and collects all warnings; it is simulated a second time where its step is doubtful.
+/// Simulates a scenario, and collects all warnings; it is simulated a second time where its step is doubtful.
 pub fn simulated(
     py: Python<'_>,
-    scenario: impl Into<ScenarioForm> + Send,
+    scenario: &meshtone::scenario::Scenario,
 ) -> PyResult<(meshtone::Simulation, Vec<ScenarioWarning>)> {
     let simulated = py.detach(|| {
         let (stages, mut warnings) = meshtone::stages_and_warnings(scenario, memory::limit())?;
@@ -126,9 +126,8 @@ impl Simulation {
 impl Simulation {
     /// The simulated scenario.
     #[getter]
-    fn scenario(&self) -> PyResult<Scenario> {
-        let pair = self.stages.scenario.pair().cloned().map(Scenario);
-        pair.ok_or_else(|| value_error("the simulation is of a gearbox"))
+    fn scenario(&self) -> Scenario {
+        Scenario(self.stages.scenario.clone())
     }
 
     /// The fields of a trace that belong to the stages before the time loop.

@@ -174,7 +174,7 @@ fn with_number(text: &str, name: &str, index: usize) -> String {
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
 /// let mut scenario = Scenario::new(GearPair::example());
-/// scenario.rig.eccentricity_mm = -0.1;
+/// scenario.wheels[0].eccentricity_mm = -0.1;
 /// match meshtone::simulate(&scenario).map(drop) {
 ///     Err(Error::Scenario(error)) => assert_eq!(error.key, "rig.eccentricity_mm"),
 ///     Err(Error::Diverged { time_s, .. }) => println!("no motion is left after {time_s} s"),

@@ -85,7 +85,7 @@ pub fn made_by() -> String {
 /// The text of a scenario file that is written out: what made it stands in its first line.
 ///
 /// # Arguments
-/// * `toml` - the scenario, as [`scenario::ScenarioForm::to_toml`] has it
+/// * `toml` - the scenario, as [`scenario::Scenario::to_toml`] has it
 pub fn written_out(toml: &str) -> String {
     format!("# Made by {}.\n{toml}", made_by())
 }

@@ -29,7 +29,7 @@ use crate::machine::{DecayingMode, Drive, KnownModes};
 use crate::mesh::{Contact, Mesh, Pairs};
 use crate::operation::{Motion, TimeGrid, TorqueHarmonic};
 use crate::published::Published;
-use crate::scenario::{GearboxLayout, MemoryLimit, Ripple, Scenario, ScenarioForm};
+use crate::scenario::{Layout, MemoryLimit, Ripple, Scenario};
 use crate::sensor::{Channels, ContactFigures, Sensor, SignalSource};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, ModalMachine, Output, Recorder, StepCounts};
@@ -39,11 +39,10 @@ use crate::wheel::{Teeth, TipRelief, WheelDeviations, WheelName};
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stages {
-    /// What is simulated. Keys that the model ignores are at their defaults; a pair's faults that were given by their severity have its
-    /// sizes beside it.
-    pub scenario: ScenarioForm,
+    /// What is simulated. Keys that the model ignores are at their defaults; faults that were given by their severity have its sizes beside it.
+    pub scenario: Scenario,
     /// How shafts, wheels and meshes stand and turn.
-    pub layout: GearboxLayout,
+    pub layout: Layout,
     /// Division of time; a pinion revolution is one of the motor.
     pub time: TimeGrid,
     /// What the stages before the mesh make of each mesh's wheels.
@@ -52,7 +51,7 @@ pub struct Stages {
     pub meshes: Vec<Mesh>,
     /// The rolling bearings: each with its number in the scenario.
     pub bearings: Vec<(usize, RollingBearing)>,
-    /// The sensors, each with its name: those listed, or of a gearbox without any those on its bearings' seats.
+    /// The sensors, each with its name: those listed, or among shafts of beams without any those on the bearings' seats.
     pub sensors: Vec<Sensor>,
     /// (-) How severe each of the scenario's faults is, from 0 to 1.
     pub fault_severities: Vec<f64>,
@@ -105,7 +104,7 @@ pub struct Simulation {
 /// A scenario that is not valid, a fault that does not fit the tooth, a motion that grows without bound.
 ///
 /// ```
-/// use meshtone::scenario::{GearPair, Gearbox, Scenario, gearbox_template};
+/// use meshtone::scenario::{GearPair, Scenario, gearbox_template};
 ///
 /// let mean = |force: &[f64]| force.iter().sum::<f64>() / force.len() as f64;
 /// let mut scenario = Scenario::new(GearPair::example());
@@ -113,14 +112,14 @@ pub struct Simulation {
 /// let simulation = meshtone::simulate(&scenario)?;
 /// assert!((mean(&simulation.channels["mesh_force_n"]) / 187.0 - 1.0).abs() < 0.01);
 ///
-/// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
-/// gearbox.solver.settings.duration_s = Some(0.1);
+/// let mut gearbox = Scenario::from_toml(&gearbox_template(None))?;
+/// gearbox.solver.duration_s = Some(0.1);
 /// let simulation = meshtone::simulate(&gearbox)?;
 /// let static_force_n = simulation.stages.pairs[1].static_force_n;
 /// assert!((mean(&simulation.channels["force_n.z3-z4"]) / static_force_n - 1.0).abs() < 0.05);
 /// # Ok::<(), meshtone::Error>(())
 /// ```
-pub fn simulate(scenario: impl Into<ScenarioForm>) -> Result<Simulation, Error> {
+pub fn simulate(scenario: impl Into<Scenario>) -> Result<Simulation, Error> {
     stages(scenario)?.simulate()
 }
 
@@ -131,7 +130,7 @@ pub fn simulate(scenario: impl Into<ScenarioForm>) -> Result<Simulation, Error> 
 ///
 /// # Errors
 /// A scenario that is not valid, or a fault that does not fit the tooth.
-pub fn stages(scenario: impl Into<ScenarioForm>) -> Result<Stages, ScenarioError> {
+pub fn stages(scenario: impl Into<Scenario>) -> Result<Stages, ScenarioError> {
     stages_within(scenario, MemoryLimit::default())
 }
 
@@ -152,7 +151,7 @@ pub fn stages(scenario: impl Into<ScenarioForm>) -> Result<Stages, ScenarioError
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed }).is_ok());
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed - 1 }).is_err());
 /// ```
-pub fn stages_within(scenario: impl Into<ScenarioForm>, limit: MemoryLimit) -> Result<Stages, ScenarioError> {
+pub fn stages_within(scenario: impl Into<Scenario>, limit: MemoryLimit) -> Result<Stages, ScenarioError> {
     stages_with(scenario.into(), limit, &KnownModes::default())
 }
 
@@ -161,7 +160,7 @@ pub fn stages_within(scenario: impl Into<ScenarioForm>, limit: MemoryLimit) -> R
 /// Layout and teeth come first, as both models need them, and settling last, as it is of both; what lies between is either a machine
 /// around meshes or the published model. Faults get their severities only here, since the teeth of all meshes must be known for that.
 pub(crate) fn stages_with(
-    scenario: ScenarioForm,
+    scenario: Scenario,
     memory_limit: MemoryLimit,
     known: &KnownModes,
 ) -> Result<Stages, ScenarioError> {
@@ -172,18 +171,20 @@ pub(crate) fn stages_with(
     let layout = scenario.layout()?;
     let mut time = scenario.time_grid();
     clock.lap("scenario");
-    let teeth = healthy_teeth(scenario.model(), &layout);
+    let teeth = healthy_teeth(scenario.model, &layout);
     clock.lap("tooth profiles");
-    let parts = match scenario.pair() {
-        Some(pair) if !pair.model.has_meshes() => {
-            published_parts(pair, &scenario, &layout, &time, teeth, &mut clock)?
-        }
-        _ => machine_parts(&scenario, &layout, &time, teeth, known, &mut clock)?,
+    let parts = if scenario.model.has_meshes() {
+        machine_parts(&scenario, &layout, &time, teeth, known, &mut clock)?
+    } else {
+        published_parts(&scenario, &layout, &time, teeth, &mut clock)?
     };
     let Parts { pairs, meshes, bearings, equations, slowest_mode } = parts;
-    let settle_tolerance = scenario.solver().settle_tolerance;
+    let settle_tolerance = scenario.solver.settle_tolerance;
     // Only a steady motion that starts in equilibrium: what is left out is then a motion like the one that follows.
-    if scenario.model().has_meshes() && scenario.initial_velocity().is_none() && scenario.is_steady() {
+    if scenario.model.has_meshes()
+        && scenario.solver.initial_velocity.is_none()
+        && scenario.operation.is_steady()
+    {
         time.first_simulated_sample = start_of_settling(&time, settle_tolerance, &slowest_mode);
     }
     let severities = pairs
@@ -193,7 +194,7 @@ pub(crate) fn stages_with(
     let severities: BTreeMap<usize, f64> = severities.collect();
     Ok(Stages {
         sensors: scenario.all_sensors(),
-        scenario: scenario.with_sizes(&pairs[0].teeth),
+        scenario: with_sizes(scenario, &pairs),
         layout,
         time,
         pairs,
@@ -208,6 +209,16 @@ pub(crate) fn stages_with(
     })
 }
 
+/// The scenario with the sizes of the faults that were given by their severity beside it.
+fn with_sizes(mut scenario: Scenario, pairs: &[MeshedPair]) -> Scenario {
+    for (number, sized) in pairs.iter().flat_map(|pair| &pair.faults) {
+        if let Some(fault) = scenario.faults.get_mut(*number) {
+            fault.damage.clone_from(&sized.damage);
+        }
+    }
+    scenario
+}
+
 /// What a model makes of the teeth.
 struct Parts {
     pairs: Vec<MeshedPair>,
@@ -217,17 +228,14 @@ struct Parts {
     slowest_mode: DecayingMode,
 }
 
-/// (Hz) Natural frequency above which modes of shafts of beams decay faster than those below.
-const HIGHEST_OF_SLOW_HZ: f64 = 2e3;
-
 /// The stages of a machine around meshes, in the order in which each needs what the ones before it gave.
 ///
 /// The machine needs the base radii of the teeth, and gives the static forces that press these together; the meshes' tables need these
 /// forces, the deviations and the damage of the wheels. The tables then say how far a load moves along the face: where it does, the machine
 /// is taken to its modes a second time, with the tilt that this excites.
 fn machine_parts(
-    scenario: &ScenarioForm,
-    layout: &GearboxLayout,
+    scenario: &Scenario,
+    layout: &Layout,
     time: &TimeGrid,
     teeth: Vec<Teeth>,
     known: &KnownModes,
@@ -236,7 +244,7 @@ fn machine_parts(
     let (machine, bearings) = machine::assembled(scenario, layout, &teeth, known)?;
     let modal = machine.modal(scenario, &vec![0.0; teeth.len()]);
     let driven_mm: Vec<f64> = teeth.iter().map(|teeth| teeth.gear.base_radius_mm).collect();
-    let forces_n = static_forces_n(Some(&modal), &driven_mm, scenario.operation().brake_torque_nm);
+    let forces_n = static_forces_n(Some(&modal), &driven_mm, scenario.operation.brake_torque_nm);
     clock.lap("equations of motion");
     let pairs: Vec<MeshedPair> = (teeth.into_iter().zip(forces_n).enumerate())
         .map(|(mesh, (teeth, force_n))| {
@@ -250,14 +258,8 @@ fn machine_parts(
     let is_tilted = face_reach_m.iter().any(|reach_m| *reach_m > 0.0);
     let modal = if is_tilted { machine.modal(scenario, &face_reach_m) } else { modal };
     let closed: Vec<_> = meshes.iter().map(Mesh::closed).collect();
-    let (modal, highest_of_slow_hz) = match scenario.gearbox() {
-        Some(gearbox) => {
-            let highest_hz = gearbox.solver.highest_mode_hz(time.sampling_rate_hz);
-            (modal.up_to(TAU * highest_hz), HIGHEST_OF_SLOW_HZ)
-        }
-        None => (modal, f64::INFINITY),
-    };
-    let slowest_mode = modal.slowest_closed(&closed, TAU * highest_of_slow_hz);
+    let modal = modal.up_to(TAU * machine.stepped_up_to_hz);
+    let slowest_mode = modal.slowest_closed(&closed, TAU * machine.highest_of_slow_hz);
     clock.lap("settling");
     let equations = Equations::Machine(Box::new(machine), Box::new(modal));
     Ok(Parts { pairs, meshes, bearings, equations, slowest_mode })
@@ -265,19 +267,18 @@ fn machine_parts(
 
 /// The same of the published model, which has a mesh and equations of motion of its own.
 fn published_parts(
-    pair: &Scenario,
-    scenario: &ScenarioForm,
-    layout: &GearboxLayout,
+    scenario: &Scenario,
+    layout: &Layout,
     time: &TimeGrid,
     teeth: Vec<Teeth>,
     clock: &mut Clock,
 ) -> Result<Parts, ScenarioError> {
-    let forces_n = static_forces_n(None, &[teeth[0].gear.base_radius_mm], pair.operation.brake_torque_nm);
+    let forces_n = static_forces_n(None, &[teeth[0].gear.base_radius_mm], scenario.operation.brake_torque_nm);
     let sound = |(mesh, (teeth, force_n))| sound_pair(scenario, layout, time, mesh, teeth, force_n);
     let mut pairs: Vec<MeshedPair> = teeth.into_iter().zip(forces_n).enumerate().map(sound).collect();
     clock.lap("profile errors");
     let MeshedPair { teeth, profile_errors, cycle, damaged, .. } = &mut pairs[0];
-    let published = Published::new(pair, time, teeth, profile_errors.as_ref())?;
+    let published = Published::new(scenario, time, teeth, profile_errors.as_ref())?;
     (*cycle, *damaged) = (published.mesh.grid, published.damaged_tooth(teeth).into_iter().collect());
     clock.lap("mesh stiffness");
     let slowest_mode = published.slowest_mode();
@@ -354,7 +355,7 @@ impl Stages {
             run_out_phase_rad: Some(pair.run_out[wheel].phase_rad),
             helix_slope_um: Some(pair.helix_slope_um[wheel]),
         };
-        if !self.scenario.model().has_meshes() {
+        if !self.scenario.model.has_meshes() {
             return vec![Default::default()];
         }
         self.pairs.iter().map(|pair| [of_wheel(pair, 0), of_wheel(pair, 1)]).collect()
@@ -362,7 +363,7 @@ impl Stages {
 
     /// (mm) How far the tips' chamfers and their relief reach inwards from the tip, of the wheels of the first mesh; 0 where there is none.
     pub fn tip_lengths_mm(&self) -> [f64; 2] {
-        if !self.scenario.model().has_meshes() {
+        if !self.scenario.model.has_meshes() {
             return [0.0, TipRelief::PUBLISHED.length_mm];
         }
         self.layout.gears[0].tip_lengths_mm()
@@ -384,7 +385,7 @@ impl Stages {
 
     /// Whether motor and brake are steady.
     pub fn is_steady(&self) -> bool {
-        self.scenario.is_steady()
+        self.scenario.operation.is_steady()
     }
 
     /// Samples after which all teeth and shafts stand again as at the start, where motor and brake are steady and no rolling bearing slips.
@@ -408,14 +409,14 @@ impl Stages {
             amplitude: ripple.amplitude,
             phase_rad: ripple.phase_deg.to_radians(),
         };
-        let ripple = self.scenario.torque_ripple().iter().map(harmonic).collect();
-        Motion::new(self.scenario.operation(), self.scenario.seed(), &self.time).with_ripple(ripple)
+        let ripple = self.scenario.operation.torque_ripple.iter().map(harmonic).collect();
+        Motion::new(&self.scenario.operation, self.scenario.seed, &self.time).with_ripple(ripple)
     }
 
     /// The simulation that signals are of, such as those read from its file.
     ///
     /// # Arguments
-    /// * `channels` - those of [`ScenarioForm::signals`] with their samples
+    /// * `channels` - those of [`Scenario::signals`] with their samples
     pub fn with_channels(self, channels: Channels) -> Simulation {
         Simulation { channels, step_counts: [0; 4], timings: self.timings.clone(), stages: self }
     }
@@ -514,38 +515,41 @@ impl Stages {
     /// The error that a solution without bound is.
     pub(crate) fn divergence(&self, diverged: Diverged) -> Error {
         let time_s = diverged.sample as f64 * self.time.step_s();
-        let gaps = self.scenario.pair().and_then(|pair| self.gap(pair, time_s));
-        if let Some(error) = gaps {
+        if let Some(error) = self.gap(time_s) {
             return error.into();
         }
         let (key, damping_ratios) = self.damping();
-        let help = match self.scenario.gearbox() {
-            None => "raise the damping ratios of [rig], use more teeth, or change operation.pinion_speed_hz",
-            Some(_) => {
-                "raise bearing.damping_ratio or mesh.damping_ratio, use more teeth, or change operation.input_speed_hz"
-            }
-        };
+        let help = self.scenario.words().against_growth;
         Error::Diverged { time_s, key, help, damping_ratios }
     }
 
-    /// The same of a pair where more neighbours are missing on a wheel than pairs are in contact at once: nothing bears while they pass.
-    fn gap(&self, scenario: &Scenario, time_s: f64) -> Option<ScenarioError> {
-        let MeshedPair { teeth, damaged, .. } = &self.pairs[0];
-        let missing = |wheel: WheelName| most_neighbours(damaged, wheel, teeth.wheel(wheel).teeth as usize);
-        let ratio = scenario.gears.total_contact_ratio();
-        let wheel = WheelName::BOTH.into_iter().find(|&wheel| missing(wheel) as f64 > ratio)?;
-        let missing = missing(wheel);
-        let faults = scenario.faults.iter().enumerate();
+    /// The same where more neighbours are missing on a wheel than pairs are in contact at once: nothing bears while they pass.
+    fn gap(&self, time_s: f64) -> Option<ScenarioError> {
+        let meshes = (self.pairs.iter().zip(&self.layout.gears)).zip(&self.layout.wheels_of_mesh);
+        meshes.flat_map(|(mesh, wheels)| WheelName::BOTH.map(|side| (mesh, wheels, side))).find_map(
+            |((pair, gears), wheels, side)| {
+                let ratio = gears.total_contact_ratio();
+                let missing = most_neighbours(&pair.damaged, side, pair.teeth.wheel(side).teeth as usize);
+                (missing as f64 > ratio)
+                    .then(|| self.without_bearing(wheels[side as usize], missing, ratio, time_s))
+            },
+        )
+    }
+
+    /// The error of teeth that are missing side by side.
+    fn without_bearing(&self, wheel: usize, missing: usize, ratio: f64, time_s: f64) -> ScenarioError {
+        let wheel = &self.scenario.wheels[wheel].name;
+        let faults = self.scenario.faults.iter().enumerate();
         let of_wheel =
-            faults.filter(|(_, fault)| fault.wheel == wheel && fault.damage.part() == ToothPart::Whole);
+            faults.filter(|(_, fault)| fault.wheel == *wheel && fault.damage.part() == ToothPart::Whole);
         let named: Vec<String> = of_wheel.map(|(n, _)| format!("fault[{n}]")).collect();
-        let (named, wheel) = (named.join(", "), wheel.name());
+        let named = named.join(", ");
         let problem = format!(
             "{missing} neighbouring teeth of the {wheel} are missing ({named}), more than the {ratio:.2} pairs in contact at once: \
              nothing bears while they pass, and the motion grows without bound within {time_s:.4} s"
         );
         let help = "remove some of these faults, or some numbers from their fault.tooth";
-        Some(ScenarioError::new("fault", "", problem).with_help(help))
+        ScenarioError::new("fault", "", problem).with_help(help)
     }
 }
 

@@ -216,7 +216,7 @@ def measured(one: Any) -> tuple[npt.NDArray[np.float64], float, _core.ShaftPhase
     return finite_signal(values), positive("sampling_rate_hz", rate_hz), native_phase(phase), shaft
 
 
-def native_machine(machine: Machine) -> _core.Scenario | _core.Gearbox:
+def native_machine(machine: Machine) -> _core.Scenario:
     """A pair or a gearbox as the compiled module has it."""
     return machine._native if isinstance(machine, Gearbox) else native_scenario(machine)
 

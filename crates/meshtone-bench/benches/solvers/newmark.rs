@@ -120,7 +120,7 @@ fn mesh_samples(
     mesh: &Mesh,
     mut new_state: impl FnMut(f64, f64, f64) -> State,
 ) -> (Vec<Sample>, Vec<State>) {
-    let (time, operation) = (&stages.time, stages.scenario.operation());
+    let (time, operation) = (&stages.time, &stages.scenario.operation);
     let deviations = PairDeviations {
         teeth: &stages.pairs[0].teeth,
         errors: stages.pairs[0].profile_errors.as_ref(),
@@ -164,7 +164,7 @@ fn brake(stages: &Stages, machine: &Machine) -> Vector {
     let mut brake = [0.0; ROWS];
     for drive in &machine.drives {
         if let Drive::Brake { coordinate, torque_share } = *drive {
-            brake[coordinate] += torque_share * stages.scenario.operation().brake_torque_nm;
+            brake[coordinate] += torque_share * stages.scenario.operation.brake_torque_nm;
         }
     }
     brake

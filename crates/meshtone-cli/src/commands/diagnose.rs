@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::Args;
 use meshtone::batch::Control;
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::TrainWheel;
 use meshtone_diagnose::{
     Answer, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question, REFINED_RECORDS,
@@ -137,20 +137,20 @@ impl Diagnose {
     }
 
     /// The rig.
-    fn scenario(&self) -> Result<ScenarioForm, Failure> {
-        let file = ScenarioFile::read_form(&self.scenario)?;
+    fn scenario(&self) -> Result<Scenario, Failure> {
+        let file = ScenarioFile::read(&self.scenario)?;
         let mut scenario = file.scenario.clone().with_faults(Vec::new());
         if let Some(path) = &self.tuned {
             let refuse = |problem: String| Failure::bad_input(format!("{}: {problem}", path.display()));
-            let ScenarioForm::Pair(pair) = &scenario else {
+            if scenario.rig().is_none() {
                 let problem = "is of a pair, and the scenario of a gearbox".to_owned();
                 return Err(refuse(problem).with_help("leave out --tuned"));
-            };
+            }
             let tuned = read_tuned(path).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
-            if let Some(problem) = tuned.warning_for(pair) {
+            if let Some(problem) = tuned.warning_for(&scenario) {
                 return Err(refuse(problem).with_help("tune again with the scenario's model"));
             }
-            scenario = ScenarioForm::Pair(tuned.apply(pair).map_err(|error| refuse(error.to_string()))?);
+            scenario = tuned.apply(&scenario).map_err(|error| refuse(error.to_string()))?;
         }
         self.reading.lead_with_sensor(&mut scenario);
         let (doubts, _) = check(&scenario).map_err(|error| file.refuse(error))?;

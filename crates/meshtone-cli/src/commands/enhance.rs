@@ -51,7 +51,7 @@ Example:
 
 impl Enhance {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = ScenarioFile::read(&self.scenario)?;
+        let file = ScenarioFile::read_pair(&self.scenario)?;
         let tuned = read_tuned(&self.tuned).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
         let scenario = tuned
             .apply(&file.scenario)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use clap::Args;
-use meshtone::scenario::{Scenario, ScenarioForm, template};
+use meshtone::scenario::{Scenario, template};
 use meshtone_diagnose::ReferenceStore;
 use meshtone_explore::{Embedding, Server, ServerSettings};
 use meshtone_io::scenario_file::ScenarioFile;
@@ -59,13 +59,12 @@ impl Explore {
         Ok(())
     }
 
-    fn scenario(&self) -> Result<ScenarioForm, Failure> {
+    fn scenario(&self) -> Result<Scenario, Failure> {
         match &self.scenario {
-            Some(path) => Ok(ScenarioFile::read_form(path)?.scenario),
+            Some(path) => Ok(ScenarioFile::read(path)?.scenario),
             None => {
                 let healthy = template("healthy").unwrap_or_default();
-                let healthy = Scenario::from_toml(&healthy).map(ScenarioForm::Pair);
-                healthy.map_err(|error| Failure::failed(error.to_string()))
+                Scenario::from_toml(&healthy).map_err(|error| Failure::failed(error.to_string()))
             }
         }
     }

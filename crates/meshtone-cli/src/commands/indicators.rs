@@ -73,7 +73,7 @@ Examples:
 impl Indicators {
     pub fn run(&self) -> Result<(), Failure> {
         let directory = self.directory();
-        let file = self.scenario.as_deref().map(ScenarioFile::read_form).transpose()?;
+        let file = self.scenario.as_deref().map(ScenarioFile::read).transpose()?;
         let scenario = file.as_ref().map(|file| &file.scenario);
         let mut series = Series::default();
         for (number, path) in self.recordings.iter().enumerate() {

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use meshtone::Error;
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::{SignalWarning, StatedFacts, StatedTurning, TrainTurning};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
@@ -74,7 +74,7 @@ Examples:
 
 impl Path {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = ScenarioFile::read_form(&self.scenario)?;
+        let file = ScenarioFile::read(&self.scenario)?;
         let mut scenario = file.scenario.clone().with_faults(Vec::new());
         self.reading.lead_with_sensor(&mut scenario);
         let (doubts, _) = check(&scenario).map_err(|error| file.refuse(error))?;
@@ -114,7 +114,7 @@ impl Path {
     fn recording(
         &self,
         path: &path::Path,
-        scenario: &ScenarioForm,
+        scenario: &Scenario,
     ) -> Result<(HealthyRecording, Vec<WarningEntry>), Failure> {
         let mut input = Input::read(path, &self.reading, self.phase.channel())?;
         to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
@@ -145,7 +145,7 @@ impl Path {
     }
 
     /// Names the file that an error is about.
-    fn refuse<S>(&self, file: &ScenarioFile<S>, error: PathError) -> Failure {
+    fn refuse(&self, file: &ScenarioFile, error: PathError) -> Failure {
         match error {
             PathError::Simulation(Error::Scenario(error)) => file.refuse(error).into(),
             PathError::Recording { index, problem } => {

@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshtone::scenario::{
-    Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioForm, ScenarioWarning,
-};
+use meshtone::scenario::{Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
 use meshtone::{Simulation, StageTime, Stages, StepJudgement, Trace};
 use meshtone_io::atomic_file::check_target;
 use meshtone_io::experiment::{Tuned, read_tuned};
@@ -109,9 +107,9 @@ const MODELS: [Choice<Model>; 3] = [
 
 /// A scenario that can be simulated, and where its results go.
 struct Run {
-    file: ScenarioFile<ScenarioForm>,
+    file: ScenarioFile,
     /// The file's scenario with what the command line changes.
-    scenario: ScenarioForm,
+    scenario: Scenario,
     warnings: Vec<ScenarioWarning>,
     /// Computed while the scenario was checked; kept where it is the only one, as several would fill the memory.
     stages: Option<Stages>,
@@ -189,17 +187,17 @@ impl Simulate {
         errors: Option<&Quality>,
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
-        let file = ScenarioFile::read_form(path)?;
-        let scenario = match file.scenario.clone() {
-            ScenarioForm::Pair(scenario) => self.changed(path, scenario, errors, tuned)?.into(),
-            ScenarioForm::Gearbox(_) => self.refuse_options_of_pair(path).map(|()| file.scenario.clone())?,
-        };
+        let file = ScenarioFile::read(path)?;
+        if file.scenario.rig().is_none() {
+            self.refuse_options_of_pair(path)?;
+        }
+        let scenario = self.changed(path, file.scenario.clone(), errors, tuned)?;
         let (warnings, stages) = check(&scenario).map_err(|error| self.refuse(&file, error))?;
         let stages = (self.scenarios.len() == 1).then_some(stages);
         Ok(Run { file, scenario, warnings, stages, directory })
     }
 
-    /// A pair with what the command line changes.
+    /// A scenario with what the command line changes.
     fn changed(
         &self,
         path: &Path,
@@ -220,7 +218,7 @@ impl Simulate {
             scenario.model = model;
         }
         if let Some(errors) = errors {
-            scenario.quality = errors.clone();
+            scenario.set_quality(errors.clone());
         }
         Ok(scenario)
     }
@@ -255,7 +253,7 @@ impl Simulate {
     /// Simulates, with something that moves on the terminal meanwhile, and prints warnings and the main numbers.
     fn report(
         &self,
-        file: &ScenarioFile<ScenarioForm>,
+        file: &ScenarioFile,
         directory: &OutputDirectory,
         number: usize,
         simulate: impl FnOnce() -> Result<Reported, Failure>,
@@ -269,7 +267,7 @@ impl Simulate {
     }
 
     /// An error about a scenario, or about the errors file that the command line put in its place.
-    fn refuse(&self, file: &ScenarioFile<ScenarioForm>, error: ScenarioError) -> Failure {
+    fn refuse(&self, file: &ScenarioFile, error: ScenarioError) -> Failure {
         match (&self.errors_file, error.key.strip_prefix("quality.")) {
             (Some(errors_file), Some(entry)) => {
                 let (errors_file, scenario) = (errors_file.display(), file.path.display());
@@ -338,7 +336,7 @@ fn read_errors(path: &Path) -> Result<Quality, Failure> {
 }
 
 /// A scenario that gave no simulation, named by its file.
-fn not_simulated(file: &ScenarioFile<ScenarioForm>, error: meshtone::Error) -> Failure {
+fn not_simulated(file: &ScenarioFile, error: meshtone::Error) -> Failure {
     let help = error.help().map(str::to_owned);
     match error {
         meshtone::Error::Scenario(error) => file.refuse(error).into(),
@@ -350,7 +348,7 @@ fn not_simulated(file: &ScenarioFile<ScenarioForm>, error: meshtone::Error) -> F
 }
 
 fn simulate(
-    scenario: &ScenarioForm,
+    scenario: &Scenario,
     stages: Option<Stages>,
     with_trace: bool,
 ) -> Result<(Simulation, Option<Trace>), meshtone::Error> {

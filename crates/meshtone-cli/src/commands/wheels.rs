@@ -35,7 +35,7 @@ Example:
 
 impl Wheels {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = ScenarioFile::read(&self.scenario)?;
+        let file = ScenarioFile::read_pair(&self.scenario)?;
         if is_same_file(&self.output, &self.scenario) {
             let problem = format!("-o {}: is the scenario file", self.output.display());
             return Failure::refuse(problem, "name another file with -o");
@@ -51,8 +51,8 @@ impl Wheels {
             deviations.iter().any(|wheel| is_off(wheel.run_out_um) || is_off(wheel.helix_slope_um));
         let ideal = |teeth: u32| ErrorTable::filled(ERROR_POINTS, teeth as usize, 0.0);
         let ideal_profiles = || ProfileErrors {
-            pinion_profile_errors_mm: ideal(scenario.gears.pinion_teeth),
-            gear_profile_errors_mm: ideal(scenario.gears.gear_teeth),
+            pinion_profile_errors_mm: ideal(scenario.wheels[0].teeth),
+            gear_profile_errors_mm: ideal(scenario.wheels[1].teeth),
         };
         let errors = stages.pairs[0].profile_errors.clone().or_else(|| has_others.then(ideal_profiles)).ok_or_else(|| {
             let problem = "must be a grade of DIN 3961, from 1 (best) to 12: the teeth of grade 0 are ideal \

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::{TrainRecording, TrainTurning};
 use meshtone_diagnose::{Observation, SignalKind};
 use meshtone_io::indicators::WarningEntry;
@@ -25,7 +25,7 @@ type Observed = (Observation, Vec<WarningEntry>);
 
 /// Reads what recordings of a rig show.
 pub struct Observer<'a> {
-    scenario: &'a ScenarioForm,
+    scenario: &'a Scenario,
     signal: SignalKind,
     reading: &'a ReadingOptions,
     phase: &'a PhaseOptions,
@@ -38,7 +38,7 @@ impl<'a> Observer<'a> {
     /// * `signal` - what the recordings are
     /// * `reading`, `phase`, `shafts` - the options
     pub fn new(
-        scenario: &'a ScenarioForm,
+        scenario: &'a Scenario,
         signal: SignalKind,
         reading: &'a ReadingOptions,
         phase: &'a PhaseOptions,
@@ -50,7 +50,7 @@ impl<'a> Observer<'a> {
                 format!("--signal {}: is one revolution of the gear, which needs no phase", signal.name());
             return Failure::refuse(problem, "leave out --teeth and what says how the shaft turns");
         }
-        if is_revolution && matches!(scenario, ScenarioForm::Gearbox(_)) {
+        if is_revolution && scenario.rig().is_none() {
             let problem = format!("--signal {}: is of a pair, and the scenario of a gearbox", signal.name());
             return Failure::refuse(problem, "give whole recordings, and leave out --signal");
         }
@@ -63,13 +63,12 @@ impl<'a> Observer<'a> {
     /// * `path` - the file
     /// * `other` - an observation that it is compared with
     pub fn observe(&self, path: &Path, other: Option<&Observation>) -> Result<Observed, Failure> {
-        match self.scenario {
-            ScenarioForm::Pair(pair) if self.signal != SignalKind::Recording => {
-                let ratio = f64::from(pair.gears.pinion_teeth) / f64::from(pair.gears.gear_teeth);
-                self.revolution(path, pair.gears.gear_teeth, pair.operation.pinion_speed_hz * ratio)
-            }
-            _ => self.recording(path, other),
+        if self.signal == SignalKind::Recording {
+            return self.recording(path, other);
         }
+        let gears = self.scenario.gears();
+        let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+        self.revolution(path, gears.gear_teeth, self.scenario.operation.pinion_speed_hz * ratio)
     }
 
     fn revolution(&self, path: &Path, gear_teeth: u32, gear_hz: f64) -> Result<Observed, Failure> {

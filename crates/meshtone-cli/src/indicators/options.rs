@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::{Interpolation, PulseEdge};
 use meshtone_io::recording::{DecimalSign, Separator};
 
@@ -46,7 +46,7 @@ pub struct ReadingOptions {
 
 impl ReadingOptions {
     /// Puts the sensor of the chosen channel first in a scenario, and says so where that changes what is simulated.
-    pub fn lead_with_sensor(&self, scenario: &mut ScenarioForm) {
+    pub fn lead_with_sensor(&self, scenario: &mut Scenario) {
         if let Some(channel) = self.channel.as_deref().filter(|channel| scenario.lead_with_sensor(channel)) {
             print_error_line(format_args!(
                 "the scenario's sensor of the channel {channel} is simulated, in place of the first listed one"

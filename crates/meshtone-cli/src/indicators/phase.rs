@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::{MeshTone, ShaftPhase, StatedFacts, StatedTurning, Tachometer, tachometer_pulses};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
@@ -184,7 +184,7 @@ fn teeth_that_are(state: &str, teeth: &[u32]) -> String {
 }
 
 /// What was simulated.
-pub fn simulated_form(input: &Input, scenario_toml: &str) -> Result<ScenarioForm, Failure> {
+pub fn simulated_form(input: &Input, scenario_toml: &str) -> Result<Scenario, Failure> {
     let path = input.source.display();
     if !input.has_own_time {
         let problem =
@@ -192,7 +192,7 @@ pub fn simulated_form(input: &Input, scenario_toml: &str) -> Result<ScenarioForm
         let help = "leave them out, or state --teeth and the phase too, as of a measured recording";
         return Failure::refuse(problem, help);
     }
-    ScenarioForm::from_toml(scenario_toml).map_err(|error| {
+    Scenario::from_toml(scenario_toml).map_err(|error| {
         Failure::bad_input(format!("{path}: the scenario in the file is not valid: {error}"))
             .with_help(SIMULATE_AGAIN)
     })

@@ -1,6 +1,6 @@
 //! One recording's records.
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::{
     AngularSettings, SeparationSettings, TrainRecording, TrainRecords, TrainSettings, TrainTurning,
     check_channel,
@@ -50,7 +50,7 @@ pub fn process(
     input: &Input,
     phase: &PhaseOptions,
     shafts: &ShaftOptions,
-    scenario: Option<&ScenarioForm>,
+    scenario: Option<&Scenario>,
     processing: &ProcessingOptions,
     bearings: &BearingOptions,
 ) -> Result<Processed, Failure> {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::sensor::{ChannelKind, Channels};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
@@ -20,7 +20,7 @@ const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
 /// The channel of a simulation that is processed unless another is chosen: the first sensor's, or the vertical acceleration.
 fn leading_of(scenario_toml: &str) -> String {
     // What another version wrote has no sensors, or is looked at without them.
-    let signals = ScenarioForm::from_toml(scenario_toml).map_or_else(|_| Vec::new(), |form| form.signals());
+    let signals = Scenario::from_toml(scenario_toml).map_or_else(|_| Vec::new(), |form| form.signals());
     let channels = Channels::new(0.0, 0.0, signals);
     let leading = channels.leading().map(|signal| signal.name.to_string());
     leading.unwrap_or_else(|| ChannelKind::Vertical.name().to_owned())

@@ -1,6 +1,6 @@
 //! The machine that a recording is of, and how its shafts turned.
 
-use meshtone::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioForm, WheelName};
+use meshtone::scenario::Scenario;
 use meshtone::signal::{GearTrain, SeparationSettings, TrainTurning};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
@@ -27,8 +27,8 @@ pub struct Turned {
 }
 
 /// Shafts, wheels and meshes of a scenario of either form.
-pub fn train_of(form: &ScenarioForm) -> Result<GearTrain, Failure> {
-    GearTrain::of_form(form).map_err(|error| Failure::bad_input(error.to_string()))
+pub fn train_of(form: &Scenario) -> Result<GearTrain, Failure> {
+    GearTrain::of_scenario(form).map_err(|error| Failure::bad_input(error.to_string()))
 }
 
 impl Turned {
@@ -46,7 +46,7 @@ impl Turned {
         input: &Input,
         phase: &PhaseOptions,
         shafts: &ShaftOptions,
-        scenario: Option<&ScenarioForm>,
+        scenario: Option<&Scenario>,
     ) -> Result<Self, Failure> {
         let is_silent = !phase.states_shaft_angle() && shafts.is_empty();
         match (&input.scenario_toml, scenario) {
@@ -112,7 +112,7 @@ impl Turned {
         input: &Input,
         stated: &PhaseOptions,
         shafts: &ShaftOptions,
-        form: &ScenarioForm,
+        form: &Scenario,
     ) -> Result<Self, Failure> {
         let train = train_of(form)?;
         let mut shaft = shafts.shaft(&train, [stated.teeth, stated.mate_teeth])?;
@@ -121,7 +121,7 @@ impl Turned {
         // The tone of a mesh that is named is followed, also where a speed is stated.
         phase.from_mesh_tone |= shafts.mesh.is_some();
         if !stated.states_shaft_angle() {
-            phase.shaft_hz = Some(form.operation().pinion_speed_hz * ratio(shaft));
+            phase.shaft_hz = Some(form.operation.pinion_speed_hz * ratio(shaft));
             phase.from_mesh_tone = true;
         }
         let mut source = phase.source().to_owned();
@@ -194,22 +194,15 @@ fn wheels(
 }
 
 /// The teeth of a wheel that a scenario damages.
-fn damaged_teeth(form: &ScenarioForm, wheel: usize) -> Vec<DamagedTooth> {
-    let of_pair = |Scenario { gears, faults, .. }: &Scenario| {
-        let wheel = WheelName::BOTH[wheel.min(1)];
-        DamagedTooth::of_wheel(faults, wheel, gears)
-    };
-    let of_gearbox = |gearbox: &Gearbox| {
-        let layout = GearboxLayout::new(gearbox).ok()?;
+fn damaged_teeth(scenario: &Scenario, wheel: usize) -> Vec<DamagedTooth> {
+    let of_wheel = || {
+        let layout = scenario.layout().ok()?;
         let (mesh, side) = layout.mesh_of(wheel)?;
-        let faults: Vec<_> =
-            layout.faults_of_mesh(&form.faults(), mesh).into_iter().map(|(_, fault)| fault).collect();
+        let faults = layout.faults_of_mesh(&scenario.placed_faults(), mesh);
+        let faults: Vec<_> = faults.into_iter().map(|(_, fault)| fault).collect();
         Some(DamagedTooth::of_wheel(&faults, side, &layout.gears[mesh]))
     };
-    match form {
-        ScenarioForm::Pair(scenario) => of_pair(scenario),
-        ScenarioForm::Gearbox(gearbox) => of_gearbox(gearbox).unwrap_or_default(),
-    }
+    of_wheel().unwrap_or_default()
 }
 
 impl ShaftOptions {

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::fs;
 use std::process::Stdio;
 
-use meshtone::scenario::{Gearbox, gearbox_template};
+use meshtone::scenario::{Scenario, gearbox_template};
 use meshtone_io::signals::read_signals;
 use serde_json::Value;
 
@@ -213,14 +213,14 @@ fn what_is_refused() {
 }
 
 /// A gearbox of two stages that is quick to simulate.
-fn small_gearbox() -> Gearbox {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+fn small_gearbox() -> Scenario {
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
     for (wheel, teeth) in gearbox.wheels.iter_mut().zip([20, 50, 20, 60]) {
         wheel.teeth = teeth;
     }
     gearbox.faults.clear();
     gearbox.sensors.truncate(1);
-    let solver = &mut gearbox.solver.settings;
+    let solver = &mut gearbox.solver;
     (solver.sampling_rate_hz, solver.duration_s, solver.settle_fraction) = (1.2e4, Some(1.6), 0.3);
     gearbox
 }
@@ -231,8 +231,8 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     let workplace = Workplace::new();
     // Of shafts in few elements hundreds are simulated soon.
     let mut gearbox = small_gearbox();
-    gearbox.solver.settings.sampling_rate_hz = 8e3;
-    gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 2);
+    gearbox.solver.sampling_rate_hz = 8e3;
+    gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 2);
     let gone = "\n[[fault]]\nwheel = \"z3\"\nkind = \"missing-tooth\"\ntooth = 8\n";
     workplace.write("box.toml", gearbox.to_toml());
     workplace.write("gone.toml", gearbox.to_toml() + gone);
@@ -251,7 +251,7 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
 
     // The same as measured signals, with pulses of the input alone: from them the angle of the third wheel follows, but not which tooth
     // is the first.
-    let speed_hz = gearbox.operation.drive.pinion_speed_hz;
+    let speed_hz = gearbox.operation.pinion_speed_hz;
     for of in ["box", "gone"] {
         let recorded = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().channels;
         let rate = recorded.sampling_rate_hz;

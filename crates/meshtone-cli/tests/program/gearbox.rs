@@ -1,6 +1,5 @@
 //! Gearboxes: `meshtone init gearbox`, `simulate`, `panel`, and the commands that know one pair only.
 
-use meshtone::scenario::ScenarioForm;
 use std::f64::consts::TAU;
 
 use crate::indicators::{csv, tacho};
@@ -46,7 +45,7 @@ fn every_mesh_is_in_every_result() {
     for name in ["force_n.z3-z4", "speed_hz.output"] {
         assert!(recorded.channels.signal(name).is_some(), "{name}");
     }
-    let ScenarioForm::Gearbox(gearbox) = &recorded.scenario else { panic!("it is of a gearbox") };
+    let gearbox = &recorded.scenario;
     assert_eq!(recorded.channels, meshtone::simulate(gearbox).unwrap().channels);
     let panel = String::from_utf8(workplace.read("out/panel.svg")).unwrap();
     for words in ["z1-z2", "z3-z4", "Tooth breakage on tooth 2 of z3"] {
@@ -77,7 +76,7 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
     workplace.write("file.toml", &with_file);
     workplace.succeeds(&["simulate", "file.toml", "-o", "out", "--no-panel", "--trace", "trace.npz"]);
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
-    let ScenarioForm::Gearbox(gearbox) = &recorded.scenario else { panic!("it is of a gearbox") };
+    let gearbox = &recorded.scenario;
     let stages = meshtone::stages(gearbox).unwrap();
     let read = meshtone_io::scenario_file::ScenarioFile::read(&workplace.path("pair.toml")).unwrap();
     let of_pair = meshtone::stages(&read.scenario).unwrap();

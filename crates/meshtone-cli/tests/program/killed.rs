@@ -1,7 +1,6 @@
 //! A run that is killed leaves the results of the run before it whole; where it is killed while it gives its files
 //! their names, this can be seen, and the next command puts the earlier results back.
 
-use meshtone::scenario::ScenarioForm;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -70,11 +69,7 @@ impl Contest {
             let found = bytes.windows(run_of_signals.len()).any(|part| part == run_of_signals.as_bytes());
             assert!(found, "{name} is not of the run {run_of_signals}");
         }
-        let din_grade = match &signals.scenario {
-            ScenarioForm::Pair(scenario) => Some(scenario.quality.din_grade),
-            ScenarioForm::Gearbox(_) => None,
-        };
-        match din_grade {
+        match signals.scenario.wheels.first().map(|wheel| wheel.din_grade) {
             Some(0) => assert!(
                 FILES.map(|name| self.workplace.read(name)) == self.earlier,
                 "an earlier result changed"

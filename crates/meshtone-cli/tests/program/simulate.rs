@@ -1,6 +1,5 @@
 //! `meshtone simulate`
 
-use meshtone::scenario::ScenarioForm;
 use std::fs::File;
 
 use crate::support::{Workplace, fast_and, fast_with, stderr, stdout};
@@ -27,7 +26,7 @@ fn signals_are_those_of_the_library() {
     assert_eq!(workplace.names("out"), ALL_FILES);
     let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
-    assert_eq!(recorded.scenario, ScenarioForm::Pair(scenario.clone()));
+    assert_eq!(recorded.scenario, scenario.clone());
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
 }
 
@@ -217,12 +216,9 @@ fn several_scenarios_on_the_same_wheels() {
     assert_eq!(workplace.names("out/deep"), ["fast", "gone"]);
     let read =
         |name: &str| read_signals(&workplace.path(&format!("out/deep/{name}/signals.parquet"))).unwrap();
-    let [healthy, gone] = ["fast", "gone"].map(|name| match read(name).scenario {
-        ScenarioForm::Pair(scenario) => scenario,
-        ScenarioForm::Gearbox(_) => panic!("{name} is of a pair"),
-    });
-    assert_eq!(healthy.quality, gone.quality);
-    assert!(healthy.quality.profile_errors.is_some());
+    let [healthy, gone] = ["fast", "gone"].map(|name| read(name).scenario);
+    assert_eq!(healthy.quality(), gone.quality());
+    assert!(healthy.quality().profile_errors.is_some());
     // The wheels are those that the grade draws.
     workplace.succeeds(&["simulate", "worn.toml", "--quiet", "--no-panel"]);
     let drawn = read_signals(&workplace.path("worn_results/signals.parquet")).unwrap();

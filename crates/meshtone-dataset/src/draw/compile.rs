@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use meshtone::scenario::{ScenarioForm, ScenarioNumber, split_key};
+use meshtone::scenario::{ScenarioNumber, split_key};
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::{SEVERITY, fault_of_severity};
@@ -206,11 +206,7 @@ fn unknown(
     class: Option<usize>,
 ) -> TomlError {
     let faults = class.map_or(&[][..], |class| &content.classes[class].faults);
-    let healthy = match content.base {
-        ScenarioForm::Gearbox(_) => "a healthy gearbox",
-        _ => "a healthy pair",
-    };
-    let fault = kinds(faults).unwrap_or_else(|| healthy.to_owned());
+    let fault = kinds(faults).unwrap_or_else(|| format!("a healthy {}", content.base.nouns()[0]));
     let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
     let error = refuse_key(placed, key, problem);
     if fault_of_severity(key, faults.len()).is_some() {

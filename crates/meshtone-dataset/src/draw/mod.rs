@@ -6,7 +6,7 @@ mod compile;
 mod values;
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{ScenarioError, ScenarioForm, SensorPath};
+use meshtone::scenario::{Scenario, ScenarioError, SensorPath};
 use meshtone_toml::{ReadResult, TomlError};
 
 use crate::expression::{Condition, Expression};
@@ -231,7 +231,7 @@ impl Sampler<'_> {
     ///
     /// # Errors
     /// Values that the scenario does not allow.
-    pub fn scenario(&self, record: &DrawnRecord) -> Result<ScenarioForm, ScenarioError> {
+    pub fn scenario(&self, record: &DrawnRecord) -> Result<Scenario, ScenarioError> {
         // A gain and a ripple in dB may be negative.
         for key in &PATH_KEYS[2..] {
             if let Some(value) = record.value(key).filter(|value| *value < 0.0) {
@@ -239,18 +239,9 @@ impl Sampler<'_> {
             }
         }
         let mut scenario = self.classes[record.class].base.with_values(&record.values)?;
-        match &mut scenario {
-            ScenarioForm::Pair(pair) => {
-                pair.seed = record.seed;
-                pair.quality.seed = Some(record.wheels_seed);
-            }
-            ScenarioForm::Gearbox(gearbox) => {
-                gearbox.seed = record.seed;
-                gearbox.wheels_seed = Some(record.wheels_seed);
-            }
-        }
+        (scenario.seed, scenario.wheels_seed) = (record.seed, Some(record.wheels_seed));
         // What the plan puts between place and sensor stands instead of the sensor's own.
-        for sensor in scenario.sensors_mut() {
+        for sensor in &mut scenario.sensors {
             if record.value(PLATE_HZ).is_some() {
                 sensor.path.plate_hz = 0.0;
             }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use meshtone::batch::SteppedAlone;
-use meshtone::scenario::{ScenarioError, ScenarioForm, ScenarioWarning};
+use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
 use meshtone::signal::FEWEST_REVOLUTIONS;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
@@ -63,22 +63,14 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
 }
 
 /// Refuses wheels whose deviations or seed are given: every unit has wheels of its own.
-fn refuse_given_wheels(base: &ScenarioForm) -> ReadResult<()> {
+fn refuse_given_wheels(base: &Scenario) -> ReadResult<()> {
     const DRAWN: &str = "units draw their wheels by din_grade or iso_class";
     const OWN: &str = "every unit has wheels of its own";
-    let given: Vec<(bool, String, &str)> = match base {
-        ScenarioForm::Gearbox(gearbox) => {
-            let wheels = gearbox.wheels.iter().map(|wheel| {
-                let key = format!("wheel[{}].errors_file", wheel.name);
-                (wheel.profile_errors_mm.is_some(), key, DRAWN)
-            });
-            wheels.chain([(gearbox.wheels_seed.is_some(), "wheels_seed".to_owned(), OWN)]).collect()
-        }
-        ScenarioForm::Pair(pair) => vec![
-            (pair.quality.profile_errors.is_some(), "quality.errors_file".to_owned(), DRAWN),
-            (pair.quality.seed.is_some(), "quality.seed".to_owned(), OWN),
-        ],
-    };
+    let wheels = base.wheels.iter().enumerate().map(|(number, wheel)| {
+        (wheel.profile_errors_mm.is_some(), base.key_of_quality(number, "errors_file"), DRAWN)
+    });
+    let seed = (base.wheels_seed.is_some(), base.wheels_seed_key().to_owned(), OWN);
+    let given: Vec<(bool, String, &str)> = wheels.chain([seed]).collect();
     match given.into_iter().find(|(is_given, ..)| *is_given) {
         Some((_, key, why)) => {
             let problem = format!("cannot be given: {why}");
@@ -210,10 +202,10 @@ impl Plan {
 fn stepped_alone(plan: &Plan) -> Option<String> {
     let sampler = Sampler::new(&plan.content).ok()?;
     let reason = |index: u64| {
-        let ScenarioForm::Pair(pair) = sampler.scenario(&sampler.record(index).ok()?).ok()? else {
-            return None;
-        };
-        meshtone::stages(&pair).ok()?.stepped_alone()
+        let scenario = sampler.scenario(&sampler.record(index).ok()?).ok()?;
+        // Of shafts of beams every one is, as it is meant.
+        scenario.rig()?;
+        meshtone::stages(&scenario).ok()?.stepped_alone()
     };
     let looked_at = plan.records().min(2 * plan.content.classes.len() as u64).min(LOOKED_AT);
     let reasons: Vec<SteppedAlone> = (0..looked_at).filter_map(reason).collect();
@@ -357,9 +349,9 @@ fn refuse_value(
 
 /// Refuses a record that lasts longer than a speed profile or the background, channels over the angle of an unsteady motion, and averages
 /// over too few revolutions.
-fn refuse_length(content: &Content, scenario: &ScenarioForm) -> ReadResult<()> {
+fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
     let Keep { over_angle, duration_s, wheel, .. } = &content.keep;
-    let (operation, is_steady) = (scenario.operation(), scenario.is_steady());
+    let (operation, is_steady) = (&scenario.operation, scenario.operation.is_steady());
     if over_angle.is_some() && !is_steady {
         let problem = "is of a speed and a load that are constant within a record; the scenario's are not";
         let help = "leave it and revolutions out, or the profiles and fluctuations";
@@ -376,13 +368,13 @@ fn refuse_length(content: &Content, scenario: &ScenarioForm) -> ReadResult<()> {
         return Err(error.with_help("shorten it, or leave it out: a record is then as long as that"));
     }
     let turning = Turning::of(scenario)?;
-    let of_wheel = |wheel: &Wheel| &turning.wheels[turning.number(wheel)];
+    let of_wheel = |wheel: &Wheel| &turning.wheels[turning.number(wheel.name())];
     let first = of_wheel(&wheel.all()[0]);
     // The slowest has the fewest revolutions; its first one begins up to a pitch after the record.
     let slowest = wheel.all().iter().map(of_wheel).min_by(|a, b| a.speed_hz.total_cmp(&b.speed_hz));
     let slowest = slowest.unwrap_or(first);
     let before = if turning.enter_together { 0.0 } else { 1.0 / f64::from(slowest.teeth) };
-    let length = scenario.solver().length_key();
+    let length = scenario.solver.length_key();
     let (key, value, change, seconds) = match (over_angle, duration_s) {
         (Some(angle), _) => {
             let revolutions = angle.revolutions as f64;
@@ -413,8 +405,7 @@ fn refuse_length(content: &Content, scenario: &ScenarioForm) -> ReadResult<()> {
 }
 
 /// Refuses a varied key that the model ignores: it would be a label without effect.
-fn refuse_ignored(scenario: &ScenarioForm, values: &[(String, f64)]) -> ReadResult<()> {
-    let ScenarioForm::Pair(scenario) = scenario else { return Ok(()) };
+fn refuse_ignored(scenario: &Scenario, values: &[(String, f64)]) -> ReadResult<()> {
     let mut ignored = scenario.ignored_by_model().into_iter();
     let is_varied = |warning: &ScenarioWarning| values.iter().any(|(key, _)| key.starts_with(&warning.key));
     let refused = ignored.find(is_varied).map(|warning| TomlError::new(warning.key, "", warning.message));

@@ -1,28 +1,15 @@
 //! The faults of a class: damaged teeth and spalls of rolling bearings, and where the scenarios of its records have them.
 
-use meshtone::scenario::{
-    BearingDefect, Fault, Gearbox, GearboxFault, ScenarioError, ScenarioForm, ScenarioNumber,
-    names_or_numbers,
-};
+use meshtone::scenario::{BearingDefect, Fault, Scenario, ScenarioError, ScenarioNumber, names_or_numbers};
 use meshtone_toml::{ReadResult, TomlTable};
 
-use super::Wheel;
 use crate::draw::is_of_plan;
-
-/// Damage to teeth of a wheel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ToothFault {
-    /// The damaged wheel.
-    pub wheel: Wheel,
-    /// What is wrong with which of its teeth; on a gearbox the wheel that it names itself does not count.
-    pub fault: Fault,
-}
 
 /// A fault of a class, before its varied keys are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ClassFault {
     /// Damage to teeth.
-    Teeth(ToothFault),
+    Teeth(Fault),
     /// A spall of a rolling bearing of a gearbox.
     Bearing {
         /// Name of the bearing, as it stands in the brackets of its keys: `input:0`.
@@ -32,40 +19,17 @@ pub enum ClassFault {
     },
 }
 
-impl ToothFault {
-    /// A fault of a pair.
-    pub(crate) fn of_pair(fault: Fault) -> Self {
-        Self { wheel: fault.wheel.into(), fault }
-    }
-
-    /// A fault of a gearbox.
-    pub(crate) fn of_gearbox(fault: GearboxFault) -> Self {
-        Self { wheel: fault.wheel.into(), fault: fault.fault }
-    }
-
-    /// The damaged teeth of a scenario.
-    ///
-    /// # Arguments
-    /// * `scenario` - of a record
-    pub(crate) fn all_of(scenario: &ScenarioForm) -> Vec<Self> {
-        let wheels = Wheel::all(scenario);
-        let of_wheel =
-            |(wheel, fault): (usize, &Fault)| Self { wheel: wheels[wheel].clone(), fault: fault.clone() };
-        scenario.faults().into_iter().map(of_wheel).collect()
-    }
-}
-
 impl ClassFault {
     /// Its kind of damage, as the columns of records have it.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Teeth(of) => of.fault.damage.kind(),
+            Self::Teeth(of) => of.damage.kind(),
             Self::Bearing { defect, .. } => defect.race.kind(),
         }
     }
 
     /// The damage to teeth; none of a bearing's.
-    pub(crate) fn teeth(&self) -> Option<&ToothFault> {
+    pub(crate) fn teeth(&self) -> Option<&Fault> {
         match self {
             Self::Teeth(of) => Some(of),
             Self::Bearing { .. } => None,
@@ -77,25 +41,21 @@ impl ClassFault {
     /// # Arguments
     /// * `table` - the class
     /// * `base` - the scenario whose wheels and bearings are damaged
-    pub(super) fn read_all(table: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<Vec<Self>> {
-        let ScenarioForm::Gearbox(gearbox) = base else {
-            let faults = Fault::list_from_table(table)?.into_iter();
-            return Ok(faults.map(|fault| Self::Teeth(ToothFault::of_pair(fault))).collect());
-        };
-        let read = |of: &TomlTable<'_>| match of.optional("bearing") {
-            Some(_) => Self::of_bearing(of, gearbox),
-            None => Ok(Self::Teeth(ToothFault::of_gearbox(GearboxFault::from_table(of)?))),
+    pub(super) fn read_all(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<Vec<Self>> {
+        let read = |of: &TomlTable<'_>| match (of.optional("bearing"), base.rig()) {
+            (_, Some(_)) => Fault::from_table(of).map(Self::Teeth),
+            (Some(_), None) => Self::of_bearing(of, base),
+            (None, None) => Fault::on_named_wheel(of).map(Self::Teeth),
         };
         let faults: Vec<Self> =
             table.tables("fault")?.into_iter().map(|of| of.read(read)).collect::<Result<_, _>>()?;
-        let wheels = Wheel::all(base);
-        match faults.iter().filter_map(Self::teeth).find(|fault| !wheels.contains(&fault.wheel)) {
+        let names = base.wheel_names();
+        match faults.iter().filter_map(Self::teeth).find(|fault| !names.contains(&fault.wheel.as_str())) {
             None => Ok(faults),
             Some(fault) => {
-                let names: Vec<&str> = wheels.iter().map(Wheel::name).collect();
                 let problem = format!(
                     "is on the wheel {:?}, which does not exist; must be one of {}",
-                    fault.wheel.name(),
+                    fault.wheel,
                     names.join(", ")
                 );
                 Err(table.error("fault", problem))
@@ -104,14 +64,14 @@ impl ClassFault {
     }
 
     /// Reads a spall of a bearing.
-    fn of_bearing(table: &TomlTable<'_>, gearbox: &Gearbox) -> ReadResult<Self> {
+    fn of_bearing(table: &TomlTable<'_>, gearbox: &Scenario) -> ReadResult<Self> {
         let value =
             table.required("bearing", "the name of the damaged bearing: its shaft and place, as input:0")?;
         let (bearing, names) = (value.string()?.to_owned(), bearing_names(gearbox));
         let Some(number) = names.iter().position(|name| *name == bearing) else {
             return Err(value.error(format!("does not exist; must be one of {}", names.join(", "))));
         };
-        if gearbox.bearings[number].element().is_none() {
+        if gearbox.bearings()[number].element().is_none() {
             let help = format!(
                 "set kind = \"ball\" or kind = \"roller\" of bearing[{bearing}] of the base scenario"
             );
@@ -122,9 +82,9 @@ impl ClassFault {
 }
 
 /// The names of a gearbox's bearings in the keys of a plan: shaft and place, or the number where two are at one place.
-fn bearing_names(gearbox: &Gearbox) -> Vec<String> {
+fn bearing_names(gearbox: &Scenario) -> Vec<String> {
     let seats: Vec<Option<String>> =
-        gearbox.bearings.iter().map(|bearing| Some(bearing.seat_name())).collect();
+        gearbox.bearings().iter().map(|bearing| Some(bearing.seat_name())).collect();
     names_or_numbers(&seats)
 }
 
@@ -133,7 +93,7 @@ fn bearing_names(gearbox: &Gearbox) -> Vec<String> {
 /// # Arguments
 /// * `base` - healthy
 /// * `faults` - of the class
-pub(crate) fn with_faults(base: &ScenarioForm, faults: &[ClassFault]) -> ScenarioForm {
+pub(crate) fn with_faults(base: &Scenario, faults: &[ClassFault]) -> Scenario {
     FaultyBase::new(base, faults).scenario
 }
 
@@ -153,7 +113,7 @@ pub(crate) enum FaultPlace {
 #[derive(Debug, Clone)]
 pub(crate) struct FaultyBase {
     /// The scenario.
-    pub scenario: ScenarioForm,
+    pub scenario: Scenario,
     /// Where it has each fault.
     pub places: Vec<FaultPlace>,
     /// The beginnings of each fault's keys in the plan and in the scenario.
@@ -166,20 +126,12 @@ impl FaultyBase {
     /// # Arguments
     /// * `base` - in which no tooth is damaged; spalls that it has are no faults of the class
     /// * `faults` - of the class
-    pub fn new(base: &ScenarioForm, faults: &[ClassFault]) -> Self {
+    pub fn new(base: &Scenario, faults: &[ClassFault]) -> Self {
         let mut scenario = base.clone();
-        let of_teeth = faults.iter().filter_map(ClassFault::teeth);
-        let places: Vec<FaultPlace> = match &mut scenario {
-            ScenarioForm::Pair(pair) => {
-                pair.faults = of_teeth.map(|of| of.fault.clone()).collect();
-                (0..pair.faults.len()).map(FaultPlace::Teeth).collect()
-            }
-            ScenarioForm::Gearbox(gearbox) => {
-                gearbox.faults.clear();
-                let names = bearing_names(gearbox);
-                faults.iter().filter_map(|fault| put_into(gearbox, &names, fault)).collect()
-            }
-        };
+        scenario.faults.clear();
+        let names = bearing_names(&scenario);
+        let places: Vec<FaultPlace> =
+            faults.iter().filter_map(|fault| put_into(&mut scenario, &names, fault)).collect();
         let sections = sections(&scenario, &places);
         Self { scenario, places, sections }
     }
@@ -200,7 +152,7 @@ impl FaultyBase {
     ///
     /// # Errors
     /// Values that the scenario does not allow.
-    pub fn with_values(&self, values: &[(String, f64)]) -> Result<ScenarioForm, ScenarioError> {
+    pub fn with_values(&self, values: &[(String, f64)]) -> Result<Scenario, ScenarioError> {
         let of_scenario = values.iter().filter(|(key, _)| !is_of_plan(key));
         let sections = || self.sections.iter().map(|[plan, scenario]| [plan, scenario]);
         let renamed: Vec<(String, f64)> =
@@ -210,30 +162,29 @@ impl FaultyBase {
     }
 
     /// (-) How severe each fault is in a scenario of [`Self::with_values`]; none where that cannot be.
-    pub fn severities(&self, scenario: &ScenarioForm) -> Option<Vec<f64>> {
+    pub fn severities(&self, scenario: &Scenario) -> Option<Vec<f64>> {
         let of_teeth = scenario.fault_severities().ok()?;
-        let severity = |place: &FaultPlace| match (*place, scenario) {
-            (FaultPlace::Teeth(number), _) => of_teeth.get(number).copied(),
-            (FaultPlace::Spall { bearing, number }, ScenarioForm::Gearbox(gearbox)) => {
-                let parts = gearbox.bearings.get(bearing)?.rolling().ok()??;
+        let severity = |place: &FaultPlace| match *place {
+            FaultPlace::Teeth(number) => of_teeth.get(number).copied(),
+            FaultPlace::Spall { bearing, number } => {
+                let parts = scenario.bearings().get(bearing)?.rolling().ok()??;
                 parts.spalls.get(number).map(|spall| spall.severity)
             }
-            _ => None,
         };
         self.places.iter().map(severity).collect()
     }
 }
 
 /// Puts a fault into a gearbox. Returns where; none of a bearing that there is not.
-fn put_into(gearbox: &mut Gearbox, bearings: &[String], fault: &ClassFault) -> Option<FaultPlace> {
+fn put_into(gearbox: &mut Scenario, bearings: &[String], fault: &ClassFault) -> Option<FaultPlace> {
     match fault {
-        ClassFault::Teeth(ToothFault { wheel, fault }) => {
-            gearbox.faults.push(GearboxFault { wheel: wheel.name().to_owned(), fault: fault.clone() });
+        ClassFault::Teeth(fault) => {
+            gearbox.faults.push(fault.clone());
             Some(FaultPlace::Teeth(gearbox.faults.len() - 1))
         }
         ClassFault::Bearing { bearing, defect } => {
             let bearing = bearings.iter().position(|name| name == bearing)?;
-            let defects = &mut gearbox.bearings[bearing].defect;
+            let defects = &mut gearbox.bearings_mut()[bearing].defect;
             defects.push(defect.clone());
             Some(FaultPlace::Spall { bearing, number: defects.len() - 1 })
         }
@@ -241,18 +192,16 @@ fn put_into(gearbox: &mut Gearbox, bearings: &[String], fault: &ClassFault) -> O
 }
 
 /// The beginnings of the keys of faults in the plan and in the scenario.
-fn sections(scenario: &ScenarioForm, places: &[FaultPlace]) -> Vec<[String; 2]> {
+fn sections(scenario: &Scenario, places: &[FaultPlace]) -> Vec<[String; 2]> {
     let of_list = |number: usize, entries: usize| match entries {
         1 => "fault".to_owned(),
         _ => format!("fault[{number}]"),
     };
-    let of_scenario = |place: &FaultPlace| match (*place, scenario) {
-        (FaultPlace::Spall { bearing, number }, ScenarioForm::Gearbox(gearbox)) => {
-            format!("bearing[{}].defect[{number}]", bearing_names(gearbox)[bearing])
+    let of_scenario = |place: &FaultPlace| match *place {
+        FaultPlace::Spall { bearing, number } => {
+            format!("bearing[{}].defect[{number}]", bearing_names(scenario)[bearing])
         }
-        (FaultPlace::Teeth(number) | FaultPlace::Spall { number, .. }, _) => {
-            of_list(number, scenario.fault_count())
-        }
+        FaultPlace::Teeth(number) => of_list(number, scenario.faults.len()),
     };
     let both = |(number, place)| [of_list(number, places.len()), of_scenario(place)];
     places.iter().enumerate().map(both).collect()

@@ -18,14 +18,14 @@ mod wheel;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone_io::experiment::Tuned;
 use meshtone_toml::{TomlDocument, TomlError};
 
 pub use background::Background;
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
-pub use fault::{ClassFault, ToothFault};
+pub use fault::ClassFault;
 pub(crate) use fault::{FaultPlace, FaultyBase, with_faults};
 pub use growth::{Growth, Law, RunPosition};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
@@ -136,7 +136,7 @@ pub struct Content {
     /// Seed of all draws.
     pub seed: u64,
     /// The healthy scenario that all records have in common.
-    pub base: ScenarioForm,
+    pub base: Scenario,
     /// How many units there are: pairs of wheels, or gearboxes.
     pub units: u64,
     /// How often each unit is mounted: its records are spread evenly over that many mountings.

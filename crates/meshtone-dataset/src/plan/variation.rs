@@ -1,6 +1,6 @@
 //! Ready-made rules: what is not known of a rig.
 
-use meshtone::scenario::{ScenarioForm, ScenarioNumber, log_deviation, split_key};
+use meshtone::scenario::{Scenario, ScenarioNumber, log_deviation, split_key};
 
 use super::{Distribution, Level, Rule};
 use crate::draw::PATH_KEYS;
@@ -35,7 +35,7 @@ impl Variation {
     ///
     /// # Arguments
     /// * `base` - the base scenario
-    pub fn rules(self, base: &ScenarioForm) -> Vec<Rule> {
+    pub fn rules(self, base: &Scenario) -> Vec<Rule> {
         let mut rules: Vec<Rule> = Vec::new();
         let is_unknown_rig = self == Self::UnknownRig;
         let numbers = base.numbers();
@@ -90,7 +90,7 @@ fn one(key: &str, level: Level, distribution: Distribution) -> Rule {
 }
 
 /// A grade, the next finer one and the next coarser one; itself instead of one that the key does not allow, and of 0, which is no grade.
-fn neighbours(base: &ScenarioForm, grade: &ScenarioNumber) -> Distribution {
+fn neighbours(base: &Scenario, grade: &ScenarioNumber) -> Distribution {
     let is_allowed = |value: f64| value >= 1.0 && base.with_numbers(&[(&grade.key, value)]).is_ok();
     let rows: Vec<Vec<f64>> = [-1.0, 0.0, 1.0]
         .map(|step| grade.value + step)
@@ -103,7 +103,7 @@ fn neighbours(base: &ScenarioForm, grade: &ScenarioNumber) -> Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use meshtone::scenario::{Bearing, BearingKind, GearPair, Gearbox, GearboxOperation, Scenario};
+    use meshtone::scenario::{Bearing, BearingKind, GearPair, Operation, Scenario};
 
     /// Springs vary by their stiffness; balls and rollers, which have no such key in effect, vary by their clearance.
     #[test]
@@ -111,8 +111,8 @@ mod tests {
         let mut bearings: Vec<Bearing> = [0.0, 1.0, 1.0].map(|at| Bearing::new("input", at)).to_vec();
         bearings[0].kind = BearingKind::Ball;
         bearings[2].kind = BearingKind::Roller;
-        let operation = GearboxOperation::new(25.0, 10.0);
-        let base = ScenarioForm::Gearbox(Gearbox::new(vec![], vec![], vec![], bearings, operation));
+        let operation = Operation::new(25.0, 10.0);
+        let base = Scenario::of_shafts(vec![], vec![], vec![], bearings, operation);
         let rules = Variation::UnknownRig.rules(&base);
         let of = |end: &str| -> Vec<&str> {
             let keys = rules.iter().map(|rule| rule.keys[0].as_str());
@@ -128,8 +128,7 @@ mod tests {
     #[test]
     fn grades_stay_within_the_range_of_their_key() {
         let of = |key: &str, value: f64| {
-            let base =
-                ScenarioForm::Pair(Scenario::new(GearPair::example()).with_number(key, value).unwrap());
+            let base = Scenario::new(GearPair::example()).with_number(key, value).unwrap();
             let number = base.numbers().into_iter().find(|number| number.key == key).unwrap();
             neighbours(&base, &number).rows().concat()
         };

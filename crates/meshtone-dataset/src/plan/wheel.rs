@@ -1,6 +1,6 @@
 //! Wheels of the base scenario, as a plan names them.
 
-use meshtone::scenario::{ScenarioForm, WheelName};
+use meshtone::scenario::{Scenario, WheelName};
 
 /// A wheel of the base scenario, by its name: `pinion` or `gear` of a pair.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Wheel {
     ///
     /// # Arguments
     /// * `base` - the scenario
-    pub fn all(base: &ScenarioForm) -> Vec<Self> {
+    pub fn all(base: &Scenario) -> Vec<Self> {
         base.wheel_names().into_iter().map(|name| Self(name.to_owned())).collect()
     }
 

@@ -7,7 +7,7 @@ use std::error::Error;
 
 use meshtone::batch::{Observation, SignalRecorder};
 use meshtone::damage::damages_of_fault;
-use meshtone::scenario::{ScenarioWarning, Sensor};
+use meshtone::scenario::{Fault, ScenarioWarning, Sensor};
 use meshtone::sensor::{Channel, ContactFigures, SignalSource};
 use meshtone::signal::{AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
 use meshtone::tuning::DifferenceChain;
@@ -17,7 +17,7 @@ use super::kept::KeptChain;
 use super::window::Window;
 use super::{Record, RecordFault, RecordSpall, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{Content, FaultPlace, FaultyBase, Keep, ToothFault, Wheel};
+use crate::plan::{Content, FaultPlace, FaultyBase, Keep, Wheel};
 
 /// Makes a record of the simulation of a pair.
 pub(super) fn record(
@@ -30,13 +30,13 @@ pub(super) fn record(
 ) -> Result<Record, Box<dyn Error>> {
     let view = View::new(content, window, stages);
     let samples = view.before_linear_sensors(stages, recorder);
-    let parts = stages.scenario.model().teeth_part();
+    let parts = stages.scenario.model.teeth_part();
     let slack = if parts { observation.apart_fraction } else { observation.tension_fraction };
     view.record(content, drawn, &samples, &observation.warnings, vec![slack])
 }
 
-/// Makes a record of the simulation of a gearbox, whose sensors are applied already.
-pub(super) fn gearbox_record(
+/// Makes a record of the simulation of a train, whose sensors are applied already.
+pub(super) fn record_of_train(
     content: &Content,
     drawn: DrawnRecord,
     window: Window,
@@ -112,8 +112,8 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
 /// # Arguments
 /// * `stages` - of the simulation
 /// * `number` - of the fault
-fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(ToothFault, f64)> {
-    let fault = ToothFault::all_of(&stages.scenario).into_iter().nth(number);
+fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(&Fault, f64)> {
+    let fault = stages.scenario.placed_faults().into_iter().nth(number).map(|(_, fault)| fault);
     fault.zip(stages.fault_severities.get(number).copied())
 }
 
@@ -124,11 +124,10 @@ fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(ToothFault, f64)> {
 /// * `bearing` - number of the bearing
 /// * `number` - of the spall among those of its bearing
 fn spall(stages: &Stages, bearing: usize, number: usize) -> Option<RecordSpall> {
-    let gearbox = stages.scenario.gearbox()?;
     let (_, rolling) = stages.bearings.iter().find(|(other, _)| *other == bearing)?;
     let sizes = *rolling.parts.spalls.get(number)?;
     let order = rolling.parts.geometry.defect_orders().of_defect(sizes.place);
-    Some(RecordSpall { bearing: gearbox.bearings[bearing].seat_name(), sizes, order })
+    Some(RecordSpall { bearing: stages.scenario.bearings()[bearing].seat_name(), sizes, order })
 }
 
 /// (rev) Angle of the input at every sample from one on.
@@ -165,7 +164,7 @@ impl<'a> View<'a> {
         let keep = self.keep;
         let simulated = keep.simulated();
         if self.is_steady() {
-            let damping_key = match self.simulated.scenario.pair() {
+            let damping_key = match self.simulated.scenario.rig() {
                 Some(_) => "rig.damping_ratio",
                 None => "damping_ratio of meshes, shafts and bearings",
             };
@@ -199,7 +198,7 @@ impl<'a> View<'a> {
 
     /// How a wheel turns.
     fn wheel(&self, wheel: &Wheel) -> &TurningWheel {
-        &self.window.turning.wheels[self.window.turning.number(wheel)]
+        &self.window.turning.wheels[self.window.turning.number(wheel.name())]
     }
 
     /// The fault at a place; none of a healthy twin.
@@ -209,9 +208,9 @@ impl<'a> View<'a> {
                 let (fault, severity) = fault_of_teeth(self.simulated, number)?;
                 let pairs = self.simulated.pairs.iter();
                 Some(RecordFault {
-                    kind: fault.fault.damage.kind(),
-                    wheel: Some(fault.wheel.name().to_owned()),
-                    tooth: start::tooth(&fault, &self.window.turning, &self.window.counted_from),
+                    kind: fault.damage.kind(),
+                    wheel: Some(fault.wheel.clone()),
+                    tooth: start::tooth(fault, &self.window.turning, &self.window.counted_from),
                     severity,
                     area_percent: (pairs.flat_map(|pair| damages_of_fault(&pair.damaged, number)))
                         .flat_map(|(_, damage)| damage.numbers("area_percent"))
@@ -242,7 +241,7 @@ impl<'a> View<'a> {
             speed_hz: wheel.speed_hz,
             angle_rev: if starts_at_tooth { 0.0 } else { self.angles(number, 1)[0] },
         };
-        let operation = self.simulated.scenario.operation();
+        let operation = &self.simulated.scenario.operation;
         Record {
             drawn,
             faults: places.into_iter().filter_map(|place| self.fault(place)).collect(),
@@ -278,9 +277,10 @@ impl<'a> View<'a> {
 
     /// The sensor of a channel, where its signal is a linear function of its place's motion and not made yet.
     fn linear_sensor(&self, channel: &Channel) -> Option<&'a Sensor> {
-        let pair = self.simulated.scenario.pair()?;
+        // Those of shafts of beams are applied in the simulation.
+        self.simulated.scenario.rig()?;
         let is_of = |sensor: &&Sensor| *channel == Channel::Sensor(sensor.name());
-        pair.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
+        self.simulated.scenario.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
     }
 
     /// The channels at the data set's rate, behind their sensors and the record's path.
@@ -335,7 +335,7 @@ impl<'a> View<'a> {
             return ShaftPhase::constant(self.wheel(wheel).speed_hz, rate_hz, samples);
         }
         // The wheels of a pair turn with the marked one.
-        let number = if turning.enter_together { turning.marked } else { turning.number(wheel) };
+        let number = if turning.enter_together { turning.marked } else { turning.number(wheel.name()) };
         let turns = f64::from(turning.wheels[number].teeth) / f64::from(self.wheel(wheel).teeth);
         let angles = self.angles(number, usize::MAX);
         let step = self.simulated.time.sampling_rate_hz / rate_hz;
@@ -366,7 +366,7 @@ impl<'a> View<'a> {
         }
         let stages = self.simulated;
         // The same settings as those of the signals that the enhancement was tuned with.
-        let angular = DifferenceChain::angular_settings(stages.scenario.model());
+        let angular = DifferenceChain::angular_settings(stages.scenario.model);
         let train = GearTrain::of_stages(stages);
         Ok(self.chain(&train)?.analyse(signal, 0, angular, MeanPart::Removed)?.parts.difference)
     }

@@ -166,17 +166,17 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
 }
 
 impl<F: Fn(usize) -> Option<Role> + Sync> KeepRecords<'_, F> {
-    /// Makes the record of a simulation of a gearbox.
+    /// Makes the record of a simulation of a train.
     ///
     /// # Arguments
     /// * `index` - number of the simulation
     /// * `simulation` - with all its signals
-    pub fn of_gearbox(&self, index: usize, simulation: Simulation) -> Result<Box<Record>, String> {
-        // A gearbox has no twins: nothing of it is enhanced.
+    pub fn of_train(&self, index: usize, simulation: Simulation) -> Result<Box<Record>, String> {
+        // A train has no twins: nothing of it is enhanced.
         let Some(Role::Record(drawn, window)) = (self.role)(index) else {
             return Err("it was not asked for".to_owned());
         };
-        let record = chain::gearbox_record(self.content, drawn, window, simulation);
+        let record = chain::record_of_train(self.content, drawn, window, simulation);
         record.map(Box::new).map_err(|error| error.to_string())
     }
 }

@@ -1,6 +1,6 @@
 //! Records of recordings: the same channels, windows and columns as those of a data set.
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::signal::{AntiAliasing, Edge, GearTrain, ShaftPhase, SignalError};
 
 use super::kept::KeptChain;
@@ -19,7 +19,7 @@ pub struct MachineRecording<'a> {
     /// (S/s) Their sampling rate.
     pub sampling_rate_hz: f64,
     /// The machine: its tooth counts are used, and its values stand in the columns of the plan's keys.
-    pub machine: &'a ScenarioForm,
+    pub machine: &'a Scenario,
     /// Name of the shaft that the phase is of; none for the input.
     pub shaft: Option<&'a str>,
     /// Phase of that shaft.
@@ -57,13 +57,13 @@ pub(crate) fn records(
 ) -> Result<Vec<Record>, String> {
     let keep = &content.keep;
     let in_words = |error: SignalError| error.to_string();
-    let train = GearTrain::of_form(recording.machine).map_err(|error| error.to_string())?;
+    let train = GearTrain::of_scenario(recording.machine).map_err(|error| error.to_string())?;
     let wheels: Vec<usize> =
         keep.wheel.all().iter().map(|wheel| wheel_number(&train, wheel)).collect::<Result<_, _>>()?;
     let reference = train.wheels[wheels[0]].shaft;
     let (channels, analysed) = resampled(content, recording)?;
     let phase = carried(recording, &train, reference, keep.sampling_rate_hz)?;
-    let (operation, rate_hz) = (recording.machine.operation(), keep.sampling_rate_hz);
+    let (operation, rate_hz) = (&recording.machine.operation, keep.sampling_rate_hz);
     let ratio = |shaft: usize| train.speed_ratio(shaft, reference).value();
     let windows = windows(&phase, &length(content, recording.machine, ratio(train.input())));
     if windows.is_empty() {
@@ -175,14 +175,14 @@ fn carried(
 /// * `content` - of the plan
 /// * `machine` - that was recorded
 /// * `input_ratio` - speed of the input over that of the first averaged wheel
-fn length(content: &Content, machine: &ScenarioForm, input_ratio: f64) -> Length {
-    let (keep, solver) = (&content.keep, content.base.solver());
+fn length(content: &Content, machine: &Scenario, input_ratio: f64) -> Length {
+    let (keep, solver) = (&content.keep, &content.base.solver);
     match (keep.over_angle, keep.duration_s.or(solver.duration_s)) {
         (Some(angle), _) => Length::Revolutions(angle.revolutions as f64),
         (None, Some(seconds)) => Length::Samples((seconds * keep.sampling_rate_hz).round() as usize),
         (None, None) => {
             let mut machine = machine.clone();
-            *machine.solver_mut() = solver.clone();
+            machine.solver = solver.clone();
             let time = machine.time_grid();
             let input_rev = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
             Length::Revolutions(input_rev / input_ratio)

@@ -4,7 +4,8 @@ use meshtone::random::{Draws, Purpose};
 
 use super::Turning;
 use crate::draw::DrawnRecord;
-use crate::plan::{Keep, ToothFault};
+use crate::plan::Keep;
+use meshtone::scenario::Fault;
 
 /// Where a record begins, in revolutions of the input.
 pub(super) struct Start {
@@ -30,13 +31,14 @@ pub(super) struct Start {
 pub(super) fn start(
     keep: &Keep,
     drawn: &DrawnRecord,
-    faults: &[ToothFault],
+    faults: &[(usize, &Fault)],
     turning: &Turning,
     is_steady: bool,
 ) -> Start {
     let marked = &turning.wheels[turning.marked];
     let (wheel, passed, turn) = if keep.aligned {
-        let (number, tooth) = faults.first().map_or((turning.marked, 0), |fault| turning.place_of(fault));
+        let (number, tooth) =
+            faults.first().map_or((turning.marked, 0), |(_, fault)| turning.place_of(fault));
         let wheel = &turning.wheels[number];
         let of_marked = f64::from(turning.turns) * f64::from(marked.teeth);
         let pitches = of_marked * wheel.pitches_per_revolution / marked.pitches_per_revolution;
@@ -81,8 +83,8 @@ pub(super) fn counted_from(turning: &Turning, input_rev: f64, tolerance_rev: f64
 /// * `fault` - which
 /// * `turning` - how the wheels turn
 /// * `counted_from` - of [`counted_from`]
-pub(super) fn tooth(fault: &ToothFault, turning: &Turning, counted_from: &[i64]) -> Option<u32> {
-    let index = i64::from(fault.fault.tooth.only()?.saturating_sub(1));
+pub(super) fn tooth(fault: &Fault, turning: &Turning, counted_from: &[i64]) -> Option<u32> {
+    let index = i64::from(fault.tooth.only()?.saturating_sub(1));
     let number = turning.number(&fault.wheel);
     let teeth = i64::from(turning.wheels[number].teeth.max(1));
     Some((index - counted_from[number]).rem_euclid(teeth) as u32 + 1)

@@ -1,9 +1,7 @@
 //! How the wheels of a scenario turn, of a pair and of a gearbox alike.
 
 use meshtone::operation::greatest_common_divisor;
-use meshtone::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioError, ScenarioForm, WheelName};
-
-use crate::plan::{ToothFault, Wheel};
+use meshtone::scenario::{Fault, Layout, Scenario, ScenarioError, WheelName};
 
 /// How the wheels of a scenario turn.
 ///
@@ -46,17 +44,19 @@ impl Turning {
     /// * `scenario` - a valid one
     ///
     /// # Errors
-    /// Those of [`GearboxLayout::new`].
-    pub fn of(scenario: &ScenarioForm) -> Result<Self, ScenarioError> {
-        Ok(match scenario {
-            ScenarioForm::Gearbox(gearbox) => Self::of_gearbox(gearbox, &GearboxLayout::new(gearbox)?),
-            ScenarioForm::Pair(scenario) => Self::of_pair(scenario),
-        })
+    /// Those of [`Scenario::layout`].
+    pub fn of(scenario: &Scenario) -> Result<Self, ScenarioError> {
+        // Only the wheels of a rig enter contact together, and are counted from the gear's first tooth.
+        if scenario.rig().is_some() {
+            Ok(Self::of_pair(scenario))
+        } else {
+            Ok(Self::of_train(scenario, &scenario.layout()?))
+        }
     }
 
     /// How the two wheels of a pair turn.
     pub fn of_pair(scenario: &Scenario) -> Self {
-        let (gears, pinion_hz) = (&scenario.gears, scenario.operation.pinion_speed_hz);
+        let (gears, pinion_hz) = (&scenario.gears(), scenario.operation.pinion_speed_hz);
         let [pinion, gear] = [gears.pinion_teeth, gears.gear_teeth];
         let wheel = |side: WheelName| TurningWheel {
             name: side.name().to_owned(),
@@ -77,9 +77,9 @@ impl Turning {
         }
     }
 
-    /// How the wheels of a gearbox turn.
-    pub fn of_gearbox(gearbox: &Gearbox, layout: &GearboxLayout) -> Self {
-        let input_hz = gearbox.operation.drive.pinion_speed_hz;
+    /// How the wheels of a train turn.
+    pub fn of_train(gearbox: &Scenario, layout: &Layout) -> Self {
+        let input_hz = gearbox.operation.pinion_speed_hz;
         let wheel = |number: usize| {
             let (of, shaft) = (&gearbox.wheels[number], layout.shaft_of_wheel[number]);
             let ratio = layout.ratios[shaft].value().abs();
@@ -109,17 +109,17 @@ impl Turning {
     /// Number of a wheel.
     ///
     /// # Arguments
-    /// * `wheel` - of the scenario
-    pub fn number(&self, wheel: &Wheel) -> usize {
-        self.wheels.iter().position(|known| known.name == wheel.name()).unwrap_or(0)
+    /// * `wheel` - name of a wheel of the scenario
+    pub fn number(&self, wheel: &str) -> usize {
+        self.wheels.iter().position(|known| known.name == wheel).unwrap_or(0)
     }
 
     /// Number of the wheel of a fault and the index of its tooth, of several of the first.
     ///
     /// # Arguments
     /// * `fault` - of a record
-    pub fn place_of(&self, fault: &ToothFault) -> (usize, u64) {
-        (self.number(&fault.wheel), fault.fault.tooth_index() as u64)
+    pub fn place_of(&self, fault: &Fault) -> (usize, u64) {
+        (self.number(&fault.wheel), fault.tooth_index() as u64)
     }
 }
 

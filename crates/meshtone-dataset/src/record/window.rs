@@ -3,13 +3,13 @@
 use std::error::Error;
 
 use meshtone::operation::TimeGrid;
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel;
 use meshtone::signal::{AntiAliasing, SignalError};
 
 use super::{Turning, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{Keep, ToothFault};
+use crate::plan::Keep;
 
 /// (samples) How far a whole number of samples may come out beside it.
 const ROUNDING: f64 = 1e-6;
@@ -40,12 +40,12 @@ pub(crate) struct Window {
 pub(crate) fn simulated_scenario(
     keep: &Keep,
     drawn: &DrawnRecord,
-    mut scenario: ScenarioForm,
-) -> Result<(ScenarioForm, Window), Box<dyn Error>> {
-    let (time, is_steady) = (scenario.time_grid(), scenario.is_steady());
+    mut scenario: Scenario,
+) -> Result<(Scenario, Window), Box<dyn Error>> {
+    let (time, is_steady) = (scenario.time_grid(), scenario.operation.is_steady());
     let turning = Turning::of(&scenario)?;
     let per_revolution = time.samples_per_pinion_revolution as f64;
-    let start = start::start(keep, drawn, &ToothFault::all_of(&scenario), &turning, is_steady);
+    let start = start::start(keep, drawn, &scenario.placed_faults(), &turning, is_steady);
     let margin = if is_steady { margin(keep, drawn, &scenario, &turning, &time)? } else { 0 };
     let mut first = time.first_kept_sample;
     let counted_from = if is_steady {
@@ -61,7 +61,7 @@ pub(crate) fn simulated_scenario(
     };
     let kept = kept_samples(keep, &turning, is_steady, &time);
     let seconds = |samples: usize| samples as f64 * time.step_s();
-    scenario.solver_mut().discard_and_keep(seconds(first), seconds(kept + 2 * margin));
+    scenario.solver.discard_and_keep(seconds(first), seconds(kept + 2 * margin));
     Ok((scenario, Window { turning, counted_from, margin }))
 }
 
@@ -69,17 +69,17 @@ pub(crate) fn simulated_scenario(
 fn margin(
     keep: &Keep,
     drawn: &DrawnRecord,
-    scenario: &ScenarioForm,
+    scenario: &Scenario,
     turning: &Turning,
     time: &TimeGrid,
 ) -> Result<usize, SignalError> {
     let reach = AntiAliasing::steep(time.sampling_rate_hz, keep.sampling_rate_hz)?.reach();
     let simulated = keep.simulated();
     let is_read = |name: &str| simulated.contains(&Channel::Sensor(name.to_owned()));
-    let sensors = scenario.sensors().into_iter().filter(|(name, _)| is_read(name));
+    let sensors = scenario.sensors.iter().filter(|sensor| is_read(&sensor.name()));
     let of_paths = (simulated.iter().filter(|channel| channel.is_acceleration()))
         .map(|channel| path::structure(drawn, &channel.name()).memory_s());
-    let memory_s = sensors.map(|(_, sensor)| sensor.memory_s()).chain(of_paths).fold(0.0, f64::max);
+    let memory_s = sensors.map(|sensor| sensor.memory_s()).chain(of_paths).fold(0.0, f64::max);
     let remembered = (memory_s * time.sampling_rate_hz).ceil() as usize;
     let period = (turning.cycle_rev() * time.samples_per_pinion_revolution as f64).round() as usize;
     // One sample of the record more on either side, as the last one may lie behind the end of its last revolution.
@@ -91,7 +91,7 @@ fn margin(
 fn kept_samples(keep: &Keep, turning: &Turning, is_steady: bool, time: &TimeGrid) -> usize {
     match (keep.over_angle, keep.duration_s) {
         (Some(angle), _) => {
-            let wheel = &turning.wheels[turning.number(&keep.wheel.all()[0])];
+            let wheel = &turning.wheels[turning.number(keep.wheel.all()[0].name())];
             // Its first tooth may come a pitch after the record's start.
             let before = if turning.enter_together { 0.0 } else { 1.0 };
             let pitches = angle.revolutions as f64 * f64::from(wheel.teeth) + before;

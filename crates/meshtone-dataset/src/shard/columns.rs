@@ -1,6 +1,6 @@
 //! The columns of a data set: names, units, meanings, and the cells of each record.
 
-use meshtone::scenario::{DefectPlace, Gearbox, Model, ScenarioForm, WheelName, split_key};
+use meshtone::scenario::{DefectPlace, Scenario, WheelName, split_key};
 use meshtone::signal::Indicators;
 use meshtone_io::table::{CellType, Cells, TableColumn};
 use meshtone_plot::without_unit;
@@ -210,10 +210,7 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
 /// A class may have several faults, and a record of a class with fewer has no values in the columns of the others. The pits' area has a
 /// column only where some class has pits in that place.
 fn of_record(content: &Content) -> Vec<Column> {
-    let unit = match content.base {
-        ScenarioForm::Gearbox(_) => "gearbox with its wheels",
-        _ => "pair of wheels",
-    };
+    let [unit, _] = content.base.nouns();
     let splits: Vec<String> = content.splits.names().into_iter().map(str::to_owned).collect();
     let labels: Vec<String> = content.classes.iter().map(|class| class.label.clone()).collect();
     let mut columns = vec![
@@ -252,7 +249,7 @@ fn of_record(content: &Content) -> Vec<Column> {
         if any(&is_of_bearing) {
             columns.extend(of_spall(number));
         }
-        let has_area = |fault: &ClassFault| fault.teeth().is_some_and(|of| of.fault.damage.has_area());
+        let has_area = |fault: &ClassFault| fault.teeth().is_some_and(|of| of.damage.has_area());
         if any(&has_area) {
             let name = format!("{}_area_percent", name_in_list("fault", number));
             let column = Column::float64(&name, "%", move |r| r.faults.get(number)?.area_percent);
@@ -267,9 +264,9 @@ fn of_record(content: &Content) -> Vec<Column> {
             .of_recording()
             .meaning("sampling rate of the raw channels"),
     ]);
-    match &content.base {
-        ScenarioForm::Gearbox(gearbox) => columns.extend(of_gearbox(gearbox)),
-        _ => columns.extend(of_pair()),
+    match content.base.rig() {
+        Some(_) => columns.extend(of_pair()),
+        None => columns.extend(of_train(&content.base)),
     }
     columns
 }
@@ -292,8 +289,8 @@ fn of_pair() -> [Column; 6] {
     ]
 }
 
-/// Lists the columns of the drive and of the wheels of a gearbox.
-fn of_gearbox(gearbox: &Gearbox) -> Vec<Column> {
+/// Lists the columns of the drive and of the wheels of a train.
+fn of_train(gearbox: &Scenario) -> Vec<Column> {
     let input = Column::float64("input_speed_hz", "Hz", |r| Some(r.input_speed_hz))
         .about(Topic::Drawn)
         .of_recording()
@@ -337,20 +334,20 @@ fn torque(shaft: &str) -> Column {
 }
 
 /// Lists the columns of what the simulation of a record says about itself.
-fn of_simulation(base: &ScenarioForm) -> Vec<Column> {
+fn of_simulation(base: &Scenario) -> Vec<Column> {
     const APART: &str = "fraction of the simulated time with contact loss";
     let slack = |name: &str, mesh: usize, meaning: &str| {
         Column::float64(name, "-", move |r| r.slack_fractions.get(mesh).copied()).meaning(meaning)
     };
-    let slack = match base {
-        ScenarioForm::Gearbox(gearbox) => {
-            let of_mesh = |(number, mesh): (usize, &meshtone::scenario::GearboxMesh)| {
+    let slack = match base.rig() {
+        None => {
+            let of_mesh = |(number, mesh): (usize, &meshtone::scenario::ScenarioMesh)| {
                 let name = of_wheel(&mesh.name(), "apart_fraction");
                 slack(&name, number, &format!("{APART} in mesh {}", mesh.name()))
             };
-            gearbox.meshes.iter().enumerate().map(of_mesh).collect()
+            base.meshes.iter().enumerate().map(of_mesh).collect()
         }
-        ScenarioForm::Pair(pair) if !Model::teeth_part(pair.model) => vec![slack(
+        Some(_) if !base.model.teeth_part() => vec![slack(
             "tension_fraction",
             0,
             "part of the simulated time in which the linear mesh pulls where real teeth would separate",

@@ -12,8 +12,6 @@ pub use metadata::{FailedRecord, ShardMetadata};
 pub(crate) use metadata::{ReadShard, Wanted, read};
 pub(crate) use write::{Item, write, write_table};
 
-use meshtone::scenario::ScenarioForm;
-
 use crate::draw::Sampler;
 use crate::plan::{MOST_SHARD_RECORDS, Plan};
 use crate::record::{kept_bytes, simulated_scenario};
@@ -69,10 +67,7 @@ impl<'a> Shards<'a> {
                     let (simulated, _) = simulated_scenario(&plan.content.keep, &record, scenario).ok()?;
                     let time = simulated.time_grid();
                     let samples = (time.samples - time.first_simulated_sample) as f64;
-                    let sample_s = match simulated {
-                        ScenarioForm::Gearbox(_) => GEARBOX_SAMPLE_S,
-                        _ => PAIR_SAMPLE_S,
-                    };
+                    let sample_s = if simulated.rig().is_some() { PAIR_SAMPLE_S } else { GEARBOX_SAMPLE_S };
                     Some((bytes / SHARD_BYTES).max(samples * sample_s / SHARD_S))
                 })
                 .collect();

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use meshtone::scenario::{DefectPlace, GearboxRig, ScenarioForm, gearbox_template};
+use meshtone::scenario::{DefectPlace, GearboxRig, Scenario, gearbox_template};
 use meshtone::signal::{FrequencyBand, ShaftPhase, squared_envelope_order_spectrum};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::plan::{Plan, gearbox_template as gearbox_plan};
@@ -44,8 +44,8 @@ fn plan(bearing: &str, classes: &str) -> Result<Plan, String> {
     let scenario =
         gearbox_template(Some(GearboxRig::Phm2009Helical)).replace("iso_class = 6", "iso_class = 0");
     let first = format!("[[bearing]]\n{bearing}\n");
-    let mut scenario = ScenarioForm::from_toml(&scenario.replacen("[[bearing]]\n", &first, 1)).unwrap();
-    scenario.solver_mut().sampling_rate_hz = 50_000.0;
+    let mut scenario = Scenario::from_toml(&scenario.replacen("[[bearing]]\n", &first, 1)).unwrap();
+    scenario.solver.sampling_rate_hz = 50_000.0;
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("gearbox.toml"), scenario.to_toml()).unwrap();
     let text = format!(
@@ -153,13 +153,13 @@ choice = [7, 9]
     let sampler = Sampler::new(&plan.content).unwrap();
     for index in 0..6 {
         let record = sampler.record(index).unwrap();
-        let ScenarioForm::Gearbox(gearbox) = sampler.scenario(&record).unwrap() else { panic!() };
-        let [shared, own] = &gearbox.bearings[0].defect[..] else {
-            panic!("{:?}", gearbox.bearings[0].defect)
+        let gearbox = sampler.scenario(&record).unwrap();
+        let [shared, own] = &gearbox.bearings()[0].defect[..] else {
+            panic!("{:?}", gearbox.bearings()[0].defect)
         };
         assert_eq!((shared.race, shared.width_mm), (DefectPlace::Outer, Some(0.5)));
         assert_eq!((own.race, own.severity), (DefectPlace::Element, Some(record.values[0].1)));
-        assert_eq!(gearbox.faults[0].fault.tooth.only().map(f64::from), Some(record.values[1].1));
+        assert_eq!(gearbox.faults[0].tooth.only().map(f64::from), Some(record.values[1].1));
     }
 }
 

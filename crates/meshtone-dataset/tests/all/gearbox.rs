@@ -4,7 +4,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use meshtone::scenario::ScenarioForm;
 use meshtone::signal::{
     AngleZero, AngularSettings, GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainSettings,
     TrainTurning, revolution_average,
@@ -123,7 +122,7 @@ fn the_wheels_are_those_of_the_unit() {
     let mut again = 0;
     for index in 0..plan.records() {
         let drawn = sampler.record(index).unwrap();
-        let ScenarioForm::Gearbox(mut gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
+        let mut gearbox = sampler.scenario(&drawn).unwrap();
         gearbox.faults.clear();
         let stages = meshtone::stages(&gearbox).unwrap();
         let deviations: Vec<_> = (stages.pairs.into_iter())
@@ -160,8 +159,8 @@ fn indicators_are_those_of_a_recording_of_the_channel() {
     let mut largest: f64 = 0.0;
     for row in 0..made.rows.len() {
         let drawn = sampler.record(made.integer("record", row) as u64).unwrap();
-        let ScenarioForm::Gearbox(gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
-        let mut train = GearTrain::of_gearbox(&gearbox).unwrap();
+        let gearbox = sampler.scenario(&drawn).unwrap();
+        let mut train = GearTrain::of_scenario(&gearbox).unwrap();
         for wheel in &mut train.wheels {
             wheel.start_rev = made.number(&format!("{}_angle_rev", wheel.name), row);
         }
@@ -245,20 +244,20 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
     let mut compared = 0;
     for row in 0..made.rows.len() {
         let drawn = sampler.record(made.integer("record", row) as u64).unwrap();
-        let ScenarioForm::Gearbox(mut gearbox) = sampler.scenario(&drawn).unwrap() else { panic!() };
+        let mut gearbox = sampler.scenario(&drawn).unwrap();
         let Some(tooth) = made.tooth(row) else { continue };
-        let of_scenario = gearbox.faults[0].fault.tooth.only().unwrap();
+        let of_scenario = gearbox.faults[0].tooth.only().unwrap();
         let wheel = made.text("fault_wheel", row);
         let number = WHEELS.iter().position(|name| *name == wheel).unwrap();
         let teeth = gearbox.wheels[number].teeth;
         // A cycle of the train, 15 revolutions of the input, after what is left of the wheel's first revolution.
         let speed_hz = made.number(&format!("{wheel}_speed_hz"), row);
-        gearbox.solver.settings.duration_s = Some(0.5005 + 1.0 / speed_hz);
+        gearbox.solver.duration_s = Some(0.5005 + 1.0 / speed_hz);
         let simulation = meshtone::simulate(&gearbox).unwrap();
         let channels = &simulation.channels;
         let signal = channels.signal("output_1_vertical_g").unwrap();
         let train = GearTrain::of_layout(&gearbox, &simulation.stages.layout);
-        let form = ScenarioForm::Gearbox(gearbox);
+        let form = gearbox;
         let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.len()).unwrap();
         let sampling_rate_hz = channels.sampling_rate_hz;
         let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };

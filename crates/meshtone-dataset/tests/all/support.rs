@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use meshtone::scenario::{Scenario, ScenarioForm};
+use meshtone::scenario::Scenario;
 use meshtone_dataset::DatasetError;
 use meshtone_dataset::draw::{DrawnRecord, Sampler};
 use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
@@ -27,7 +27,7 @@ points_per_tooth = 1000
 [scenario.operation]
 pinion_speed_hz = 40.0
 brake_torque_nm = 200.0
-[scenario.quality]
+[scenario.quality()]
 din_grade = 7
 [scenario.solver]
 sampling_rate_hz = 1e4
@@ -119,8 +119,5 @@ pub fn differing(a: &BTreeMap<String, Vec<u8>>, b: &BTreeMap<String, Vec<u8>>) -
 
 /// The scenario of a record of a pair.
 pub fn pair_of(sampler: &Sampler, record: &DrawnRecord) -> Scenario {
-    match sampler.scenario(record).unwrap() {
-        ScenarioForm::Pair(scenario) => scenario,
-        other => panic!("{other:?}"),
-    }
+    sampler.scenario(record).unwrap()
 }

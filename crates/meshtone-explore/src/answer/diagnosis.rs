@@ -3,10 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use meshtone::batch::Control;
-use meshtone::scenario::{Scenario, ScenarioForm};
-use meshtone::signal::{
-    GearTrain, MeshTone, ShaftPhase, SimulatedShafts, StatedTurning, TrainRecording, TrainTurning,
-};
+use meshtone::scenario::Scenario;
+use meshtone::signal::{GearTrain, MeshTone, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
 use meshtone_diagnose::{
     Answer, AnswerInWords, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question,
     REFINED_RECORDS, ReferenceStore, diagnose, refine,
@@ -93,7 +91,7 @@ pub fn diagnosis(
         healthy.push(observed);
         seen.extend(warnings);
     }
-    let prior = Prior::new(&ScenarioForm::Pair(rig.clone()))?;
+    let prior = Prior::new(rig)?;
     let asked = Question { now: &[now], healthy: &healthy };
     asked.check(&prior)?;
     seen.extend(asked.warnings(&prior));
@@ -160,18 +158,18 @@ fn of_recording(
         is_there
     });
     if let (Some(simulated), None) = (&simulated, tachometer) {
-        let shafts = SimulatedShafts::new(simulated, recording.start_s, recording.len());
-        let (train, turning) = (GearTrain::of_pair(simulated), TrainTurning::SimulatedPair(shafts));
+        let turning = TrainTurning::of_simulated(simulated, recording.start_s, recording.len())?;
+        let train = GearTrain::of_scenario(simulated)?;
         let recording =
             TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
         return Ok((Observation::of_recording(&recording, None)?, doubts));
     }
-    let train = GearTrain::of_pair(rig);
+    let train = GearTrain::of_scenario(rig)?;
     let (stated, phase) = match tachometer {
         Some(name) => by_tachometer(recording, name)?,
         None => {
             let nominal_hz = rig.operation.pinion_speed_hz;
-            let tone = MeshTone::new(rig.gears.pinion_teeth, nominal_hz);
+            let tone = MeshTone::new(rig.wheels[0].teeth, nominal_hz);
             (StatedTurning::MeshTone { nominal_hz }, ShaftPhase::from_mesh_tone(samples, rate_hz, &tone)?)
         }
     };

@@ -1,6 +1,6 @@
 //! From a gearbox to everything that its page draws.
 
-use meshtone::scenario::{Gearbox, ScenarioForm, ScenarioWarning};
+use meshtone::scenario::{Scenario, ScenarioWarning};
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
     AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainTurning, revolution_average,
@@ -24,7 +24,7 @@ const SENT_HARMONICS: f64 = 8.0;
 
 /// Everything that the page draws of a gearbox.
 pub struct GearboxState {
-    gearbox: Gearbox,
+    gearbox: Scenario,
     options: AnswerOptions,
     warnings: Vec<ScenarioWarning>,
     simulation: Simulation,
@@ -49,14 +49,14 @@ pub struct GearboxState {
 /// The scenario cannot be simulated ([`meshtone::simulate`]), a simulation needs more memory than one for the page may, or nobody waits for
 /// the answer any longer.
 pub fn gearbox_answer(
-    gearbox: &Gearbox,
+    gearbox: &Scenario,
     options: &AnswerOptions,
     is_wanted: &dyn Fn() -> bool,
 ) -> Result<GearboxState, Refusal> {
     let mut simulated = gearbox.clone();
     let kept_s = simulated.time_grid().kept_samples() as f64 * simulated.time_grid().step_s();
     if options.detail == Detail::Coarse && gearbox.operation.is_steady() && kept_s > SHORT_S {
-        let settings = &mut simulated.solver.settings;
+        let settings = &mut simulated.solver;
         settings.discard_and_keep(gearbox.time_grid().kept_from_s(), SHORT_S);
         settings.settle_tolerance = settings.settle_tolerance.max(SHORT_TOLERANCE);
     }
@@ -93,9 +93,9 @@ pub fn gearbox_answer(
 }
 
 /// The rolling bearing of a name; where there is none of it the first with a defect, or else the first.
-fn looked_at(gearbox: &Gearbox, simulation: &Simulation, name: Option<&str>) -> Option<LookedAtBearing> {
+fn looked_at(gearbox: &Scenario, simulation: &Simulation, name: Option<&str>) -> Option<LookedAtBearing> {
     let Simulation { stages, .. } = simulation;
-    let (bearings, rolling) = (&gearbox.bearings, &stages.bearings);
+    let (bearings, rolling) = (gearbox.bearings(), &stages.bearings);
     let named = rolling.iter().find(|(number, _)| Some(bearings[*number].seat_name().as_str()) == name);
     let damaged = || rolling.iter().find(|(_, bearing)| !bearing.parts.spalls.is_empty());
     let (number, bearing) = named.or_else(damaged).or(rolling.first())?;
@@ -109,7 +109,7 @@ fn looked_at(gearbox: &Gearbox, simulation: &Simulation, name: Option<&str>) -> 
 ///
 /// # Arguments
 /// * `gearbox` - the whole
-pub fn gearbox_sections_json(gearbox: &Gearbox) -> Value {
+pub fn gearbox_sections_json(gearbox: &Scenario) -> Value {
     let table: Result<toml::Table, _> = gearbox.to_toml().parse();
     table.ok().and_then(|table| serde_json::to_value(table).ok()).unwrap_or_default()
 }
@@ -132,8 +132,7 @@ impl GearboxState {
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
         let force = channels.of(SignalSource::MeshForce(self.mesh));
         let train = GearTrain::of_stages(stages);
-        let form = ScenarioForm::Gearbox(self.gearbox.clone());
-        let turning = TrainTurning::of_simulated(&form, channels.start_s, signal.values.len());
+        let turning = TrainTurning::of_simulated(&self.gearbox, channels.start_s, signal.values.len());
         let recording = || {
             let turning = turning.as_ref().map_err(Clone::clone)?;
             let sampling_rate_hz = channels.sampling_rate_hz;
@@ -229,7 +228,7 @@ impl GearboxState {
                 "sense": layout.ratios[number].value().signum(),
             })
         };
-        let wheel = |(number, wheel): (usize, &meshtone::scenario::GearboxWheel)| {
+        let wheel = |(number, wheel): (usize, &meshtone::scenario::ScenarioWheel)| {
             let of = layout.shaft_of_wheel[number];
             let module_mm = layout
                 .mesh_of(number)
@@ -237,7 +236,7 @@ impl GearboxState {
             json!({
                 "name": wheel.name,
                 "shaft": of,
-                "z_mm": wheel.at * gearbox.shafts[of].length_mm,
+                "z_mm": wheel.at * gearbox.shafts()[of].length_mm,
                 "pitch_radius_mm": module_mm * f64::from(wheel.teeth) / 2.0,
                 "face_width_mm": wheel.face_width_mm,
                 "teeth": wheel.teeth,
@@ -249,16 +248,16 @@ impl GearboxState {
             json!({
                 "name": bearing.seat_name(),
                 "shaft": shaft,
-                "z_mm": bearing.at * gearbox.shafts[shaft].length_mm,
+                "z_mm": bearing.at * gearbox.shafts()[shaft].length_mm,
                 "rolling": bearing.element().is_some(),
                 "damaged": !bearing.defect.is_empty(),
             })
         };
         json!({
-            "shafts": gearbox.shafts.iter().enumerate().map(shaft).collect::<Vec<_>>(),
+            "shafts": gearbox.shafts().iter().enumerate().map(shaft).collect::<Vec<_>>(),
             "wheels": gearbox.wheels.iter().enumerate().map(wheel).collect::<Vec<_>>(),
             "meshes": tones.meshes.iter().enumerate().map(mesh).collect::<Vec<_>>(),
-            "bearings": gearbox.bearings.iter().zip(&layout.shaft_of_bearing).map(bearing).collect::<Vec<_>>(),
+            "bearings": gearbox.bearings().iter().zip(&layout.shaft_of_bearing).map(bearing).collect::<Vec<_>>(),
         })
     }
 }

@@ -98,7 +98,7 @@ impl Tones {
     /// The tones of a machine at its nominal speed.
     pub fn of(stages: &Stages) -> Self {
         let train = GearTrain::of_stages(stages);
-        let input_hz = stages.scenario.operation().pinion_speed_hz;
+        let input_hz = stages.scenario.operation.pinion_speed_hz;
         let speed_hz = |shaft: usize| train.shafts[shaft].speed_ratio.value() * input_hz;
         let mesh = |(number, wheels): (usize, &[usize; 2])| {
             let shafts = wheels.map(|wheel| train.wheels[wheel].shaft);

@@ -64,7 +64,7 @@ const SHORT_TOLERANCE: f64 = 1e-3;
 /// speed varies, or the published model simulates all of it, nothing is gained and the scenario stays as it is.
 fn shortened(scenario: &Scenario) -> Scenario {
     let mut short = scenario.clone();
-    let gears = &scenario.gears;
+    let gears = &scenario.gears();
     let revolutions = SHORT_REVOLUTIONS * f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth);
     let kept_s = revolutions / scenario.operation.pinion_speed_hz;
     let time = scenario.time_grid();
@@ -208,7 +208,7 @@ fn damaged_numbers(stages: &Stages, wheel: WheelName) -> Vec<usize> {
 fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
     let Simulation { stages, channels, .. } = simulation;
     let (scenario, gears) = (&stages.scenario, &stages.layout.gears[0]);
-    let mesh_hz = scenario.operation().pinion_speed_hz * f64::from(gears.pinion_teeth);
+    let mesh_hz = scenario.operation.pinion_speed_hz * f64::from(gears.pinion_teeth);
     let frequencies = stages.natural_frequencies_hz();
     // Rigid rotation has none.
     let lowest = frequencies.into_iter().find(|&frequency| frequency > 1.0);
@@ -233,8 +233,8 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
             .map(|contact| ("contact loss", 100.0 * contact.apart_fraction, "% of the time")),
     );
     figures.extend(lowest.map(|frequency| ("lowest natural frequency", frequency, "Hz")));
-    if let Some(pair) = scenario.pair().filter(|pair| pair.model == Model::Contact) {
-        let [in_phase, out_of_phase] = pair.rig.support.frequencies_hz();
+    if let Some(rig) = scenario.rig().filter(|_| scenario.model == Model::Contact) {
+        let [in_phase, out_of_phase] = rig.support.frequencies_hz();
         figures.extend([("support modes: in phase", in_phase, "Hz"), ("out of phase", out_of_phase, "Hz")]);
     }
     figures.push(("sampling rate", channels.sampling_rate_hz, "S/s"));
@@ -258,7 +258,7 @@ impl State {
             "scenario": serde_json::to_value(&self.scenario).unwrap_or_default(),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
             "severities": stages.fault_severities,
-            "sized_faults": stages.scenario.pair().map(sized_faults),
+            "sized_faults": sized_faults(&stages.scenario),
             "figures": self.figures,
             "teeth": self.teeth.json(&mut packet),
             "mesh": self.mesh.json(&mut packet),

@@ -168,7 +168,7 @@ fn of_measurement(
     scenario: &Scenario,
 ) -> Result<(&'static str, [WheelSignals; 2], Vec<SignalWarning>), Refusal> {
     let (rate_hz, samples) = (recording.sampling_rate_hz, recording.len());
-    let [pinion_teeth, gear_teeth] = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+    let [pinion_teeth, gear_teeth] = [scenario.gears().pinion_teeth, scenario.gears().gear_teeth];
     let speed_hz = scenario.operation.pinion_speed_hz;
     let (name, (turning, phase)) = match &question.tachometer {
         Some(name) => ("tachometer", by_tachometer(recording, name)?),

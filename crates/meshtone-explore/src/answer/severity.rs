@@ -41,7 +41,7 @@ pub fn severity_curve(
     })?;
     let short = Detail::Coarse.of(scenario);
     short.validate_within(memory_limit())?;
-    let wheel = chosen_fault.wheel;
+    let wheel = chosen_fault.side();
     let severities = severities(chosen_fault.damage.kind());
     let at = |severity: &f64| {
         let mut other = short.clone();

@@ -5,16 +5,16 @@ use axum::http::StatusCode;
 use axum::routing::get;
 
 use super::guard::respond;
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 
 /// One row a file: its path, its kind, where it lies.
 macro_rules! files {
     ($($path:literal $media_type:literal $file:literal;)+) => {
         /// The page of a scenario and its parts.
-        pub(super) fn router(start: &ScenarioForm) -> Router {
-            let page = match start {
-                ScenarioForm::Gearbox(_) => &include_bytes!("../page/gearbox.html")[..],
-                _ => &include_bytes!("../page/index.html")[..],
+        pub(super) fn router(start: &Scenario) -> Router {
+            let page = match start.rig() {
+                Some(_) => &include_bytes!("../page/index.html")[..],
+                None => &include_bytes!("../page/gearbox.html")[..],
             };
             let page = move || async move { respond(StatusCode::OK, "text/html; charset=utf-8", page) };
             Router::new().route("/", get(page))$(.route($path, get(|| async {

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use axum::Router;
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone_diagnose::ReferenceStore;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, oneshot};
@@ -42,7 +42,7 @@ pub enum Embedding {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServerSettings {
     /// The scenario that the page opens with: a pair or a gearbox, which have pages of their own.
-    pub scenario: ScenarioForm,
+    pub scenario: Scenario,
     /// The port; 0 for any that is free.
     pub port: u16,
     /// Whether a notebook may show it.
@@ -65,9 +65,9 @@ pub struct Server {
 #[derive(Debug)]
 struct Shared {
     /// Scenario with which the page opens.
-    start: ScenarioForm,
+    start: Scenario,
     /// The scenario on the page: the last scenario that was answered in full.
-    current: Mutex<ScenarioForm>,
+    current: Mutex<Scenario>,
     /// The newest request of each page.
     latest: NewestRequests,
     /// Room for computations.
@@ -90,10 +90,10 @@ impl Server {
     /// The port cannot be had; no random numbers for the address; no thread.
     ///
     /// ```
-    /// use meshtone::scenario::{Scenario, ScenarioForm};
+    /// use meshtone::scenario::{Scenario};
     /// use meshtone_explore::{Embedding, Server, ServerSettings, presets};
     ///
-    /// let scenario = ScenarioForm::Pair(Scenario::from_toml(presets()[0].toml)?);
+    /// let scenario = Scenario::from_toml(presets()[0].toml)?;
     /// let settings =
     ///     ServerSettings { scenario: scenario.clone(), port: 0, embedding: Embedding::Refused, reference: None };
     /// let server = Server::start(settings)?;
@@ -143,7 +143,7 @@ impl Server {
     }
 
     /// The scenario on the page: the last scenario that it was answered in full, or the one that it opens with.
-    pub fn scenario(&self) -> ScenarioForm {
+    pub fn scenario(&self) -> Scenario {
         self.shared.current.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 

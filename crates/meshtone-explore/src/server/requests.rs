@@ -8,7 +8,7 @@ use axum::extract::{DefaultBodyLimit, Path, State as Shares};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use meshtone::scenario::{Scenario, ScenarioForm};
+use meshtone::scenario::Scenario;
 use meshtone_diagnose::ReferenceStore;
 use serde_json::{Map, Value, json};
 
@@ -146,20 +146,17 @@ fn too_long() -> Refusal {
 
 /// Answers with what the page is made from, and the scenario with which it opens.
 async fn start(Shares(shared): Shares<Arc<Shared>>) -> Response {
-    let said = match &shared.start {
-        ScenarioForm::Gearbox(gearbox) => {
-            let mut said = gearbox_controls();
-            said["scenario"] = gearbox_sections_json(gearbox);
-            said
-        }
-        ScenarioForm::Pair(pair) => {
-            let mut said = controls();
-            said["scenario"] = Value::Object(without_defaults(pair));
-            said["records"] =
-                json!([ReferenceStore::BATCH, ReferenceStore::USUAL_RECORDS, ReferenceStore::MOST_RECORDS]);
-            said
-        }
-    };
+    let scenario = &shared.start;
+    let mut said;
+    if scenario.rig().is_some() {
+        said = controls();
+        said["scenario"] = Value::Object(without_defaults(scenario));
+        said["records"] =
+            json!([ReferenceStore::BATCH, ReferenceStore::USUAL_RECORDS, ReferenceStore::MOST_RECORDS]);
+    } else {
+        said = gearbox_controls();
+        said["scenario"] = gearbox_sections_json(scenario);
+    }
     respond(StatusCode::OK, JSON, said.to_string())
 }
 
@@ -169,8 +166,7 @@ async fn of_answer(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<R
     let bytes = compute(&shared, "answer", &body, move |asked, scenario, turn| {
         let state = answer(scenario, &asked.options, &|| turn.is_wanted())?;
         if asked.options.detail == Detail::Full {
-            *sharing.current.lock().unwrap_or_else(PoisonError::into_inner) =
-                ScenarioForm::Pair(scenario.clone());
+            *sharing.current.lock().unwrap_or_else(PoisonError::into_inner) = scenario.clone();
         }
         let mut more = Map::from_iter([
             ("number".to_owned(), asked.number.into()),
@@ -190,8 +186,7 @@ async fn of_gearbox(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<
     let bytes = compute_of(&shared, "answer", &body, question::gearbox, move |asked, gearbox, turn| {
         let state = gearbox_answer(gearbox, &asked.options, &|| turn.is_wanted())?;
         if asked.options.detail == Detail::Full {
-            let form = ScenarioForm::Gearbox(gearbox.clone());
-            *sharing.current.lock().unwrap_or_else(PoisonError::into_inner) = form;
+            *sharing.current.lock().unwrap_or_else(PoisonError::into_inner) = gearbox.clone();
         }
         Ok(state.packet(Map::from_iter([("number".to_owned(), asked.number.into())])))
     });

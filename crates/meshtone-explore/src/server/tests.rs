@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use meshtone::damage::damage_kinds;
-use meshtone::scenario::{Fault, GearPair, Gearbox, Model, Scenario, gearbox_template};
+use meshtone::scenario::{Fault, GearPair, Model, Scenario, gearbox_template};
 use serde_json::{Value, json};
 
 use super::*;
@@ -28,12 +28,7 @@ fn server() -> Server {
 }
 
 fn server_with(reference: Option<PathBuf>) -> Server {
-    let settings = ServerSettings {
-        scenario: ScenarioForm::Pair(fast()),
-        port: 0,
-        embedding: Embedding::Refused,
-        reference,
-    };
+    let settings = ServerSettings { scenario: fast(), port: 0, embedding: Embedding::Refused, reference };
     Server::start(settings).unwrap()
 }
 
@@ -125,11 +120,11 @@ fn an_answer_has_all_that_is_drawn() {
     assert!(numbers > 1000);
     // It is its own healthy gear.
     assert_eq!(said["healthy"][1], said["wheels"][1]["indicators"]);
-    assert_eq!(server.scenario(), ScenarioForm::Pair(scenario.clone()));
+    assert_eq!(server.scenario(), scenario.clone());
     let coarse = json!({ "page": "one", "number": 2, "detail": "coarse", "scenario": fast() });
     let (said, _) = server.post("answer", &coarse).packet();
     assert!(said["wheels"][1]["revolutions"].as_u64() <= Some(3));
-    assert_eq!(server.scenario(), ScenarioForm::Pair(scenario.clone()));
+    assert_eq!(server.scenario(), scenario.clone());
 }
 
 #[test]
@@ -236,7 +231,7 @@ fn a_recording_goes_through_the_same_chain() {
 fn rig() -> Scenario {
     let mut rig = fast();
     rig.model = Model::Linear;
-    rig.quality.din_grade = 6;
+    rig.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 6);
     rig.solver.sampling_rate_hz = 8000.0;
     rig
 }
@@ -310,7 +305,7 @@ fn a_recording_is_diagnosed_with_progress() {
 
     // What cannot be compared is refused before anything is simulated.
     let mut other = rig();
-    other.gears.gear_teeth = 60;
+    other.wheels[1].teeth = 60;
     let refused = ask("other.parquet", &simulated(&server, &other), None);
     assert_eq!(refused.len(), 1, "{refused:?}");
     assert!(refused[0]["error"]["text"].as_str().unwrap().contains("teeth"), "{refused:?}");
@@ -357,10 +352,10 @@ fn geared(defect: &str) -> String {
     let bearing =
         format!("[[bearing]]\nshaft = \"input\"\nat = 0.0\nkind = \"ball\"\nname = \"ER-10K\"\n{defect}");
     let template = gearbox_template(None).replace("[[bearing]]\nshaft = \"input\"\nat = 0.0\n", &bearing);
-    let mut gearbox = Gearbox::from_toml(&template).unwrap();
+    let mut gearbox = Scenario::from_toml(&template).unwrap();
     gearbox.faults.clear();
-    gearbox.solver.settings.sampling_rate_hz = 2e4;
-    gearbox.solver.settings.duration_s = Some(2.0);
+    gearbox.solver.sampling_rate_hz = 2e4;
+    gearbox.solver.duration_s = Some(2.0);
     gearbox.to_toml()
 }
 

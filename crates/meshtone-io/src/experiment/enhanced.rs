@@ -51,7 +51,7 @@ pub fn enhance(
 ) -> Result<EnhancedDraws, HybridError> {
     let healthy = scenario.clone().with_faults(Vec::new());
     let both = if scenario.faults.is_empty() { vec![healthy] } else { vec![healthy, scenario.clone()] };
-    let mut signals = difference_signals(both, &tuned.chain(&scenario.gears))?;
+    let mut signals = difference_signals(both, &tuned.chain(&scenario.gears()))?;
     // A healthy signal does not show where a fault would be.
     let centre_rev = match signals.len() {
         1 => tuned.centre_rev,

@@ -114,7 +114,7 @@ impl Reading<'_> {
 
     fn scenario(&mut self, root: &TomlTable<'_>) -> ReadResult<Scenario> {
         let named = root.required("scenario", "the scenario file that all cases have in common")?;
-        let mut error = match ScenarioFile::read(&self.directory().join(named.string()?)) {
+        let mut error = match ScenarioFile::read_pair(&self.directory().join(named.string()?)) {
             Ok(file) => {
                 self.sources.extend(file.sources().map(Path::to_path_buf));
                 return Ok(file.scenario);
@@ -175,7 +175,7 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
         table.read_optional("channel", |value| read_channel(value, &accelerations(&base.sensors)))?;
     let rate = table.required("sampling_rate_hz", "(S/s) the sampling rate of the rig's recordings")?;
     let sampling_rate_hz = rate.number()?;
-    let mesh_hz = base.operation.pinion_speed_hz * f64::from(base.gears.pinion_teeth);
+    let mesh_hz = base.operation.pinion_speed_hz * f64::from(base.gears().pinion_teeth);
     if sampling_rate_hz <= 2.0 * mesh_hz {
         let problem = format!("must be more than twice the mesh frequency of {mesh_hz} Hz");
         let error = rate.error(problem);
@@ -194,7 +194,7 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
         return Err(rate.error(problem).with_help(help));
     }
     let wheel = table.read_optional("wheel", read_wheel)?.unwrap_or_default();
-    let teeth = base.gears.teeth(wheel) as usize;
+    let teeth = base.gears().teeth(wheel) as usize;
     let default = SeparationSettings::new(teeth);
     let most_sidebands = (teeth as u64).saturating_sub(2) / 2;
     let count = |key, most: u64| table.read_optional(key, |value| value.integer(0..=most));

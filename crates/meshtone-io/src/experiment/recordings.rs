@@ -47,7 +47,7 @@ pub(super) fn differences(
     let tachometer = if let Phase::Tachometer { channel, .. } = known { Some(channel) } else { None };
     let channels = [Some(channel), tachometer].into_iter().flatten().map(ColumnChoice::parse).collect();
     let options = RecordingOptions { channels, sampling_rate_hz: rate, ..RecordingOptions::default() };
-    let teeth = wanted.base.gears.teeth(wanted.chain.wheel);
+    let teeth = wanted.base.gears().teeth(wanted.chain.wheel);
     let settings = settings(wanted)?;
     let mut warnings = Warnings::default();
     let mut all = Vec::new();
@@ -127,7 +127,7 @@ impl Warnings {
             self.add(WarningKind::Speed, file, other_speed(wanted, turned / simulated));
             return;
         }
-        let gears = &wanted.base.gears;
+        let gears = &wanted.base.gears();
         let stated = StatedFacts {
             teeth: gears.teeth(wheel),
             mate_teeth: Some(gears.teeth(wheel.mate())),
@@ -171,7 +171,7 @@ impl Warnings {
 
 /// (Hz) Speed of the shaft of a wheel in the simulations.
 fn nominal_speed_hz(wanted: &Wanted, wheel: WheelName) -> f64 {
-    let gears = &wanted.base.gears;
+    let gears = &wanted.base.gears();
     wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.teeth(wheel))
 }
 
@@ -235,7 +235,7 @@ fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
 /// Phase of the shaft over whose revolutions is averaged.
 fn shaft_phase(recording: &Recording, phase: &Phase, wanted: &Wanted) -> Result<ShaftPhase, SignalError> {
     let rate = recording.sampling_rate_hz;
-    let gears = &wanted.base.gears;
+    let gears = &wanted.base.gears();
     let (of, phase) = match *phase {
         Phase::Constant { gear_shaft_hz } => {
             (WheelName::Gear, ShaftPhase::constant(gear_shaft_hz, rate, recording.len())?)

@@ -44,7 +44,7 @@ impl Tuned {
     pub fn of(experiment: &Experiment, result: &ExperimentResult) -> Self {
         let values = result.with_keys.as_ref().map_or(&[][..], |keys| &keys.values);
         let wheel = experiment.chain.wheel;
-        let teeth = experiment.base.gears.teeth(wheel) as usize;
+        let teeth = experiment.base.gears().teeth(wheel) as usize;
         let separation =
             experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(teeth));
         Self {

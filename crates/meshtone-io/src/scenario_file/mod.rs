@@ -68,7 +68,7 @@ pub enum ReadScenarioError {
 /// let directory = tempfile::tempdir()?;
 /// let path = directory.path().join("healthy.toml");
 /// std::fs::write(&path, template("healthy").unwrap())?;
-/// assert_eq!(read_scenario(&path)?.gears.pinion_teeth, 17);
+/// assert_eq!(read_scenario(&path)?.wheels[0].teeth, 17);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_scenario(path: &Path) -> Result<Scenario, ReadScenarioError> {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{Scenario, ScenarioError, ScenarioForm};
+use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError, ScenarioFiles};
 use meshtone_toml::TomlDocument;
 
 use super::{FileKind, FilesBeside, ReadScenarioError};
@@ -11,31 +11,19 @@ use crate::memory;
 
 /// A scenario file that has been read.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ScenarioFile<S = Scenario> {
+pub struct ScenarioFile {
     /// Where it was read from.
     pub path: PathBuf,
     /// Its text.
     pub text: String,
     /// What it says.
-    pub scenario: S,
+    pub scenario: Scenario,
     /// The files that it names.
     pub named_files: Vec<PathBuf>,
 }
 
-impl ScenarioFile<ScenarioForm> {
-    /// Reads and validates a scenario file of either form: one pair, or a gearbox.
-    ///
-    /// # Arguments
-    /// * `path` - the scenario file; names of other files in it are relative to its directory
-    ///
-    /// # Errors
-    /// Those of [`super::read_scenario`].
-    pub fn read_form(path: &Path) -> Result<Self, ReadScenarioError> {
-        Self::read_as(path, read_text(path)?, |text, files| {
-            ScenarioForm::from_toml_within(text, files, memory::limit())
-        })
-    }
-}
+/// A reader of a scenario's text.
+type ReadText = fn(&str, &dyn ScenarioFiles, MemoryLimit) -> Result<Scenario, ScenarioError>;
 
 impl ScenarioFile {
     /// Reads and validates a scenario file, and the files that it names, within the [limit](memory::limit) of memory.
@@ -46,22 +34,26 @@ impl ScenarioFile {
     /// # Errors
     /// Those of [`super::read_scenario`].
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
-        Self::read_as(path, read_text(path)?, |text, files| {
-            Scenario::from_toml_within(text, files, memory::limit())
-        })
+        Self::read_as(path, Scenario::from_toml_within)
     }
-}
 
-impl<S> ScenarioFile<S> {
-    /// Reads the text of a file with one of the readers of scenarios.
-    fn read_as(
-        path: &Path,
-        text: String,
-        read: impl FnOnce(&str, &FilesBeside) -> Result<S, ScenarioError>,
-    ) -> Result<Self, ReadScenarioError> {
+    /// Does what [`Self::read`] does, where one pair is expected.
+    ///
+    /// # Arguments
+    /// * `path` - the scenario file
+    ///
+    /// # Errors
+    /// Those of [`Self::read`]; a gearbox.
+    pub fn read_pair(path: &Path) -> Result<Self, ReadScenarioError> {
+        Self::read_as(path, Scenario::pair_from_toml_within)
+    }
+
+    /// Reads a file with one of the readers of scenarios.
+    fn read_as(path: &Path, read: ReadText) -> Result<Self, ReadScenarioError> {
+        let text = read_text(path)?;
         let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
         let path = path.to_path_buf();
-        match read(&text, &files) {
+        match read(&text, &files, memory::limit()) {
             Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.named.into_inner() }),
             Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error.into())),
         }
@@ -71,9 +63,8 @@ impl<S> ScenarioFile<S> {
     ///
     /// # Arguments
     /// * `scenario` - what it says instead
-    pub fn with<T>(self, scenario: T) -> ScenarioFile<T> {
-        let Self { path, text, named_files, .. } = self;
-        ScenarioFile { path, text, scenario, named_files }
+    pub fn with(self, scenario: Scenario) -> Self {
+        Self { scenario, ..self }
     }
 
     /// The scenario file and the files that it names.

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshtone::scenario::{Gearbox, Scenario, ScenarioForm};
+use meshtone::scenario::Scenario;
 use meshtone::sensor::Channels;
 
 use crate::ReadResultsError;
@@ -18,7 +18,7 @@ use super::{GEARBOX_KEY, RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recorded {
     /// What was simulated.
-    pub scenario: ScenarioForm,
+    pub scenario: Scenario,
     /// The signals.
     pub channels: Channels,
     /// Version of Meshtone that wrote the file.
@@ -38,15 +38,12 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     let foreign = |problem: String| ReadResultsError::foreign(path, problem);
     let table = open(path)?;
     let text_of = |key: &str| table.text_of(key).ok_or_else(|| foreign(missing(key)));
-    let read = match table.text_of(GEARBOX_KEY) {
-        Some(toml) => Gearbox::from_toml(toml).map(ScenarioForm::Gearbox),
-        None => Scenario::from_toml(text_of(SCENARIO_KEY)?).map(ScenarioForm::Pair),
-    };
+    let toml = table.text_of(GEARBOX_KEY).map_or_else(|| text_of(SCENARIO_KEY), Ok)?;
     let version = text_of(VERSION_KEY)?.to_string();
     let run = text_of(RUN_KEY)?.parse::<RunIdentity>();
     let run = run.map_err(|error| foreign(format!("metadata {RUN_KEY}: {error}")))?;
     let sampling_rate_hz = rate(text_of(RATE_KEY)?).map_err(foreign)?;
-    let scenario = read.map_err(|error| ReadResultsError::scenario(path, &error))?;
+    let scenario = Scenario::from_toml(toml).map_err(|error| ReadResultsError::scenario(path, &error))?;
     let start_s = numbers(&table, TIME).map_err(foreign)?.first().copied().unwrap_or(0.0);
     let mut signals = scenario.signals();
     for signal in &mut signals {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Seek, Write};
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone::sensor::{Channels, NamedSignal};
 
 use super::format::{SignalFormat, csv, mat, npz, parquet, wav};
@@ -22,9 +22,9 @@ impl<'a> SignalTable<'a> {
     /// # Arguments
     /// * `scenario` - what was simulated
     /// * `channels` - the signals
-    pub fn of_scenario(scenario: impl Into<ScenarioForm>, channels: &'a Channels) -> Self {
+    pub fn of_scenario(scenario: impl Into<Scenario>, channels: &'a Channels) -> Self {
         let scenario = scenario.into();
-        let key = if scenario.gearbox().is_some() { GEARBOX_KEY } else { SCENARIO_KEY };
+        let key = if scenario.rig().is_none() { GEARBOX_KEY } else { SCENARIO_KEY };
         Self { scenario: Some((key, scenario.to_toml())), channels }
     }
 

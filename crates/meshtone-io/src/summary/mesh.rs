@@ -53,13 +53,13 @@ impl MeshSummary {
         Self {
             wheels: wheels.map(|wheel| train.wheels[wheel].name.clone()),
             mesh_frequency_hz: layout.pitches_per_revolution(number)
-                * stages.scenario.operation().pinion_speed_hz,
+                * stages.scenario.operation.pinion_speed_hz,
             contact_ratio: pair.teeth.contact.contact_ratio,
             helix: HelixSummary::of(gears, pair.static_force_n),
             face_load_factor: curve.face_load_factor,
             static_force_n: pair.static_force_n,
             mesh_stiffness: MeshStiffness::of(&curve.stiffness_n_per_mm),
-            mesh_force: MeshForce::of(force_n, stages.scenario.model().teeth_part()),
+            mesh_force: MeshForce::of(force_n, stages.scenario.model.teeth_part()),
             transmission_error_um: error,
         }
     }

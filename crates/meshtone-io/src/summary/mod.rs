@@ -176,7 +176,7 @@ impl FaultSummary {
 
     /// The faults of teeth.
     fn all(stages: &Stages, train: &GearTrain) -> Vec<Self> {
-        let faults = stages.scenario.faults().into_iter().zip(&stages.fault_severities).enumerate();
+        let faults = stages.scenario.placed_faults().into_iter().zip(&stages.fault_severities).enumerate();
         // A wheel is damaged alike in all its meshes.
         let pitted = |wheel: usize, number: usize| -> Vec<PittedTooth> {
             let Some((mesh, _)) = stages.layout.mesh_of(wheel) else { return Vec::new() };
@@ -227,7 +227,7 @@ impl ChannelSummary {
 impl AveragedSignal {
     /// None where nothing was kept, and of a gearbox.
     fn of(stages: &Stages, channels: &Channels) -> Option<Self> {
-        let leading = channels.leading().filter(|_| stages.scenario.pair().is_some())?;
+        let leading = channels.leading().filter(|_| stages.scenario.rig().is_some())?;
         let shafts = SimulatedShafts::of_stages(stages, channels.start_s, channels.len());
         let indicators = WheelName::BOTH.map(|shaft| {
             let record = shafts.process(&leading.values, shaft, &ChainSettings::default());
@@ -241,7 +241,7 @@ impl MachineSummary {
     fn new(simulation: &Simulation) -> Self {
         let Simulation { stages, .. } = simulation;
         let (scenario, layout, train) = (&stages.scenario, &stages.layout, GearTrain::of_stages(stages));
-        let input_hz = scenario.operation().pinion_speed_hz;
+        let input_hz = scenario.operation.pinion_speed_hz;
         let curves = stages.mesh_curves();
         let mesh = |(number, curve): (usize, &MeshCurve)| MeshSummary::new(simulation, &train, number, curve);
         let shafts = train.shafts.iter().zip(&layout.ratios);
@@ -252,8 +252,8 @@ impl MachineSummary {
         };
         let bearings = stages.bearings.iter().zip(&train.bearings);
         Self {
-            model: scenario.model().name(),
-            seed: scenario.seed(),
+            model: scenario.model.name(),
+            seed: scenario.seed,
             faults: FaultSummary::all(stages, &train),
             samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
             cycle_input_revolutions: layout.cycle_revolutions(),

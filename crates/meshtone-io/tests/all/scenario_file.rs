@@ -105,7 +105,7 @@ fn profile_errors_in_row_or_column_order() {
     assert!(!by_column.is_standard_layout());
     for pinion in [&pinion, &by_column] {
         save(&directory, pinion, &gear);
-        let read = with_errors(&directory).unwrap().quality.profile_errors.unwrap();
+        let read = with_errors(&directory).unwrap().quality().profile_errors.unwrap();
         assert_eq!(read.pinion_profile_errors_mm, matrix(pinion.view()));
         assert_eq!(read.gear_profile_errors_mm, matrix(gear.view()));
     }
@@ -119,7 +119,7 @@ fn profile_errors_in_single_precision() {
     archive.add_array("pinion_profile_errors_mm", &single(17)).unwrap();
     archive.add_array("gear_profile_errors_mm", &single(38)).unwrap();
     archive.finish().unwrap();
-    let read = with_errors(&directory).unwrap().quality.profile_errors.unwrap();
+    let read = with_errors(&directory).unwrap().quality().profile_errors.unwrap();
     assert_eq!(read.pinion_profile_errors_mm[(7, 3)], f64::from(single(17)[[7, 3]]));
 }
 
@@ -132,7 +132,7 @@ fn profile_errors_written_are_read_back() {
     };
     write_wheels_npz(&directory.path().join("wheels.npz"), &written, &Default::default()).unwrap();
     let scenario = with_errors(&directory).unwrap();
-    assert_eq!(scenario.quality.profile_errors.as_ref(), Some(&written));
+    assert_eq!(scenario.quality().profile_errors.as_ref(), Some(&written));
     let alone = Scenario::from_toml(&scenario.to_toml()).unwrap();
     assert_eq!(alone, scenario);
 }
@@ -158,7 +158,7 @@ fn deviations_that_were_drawn_make_the_same_signal_from_a_file() {
     let mut alone = Scenario::from_toml(&given.to_toml()).unwrap();
     assert_eq!(alone, given);
     // What the file has is not drawn.
-    alone.quality.run_out_share = 0.1;
+    alone.wheels.iter_mut().for_each(|wheel| wheel.run_out_share = 0.1);
     let warnings = alone.validate().unwrap();
     assert!(warnings.iter().any(|warning| warning.key == "quality.run_out_share"), "{warnings:?}");
 }
@@ -176,13 +176,13 @@ fn measured_deviations_in_a_file() {
         archive.finish().unwrap();
     };
     write(38);
-    let quality = with_errors(&directory).unwrap().quality;
+    let quality = with_errors(&directory).unwrap().quality();
     assert_eq!(quality.gear_deviations.run_out_um, Some(12.5));
     assert_eq!(quality.gear_deviations.cumulative_pitch_um.as_ref().unwrap()[37], 37.0);
     assert_eq!(quality.pinion_deviations, Default::default());
     let beside = "[quality]\nerrors_file = \"wheels.npz\"\n";
     let helix = read_with(&directory, &format!("{beside}pinion_helix_slope_um = -3.0")).unwrap();
-    assert_eq!(helix.quality.pinion_deviations.helix_slope_um, Some(-3.0));
+    assert_eq!(helix.wheels[0].deviations.helix_slope_um, Some(-3.0));
     assert_refused(
         read_with(&directory, &format!("{beside}gear_run_out_um = 3.0")),
         "quality.gear_run_out_um",
@@ -294,7 +294,7 @@ fn names_are_relative_to_the_scenario_file() {
     };
     write_wheels_npz(&directory.path().join("wheels/a.npz"), &written, &Default::default()).unwrap();
     let scenario = read_with(&directory, "[quality]\nerrors_file = \"wheels/a.npz\"").unwrap();
-    assert_eq!(scenario.quality.profile_errors, Some(written));
+    assert_eq!(scenario.quality().profile_errors, Some(written));
 }
 
 fn with_response(directory: &TempDir, csv: &str) -> Result<Scenario, ReadScenarioError> {

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::{GearPair, Gearbox, Scenario, ScenarioForm, Sensor, gearbox_template};
+use meshtone::scenario::{GearPair, Scenario, Sensor, gearbox_template};
 use meshtone::sensor::{ChannelKind, Channels, NamedSignal, SignalSource};
 use meshtone_io::ReadResultsError;
 use meshtone_io::recording::{RecordingOptions, read_recording};
@@ -53,7 +53,7 @@ fn signals_are_read_back_exactly() {
     let path = directory.path().join("signals.parquet");
     SignalTable::of_scenario(scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
     let recorded = read_signals(&path).unwrap();
-    assert_eq!((recorded.scenario, recorded.channels), (ScenarioForm::Pair(scenario()), channels()));
+    assert_eq!((recorded.scenario, recorded.channels), (scenario(), channels()));
     assert_eq!(recorded.run, RunIdentity::of(scenario()));
     assert_eq!(recorded.version, env!("CARGO_PKG_VERSION"));
 }
@@ -112,9 +112,9 @@ fn wav_files_are_what_players_expect() {
 #[test]
 fn signals_of_a_gearbox_have_names_that_matlab_accepts() {
     let directory = tempdir().unwrap();
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
-    gearbox.solver.settings.sampling_rate_hz = 2e4;
-    gearbox.solver.settings.duration_s = Some(0.2);
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    gearbox.solver.sampling_rate_hz = 2e4;
+    gearbox.solver.duration_s = Some(0.2);
     let simulation = meshtone::stages(&gearbox).unwrap().simulate().unwrap();
     let table = SignalTable::of_scenario(&gearbox, &simulation.channels);
     let names = |format: SignalFormat| -> Vec<String> {
@@ -268,5 +268,5 @@ fn sensors_are_the_first_columns() {
     assert_eq!(names[..4], ["time_s", "pinion_support_vertical_g", "casing_g", "horizontal_g"]);
     assert_eq!(names.len(), 9);
     let recorded = read_signals(&path).unwrap();
-    assert_eq!((recorded.scenario, recorded.channels), (ScenarioForm::Pair(scenario), channels));
+    assert_eq!((recorded.scenario, recorded.channels), (scenario, channels));
 }

@@ -16,7 +16,7 @@ const MARGIN: f64 = 0.06;
 /// Draws both averages on the same scale; or, where the speed changes and nothing can be averaged revolution by
 /// revolution, the signal and the speeds over time.
 pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, channels: &Channels) {
-    if stages.scenario.operation().speed_profile_hz.is_some() {
+    if stages.scenario.operation.speed_profile_hz.is_some() {
         over_time(canvas, areas, channels);
         return;
     }

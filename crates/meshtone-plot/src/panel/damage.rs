@@ -16,12 +16,12 @@ pub(super) fn title(scenario: &Scenario, stages: &Stages, fits: impl Fn(&str) ->
     let damages = damages(scenario, stages);
     let Some((only, _)) = damages.first() else { return "Healthy gear pair".to_owned() };
     let usual = Fault::at_usual_place(only.damage.clone());
-    let is_usual = damages.len() == 1 && (only.wheel, &only.tooth) == (usual.wheel, &usual.tooth);
+    let is_usual = damages.len() == 1 && (&only.wheel, &only.tooth) == (&usual.wheel, &usual.tooth);
     let title = |with_sizes: bool| {
         let all = damages.iter().map(|(fault, damage)| {
             let mut words = damage.title.to_string();
             if !is_usual {
-                words += &format!(", {} {}", fault.wheel.name(), fault.tooth.in_words());
+                words += &format!(", {} {}", fault.wheel, fault.tooth.in_words());
             }
             if with_sizes && !damage.sizes.is_empty() {
                 words += &format!(": {}", damage.sizes.join(", "));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use meshtone::scenario::{Gearbox, GearboxWheel};
+use meshtone::scenario::{Scenario, ScenarioWheel};
 use meshtone::signal::{
     AngularSettings, AngularSignal, GearTrain, ShaftPhase, SignalError, StatedTurning, TrainRecording,
     TrainTurning, angular_resample, revolution_average,
@@ -47,7 +47,7 @@ const WHEEL: Fill = Fill::solid(colour::STEEL);
 ///
 /// # Errors
 /// Signals without a spectrum.
-pub(super) fn draw(gearbox: &Gearbox, simulation: &Simulation) -> Result<Figure, PlotError> {
+pub(super) fn draw(gearbox: &Scenario, simulation: &Simulation) -> Result<Figure, PlotError> {
     let stages = &simulation.stages;
     let wheels = Wheels::of(gearbox, stages)?;
     let wheels_top = TRAIN_TOP + TRAIN_HEIGHT;
@@ -73,12 +73,12 @@ pub(super) fn draw(gearbox: &Gearbox, simulation: &Simulation) -> Result<Figure,
     Ok(canvas.finish(&title, &description))
 }
 
-fn title(gearbox: &Gearbox) -> String {
+fn title(gearbox: &Scenario) -> String {
     let faults = gearbox.faults.iter().map(|of| {
-        let kind = of.fault.damage.kind().replace('-', " ");
-        format!("{kind} on {} of {}", of.fault.tooth.in_words(), of.wheel)
+        let kind = of.damage.kind().replace('-', " ");
+        format!("{kind} on {} of {}", of.tooth.in_words(), of.wheel)
     });
-    let spalls = gearbox.bearings.iter().flat_map(|bearing| {
+    let spalls = gearbox.bearings().iter().flat_map(|bearing| {
         let at = bearing.seat_name();
         bearing
             .defect
@@ -89,7 +89,7 @@ fn title(gearbox: &Gearbox) -> String {
     if faults.is_empty() { "Healthy gearbox".to_owned() } else { faults }
 }
 
-fn facts(gearbox: &Gearbox, stages: &Stages) -> Vec<String> {
+fn facts(gearbox: &Scenario, stages: &Stages) -> Vec<String> {
     let stage = |mesh: usize| {
         let gears = &stages.layout.gears[mesh];
         format!(
@@ -101,7 +101,7 @@ fn facts(gearbox: &Gearbox, stages: &Stages) -> Vec<String> {
             heading::helix(gears).map_or_else(String::new, |helix| format!(", {helix}"))
         )
     };
-    let drive = &gearbox.operation.drive;
+    let drive = &gearbox.operation;
     (0..gearbox.meshes.len())
         .map(stage)
         .chain([
@@ -128,14 +128,14 @@ struct DrawnWheel<'a> {
 }
 
 /// All wheels of the train.
-fn drawn_wheels<'a>(gearbox: &'a Gearbox, stages: &Stages) -> Vec<DrawnWheel<'a>> {
+fn drawn_wheels<'a>(gearbox: &'a Scenario, stages: &Stages) -> Vec<DrawnWheel<'a>> {
     let layout = &stages.layout;
-    let drawn = |(number, wheel): (usize, &'a GearboxWheel)| {
-        let GearboxWheel { name, at, teeth, face_width_mm, .. } = wheel;
+    let drawn = |(number, wheel): (usize, &'a ScenarioWheel)| {
+        let ScenarioWheel { name, at, teeth, face_width_mm, .. } = wheel;
         let (mesh, _) = layout.mesh_of(number)?;
         let shaft = layout.shaft_of_wheel[number];
         let [x, y] = layout.positions_m[shaft].map(|m| m * 1e3);
-        let z = at * gearbox.shafts[shaft].length_mm;
+        let z = at * gearbox.shafts()[shaft].length_mm;
         let radius = layout.gears[mesh].transverse_module_mm() * f64::from(*teeth) / 2.0;
         let is_damaged = gearbox.faults.iter().any(|fault| fault.wheel == *name);
         Some(DrawnWheel { name, x, y, z, radius, width: *face_width_mm, is_damaged })
@@ -159,7 +159,7 @@ fn rectangle(axes: &Axes, (z, x): (f64, f64), (half_z, half_x): (f64, f64)) -> [
 fn draw_front(
     canvas: &mut Canvas,
     area: Area,
-    (gearbox, stages): (&Gearbox, &Stages),
+    (gearbox, stages): (&Scenario, &Stages),
     wheels: &[DrawnWheel],
 ) {
     let (x, y) = equal_scales(area, extent(wheels, |wheel| wheel.x), extent(wheels, |wheel| wheel.y));
@@ -173,7 +173,7 @@ fn draw_front(
         let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
         canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
     }
-    for (shaft, [x_m, y_m]) in gearbox.shafts.iter().zip(&stages.layout.positions_m) {
+    for (shaft, [x_m, y_m]) in gearbox.shafts().iter().zip(&stages.layout.positions_m) {
         let radius = shaft.radius_at_mm(0.5);
         canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
     }
@@ -188,18 +188,18 @@ fn draw_front(
 fn draw_above(
     canvas: &mut Canvas,
     area: Area,
-    (gearbox, stages): (&Gearbox, &Stages),
+    (gearbox, stages): (&Scenario, &Stages),
     wheels: &[DrawnWheel],
 ) {
     let layout = &stages.layout;
-    let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
+    let longest = gearbox.shafts().iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
     let [low, high] = extent(wheels, |wheel| wheel.x);
     let margin = 0.05 * (high - low);
     let (z, x) = ([-0.12 * longest, 1.12 * longest], [low - margin, high + margin]);
     let axes = Axes::titled(canvas, area, z, x, "From above");
     axes.x_axis(canvas, &Ticks::nice(z[0], z[1], 10), "z (mm)");
     axes.y_axis(canvas, &Ticks::nice(x[0], x[1], 6), "x (mm)", NAME_LEFT);
-    for (shaft, [x_m, _]) in gearbox.shafts.iter().zip(&layout.positions_m) {
+    for (shaft, [x_m, _]) in gearbox.shafts().iter().zip(&layout.positions_m) {
         let (x, radius, half) = (x_m * 1e3, shaft.radius_at_mm(0.5), shaft.length_mm / 2.0);
         canvas.outlined(&rectangle(&axes, (half, x), (half, radius)), SHAFT, Fill::solid(colour::WHITE));
         let coupled = match shaft.couples_to.name() {
@@ -218,8 +218,8 @@ fn draw_above(
         let style = TextStyle::NOTE.anchored(Anchor::Middle).with_halo();
         canvas.text(axes.at(wheel.z, wheel.x), wheel.name, style);
     }
-    for (bearing, shaft) in gearbox.bearings.iter().zip(&layout.shaft_of_bearing) {
-        let (shaft, [x_m, _]) = (&gearbox.shafts[*shaft], layout.positions_m[*shaft]);
+    for (bearing, shaft) in gearbox.bearings().iter().zip(&layout.shaft_of_bearing) {
+        let (shaft, [x_m, _]) = (&gearbox.shafts()[*shaft], layout.positions_m[*shaft]);
         let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
         let (top, bottom) = (y - BEARING_PX, y + BEARING_PX);
         let corners = [(x - 5.0, top), (x + 5.0, top), (x + 5.0, bottom), (x - 5.0, bottom)];
@@ -259,7 +259,7 @@ struct Wheels<'a> {
 }
 
 impl<'a> Wheels<'a> {
-    fn of(gearbox: &Gearbox, stages: &'a Stages) -> Result<Self, PlotError> {
+    fn of(gearbox: &Scenario, stages: &'a Stages) -> Result<Self, PlotError> {
         let is_damaged =
             |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
         let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
@@ -283,7 +283,7 @@ impl<'a> Wheels<'a> {
     /// Draws a column for each: its first damaged tooth as a pair's, the stiffness of its mesh and the average of the first sensor's signal,
     /// both over a revolution of it. One column leaves room for the curves beside the tooth; of more than two only tooth and average are
     /// drawn.
-    fn draw(&self, canvas: &mut Canvas, above: f64, gearbox: &Gearbox, simulation: &Simulation) {
+    fn draw(&self, canvas: &mut Canvas, above: f64, gearbox: &Scenario, simulation: &Simulation) {
         let teeth_top = above + HEADING_GAP;
         let below_teeth = if self.damaged.is_empty() { above } else { teeth_top + TEETH_HEIGHT };
         let curves = Area::new(LEFT, below_teeth + ROW_GAP, FULL_WIDTH, CURVES_HEIGHT);
@@ -330,7 +330,7 @@ fn tint(canvas: &mut Canvas, axes: &Axes, stages: &Stages, wheel: usize, pitch: 
     damaged_tooth::tint(canvas, axes, damaged_tooth::marked(&damaged, teeth), teeth, pitch);
 }
 
-fn stiffness(canvas: &mut Canvas, area: Area, (gearbox, stages): (&Gearbox, &Stages), wheel: usize) {
+fn stiffness(canvas: &mut Canvas, area: Area, (gearbox, stages): (&Scenario, &Stages), wheel: usize) {
     let layout = &stages.layout;
     let Some((mesh, _)) = layout.mesh_of(wheel) else { return };
     let (tables, teeth) = (&stages.meshes[mesh], gearbox.wheels[wheel].teeth as usize);
@@ -347,7 +347,7 @@ fn stiffness(canvas: &mut Canvas, area: Area, (gearbox, stages): (&Gearbox, &Sta
     axes.frame(canvas);
 }
 
-fn average(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Gearbox, &Simulation), wheel: usize) {
+fn average(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Scenario, &Simulation), wheel: usize) {
     let (stages, name) = (&simulation.stages, &gearbox.wheels[wheel].name);
     let average = over_wheel_angle(gearbox, simulation, wheel);
     let values = average.as_ref().map_or_else(
@@ -373,7 +373,7 @@ fn average(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Gearbox, &S
 
 /// The first sensor's signal over the revolutions of a wheel.
 fn over_wheel_angle(
-    gearbox: &Gearbox,
+    gearbox: &Scenario,
     simulation: &Simulation,
     wheel: usize,
 ) -> Result<AngularSignal, SignalError> {
@@ -390,14 +390,14 @@ fn over_wheel_angle(
 }
 
 /// The phase of the input at the kept samples.
-fn input_phase(gearbox: &Gearbox, simulation: &Simulation) -> Result<ShaftPhase, SignalError> {
+fn input_phase(gearbox: &Scenario, simulation: &Simulation) -> Result<ShaftPhase, SignalError> {
     let channels = &simulation.channels;
     ShaftPhase::of_simulated_input(gearbox, channels.start_s, channels.len())
 }
 
 /// The spectrum of the first sensor, with the orders of all meshes and shafts. Where the speed changes it is of the signal over the angle of the
 /// input.
-fn spectrum(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Gearbox, &Simulation)) {
+fn spectrum(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Scenario, &Simulation)) {
     let (stages, channels) = (&simulation.stages, &simulation.channels);
     let Some(signal) = channels.signals.first() else { return };
     let angular = if stages.is_steady() {

@@ -39,7 +39,7 @@ pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, s
 }
 
 fn facts(scenario: &Scenario) -> Vec<String> {
-    let gears = &scenario.gears;
+    let gears = &scenario.gears();
     let operation = &scenario.operation;
     let speeds_hz = operation.speed_profile_hz.as_ref().map(|profile| &profile.value[..]);
     let torques_nm = operation.torque_profile_nm.as_ref().map(|profile| &profile.value[..]);
@@ -103,7 +103,7 @@ fn extent(constant: f64, profile: Option<&[f64]>) -> String {
 }
 
 fn quality(scenario: &Scenario) -> String {
-    let quality = &scenario.quality;
+    let quality = &scenario.quality();
     let has_class = !scenario.model.ignores("quality.iso_class");
     match (&quality.profile_errors, quality.iso_class, quality.din_grade) {
         (Some(_), ..) => "given profile errors".to_owned(),

@@ -15,7 +15,7 @@ mod spectrum;
 mod stiffness;
 mod tooth;
 
-use meshtone::scenario::{Scenario, ScenarioForm};
+use meshtone::scenario::Scenario;
 use meshtone::sensor::Channels;
 use meshtone::wheel::WheelName;
 use meshtone::{Simulation, Stages};
@@ -75,9 +75,11 @@ const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH
 pub fn draw(simulation: &Simulation) -> Result<Figure, PlotError> {
     let Simulation { stages, channels, .. } = simulation;
     check_rate(stages, channels)?;
-    match &stages.scenario {
-        ScenarioForm::Gearbox(gearbox) => gearbox::draw(gearbox, simulation),
-        ScenarioForm::Pair(pair) => draw_pair(pair, stages, channels),
+    let scenario = &stages.scenario;
+    if scenario.rig().is_some() {
+        draw_pair(scenario, stages, channels)
+    } else {
+        gearbox::draw(scenario, simulation)
     }
 }
 

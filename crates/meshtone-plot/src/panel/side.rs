@@ -1,7 +1,7 @@
 //! A wheel, as the panel sees it.
 
 use meshtone::damage::DamagedTooth;
-use meshtone::scenario::Gearbox;
+use meshtone::scenario::Scenario;
 use meshtone::wheel::{ErrorTable, Teeth, ToothProfile, Wheel, WheelName};
 use meshtone::{MeshedPair, Stages};
 
@@ -47,7 +47,7 @@ impl<'a> Side<'a> {
 
     /// A wheel of a gearbox, in its first mesh; none of a wheel in no mesh.
     pub(super) fn of_gearbox(
-        gearbox: &Gearbox,
+        gearbox: &Scenario,
         stages: &'a Stages,
         wheel: usize,
     ) -> Option<Result<Self, PlotError>> {

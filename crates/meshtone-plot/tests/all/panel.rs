@@ -14,7 +14,7 @@ const LARGEST: usize = 400_000;
 fn simulated(scenario: &Scenario) -> Simulation {
     let mut scenario = scenario.clone();
     scenario.solver.sampling_rate_hz = 2e4;
-    scenario.gears.points_per_tooth = 2000;
+    scenario.meshes[0].points_per_tooth = 2000;
     simulate(&scenario).unwrap()
 }
 
@@ -149,8 +149,8 @@ fn with_teeth(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
     let mut scenario =
         Scenario::new(GearPair { pinion_teeth: pinion, gear_teeth: gear, ..GearPair::example() });
     let thinnest = 1.5 * f64::from(pinion.min(gear)) - 3.75;
-    scenario.rig.pinion_shaft.radius_mm = 10f64.min(0.8 * thinnest);
-    scenario.rig.gear_shaft.radius_mm = 10f64.min(0.8 * thinnest);
+    scenario.rig_mut().unwrap().pinion_shaft.radius_mm = 10f64.min(0.8 * thinnest);
+    scenario.rig_mut().unwrap().gear_shaft.radius_mm = 10f64.min(0.8 * thinnest);
     scenario.faults = damage.into_iter().map(Fault::on_first_gear_tooth).collect();
     scenario
 }
@@ -186,9 +186,9 @@ fn small_and_large_modules() {
             pinion_speed_hz: 10.0,
             ..GearPair::example()
         });
-        scenario.rig.pinion_shaft.radius_mm = 5.0 * module;
-        scenario.rig.gear_shaft.radius_mm = 5.0 * module;
-        scenario.quality.din_grade = if module < 1.0 { 12 } else { 1 };
+        scenario.rig_mut().unwrap().pinion_shaft.radius_mm = 5.0 * module;
+        scenario.rig_mut().unwrap().gear_shaft.radius_mm = 5.0 * module;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = if module < 1.0 { 12 } else { 1 });
         scenario.faults = vec![Fault::on_first_gear_tooth(ToothBreakage {
             chip_height_mm: 1.5 * module,
             chip_width_mm: 10.0 * module,
@@ -268,7 +268,7 @@ fn a_rough_flank_below_the_start_of_contact() {
 fn published_model_and_given_errors() {
     let (_, mut scenario) = crate::support::gallery().remove(4);
     let errors = meshtone::stages(&scenario).unwrap().pairs[0].profile_errors.clone();
-    scenario.quality = Quality::of_errors(errors.unwrap());
+    scenario.set_quality(Quality::of_errors(errors.unwrap()));
     scenario.model = Model::Published;
     assert_shows(&drawn(&scenario), &["model as published", "given profile errors"]);
 }
@@ -303,10 +303,9 @@ fn kept_signals_that_start_within_a_revolution() {
 // The angle follows from the scenario, not from the channels that are kept.
 #[test]
 fn a_gearbox_whose_speed_changes_has_an_order_spectrum() {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
-    gearbox.operation.drive.speed_profile_hz =
-        Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
-    gearbox.solver.settings.duration_s = Some(0.3);
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    gearbox.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
+    gearbox.solver.duration_s = Some(0.3);
     let mut simulation = meshtone::simulate(&gearbox).unwrap();
     let known = panel::draw(&simulation).unwrap();
     let is_of_revolutions =
@@ -318,7 +317,7 @@ fn a_gearbox_whose_speed_changes_has_an_order_spectrum() {
 
 /// A gearbox of three stages with one tooth missing from each of the first wheels.
 fn with_damaged_wheels(damaged: usize) -> Simulation {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
     let name = |of: &str, n: usize| format!("{of}{n}");
     let coupled = [Coupled::Motor, Coupled::Nothing, Coupled::Nothing, Coupled::Brake];
     let shaft = |n: usize| {
@@ -328,21 +327,18 @@ fn with_damaged_wheels(damaged: usize) -> Simulation {
     };
     let wheel = |n: usize| {
         let (on, at) = (name("shaft", n.div_ceil(2)), [0.2, 0.5, 0.8][n / 2]);
-        GearboxWheel::new(&name("z", n + 1), &on, at, [20, 40][n % 2], 15.0)
+        ScenarioWheel::new(&name("z", n + 1), &on, at, [20, 40][n % 2], 15.0)
     };
-    gearbox.shafts = (0..4).map(shaft).collect();
+    gearbox.structure.shafts_mut().unwrap().shafts = (0..4).map(shaft).collect();
     gearbox.wheels = (0..6).map(wheel).collect();
-    gearbox.meshes = [["z1", "z2"], ["z3", "z4"], ["z5", "z6"]].map(|of| GearboxMesh::new(of, 2.5)).to_vec();
+    gearbox.meshes = [["z1", "z2"], ["z3", "z4"], ["z5", "z6"]].map(|of| ScenarioMesh::new(of, 2.5)).to_vec();
     let bearings = (0..4).flat_map(|n| [0.0, 1.0].map(|at| Bearing::new(&name("shaft", n), at)));
-    gearbox.bearings = bearings.collect();
-    gearbox.housing = None;
+    gearbox.structure.shafts_mut().unwrap().bearings = bearings.collect();
+    gearbox.structure.shafts_mut().unwrap().housing = None;
     gearbox.sensors.clear();
-    let fault = |n: usize| GearboxFault {
-        wheel: name("z", n + 1),
-        fault: Fault::new(WheelName::Gear, 3, MissingTooth),
-    };
+    let fault = |n: usize| Fault::new(name("z", n + 1), 3, MissingTooth);
     gearbox.faults = (0..damaged).map(fault).collect();
-    gearbox.solver.settings.duration_s = Some(1.0);
+    gearbox.solver.duration_s = Some(1.0);
     meshtone::simulate(&gearbox).unwrap()
 }
 

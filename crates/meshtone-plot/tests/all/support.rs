@@ -8,7 +8,7 @@ use meshtone_plot::Figure;
 
 fn small_pair(damage: Option<Damage>) -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
-    scenario.quality.din_grade = 7;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     scenario.faults = damage.into_iter().map(Fault::at_usual_place).collect();
     scenario
 }
@@ -33,7 +33,7 @@ pub fn gallery() -> Vec<(&'static str, Scenario)> {
         brake_torque_nm: 15.0,
         ..GearPair::example()
     });
-    destruction.quality.din_grade = 8;
+    destruction.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 8);
     destruction.faults = vec![Fault::on_first_gear_tooth(ToothDestruction {
         start: 3.0 / 14.0,
         line: DestructionLine::End(13.0 / 14.0),

@@ -139,7 +139,11 @@ fn the_shaft_that_is_averaged_over_is_named() {
         (WheelName::Pinion, "over one pinion revolution", "Pinion angle from the middle"),
     ] {
         experiment.chain.wheel = wheel;
-        experiment.cases.iter_mut().flat_map(|case| &mut case.faults).for_each(|fault| fault.wheel = wheel);
+        experiment
+            .cases
+            .iter_mut()
+            .flat_map(|case| &mut case.faults)
+            .for_each(|fault| fault.wheel = wheel.into());
         let figure = drawn(&experiment, "A rig");
         for text in [over, angle] {
             assert!(figure.labels().iter().any(|label| label.text.contains(text)), "{text}");

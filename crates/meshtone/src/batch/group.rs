@@ -2,13 +2,14 @@
 
 use super::keep::Keep;
 use crate::error::Error;
-use crate::scenario::Scenario;
+use crate::machine::KnownModes;
+use crate::scenario::{MemoryLimit, Scenario};
 use crate::simd::InstructionSet;
-use crate::simulate::{Stages, stages};
+use crate::simulate::{Stages, stages_with};
 use crate::solver::{LANES, Output, Problem, Recorder, integrate_side_by_side};
 
 /// A scenario and its number.
-pub(super) type Numbered<S> = (usize, S);
+pub(super) type Numbered = (usize, Scenario);
 
 /// Result of a scenario and its number.
 pub(super) type NumberedResult<T> = (usize, Result<T, Error>);
@@ -23,15 +24,16 @@ struct Ready<R> {
 
 /// Simulates at most [`LANES`] scenarios that go together.
 pub(super) fn simulate_group<K: Keep>(
-    scenarios: Vec<Numbered<Scenario>>,
+    scenarios: Vec<Numbered>,
     keep: &K,
+    known: &KnownModes,
     instructions: InstructionSet,
 ) -> Vec<NumberedResult<K::Kept>> {
     let mut results = Vec::with_capacity(scenarios.len());
     let mut ready = Vec::with_capacity(scenarios.len());
     for (index, scenario) in scenarios {
-        let prepared = stages(scenario).and_then(|stages| {
-            let outputs = stages.scenario.pair().map_or_else(|| Ok(Vec::new()), |pair| keep.outputs(pair))?;
+        let prepared = stages_with(scenario, MemoryLimit::default(), known).and_then(|stages| {
+            let outputs = keep.outputs(&stages.scenario)?;
             Ok((stages, outputs))
         });
         match prepared {

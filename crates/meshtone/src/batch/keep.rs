@@ -56,7 +56,7 @@ impl Keep for KeepSimulation {
     type Kept = Simulation;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        Ok(scenario.signals_and_outputs().into_iter().map(|(_, output)| output).collect())
+        Ok(scenario.outputs())
     }
 
     fn recorder(&self, stages: &Stages) -> Channels {
@@ -66,6 +66,34 @@ impl Keep for KeepSimulation {
     fn keep(&self, _: usize, stages: Stages, channels: Channels) -> Simulation {
         let channels = stages.measured(channels);
         stages.with_channels(channels)
+    }
+}
+
+/// Keeps what a function makes of each simulation, by its number.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct KeepOf<F>(
+    /// The function.
+    pub F,
+);
+
+impl<T: Send, F: Fn(usize, Simulation) -> T + Sync> Keep for KeepOf<F> {
+    type Recorder = Channels;
+    type Kept = T;
+
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        KeepSimulation.outputs(scenario)
+    }
+
+    fn kept_bytes(&self, scenario: &Scenario) -> usize {
+        scenario.time_grid().kept_samples().saturating_mul(size_of::<f64>())
+    }
+
+    fn recorder(&self, stages: &Stages) -> Channels {
+        KeepSimulation.recorder(stages)
+    }
+
+    fn keep(&self, index: usize, stages: Stages, channels: Channels) -> T {
+        (self.0)(index, KeepSimulation.keep(index, stages, channels))
     }
 }
 
@@ -174,7 +202,7 @@ impl Keep for KeepChannels {
     type Kept = Signals;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        self.channels.iter().map(|channel| channel.output(&scenario.sensors)).collect()
+        self.channels.iter().map(|channel| channel.output_of(scenario)).collect()
     }
 
     fn kept_bytes(&self, scenario: &Scenario) -> usize {

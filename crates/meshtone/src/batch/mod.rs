@@ -13,6 +13,6 @@ mod run;
 
 pub use crate::machine::Axis;
 pub use crate::solver::{Block, Output, Recorder, SteppedAlone};
-pub use keep::{Keep, KeepChannels, KeepSimulation, SignalRecorder, Signals};
+pub use keep::{Keep, KeepChannels, KeepOf, KeepSimulation, SignalRecorder, Signals};
 pub use observed::{KeepObserved, Observation, ObservedRecorder, ObservedSignals};
-pub use run::{Control, simulate_many, simulate_many_gearboxes};
+pub use run::{Control, simulate_many};

@@ -102,7 +102,7 @@ impl Keep for KeepObserved {
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
         let mut outputs = self.kept.outputs(scenario)?;
         for channel in &self.seen {
-            outputs.push(channel.output(&scenario.sensors)?);
+            outputs.push(channel.output_of(scenario)?);
         }
         Ok(outputs)
     }

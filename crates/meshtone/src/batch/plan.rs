@@ -7,7 +7,8 @@ use crate::solver::LANES;
 /// The properties of a scenario that decide how much a step costs; a group costs what its most expensive simulation does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Cost {
-    /// Whether it is simulated alone: the published model has a solver of its own.
+    /// Whether it is simulated alone: the published model has a solver of its own, and shafts of beams have so many modes that one simulation
+    /// fills the lanes.
     alone: bool,
     /// Whether motor or brake vary: the step is compiled apart for it, and costs too much to mix with the rest.
     varies: bool,
@@ -21,20 +22,15 @@ struct Cost {
 
 impl Cost {
     fn of(scenario: &Scenario) -> Self {
-        let Scenario { gears, rig, operation, .. } = scenario;
-        let steady = operation.speed_profile_hz.is_none()
-            && operation.torque_profile_nm.is_none()
-            && operation.speed_fluctuation_hz == 0.0
-            && operation.torque_fluctuation_nm == 0.0;
+        let gears = scenario.gears();
+        let unbalanced = scenario.wheels.iter().any(|wheel| wheel.unbalance.g_mm > 0.0);
         Self {
-            alone: !scenario.model.has_meshes(),
+            alone: !scenario.model.has_meshes() || !scenario.shafts().is_empty(),
             is_sliced: gears.lead_crowning_um > 0.0
                 || gears.end_relief.amount_um > 0.0
                 || gears.is_helical() && (gears.flank_relief.amount_um > 0.0 || !scenario.faults.is_empty()),
-            has_more_modes: gears.is_helical()
-                || rig.pinion_unbalance.g_mm > 0.0
-                || rig.gear_unbalance.g_mm > 0.0,
-            varies: !steady || scenario.solver.initial_velocity.is_some(),
+            has_more_modes: gears.is_helical() || unbalanced,
+            varies: !scenario.operation.is_steady() || scenario.solver.initial_velocity.is_some(),
             moves_forces: scenario.faults.iter().any(|fault| fault.damage.moves_forces()),
         }
     }
@@ -46,13 +42,13 @@ impl Cost {
 }
 
 /// Divides scenarios into groups of at most [`LANES`], of like kinds and of similar length.
-pub(super) fn groups(scenarios: Vec<Numbered<Scenario>>) -> Vec<Vec<Numbered<Scenario>>> {
+pub(super) fn groups(scenarios: Vec<Numbered>) -> Vec<Vec<Numbered>> {
     let mut keyed: Vec<_> = scenarios
         .into_iter()
         .map(|(index, scenario)| ((Cost::of(&scenario), samples(&scenario), index), scenario))
         .collect();
     keyed.sort_by_key(|(key, _)| *key);
-    let mut groups: Vec<Vec<Numbered<Scenario>>> = Vec::new();
+    let mut groups: Vec<Vec<Numbered>> = Vec::new();
     let mut last: Option<Cost> = None;
     for ((cost, _, index), scenario) in keyed {
         match groups.last_mut() {

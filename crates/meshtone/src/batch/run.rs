@@ -9,9 +9,8 @@ use super::keep::Keep;
 use super::plan::groups;
 use crate::error::Error;
 use crate::machine::KnownModes;
-use crate::scenario::{Gearbox, MemoryLimit, Scenario};
+use crate::scenario::Scenario;
 use crate::simd::InstructionSet;
-use crate::simulate::{Simulation, stages_with};
 use crate::solver::LANES;
 use crate::threads;
 
@@ -75,100 +74,9 @@ pub fn simulate_many<K: Keep>(
     control: &Control,
     take: impl FnMut(usize, Result<K::Kept, Error>) + Send,
 ) -> usize {
-    run_many(scenarios.into_iter(), &Pairs { keep, instructions: control.instructions }, control, take)
-}
-
-/// Simulates any number of gearboxes, in the threads of the current rayon pool, as [`simulate_many`] does scenarios of one pair.
-///
-/// # Arguments
-/// * `gearboxes` - what is simulated; asked for as they are needed, so that they need not all be in memory
-/// * `keep` - what is kept of each, by its number and its simulation
-/// * `control` - progress and cancellation
-/// * `take` - given the results in the gearboxes' order, with each one's number from 0 on, as they finish
-///
-/// Returns how many were handed to `take`: all of them, unless cancelled.
-pub fn simulate_many_gearboxes<T: Send>(
-    gearboxes: impl IntoIterator<Item = Gearbox, IntoIter: Send>,
-    keep: &(impl Fn(usize, Simulation) -> T + Sync),
-    control: &Control,
-    take: impl FnMut(usize, Result<T, Error>) + Send,
-) -> usize {
-    run_many(gearboxes.into_iter(), &Gearboxes { keep, known: KnownModes::default() }, control, take)
-}
-
-/// What differs between simulations of pairs and of gearboxes when many are run.
-trait Many: Sync {
-    type Scenario: Send;
-    type Kept: Send;
-
-    /// (bytes) About how large what is kept of one simulation is.
-    fn kept_bytes(&self, scenario: &Self::Scenario) -> usize;
-
-    /// Divides scenarios into groups that one thread simulates side by side.
-    fn groups(&self, scenarios: Vec<Numbered<Self::Scenario>>) -> Vec<Vec<Numbered<Self::Scenario>>>;
-
-    /// Simulates a group.
-    fn simulate(&self, group: Vec<Numbered<Self::Scenario>>) -> Vec<NumberedResult<Self::Kept>>;
-}
-
-struct Pairs<'a, K> {
-    keep: &'a K,
-    instructions: InstructionSet,
-}
-
-impl<K: Keep> Many for Pairs<'_, K> {
-    type Scenario = Scenario;
-    type Kept = K::Kept;
-
-    fn kept_bytes(&self, scenario: &Scenario) -> usize {
-        self.keep.kept_bytes(scenario)
-    }
-
-    fn groups(&self, scenarios: Vec<Numbered<Scenario>>) -> Vec<Vec<Numbered<Scenario>>> {
-        groups(scenarios)
-    }
-
-    fn simulate(&self, group: Vec<Numbered<Scenario>>) -> Vec<NumberedResult<K::Kept>> {
-        simulate_group(group, self.keep, self.instructions)
-    }
-}
-
-struct Gearboxes<'a, F> {
-    keep: &'a F,
-    known: KnownModes,
-}
-
-impl<T: Send, F: Fn(usize, Simulation) -> T + Sync> Many for Gearboxes<'_, F> {
-    type Scenario = Gearbox;
-    type Kept = T;
-
-    fn kept_bytes(&self, gearbox: &Gearbox) -> usize {
-        gearbox.time_grid().kept_samples() * size_of::<f64>()
-    }
-
-    /// Alone: a gearbox has so many modes that one simulation fills the lanes.
-    fn groups(&self, gearboxes: Vec<Numbered<Gearbox>>) -> Vec<Vec<Numbered<Gearbox>>> {
-        gearboxes.into_iter().map(|gearbox| vec![gearbox]).collect()
-    }
-
-    fn simulate(&self, group: Vec<Numbered<Gearbox>>) -> Vec<NumberedResult<T>> {
-        let simulated =
-            |gearbox: Gearbox| stages_with(gearbox.into(), MemoryLimit::default(), &self.known)?.simulate();
-        let kept =
-            |(index, gearbox)| (index, simulated(gearbox).map(|simulation| (self.keep)(index, simulation)));
-        group.into_iter().map(kept).collect()
-    }
-}
-
-fn run_many<M: Many>(
-    scenarios: impl Iterator<Item = M::Scenario> + Send,
-    many: &M,
-    control: &Control,
-    take: impl FnMut(usize, Result<M::Kept, Error>) + Send,
-) -> usize {
     let work = Work {
         state: Mutex::new(State {
-            source: scenarios,
+            source: scenarios.into_iter(),
             numbered: 0,
             queue: VecDeque::new(),
             in_flight: 0,
@@ -179,7 +87,8 @@ fn run_many<M: Many>(
         changed: Condvar::new(),
         finished: Mutex::new(0),
         panicked: AtomicBool::new(false),
-        many,
+        keep,
+        known: KnownModes::default(),
         control,
         threads: threads::count(),
     };
@@ -187,34 +96,36 @@ fn run_many<M: Many>(
     work.lock().next
 }
 
-struct Work<'a, M: Many, I, F> {
-    state: Mutex<State<M, I, F>>,
+struct Work<'a, K: Keep, I, F> {
+    state: Mutex<State<K, I, F>>,
     changed: Condvar,
     finished: Mutex<usize>,
     /// A thread has panicked: what it had in flight never arrives.
     panicked: AtomicBool,
-    many: &'a M,
+    keep: &'a K,
+    /// Modes of machines of the same masses and springs.
+    known: KnownModes,
     control: &'a Control<'a>,
     threads: usize,
 }
 
-struct State<M: Many, I, F> {
+struct State<K: Keep, I, F> {
     source: I,
     /// Scenarios taken from the source.
     numbered: usize,
-    queue: VecDeque<Vec<Numbered<M::Scenario>>>,
+    queue: VecDeque<Vec<Numbered>>,
     in_flight: usize,
     /// Results that wait for an earlier one.
-    waiting: BTreeMap<usize, Result<M::Kept, Error>>,
+    waiting: BTreeMap<usize, Result<K::Kept, Error>>,
     /// Number of the next result to hand out.
     next: usize,
     take: F,
 }
 
 /// The end of one thread's work, be it a panic of what the caller gave: the others must not wait for it.
-struct Ended<'a, 'b, M: Many, I, F>(&'a Work<'b, M, I, F>);
+struct Ended<'a, 'b, K: Keep, I, F>(&'a Work<'b, K, I, F>);
 
-impl<M: Many, I, F> Drop for Ended<'_, '_, M, I, F> {
+impl<K: Keep, I, F> Drop for Ended<'_, '_, K, I, F> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             self.0.panicked.store(true, Ordering::Relaxed);
@@ -225,13 +136,13 @@ impl<M: Many, I, F> Drop for Ended<'_, '_, M, I, F> {
     }
 }
 
-impl<M, I, F> Work<'_, M, I, F>
+impl<K, I, F> Work<'_, K, I, F>
 where
-    M: Many,
-    I: Iterator<Item = M::Scenario> + Send,
-    F: FnMut(usize, Result<M::Kept, Error>) + Send,
+    K: Keep,
+    I: Iterator<Item = Scenario> + Send,
+    F: FnMut(usize, Result<K::Kept, Error>) + Send,
 {
-    fn lock(&self) -> MutexGuard<'_, State<M, I, F>> {
+    fn lock(&self) -> MutexGuard<'_, State<K, I, F>> {
         // A thread that panicked has poisoned the lock; rayon passes its panic on when the scope ends.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -241,7 +152,7 @@ where
         let ended = Ended(self);
         while let Some(group) = self.next_group() {
             let count = group.len();
-            let results = self.many.simulate(group);
+            let results = simulate_group(group, self.keep, &self.known, self.control.instructions);
             self.report(count);
             self.hand_out(count, results);
         }
@@ -256,7 +167,7 @@ where
         (self.control.progress)(*finished);
     }
 
-    fn next_group(&self) -> Option<Vec<Numbered<M::Scenario>>> {
+    fn next_group(&self) -> Option<Vec<Numbered>> {
         let mut state = self.lock();
         loop {
             if self.control.cancelled.load(Ordering::Relaxed) || self.panicked.load(Ordering::Relaxed) {
@@ -278,24 +189,24 @@ where
     }
 
     /// Whether so many results wait that no more are begun.
-    fn is_full(&self, state: &State<M, I, F>) -> bool {
+    fn is_full(&self, state: &State<K, I, F>) -> bool {
         state.in_flight > 0 && state.waiting.len() >= self.threads * LANES
     }
 
     /// Takes the next scenarios from the source and puts them into groups.
-    fn plan(&self, state: &mut State<M, I, F>) {
+    fn plan(&self, state: &mut State<K, I, F>) {
         let mut window = Vec::new();
         let mut bytes = 0;
         while !window_is_full(window.len(), bytes, self.threads) {
             let Some(scenario) = state.source.next() else { break };
-            bytes += self.many.kept_bytes(&scenario);
+            bytes += self.keep.kept_bytes(&scenario);
             window.push((state.numbered, scenario));
             state.numbered += 1;
         }
-        state.queue.extend(self.many.groups(window));
+        state.queue.extend(groups(window));
     }
 
-    fn hand_out(&self, count: usize, results: Vec<NumberedResult<M::Kept>>) {
+    fn hand_out(&self, count: usize, results: Vec<NumberedResult<K::Kept>>) {
         let mut state = self.lock();
         let State { in_flight, waiting, next, take, .. } = &mut *state;
         *in_flight -= count;

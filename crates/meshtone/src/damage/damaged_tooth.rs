@@ -228,7 +228,7 @@ fn alike(faults: &[Fault], teeth: &Teeth) -> Vec<Alike> {
     let mut named: Vec<_> = on_teeth.into_iter().collect();
     named.sort_by_cached_key(|((wheel, tooth), on_tooth)| {
         let first = on_tooth[0];
-        let of_first = faults[first].tooth.numbers(teeth.wheel(faults[first].wheel).teeth);
+        let of_first = faults[first].tooth.numbers(teeth.wheel(faults[first].side()).teeth);
         (first, of_first.iter().position(|number| number == tooth), *wheel)
     });
     let mut all: Vec<Alike> = Vec::new();
@@ -241,7 +241,7 @@ fn alike(faults: &[Fault], teeth: &Teeth) -> Vec<Alike> {
             Some(&group) => all[group].teeth.push(index),
             None => {
                 groups.insert((wheel, on_tooth.clone()), all.len());
-                let wheel = faults[on_tooth[0]].wheel;
+                let wheel = faults[on_tooth[0]].side();
                 all.push(Alike { wheel, teeth: vec![index], faults: on_tooth });
             }
         }

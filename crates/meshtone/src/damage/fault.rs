@@ -8,16 +8,16 @@ use super::severity::SoundTooth;
 use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyDescription, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe, describe_from,
-    field, read_keys, read_rows, require, row, rows_but, write_keys, write_rows,
+    Check, KeyDescription, KeyKind, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe,
+    describe_from, field, read_keys, read_rows, require, row, rows_but, write_keys, write_rows,
 };
 use crate::wheel::{NamedGears, Teeth, WheelName};
 
 /// Damage to one tooth, or to several alike.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
-    /// The damaged wheel. Default the gear.
-    pub wheel: WheelName,
+    /// Name of the damaged wheel: of a pair `pinion` or `gear`. Default the gear.
+    pub wheel: String,
     /// Which of its teeth, by their numbers from 1 to the wheel's tooth count, in the order in which the teeth enter contact;
     /// the two first teeth meet at the start of the simulation. Default 1.
     pub tooth: FaultyTeeth,
@@ -32,7 +32,7 @@ impl Fault {
     /// Damage to a tooth, or to several alike.
     ///
     /// # Arguments
-    /// * `wheel` - the damaged wheel
+    /// * `wheel` - the damaged wheel, or its name
     /// * `tooth` - number of the damaged tooth, from 1, or numbers of several, or all
     /// * `damage` - what is wrong with each of them
     ///
@@ -43,8 +43,8 @@ impl Fault {
     /// assert_eq!(Fault::new(WheelName::Gear, 5, MissingTooth).tooth, FaultyTeeth::One(5));
     /// assert_eq!(Fault::new(WheelName::Gear, vec![5, 6], MissingTooth).tooth.numbers(38), [5, 6]);
     /// ```
-    pub fn new(wheel: WheelName, tooth: impl Into<FaultyTeeth>, damage: impl Into<Damage>) -> Self {
-        Self { wheel, tooth: tooth.into(), damage: damage.into(), severity: None }
+    pub fn new(wheel: impl Into<String>, tooth: impl Into<FaultyTeeth>, damage: impl Into<Damage>) -> Self {
+        Self { wheel: wheel.into(), tooth: tooth.into(), damage: damage.into(), severity: None }
     }
 
     /// The same fault with a severity in place of its sizes.
@@ -68,6 +68,11 @@ impl Fault {
         Self { damage: self.damage.without_sizes(), severity: Some(severity), ..self }
     }
 
+    /// The damaged wheel of two that mesh, which are named as those of a pair.
+    pub fn side(&self) -> WheelName {
+        if self.wheel == WheelName::Pinion.name() { WheelName::Pinion } else { WheelName::Gear }
+    }
+
     /// The damage that it does to a pair's teeth, with its own sizes; none of severity 0, or where it is smaller than the
     /// profile's points can show.
     ///
@@ -77,7 +82,7 @@ impl Fault {
         match self.severity {
             None => Some(self.damage.clone()),
             Some(severity) if severity > 0.0 => {
-                self.damage.of_severity(severity, &SoundTooth::new(teeth, self.wheel))
+                self.damage.of_severity(severity, &SoundTooth::new(teeth, self.side()))
             }
             Some(_) => None,
         }
@@ -93,7 +98,7 @@ impl Fault {
     /// # Arguments
     /// * `teeth` - both healthy teeth
     pub fn severity_on(&self, teeth: &Teeth) -> f64 {
-        self.severity.unwrap_or_else(|| self.damage.severity(&SoundTooth::new(teeth, self.wheel)))
+        self.severity.unwrap_or_else(|| self.damage.severity(&SoundTooth::new(teeth, self.side())))
     }
 
     /// Damage to the gear's first tooth.
@@ -111,7 +116,7 @@ impl Fault {
     /// * `damage` - what is wrong
     pub fn at_usual_place(damage: impl Into<Damage>) -> Self {
         let damage = damage.into();
-        Self::new(WheelName::default(), damage.usual_teeth(), damage)
+        Self::new(WheelName::Gear, damage.usual_teeth(), damage)
     }
 
     /// Index from 0 of the damaged tooth, of several of the first.
@@ -128,7 +133,8 @@ impl Keys for Fault {
 
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
-            row("wheel", "", "the damaged wheel", field!(wheel)),
+            row("wheel", "", "the damaged wheel", field!(wheel))
+                .kind(KeyKind::Name(WheelName::BOTH.map(WheelName::name).to_vec())),
             row(
                 "tooth",
                 "",
@@ -152,7 +158,7 @@ impl Keys for Fault {
 }
 
 impl Fault {
-    /// Reads the faults of a file, as the scenario file has them: `[fault]`, or any number of `[[fault]]`.
+    /// Reads the faults of a file, as the scenario file of a pair has them: `[fault]`, or any number of `[[fault]]`.
     ///
     /// # Arguments
     /// * `table` - what the sections are in
@@ -163,21 +169,28 @@ impl Fault {
         table.tables("fault")?.into_iter().map(|table| table.read(Self::from_table)).collect()
     }
 
-    /// Reads a fault of a wheel that has a name of its own, with the name.
+    /// Reads a fault of a wheel that has any name.
     ///
     /// # Arguments
     /// * `table` - its section
     ///
     /// # Errors
     /// As [`Self::list_from_table`]; a fault that names no wheel.
-    pub(crate) fn on_named_wheel(table: &TomlTable<'_>) -> ReadResult<(String, Self)> {
-        let wheel = table.required("wheel", "the name of the damaged wheel")?.string()?.to_owned();
-        let mut fault = Self::at_usual_place(Damage::start_of(table)?);
+    pub fn on_named_wheel(table: &TomlTable<'_>) -> ReadResult<Self> {
+        let wheel = table.required("wheel", "the name of the damaged wheel")?.string()?;
+        let mut fault = Self { wheel: wheel.to_owned(), ..Self::at_usual_place(Damage::start_of(table)?) };
         read_rows(&rows_but(&["wheel"]), &mut fault, table, &NoFiles)?;
-        fault.read_damage(table).map(|fault| (wheel, fault))
+        fault.read_damage(table)
     }
 
-    fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
+    /// Reads a fault of a pair.
+    ///
+    /// # Arguments
+    /// * `table` - its section
+    ///
+    /// # Errors
+    /// As [`Self::list_from_table`].
+    pub fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
         let mut fault = Self::at_usual_place(Damage::start_of(table)?);
         read_keys(&mut fault, table, &NoFiles)?;
         fault.read_damage(table)
@@ -211,21 +224,16 @@ impl Fault {
         format!("{}kind = \"{}\"\n{keys}", write_keys(self), self.damage.kind())
     }
 
-    /// The same of a wheel that has a name of its own.
-    ///
-    /// # Arguments
-    /// * `wheel` - the wheel's name
-    pub(crate) fn write_on(&self, wheel: &str) -> String {
-        let place = write_rows(&rows_but(&["wheel"]), self);
-        let keys = self.damage.write(self.left_out());
-        format!("wheel = {}\n{place}kind = \"{}\"\n{keys}", toml::Value::from(wheel), self.damage.kind())
-    }
-
     /// The lines of its section with a comment for every key, without the header.
     pub(crate) fn commented(&self) -> String {
         let kind = format!("# {}\nkind = \"{}\"\n", self.damage.summary(), self.damage.kind());
         let keys = self.damage.commented(self.left_out());
-        [kind, keys, commented_rows(&Self::rows(), self, &Self::at_usual_place(self.damage.clone()))].concat()
+        [
+            kind,
+            keys,
+            commented_rows(&Self::rows(), self, &Self::at_usual_place(self.damage.clone()), Self::SECTION),
+        ]
+        .concat()
     }
 
     /// The lines of its section that matter, without the header.
@@ -237,7 +245,7 @@ impl Fault {
     /// Whether it can be, as far as no profile is needed; its keys are named `fault.…`.
     fn check(&self, gears: &NamedGears) -> Check {
         check_keys(self, "fault")?;
-        self.tooth.check(gears.teeth(self.wheel), &gears.name(self.wheel))?;
+        self.tooth.check(gears.teeth(self.side()), &gears.name(self.side()))?;
         match self.severity {
             None => self.damage.check(gears),
             Some(severity) => {
@@ -273,14 +281,14 @@ pub(crate) fn check_faults(faults: &[Fault], numbers: &[usize], entries: usize, 
     let on_teeth = faults_on_teeth(faults, |wheel| gears.teeth(wheel));
     for (index, fault) in faults.iter().enumerate() {
         let excluded_by = |number: usize| faults[number].damage.part().excludes(fault.damage.part());
-        let beside = fault.tooth.numbers(gears.teeth(fault.wheel)).into_iter().filter_map(|tooth| {
-            let earlier = on_teeth.get(&(fault.wheel as usize, tooth))?.iter().copied();
+        let beside = fault.tooth.numbers(gears.teeth(fault.side())).into_iter().filter_map(|tooth| {
+            let earlier = on_teeth.get(&(fault.side() as usize, tooth))?.iter().copied();
             let mut earlier = earlier.take_while(|number| *number < index);
             earlier.find_map(|number| Some((number, tooth, excluded_by(number)?)))
         });
         let checked = match beside.min_by_key(|(number, ..)| *number) {
             Some((earlier, tooth, why)) => {
-                let place = format!("tooth {tooth} of {}", gears.name(fault.wheel));
+                let place = format!("tooth {tooth} of {}", gears.name(fault.side()));
                 Err(second_damage(fault, &place, numbers[earlier], &faults[earlier], why))
             }
             None => fault.check(gears),
@@ -301,8 +309,8 @@ pub(super) fn faults_on_teeth(
 ) -> BTreeMap<(usize, u32), Vec<usize>> {
     let mut on_teeth: BTreeMap<(usize, u32), Vec<usize>> = BTreeMap::new();
     for (number, fault) in faults.iter().enumerate() {
-        for tooth in fault.tooth.numbers(teeth(fault.wheel)) {
-            on_teeth.entry((fault.wheel as usize, tooth)).or_default().push(number);
+        for tooth in fault.tooth.numbers(teeth(fault.side())) {
+            on_teeth.entry((fault.side() as usize, tooth)).or_default().push(number);
         }
     }
     on_teeth

@@ -140,7 +140,7 @@ macro_rules! kinds {
             /// The same with a comment for every key.
             fn commented(&self, left_out: &[&str]) -> String {
                 match self {
-                    $(Self::$kind(damage) => commented_rows(&rows_but(left_out), damage, &$kind::start()),)+
+                    $(Self::$kind(damage) => commented_rows(&rows_but(left_out), damage, &$kind::start(), $kind::SECTION),)+
                 }
             }
 

@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn slices_have_their_part_of_what_is_lost() {
-        let width_mm = Scenario::new(GearPair::example()).gears.face_width_mm;
+        let width_mm = Scenario::new(GearPair::example()).gears().face_width_mm;
         let chipped = damaged(ToothBreakage { chip_height_mm: 3.0, chip_width_mm: 10.0, tip_loss_mm: 0.0 });
         let edges: Vec<f64> = (0..=11).map(|n| width_mm * (f64::from(n) / 11.0 - 0.5)).collect();
         let last = chipped.missing_width_mm.len() - 1;

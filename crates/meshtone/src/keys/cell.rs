@@ -10,6 +10,7 @@ use super::row::KeyRow;
 use super::table::{Keys, check_rows, describe_rows, read_rows, written_pairs};
 use super::text::inline_table;
 use super::value::{KeyValue, Written};
+use crate::error::ScenarioError;
 
 /// The value of one row of a section, whatever its type.
 pub(super) trait Cell<S> {
@@ -73,13 +74,22 @@ impl<S> Cell<S> for SubTable<S> {
 }
 
 /// A field of a section: see [`field!`](super::field).
+#[derive(Debug)]
 pub(crate) struct Field<S, V> {
     get: fn(&S) -> Option<&V>,
     get_mut: fn(&mut S) -> Option<&mut V>,
 }
 
+impl<S, V> Clone for Field<S, V> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S, V> Copy for Field<S, V> {}
+
 impl<S, V> Field<S, V> {
-    pub(crate) fn new(get: fn(&S) -> Option<&V>, get_mut: fn(&mut S) -> Option<&mut V>) -> Self {
+    pub(crate) const fn new(get: fn(&S) -> Option<&V>, get_mut: fn(&mut S) -> Option<&mut V>) -> Self {
         Self { get, get_mut }
     }
 }
@@ -139,10 +149,69 @@ impl<S, P> Cell<S> for PartCell<S, P> {
     }
 }
 
+/// A value that several parts of a section have in common: it is read into all of them, and must be the same in all.
+struct CommonCell<S, P> {
+    get: fn(&S) -> &[P],
+    get_mut: fn(&mut S) -> &mut [P],
+    cell: Box<dyn Cell<P>>,
+}
+
+impl<S, P> Cell<S> for CommonCell<S, P> {
+    fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        let parts = (self.get_mut)(section);
+        parts.iter_mut().try_for_each(|part| self.cell.read(part, value, files))
+    }
+
+    fn write(&self, section: &S) -> Option<Written> {
+        (self.get)(section).first().and_then(|part| self.cell.write(part))
+    }
+
+    fn check(&self, section: &S, key: &str, range: &Range, unit: &str) -> Check {
+        let Some((first, others)) = (self.get)(section).split_first() else { return Ok(()) };
+        self.cell.check(first, key, range, unit)?;
+        let written = self.cell.write(first);
+        if others.iter().any(|part| self.cell.write(part) != written) {
+            let problem = "differs between the two wheels; a rig of condensed shafts has one of both";
+            return Err(ScenarioError::new(key, "", problem).with_help("give both wheels the same"));
+        }
+        Ok(())
+    }
+
+    fn copy(&self, from: &S, to: &mut S) {
+        let parts = (self.get)(from).iter().zip((self.get_mut)(to));
+        parts.for_each(|(from, to)| self.cell.copy(from, to));
+    }
+
+    fn inside(&self, section: &S) -> Vec<KeyDescription> {
+        (self.get)(section).first().map(|part| self.cell.inside(part)).unwrap_or_default()
+    }
+}
+
+impl<P: 'static> KeyRow<P> {
+    /// The row among those of a section that has its value in a part.
+    ///
+    /// # Arguments
+    /// * `part` - the part
+    pub(crate) fn of<S: 'static>(self, part: Field<S, P>) -> KeyRow<S> {
+        let (KeyRow { head, cell }, Field { get, get_mut }) = (self, part);
+        KeyRow { head, cell: Box::new(PartCell { get, get_mut, cell }) }
+    }
+
+    /// The row among those of a section several parts of which have the same value.
+    ///
+    /// # Arguments
+    /// * `get`, `get_mut` - the parts
+    pub(crate) fn of_all<S: 'static>(
+        self,
+        get: fn(&S) -> &[P],
+        get_mut: fn(&mut S) -> &mut [P],
+    ) -> KeyRow<S> {
+        let KeyRow { head, cell } = self;
+        KeyRow { head, cell: Box::new(CommonCell { get, get_mut, cell }) }
+    }
+}
+
 /// The rows of a part of a section, whose keys stand among the section's own rather than in a table of theirs.
 pub(crate) fn flatten<S: 'static, P: Keys>(part: Field<S, P>) -> impl Iterator<Item = KeyRow<S>> {
-    let Field { get, get_mut } = part;
-    P::rows()
-        .into_iter()
-        .map(move |KeyRow { head, cell }| KeyRow { head, cell: Box::new(PartCell { get, get_mut, cell }) })
+    P::rows().into_iter().map(move |row| row.of(part))
 }

@@ -81,6 +81,10 @@ impl KeyHead {
         } else {
             table.optional(self.name)
         };
+        // A text that must be one of some names is refused here, with the names.
+        if let (Some(value), KeyKind::Name(names)) = (&value, &self.kind) {
+            value.one_of(names)?;
+        }
         match value {
             Some(value) => read(&value).map_err(|error| self.as_below_range(error)),
             // The message about a misspelt table would list keys of which none is like it.

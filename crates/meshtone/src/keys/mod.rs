@@ -45,7 +45,7 @@ pub(crate) use names::by_name;
 pub(crate) use range::Range;
 pub(crate) use row::{KeyRow, documented, row, sub_table};
 pub(crate) use table::{
-    Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, essential,
+    Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, describe_rows,
     essential_rows, read_keys, read_rows, rows_but, write_keys, write_rows,
 };
 pub(crate) use text::{array, comment};
@@ -53,9 +53,12 @@ pub(crate) use value::{KeyValue, Written};
 
 /// The field of a section that a row's value is kept in.
 ///
-/// `field!(name)` is a field, `field!(place.name)` one further inside; `field!(Form::Variant, name)` is there only where the
+/// `field!(name)` is a field, `field!(place.name)` one further inside, `field!(in Section: name)` that of a section that is named; `field!(Form::Variant, name)` is there only where the
 /// section, an enum, has that form; `field!(Form::Variant, 0)` is its only value.
 macro_rules! field {
+    (in $section:ty: $($name:ident).+) => {
+        $crate::keys::Field::new(|section: &$section| Some(&section.$($name).+), |section: &mut $section| Some(&mut section.$($name).+))
+    };
     ($($name:ident).+) => {
         $crate::keys::Field::new(|section: &Self| Some(&section.$($name).+), |section: &mut Self| Some(&mut section.$($name).+))
     };

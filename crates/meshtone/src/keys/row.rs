@@ -78,6 +78,11 @@ impl<S> KeyRow<S> {
         Self { head: KeyHead { range, ..self.head }, ..self }
     }
 
+    /// States another kind than that of the value's type, such as the names that a text must be one of.
+    pub(crate) fn kind(self, kind: KeyKind) -> Self {
+        Self { head: KeyHead { kind, ..self.head }, ..self }
+    }
+
     /// States a further rule, in the words of the documentation; a function beside the rows checks it.
     pub(crate) fn rule(self, rule: &'static str) -> Self {
         Self { head: KeyHead { rule, ..self.head }, ..self }

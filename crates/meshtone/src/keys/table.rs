@@ -108,7 +108,7 @@ pub(crate) fn describe_from<S: Keys>(start: &S) -> Vec<KeyDescription> {
 /// * `rows` - the keys
 /// * `start` - the section with its defaults
 /// * `section` - its name; empty for other tables
-pub(super) fn describe_rows<S>(rows: &[KeyRow<S>], start: &S, section: &str) -> Vec<KeyDescription> {
+pub(crate) fn describe_rows<S>(rows: &[KeyRow<S>], start: &S, section: &str) -> Vec<KeyDescription> {
     let mut keys = Vec::new();
     for row in rows {
         keys.extend(row.head.describe(row.write(start), row.cell.inside(start), section));
@@ -118,15 +118,10 @@ pub(super) fn describe_rows<S>(rows: &[KeyRow<S>], start: &S, section: &str) -> 
 
 /// The lines of a section with a comment for every key, without its header.
 pub(crate) fn commented<S: Keys>(section: &S) -> String {
-    commented_rows(&S::rows(), section, &S::start())
+    commented_rows(&S::rows(), section, &S::start(), S::SECTION)
 }
 
-/// The lines of a section's keys without which it would be another, each with its meaning behind it.
-pub(crate) fn essential<S: Keys>(section: &S) -> String {
-    essential_rows(&S::rows(), section, &S::start())
-}
-
-/// The lines of some keys of a section, likewise, with what `start` has as defaults.
+/// The lines of some keys of a section without which it would be another, each with its meaning behind it, with what `start` has as defaults.
 pub(crate) fn essential_rows<S>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
     let mut keys = Vec::new();
     for row in rows {
@@ -142,7 +137,12 @@ fn in_columns(lines: &[[String; 2]]) -> String {
 }
 
 /// The lines of some keys of a section with a comment for each, with what `start` has as defaults.
-pub(crate) fn commented_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
-    let commented = |row: &KeyRow<S>| row.head.commented(row.write(section), row.write(start), S::SECTION);
+///
+/// # Arguments
+/// * `rows` - the keys
+/// * `section`, `start` - the section, and the one with its defaults
+/// * `name` - its name
+pub(crate) fn commented_rows<S>(rows: &[KeyRow<S>], section: &S, start: &S, name: &str) -> String {
+    let commented = |row: &KeyRow<S>| row.head.commented(row.write(section), row.write(start), name);
     rows.iter().map(commented).collect()
 }

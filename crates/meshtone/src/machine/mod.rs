@@ -1,16 +1,16 @@
 //! The machine around the meshes, `M ü + C u̇ + K u = F(t) − Σ g f(gᵀu, t)`.
 //!
 //! A [`Machine`] is a list of parts in any number of coordinates. The meshes are not among them: they act along its lines of action,
-//! and the solver closes or opens them. Only `train` names the coordinates of a rig.
+//! and the solver closes or opens them. Only `rig_machine` names the coordinates of a rig.
 
 mod body;
 mod gearbox;
 mod modes;
 mod parts;
 mod rig;
+mod rig_machine;
 mod shaft_bending;
 mod support;
-mod train;
 mod turning_force;
 
 pub use body::WheelBody;
@@ -25,10 +25,11 @@ pub(crate) use parts::weights;
 pub use parts::{Axis, Drive, Machine, Place};
 #[cfg(feature = "internals")]
 pub use parts::{LineOfAction, Spring};
-pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
-pub use support::{Support, SupportSprings};
-pub(crate) use train::turn_planes;
-pub use train::{
-    GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, SupportMode, Supports, Train, WHEELS, support_modes,
+pub use rig::{DampingRatio, Rig, RigParts, Shaft, WheelInertia};
+pub(crate) use rig_machine::turn_planes;
+pub use rig_machine::{
+    GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, RigMachine, SUPPORTS, SupportMode, Supports, WHEELS,
+    support_modes,
 };
+pub use support::{Support, SupportSprings};
 pub use turning_force::{Bow, TurningForce, Unbalance};

@@ -5,12 +5,10 @@ use std::ops::Bound::Excluded;
 use meshtone_toml::{ReadResult, TomlValue};
 
 use super::{Support, Unbalance};
-use crate::keys::{
-    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, below, check_keys, field, row,
-};
+use crate::keys::{Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, field, row};
 use crate::wheel::{Gears, WheelName};
 
-/// Bearings, shafts, brake and wheel bodies.
+/// Condensed shafts in their bearings and supports.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Rig {
@@ -18,31 +16,14 @@ pub struct Rig {
     pub bearing_stiffness_n_per_m: f64,
     /// (N m/rad) Stiffness of each wheel against tilting about x and y. Default 1e8.
     pub wheel_rotational_stiffness_nm_per_rad: f64,
-    /// (kg m²) Inertia of the brake. Default 4.5e-3.
-    pub brake_inertia_kgm2: f64,
     /// (-) Modal damping. Default 0.05 for every mode.
     pub damping_ratio: DampingRatio,
-    /// (mm) Eccentricity of both wheels. Default 0.
-    pub eccentricity_mm: f64,
-    /// (µm) How far the shafts deviate from parallel in the plane of action, over the face width, the wheels under their nominal
-    /// load: positive where it brings the flanks closer together towards positive z. Default 0.
-    pub misalignment_um: f64,
     /// The motor's shaft. Default 200 mm long, radius 10 mm.
     pub pinion_shaft: Shaft,
     /// The brake's shaft. Default 600 mm long, radius 10 mm.
     pub gear_shaft: Shaft,
-    /// Mass and inertias of the pinion, instead of those of a solid disc.
-    pub pinion_inertia: WheelInertia,
-    /// Mass and inertias of the gear, instead of those of a solid disc.
-    pub gear_inertia: WheelInertia,
-    /// Unbalance of the pinion and its shaft. Default none.
-    pub pinion_unbalance: Unbalance,
-    /// Unbalance of the gear and its shaft. Default none.
-    pub gear_unbalance: Unbalance,
     /// What each shaft's bearings sit in.
     pub support: Support,
-    /// (-) Damping of the contact of two teeth over the critical damping of the wheels' rotation on the mean mesh. Default 0.15.
-    pub mesh_damping_ratio: f64,
 }
 
 impl Default for Rig {
@@ -50,20 +31,27 @@ impl Default for Rig {
         Self {
             bearing_stiffness_n_per_m: 1.9e8,
             wheel_rotational_stiffness_nm_per_rad: 1e8,
-            brake_inertia_kgm2: 4.5e-3,
             damping_ratio: DampingRatio::Uniform(0.05),
-            eccentricity_mm: 0.0,
-            misalignment_um: 0.0,
             pinion_shaft: Shaft::new(200.0, 10.0),
             gear_shaft: Shaft::new(600.0, 10.0),
-            pinion_inertia: WheelInertia::default(),
-            gear_inertia: WheelInertia::default(),
-            pinion_unbalance: Unbalance::default(),
-            gear_unbalance: Unbalance::default(),
             support: Support::default(),
-            mesh_damping_ratio: 0.15,
         }
     }
+}
+
+/// What the machine of a rig is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct RigParts<'a> {
+    /// The pinion and the gear.
+    pub gears: &'a Gears,
+    /// Their shafts, in bearings and supports.
+    pub rig: &'a Rig,
+    /// Mass and inertias of the pinion and of the gear, instead of those of solid discs.
+    pub inertias: [&'a WheelInertia; 2],
+    /// Unbalances of both with their shafts.
+    pub unbalances: [&'a Unbalance; 2],
+    /// (kg m²) Inertia of the brake.
+    pub brake_inertia_kgm2: f64,
 }
 
 /// Beyond these the equations are solved in rounding errors.
@@ -78,7 +66,6 @@ impl Keys for Rig {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        const DISC: &str = "those of a solid disc of pitch radius";
         vec![
             row(
                 "bearing_stiffness_n_per_m",
@@ -94,8 +81,6 @@ impl Keys for Rig {
                 field!(wheel_rotational_stiffness_nm_per_rad),
             )
             .range(STIFFNESS),
-            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
-                .range(MASS),
             row(
                 "damping_ratio",
                 "-",
@@ -107,73 +92,14 @@ impl Keys for Rig {
                     .message("must be from 0 to less than 1 (1 is critical damping)")
                     .help("a usual ratio is 0.05, which is 5 %"),
             ),
-            row("eccentricity_mm", "mm", "the eccentricity of both wheels", field!(eccentricity_mm))
-                .range(Range::not_negative())
-                .rule("less than the module"),
-            row(
-                "misalignment_um",
-                "µm",
-                "the misalignment of the shafts in the plane of action over the face width, including their \
-                 slope under the nominal load; positive where flanks come closer towards positive z. The \
-                 tilt by an uneven load is computed",
-                field!(misalignment_um),
-            )
-            .range(Range::from_to(-1e3, 1e3)),
             row("pinion_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(pinion_shaft)),
             row("gear_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(gear_shaft)),
-            row(
-                "pinion_inertia",
-                "",
-                "the wheel's mass and inertias, any of the three",
-                field!(pinion_inertia),
-            )
-            .otherwise(DISC)
-            .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
-            row("gear_inertia", "", "the wheel's mass and inertias, any of the three", field!(gear_inertia))
-                .otherwise(DISC)
-                .alternative(
-                    "{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }",
-                ),
-            row("pinion_unbalance", "", "the unbalance of the wheel and its shaft", field!(pinion_unbalance))
-                .otherwise("none")
-                .alternative("{ g_mm = 50.0 }"),
-            row("gear_unbalance", "", "the unbalance of the wheel and its shaft", field!(gear_unbalance))
-                .otherwise("none")
-                .alternative("{ g_mm = 50.0 }"),
             row("support", "", "the supports of the shafts' bearings", field!(support)),
-            row(
-                "mesh_damping_ratio",
-                "-",
-                "the damping of teeth in contact, relative to the critical damping of the wheels' rotation \
-                 on the mean mesh stiffness",
-                field!(mesh_damping_ratio),
-            )
-            .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
         ]
     }
 }
 
 impl Rig {
-    /// Every key alone, and with the wheels that run in the rig.
-    pub(crate) fn check(&self, gears: &Gears) -> Check {
-        check_keys(self, "rig")?;
-        self.support.check()?;
-        below("rig.eccentricity_mm", self.eccentricity_mm, gears.module_mm, "the module")?;
-        for (wheel, shaft) in [(WheelName::Pinion, &self.pinion_shaft), (WheelName::Gear, &self.gear_shaft)] {
-            let below_pitch_circle = gears.dedendum(wheel) - gears.profile_shift(wheel);
-            let root_radius_mm = gears.transverse_module_mm() * f64::from(gears.teeth(wheel)) / 2.0
-                - gears.module_mm * below_pitch_circle;
-            let limit_is = format!("the root radius of the {}, whose bore it fills", wheel.name());
-            below(
-                &format!("rig.{}_shaft.radius_mm", wheel.name()),
-                shaft.radius_mm,
-                root_radius_mm,
-                &limit_is,
-            )?;
-        }
-        Ok(())
-    }
-
     /// The shaft of a wheel.
     ///
     /// # Arguments

@@ -105,7 +105,7 @@ impl Support {
     }
 
     /// What the keys alone do not say.
-    pub(super) fn check(&self) -> Check {
+    pub(crate) fn check(&self) -> Check {
         match self.springs {
             SupportSprings::Frequencies { base_hz, differential_hz } if differential_hz <= base_hz => {
                 let problem = format!(

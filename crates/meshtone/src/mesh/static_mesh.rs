@@ -100,7 +100,7 @@ mod tests {
 
     fn mesh(change: impl FnOnce(&mut Scenario)) -> Mesh {
         let mut scenario = Scenario::new(GearPair::example());
-        scenario.gears.tip_chamfer_mm = Some(0.0);
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = Some(0.0));
         change(&mut scenario);
         let points = NonZeroUsize::new(200).unwrap();
         stages(&scenario).unwrap().meshes_at(points).unwrap().swap_remove(0)
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn relief_delays_a_pair_until_the_other_gives_way() {
         let relief = FlankRelief { shape: ReliefShape::Linear, length_mm: 2.0, amount_um: 20.0 };
-        let mesh = mesh(|scenario| scenario.gears.flank_relief = relief);
+        let mesh = mesh(|scenario| scenario.wheels.iter_mut().for_each(|wheel| wheel.flank_relief = relief));
         let point = 20;
         let two: Vec<[f64; 2]> = (mesh.pairs_at(point))
             .filter(|(_, state)| state.separation_m < 25e-6)

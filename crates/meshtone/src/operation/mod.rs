@@ -6,7 +6,7 @@ mod rules;
 mod settings;
 
 pub use motion::{Motion, MotionSample, TorqueHarmonic};
-pub use parameters::{Operation, Profile};
+pub use parameters::{Operation, Profile, Ripple};
 pub use settings::{LengthKey, Solver};
 
 use crate::wheel::Gears;
@@ -38,18 +38,18 @@ impl TimeGrid {
     /// that it spans.
     ///
     /// # Arguments
-    /// * `gears` - for the tooth counts
+    /// * `teeth` - tooth counts of the pinion and of the gear
     /// * `operation` - nominal speed, and the profile that may replace it
     /// * `solver` - length and settling
     /// * `samples_per_pitch` - number of samples from one pair of teeth to the next at the nominal speed
     pub(crate) fn new(
-        gears: &Gears,
+        [pinion_teeth, gear_teeth]: [u32; 2],
         operation: &Operation,
         solver: &Solver,
         samples_per_pitch: usize,
     ) -> Self {
         let speed = operation.pinion_speed_hz;
-        let samples_per_pinion_revolution = samples_per_pitch.saturating_mul(gears.pinion_teeth as usize);
+        let samples_per_pinion_revolution = samples_per_pitch.saturating_mul(pinion_teeth as usize);
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed;
         let asked = (solver.duration_s.map(|duration_s| duration_s * sampling_rate_hz)).or(solver
             .pinion_revolutions
@@ -62,10 +62,7 @@ impl TimeGrid {
             None => {
                 let samples = match &operation.speed_profile_hz {
                     Some(profile) => profile.time_s.last().copied().unwrap_or(0.0) * sampling_rate_hz,
-                    None => {
-                        f64::from(nominal_revolutions(gears.gear_teeth))
-                            * samples_per_pinion_revolution as f64
-                    }
+                    None => f64::from(nominal_revolutions(gear_teeth)) * samples_per_pinion_revolution as f64,
                 };
                 let settling = (solver.settle_fraction * samples).round();
                 (settling, samples.round() - settling)
@@ -140,7 +137,7 @@ impl TimeGrid {
     ///
     /// let scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     /// let time = scenario.time_grid();
-    /// assert_eq!(time.hunting_period_samples(&scenario.gears), 2 * time.samples_per_pinion_revolution);
+    /// assert_eq!(time.hunting_period_samples(&scenario.gears()), 2 * time.samples_per_pinion_revolution);
     /// ```
     pub fn hunting_period_samples(&self, gears: &Gears) -> usize {
         let pitches = least_common_multiple(gears.pinion_teeth, gears.gear_teeth) as usize;

@@ -5,16 +5,16 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 use crate::error::{ScenarioWarning, WarningKind};
 use crate::interpolation::straight_between;
 use crate::keys::{
-    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, field, load, row,
+    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, field, load, row, rows_but,
 };
 
-/// Drive and load of the pair.
+/// Drive and load.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Operation {
-    /// (rev/s) Nominal speed of the motor, which turns the pinion.
+    /// (rev/s) Nominal speed of the motor and of the shaft that is coupled to it, which a pair's pinion is on.
     pub pinion_speed_hz: f64,
-    /// (N m) Nominal torque of the brake on the gear's shaft.
+    /// (N m) Nominal torque of the brake on the shaft that is coupled to it, which a pair's gear is on.
     pub brake_torque_nm: f64,
     /// (Hz) Half width of a uniform error of the motor's speed, drawn for every sample. Default 0.
     pub speed_fluctuation_hz: f64,
@@ -25,6 +25,10 @@ pub struct Operation {
     pub speed_profile_hz: Option<Profile>,
     /// Torque of the brake against time, instead of the constant `brake_torque_nm`.
     pub torque_profile_nm: Option<Profile>,
+    /// (kg m²) Inertia of the brake. Default 0.02.
+    pub brake_inertia_kgm2: f64,
+    /// Harmonics of the brake's torque over the rotation of its shaft. Default none.
+    pub torque_ripple: Vec<Ripple>,
 }
 
 impl Operation {
@@ -40,10 +44,12 @@ impl Operation {
             torque_fluctuation_nm: 0.0,
             speed_profile_hz: None,
             torque_profile_nm: None,
+            brake_inertia_kgm2: 0.02,
+            torque_ripple: Vec::new(),
         }
     }
 
-    /// Whether speed and torque are constant: neither follows a profile nor fluctuates.
+    /// Whether speed and torque are constant: neither follows a profile, fluctuates nor has harmonics.
     ///
     /// ```
     /// assert!(meshtone::operation::Operation::new(40.0, 10.0).is_steady());
@@ -53,6 +59,7 @@ impl Operation {
             && self.torque_profile_nm.is_none()
             && self.speed_fluctuation_hz == 0.0
             && self.torque_fluctuation_nm == 0.0
+            && self.torque_ripple.is_empty()
     }
 
     /// Warnings of profiles that end before the kept signal starts: nothing of them is kept but their last value.
@@ -135,6 +142,72 @@ impl Keys for Operation {
                 .otherwise("none")
                 .rule("likewise, values ≥ 0")
                 .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }"),
+        ]
+    }
+}
+
+impl Operation {
+    /// The rows where motor and brake are coupled to any two shafts.
+    pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
+        let input = row(
+            "input_speed_hz",
+            "rev/s",
+            "the nominal speed of the motor and of the shaft that is coupled to it; the sampling rate is chosen for it",
+            field!(pinion_speed_hz),
+        )
+        .required()
+        .range(Range::positive().implausible_above(1e5));
+        let torque = row(
+            "brake_torque_nm",
+            "N m",
+            "the nominal torque of the brake on the shaft that is coupled to it",
+            field!(brake_torque_nm),
+        )
+        .required()
+        .range(Range::not_negative().implausible_above(1e9));
+        let own = [
+            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
+                .range(Range::positive().implausible_above(1e9)),
+            row(
+                "torque_ripple",
+                "",
+                "harmonics of the brake's torque over the rotation θ of its shaft, T (1 + Σ a cos(hθ + ψ))",
+                field!(torque_ripple),
+            )
+            .otherwise("none")
+            .rule("amplitudes add up to less than 1")
+            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
+        ];
+        let varying = rows_but(&["pinion_speed_hz", "brake_torque_nm"]);
+        [input, torque].into_iter().chain(varying).chain(own).collect()
+    }
+}
+
+/// A harmonic of the brake's torque.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ripple {
+    /// (-) h: the number of its periods per revolution of the brake's shaft.
+    pub order: f64,
+    /// (-) a: its amplitude as a part of the torque.
+    pub amplitude: f64,
+    /// (°) ψ: its phase at the start. Default 0.
+    pub phase_deg: f64,
+}
+
+impl Keys for Ripple {
+    fn start() -> Self {
+        Self { order: f64::NAN, amplitude: f64::NAN, phase_deg: 0.0 }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        vec![
+            row("order", "-", "the number of its periods per revolution of the brake's shaft", field!(order))
+                .required()
+                .range(Range::positive().implausible_above(1e4)),
+            row("amplitude", "-", "its amplitude as a part of the torque", field!(amplitude))
+                .required()
+                .range(Range::below_one()),
+            row("phase_deg", "°", "its phase at the start", field!(phase_deg)),
         ]
     }
 }

@@ -2,19 +2,27 @@
 
 use super::{Operation, Profile};
 use crate::error::ScenarioError;
-use crate::keys::{Check, check_keys, refuse, require};
+use crate::keys::{Check, refuse, require};
 
 impl Operation {
-    /// Every key alone, and speed and torque with what varies them.
+    /// Speed and torque with what varies them; every key alone is in its range.
     pub(crate) fn check(&self) -> Check {
-        check_keys(self, "operation")?;
         let (speeds, torques) = (self.speed_profile_hz.as_ref(), self.torque_profile_nm.as_ref());
         values(speeds, "operation.speed_profile_hz", |speed| speed > 0.0, "must be more than 0 rev/s")?;
         values(torques, "operation.torque_profile_nm", |torque| torque >= 0.0, "must be 0 N m or more")?;
         let slowest = smallest(self.pinion_speed_hz, speeds);
         fluctuation("operation.speed_fluctuation_hz", self.speed_fluctuation_hz, slowest, "speed", "Hz")?;
         let lightest = smallest(self.brake_torque_nm, torques);
-        fluctuation("operation.torque_fluctuation_nm", self.torque_fluctuation_nm, lightest, "torque", "N m")
+        fluctuation(
+            "operation.torque_fluctuation_nm",
+            self.torque_fluctuation_nm,
+            lightest,
+            "torque",
+            "N m",
+        )?;
+        let amplitudes: f64 = self.torque_ripple.iter().map(|ripple| ripple.amplitude).sum();
+        let problem = "amplitudes add up to 1 or more: the brake would drive; must be less";
+        require("operation.torque_ripple", amplitudes, amplitudes < 1.0, problem)
     }
 }
 

@@ -1,6 +1,8 @@
 //! Sampling, length, settling and initial state.
 
-use crate::keys::{KeyRow, Keys, Range, field, row};
+use std::ops::Bound::{Excluded, Included};
+
+use crate::keys::{KeyRow, Keys, Range, field, row, rows_but};
 
 /// Settings of the solver of the equations of motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +23,9 @@ pub struct Solver {
     /// in the static equilibrium of the loaded mesh, and leaves out what is not needed for that. 0 for
     /// the whole settling. Default 1e-6.
     pub settle_tolerance: f64,
+    /// (Hz) Natural frequency up to which the modes of shafts of beams are stepped; those above deform at rest with their forces. None for
+    /// 20 kHz, or 0.4 of the sampling rate where that is less.
+    pub highest_mode_hz: Option<f64>,
     /// (m, rad) Initial displacement of the 13 coordinates. Default 0 under `published`, else the static
     /// equilibrium of the loaded mesh.
     pub initial_displacement: Option<[f64; 13]>,
@@ -36,6 +41,7 @@ impl Default for Solver {
             pinion_revolutions: None,
             settle_fraction: 0.5,
             settle_tolerance: 1e-6,
+            highest_mode_hz: None,
             initial_displacement: None,
             initial_velocity: None,
         }
@@ -43,6 +49,14 @@ impl Default for Solver {
 }
 
 impl Solver {
+    /// (Hz) Natural frequency up to which modes of shafts of beams are stepped, given or by default.
+    ///
+    /// # Arguments
+    /// * `sampling_rate_hz` - (S/s) the actual rate
+    pub fn highest_mode_hz(&self, sampling_rate_hz: f64) -> f64 {
+        self.highest_mode_hz.unwrap_or(20e3f64.min(0.4 * sampling_rate_hz))
+    }
+
     /// Sets what is discarded, and what is kept after it.
     ///
     /// # Arguments
@@ -145,5 +159,55 @@ impl Keys for Solver {
                 .otherwise("rigid rotation at the nominal speed")
                 .alternative("[ 13 numbers ]"),
         ]
+    }
+}
+
+impl Solver {
+    /// The rows where revolutions are those of the shaft that is coupled to the motor.
+    pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
+        let rate = row(
+            "sampling_rate_hz",
+            "S/s",
+            "the nominal sampling rate; the actual one is the next with a whole number of samples per revolution of the input",
+            field!(sampling_rate_hz),
+        )
+        .range(Range::positive());
+        let duration = row(
+            "duration_s",
+            "s",
+            "the length of the kept signal; settling comes before it",
+            field!(duration_s),
+        )
+        .otherwise("that of input_revolutions")
+        .range(Range::positive())
+        .rule("not beside input_revolutions")
+        .example("1.0");
+        let revolutions = row(
+            "input_revolutions",
+            "rev",
+            "the number of kept revolutions of the input; settling comes before them",
+            field!(pinion_revolutions),
+        )
+        .otherwise("those of 1 s, or of the time of a speed profile less settling")
+        .range(Range::positive())
+        .rule("not beside duration_s, not with a speed profile")
+        .example("30.0");
+        let highest = row(
+            "highest_mode_hz",
+            "Hz",
+            "the natural frequency up to which modes are integrated; those above deform statically",
+            field!(highest_mode_hz),
+        )
+        .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
+        .range(Range::between(Excluded(0.0), Included(1e9)))
+        .alternative("20000.0");
+        const OWN: [&str; 5] = [
+            "sampling_rate_hz",
+            "duration_s",
+            "pinion_revolutions",
+            "initial_displacement",
+            "initial_velocity",
+        ];
+        [rate, duration, revolutions].into_iter().chain(rows_but(&OWN)).chain([highest]).collect()
     }
 }

@@ -2,11 +2,12 @@
 
 use crate::operation::{CycleGrid, FINE_PER_COARSE};
 use crate::scenario::Scenario;
+use crate::wheel::Gears;
 
 /// The division of the cycle, which follows the nominal sampling rate. A pitch has `⌈(1/z_p)/d_f⌉` fine points: where that quotient is
 /// a rounding error above a whole number (20 and 25 teeth), every pitch is a fine point too long, and the cycle by `z_g` of them.
-pub(super) fn grid(scenario: &Scenario) -> CycleGrid {
-    let [pinion_teeth, gear_teeth] = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+pub(super) fn grid(scenario: &Scenario, gears: &Gears) -> CycleGrid {
+    let [pinion_teeth, gear_teeth] = [gears.pinion_teeth, gears.gear_teeth];
     let grid = CycleGrid::new(pinion_teeth, gear_teeth, scenario.solver.sampling_rate_hz);
     let fine_points_per_pitch = ((1.0 / f64::from(pinion_teeth)) / grid.fine_step_rev).ceil() as usize;
     CycleGrid {

@@ -65,8 +65,10 @@ impl Published {
     ) -> Result<Self, ScenarioError> {
         let damage = scenario.faults.first().and_then(|fault| fault.sized(teeth));
         let fault = damage.map(|damage| damage::geometry(&damage, teeth, scenario.seed)).transpose()?;
-        let mesh = PublishedMesh::new(&scenario.gears, teeth, fault, cycle::grid(scenario))?;
-        let machine = Machine::new(&scenario.gears, &scenario.rig, teeth, &mesh.load);
+        let gears = scenario.gears();
+        let mesh = PublishedMesh::new(&gears, teeth, fault, cycle::grid(scenario, &gears))?;
+        let parts = scenario.expect_pair()?.rig_parts(&gears).ok_or_else(ScenarioError::nothing_left)?;
+        let machine = Machine::new(parts, teeth, &mesh.load);
         let (scenario, profile_errors) = (scenario.clone(), profile_errors.cloned());
         Ok(Self { mesh, machine, scenario, time: *time, profile_errors })
     }

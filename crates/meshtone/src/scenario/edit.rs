@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::{Gearbox, Scenario, ScenarioError, ScenarioForm, Sensor};
+use super::{Scenario, ScenarioError, Sensor};
 
 /// A number of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -154,7 +154,8 @@ impl Scenario {
     /// The number at a key of the scenario file, defaults included.
     ///
     /// # Arguments
-    /// * `key` - dotted, as in the file; of several faults, `fault[1].…` is the second, and so of sensors
+    /// * `key` - dotted, as in the file; of several faults, `fault[1].…` is the second, and so of sensors; entries of other lists by name,
+    ///   `wheel[z1].teeth`, `mesh[z1-z2].module_mm`, `shaft[input].radius_mm`, `bearing[input:0].damping_ratio`
     ///
     /// None where there is no such key in this scenario, or no single number at it; where a seed is more than 2⁶³ − 1, which no
     /// number of a TOML table can be, none at any key.
@@ -184,7 +185,7 @@ impl Scenario {
     ///
     /// let scenario = Scenario::new(GearPair::example());
     /// let graded = scenario.with_number("quality.din_grade", 7.0)?;
-    /// assert_eq!(graded.quality.din_grade, 7);
+    /// assert_eq!(graded.wheels[1].din_grade, 7);
     /// let error = scenario.with_number("quality.din_grade", 13.0).unwrap_err();
     /// assert_eq!(error.key, "quality.din_grade");
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
@@ -235,7 +236,9 @@ impl Scenario {
         // A line of this text is no line that anybody has written.
         let mut changed = Self::from_toml(&text).map_err(|error| error.at_line(None))?;
         // Not part of the text's table.
-        changed.quality.profile_errors.clone_from(&self.quality.profile_errors);
+        for (wheel, before) in changed.wheels.iter_mut().zip(&self.wheels) {
+            wheel.profile_errors_mm.clone_from(&before.profile_errors_mm);
+        }
         Ok(changed)
     }
 
@@ -257,94 +260,14 @@ impl Scenario {
     /// # Errors
     /// A seed that is too large for a number of the table.
     fn table(&self) -> Result<Table, ScenarioError> {
-        let own = [("seed".to_owned(), Some(self.seed)), ("quality.seed".to_owned(), self.quality.seed)];
+        let own = [
+            ("seed".to_owned(), Some(self.seed)),
+            (self.words().wheels_seed_key.to_owned(), self.wheels_seed),
+        ];
         check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter())))?;
         let mut small = self.clone();
-        small.quality.profile_errors = None;
+        small.wheels.iter_mut().for_each(|wheel| wheel.profile_errors_mm = None);
         parsed(&small.to_toml())
-    }
-}
-
-impl Gearbox {
-    /// The number at a key of the scenario file, defaults included.
-    ///
-    /// # Arguments
-    /// * `key` - dotted, as in the file; entries of lists by name, `wheel[z1].teeth`, `mesh[z1-z2].module_mm`, `shaft[input].radius_mm`,
-    ///   `bearing[input:0].damping_ratio`; of several faults and sensors by number, `fault[1].tooth`
-    ///
-    /// None where there is no such key in this gearbox, or no single number at it.
-    pub fn number(&self, key: &str) -> Option<f64> {
-        number_at(self.table(), key)
-    }
-
-    /// Every key of the scenario file at which this gearbox has a single number, defaults included.
-    pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        numbers_of(self.table())
-    }
-
-    /// Returns the gearbox with other numbers at some keys. All are set before anything is checked.
-    ///
-    /// # Arguments
-    /// * `numbers` - key, as of [`Self::number`], and value in the key's unit
-    ///
-    /// # Errors
-    /// A key that the gearbox does not have, a value that is not allowed there, as for the scenario file.
-    ///
-    /// ```
-    /// use meshtone::scenario::{Gearbox, gearbox_template};
-    ///
-    /// let gearbox = Gearbox::from_toml(&gearbox_template(None))?;
-    /// let other = gearbox.with_numbers(&[("wheel[z3].face_width_mm", 15.0), ("operation.input_speed_hz", 40.0)])?;
-    /// assert_eq!((other.wheels[2].face_width_mm, other.number("operation.input_speed_hz")), (15.0, Some(40.0)));
-    /// assert_eq!(gearbox.with_numbers(&[("wheel[z9].teeth", 20.0)]).unwrap_err().key, "wheel[z9].teeth");
-    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
-    /// ```
-    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
-        match with_numbers_that(self.table(), numbers, no_such_number)? {
-            Some(text) => Self::from_toml(&text).map_err(|error| error.at_line(None)),
-            None => Ok(self.clone()),
-        }
-    }
-
-    fn table(&self) -> Result<Table, ScenarioError> {
-        let own = [("seed".to_owned(), Some(self.seed)), ("wheels_seed".to_owned(), self.wheels_seed)];
-        check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter().map(|sensor| &sensor.sensor))))?;
-        parsed(&self.to_toml())
-    }
-}
-
-impl ScenarioForm {
-    /// Does what [`Scenario::numbers`] and [`Gearbox::numbers`] do.
-    pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        match self {
-            Self::Pair(scenario) => scenario.numbers(),
-            Self::Gearbox(gearbox) => gearbox.numbers(),
-        }
-    }
-
-    /// Does what [`Scenario::number`] and [`Gearbox::number`] do.
-    ///
-    /// # Arguments
-    /// * `key` - dotted, as in the file
-    pub fn number(&self, key: &str) -> Option<f64> {
-        match self {
-            Self::Pair(scenario) => scenario.number(key),
-            Self::Gearbox(gearbox) => gearbox.number(key),
-        }
-    }
-
-    /// Does what [`Scenario::with_numbers`] and [`Gearbox::with_numbers`] do.
-    ///
-    /// # Arguments
-    /// * `numbers` - dotted key, as in the file, and value in the key's unit
-    ///
-    /// # Errors
-    /// A key that the scenario does not have, a value that is not allowed there.
-    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
-        Ok(match self {
-            Self::Pair(scenario) => Self::Pair(scenario.with_numbers(numbers)?),
-            Self::Gearbox(gearbox) => Self::Gearbox(gearbox.with_numbers(numbers)?),
-        })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Keys that a model ignores.
 
+use super::short::{self, Section};
 use super::{Model, Scenario, ScenarioWarning, Sensor, SensorPath, WarningKind};
 use crate::keys::{KeyRow, Keys};
 
@@ -17,7 +18,7 @@ impl Scenario {
     /// use meshtone::scenario::{GearPair, Model, Scenario};
     ///
     /// let mut scenario = Scenario::new(GearPair::example());
-    /// scenario.rig.eccentricity_mm = 0.02;
+    /// scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.02);
     /// assert!(scenario.ignored_by_model().is_empty());
     ///
     /// scenario.model = Model::Published;
@@ -41,20 +42,24 @@ impl Scenario {
 /// The keys that were not at it.
 fn reset_ignored(scenario: &mut Scenario) -> Vec<String> {
     let model = scenario.model;
-    let sections = [
-        reset(&mut scenario.gears, "gears", model),
-        reset(&mut scenario.operation, "operation", model),
-        reset(&mut scenario.quality, "quality", model),
-        reset(&mut scenario.rig, "rig", model),
-        reset(&mut scenario.solver, "solver", model),
-    ];
+    let start = Scenario::start_of_rig();
+    let mut changed = Vec::new();
+    // Shafts of beams know one model.
+    if scenario.rig().is_some() {
+        for Section { name, rows } in
+            [short::gears(), short::operation(), short::quality(), short::rig(), short::solver()]
+        {
+            changed.extend(reset(&rows, scenario, &start, name, model));
+        }
+    }
     let sensors = scenario.sensors.len();
     let of_sensor = |(index, sensor): (usize, &mut Sensor)| {
         let name = if sensors > 1 { format!("sensor[{index}]") } else { "sensor".to_owned() };
         reset_sensor(sensor, &name, model)
     };
     let sensors = scenario.sensors.iter_mut().enumerate().flat_map(of_sensor);
-    sections.concat().into_iter().chain(sensors.collect::<Vec<_>>()).collect()
+    changed.extend(sensors.collect::<Vec<_>>());
+    changed
 }
 
 /// Resets ignored keys of a sensor, which keeps its name though that may come of its place.
@@ -64,7 +69,8 @@ fn reset_sensor(sensor: &mut Sensor, key: &str, model: Model) -> Vec<String> {
         // It says what the model does.
         sensor.path = SensorPath::default();
     }
-    let changed = reset(sensor, key, model);
+    let changed = reset(&Sensor::rows(), sensor, &Sensor::start(), "sensor", model);
+    let changed = changed.into_iter().map(|of| of.replacen("sensor", key, 1)).collect();
     if sensor.name() != name {
         sensor.name = Some(name);
     }
@@ -75,15 +81,30 @@ fn reset_sensor(sensor: &mut Sensor, key: &str, model: Model) -> Vec<String> {
     changed
 }
 
-fn reset<S: Keys>(section: &mut S, name: &str, model: Model) -> Vec<String> {
-    let start = S::start();
-    let is_ignored = |row: &KeyRow<S>| model.ignores(&format!("{}.{}", S::SECTION, row.head.name));
-    let changed = S::rows().into_iter().filter(is_ignored).filter(|row| {
+/// Resets ignored keys of a section.
+///
+/// # Arguments
+/// * `rows` - its keys
+/// * `section`, `start` - the section, and the one with its defaults
+/// * `name` - its name
+/// * `model` - that ignores keys
+///
+/// # Returns
+/// The keys that were not at their default.
+fn reset<S: Clone + PartialEq>(
+    rows: &[KeyRow<S>],
+    section: &mut S,
+    start: &S,
+    name: &str,
+    model: Model,
+) -> Vec<String> {
+    let key = |row: &KeyRow<S>| format!("{name}.{}", row.head.name);
+    let changed = rows.iter().filter(|row| model.ignores(&key(row))).filter(|row| {
         let before = section.clone();
-        row.copy(&start, section);
+        row.copy(start, section);
         *section != before
     });
-    changed.map(|row| format!("{name}.{}", row.head.name)).collect()
+    changed.map(key).collect()
 }
 
 #[cfg(test)]
@@ -93,12 +114,12 @@ mod tests {
 
     fn with_everything_ignored() -> Scenario {
         let mut scenario = Scenario::new(GearPair::example());
-        scenario.gears.backlash_mm = Some(0.2);
-        scenario.gears.foundation.q[3] = 0.0;
+        scenario.meshes[0].backlash_mm = Some(0.2);
+        scenario.meshes[0].foundation.q[3] = 0.0;
         scenario.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 2.0], value: vec![40.0, 41.0] });
-        scenario.rig.bearing_stiffness_n_per_m = 1e8;
-        scenario.rig.eccentricity_mm = 0.01;
+        scenario.rig_mut().unwrap().bearing_stiffness_n_per_m = 1e8;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.01);
         scenario
     }
 
@@ -111,7 +132,7 @@ mod tests {
             ignored.iter().map(|warning| warning.key.as_str()).collect::<Vec<_>>(),
             ["gears.backlash_mm"]
         );
-        scenario.gears.backlash_mm = None;
+        scenario.meshes[0].backlash_mm = None;
         assert_eq!(scenario.without_ignored_keys(), scenario);
         scenario = with_everything_ignored();
         scenario.model = Model::Published;

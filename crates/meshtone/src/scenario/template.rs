@@ -3,7 +3,7 @@
 use super::to_toml::Style;
 use super::{Fault, GearPair, Scenario, Sensor};
 use crate::damage::{PaperRig, damage_kinds};
-use crate::keys::{Keys, comment, commented, essential};
+use crate::keys::{KeyRow, Keys, comment, commented, commented_rows, essential_rows};
 
 const HEALTHY: &str = "healthy";
 
@@ -98,7 +98,7 @@ fn of_the_paper(rig: PaperRig) -> Scenario {
             8,
         ),
     };
-    scenario.quality.din_grade = din_grade;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = din_grade);
     scenario
 }
 
@@ -106,8 +106,8 @@ fn of_the_paper(rig: PaperRig) -> Scenario {
 struct Essential;
 
 impl Style for Essential {
-    fn keys<S: Keys>(&self, section: &S) -> String {
-        essential(section)
+    fn keys<S>(&self, rows: &[KeyRow<S>], section: &S, start: &S, _: &str) -> String {
+        essential_rows(rows, section, start)
     }
 
     fn fault(&self, fault: &Fault) -> String {
@@ -119,8 +119,8 @@ impl Style for Essential {
 struct Commented;
 
 impl Style for Commented {
-    fn keys<S: Keys>(&self, section: &S) -> String {
-        commented(section)
+    fn keys<S>(&self, rows: &[KeyRow<S>], section: &S, start: &S, name: &str) -> String {
+        commented_rows(rows, section, start, name)
     }
 
     fn fault(&self, fault: &Fault) -> String {

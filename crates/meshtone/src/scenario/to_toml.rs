@@ -1,52 +1,42 @@
-//! A scenario as TOML.
+//! A pair in a rig as TOML.
 
-use super::{Fault, Scenario};
-use crate::keys::{Keys, write_keys};
+use super::short::{self, Section};
+use super::{Fault, Scenario, Sensor};
+use crate::keys::{KeyRow, Keys, write_rows};
 
 impl Scenario {
-    /// The scenario as a scenario file that needs no other file: profile errors and profiles are
-    /// written inline, defaults explicitly.
-    ///
-    /// A valid scenario is read back exactly by [`Scenario::from_toml`]. A seed above `i64::MAX` is
-    /// read back by it too, but not by other TOML readers.
-    ///
-    /// ```
-    /// use meshtone::scenario::{GearPair, Scenario};
-    ///
-    /// let scenario = Scenario::new(GearPair::example());
-    /// let text = scenario.to_toml();
-    /// assert!(text.starts_with("model = \"contact\"\nseed = 1\n"));
-    /// assert_eq!(Scenario::from_toml(&text)?, scenario);
-    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
-    /// ```
-    pub fn to_toml(&self) -> String {
+    /// The text of a file, every key with its value.
+    pub(super) fn to_short_form(&self) -> String {
         self.in_sections(&Plain)
     }
 
     /// The file's text, each section in its own style.
     pub(super) fn in_sections(&self, style: &impl Style) -> String {
-        let section = |name: &str, keys: String| match keys.as_str() {
-            "" => String::new(),
+        let start = Self::start_of_rig();
+        let section = |Section { name, rows }: Section| match style.keys(&rows, self, &start, name).as_str() {
+            keys if keys.is_empty() || name.is_empty() => keys.to_owned(),
             keys => format!("[{name}]\n{keys}"),
         };
         let mut sections = vec![
-            style.keys(self),
-            section("gears", style.keys(&self.gears)),
-            section("operation", style.keys(&self.operation)),
-            section("quality", style.keys(&self.quality)),
+            section(short::top()),
+            section(short::gears()),
+            section(short::operation()),
+            section(short::quality()),
         ];
         let faults = style.entry_header("fault", self.faults.len());
         sections.extend(self.faults.iter().map(|fault| format!("{faults}\n{}", style.fault(fault))));
         if self.faults.is_empty() {
             sections.extend(style.without_faults());
         }
-        sections.push(section("rig", style.keys(&self.rig)));
-        let sensors = style.entry_header("sensor", self.sensors.len());
-        sections.extend(self.sensors.iter().map(|sensor| format!("{sensors}\n{}", style.keys(sensor))));
+        sections.push(section(short::rig()));
+        let header = style.entry_header("sensor", self.sensors.len());
+        let (rows, start_of_sensor) = (Sensor::rows(), Sensor::start());
+        let sensor = |of: &Sensor| format!("{header}\n{}", style.keys(&rows, of, &start_of_sensor, "sensor"));
+        sections.extend(self.sensors.iter().map(sensor));
         if self.sensors.is_empty() {
             sections.extend(style.without_sensors());
         }
-        sections.push(section("solver", style.keys(&self.solver)));
+        sections.push(section(short::solver()));
         sections.retain(|text| !text.is_empty());
         sections.join("\n")
     }
@@ -54,7 +44,13 @@ impl Scenario {
 
 /// Style in which the keys of a section are written.
 pub(super) trait Style {
-    fn keys<S: Keys>(&self, section: &S) -> String;
+    /// Some keys of a section.
+    ///
+    /// # Arguments
+    /// * `rows` - the keys
+    /// * `section`, `start` - the section, and the one with its defaults
+    /// * `name` - its name
+    fn keys<S>(&self, rows: &[KeyRow<S>], section: &S, start: &S, name: &str) -> String;
     fn fault(&self, fault: &Fault) -> String;
     /// Header above an entry of a list, by default one beside which others can be added.
     fn entry_header(&self, name: &str, _entries: usize) -> String {
@@ -74,8 +70,8 @@ pub(super) trait Style {
 struct Plain;
 
 impl Style for Plain {
-    fn keys<S: Keys>(&self, section: &S) -> String {
-        write_keys(section)
+    fn keys<S>(&self, rows: &[KeyRow<S>], section: &S, _: &S, _: &str) -> String {
+        write_rows(rows, section)
     }
 
     fn fault(&self, fault: &Fault) -> String {

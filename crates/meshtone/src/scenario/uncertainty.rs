@@ -1,6 +1,6 @@
 //! How well the numbers of a rig are known.
 
-use super::ScenarioForm;
+use super::Scenario;
 
 /// (-) Standard deviation of the logarithm of a number of the scenario file that is not known well of a rig whose drawings are at hand:
 /// stiffnesses, frequencies, masses, spans, dampings, tip chamfer, backlash and the clearance of rolling bearings, which have no stiffness of
@@ -14,13 +14,13 @@ use super::ScenarioForm;
 /// * `key` - dotted, as in the scenario file
 ///
 /// ```
-/// use meshtone::scenario::{GearPair, Scenario, ScenarioForm, log_deviation};
+/// use meshtone::scenario::{GearPair, Scenario, log_deviation};
 ///
-/// let base = ScenarioForm::Pair(Scenario::new(GearPair::example()));
+/// let base = Scenario::new(GearPair::example());
 /// assert_eq!(log_deviation(&base, "rig.support.base_hz"), Some(0.3));
 /// assert_eq!(log_deviation(&base, "gears.module_mm"), None);
 /// ```
-pub fn log_deviation(base: &ScenarioForm, key: &str) -> Option<f64> {
+pub fn log_deviation(base: &Scenario, key: &str) -> Option<f64> {
     const OF_PAIR: [(&str, f64); 14] = [
         ("rig.bearing_stiffness_n_per_m", 0.3),
         // A rig is given by these frequencies or by the stiffnesses; the others it does not have.
@@ -58,14 +58,13 @@ pub fn log_deviation(base: &ScenarioForm, key: &str) -> Option<f64> {
 }
 
 /// Returns whether a key is that of a bearing with balls or rollers.
-fn is_of_rolling_bearing(base: &ScenarioForm, key: &str) -> bool {
-    let ScenarioForm::Gearbox(gearbox) = base else { return false };
+fn is_of_rolling_bearing(base: &Scenario, key: &str) -> bool {
     let Some((name, _)) = key.strip_prefix("bearing[").and_then(|rest| rest.split_once(']')) else {
         return false;
     };
     let bearing = match name.parse::<usize>() {
-        Ok(number) => gearbox.bearings.get(number),
-        Err(_) => gearbox.bearings.iter().find(|bearing| bearing.seat_name() == name),
+        Ok(number) => base.bearings().get(number),
+        Err(_) => base.bearings().iter().find(|bearing| bearing.seat_name() == name),
     };
     bearing.is_some_and(|bearing| bearing.element().is_some())
 }

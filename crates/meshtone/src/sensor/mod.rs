@@ -27,6 +27,7 @@ pub use passage::Passage;
 pub use path::SensorPath;
 pub use path_ripple::PathRipple;
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use crate::machine::{Axis, GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, WHEELS};
@@ -57,7 +58,7 @@ pub enum ChannelKind {
 const PER_G: f64 = 1.0 / GRAVITY_M_PER_S2;
 
 /// The acceleration of a place, in g.
-fn acceleration_g(place: &'static str, axis: Axis) -> Output {
+fn acceleration_g(place: impl Into<Cow<'static, str>>, axis: Axis) -> Output {
     Output::Acceleration { place: place.into(), axis, factor: PER_G }
 }
 
@@ -163,10 +164,12 @@ impl Sensor {
             return Output::MeshForce { mesh: 0 };
         }
         let place = match self.at {
-            SensorPlace::Support => SUPPORTS,
-            SensorPlace::PinionSupport => PINION_SUPPORT,
-            SensorPlace::GearSupport => GEAR_SUPPORT,
-            SensorPlace::Wheels => WHEELS,
+            SensorPlace::Support => Cow::from(SUPPORTS),
+            SensorPlace::PinionSupport => PINION_SUPPORT.into(),
+            SensorPlace::GearSupport => GEAR_SUPPORT.into(),
+            SensorPlace::Wheels => WHEELS.into(),
+            // The machine of shafts of beams has a place for each sensor.
+            SensorPlace::Of(_) => self.name().into(),
         };
         acceleration_g(place, self.direction.axis())
     }

@@ -1,13 +1,14 @@
 //! A sensor: where it sits, and what it makes of the motion there.
 
-use meshtone_toml::{ReadResult, TomlTable};
+use meshtone_toml::{ReadResult, TomlValue};
 
 use super::ChannelKind;
 use super::frequency_response::FrequencyResponse;
 use super::path::SensorPath;
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyRow, Keys, NumberFiles, Range, by_name, check_keys, field, read_keys, require, row,
+    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, by_name, check_keys, field, require,
+    row, rows_but,
 };
 use crate::model::Model;
 
@@ -57,7 +58,7 @@ pub struct Sensor {
 }
 
 /// Place at which a sensor sits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum SensorPlace {
     /// On both supports: their mean.
     Support,
@@ -68,14 +69,44 @@ pub enum SensorPlace {
     GearSupport,
     /// On the wheels themselves: the sum of both, as published.
     Wheels,
+    /// Among shafts of beams: `SHAFT:AT` for the seat of the bearing there, `shaft:SHAFT:AT` for the shaft itself, `housing:[x, y, z]` in mm
+    /// for a point of the housing.
+    Of(String),
 }
 
-by_name!(SensorPlace, [
-    "support" => SensorPlace::Support,
-    "pinion-support" => SensorPlace::PinionSupport,
-    "gear-support" => SensorPlace::GearSupport,
-    "wheels" => SensorPlace::Wheels,
-]);
+impl SensorPlace {
+    /// The places of a rig.
+    const OF_RIG: [Self; 4] = [Self::Support, Self::PinionSupport, Self::GearSupport, Self::Wheels];
+
+    /// The name in the scenario file.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Support => "support",
+            Self::PinionSupport => "pinion-support",
+            Self::GearSupport => "gear-support",
+            Self::Wheels => "wheels",
+            Self::Of(name) => name,
+        }
+    }
+}
+
+/// Any text is the name of a place: which of them there are, the structure says.
+impl KeyValue for SensorPlace {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        let name = value.string()?;
+        let of_rig = Self::OF_RIG.into_iter().find(|place| place.name() == name);
+        *self = of_rig.unwrap_or_else(|| Self::Of(name.to_owned()));
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        self.name().to_owned().write()
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Text
+    }
+}
 
 /// In which direction a sensor measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -145,7 +176,8 @@ impl Keys for Sensor {
                 "where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the \
                  wheels under linear and published",
                 field!(at),
-            ),
+            )
+            .kind(KeyKind::Name(vec!["support", "pinion-support", "gear-support", "wheels"])),
             row(
                 "direction",
                 "",
@@ -214,27 +246,42 @@ impl Keys for Sensor {
 }
 
 impl Sensor {
-    /// Reads the sensors of a file, as the scenario file has them: any number of `[[sensor]]`.
+    /// A vertical sensor at a place among shafts of beams. Seats and housing move by themselves: no wall bends between them and the sensor.
     ///
     /// # Arguments
-    /// * `table` - what the sections are in
-    /// * `files` - loads the files that they name
-    ///
-    /// # Errors
-    /// An unknown key, a value of the wrong type; ranges are checked with the whole scenario.
-    pub(crate) fn list_from_table(table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Vec<Self>> {
-        let read = |table: &TomlTable<'_>| {
-            let mut sensor = Self::start();
-            read_keys(&mut sensor, table, files).map(|()| sensor)
-        };
-        table.tables("sensor")?.into_iter().map(|table| table.read(read)).collect()
+    /// * `at` - where it sits, as [`SensorPlace::Of`] has it
+    pub fn at_place(at: &str) -> Self {
+        Self { at: SensorPlace::Of(at.to_owned()), path: SensorPath::RIGID, ..Self::default() }
+    }
+
+    /// The rows among shafts of beams.
+    pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
+        let at = row(
+            "at",
+            "",
+            "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \
+             \"housing:[x, y, z]\" in mm on the housing",
+            field!(at),
+        )
+        .required();
+        let name = row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(name))
+            .otherwise("place and direction, such as `input_0_vertical`")
+            .rule("a letter, then letters, digits and `_`; no other channel's")
+            .alternative("\"output_bearing\"");
+        let direction = row("direction", "", "the direction it measures in", field!(direction));
+        let others = rows_but(&["at", "name", "direction", "response_input"]);
+        [at, name, direction].into_iter().chain(others).collect()
     }
 
     /// Its name, given or by place and direction.
     pub fn name(&self) -> String {
-        self.name
-            .clone()
-            .unwrap_or_else(|| format!("{}_{}", self.at.name().replace('-', "_"), self.direction.name()))
+        let by_place = || {
+            let letter = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+            let place: String = self.at.name().chars().map(letter).collect();
+            let place = place.trim_matches('_').replace("__", "_");
+            format!("{place}_{}", self.direction.name())
+        };
+        self.name.clone().unwrap_or_else(by_place)
     }
 
     /// The name of its signal's channel, with the unit at the end.

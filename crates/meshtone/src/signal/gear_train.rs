@@ -2,9 +2,8 @@
 
 use super::{SeparationSettings, ShaftPhase, SignalError, TrainBearing};
 use crate::error::ScenarioError;
-use crate::scenario::{Bearing, Coupled, Gearbox, GearboxLayout, Ratio, Scenario, ScenarioForm};
+use crate::scenario::{Bearing, Layout, Ratio, Scenario};
 use crate::simulate::Stages;
-use crate::wheel::WheelName;
 
 /// A shaft of a train.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,10 +30,10 @@ pub struct TrainWheel {
 /// Shafts, wheels, meshes and rolling bearings of a machine, as far as a recording shows them: a pair, or a gearbox of any number of shafts.
 ///
 /// ```
-/// use meshtone::scenario::{Gearbox, gearbox_template};
+/// use meshtone::scenario::{Scenario, gearbox_template};
 /// use meshtone::signal::GearTrain;
 ///
-/// let train = GearTrain::of_gearbox(&Gearbox::from_toml(&gearbox_template(None))?)?;
+/// let train = GearTrain::of_scenario(&Scenario::from_toml(&gearbox_template(None))?)?;
 /// let ratios: Vec<String> = train.shafts.iter().map(|shaft| shaft.speed_ratio.to_string()).collect();
 /// assert_eq!(ratios, ["1/1", "1/3", "1/5"]);
 /// assert_eq!(train.mesh_order(1), 16.0);
@@ -90,67 +89,15 @@ impl GearTrain {
         Self { shafts: vec![shaft], ..Self::of_wheels([]) }
     }
 
-    /// The pinion and the gear of a scenario.
+    /// The shafts of a scenario, by its names and in its order.
     ///
     /// # Arguments
-    /// * `scenario` - of a pair
-    pub fn of_pair(scenario: &Scenario) -> Self {
-        Self::of_wheels(WheelName::BOTH.map(|wheel| (wheel.name(), scenario.gears.teeth(wheel))))
-    }
-
-    /// The shafts of a gearbox, by its names and in its order.
-    ///
-    /// # Arguments
-    /// * `gearbox` - the machine
+    /// * `scenario` - what is simulated
     ///
     /// # Errors
-    /// Those of [`GearboxLayout::new`].
-    pub fn of_gearbox(gearbox: &Gearbox) -> Result<Self, ScenarioError> {
-        GearboxLayout::new(gearbox).map(|layout| Self::of_layout(gearbox, &layout))
-    }
-
-    /// The shafts of a gearbox whose layout is known, as after its simulation.
-    ///
-    /// # Arguments
-    /// * `gearbox` - the machine
-    /// * `layout` - its layout
-    pub fn of_layout(gearbox: &Gearbox, layout: &GearboxLayout) -> Self {
-        let shafts = gearbox.shafts.iter().zip(&layout.ratios).map(|(shaft, ratio)| TrainShaft {
-            name: shaft.name.clone(),
-            speed_ratio: Ratio { numerator: ratio.numerator.abs(), ..*ratio },
-        });
-        let wheels = gearbox.wheels.iter().enumerate().map(|(number, wheel)| TrainWheel {
-            name: wheel.name.clone(),
-            teeth: wheel.teeth,
-            shaft: layout.shaft_of_wheel[number],
-            start_rev: layout
-                .mesh_of(number)
-                .map_or(0.0, |(mesh, _)| layout.phases[mesh] / f64::from(wheel.teeth)),
-        });
-        // Those of a valid gearbox are complete.
-        let bearing = |bearing: &Bearing| {
-            let geometry = bearing.rolling().ok()??.geometry;
-            let shaft = gearbox.shafts.iter().position(|shaft| shaft.name == bearing.shaft)?;
-            Some((bearing.seat_name(), TrainBearing { geometry, shaft }))
-        };
-        Self {
-            input: gearbox.shafts.iter().position(|of| of.couples_to == Coupled::Motor).unwrap_or(0),
-            shafts: shafts.collect(),
-            wheels: wheels.collect(),
-            meshes: layout.wheels_of_mesh.clone(),
-            bearings: gearbox.bearings.iter().filter_map(bearing).collect(),
-        }
-    }
-
-    /// The shafts of a scenario of either form.
-    ///
-    /// # Arguments
-    /// * `form` - of a pair or a gearbox
-    ///
-    /// # Errors
-    /// Those of [`Self::of_gearbox`].
-    pub fn of_form(form: &ScenarioForm) -> Result<Self, ScenarioError> {
-        Ok(Self::of_scenario(form, &form.layout()?))
+    /// Those of [`Scenario::layout`].
+    pub fn of_scenario(scenario: &Scenario) -> Result<Self, ScenarioError> {
+        Ok(Self::of_layout(scenario, &scenario.layout()?))
     }
 
     /// The shafts of a simulation.
@@ -158,13 +105,39 @@ impl GearTrain {
     /// # Arguments
     /// * `stages` - of the simulation
     pub fn of_stages(stages: &Stages) -> Self {
-        Self::of_scenario(&stages.scenario, &stages.layout)
+        Self::of_layout(&stages.scenario, &stages.layout)
     }
 
-    fn of_scenario(scenario: &ScenarioForm, layout: &GearboxLayout) -> Self {
-        let of_pair = || WheelName::BOTH.map(|wheel| (wheel.name(), layout.gears[0].teeth(wheel)));
-        let gearbox = scenario.gearbox();
-        gearbox.map_or_else(|| Self::of_wheels(of_pair()), |gearbox| Self::of_layout(gearbox, layout))
+    /// The shafts of a scenario whose layout is known, as after its simulation.
+    ///
+    /// # Arguments
+    /// * `scenario` - what is simulated
+    /// * `layout` - its layout
+    pub fn of_layout(scenario: &Scenario, layout: &Layout) -> Self {
+        let shafts = layout.shaft_names.iter().zip(&layout.ratios).map(|(name, ratio)| TrainShaft {
+            name: name.clone(),
+            speed_ratio: Ratio { numerator: ratio.numerator.abs(), ..*ratio },
+        });
+        let wheels = scenario.wheels.iter().enumerate().map(|(number, wheel)| TrainWheel {
+            name: wheel.name.clone(),
+            teeth: wheel.teeth,
+            shaft: layout.shaft_of_wheel[number],
+            start_rev: layout
+                .mesh_of(number)
+                .map_or(0.0, |(mesh, _)| layout.phases[mesh] / f64::from(wheel.teeth)),
+        });
+        // Those of a valid scenario are complete.
+        let bearing = |(bearing, &shaft): (&Bearing, &usize)| {
+            let geometry = bearing.rolling().ok()??.geometry;
+            Some((bearing.seat_name(), TrainBearing { geometry, shaft }))
+        };
+        Self {
+            input: layout.input,
+            shafts: shafts.collect(),
+            wheels: wheels.collect(),
+            meshes: layout.wheels_of_mesh.clone(),
+            bearings: scenario.bearings().iter().zip(&layout.shaft_of_bearing).filter_map(bearing).collect(),
+        }
     }
 
     /// Number of the shaft that the ratios are of: the input, which the motor turns.
@@ -230,10 +203,10 @@ impl GearTrain {
     /// * `settings` - sidebands, shaft orders and mean
     ///
     /// ```
-    /// use meshtone::scenario::{Gearbox, gearbox_template};
+    /// use meshtone::scenario::{Scenario, gearbox_template};
     /// use meshtone::signal::{GearTrain, SeparationSettings};
     ///
-    /// let train = GearTrain::of_gearbox(&Gearbox::from_toml(&gearbox_template(None))?)?;
+    /// let train = GearTrain::of_scenario(&Scenario::from_toml(&gearbox_template(None))?)?;
     /// let of_middle = train.separation(1, &SeparationSettings::new(96));
     /// assert_eq!((of_middle.other_teeth, of_middle.other_orders), (vec![48], vec![3]));
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())

@@ -6,7 +6,7 @@ use super::{
     SynchronousAverage, angular_resample, process_angular_segments, process_average, revolution_average,
 };
 use crate::operation::{Motion, TimeGrid};
-use crate::scenario::{Gearbox, Scenario};
+use crate::scenario::Scenario;
 use crate::sensor::Channels;
 use crate::simulate::Stages;
 use crate::wheel::{Gears, WheelName};
@@ -39,7 +39,7 @@ impl SimulatedShafts {
     pub fn new(scenario: &Scenario, start_s: f64, samples: usize) -> Self {
         let scenario = scenario.without_ignored_keys();
         let time = scenario.time_grid();
-        Self::moving(&scenario.gears, &time, scenario.motion(&time), (start_s, samples))
+        Self::moving(&scenario.gears(), &time, scenario.motion(&time), (start_s, samples))
     }
 
     /// The shafts of a simulated pair. Those of a gearbox turn at other ratios and phases: see [`TrainRecording`](super::TrainRecording).
@@ -285,19 +285,23 @@ impl SimulatedShafts {
 }
 
 impl ShaftPhase {
-    /// The phase of the input of a simulated gearbox at its kept samples.
+    /// The phase of the input of a simulation at its kept samples.
     ///
     /// # Arguments
-    /// * `gearbox` - what was simulated; a valid one
+    /// * `scenario` - what was simulated; a valid one
     /// * `start_s` - (s) time of the first kept sample since the start of the simulation
     /// * `samples` - how many were kept
     ///
     /// # Errors
     /// Fewer than two samples.
-    pub fn of_simulated_input(gearbox: &Gearbox, start_s: f64, samples: usize) -> Result<Self, SignalError> {
-        let time = gearbox.time_grid();
+    pub fn of_simulated_input(
+        scenario: &Scenario,
+        start_s: f64,
+        samples: usize,
+    ) -> Result<Self, SignalError> {
+        let time = scenario.time_grid();
         let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
-        let motion = Motion::new(&gearbox.operation.drive, gearbox.seed, &time);
+        let motion = scenario.motion(&time);
         let revolutions = motion.skip(start).take(samples).map(|sample| sample.revolutions).collect();
         Ok(Self::new(0, revolutions)?.with_zero(AngleZero::Simulated))
     }

@@ -9,7 +9,7 @@ use super::{
     Record, SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
     angular_resample, check_channel,
 };
-use crate::scenario::{Coupled, GearboxShaft, ScenarioForm};
+use crate::scenario::Scenario;
 use crate::wheel::WheelName;
 
 /// How the shafts of a train turn over a recording.
@@ -32,39 +32,35 @@ impl TrainTurning {
     /// How the shafts of what was simulated turned.
     ///
     /// # Arguments
-    /// * `form` - what was simulated; a valid one
+    /// * `scenario` - what was simulated; a valid one
     /// * `start_s` - (s) time of the first kept sample since the start of the simulation
     /// * `samples` - how many were kept
     ///
     /// # Errors
     /// Fewer than two samples.
-    pub fn of_simulated(form: &ScenarioForm, start_s: f64, samples: usize) -> Result<Self, SignalError> {
-        match form {
-            ScenarioForm::Pair(scenario) => {
-                Ok(Self::SimulatedPair(SimulatedShafts::new(scenario, start_s, samples)))
-            }
-            ScenarioForm::Gearbox(gearbox) => {
-                let motor = |shaft: &GearboxShaft| shaft.couples_to == Coupled::Motor;
-                Ok(Self::Shaft {
-                    shaft: gearbox.shafts.iter().position(motor).unwrap_or(0),
-                    phase: ShaftPhase::of_simulated_input(gearbox, start_s, samples)?,
-                    stated: StatedTurning::Other,
-                })
-            }
+    pub fn of_simulated(scenario: &Scenario, start_s: f64, samples: usize) -> Result<Self, SignalError> {
+        // Only of two wheels that enter contact together each has whole numbers of samples in its revolution.
+        if scenario.rig().is_some() {
+            return Ok(Self::SimulatedPair(SimulatedShafts::new(scenario, start_s, samples)));
         }
+        Ok(Self::Shaft {
+            shaft: scenario.input_shaft(),
+            phase: ShaftPhase::of_simulated_input(scenario, start_s, samples)?,
+            stated: StatedTurning::Other,
+        })
     }
 }
 
 /// A channel of a recording of a pair or a gearbox, with the angles of its shafts.
 ///
 /// ```
-/// use meshtone::scenario::{Gearbox, gearbox_template};
+/// use meshtone::scenario::{Scenario, gearbox_template};
 /// use meshtone::signal::{GearTrain, ShaftPhase, StatedTurning, TrainRecording, TrainSettings, TrainTurning};
 ///
-/// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
-/// gearbox.solver.settings.duration_s = Some(1.0);
+/// let mut gearbox = Scenario::from_toml(&gearbox_template(None))?;
+/// gearbox.solver.duration_s = Some(1.0);
 /// let channels = meshtone::simulate(&gearbox)?.channels;
-/// let train = GearTrain::of_gearbox(&gearbox)?;
+/// let train = GearTrain::of_scenario(&gearbox)?;
 /// let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len())?;
 /// let turning = TrainTurning::Shaft { shaft: train.input(), phase, stated: StatedTurning::Other };
 /// let signal = channels.signal("output_1_vertical_g").ok_or("no such channel")?;

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::machine::{ClosedMesh, SupportMode, WheelBody, support_modes};
 use crate::mesh::{Forcing, Mesh, MeshCurve, PairDeviations};
 use crate::published::{self, Published};
-use crate::scenario::Scenario;
+use crate::scenario::Rig;
 use crate::simd::InstructionSet;
 use crate::solver::{ModalMachine, Output, Problem, Recorder, SteppedAlone, integrate};
 use crate::trace_fields::Trace;
@@ -242,7 +242,7 @@ impl Stages {
         outputs: &'a [Output],
         first_sample: usize,
     ) -> Problem<'a> {
-        let operation = self.scenario.operation();
+        let operation = &self.scenario.operation;
         let deviations = |pair: &'a MeshedPair| PairDeviations {
             teeth: &pair.teeth,
             errors: pair.profile_errors.as_ref(),
@@ -251,7 +251,7 @@ impl Stages {
         };
         let turning = |(number, bearing): &(usize, RollingBearing)| {
             let shaft = self.layout.shaft_of_bearing[*number];
-            BearingTurning::new(bearing, self.layout.ratios[shaft].value(), self.scenario.seed(), *number)
+            BearingTurning::new(bearing, self.layout.ratios[shaft].value(), self.scenario.seed, *number)
         };
         Problem {
             time: &self.time,
@@ -276,15 +276,15 @@ impl Stages {
 
     /// The key of the damping that a growing motion lacks, and the damping ratios.
     pub(super) fn damping(&self) -> (&'static str, Vec<f64>) {
-        match (self.machine(), self.scenario.pair()) {
+        match (self.machine(), self.scenario.rig()) {
             (Some((machine, _)), None) => ("bearing.damping_ratio", machine.modes.damping_ratio.clone()),
             // The shafts' as well.
             (Some((machine, _)), Some(_)) if self.teeth_part() => {
                 ("rig.support.damping_ratio", machine.modes.damping_ratio.clone())
             }
-            (_, pair) => {
-                let of_pair = |pair: &Scenario| pair.rig.damping_ratio.per_mode().to_vec();
-                ("rig.damping_ratio", pair.map_or_else(Vec::new, of_pair))
+            (_, rig) => {
+                let of_modes = |rig: &Rig| rig.damping_ratio.per_mode().to_vec();
+                ("rig.damping_ratio", rig.map_or_else(Vec::new, of_modes))
             }
         }
     }

@@ -7,9 +7,9 @@ use crate::bearing::{RollingBearing, RollingParts};
 use crate::error::ScenarioError;
 use crate::machine::{
     Disc, GearboxMachine, GearboxParts, GearboxShaft, KnownModes, Machine, MeshLine, Modes, PlacedUnbalance,
-    SeatedBearing, Supports, Train, WheelBody,
+    RigMachine, RigParts, SeatedBearing, Supports, WheelBody,
 };
-use crate::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioForm};
+use crate::scenario::{Layout, Scenario};
 use crate::solver::{InitialMotion, ModalMachine};
 use crate::wheel::{Teeth, WheelName};
 
@@ -30,7 +30,14 @@ pub struct AssembledMachine {
     pub mesh_mass_kg: Vec<f64>,
     /// (-) Damping ratio of each mesh.
     pub mesh_damping_ratio: Vec<f64>,
+    /// (Hz) Natural frequency up to which modes are stepped; those above deform at rest with their forces.
+    pub stepped_up_to_hz: f64,
+    /// (Hz) Natural frequency above which modes decay faster than those below.
+    pub highest_of_slow_hz: f64,
 }
+
+/// (Hz) Natural frequency above which modes of shafts of beams decay faster than those below.
+const HIGHEST_OF_SLOW_HZ: f64 = 2e3;
 
 /// The rolling bearings of a machine: each with its number in the scenario.
 pub(super) type Bearings = Vec<(usize, RollingBearing)>;
@@ -47,32 +54,34 @@ pub(super) type Bearings = Vec<(usize, RollingBearing)>;
 /// # Errors
 /// Rolling bearings that do not fit, a sensor at a place that there is not.
 pub(super) fn assembled(
-    scenario: &ScenarioForm,
-    layout: &GearboxLayout,
+    scenario: &Scenario,
+    layout: &Layout,
     teeth: &[Teeth],
     known: &KnownModes,
 ) -> Result<(AssembledMachine, Bearings), ScenarioError> {
-    match scenario {
-        ScenarioForm::Pair(pair) => Ok((rig(pair, &teeth[0]), Vec::new())),
-        ScenarioForm::Gearbox(gearbox) => shafts_of_beams(gearbox, layout, teeth, known),
+    match scenario.rig_parts(&layout.gears[0]) {
+        Some(parts) => Ok((rig(scenario, parts, &teeth[0]), Vec::new())),
+        None => shafts_of_beams(scenario, layout, teeth, known),
     }
 }
 
 /// The rig of one pair. Flanks that may pull stand in supports that are held, and all their modes are damped alike.
-fn rig(Scenario { gears, rig, model, .. }: &Scenario, teeth: &Teeth) -> AssembledMachine {
-    let supports = if model.teeth_part() { Supports::Moving } else { Supports::Held };
-    let Train { machine, wheels, shaft_stiffness_nm_per_rad, mesh_mass_kg } =
-        Train::new(gears, rig, teeth, supports);
+fn rig(scenario: &Scenario, parts: RigParts, teeth: &Teeth) -> AssembledMachine {
+    let supports = if scenario.model.teeth_part() { Supports::Moving } else { Supports::Held };
+    let RigMachine { machine, wheels, shaft_stiffness_nm_per_rad, mesh_mass_kg } =
+        RigMachine::new(parts, teeth, supports);
     let modes = match supports {
         Supports::Moving => Modes::damped_by_springs(&machine),
-        Supports::Held => Modes::damped_alike(&machine, rig.damping_ratio.of_all_modes()),
+        Supports::Held => Modes::damped_alike(&machine, parts.rig.damping_ratio.of_all_modes()),
     };
     AssembledMachine {
         modes: Arc::new(modes),
         wheels: wheels.to_vec(),
         shaft_stiffness_nm_per_rad: shaft_stiffness_nm_per_rad.to_vec(),
         mesh_mass_kg: vec![mesh_mass_kg],
-        mesh_damping_ratio: vec![rig.mesh_damping_ratio],
+        mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
+        highest_of_slow_hz: f64::INFINITY,
+        stepped_up_to_hz: f64::INFINITY,
         machine,
     }
 }
@@ -82,14 +91,14 @@ fn rig(Scenario { gears, rig, model, .. }: &Scenario, teeth: &Teeth) -> Assemble
 /// Rolling bearings have the stiffness of linear ones first, which gives their static loads, and these the linear springs in their
 /// places. Places that outputs read are added at the end, since they need the nodes of the finished machine.
 fn shafts_of_beams(
-    gearbox: &Gearbox,
-    layout: &GearboxLayout,
+    scenario: &Scenario,
+    layout: &Layout,
     teeth: &[Teeth],
     known: &KnownModes,
 ) -> Result<(AssembledMachine, Bearings), ScenarioError> {
-    let sensors = gearbox.all_sensors();
-    let shafts: Vec<_> = gearbox.shafts.iter().zip(layout.positions_m.iter().copied()).collect();
-    let discs: Vec<Disc> = (gearbox.wheels.iter().enumerate())
+    let sensors = scenario.all_sensors();
+    let shafts: Vec<_> = scenario.shafts().iter().zip(layout.positions_m.iter().copied()).collect();
+    let discs: Vec<Disc> = (scenario.wheels.iter().enumerate())
         .map(|(number, wheel)| {
             // Every wheel is in a mesh, as the layout has checked.
             let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
@@ -111,14 +120,14 @@ fn shafts_of_beams(
         let both = line.wheels.iter().zip(line.base_radii_m);
         1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
     });
-    let linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(&gearbox.bearings))
+    let linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(scenario.bearings()))
         .map(|(&shaft, bearing)| SeatedBearing::linear(shaft, bearing))
         .collect();
-    let rolling: Vec<(usize, RollingParts)> = gearbox.rolling_bearings()?;
+    let rolling: Vec<(usize, RollingParts)> = scenario.rolling_bearings()?;
     let ratios: Vec<f64> = layout.ratios.iter().map(|ratio| ratio.value()).collect();
-    let of_wheels = (gearbox.wheels.iter().zip(&layout.shaft_of_wheel))
+    let of_wheels = (scenario.wheels.iter().zip(&layout.shaft_of_wheel))
         .map(|(wheel, &shaft)| PlacedUnbalance { shaft, at: wheel.at, unbalance: &wheel.unbalance });
-    let of_shafts = (gearbox.shafts.iter().enumerate()).map(|(shaft, of)| PlacedUnbalance {
+    let of_shafts = (scenario.shafts().iter().enumerate()).map(|(shaft, of)| PlacedUnbalance {
         shaft,
         at: 0.5,
         unbalance: &of.unbalance,
@@ -130,15 +139,15 @@ fn shafts_of_beams(
         discs: &discs,
         meshes: &lines,
         bearings: &linear,
-        housing: gearbox.housing.as_ref(),
-        material: gearbox.material,
+        housing: scenario.housing(),
+        material: scenario.material,
         unbalances: &unbalances,
-        brake_inertia_kgm2: gearbox.operation.brake_inertia_kgm2,
+        brake_inertia_kgm2: scenario.operation.brake_inertia_kgm2,
     };
     let mut machine = GearboxMachine::new(&parts);
     let (mut seated, mut bearings) = (linear.clone(), Vec::new());
     if !rolling.is_empty() {
-        let loads_n = machine.static_bearing_loads_n(&parts, gearbox.operation.drive.brake_torque_nm);
+        let loads_n = machine.static_bearing_loads_n(&parts, scenario.operation.brake_torque_nm);
         for ((number, rolling), load_n) in rolling.into_iter().zip(loads_n) {
             let bearing = RollingBearing::new(rolling, load_n);
             seated[number].radial_n_per_m = bearing.spring_n_per_m;
@@ -147,20 +156,22 @@ fn shafts_of_beams(
         parts.bearings = &seated;
         machine = GearboxMachine::new(&parts);
     }
-    for (sensor, place) in sensors.iter().zip(gearbox.places(layout)?) {
+    for (sensor, place) in sensors.iter().zip(scenario.places(layout)?) {
         machine.add_place(sensor.name(), place);
     }
-    for (number, shaft) in gearbox.shafts.iter().enumerate() {
+    for (number, shaft) in scenario.shafts().iter().enumerate() {
         machine.add_rotation(speed_name(&shaft.name), number);
     }
-    for (number, mesh) in gearbox.meshes.iter().enumerate() {
+    for (number, mesh) in scenario.meshes.iter().enumerate() {
         machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
     }
     let assembled = AssembledMachine {
         wheels: discs.iter().map(|disc| disc.body).collect(),
-        shaft_stiffness_nm_per_rad: gearbox.shafts.iter().map(GearboxShaft::coupling_nm_per_rad).collect(),
-        mesh_damping_ratio: gearbox.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
+        shaft_stiffness_nm_per_rad: scenario.shafts().iter().map(GearboxShaft::coupling_nm_per_rad).collect(),
+        mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
         mesh_mass_kg: mass_kg.collect(),
+        highest_of_slow_hz: HIGHEST_OF_SLOW_HZ,
+        stepped_up_to_hz: scenario.solver.highest_mode_hz(scenario.time_grid().sampling_rate_hz),
         modes: known.damped_by_springs(&machine.machine),
         machine: machine.machine,
     };
@@ -173,14 +184,14 @@ impl AssembledMachine {
     /// # Arguments
     /// * `scenario` - nominal speed and load, and the motion at the start
     /// * `face_reach_m` - (m) for each mesh, how far from the middle of its face the load acts at most
-    pub(super) fn modal(&self, scenario: &ScenarioForm, face_reach_m: &[f64]) -> ModalMachine {
-        let operation = scenario.operation();
+    pub(super) fn modal(&self, scenario: &Scenario, face_reach_m: &[f64]) -> ModalMachine {
+        let operation = &scenario.operation;
         let first_hz = operation.speed_profile_hz.as_ref().map(|profile| profile.value[0]);
         let start = InitialMotion {
             nominal_rad_per_s: TAU * operation.pinion_speed_hz,
             brake_torque_nm: operation.brake_torque_nm,
             motor_rad_per_s: TAU * first_hz.unwrap_or(operation.pinion_speed_hz),
-            velocity: scenario.initial_velocity(),
+            velocity: scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
         };
         ModalMachine::new(&self.machine, &self.modes, face_reach_m, start)
     }

@@ -1,15 +1,16 @@
 //! The channels, with what sensors make of them.
 
 use super::Stages;
+use crate::error::ScenarioError;
 use crate::machine::Axis;
-use crate::scenario::{Gearbox, GearboxMesh, GearboxSensor, GearboxShaft, Scenario, ScenarioForm};
+use crate::scenario::{GearboxShaft, Scenario, ScenarioMesh};
 use crate::sensor::{
-    Channel, ChannelKind, Channels, GRAVITY_M_PER_S2, Measurement, NamedSignal, Sensor, SignalSource, measure,
+    Channel, ChannelKind, Channels, Measurement, NamedSignal, Sensor, SignalSource, measure,
 };
 use crate::solver::{Block, Output, Recorder, StepCounts};
 use std::f64::consts::TAU;
 
-impl ScenarioForm {
+impl Scenario {
     /// The signals that a simulation has, without their samples, in the order of files: sensors first.
     pub fn signals(&self) -> Vec<NamedSignal> {
         self.signals_and_outputs().into_iter().map(|(signal, _)| signal).collect()
@@ -20,23 +21,38 @@ impl ScenarioForm {
         self.signals_and_outputs().into_iter().map(|(_, output)| output).collect()
     }
 
-    fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
-        match self {
-            Self::Pair(scenario) => scenario.signals_and_outputs(),
-            Self::Gearbox(gearbox) => gearbox.signals_and_outputs(),
+    /// The signals of a simulation, each with what it is of the solution: those of the sensors, and of a rig those of a pair, of shafts of beams
+    /// those of each mesh and of each shaft.
+    pub(crate) fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
+        let of_sensor = |(number, sensor): (usize, Sensor)| {
+            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), sensor.output())
+        };
+        let sensors = self.all_sensors().into_iter().enumerate().map(of_sensor);
+        if self.rig().is_some() {
+            let fixed = ChannelKind::ALL.map(|kind| (NamedSignal::from(kind), kind.output()));
+            return sensors.chain(fixed).collect();
         }
+        let meshes = self.meshes.iter().enumerate().flat_map(of_mesh);
+        sensors.chain(meshes).chain(self.shafts().iter().enumerate().map(of_shaft)).collect()
     }
 }
 
-impl Scenario {
-    /// The signals of a simulation, each with what it is of the solution.
-    pub(crate) fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
-        let of_sensor = |(number, sensor): (usize, &Sensor)| {
-            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), sensor.output())
-        };
-        let fixed = ChannelKind::ALL.map(|kind| (NamedSignal::from(kind), kind.output()));
-        self.sensors.iter().enumerate().map(of_sensor).chain(fixed).collect()
-    }
+/// Force and transmission error of a mesh.
+fn of_mesh((mesh, of): (usize, &ScenarioMesh)) -> [(NamedSignal, Output); 2] {
+    let (name, axis) = (transmission_error_name(&of.name()), Axis::Rotation);
+    let error = Output::Displacement { place: name.clone().into(), axis, factor: 1e6 };
+    let force = NamedSignal::new(format!("force_n.{}", of.name()), SignalSource::MeshForce(mesh));
+    [
+        (force, Output::MeshForce { mesh }),
+        (NamedSignal::new(name, SignalSource::TransmissionError(mesh)), error),
+    ]
+}
+
+/// Speed of a shaft.
+fn of_shaft((shaft, of): (usize, &GearboxShaft)) -> (NamedSignal, Output) {
+    let (name, axis) = (speed_name(&of.name), Axis::Rotation);
+    let output = Output::Velocity { place: name.clone().into(), axis, factor: 1.0 / TAU };
+    (NamedSignal::new(name, SignalSource::ShaftSpeed(shaft)), output)
 }
 
 /// Name of the speed of a shaft.
@@ -49,31 +65,24 @@ pub(super) fn transmission_error_name(mesh: &str) -> String {
     format!("transmission_error_um.{mesh}")
 }
 
-impl Gearbox {
-    /// The signals of a simulation, each with what it is of the solution.
-    fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
-        let sensor = |(number, sensor): (usize, GearboxSensor)| {
-            let (place, axis) = (sensor.name().into(), sensor.axis());
-            let output = Output::Acceleration { place, axis, factor: 1.0 / GRAVITY_M_PER_S2 };
-            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), output)
-        };
-        let mesh = |(mesh, of): (usize, &GearboxMesh)| {
-            let (name, axis) = (transmission_error_name(&of.name()), Axis::Rotation);
-            let error = Output::Displacement { place: name.clone().into(), axis, factor: 1e6 };
-            let force = NamedSignal::new(format!("force_n.{}", of.name()), SignalSource::MeshForce(mesh));
-            [
-                (force, Output::MeshForce { mesh }),
-                (NamedSignal::new(name, SignalSource::TransmissionError(mesh)), error),
-            ]
-        };
-        let shaft = |(shaft, of): (usize, &GearboxShaft)| {
-            let (name, axis) = (speed_name(&of.name), Axis::Rotation);
-            let output = Output::Velocity { place: name.clone().into(), axis, factor: 1.0 / TAU };
-            (NamedSignal::new(name, SignalSource::ShaftSpeed(shaft)), output)
-        };
-        let sensors = self.all_sensors().into_iter().enumerate().map(sensor);
-        let meshes = self.meshes.iter().enumerate().flat_map(mesh);
-        sensors.chain(meshes).chain(self.shafts.iter().enumerate().map(shaft)).collect()
+impl Channel {
+    /// Output of the solution of a scenario for it; of a sensor, before [`measure`].
+    ///
+    /// # Arguments
+    /// * `scenario` - what is simulated
+    ///
+    /// # Errors
+    /// A channel that the scenario does not have.
+    pub(crate) fn output_of(&self, scenario: &Scenario) -> Result<Output, ScenarioError> {
+        let all = scenario.signals_and_outputs();
+        let output =
+            all.iter().find(|(signal, _)| *signal.name == *self.name()).map(|(_, output)| output.clone());
+        output.ok_or_else(|| {
+            let known: Vec<&str> = all.iter().map(|(signal, _)| &*signal.name).collect();
+            let problem = format!("there is no channel `{}`; there are {}", self.name(), known.join(", "));
+            ScenarioError::new("sensor", "", problem)
+                .with_help("list the sensor, or name a channel that is there")
+        })
     }
 }
 
@@ -105,7 +114,7 @@ impl Stages {
     /// On what the signal of a sensor depends besides.
     fn measurement(&self, index: usize) -> Measurement {
         let is_periodic = self.is_periodic();
-        let (sampling_rate_hz, seed) = (self.time.sampling_rate_hz, self.scenario.seed());
+        let (sampling_rate_hz, seed) = (self.time.sampling_rate_hz, self.scenario.seed);
         Measurement { sampling_rate_hz, is_periodic, seed, index }
     }
 

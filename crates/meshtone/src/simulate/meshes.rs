@@ -10,7 +10,7 @@ use crate::mesh::{
     place_on_face,
 };
 use crate::operation::TimeGrid;
-use crate::scenario::{GearboxLayout, ScenarioForm};
+use crate::scenario::{Layout, Scenario};
 use crate::wheel::NamedGears;
 
 /// The meshes of a scenario.
@@ -23,13 +23,13 @@ use crate::wheel::NamedGears;
 /// # Errors
 /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load, and a mesh that cannot carry any.
 pub(super) fn meshes(
-    scenario: &ScenarioForm,
-    layout: &GearboxLayout,
+    scenario: &Scenario,
+    layout: &Layout,
     time: &TimeGrid,
     (pairs, machine): (&[MeshedPair], &AssembledMachine),
     points_per_pitch: Option<NonZeroUsize>,
 ) -> Result<Vec<Mesh>, ScenarioError> {
-    let contact = if scenario.model().teeth_part() { Contact::Unilateral } else { Contact::Bilateral };
+    let contact = if scenario.model.teeth_part() { Contact::Unilateral } else { Contact::Bilateral };
     let mesh = |(number, pair): (usize, &MeshedPair)| {
         let turning = Turning {
             pitches_per_revolution: layout.pitches_per_revolution(number),
@@ -49,7 +49,7 @@ pub(super) fn meshes(
             turning,
             sense: layout.driving_ratio(number).signum(),
         };
-        let of_time = || points_of(time, scenario.is_steady(), &turning, pair);
+        let of_time = || points_of(time, scenario.operation.is_steady(), &turning, pair);
         mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))
     };
     pairs.iter().enumerate().map(mesh).collect()

@@ -2,13 +2,13 @@
 
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::ScenarioError;
-use crate::machine::Rig;
 use crate::operation::{CycleGrid, TimeGrid};
 use crate::published;
-use crate::random::{Draws, Purpose};
-use crate::scenario::{Gearbox, GearboxLayout, Model, ScenarioForm};
+use crate::scenario::{Layout, Model, Scenario};
 use crate::wheel::quality::{deviations, profile_errors};
-use crate::wheel::{Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, RunOut, Teeth, WheelName, teeth};
+use crate::wheel::{
+    Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Teeth, WheelName, teeth,
+};
 
 /// Two wheels in mesh: what the stages before the mesh make of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ pub struct MeshedPair {
 /// # Arguments
 /// * `model` - of the scenario
 /// * `layout` - its gears, and the bores of its wheels
-pub(super) fn healthy_teeth(model: Model, layout: &GearboxLayout) -> Vec<Teeth> {
+pub(super) fn healthy_teeth(model: Model, layout: &Layout) -> Vec<Teeth> {
     let of_mesh = if model.has_meshes() { teeth } else { published::teeth };
     let bores_mm = layout.wheels_of_mesh.iter().map(|wheels| wheels.map(|wheel| layout.bore_radii_mm[wheel]));
     layout.gears.iter().zip(bores_mm).map(|(gears, bores_mm)| of_mesh(gears, bores_mm)).collect()
@@ -55,32 +55,31 @@ pub(super) fn healthy_teeth(model: Model, layout: &GearboxLayout) -> Vec<Teeth> 
 /// * `teeth` - its healthy teeth
 /// * `static_force_n` - (N) force that holds the brake's nominal torque
 pub(super) fn sound_pair(
-    scenario: &ScenarioForm,
-    layout: &GearboxLayout,
+    scenario: &Scenario,
+    layout: &Layout,
     time: &TimeGrid,
     mesh: usize,
     teeth: Teeth,
     static_force_n: f64,
 ) -> MeshedPair {
     let gears = &layout.gears[mesh];
-    let Deviations { flanks: profile_errors, run_out, helix_slope_um } = match scenario {
-        ScenarioForm::Pair(pair) if pair.model.has_meshes() => deviations(&pair.quality, &teeth, pair.seed),
+    let numbers = layout.wheels_of_mesh[mesh];
+    let Deviations { flanks: profile_errors, run_out, helix_slope_um } = if scenario.model.has_meshes() {
+        of_both(scenario, layout, mesh, &teeth)
+    } else {
         // The published code knows profile errors only.
-        ScenarioForm::Pair(pair) => {
-            let flanks = profile_errors(&pair.quality, &teeth, pair.seed);
-            Deviations { flanks, ..Deviations::default() }
-        }
-        ScenarioForm::Gearbox(gearbox) => drawn_apart(gearbox, layout, mesh, &teeth),
+        let flanks = profile_errors(&scenario.quality(), &teeth, scenario.seed);
+        Deviations { flanks, ..Deviations::default() }
     };
-    let of_rig = |of: fn(&Rig) -> f64| scenario.pair().map_or(0.0, |pair| of(&pair.rig));
-    let faults = layout.faults_of_mesh(&scenario.faults(), mesh).into_iter();
+    let faults = layout.faults_of_mesh(&scenario.placed_faults(), mesh).into_iter();
     MeshedPair {
         cycle: CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz),
         profile_errors,
         run_out,
         helix_slope_um,
-        misalignment_um: of_rig(|rig| rig.misalignment_um),
-        eccentricity_mm: of_rig(|rig| rig.eccentricity_mm),
+        misalignment_um: scenario.meshes[mesh].misalignment_um,
+        // Mates have the same.
+        eccentricity_mm: scenario.wheels[numbers[0]].eccentricity_mm,
         damaged: Vec::new(),
         faults: faults.map(|(number, fault)| (number, fault.with_sizes(&teeth))).collect(),
         static_force_n,
@@ -99,26 +98,31 @@ impl MeshedPair {
     /// A fault that does not fit its tooth.
     pub(super) fn damaged(
         mut self,
-        scenario: &ScenarioForm,
-        layout: &GearboxLayout,
+        scenario: &Scenario,
+        layout: &Layout,
         mesh: usize,
     ) -> Result<Self, ScenarioError> {
         let (numbers, faults): (Vec<usize>, Vec<Fault>) =
-            layout.faults_of_mesh(&scenario.faults(), mesh).into_iter().unzip();
-        let (entries, seed) = (scenario.fault_count(), scenario.seed());
+            layout.faults_of_mesh(&scenario.placed_faults(), mesh).into_iter().unzip();
+        let (entries, seed) = (scenario.faults.len(), scenario.seed);
         self.damaged = damaged_teeth_of_file(&faults, &numbers, entries, &self.teeth, seed)?;
         Ok(self)
     }
 }
 
-/// The deviations of a mesh's wheels, each drawn with a seed of its own: a wheel in two meshes has the same in both.
-fn drawn_apart(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize, teeth: &Teeth) -> Deviations {
+/// The deviations of a mesh's wheels, each drawn with its seed: a wheel in two meshes has the same in both.
+fn of_both(scenario: &Scenario, layout: &Layout, mesh: usize, teeth: &Teeth) -> Deviations {
     let numbers = layout.wheels_of_mesh[mesh];
-    let [pinion, gear] = WheelName::BOTH.map(|side| {
-        let seed = gearbox.wheels_seed.unwrap_or(gearbox.seed);
-        let seed = Draws::new(seed, Purpose::GearboxWheel, numbers[side as usize] as u64).bits();
-        deviations(&layout.quality_of_mesh(gearbox, mesh, side), teeth, seed)
+    let draws = WheelName::BOTH.map(|side| {
+        let seed = scenario.seed_of_wheel(numbers[side as usize]);
+        (layout.quality_of_mesh(scenario, mesh, side), seed)
     });
+    let draw = |(quality, seed): &(Quality, u64)| deviations(quality, teeth, *seed);
+    let pinion = draw(&draws[0]);
+    if draws[0] == draws[1] {
+        return pinion;
+    }
+    let gear = draw(&draws[1]);
     Deviations {
         run_out: [pinion.run_out[0], gear.run_out[1]],
         helix_slope_um: [pinion.helix_slope_um[0], gear.helix_slope_um[1]],

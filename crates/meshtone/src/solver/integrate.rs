@@ -406,8 +406,8 @@ mod tests {
 
     fn pair(helix_angle_deg: f64, face_width_mm: f64) -> Scenario {
         let mut scenario = Scenario::new(GearPair { face_width_mm, ..GearPair::example() });
-        scenario.gears.helix_angle_deg = helix_angle_deg;
-        scenario.quality.din_grade = 7;
+        scenario.meshes[0].helix_angle_deg = helix_angle_deg;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
         scenario.solver.sampling_rate_hz = 5e4;
         // Four revolutions of the pinion are long enough for any difference to grow, and soon stepped without optimisation.
         scenario.solver.duration_s = Some(0.1);
@@ -415,8 +415,8 @@ mod tests {
     }
 
     fn unbalanced(mut scenario: Scenario) -> Scenario {
-        scenario.rig.pinion_unbalance = Unbalance { g_mm: 20.0, angle_deg: 30.0 };
-        scenario.rig.gear_unbalance = Unbalance { g_mm: 50.0, angle_deg: -100.0 };
+        scenario.wheels[0].unbalance = Unbalance { g_mm: 20.0, angle_deg: 30.0 };
+        scenario.wheels[1].unbalance = Unbalance { g_mm: 50.0, angle_deg: -100.0 };
         scenario
     }
 
@@ -424,7 +424,7 @@ mod tests {
     fn unbalance_moves_both_steppers_alike() {
         let one = {
             let mut scenario = pair(0.0, 15.0);
-            scenario.rig.gear_unbalance.g_mm = 1e-9;
+            scenario.wheels[1].unbalance.g_mm = 1e-9;
             scenario
         };
         check_both_steppers(&one, Size::Turning, "a trace of unbalance");

@@ -1,7 +1,7 @@
 //! Every stage's output of a gearbox.
 
 use super::stages::helix;
-use crate::scenario::Gearbox;
+use crate::scenario::Scenario;
 use crate::simulate::Simulation;
 use crate::trace_fields::Trace;
 use crate::wheel::WheelName;
@@ -11,7 +11,7 @@ use crate::wheel::WheelName;
 /// # Arguments
 /// * `gearbox` - what was simulated
 /// * `simulation` - of it
-pub(super) fn gearbox_trace(gearbox: &Gearbox, simulation: &Simulation) -> Trace {
+pub(super) fn gearbox_trace(gearbox: &Scenario, simulation: &Simulation) -> Trace {
     let mut trace = Trace::default();
     let (stages, channels) = (&simulation.stages, &simulation.channels);
     let layout = &stages.layout;
@@ -52,7 +52,7 @@ pub(super) fn gearbox_trace(gearbox: &Gearbox, simulation: &Simulation) -> Trace
         }
     }
     for (number, bearing) in &stages.bearings {
-        let named = |quantity: &str| format!("{quantity}.{}", gearbox.bearings[*number].seat_name());
+        let named = |quantity: &str| format!("{quantity}.{}", gearbox.bearings()[*number].seat_name());
         trace.vector(&named("bearing_load_n"), bearing.static_load_n);
         trace.vector(&named("bearing_spring_n_per_m"), bearing.spring_n_per_m.into_iter().flatten());
     }

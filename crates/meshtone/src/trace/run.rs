@@ -8,7 +8,7 @@ use super::average::average;
 use super::gearbox::gearbox_trace;
 use super::{Trace, stage_trace, static_stages};
 use crate::error::Error;
-use crate::scenario::ScenarioForm;
+use crate::scenario::Scenario;
 use crate::sensor::{ChannelKind, Channels};
 use crate::simulate::{Simulation, Stages, stages};
 use crate::solver::{Block, Output, Recorder};
@@ -31,7 +31,7 @@ const AVERAGE_RATE_HZ: f64 = 25e3;
 ///
 /// The average's fields are at 25 kS/s; [`trace_at`] takes another rate. They are missing where there is no average: fewer
 /// than two revolutions of the gear, a vertical signal that is 0, a mesh frequency beyond half of that rate.
-pub fn trace(scenario: impl Into<ScenarioForm>) -> Result<(Simulation, Trace), Error> {
+pub fn trace(scenario: impl Into<Scenario>) -> Result<(Simulation, Trace), Error> {
     trace_at(scenario, AVERAGE_RATE_HZ)
 }
 
@@ -44,10 +44,7 @@ pub fn trace(scenario: impl Into<ScenarioForm>) -> Result<(Simulation, Trace), E
 ///
 /// # Errors
 /// As [`crate::simulate`].
-pub fn trace_at(
-    scenario: impl Into<ScenarioForm>,
-    average_rate_hz: f64,
-) -> Result<(Simulation, Trace), Error> {
+pub fn trace_at(scenario: impl Into<Scenario>, average_rate_hz: f64) -> Result<(Simulation, Trace), Error> {
     traced(stages(scenario)?, average_rate_hz)
 }
 
@@ -67,14 +64,16 @@ pub fn trace_of(stages: Stages) -> Result<(Simulation, Trace), Error> {
 /// # Arguments
 /// * `simulation` - what was simulated
 pub fn simulation_trace(simulation: &Simulation) -> Trace {
-    match simulation.stages.scenario.gearbox() {
-        Some(gearbox) => gearbox_trace(gearbox, simulation),
-        None => stage_trace(&simulation.stages),
+    let scenario = &simulation.stages.scenario;
+    if scenario.rig().is_some() {
+        stage_trace(&simulation.stages)
+    } else {
+        gearbox_trace(scenario, simulation)
     }
 }
 
 fn traced(stages: Stages, average_rate_hz: f64) -> Result<(Simulation, Trace), Error> {
-    if stages.scenario.gearbox().is_some() {
+    if stages.scenario.rig().is_none() {
         let simulation = stages.simulate()?;
         let trace = simulation_trace(&simulation);
         return Ok((simulation, trace));

@@ -64,7 +64,7 @@ impl DifferenceChain {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
         let teeth = stages.layout.gears[0].teeth(self.wheel) as usize;
         let separation = self.separation.clone().map(|settings| SeparationSettings { teeth, ..settings });
-        let angular = Self::angular_settings(stages.scenario.model());
+        let angular = Self::angular_settings(stages.scenario.model);
         let settings = ChainSettings { angular, separation };
         Ok(crate::trace::wheel_record(stages, self.wheel, signal, pinion_speed_hz, rate_hz, settings)?)
     }
@@ -84,7 +84,7 @@ impl DifferenceChain {
 /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
 ///
 /// let mut healthy = Scenario::new(GearPair::example());
-/// healthy.quality.din_grade = 7;
+/// healthy.wheels[0].din_grade = 7;
 /// let broken = healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
 /// let signals = difference_signals(vec![healthy, broken], &DifferenceChain::new(25e3))?;
 /// assert_eq!((signals.len(), signals[0].len()), (2, 2048));

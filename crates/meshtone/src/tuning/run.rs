@@ -101,10 +101,10 @@ pub fn run_experiment(
 /// Cases whose damage meets another place of the averaged wheel in each of its revolutions.
 fn damaged_on_mate_wheel(experiment: &Experiment) -> impl Iterator<Item = TuningWarning> {
     let averaged = experiment.chain.wheel;
-    let gears = &experiment.base.gears;
+    let gears = &experiment.base.gears();
     // Where the mate turns a whole number of times meanwhile, its damage is averaged as well.
     let fades = !gears.teeth(averaged).is_multiple_of(gears.teeth(averaged.mate()));
-    let on_the_mate = move |case: &Case| !case.faults.iter().any(|fault| fault.wheel == averaged);
+    let on_the_mate = move |case: &Case| !case.faults.iter().any(|fault| fault.side() == averaged);
     let faulty = experiment.cases.iter().enumerate().skip(1);
     faulty
         .filter(move |(_, case)| fades && on_the_mate(case))

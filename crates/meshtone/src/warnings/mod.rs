@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{DecayingMode, Shaft, WheelBody};
 use crate::operation::{Operation, Solver, TimeGrid};
-use crate::scenario::{MemoryLimit, Scenario, ScenarioForm, SensorPlace};
+use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
 use crate::simulate::{Stages, stages_within};
 use crate::wheel::{Gears, unused_slices};
 
@@ -43,7 +43,7 @@ const TOLERATED_DEFLECTION: f64 = 0.1;
 /// # Ok::<(), meshtone::Error>(())
 /// ```
 pub fn stages_and_warnings(
-    scenario: impl Into<ScenarioForm>,
+    scenario: impl Into<Scenario>,
     limit: MemoryLimit,
 ) -> Result<(Stages, Vec<ScenarioWarning>), ScenarioError> {
     let stages = stages_within(scenario, limit)?;
@@ -52,7 +52,7 @@ pub fn stages_and_warnings(
 }
 
 impl Stages {
-    /// Warnings about stages that can be simulated: those of [`ScenarioForm::validate`], keys that the model ignores, slices that the faces
+    /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, slices that the faces
     /// are not cut into, wheels of a rig whose accelerations, or whose supports', cancel in the channels, a settling too short for the
     /// slowest mode, a load that would break teeth, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
     /// frequency of shafts of beams.
@@ -73,7 +73,7 @@ impl Stages {
 
     /// Teeth that the load would bend off, mesh by mesh.
     fn overloads(&self) -> impl Iterator<Item = ScenarioWarning> {
-        let (key, torque_nm) = largest_torque(self.scenario.operation());
+        let (key, torque_nm) = largest_torque(&self.scenario.operation);
         let forces_n = self.forces_of_torque_n(torque_nm).into_iter().zip(self.mean_stiffness_n_per_m());
         let meshes = self.layout.mesh_names.iter().zip(&self.layout.gears);
         forces_n.zip(meshes).filter_map(move |((force_n, stiffness_n_per_m), (name, gears))| {
@@ -109,7 +109,10 @@ impl Stages {
     }
 
     fn equal_wheels(&self) -> Option<ScenarioWarning> {
-        let Scenario { rig, sensors, .. } = self.scenario.pair().filter(|pair| pair.model.has_meshes())?;
+        let (rig, sensors) = (self.scenario.rig()?, &self.scenario.sensors);
+        if !self.scenario.model.has_meshes() {
+            return None;
+        }
         let side = |body: &WheelBody, shaft: &Shaft| {
             let bearing = shaft.bearing_stiffness_n_per_m.unwrap_or(rig.bearing_stiffness_n_per_m);
             let bends =
@@ -138,7 +141,7 @@ impl Stages {
 
     fn unsettled(&self) -> Option<ScenarioWarning> {
         let named = if self.teeth_part() { words_of } else { |_: &DecayingMode| String::new() };
-        unsettled(&self.slowest_mode, &self.time, self.scenario.operation(), self.scenario.solver(), named)
+        unsettled(&self.slowest_mode, &self.time, &self.scenario.operation, &self.scenario.solver, named)
     }
 }
 

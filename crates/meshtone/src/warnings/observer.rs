@@ -65,8 +65,8 @@ impl Observer {
 /// Returns whether a steady vibration is reached whose lines can be looked at. A fluctuation is drawn for every sample: with a finer step it
 /// is another one.
 fn lasts(stages: &Stages) -> bool {
-    let operation = stages.scenario.operation();
-    stages.scenario.model().has_meshes()
+    let operation = &stages.scenario.operation;
+    stages.scenario.model.has_meshes()
         && operation.speed_profile_hz.is_none()
         && operation.speed_fluctuation_hz == 0.0
         && operation.torque_fluctuation_nm == 0.0

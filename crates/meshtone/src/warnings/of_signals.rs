@@ -4,7 +4,6 @@ use super::largest_torque;
 use super::observer::{ForceFigures, Observer};
 use super::step_error::{StepError, StepJudgement, step_error, step_error_of_signals};
 use crate::error::{ScenarioWarning, WarningKind};
-use crate::scenario::Gearbox;
 use crate::sensor::SignalSource;
 use crate::simulate::{Simulation, Stages};
 use crate::wheel::Gears;
@@ -31,20 +30,18 @@ impl Simulation {
     /// # Arguments
     /// * `judgement` - how the step is judged where a resonance is suspected
     pub fn warnings_of_signals(&self, judgement: StepJudgement) -> Vec<ScenarioWarning> {
-        match self.stages.scenario.gearbox() {
-            Some(gearbox) => self.warnings_of_gearbox(gearbox, judgement),
-            None => {
-                let mut observer = Observer::new(&self.stages);
-                observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
-                self.stages.warnings_of_signals(&observer, judgement)
-            }
+        if self.stages.scenario.rig().is_none() {
+            return self.warnings_of_train(judgement);
         }
+        let mut observer = Observer::new(&self.stages);
+        observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
+        self.stages.warnings_of_signals(&observer, judgement)
     }
 
-    /// The same of a gearbox: of the force of each mesh and the speed of each shaft.
-    fn warnings_of_gearbox(&self, gearbox: &Gearbox, judgement: StepJudgement) -> Vec<ScenarioWarning> {
+    /// The same of shafts of beams: of the force of each mesh and the speed of each shaft.
+    fn warnings_of_train(&self, judgement: StepJudgement) -> Vec<ScenarioWarning> {
         let (stages, channels) = (&self.stages, &self.channels);
-        let (_, torque_nm) = largest_torque(stages.scenario.operation());
+        let (_, torque_nm) = largest_torque(&stages.scenario.operation);
         let static_n = stages.forces_of_torque_n(torque_nm);
         let meshes = stages.layout.mesh_names.iter().zip(static_n).enumerate();
         let forces = meshes.filter_map(|(number, (mesh, static_n))| {
@@ -55,11 +52,11 @@ impl Simulation {
         });
         let driven = stages.motion().skip(stages.time.first_kept_sample).take(channels.len());
         let driven_hz = driven.map(|motion| motion.speed_hz).sum::<f64>() / channels.len() as f64;
-        let shafts = gearbox.shafts.iter().zip(&stages.layout.ratios).enumerate();
+        let shafts = stages.layout.shaft_names.iter().zip(&stages.layout.ratios).enumerate();
         let speeds = shafts.filter_map(|(number, (shaft, ratio))| {
             let speed_hz = channels.of(SignalSource::ShaftSpeed(number));
             let mean_hz = speed_hz.iter().sum::<f64>() / speed_hz.len() as f64;
-            other_speed(&format!("shaft {:?}", shaft.name), driven_hz * ratio.value().abs(), mean_hz.abs())
+            other_speed(&format!("shaft {shaft:?}"), driven_hz * ratio.value().abs(), mean_hz.abs())
         });
         let rate_hz = channels.sampling_rate_hz;
         let step = step_error_of_signals(self, judgement).and_then(|error| long_step(error, rate_hz));
@@ -78,7 +75,7 @@ impl Stages {
         let pulling = (!self.teeth_part()).then(|| tension(&observer.force, is_damaged)).flatten();
         let rate_hz = self.time.sampling_rate_hz;
         let step = step_error(self, observer, judgement).and_then(|error| long_step(error, rate_hz));
-        let (_, torque_nm) = largest_torque(self.scenario.operation());
+        let (_, torque_nm) = largest_torque(&self.scenario.operation);
         let static_n = self.forces_of_torque_n(torque_nm)[0];
         let resonance = resonance("the mesh", self.scenario.speed_key(), observer.force.largest_n, static_n);
         let braked = self.braked_rotation(observer.force.mean_n());
@@ -90,7 +87,7 @@ impl Stages {
     fn braked_rotation(&self, mean_n: f64) -> Option<ScenarioWarning> {
         let static_n = self.static_force_n();
         let is_off = (mean_n - static_n).abs() > TOLERATED_MEAN_FORCE * static_n.abs();
-        (!self.scenario.model().has_meshes() && is_off).then(|| {
+        (!self.scenario.model.has_meshes() && is_off).then(|| {
             let message = format!(
                 "the mean mesh force is {mean_n:.0} N, but the load's is {static_n:.0} N: the published \
                  model's damping brakes the rotation of the whole machine as well as its vibration, and the \
@@ -103,7 +100,7 @@ impl Stages {
     /// A shaft whose mean speed is not what it is driven at.
     fn other_speed(&self, observer: &Observer) -> Option<ScenarioWarning> {
         let [pinion_hz, gear_hz] = observer.mean_speeds_hz();
-        let operation = self.scenario.operation();
+        let operation = &self.scenario.operation;
         let driven_hz = match operation.speed_profile_hz {
             None => operation.pinion_speed_hz,
             Some(_) => {

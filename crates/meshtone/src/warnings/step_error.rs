@@ -91,7 +91,7 @@ pub(super) fn step_error(
     let estimate = estimate(stages, [acceleration, force]);
     judged(estimate, judgement, &[acceleration.rms(), force.rms()], || {
         let mut scenario = stages.scenario.clone();
-        scenario.solver_mut().sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
+        scenario.solver.sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
         let finer = stages_within(&scenario, stages.memory_limit)?;
         let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
         let mut squares = SquareSums::of(outputs.len());
@@ -198,7 +198,7 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
     judged(growth(&machine, lines, &powers), judgement, &coarse, || {
         let mut scenario = stages.scenario.clone();
         scenario.keep_highest_mode(channels.sampling_rate_hz);
-        scenario.solver_mut().sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
+        scenario.solver.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
         let finer = stages_within(&scenario, stages.memory_limit)?;
         let outputs = scenario.outputs().into_iter().zip(&is_judged).filter(|(_, is)| **is);
         let outputs: Vec<Output> = outputs.map(|(output, _)| output).collect();
@@ -243,7 +243,7 @@ fn power_spectrum(values: &[f64]) -> Vec<f64> {
 /// The sines of acceleration and force that repeat with every turn of the gear, and those that do with the pinion's.
 fn lines(stages: &Stages, signals: [&WheelTurnSums; 2]) -> impl Iterator<Item = Line> {
     let Gears { pinion_teeth: pinion, gear_teeth: gear, .. } = stages.layout.gears[0];
-    let speed_hz = stages.scenario.operation().pinion_speed_hz;
+    let speed_hz = stages.scenario.operation.pinion_speed_hz;
     // Orders of the pinion that are orders of the gear too.
     let shared = (pinion / greatest_common_divisor(pinion, gear)) as usize;
     let gear_speed_hz = speed_hz * f64::from(pinion) / f64::from(gear);

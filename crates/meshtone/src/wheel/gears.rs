@@ -1,10 +1,9 @@
-//! The two wheels of the pair.
+//! Two wheels in mesh.
 
-use super::rows::*;
 use super::{EndRelief, FlankRelief, Hand, Material, WheelName};
-use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
+use crate::keys::{KeyRow, Keys, by_name, field, row};
 
-/// Geometry and material of the two wheels.
+/// Geometry and material of two wheels in mesh, which a scenario states wheel by wheel.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Gears {
@@ -70,6 +69,9 @@ pub(super) const STANDARD_ADDENDUM: f64 = 1.0;
 pub(super) const STANDARD_DEDENDUM: f64 = 1.25;
 
 impl Gears {
+    /// The number of slices of the face by default.
+    pub(crate) const SLICES: u32 = 21;
+
     /// Two wheels with everything but the arguments at its default.
     ///
     /// # Arguments
@@ -85,7 +87,7 @@ impl Gears {
             hand: Hand::Right,
             lead_crowning_um: 0.0,
             end_relief: EndRelief::default(),
-            slices: 21,
+            slices: Self::SLICES,
             pinion_profile_shift: 0.0,
             gear_profile_shift: 0.0,
             pinion_addendum: STANDARD_ADDENDUM,
@@ -102,61 +104,6 @@ impl Gears {
             points_per_tooth: 10_000,
             foundation: FoundationCoefficients::default(),
         }
-    }
-}
-
-impl Keys for Gears {
-    const SECTION: &str = "gears";
-
-    fn start() -> Self {
-        Self::new(f64::NAN, 0, 0, f64::NAN)
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            module_row(field!(module_mm)),
-            teeth_row("pinion_teeth", field!(pinion_teeth)),
-            teeth_row("gear_teeth", field!(gear_teeth)),
-            face_width_row("the face width of both wheels", field!(face_width_mm)),
-            pressure_angle_row(field!(pressure_angle_deg)),
-            helix_angle_row(field!(helix_angle_deg)),
-            hand_row("the hand of the pinion's helix; the gear's is the other one", field!(hand)),
-            lead_crowning_row(field!(lead_crowning_um)),
-            end_relief_row(field!(end_relief)),
-            slices_row(field!(slices)),
-            profile_shift_row("pinion_profile_shift", field!(pinion_profile_shift)),
-            profile_shift_row("gear_profile_shift", field!(gear_profile_shift)),
-            addendum_row("pinion_addendum", field!(pinion_addendum)),
-            addendum_row("gear_addendum", field!(gear_addendum)),
-            dedendum_row("pinion_dedendum", field!(pinion_dedendum)),
-            dedendum_row("gear_dedendum", field!(gear_dedendum)),
-            centre_distance_row(field!(centre_distance_mm)),
-            row("material", "", "the material of wheels and shafts", field!(material)),
-            row(
-                "flank_relief",
-                "",
-                "the relief of the flanks near the tips, as a gap in µm",
-                field!(flank_relief),
-            ),
-            chamfer_row(field!(tip_chamfer_mm)),
-            shortening_row(field!(active_profile_shortening)),
-            backlash_row(field!(backlash_mm)),
-            flank_reduction_row(field!(uniform_flank_reduction_mm)),
-            row(
-                "points_per_tooth",
-                "",
-                "the number of points along a tooth's profile",
-                field!(points_per_tooth),
-            )
-            .range(Range::from_to(500.0, 1e6).message("must be from 500 to 1000000; the default is 10000")),
-            row(
-                "foundation",
-                "",
-                "the coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, \
-                 Velex and Duverger (2004)",
-                field!(foundation),
-            ),
-        ]
     }
 }
 

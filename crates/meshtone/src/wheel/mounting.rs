@@ -159,7 +159,7 @@ mod tests {
     use crate::wheel::Wheel;
 
     fn shifted(pinion: f64, gear: f64) -> Gears {
-        let mut gears = Scenario::new(GearPair::example()).gears;
+        let mut gears = Scenario::new(GearPair::example()).gears();
         (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion, gear);
         gears
     }

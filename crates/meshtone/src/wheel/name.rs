@@ -31,3 +31,10 @@ impl WheelName {
         }
     }
 }
+
+/// The name of a pair's wheel.
+impl From<WheelName> for String {
+    fn from(wheel: WheelName) -> Self {
+        wheel.name().to_owned()
+    }
+}

@@ -1,6 +1,6 @@
 //! Keys that the wheels of a pair have, and those of a gearbox.
 
-use super::{EndRelief, Hand};
+use super::{EndRelief, FoundationCoefficients, Hand};
 use crate::keys::{Field, KeyRow, Range, row};
 
 /// The row of the module.
@@ -127,4 +127,34 @@ pub(crate) fn flank_reduction_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S>
     row("uniform_flank_reduction_mm", "mm", "a constant reduction of the working flank", field)
         .range(Range::not_negative())
         .rule("less than π/4 modules, half the tooth's thickness")
+}
+
+/// The row of the number of points along a profile.
+pub(crate) fn points_row<S: 'static>(field: Field<S, usize>) -> KeyRow<S> {
+    row("points_per_tooth", "", "the number of points along a tooth's profile", field)
+        .range(Range::from_to(500.0, 1e6).message("must be from 500 to 1000000; the default is 10000"))
+}
+
+/// The row of the foundation's coefficients.
+pub(crate) fn foundation_row<S: 'static>(field: Field<S, FoundationCoefficients>) -> KeyRow<S> {
+    row(
+        "foundation",
+        "",
+        "the coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, \
+         Velex and Duverger (2004)",
+        field,
+    )
+}
+
+/// The row of the misalignment.
+pub(crate) fn misalignment_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    row(
+        "misalignment_um",
+        "µm",
+        "the misalignment of the shafts in the plane of action over the face width, including their \
+         slope under the nominal load; positive where flanks come closer towards positive z. The \
+         tilt by an uneven load is computed",
+        field,
+    )
+    .range(Range::from_to(-1e3, 1e3))
 }

@@ -1,12 +1,12 @@
-//! Rules that concern several keys of `[gears]`.
+//! Rules that concern several keys of two wheels in mesh.
 
 use std::f64::consts::PI;
 
 use super::contact::contact_ratio_of;
 use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
-use super::{Gears, NamedGears, Wheel, WheelName};
+use super::{Gears, Hand, NamedGears, Wheel, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
-use crate::keys::{Check, Keys, below, check_keys, refuse, require};
+use crate::keys::{Check, below, refuse, require};
 
 impl Gears {
     /// (-) Contact ratio: how many tooth pairs are in contact, on average.
@@ -25,12 +25,6 @@ impl Gears {
     /// One of the two wheels, as its teeth are: without a bore.
     pub(super) fn wheel(&self, wheel: WheelName) -> Wheel {
         Wheel::new(self, wheel, 0.0)
-    }
-
-    /// Every key alone, and the two wheels together.
-    pub(crate) fn check(&self) -> Check {
-        check_keys(self, "gears")?;
-        NamedGears::of_pair(self).check()
     }
 
     /// (mm) Half a tooth's thickness at the pitch circle, of the wheel whose teeth are thicker there.
@@ -101,7 +95,7 @@ impl NamedGears<'_> {
 
 /// The hand of a helix that the wheels do not have.
 fn hand_of_spur(gears: &NamedGears) -> Option<ScenarioWarning> {
-    let is_ignored = gears.hand != Gears::start().hand && !gears.is_helical();
+    let is_ignored = gears.hand != Hand::Right && !gears.is_helical();
     is_ignored.then(|| {
         let message = "has no effect: the wheels are spur; give helix_angle_deg, or remove hand";
         ScenarioWarning::new(WarningKind::IgnoredKey, gears.key("hand"), message)
@@ -114,7 +108,7 @@ fn hand_of_spur(gears: &NamedGears) -> Option<ScenarioWarning> {
 /// * `gears` - the wheels
 /// * `slices` - of the mesh's face: 1 where its gap does not vary along it
 pub(crate) fn unused_slices(gears: &NamedGears, slices: usize) -> Option<ScenarioWarning> {
-    (slices == 1 && gears.slices != Gears::start().slices).then(|| {
+    (slices == 1 && gears.slices != Gears::SLICES).then(|| {
         let message = "has no effect: the gap between the flanks does not vary along the face, which is taken as a whole; give \
                        lead_crowning_um or end_relief, or remove slices";
         ScenarioWarning::new(WarningKind::IgnoredKey, gears.key("slices"), message)

@@ -19,9 +19,9 @@ fn small(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
         ..GearPair::example()
     });
     scenario.model = Model::Linear;
-    scenario.gears.points_per_tooth = 1000;
+    scenario.meshes[0].points_per_tooth = 1000;
     scenario.solver.sampling_rate_hz = 1e4;
-    scenario.quality.din_grade = 6;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 6);
     scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
     scenario
 }
@@ -50,7 +50,7 @@ fn damages() -> Vec<Option<Damage>> {
 /// (m/s, rad/s) A velocity at the start that is not that of the rigid rotation in any coordinate.
 fn pushed(scenario: &Scenario) -> [f64; 13] {
     let turns = std::f64::consts::TAU * scenario.operation.pinion_speed_hz;
-    let slower = -turns * f64::from(scenario.gears.pinion_teeth) / f64::from(scenario.gears.gear_teeth);
+    let slower = -turns * f64::from(scenario.wheels[0].teeth) / f64::from(scenario.wheels[1].teeth);
     let rigid = [0.0, 0.0, 0.0, 0.0, slower, turns, slower, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     std::array::from_fn(|c| rigid[c] + 1e-3 * (c + 1) as f64)
 }
@@ -71,7 +71,7 @@ fn mixed() -> Vec<Scenario> {
                 scenario.operation.speed_fluctuation_hz = 0.2;
             }
             if k == 0 && n == 4 {
-                scenario.rig.eccentricity_mm = 0.01;
+                scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.01);
             }
             if k == 1 && n == 5 {
                 scenario.solver.initial_velocity = Some(pushed(&scenario));
@@ -80,7 +80,7 @@ fn mixed() -> Vec<Scenario> {
         }
     }
     let mut refused = small(17, 38, None);
-    refused.gears.module_mm = -1.0;
+    refused.meshes[0].module_mm = -1.0;
     scenarios.insert(5, refused);
     scenarios
 }
@@ -129,14 +129,14 @@ fn mixed_in_space() -> Vec<Scenario> {
                 let mut scenario = small(20, 30 + n as u32, damage.clone());
                 scenario.seed = (100 * n + 10 * k + unbalances) as u64;
                 scenario.model = if k == 1 && n == 2 { Model::Linear } else { Model::Contact };
-                scenario.gears.helix_angle_deg = helix_angle_deg;
-                scenario.gears.face_width_mm = [15.0, 30.0, 60.0][k];
+                scenario.meshes[0].helix_angle_deg = helix_angle_deg;
+                scenario.wheels.iter_mut().for_each(|wheel| wheel.face_width_mm = [15.0, 30.0, 60.0][k]);
                 if unbalances > 0 {
-                    scenario.rig.gear_unbalance = Unbalance { g_mm: 80.0, angle_deg: 20.0 };
+                    scenario.wheels[1].unbalance = Unbalance { g_mm: 80.0, angle_deg: 20.0 };
                 }
                 if unbalances > 1 {
-                    scenario.rig.pinion_unbalance = Unbalance { g_mm: 30.0, angle_deg: -70.0 };
-                    scenario.rig.pinion_shaft.wheel_at = 0.3;
+                    scenario.wheels[0].unbalance = Unbalance { g_mm: 30.0, angle_deg: -70.0 };
+                    scenario.rig_mut().unwrap().pinion_shaft.wheel_at = 0.3;
                     scenario.operation.speed_fluctuation_hz = if k == 1 { 0.3 } else { 0.0 };
                 }
                 scenarios.push(scenario);
@@ -145,10 +145,10 @@ fn mixed_in_space() -> Vec<Scenario> {
     }
     let mut wide = small(20, 30, None);
     wide.model = Model::Contact;
-    (wide.gears.helix_angle_deg, wide.gears.face_width_mm) = (30.0, 60.0);
+    (wide.meshes[0].helix_angle_deg, wide.wheels[0].face_width_mm) = (30.0, 60.0);
     scenarios.push(wide);
     let mut refused = small(17, 38, None);
-    refused.gears.module_mm = -1.0;
+    refused.meshes[0].module_mm = -1.0;
     scenarios.push(refused);
     scenarios
 }
@@ -229,15 +229,15 @@ fn what_is_stepped_alone_has_a_reason() {
     let reason = |scenario: &Scenario| stages(scenario).unwrap().stepped_alone();
     let mut unbalanced = small(20, 40, None);
     unbalanced.model = Model::Contact;
-    unbalanced.rig.pinion_unbalance.g_mm = 1e-9;
+    unbalanced.wheels[0].unbalance.g_mm = 1e-9;
     let mut helical = unbalanced.clone();
-    helical.gears.helix_angle_deg = 20.0;
+    helical.meshes[0].helix_angle_deg = 20.0;
     let mut published = small(20, 40, None);
     published.model = Model::Published;
     let mut crowned = helical.clone();
-    crowned.gears.lead_crowning_um = 3.0;
+    crowned.meshes[0].lead_crowning_um = 3.0;
     let mut wide = helical.clone();
-    (wide.gears.helix_angle_deg, wide.gears.face_width_mm) = (30.0, 120.0);
+    (wide.meshes[0].helix_angle_deg, wide.wheels[0].face_width_mm) = (30.0, 120.0);
     let scenarios = [unbalanced, helical, published, crowned, wide];
     let expected = [
         None,

@@ -645,7 +645,7 @@ fn mesh_sums_every_pair_in_contact() {
     gears.tip_chamfer_mm = Some(0.0);
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
-    scenario.gears = gears.clone();
+    scenario.set_gears(&gears);
     let stages = meshtone::stages(&scenario).unwrap();
     let ratio = stages.pairs[0].teeth.path.contact_ratio;
     assert!(ratio > 2.2, "{ratio}");

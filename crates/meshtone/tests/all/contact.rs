@@ -18,7 +18,7 @@ fn pair(brake_torque_nm: f64) -> Scenario {
 
 fn of_rig(din_grade: u8) -> Scenario {
     let mut scenario = pair(10.0);
-    scenario.quality.din_grade = din_grade;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = din_grade);
     with_own_structure(&mut scenario);
     scenario
 }
@@ -38,12 +38,13 @@ fn indicators(signal: &[f64]) -> [f64; 2] {
 
 /// A rig whose supports stand still, whose shafts do not bend and where nothing is damped: the linear model's, without its damping.
 fn rigid(scenario: &mut Scenario) {
-    scenario.rig.support.springs =
+    scenario.rig_mut().unwrap().support.springs =
         SupportSprings::Stiffnesses { stiffness_n_per_m: 1e15, coupling_n_per_m: 1e15 };
-    scenario.rig.support.damping_ratio = 0.0;
-    scenario.rig.mesh_damping_ratio = 0.0;
-    scenario.rig.damping_ratio = DampingRatio::Uniform(0.0);
-    for shaft in [&mut scenario.rig.pinion_shaft, &mut scenario.rig.gear_shaft] {
+    scenario.rig_mut().unwrap().support.damping_ratio = 0.0;
+    scenario.meshes[0].damping_ratio = 0.0;
+    scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(0.0);
+    let rig = scenario.rig_mut().unwrap();
+    for shaft in [&mut rig.pinion_shaft, &mut rig.gear_shaft] {
         shaft.damping_ratio = 0.0;
         // So short that only the bearings give way.
         shaft.bearing_span_mm = 0.1;
@@ -69,9 +70,9 @@ fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
     linear.solver.sampling_rate_hz = 2e5;
     rigid(&mut linear);
     if deviates {
-        linear.quality =
-            Quality::of_errors(stages(of_rig(6)).unwrap().pairs[0].profile_errors.clone().unwrap());
-        linear.rig.eccentricity_mm = 0.004;
+        let errors = stages(of_rig(6)).unwrap().pairs[0].profile_errors.clone().unwrap();
+        linear.set_quality(Quality::of_errors(errors));
+        linear.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.004);
     }
     let mut contact = linear.clone();
     contact.model = Model::Contact;
@@ -158,12 +159,12 @@ fn motor_and_brake_put_in_what_damping_takes() {
 fn a_deviation_of_all_teeth_is_a_rotation() {
     let mut scenario = of_rig(7);
     scenario.operation.brake_torque_nm = 200.0;
-    scenario.quality.run_out_share = 0.0;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.run_out_share = 0.0);
     let drawn = simulate(&scenario).unwrap();
     let mut errors = drawn.stages.pairs[0].profile_errors.clone().unwrap();
     errors.pinion_profile_errors_mm = errors.pinion_profile_errors_mm.map(|error| error + 0.01);
-    scenario.quality.profile_errors = Some(errors);
-    scenario.quality.din_grade = 0;
+    scenario.quality().profile_errors = Some(errors);
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
     let thicker = simulate(&scenario).unwrap();
     let (a, b) = (&drawn.channels["vertical_g"], &thicker.channels["vertical_g"]);
     let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
@@ -195,13 +196,13 @@ fn halving_the_step_changes_no_indicator_of_a_healthy_pair() {
 #[test]
 fn teeth_let_go_and_never_pull() {
     let mut scenario = of_rig(9);
-    scenario.gears.backlash_mm = Some(1.0);
+    scenario.meshes[0].backlash_mm = Some(1.0);
     let force = simulate(&scenario).unwrap().channels["mesh_force_n"].to_vec();
     assert!(force.iter().all(|force| *force >= 0.0));
     let apart = force.iter().filter(|force| **force == 0.0).count() as f64 / force.len() as f64;
     println!("apart for {:.1} % of the time", 100.0 * apart);
     assert!(apart > 0.001 && apart < 0.5, "{apart}");
-    scenario.gears.backlash_mm = Some(0.001);
+    scenario.meshes[0].backlash_mm = Some(0.001);
     let tight = simulate(&scenario).unwrap().channels["mesh_force_n"].to_vec();
     assert!(tight.iter().any(|force| *force < 0.0));
 }
@@ -232,7 +233,7 @@ fn small_damages_are_small() {
 #[test]
 fn mesh_stiffness_is_the_linear_one() {
     let mut scenario = pair(10.0);
-    (scenario.gears.tip_chamfer_mm, scenario.gears.active_profile_shortening) = (Some(0.0), 0.0);
+    (scenario.wheels[0].tip_chamfer_mm, scenario.wheels[0].active_profile_shortening) = (Some(0.0), 0.0);
     let mean = |scenario: &Scenario| stages(scenario).unwrap().mesh_curves()[0].mean_stiffness_n_per_mm;
     let contact = mean(&scenario);
     scenario.model = Model::Linear;
@@ -256,16 +257,16 @@ fn varying_speed_is_the_steady_one_where_it_does_not_vary() {
 #[test]
 fn given_pitches_are_deviations_of_whole_flanks() {
     let mut scenario = of_rig(6);
-    scenario.quality =
-        Quality::of_errors(stages(&scenario).unwrap().pairs[0].profile_errors.clone().unwrap());
+    let errors = stages(&scenario).unwrap().pairs[0].profile_errors.clone().unwrap();
+    scenario.set_quality(Quality::of_errors(errors));
     let mut by_flanks = scenario.clone();
     let pitches_um: Vec<f64> = (0..38).map(|tooth| f64::from(tooth % 5) - 2.0).collect();
     let cos = 20f64.to_radians().cos();
-    let errors = by_flanks.quality.profile_errors.as_mut().unwrap();
+    let errors = by_flanks.wheels[1].profile_errors_mm.as_mut().unwrap();
     for (tooth, pitch_um) in pitches_um.iter().enumerate() {
-        (0..100).for_each(|point| errors.gear_profile_errors_mm[(point, tooth)] += pitch_um * 1e-3 * cos);
+        (0..100).for_each(|point| errors[(point, tooth)] += pitch_um * 1e-3 * cos);
     }
-    scenario.quality.gear_deviations.cumulative_pitch_um = Some(pitches_um);
+    scenario.wheels[1].deviations.cumulative_pitch_um = Some(pitches_um);
     for model in [Model::Linear, Model::Contact] {
         let signal = |scenario: &Scenario| {
             let mut scenario = scenario.clone();
@@ -281,11 +282,11 @@ fn given_pitches_are_deviations_of_whole_flanks() {
 fn given_pitches_have_the_run_out_in_them() {
     let mut scenario = of_rig(6);
     let drawn = stages(&scenario).unwrap().pairs[0].run_out;
-    scenario.quality.gear_deviations.cumulative_pitch_um = Some(vec![0.0; 38]);
+    scenario.wheels[1].deviations.cumulative_pitch_um = Some(vec![0.0; 38]);
     let given = stages(&scenario).unwrap().pairs[0].run_out;
     assert_eq!((given[0], given[1].run_out_um), (drawn[0], 0.0));
     assert!(drawn[1].run_out_um > 0.0);
-    scenario.quality.gear_deviations.run_out_um = Some(7.0);
+    scenario.wheels[1].deviations.run_out_um = Some(7.0);
     assert_eq!(stages(&scenario).unwrap().pairs[0].run_out[1].run_out_um, 7.0);
 }
 
@@ -295,16 +296,16 @@ fn helix_slopes_and_misalignment_add_up() {
     let mut scenario = of_rig(6);
     let aligned = simulate(&scenario).unwrap();
     assert_eq!(mesh(&aligned.stages).face_load_factor, 1.0);
-    scenario.rig.misalignment_um = 8.0;
+    scenario.meshes[0].misalignment_um = 8.0;
     let misaligned = simulate(&scenario).unwrap();
     let [before, after] = [&aligned, &misaligned].map(|simulation| mesh(&simulation.stages));
     assert!(after.face_load_factor > 2.0);
     assert!(after.mean_stiffness_n_per_m < 0.9 * before.mean_stiffness_n_per_m);
-    scenario.quality.pinion_deviations.helix_slope_um = Some(-3.0);
-    scenario.quality.gear_deviations.helix_slope_um = Some(-5.0);
+    scenario.wheels[0].deviations.helix_slope_um = Some(-3.0);
+    scenario.wheels[1].deviations.helix_slope_um = Some(-5.0);
     assert_eq!(simulate(&scenario).unwrap().channels, aligned.channels);
     // Without a load nothing says how much of the face bears.
-    scenario.quality.gear_deviations.helix_slope_um = None;
+    scenario.wheels[1].deviations.helix_slope_um = None;
     scenario.operation.brake_torque_nm = 0.0;
     let refused = stages(&scenario).unwrap_err();
     assert_eq!(refused.key, "operation.brake_torque_nm");

@@ -95,7 +95,7 @@ fn the_rigs_indicators_of_many_draws() {
 /// (µm) How far the wheels of a rig, without deviations, approach each other along the line of action, and (g) the rms of the vertical
 /// acceleration.
 fn fall(mut scenario: Scenario) -> [f64; 2] {
-    scenario.quality.din_grade = 0;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
     let stages = meshtone::stages(&scenario).unwrap();
     let machine = machine_of(&stages).0;
     let line = &machine.turn * &machine.lines[0].at_middle;
@@ -118,7 +118,7 @@ fn gaps_deeper_than_the_fall_are_alike() {
         let all = paper_rigs::cases(name);
         let of_case = |case: &usize| {
             let mut scenario = paper_rigs::rig(name, Model::Contact).0.with_faults(all[*case].clone());
-            scenario.rig.pinion_shaft.length_mm = length_mm;
+            scenario.rig_mut().unwrap().pinion_shaft.length_mm = length_mm;
             fall(scenario)
         };
         let found: Vec<[f64; 2]> = cases.iter().map(of_case).collect();

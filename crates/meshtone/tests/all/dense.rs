@@ -272,7 +272,7 @@ impl<'a> Dense<'a> {
     /// The machine of a simulation, over its first samples.
     pub fn of(stages: &'a Stages, samples: usize) -> Self {
         let (machine, modes) = machine_of(stages);
-        let operation = stages.scenario.operation();
+        let operation = &stages.scenario.operation;
         let profile = operation.speed_profile_hz.as_ref();
         Self {
             machine,
@@ -285,7 +285,7 @@ impl<'a> Dense<'a> {
                 nominal_rad_per_s: TAU * operation.pinion_speed_hz,
                 brake_torque_nm: operation.brake_torque_nm,
                 motor_rad_per_s: TAU * profile.map_or(operation.pinion_speed_hz, |profile| profile.value[0]),
-                velocity: stages.scenario.solver().initial_velocity.as_ref().map(|given| given.as_slice()),
+                velocity: stages.scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
             },
         }
     }

@@ -15,7 +15,7 @@ fn pair() -> Scenario {
         ..GearPair::example()
     });
     scenario.model = Model::Linear;
-    scenario.gears.points_per_tooth = 2_000;
+    scenario.meshes[0].points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
@@ -42,7 +42,7 @@ fn eccentricity_turns_with_both_shafts() {
     let plain = channels(&pair());
     let with = |eccentricity_mm: f64| {
         let mut scenario = pair();
-        scenario.rig.eccentricity_mm = eccentricity_mm;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = eccentricity_mm);
         channels(&scenario)
     };
     let (small, large) = (with(0.005), with(0.010));

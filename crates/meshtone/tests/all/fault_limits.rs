@@ -24,7 +24,7 @@ fn sampled_scenario(damage: Option<Damage>, sampling_rate_hz: f64) -> Scenario {
     });
     scenario.model = Model::Linear;
     // A chip within the chamfer would be none.
-    scenario.gears.tip_chamfer_mm = Some(0.0);
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = Some(0.0));
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
     scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
     scenario

@@ -16,7 +16,7 @@ fn pair(faults: Vec<Fault>) -> Scenario {
     let mut scenario =
         Scenario::new(GearPair { pinion_speed_hz: 25.0, brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = Model::Linear;
-    scenario.gears.points_per_tooth = 2_000;
+    scenario.meshes[0].points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 1e5;
     // Nothing of the start is left.
     scenario.solver.settle_tolerance = 0.0;
@@ -278,8 +278,8 @@ fn damage_on_either_of_two_equal_wheels_is_mirrored() {
             let faults = [(WheelName::Pinion, 2), (WheelName::Gear, 3)];
             let mut scenario =
                 pair(faults.map(|(wheel, tooth)| Fault::new(wheel, tooth, damage.clone())).to_vec());
-            (scenario.gears.pinion_teeth, scenario.gears.gear_teeth) = (teeth, teeth);
-            scenario.gears.centre_distance_mm = Some(line_mm.hypot(2.0 * base_mm));
+            (scenario.wheels[0].teeth, scenario.wheels[1].teeth) = (teeth, teeth);
+            scenario.meshes[0].centre_distance_mm = Some(line_mm.hypot(2.0 * base_mm));
             let stages = stages(&scenario).unwrap();
             let mesh = &stages.meshes_at(NonZeroUsize::new(400).unwrap()).unwrap()[0];
             let [sound, of_gear, of_pinion] = &mesh.classes[..] else { panic!("three classes") };
@@ -316,14 +316,14 @@ fn damage_on_either_of_two_equal_wheels_is_mirrored() {
 #[test]
 fn the_mate_of_a_pit_touches_its_edges() {
     let mut scenario = pair(vec![Fault::on_first_gear_tooth(ThroughFace { pit: pit(0.2, 0.8) })]);
-    scenario.gears.points_per_tooth = 20_000;
+    scenario.meshes[0].points_per_tooth = 20_000;
     let stages = stages(&scenario).unwrap();
     let damaged = &damaged_teeth(&scenario.faults, &stages.pairs[0].teeth, 1).unwrap()[0];
-    let (path, width_mm) = (stages.pairs[0].teeth.path, scenario.gears.face_width_mm);
+    let (path, width_mm) = (stages.pairs[0].teeth.path, scenario.wheels[0].face_width_mm);
     let (gear, pinion) =
         (stages.pairs[0].teeth.flank(WheelName::Gear), stages.pairs[0].teeth.flank(WheelName::Pinion));
-    let sound = LoadedFlank::new(pinion, None, Material::Steel, &scenario.gears.foundation);
-    let pitted = LoadedFlank::new(gear, Some(damaged), Material::Steel, &scenario.gears.foundation);
+    let sound = LoadedFlank::new(pinion, None, Material::Steel, &scenario.meshes[0].foundation);
+    let pitted = LoadedFlank::new(gear, Some(damaged), Material::Steel, &scenario.meshes[0].foundation);
     let compliance = |flank: &LoadedFlank, point: FlankPoint| {
         let (sin, cos) = (point.load_sin, point.load_cos);
         flank.compliance_mm_per_n(&FlankLoad { point, sin, cos, z_mm: 0.0, width_mm })

@@ -10,8 +10,8 @@ use meshtone::signal::{
     tachometer_pulses,
 };
 
-fn healthy(rig: Option<GearboxRig>) -> Gearbox {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(rig)).unwrap();
+fn healthy(rig: Option<GearboxRig>) -> Scenario {
+    let mut gearbox = Scenario::from_toml(&gearbox_template(rig)).unwrap();
     gearbox.faults.clear();
     for wheel in &mut gearbox.wheels {
         if wheel.din_grade == 0 {
@@ -30,27 +30,27 @@ struct Recorded {
     input_rev: Vec<f64>,
 }
 
-fn record(gearbox: &Gearbox, sensor: &str, cycles: usize, profile_hz: Option<[f64; 2]>) -> Recorded {
+fn record(gearbox: &Scenario, sensor: &str, cycles: usize, profile_hz: Option<[f64; 2]>) -> Recorded {
     let [recorded] = record_at(gearbox, [sensor], cycles, profile_hz);
     recorded
 }
 
 /// What several sensors record of one simulation.
 fn record_at<const SENSORS: usize>(
-    gearbox: &Gearbox,
+    gearbox: &Scenario,
     sensors: [&str; SENSORS],
     cycles: usize,
     profile_hz: Option<[f64; 2]>,
 ) -> [Recorded; SENSORS] {
     let mut gearbox = gearbox.clone();
-    gearbox.sensors = sensors.map(GearboxSensor::new).to_vec();
-    let cycle_rev = GearboxLayout::new(&gearbox).unwrap().cycle_revolutions() as f64;
-    let speed_hz = gearbox.operation.drive.pinion_speed_hz;
+    gearbox.sensors = sensors.map(Sensor::at_place).to_vec();
+    let cycle_rev = gearbox.layout().unwrap().cycle_revolutions() as f64;
+    let speed_hz = gearbox.operation.pinion_speed_hz;
     let duration_s = (cycles + 1) as f64 * cycle_rev / speed_hz + 0.01;
-    gearbox.solver.settings.duration_s = Some(duration_s);
+    gearbox.solver.duration_s = Some(duration_s);
     if let Some(value) = profile_hz {
         let time_s = vec![0.0, 2.0 * duration_s];
-        gearbox.operation.drive.speed_profile_hz = Some(Profile { time_s, value: value.to_vec() });
+        gearbox.operation.speed_profile_hz = Some(Profile { time_s, value: value.to_vec() });
     }
     let channels = meshtone::simulate(&gearbox).unwrap().channels;
     let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap();
@@ -61,7 +61,7 @@ fn record_at<const SENSORS: usize>(
     let of_sensors: Vec<&str> = channels.signals[..SENSORS].iter().map(|signal| signal.unit).collect();
     assert_eq!(of_sensors, ["g"; SENSORS]);
     std::array::from_fn(|sensor| Recorded {
-        train: GearTrain::of_gearbox(&gearbox).unwrap(),
+        train: GearTrain::of_scenario(&gearbox).unwrap(),
         rate_hz: channels.sampling_rate_hz,
         signal: channels.signals[sensor].values[from..to].to_vec(),
         input_rev: angle[from..to].to_vec(),
@@ -124,7 +124,7 @@ fn a_missing_tooth_shows_on_its_own_shaft() {
     for (number, wheel) in gearbox.wheels.iter().enumerate() {
         let mut damaged = gearbox.clone();
         let fault = Fault::new(WheelName::Gear, 5, MissingTooth);
-        damaged.faults = vec![GearboxFault { wheel: wheel.name.clone(), fault }];
+        damaged.faults = vec![Fault { wheel: wheel.name.clone(), ..fault }];
         let sensors = ["middle:1", "output:0", "output:1"];
         for (sensor, recorded) in sensors.into_iter().zip(record_at(&damaged, sensors, 5, None)) {
             let records = recorded.process();
@@ -147,10 +147,10 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
     for rig in [None, Some(GearboxRig::Uconn), Some(GearboxRig::Tecnalia)] {
         let gearbox = healthy(rig);
         let mut gearbox = gearbox.clone();
-        gearbox.solver.settings.duration_s = Some(3.0);
-        gearbox.sensors = ["input:0", "middle:1", "output:1"].map(GearboxSensor::new).to_vec();
+        gearbox.solver.duration_s = Some(3.0);
+        gearbox.sensors = ["input:0", "middle:1", "output:1"].map(Sensor::at_place).to_vec();
         let channels = meshtone::simulate(&gearbox).unwrap().channels;
-        let train = GearTrain::of_gearbox(&gearbox).unwrap();
+        let train = GearTrain::of_scenario(&gearbox).unwrap();
         let phase = ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap();
         let turning =
             TrainTurning::Shaft { shaft: train.input(), phase: phase.clone(), stated: StatedTurning::Other };
@@ -178,7 +178,7 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
                 signal.values.iter().zip(&phase.revolutions).map(|(value, rev)| value + tone(rev)).collect();
             let foreign = process(&values).foreign.unwrap().tones;
             let [bearing] = foreign[..] else { panic!("{rig:?} {}: {foreign:?}", signal.name) };
-            let hz = 3.0523 * gearbox.operation.drive.pinion_speed_hz;
+            let hz = 3.0523 * gearbox.operation.pinion_speed_hz;
             assert!((bearing.order - 3.0523).abs() < 5e-3 && (bearing.frequency_hz / hz - 1.0).abs() < 2e-3);
             let amplitude = 0.1 * level * 2f64.sqrt();
             assert!((bearing.amplitude / amplitude - 1.0).abs() < 0.15, "{bearing:?} {amplitude}");

@@ -17,7 +17,7 @@ fn base() -> Scenario {
         ..GearPair::example()
     });
     scenario.model = Model::Linear;
-    scenario.quality.din_grade = 8;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 8);
     scenario.solver.sampling_rate_hz = 1e4;
     scenario
 }
@@ -197,7 +197,7 @@ fn a_case_that_is_left_out_has_not_been_seen() {
 fn the_mesh_order_is_that_of_the_gear_that_is_simulated() {
     let of_teeth = |teeth| DifferenceChain { separation: Some(SeparationSettings::new(teeth)), ..chain() };
     let mut scenario = base();
-    scenario.gears.gear_teeth = 50;
+    scenario.wheels[1].teeth = 50;
     let own = difference_signals(vec![scenario.clone()], &of_teeth(50)).unwrap();
     assert_eq!(difference_signals(vec![scenario], &of_teeth(40)).unwrap(), own);
     let result = run(&experiment(&[("gears.gear_teeth", &[40.0, 50.0, 60.0])])).unwrap();
@@ -214,7 +214,7 @@ fn the_original_is_the_scenario_before_anything_is_tuned() {
         fault_to_harmonics_ratio: [HIDDEN.fault_to_harmonics_ratio; 2],
         noise_level: [HIDDEN.noise_level; 2],
     };
-    experiment.base.rig.damping_ratio = meshtone::scenario::DampingRatio::Uniform(0.5);
+    experiment.base.rig_mut().unwrap().damping_ratio = meshtone::scenario::DampingRatio::Uniform(0.5);
     let result = run(&experiment).unwrap();
     let keys = result.with_keys.as_ref().unwrap();
     let untouched =

@@ -14,9 +14,9 @@ const RECORDS: u64 = 30;
 fn base() -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
-    scenario.quality.din_grade = 7;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     scenario.solver.sampling_rate_hz = 1e5;
-    scenario.gears.points_per_tooth = 2000;
+    scenario.meshes[0].points_per_tooth = 2000;
     crate::physics::with_own_structure(&mut scenario);
     scenario
 }
@@ -46,7 +46,7 @@ fn transmitted(signal: &[f64], echoes: &[(usize, f64)]) -> Vec<f64> {
 /// What the rig's sensor would show.
 fn measured(echoes: &[(usize, f64)]) -> Measurements {
     let mut rig = base();
-    rig.rig.mesh_damping_ratio = HIDDEN_DAMPING;
+    rig.meshes[0].damping_ratio = HIDDEN_DAMPING;
     let scenarios = cases().into_iter().map(|case| rig.clone().with_faults(case.faults)).collect();
     let signals = difference_signals(scenarios, &DifferenceChain::new(25e3)).unwrap();
     let simulated = SimulatedCases::new(signals.clone()).unwrap();
@@ -113,7 +113,7 @@ fn on_the_pinion(tooth: u32) -> Vec<Case> {
 fn experiment_on_the_pinion(tooth: u32, wheel: WheelName) -> Experiment {
     let mut base = base();
     base.solver.sampling_rate_hz = 1e5;
-    base.gears.points_per_tooth = 1000;
+    base.meshes[0].points_per_tooth = 1000;
     let chain = DifferenceChain { wheel, ..DifferenceChain::new(25e3) };
     let scenarios = on_the_pinion(tooth).into_iter();
     let scenarios = scenarios.map(|case| base.clone().with_faults(case.faults)).collect();
@@ -158,7 +158,7 @@ fn damage_on_the_pinion_is_tuned_over_its_own_revolutions() {
     assert!(!tuning.warnings.iter().any(other), "{:?}", tuning.warnings);
 
     // A revolution of 17 teeth, in which the damage is four teeth later.
-    let teeth = f64::from(experiment.base.gears.pinion_teeth);
+    let teeth = f64::from(experiment.base.wheels[0].teeth);
     let later = tuned(&experiment_on_the_pinion(5, WheelName::Pinion));
     let moved_rev = (later.simulated().centre_rev() - result.simulated().centre_rev()).rem_euclid(1.0);
     println!("{:.3} teeth", moved_rev * teeth);

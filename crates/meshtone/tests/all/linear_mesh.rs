@@ -11,9 +11,9 @@ use meshtone::{simulate, stages};
 fn pair() -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
-    scenario.gears.tip_chamfer_mm = Some(0.0);
-    scenario.rig.pinion_shaft.radius_mm = 10.0;
-    scenario.rig.gear_shaft.radius_mm = 10.0;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = Some(0.0));
+    scenario.rig_mut().unwrap().pinion_shaft.radius_mm = 10.0;
+    scenario.rig_mut().unwrap().gear_shaft.radius_mm = 10.0;
     scenario
 }
 
@@ -72,13 +72,13 @@ fn conjugate_flanks_are_stiffer_than_published_ones() {
 #[test]
 fn a_deviation_of_all_teeth_is_a_rotation() {
     let mut scenario = pair();
-    scenario.quality.din_grade = 7;
-    scenario.quality.run_out_share = 0.0;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.run_out_share = 0.0);
     let drawn = simulate(&scenario).unwrap();
     let mut errors = drawn.stages.pairs[0].profile_errors.clone().unwrap();
     errors.pinion_profile_errors_mm = errors.pinion_profile_errors_mm.map(|error| error + 0.01);
-    scenario.quality.profile_errors = Some(errors);
-    scenario.quality.din_grade = 0;
+    scenario.quality().profile_errors = Some(errors);
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
     let thicker = simulate(&scenario).unwrap();
     let (a, b) = (&drawn.channels["vertical_g"], &thicker.channels["vertical_g"]);
     let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();

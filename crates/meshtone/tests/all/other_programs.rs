@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::physics::*;
-use meshtone::machine::{LineOfAction, Machine, Modes, Spring, Supports, Train};
+use meshtone::machine::{LineOfAction, Machine, Modes, RigMachine, RigParts, Spring, Supports};
 use meshtone::published::compliance::ToothCompliance;
 use meshtone::published::damage::ToothSection;
 use meshtone::scenario::{FoundationCoefficients, GearPair, Gears, Material, Scenario, WheelName};
@@ -517,10 +517,18 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
 #[test]
 fn natural_frequencies_without_the_mesh() {
     let scenario = Scenario::new(GearPair::example());
-    let (gears, rig) = (&scenario.gears, &scenario.rig);
-    let train = Train::new(gears, rig, &linear_teeth(gears, 20.0), Supports::Held);
+    let (gears, rig) = (&scenario.gears(), scenario.rig().unwrap());
+    let (inertia, unbalance) = Default::default();
+    let parts = RigParts {
+        gears,
+        rig,
+        inertias: [&inertia; 2],
+        unbalances: [&unbalance; 2],
+        brake_inertia_kgm2: scenario.operation.brake_inertia_kgm2,
+    };
+    let train = RigMachine::new(parts, &linear_teeth(gears, 20.0), Supports::Held);
     let modes = Modes::damped_alike(&train.machine, 0.0);
-    let ([pinion, gear], brake) = (train.wheels, rig.brake_inertia_kgm2);
+    let ([pinion, gear], brake) = (train.wheels, parts.brake_inertia_kgm2);
     let [pinion_shaft, gear_shaft] = train.shaft_stiffness_nm_per_rad;
     // A beam of 130 mm and 20 mm diameter on two supports: L³/(48 E I) under a force in the middle, L/(12 E I) under a moment there.
     // A bearing has half of its stiffness at either end, and a moment turns the shaft about the middle.

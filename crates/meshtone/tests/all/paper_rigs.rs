@@ -31,7 +31,7 @@ pub fn rig(name: &str, model: Model) -> (Scenario, f64) {
     };
     let mut scenario = Scenario::new(pair);
     scenario.model = model;
-    scenario.quality.din_grade = din_grade;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = din_grade);
     (scenario, rate_hz)
 }
 

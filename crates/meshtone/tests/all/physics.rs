@@ -11,7 +11,7 @@ use meshtone::wheel::{Teeth, teeth};
 
 /// The wheels of [`GearPair::example`]: 17 and 38 teeth of module 3 mm, 15 mm wide.
 pub fn example_gears() -> Gears {
-    Scenario::new(GearPair::example()).gears
+    Scenario::new(GearPair::example()).gears()
 }
 
 /// Deviation of `value` from `exact`, relative to `exact`.
@@ -43,14 +43,17 @@ pub fn mean(values: &[f64]) -> f64 {
 /// Gives a scenario supports, tips and deviations of its own, for tests whose numbers or tolerances were measured with them: supports
 /// with modes at 1.6 and 4.3 kHz, a path as long as chamfers of 0.2 modules leave it, and wheels whose teeth are more alike.
 pub fn with_own_structure(scenario: &mut Scenario) {
-    scenario.rig.support = Support {
+    scenario.rig_mut().unwrap().support = Support {
         mass_kg: 1.6,
         springs: SupportSprings::Stiffnesses { stiffness_n_per_m: 1.6e8, coupling_n_per_m: 5e8 },
         damping_ratio: 0.025,
     };
-    scenario.gears.tip_chamfer_mm = Some(0.2 * scenario.gears.module_mm);
-    scenario.gears.active_profile_shortening = 0.0;
-    (scenario.quality.tooth_share, scenario.quality.pitch_share) = (0.4, 0.15);
+    scenario
+        .wheels
+        .iter_mut()
+        .for_each(|wheel| wheel.tip_chamfer_mm = Some(0.2 * scenario.meshes[0].module_mm));
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.active_profile_shortening = 0.0);
+    (scenario.wheels[0].tooth_share, scenario.wheels[0].pitch_share) = (0.4, 0.15);
 }
 
 /// What both supports do on average.

@@ -31,7 +31,7 @@ fn a_speed_in_revolutions_per_minute_is_refused_with_what_it_would_be() {
     assert!(error.help.unwrap().ends_with("if 1476.0 is per minute, write 24.6000"));
 
     // As fast as the larger wheel of another pair.
-    (scenario.gears.module_mm, scenario.gears.pinion_teeth) = (2.5, 27);
+    (scenario.meshes[0].module_mm, scenario.wheels[0].teeth) = (2.5, 27);
     assert!(scenario.validate().unwrap_err().problem.contains("313 m/s"));
 
     scenario.operation.pinion_speed_hz = 300.0;
@@ -104,7 +104,8 @@ fn a_load_that_breaks_teeth_is_warned_of_with_their_deflection() {
 #[test]
 fn places_at_which_no_teeth_meet_are_told() {
     for (wheel, teeth) in [(WheelName::Gear, 38), (WheelName::Pinion, 17)] {
-        let fault = Fault { wheel, tooth: 9.into(), ..Fault::on_first_gear_tooth(MissingTooth) };
+        let fault =
+            Fault { wheel: wheel.into(), tooth: 9.into(), ..Fault::on_first_gear_tooth(MissingTooth) };
         let mut broken = pair().with_faults(vec![fault]);
         broken.model = Model::Linear;
         let stages = meshtone::stages(&broken).unwrap();
@@ -150,11 +151,11 @@ fn resonant(damping_ratio: f64, harmonic: f64) -> Scenario {
     let mut scenario = pair();
     crate::physics::with_own_structure(&mut scenario);
     scenario.model = Model::Linear;
-    scenario.quality.din_grade = 0;
-    scenario.rig.damping_ratio = DampingRatio::Uniform(damping_ratio);
-    scenario.rig.mesh_damping_ratio = damping_ratio;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
+    scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(damping_ratio);
+    scenario.meshes[0].damping_ratio = damping_ratio;
     // Their mesh cycle is short, so that the step can be long.
-    (scenario.gears.pinion_teeth, scenario.gears.gear_teeth) = (18, 36);
+    (scenario.wheels[0].teeth, scenario.wheels[1].teeth) = (18, 36);
     let stages = meshtone::stages(&scenario).unwrap();
     let machine = machine_of(&stages).0;
     let line = &machine.turn * &machine.lines[0].at_middle;
@@ -237,10 +238,10 @@ fn what_is_not_warned_of_is_right() {
         let model = if seed % 2 == 0 { Model::Contact } else { Model::Linear };
         let mut scenario = pair();
         (scenario.model, scenario.seed) = (model, u64::from(seed));
-        scenario.gears.gear_teeth = 38 + 3 * seed;
+        scenario.wheels[1].teeth = 38 + 3 * seed;
         scenario.operation.pinion_speed_hz = 11.0 + 4.3 * f64::from(seed);
         scenario.operation.brake_torque_nm = 60.0;
-        scenario.rig.damping_ratio = DampingRatio::Uniform(0.01 + 0.01 * f64::from(seed % 4));
+        scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(0.01 + 0.01 * f64::from(seed % 4));
         let coarse = at_rate(&scenario, 1e5);
         let parts = coarse.contact_figures().is_some_and(|figures| figures.apart_fraction > 0.0);
         if long_step(&coarse).is_some()
@@ -279,7 +280,7 @@ fn examples_at_their_own_rate_are_not_warned_of() {
 fn a_resonance_beyond_all_measure_is_told() {
     let mut scenario = resonant(0.0, 1.0);
     scenario.operation.brake_torque_nm = 0.05;
-    scenario.quality.din_grade = 7;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     let simulation = simulate(&scenario).unwrap();
     let warnings = simulation.warnings_of_signals(meshtone::StepJudgement::Repeated);
     let told = about(&warnings, "operation.pinion_speed_hz").unwrap();

@@ -46,7 +46,7 @@ fn means(scenario: &Scenario) -> [f64; 3] {
 
 /// (N m, N m, N) What the load asks for.
 fn expected(scenario: &Scenario) -> [f64; 3] {
-    let gears = &scenario.gears;
+    let gears = &scenario.gears();
     let torque = scenario.operation.brake_torque_nm;
     let base_radius_m = gears.module_mm * 1e-3 * f64::from(gears.gear_teeth) / 2.0
         * gears.pressure_angle_deg.to_radians().cos();
@@ -64,7 +64,7 @@ fn pair(module: f64, z1: u32, z2: u32, width: f64, speed: f64, torque: f64) -> S
         brake_torque_nm: torque,
     });
     scenario.model = Model::Linear;
-    scenario.gears.points_per_tooth = 2_000;
+    scenario.meshes[0].points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
@@ -87,7 +87,7 @@ fn torques_balance_under_linear() {
     check("40/20 at 25 Hz", &pair(2.0, 40, 20, 20.0, 25.0, 30.0));
     check("30/30 at 10 Hz", &pair(4.0, 30, 30, 25.0, 10.0, 200.0));
     let mut high_contact = pair(2.0, 60, 80, 20.0, 20.0, 50.0);
-    high_contact.gears.pressure_angle_deg = 14.5;
+    high_contact.meshes[0].pressure_angle_deg = 14.5;
     check("60/80, 14.5°", &high_contact);
 }
 

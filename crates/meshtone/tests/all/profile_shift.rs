@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use crate::physics::*;
 use crate::support::{assert_refused, gears as with_keys};
-use meshtone::machine::{Supports, Train, WheelBody};
+use meshtone::machine::{RigMachine, RigParts, Supports, WheelBody};
 use meshtone::scenario::{GearPair, Gears, Material, Model, Scenario, WheelName};
 use meshtone::solver::{Block, Output, Recorder};
 use meshtone::wheel::{Mounting, Teeth, ToothProfile};
@@ -161,8 +161,8 @@ fn a_disc_of_the_v_circle_has_the_wheels_mass() {
 fn scenario(model: Model) -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = model;
-    scenario.gears.points_per_tooth = 2_000;
-    (scenario.gears.pinion_profile_shift, scenario.gears.gear_profile_shift) = (0.3, 0.2);
+    scenario.meshes[0].points_per_tooth = 2_000;
+    (scenario.wheels[0].profile_shift, scenario.wheels[1].profile_shift) = (0.3, 0.2);
     scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
@@ -185,12 +185,15 @@ impl Recorder for Kept {
 #[test]
 fn the_mesh_pushes_at_the_working_pressure_angle() {
     let stages = meshtone::stages(scenario(Model::Linear)).unwrap();
-    let train = Train::new(
-        &stages.layout.gears[0],
-        &stages.scenario.pair().unwrap().rig,
-        &stages.pairs[0].teeth,
-        Supports::Held,
-    );
+    let (inertia, unbalance) = Default::default();
+    let parts = RigParts {
+        gears: &stages.layout.gears[0],
+        rig: stages.scenario.rig().unwrap(),
+        inertias: [&inertia; 2],
+        unbalances: [&unbalance; 2],
+        brake_inertia_kgm2: stages.scenario.operation.brake_inertia_kgm2,
+    };
+    let train = RigMachine::new(parts, &stages.pairs[0].teeth, Supports::Held);
     let coordinate = |name: &str| {
         let number = train.machine.names.iter().position(|other| *other == name).unwrap();
         Output::Coordinate { number, derivative: 0 }
@@ -375,7 +378,7 @@ fn small_wheels_without_shift_are_warned_of_with_the_shift_that_helps() {
     let warnings = |shift: f64| {
         let gears = shifted(12, 38, [shift, 0.0]);
         let mut scenario = scenario(Model::Linear);
-        scenario.gears = gears;
+        scenario.set_gears(&gears);
         scenario
             .validate()
             .map(|warnings| warnings.into_iter().map(|w| (w.key, w.message)).collect::<Vec<_>>())

@@ -105,11 +105,11 @@ fn scenarios_with(faults: impl Strategy<Value = Vec<Fault>>) -> impl Strategy<Va
                 });
                 scenario.model = Model::Linear;
                 scenario.seed = seed;
-                scenario.gears.points_per_tooth = 1_500;
-                scenario.gears.pressure_angle_deg = angle;
-                scenario.rig.bearing_stiffness_n_per_m = bearing;
-                scenario.rig.damping_ratio = DampingRatio::Uniform(damping);
-                scenario.rig.pinion_shaft.radius_mm = radius;
+                scenario.meshes[0].points_per_tooth = 1_500;
+                scenario.meshes[0].pressure_angle_deg = angle;
+                scenario.rig_mut().unwrap().bearing_stiffness_n_per_m = bearing;
+                scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(damping);
+                scenario.rig_mut().unwrap().pinion_shaft.radius_mm = radius;
                 scenario.solver.sampling_rate_hz = 1e4;
                 scenario.faults = faults;
                 scenario
@@ -155,11 +155,11 @@ fn few(cases: u32) -> ProptestConfig {
 /// sample lies at least a fourteenth of a point from the middle between two, some 2e-5 rad. The motor's shaft is so short
 /// that the pinion turns less than that.
 fn hold_the_points_of_the_cycle(scenario: &mut Scenario) {
-    let cycle = CycleGrid::new(scenario.gears.pinion_teeth, scenario.gears.gear_teeth, 1e5);
-    let teeth = least_common_multiple(scenario.gears.pinion_teeth, scenario.gears.gear_teeth);
+    let cycle = CycleGrid::new(scenario.wheels[0].teeth, scenario.wheels[1].teeth, 1e5);
+    let teeth = least_common_multiple(scenario.wheels[0].teeth, scenario.wheels[1].teeth);
     assert_eq!((1.0 / cycle.coarse_step_rev).round() as u32 % teeth, 0);
     scenario.solver.sampling_rate_hz = 0.5 * f64::from(teeth) * scenario.operation.pinion_speed_hz;
-    scenario.rig.pinion_shaft.length_mm = 1e-3;
+    scenario.rig_mut().unwrap().pinion_shaft.length_mm = 1e-3;
 }
 
 fn least_common_multiple(a: u32, b: u32) -> u32 {
@@ -184,10 +184,10 @@ fn off_proportion(once: &[f64], more: &[f64], rest: &[f64], factor: f64) -> f64 
 /// The scenario with given profile errors, `factor` times as large.
 fn with_errors(scenario: &Scenario, errors: &ProfileErrors, factor: f64) -> Scenario {
     let mut scenario = scenario.clone();
-    scenario.quality = Quality::of_errors(ProfileErrors {
+    scenario.set_quality(Quality::of_errors(ProfileErrors {
         pinion_profile_errors_mm: errors.pinion_profile_errors_mm.map(|error| error * factor),
         gear_profile_errors_mm: errors.gear_profile_errors_mm.map(|error| error * factor),
-    });
+    }));
     scenario
 }
 
@@ -227,7 +227,7 @@ fn most_faults_of_every_kind_fit() {
 fn a_through_pit_can_make_the_pair_stiffer() {
     let mut scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 20, ..GearPair::example() });
     scenario.model = Model::Linear;
-    scenario.gears.pressure_angle_deg = 17.5;
+    scenario.meshes[0].pressure_angle_deg = 17.5;
     let pit = PitCircle::Fractions { start: 0.6, end: 0.93, depth: 0.1 };
     scenario.faults = vec![Fault::on_first_gear_tooth(ThroughFace { pit })];
     let stages = stages(&scenario).unwrap();
@@ -418,9 +418,9 @@ proptest! {
         wheel in prop_oneof![Just(WheelName::Pinion), Just(WheelName::Gear)],
     ) {
         // Equal wheels have no signal that it could be compared with.
-        prop_assume!(scenario.gears.pinion_teeth != scenario.gears.gear_teeth);
+        prop_assume!(scenario.wheels[0].teeth != scenario.wheels[1].teeth);
         let mut scenario = scenario;
-        scenario.quality.din_grade = 7;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
         let drawn = fitting(&scenario)?.pairs[0].profile_errors.clone().unwrap();
         let mut thicker = drawn.clone();
         match wheel {
@@ -439,15 +439,15 @@ proptest! {
     #[test]
     fn simulations_are_reproducible(scenario in scenarios(proptest::option::of(damage()))) {
         let mut scenario = scenario;
-        scenario.quality.din_grade = 6;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 6);
         fitting(&scenario)?;
         let first = simulate(&scenario).unwrap();
         prop_assert_eq!(&first.channels, &simulate(&scenario).unwrap().channels);
 
         let drawn = first.stages.pairs[0].profile_errors.clone();
         let mut given = scenario.clone();
-        given.quality = drawn.clone().map_or_else(Quality::default, Quality::of_errors);
-        [given.quality.pinion_deviations, given.quality.gear_deviations] = first.stages.wheel_deviations().swap_remove(0);
+        given.set_quality(drawn.clone().map_or_else(Quality::default, Quality::of_errors));
+        [given.wheels[0].deviations, given.wheels[1].deviations] = first.stages.wheel_deviations().swap_remove(0);
         prop_assert_eq!(&first.channels, &simulate(&given).unwrap().channels);
 
         let mut reseeded = scenario.clone();
@@ -489,7 +489,7 @@ proptest! {
             scenario.model = Model::Published;
             hold_the_points_of_the_cycle(&mut scenario);
         }
-        scenario.quality.din_grade = 6;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 6);
         let drawn = fitting(&scenario)?.pairs[0].profile_errors.clone().unwrap();
         let scaled = |factor: f64| signals(&with_errors(&scenario, &drawn, factor));
         let (ideal, once, mirrored, more) = (scaled(0.0), scaled(1.0), scaled(-1.0), scaled(factor));
@@ -508,7 +508,7 @@ proptest! {
     fn mirrored_errors_give_the_mirrored_motion(scenario in scenarios(proptest::option::of(Just(Damage::from(MissingTooth))))) {
         let mut scenario = scenario;
         scenario.operation.brake_torque_nm = 0.0;
-        scenario.quality.din_grade = 6;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 6);
         let drawn = fitting(&scenario)?.pairs[0].profile_errors.clone().unwrap();
         let scaled = |factor: f64| simulate(with_errors(&scenario, &drawn, factor)).unwrap().channels;
         let (once, mirrored, quarter, ideal) = (scaled(1.0), scaled(-1.0), scaled(0.25), scaled(0.0));
@@ -534,9 +534,9 @@ proptest! {
         published in any::<bool>(),
     ) {
         let mut scenario = scenario;
-        scenario.gears.gear_teeth = scenario.gears.pinion_teeth;
-        scenario.rig.gear_shaft = scenario.rig.pinion_shaft;
-        scenario.quality.din_grade = din_grade;
+        scenario.wheels[1].teeth = scenario.wheels[0].teeth;
+        scenario.rig_mut().unwrap().gear_shaft = scenario.rig_mut().unwrap().pinion_shaft;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = din_grade);
         if published {
             scenario.model = Model::Published;
         }
@@ -544,7 +544,7 @@ proptest! {
         prop_assert!(own > 1e-3, "each wheel moves: {own:.2e} g");
         prop_assert!(sum < 1e-10 * own, "{sum:.2e} of {own:.2e} g");
         if !published {
-            scenario.rig.gear_inertia.mass_kg = Some(1.5 * gear_mass_kg(&fitting(&scenario)?));
+            scenario.wheels[1].inertia.mass_kg = Some(1.5 * gear_mass_kg(&fitting(&scenario)?));
             let (own, sum) = own_and_summed_accelerations(&fitting(&scenario)?);
             prop_assert!(sum > 1e-3 * own, "{sum:.2e} of {own:.2e} g");
         }
@@ -556,12 +556,12 @@ proptest! {
     fn wheels_move_along_the_line_of_action(scenario in scenarios(proptest::option::of(damage()))) {
         let mut scenario = scenario;
         // Wheels of different mass, whose signals do not cancel.
-        scenario.rig.brake_inertia_kgm2 *= 2.0;
-        scenario.gears.gear_teeth = 2 * scenario.gears.pinion_teeth;
+        scenario.operation.brake_inertia_kgm2 *= 2.0;
+        scenario.wheels[1].teeth = 2 * scenario.wheels[0].teeth;
         fitting(&scenario)?;
         let channels = simulate(&scenario).unwrap().channels;
         prop_assert!(channels["axial_g"].iter().all(|a| *a == 0.0));
-        let tangent = scenario.gears.pressure_angle_deg.to_radians().tan();
+        let tangent = scenario.meshes[0].pressure_angle_deg.to_radians().tan();
         let across: Vec<f64> =
             channels["horizontal_g"].iter().zip(&channels["vertical_g"]).map(|(h, v)| h - tangent * v).collect();
         let scale = rms(&channels["vertical_g"]);

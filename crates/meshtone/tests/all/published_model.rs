@@ -72,7 +72,7 @@ pub fn scenario(name: &str, reference: &Reference) -> Scenario {
             let values = &reference[key];
             ErrorTable::from_fn(values.shape()[0], values.shape()[1], |r, c| values[[r, c]])
         };
-        scenario.quality.profile_errors = Some(ProfileErrors {
+        scenario.quality().profile_errors = Some(ProfileErrors {
             pinion_profile_errors_mm: matrix("pinion_profile_errors_mm"),
             gear_profile_errors_mm: matrix("gear_profile_errors_mm"),
         });

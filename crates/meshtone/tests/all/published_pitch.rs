@@ -124,7 +124,7 @@ fn any_teeth_can_be_simulated() {
         ];
         for damage in damages {
             let mut scenario = published(teeth, 30.0, damage);
-            scenario.quality.din_grade = 7;
+            scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
             scenario.solver.sampling_rate_hz = 1e5;
             // About ten cycles, which are revolutions of the gear.
             scenario.solver.discard_and_keep(0.1, 0.5);

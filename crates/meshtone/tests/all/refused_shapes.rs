@@ -13,7 +13,7 @@ fn relief_leaves_some_of_the_tip() {
         for module in [1.3, 1.4, 1.5, 1.6, 2.0, 3.0] {
             let mut scenario =
                 Scenario::new(GearPair { module_mm: module, pinion_teeth: teeth, ..GearPair::example() });
-            scenario.rig.pinion_shaft.radius_mm = 4.0;
+            scenario.rig_mut().unwrap().pinion_shaft.radius_mm = 4.0;
             scenario.model = Model::Published;
             let refused = scenario.validate().err().map(|error| error.key);
             let expected = (module <= 1.5).then(|| "gears.module_mm".to_owned());
@@ -27,7 +27,7 @@ fn relief_leaves_some_of_the_tip() {
     }
     let mut crowned = Scenario::new(GearPair::example());
     crowned.model = Model::Linear;
-    crowned.gears.uniform_flank_reduction_mm = 1.3;
+    crowned.wheels.iter_mut().for_each(|wheel| wheel.uniform_flank_reduction_mm = 1.3);
     assert_eq!(crowned.validate().unwrap_err().key, "gears.uniform_flank_reduction_mm");
 }
 

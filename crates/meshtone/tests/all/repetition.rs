@@ -9,7 +9,7 @@ fn scenario(torque_nm: f64, revolutions: f64) -> Scenario {
     let pair =
         GearPair { pinion_teeth: 20, gear_teeth: 40, brake_torque_nm: torque_nm, ..GearPair::example() };
     let mut scenario = Scenario::new(pair);
-    scenario.quality.din_grade = 7;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     scenario.solver.pinion_revolutions = Some(revolutions);
     scenario
 }
@@ -54,7 +54,7 @@ fn a_motion_without_a_period_is_simulated_on() {
     let mut bouncing = scenario(1.0, 20.0);
     bouncing.faults = vec![Fault::new(WheelName::Gear, 3, MissingTooth)];
     let simulation = simulate(&bouncing).unwrap();
-    let period = simulation.stages.time.hunting_period_samples(&bouncing.gears);
+    let period = simulation.stages.time.hunting_period_samples(&bouncing.gears());
     assert_eq!(first_repeated(&simulation.channels["vertical_g"], period), None);
 }
 
@@ -64,7 +64,7 @@ fn an_unsteady_motion_is_simulated_on() {
     let mut unsteady = scenario(10.0, 20.0);
     unsteady.operation.speed_fluctuation_hz = 0.01;
     let simulation = simulate(&unsteady).unwrap();
-    let period = simulation.stages.time.hunting_period_samples(&unsteady.gears);
+    let period = simulation.stages.time.hunting_period_samples(&unsteady.gears());
     assert_eq!(first_repeated(&simulation.channels["vertical_g"], period), None);
 }
 
@@ -76,7 +76,7 @@ fn noise_does_not_repeat() {
     sensor.noise_density_g_per_rthz = 1e-3;
     noisy.sensors = vec![sensor];
     let simulation = simulate(&noisy).unwrap();
-    let period = simulation.stages.time.hunting_period_samples(&noisy.gears);
+    let period = simulation.stages.time.hunting_period_samples(&noisy.gears());
     let signal = &simulation.channels.signals[0].values;
     assert_eq!(first_repeated(signal, period), None);
     let pair: Vec<&[f64]> = signal.chunks_exact(period).skip(5).take(2).collect();

@@ -11,17 +11,17 @@ use meshtone::{Simulation, stages};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// A rig with teeth without deviations, whose first bearing, at the input, is a ball bearing.
-fn rig(rig: GearboxRig, bearing: &str) -> Gearbox {
+fn rig(rig: GearboxRig, bearing: &str) -> Scenario {
     let text = gearbox_template(Some(rig)).replace("iso_class = 6", "iso_class = 0");
     let first = format!("[[bearing]]\nkind = \"ball\"\nname = \"ER-10K\"\n{bearing}\n");
-    let mut gearbox = Gearbox::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap();
-    gearbox.solver.settings.sampling_rate_hz = 100_000.0;
-    gearbox.solver.settings.duration_s = Some(1.0);
+    let mut gearbox = Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap();
+    gearbox.solver.sampling_rate_hz = 100_000.0;
+    gearbox.solver.duration_s = Some(1.0);
     gearbox.sensors.clear();
     gearbox
 }
 
-fn simulate(gearbox: &Gearbox) -> Simulation {
+fn simulate(gearbox: &Scenario) -> Simulation {
     meshtone::simulate(gearbox).unwrap()
 }
 
@@ -35,7 +35,7 @@ fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-fn seat_rms(gearbox: &Gearbox) -> f64 {
+fn seat_rms(gearbox: &Scenario) -> f64 {
     rms(&seat(&simulate(gearbox)))
 }
 
@@ -62,7 +62,7 @@ fn spalls_shake_the_seat_as_in_an_independent_solution() {
     // A shaft that may slide along itself has the same loads across it.
     let mut sliding = rig(GearboxRig::Phm2009Spur, "");
     let held_n = stages(&sliding).unwrap().bearings[0].1.static_load_n;
-    sliding.bearings.iter_mut().for_each(|bearing| bearing.axial_stiffness_n_per_m = 0.0);
+    sliding.bearings_mut().iter_mut().for_each(|bearing| bearing.axial_stiffness_n_per_m = 0.0);
     let sliding_n = stages(&sliding).unwrap().bearings[0].1.static_load_n;
     assert!(held_n.iter().zip(sliding_n).all(|(held, sliding)| (held - sliding).abs() < 1e-4 * held.abs()));
 }
@@ -75,11 +75,11 @@ fn line(spectrum: &[f64], step: f64, order: f64) -> f64 {
     spectrum[near].iter().copied().fold(0.0, f64::max) / low[low.len() / 2]
 }
 
-fn envelope_orders(gearbox: &Gearbox) -> impl Fn(f64) -> f64 + use<> {
+fn envelope_orders(gearbox: &Scenario) -> impl Fn(f64) -> f64 + use<> {
     let simulation = simulate(gearbox);
     let rate_hz = simulation.channels.sampling_rate_hz;
     let signal = seat(&simulation);
-    let phase = ShaftPhase::constant(gearbox.operation.drive.pinion_speed_hz, rate_hz, signal.len()).unwrap();
+    let phase = ShaftPhase::constant(gearbox.operation.pinion_speed_hz, rate_hz, signal.len()).unwrap();
     let band = FrequencyBand { from_hz: 2000.0, to_hz: 9000.0 };
     let spectrum = squared_envelope_order_spectrum(&signal, rate_hz, Some(band), &phase).unwrap();
     move |order| line(&spectrum.amplitudes, spectrum.step, order)
@@ -90,7 +90,7 @@ fn envelope_orders(gearbox: &Gearbox) -> impl Fn(f64) -> f64 + use<> {
 fn envelopes_have_the_lines_of_the_defect() {
     let without_slip = |defect: &str| {
         let mut gearbox = rig(GearboxRig::Phm2009Helical, &format!("slip_percent = 0.0\n{defect}"));
-        gearbox.solver.settings.duration_s = Some(2.0);
+        gearbox.solver.duration_s = Some(2.0);
         envelope_orders(&gearbox)
     };
     let outer = without_slip(OUTER);
@@ -111,8 +111,8 @@ fn envelopes_have_the_lines_of_the_defect() {
 fn halving_the_step_changes_the_rms_by_less_than_two_percent() {
     let at = |rate_hz: f64| {
         let mut gearbox = rig(GearboxRig::Phm2009Helical, OUTER);
-        gearbox.solver.settings.sampling_rate_hz = rate_hz;
-        gearbox.solver.settings.duration_s = Some(0.5);
+        gearbox.solver.sampling_rate_hz = rate_hz;
+        gearbox.solver.duration_s = Some(0.5);
         seat_rms(&gearbox)
     };
     let [once, twice, four_times] = [100_000.0, 200_000.0, 400_000.0].map(at);
@@ -158,8 +158,8 @@ fn a_sound_bearing_has_the_frequencies_of_a_linear_one() {
     let [[xx, _], [_, yy]] = stages.bearings[0].1.spring_n_per_m;
     let linear = |stiffness: f64| {
         let mut gearbox = rig(GearboxRig::Phm2009Helical, "");
-        gearbox.bearings[0] = Bearing::new("input", 0.0);
-        gearbox.bearings[0].stiffness_n_per_m = stiffness;
+        gearbox.bearings_mut()[0] = Bearing::new("input", 0.0);
+        gearbox.bearings_mut()[0].stiffness_n_per_m = stiffness;
         meshtone::stages(&gearbox).unwrap().natural_frequencies_hz()
     };
     let [softer, stiffer] = [linear(xx.min(yy) * 0.5), linear(xx.max(yy) * 2.0)];
@@ -180,18 +180,18 @@ fn rollers_bear_the_load_too() {
                 defect = [{ race = \"outer\", severity = 0.1 }]";
     let mut gearbox = rig(GearboxRig::Phm2009Helical, "");
     let toml = gearbox.to_toml().replacen("kind = \"ball\"\nname = \"ER-10K\"", text, 1);
-    gearbox = Gearbox::from_toml(&toml).unwrap();
+    gearbox = Scenario::from_toml(&toml).unwrap();
     let simulation = simulate(&gearbox);
     let found = rms(&seat(&simulation));
     assert!(found > 2.0 * seat_rms(&rig(GearboxRig::Phm2009Helical, "")), "{found}");
-    assert_eq!(Gearbox::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
+    assert_eq!(Scenario::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
 }
 
 #[test]
 fn the_same_seed_slips_alike_and_another_one_does_not() {
     let of_seed = |seed: u64| {
         let mut gearbox = rig(GearboxRig::Phm2009Spur, OUTER);
-        (gearbox.seed, gearbox.solver.settings.duration_s) = (seed, Some(0.1));
+        (gearbox.seed, gearbox.solver.duration_s) = (seed, Some(0.1));
         seat(&simulate(&gearbox))
     };
     assert_eq!(of_seed(1), of_seed(1));
@@ -202,7 +202,7 @@ fn the_same_seed_slips_alike_and_another_one_does_not() {
 fn impossible_bearings_say_what_is_allowed() {
     let refused = |bearing: &str| {
         let text = gearbox_template(None).replacen("[[bearing]]\n", &format!("[[bearing]]\n{bearing}\n"), 1);
-        Gearbox::from_toml(&text).unwrap_err()
+        Scenario::from_toml(&text).unwrap_err()
     };
     for (bearing, key, words) in [
         ("kind = \"ball\"", "bearing[0].elements", "missing"),
@@ -251,26 +251,29 @@ fn first_order(simulation: &Simulation, speed_hz: f64) -> f64 {
 /// What turns with a shaft shakes its middle as the machine with meshes of constant stiffness does at that frequency.
 #[test]
 fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
-    let gearbox = |change: fn(&mut Gearbox)| {
+    let gearbox = |change: fn(&mut Scenario)| {
         let text =
             gearbox_template(Some(GearboxRig::Phm2009Helical)).replace("iso_class = 6", "iso_class = 0");
-        let mut gearbox = Gearbox::from_toml(&text).unwrap();
-        gearbox.sensors = vec![GearboxSensor::new("shaft:input:0.5")];
+        let mut gearbox = Scenario::from_toml(&text).unwrap();
+        gearbox.sensors = vec![Sensor::at_place("shaft:input:0.5")];
         change(&mut gearbox);
         gearbox
     };
-    let unbalanced: fn(&mut Gearbox) = |gearbox| {
+    let unbalanced: fn(&mut Scenario) = |gearbox| {
         gearbox.wheels[0].unbalance = Unbalance { g_mm: 300.0, angle_deg: 40.0 };
     };
-    let of_shaft: fn(&mut Gearbox) = |gearbox| {
-        gearbox.shafts[0].unbalance = Unbalance { g_mm: 300.0, angle_deg: -70.0 };
+    let of_shaft: fn(&mut Scenario) = |gearbox| {
+        gearbox.structure.shafts_mut().unwrap().shafts[0].unbalance =
+            Unbalance { g_mm: 300.0, angle_deg: -70.0 };
     };
-    let bent: fn(&mut Gearbox) = |gearbox| gearbox.shafts[0].bow = Bow { middle_um: 20.0, angle_deg: 10.0 };
+    let bent: fn(&mut Scenario) = |gearbox| {
+        gearbox.structure.shafts_mut().unwrap().shafts[0].bow = Bow { middle_um: 20.0, angle_deg: 10.0 }
+    };
     for (name, change) in [("wheel", unbalanced), ("shaft", of_shaft), ("bent", bent)] {
         let gearbox = gearbox(change);
         let stages = stages(&gearbox).unwrap();
         let (machine, modes) = stages.machine_and_modes().unwrap();
-        let omega = TAU * gearbox.operation.drive.pinion_speed_hz;
+        let omega = TAU * gearbox.operation.pinion_speed_hz;
         let complex = |matrix: DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
         let dynamic = complex(machine.closed_stiffness(&stages.mean_stiffness_n_per_m()))
             - complex(machine.mass.clone()) * Complex::new(omega * omega, 0.0)
@@ -284,7 +287,7 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
         let place = stages.sensors[0].name();
         let weights = machine.weights(&place, Axis::Y).map(|weight| Complex::new(weight, 0.0));
         let expected = weights.dot(&displacement).norm() * omega * omega;
-        let found = first_order(&simulate(&gearbox), gearbox.operation.drive.pinion_speed_hz);
+        let found = first_order(&simulate(&gearbox), gearbox.operation.pinion_speed_hz);
         println!("{name}: {found:.5} m/s², {expected:.5}");
         assert!((found / expected - 1.0).abs() < 0.05);
     }
@@ -295,7 +298,7 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
 fn unbalance_of_a_pair_shakes_its_supports() {
     let first_order_g = |g_mm: f64| {
         let mut scenario = Scenario::new(GearPair::example());
-        scenario.rig.pinion_unbalance = Unbalance { g_mm, angle_deg: 0.0 };
+        scenario.wheels[0].unbalance = Unbalance { g_mm, angle_deg: 0.0 };
         let channels = meshtone::simulate(&scenario).unwrap().channels;
         let turn = |k: usize| TAU * scenario.operation.pinion_speed_hz * k as f64 / channels.sampling_rate_hz;
         let part = |of: fn(f64) -> f64| {

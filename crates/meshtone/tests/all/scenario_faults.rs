@@ -32,7 +32,7 @@ fn faults_are_on_any_tooth_of_either_wheel() {
     ]);
     let scenario = Scenario::from_toml(&text).unwrap();
     let places: Vec<_> =
-        scenario.faults.iter().map(|fault| (fault.wheel, fault.tooth.only().unwrap())).collect();
+        scenario.faults.iter().map(|fault| (fault.side(), fault.tooth.only().unwrap())).collect();
     assert_eq!(places, [(WheelName::Pinion, 17), (WheelName::Gear, 38), (WheelName::Pinion, 3)]);
     assert_eq!(scenario.faults[1].damage, Damage::from(MissingTooth));
     assert_eq!(Scenario::from_toml(&scenario.to_toml()), Ok(scenario));

@@ -67,11 +67,11 @@ fn every_key_is_read() {
     });
     expected.model = Model::Published;
     expected.seed = u64::MAX;
-    expected.gears.pressure_angle_deg = 22.5;
-    expected.gears.material = Material::CastIron;
-    expected.gears.uniform_flank_reduction_mm = 0.01;
-    expected.gears.points_per_tooth = 2000;
-    expected.gears.foundation = FoundationCoefficients {
+    expected.meshes[0].pressure_angle_deg = 22.5;
+    expected.material = Material::CastIron;
+    expected.wheels.iter_mut().for_each(|wheel| wheel.uniform_flank_reduction_mm = 0.01);
+    expected.meshes[0].points_per_tooth = 2000;
+    expected.meshes[0].foundation = FoundationCoefficients {
         l: [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
         m: [7.0, 8.0, 9.0, 10.0, 11.0, 12.0],
         q: [0.5, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -81,23 +81,23 @@ fn every_key_is_read() {
     expected.operation.torque_fluctuation_nm = 0.2;
     expected.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![29.0, 31.0] });
     expected.operation.torque_profile_nm = Some(Profile { time_s: vec![0.0, 2.5], value: vec![11.0, 13.0] });
-    expected.quality.din_grade = 5;
+    expected.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 5);
     expected.faults = vec![Fault::on_first_gear_tooth(ToothBreakage {
         chip_height_mm: 2.0,
         chip_width_mm: 3.0,
         tip_loss_mm: 1.0,
     })];
-    expected.rig.bearing_stiffness_n_per_m = 1e8;
-    expected.rig.wheel_rotational_stiffness_nm_per_rad = 2e8;
-    expected.rig.brake_inertia_kgm2 = 1e-3;
-    expected.rig.damping_ratio =
+    expected.rig_mut().unwrap().bearing_stiffness_n_per_m = 1e8;
+    expected.rig_mut().unwrap().wheel_rotational_stiffness_nm_per_rad = 2e8;
+    expected.operation.brake_inertia_kgm2 = 1e-3;
+    expected.rig_mut().unwrap().damping_ratio =
         DampingRatio::PerMode([0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.10, 0.11, 0.12]);
-    expected.rig.eccentricity_mm = 0.02;
-    expected.rig.pinion_shaft = Shaft::new(100.0, 8.0);
-    expected.rig.gear_shaft = Shaft::new(600.0, 9.0);
-    expected.rig.pinion_inertia.mass_kg = Some(0.5);
-    expected.rig.gear_inertia.polar_inertia_kgm2 = Some(1e-3);
-    expected.rig.gear_inertia.transverse_inertia_kgm2 = Some(2e-3);
+    expected.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.02);
+    expected.rig_mut().unwrap().pinion_shaft = Shaft::new(100.0, 8.0);
+    expected.rig_mut().unwrap().gear_shaft = Shaft::new(600.0, 9.0);
+    expected.wheels[0].inertia.mass_kg = Some(0.5);
+    expected.wheels[1].inertia.polar_inertia_kgm2 = Some(1e-3);
+    expected.wheels[1].inertia.transverse_inertia_kgm2 = Some(2e-3);
     expected.solver.sampling_rate_hz = 2e5;
     expected.solver.settle_fraction = 0.25;
     expected.solver.settle_tolerance = 1e-4;
@@ -331,7 +331,7 @@ fn the_content_of_files_becomes_part_of_the_scenario() {
         "speed_profile_hz = { file = \"a.csv\" }\n[quality]\ndin_grade = 0\nerrors_file = \"wheels.npz\"",
     );
     let scenario = Scenario::from_toml_with_files(&text, &shelf()).unwrap();
-    assert_eq!(scenario.quality.profile_errors, Some(shelf().errors));
+    assert_eq!(scenario.quality().profile_errors, Some(shelf().errors));
     let profile = scenario.operation.speed_profile_hz.unwrap();
     assert_eq!(profile.value, [38.0, 40.0]);
 }
@@ -377,7 +377,7 @@ fn profile_errors_inline() {
         appended(&format!("[quality]\npinion_profile_errors_mm = {pinion}\ngear_profile_errors_mm = {gear}"))
     };
     let good = (inline_errors(17, 100), inline_errors(38, 100));
-    let errors = Scenario::from_toml(&text(&good.0, &good.1)).unwrap().quality.profile_errors.unwrap();
+    let errors = Scenario::from_toml(&text(&good.0, &good.1)).unwrap().quality().profile_errors.unwrap();
     assert_eq!(errors.gear_profile_errors_mm, ErrorTable::filled(100, 38, 0.001));
 
     let pinion = "quality.pinion_profile_errors_mm";

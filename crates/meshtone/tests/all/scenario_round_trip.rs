@@ -3,8 +3,8 @@
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
     Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Pits, Profile, ProfileErrors,
-    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, SupportSprings, ThroughFace,
-    ToothBreakage, ToothDestruction, Wear, WheelInertia, WheelName,
+    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Structure, Support, SupportSprings,
+    ThroughFace, ToothBreakage, ToothDestruction, Wear, WheelInertia, WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -206,7 +206,8 @@ fn faults(gears: &Gears) -> impl Strategy<Value = Vec<Fault>> + use<> {
     })
 }
 
-fn rig() -> impl Strategy<Value = Rig> {
+/// A scenario with any rig.
+fn rig() -> impl Strategy<Value = Scenario> {
     let damping = prop_oneof![
         (0.0..1.0).prop_map(DampingRatio::Uniform),
         uniform13(0.0..1.0).prop_map(DampingRatio::PerMode),
@@ -260,16 +261,18 @@ fn rig() -> impl Strategy<Value = Rig> {
             let mut rig = Rig::default();
             rig.bearing_stiffness_n_per_m = bearing;
             rig.wheel_rotational_stiffness_nm_per_rad = rotational;
-            rig.brake_inertia_kgm2 = brake;
             rig.damping_ratio = damping_ratio;
-            rig.eccentricity_mm = eccentricity_mm;
             rig.pinion_shaft = pinion_shaft;
             rig.gear_shaft = gear_shaft;
-            rig.pinion_inertia = pinion;
-            rig.gear_inertia = gear;
             rig.support = support;
-            rig.mesh_damping_ratio = mesh_damping_ratio;
-            rig
+            let mut scenario = base();
+            (scenario.operation.brake_inertia_kgm2, scenario.meshes[0].damping_ratio) =
+                (brake, mesh_damping_ratio);
+            for (wheel, inertia) in scenario.wheels.iter_mut().zip([pinion, gear]) {
+                (wheel.inertia, wheel.eccentricity_mm) = (inertia, eccentricity_mm);
+            }
+            scenario.structure = Structure::Rig(rig);
+            scenario
         },
     )
 }
@@ -301,13 +304,13 @@ fn scenario() -> impl Strategy<Value = Scenario> {
         let faults = faults(&gears);
         let parts = (Just(gears), operation(), quality, faults, rig(), solver());
         (model.clone(), any::<u64>(), parts).prop_map(
-            |(model, seed, (gears, operation, quality, faults, rig, solver))| {
-                let mut scenario = base().with_faults(faults).with_seed(seed);
+            |(model, seed, (gears, mut operation, quality, faults, of_rig, solver))| {
+                operation.brake_inertia_kgm2 = of_rig.operation.brake_inertia_kgm2;
+                let mut scenario = of_rig.with_faults(faults).with_seed(seed);
                 scenario.model = model;
-                scenario.gears = gears;
+                scenario.set_gears(&gears);
                 scenario.operation = operation;
-                scenario.quality = quality;
-                scenario.rig = rig;
+                scenario.set_quality(quality);
                 scenario.solver = solver;
                 scenario
             },
@@ -341,7 +344,7 @@ fn sections_come_in_the_order_of_the_documentation() {
 #[test]
 fn a_number_that_is_none_is_written_and_refused() {
     let mut scenario = Scenario::new(GearPair::example());
-    scenario.rig.eccentricity_mm = f64::NAN;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = f64::NAN);
     let error = Scenario::from_toml(&scenario.to_toml()).unwrap_err();
     assert_eq!((error.key.as_str(), error.value.as_str()), ("rig.eccentricity_mm", "nan"));
 }

@@ -55,7 +55,10 @@ fn templates_are_of_the_two_machines() {
             }),
             _ => Scenario::new(GearPair::example()),
         };
-        expected.quality.din_grade = if kind == "tooth-destruction" { 8 } else { 7 };
+        expected
+            .wheels
+            .iter_mut()
+            .for_each(|wheel| wheel.din_grade = if kind == "tooth-destruction" { 8 } else { 7 });
         expected.faults.clone_from(&scenario.faults);
         assert_eq!(scenario, expected, "{kind}");
     }
@@ -83,10 +86,10 @@ fn keys_whose_default_follows_from_others_are_shown_as_well() {
     let set =
         text.replace("# tip_chamfer_mm =", "tip_chamfer_mm =").replace("# backlash_mm =", "backlash_mm =");
     let default = Scenario::from_toml(&text).unwrap();
-    let gears = Scenario::from_toml(&set).unwrap().gears;
+    let gears = Scenario::from_toml(&set).unwrap().gears();
     assert_eq!((gears.tip_chamfer_mm, gears.backlash_mm), (Some(0.69), Some(0.1275)));
-    assert!((gears.chamfer_mm() - default.gears.chamfer_mm()).abs() < 1e-12);
-    assert!((gears.normal_backlash_mm() - default.gears.normal_backlash_mm()).abs() < 1e-12);
+    assert!((gears.chamfer_mm() - default.gears().chamfer_mm()).abs() < 1e-12);
+    assert!((gears.normal_backlash_mm() - default.gears().normal_backlash_mm()).abs() < 1e-12);
 
     let mut set = text.clone();
     for wheel in ["pinion", "gear"] {
@@ -99,7 +102,7 @@ fn keys_whose_default_follows_from_others_are_shown_as_well() {
             assert!(text.contains(&format!("\n# {wheel}_{key} = [ ")), "{wheel}_{key}");
         }
     }
-    let quality = Scenario::from_toml(&set).unwrap().quality;
+    let quality = Scenario::from_toml(&set).unwrap().quality();
     assert_eq!(
         (quality.pinion_deviations.run_out_um, quality.gear_deviations.helix_slope_um),
         (Some(0.0), Some(0.0))
@@ -109,8 +112,8 @@ fn keys_whose_default_follows_from_others_are_shown_as_well() {
 #[test]
 fn alternatives_are_valid_in_place_of_what_they_replace() {
     let inertias = template_of_all_keys("healthy").unwrap().replace("# pinion_inertia", "pinion_inertia");
-    let rig = Scenario::from_toml(&inertias.replace("# gear_inertia", "gear_inertia")).unwrap().rig;
-    assert_eq!((rig.pinion_inertia.mass_kg, rig.gear_inertia.mass_kg), (Some(0.24), Some(1.2)));
+    let wheels = Scenario::from_toml(&inertias.replace("# gear_inertia", "gear_inertia")).unwrap().wheels;
+    assert_eq!([0, 1].map(|wheel: usize| wheels[wheel].inertia.mass_kg), [Some(0.24), Some(1.2)]);
 
     for kind in ["partial-face", "through-face"] {
         let text = template_of_all_keys(kind).unwrap();

@@ -51,7 +51,7 @@ fn undercut_is_a_warning() {
     let warned = |pinion, gear, angle| {
         let mut scenario =
             Scenario::new(GearPair { pinion_teeth: pinion, gear_teeth: gear, ..GearPair::example() });
-        scenario.gears.pressure_angle_deg = angle;
+        scenario.meshes[0].pressure_angle_deg = angle;
         let warnings = scenario.validate().unwrap();
         warnings.into_iter().map(|warning| (warning.key, warning.message)).collect::<Vec<_>>()
     };
@@ -227,15 +227,23 @@ fn values_that_only_code_can_give() {
     let not_a_number = "must be a finite number";
     for (change, key, words) in [
         (
-            (&|s: &mut Scenario| s.gears.module_mm = f64::NAN) as &dyn Fn(&mut Scenario),
+            (&|s: &mut Scenario| s.meshes[0].module_mm = f64::NAN) as &dyn Fn(&mut Scenario),
             "gears.module_mm",
             not_a_number,
         ),
         (&|s| s.operation.brake_torque_nm = f64::INFINITY, "operation.brake_torque_nm", not_a_number),
-        (&|s| s.gears.foundation.m[2] = f64::NAN, "gears.foundation.M[2]", not_a_number),
+        (&|s| s.meshes[0].foundation.m[2] = f64::NAN, "gears.foundation.M[2]", not_a_number),
         (&|s| s.solver.initial_velocity = Some([f64::NAN; 13]), "solver.initial_velocity[0]", not_a_number),
-        (&|s| s.rig.damping_ratio = DampingRatio::Uniform(f64::NAN), "rig.damping_ratio", not_a_number),
-        (&|s| s.quality.din_grade = 13, "quality.din_grade", "from 1 (best) to 12"),
+        (
+            &|s| s.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(f64::NAN),
+            "rig.damping_ratio",
+            not_a_number,
+        ),
+        (
+            &|s| s.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 13),
+            "quality.din_grade",
+            "from 1 (best) to 12",
+        ),
     ] {
         let (found, problem) = refused(change);
         assert_eq!(found, key);
@@ -252,8 +260,8 @@ fn values_that_only_code_can_give() {
 
 #[test]
 fn transposed_profile_errors_are_recognised() {
-    let mut scenario = Scenario::new(GearPair::example());
-    scenario.quality.profile_errors = Some(ProfileErrors {
+    let scenario = Scenario::new(GearPair::example());
+    scenario.quality().profile_errors = Some(ProfileErrors {
         pinion_profile_errors_mm: ErrorTable::filled(17, 100, 0.0),
         gear_profile_errors_mm: ErrorTable::filled(100, 38, 0.0),
     });

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{
-    Fault, FrequencyResponse, GearPair, Gearbox, GearboxRig, MissingTooth, Profile, Scenario, ScenarioForm,
-    Sensor, ToothBreakage, gearbox_template,
+    Fault, FrequencyResponse, GearPair, GearboxRig, MissingTooth, Profile, Scenario, Sensor, ToothBreakage,
+    gearbox_template,
 };
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, SimulatedShafts, StatedTurning, resample_to};
 use meshtone::tuning::{
@@ -25,7 +25,7 @@ const MOST_HZ: f64 = 10_000.0;
 /// The machine as its user knows it; its own wheels are another draw.
 fn rig() -> Scenario {
     let mut rig = Scenario::new(GearPair { brake_torque_nm: 20.0, ..GearPair::example() });
-    rig.quality.din_grade = 7;
+    rig.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     rig.with_sensors(vec![Sensor::default()])
 }
 
@@ -84,11 +84,11 @@ fn over_input(values_g: Vec<f64>, sampling_rate_hz: f64, phase: ShaftPhase) -> H
 }
 
 fn estimate(recording: HealthyRecording, draws: usize) -> Result<PathEstimate, PathError> {
-    estimate_of(ScenarioForm::Pair(rig()), recording, draws)
+    estimate_of(rig(), recording, draws)
 }
 
 fn estimate_of(
-    machine: ScenarioForm,
+    machine: Scenario,
     recording: HealthyRecording,
     draws: usize,
 ) -> Result<PathEstimate, PathError> {
@@ -173,13 +173,13 @@ fn hidden_paths_of_several_machines() {
 }
 
 /// Two stages of 29/100 and 36/90 teeth, as their user knows them, loaded so that teeth hardly part; the sensor sits on the input's bearing.
-fn gearbox() -> Gearbox {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(Some(GearboxRig::Tecnalia))).unwrap();
+fn gearbox() -> Scenario {
+    let mut gearbox = Scenario::from_toml(&gearbox_template(Some(GearboxRig::Tecnalia))).unwrap();
     gearbox.faults.clear();
     gearbox.sensors.truncate(1);
     gearbox.wheels.iter_mut().for_each(|wheel| (wheel.iso_class, wheel.din_grade) = (6, 0));
-    gearbox.solver.settings.sampling_rate_hz = 1e5;
-    gearbox.operation.drive.brake_torque_nm = 100.0;
+    gearbox.solver.sampling_rate_hz = 1e5;
+    gearbox.operation.brake_torque_nm = 100.0;
     gearbox
 }
 
@@ -187,13 +187,13 @@ fn gearbox() -> Gearbox {
 fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) -> HealthyRecording {
     let mut machine = gearbox();
     machine.seed = seed;
-    let sensor = &mut machine.sensors[0].sensor;
+    let sensor = &mut machine.sensors[0];
     sensor.frequency_response = Some(hidden_response());
     sensor.noise_density_g_per_rthz = 2e-6;
-    let drive = &mut machine.operation.drive;
+    let drive = &mut machine.operation;
     drive.pinion_speed_hz = (from_hz + to_hz) / 2.0;
     drive.speed_profile_hz = Some(Profile { time_s: vec![0.5, 0.5 + length_s], value: vec![from_hz, to_hz] });
-    machine.solver.settings.discard_and_keep(0.5, length_s);
+    machine.solver.discard_and_keep(0.5, length_s);
     let channels = meshtone::simulate(&machine).unwrap().channels;
     let input = ShaftPhase::of_simulated_input(&machine, channels.start_s, channels.len()).unwrap();
     at_rate_of_recordings(&channels.signals[0].values, &input.revolutions, channels.sampling_rate_hz)
@@ -205,7 +205,7 @@ fn assert_paths_of_gearboxes(seeds: Range<u64>, length_s: f64, draws: usize) {
     let (mut held, mut points) = (0, 0);
     for seed in seeds {
         let healthy = recording_of_gearbox(seed, [20.0, 60.0], length_s);
-        let path = estimate_of(ScenarioForm::Gearbox(gearbox()), healthy, draws).unwrap();
+        let path = estimate_of(gearbox(), healthy, draws).unwrap();
         let (errors, inside) = errors_db(&path, 209.0);
         let rms = rms(&errors);
         let [mut most, mut at_antiresonance] = [0.0f64; 2];
@@ -247,7 +247,7 @@ fn ideal_wheels_of_a_gearbox_are_not_drawn() {
     let mut ideal = gearbox();
     ideal.wheels.iter_mut().for_each(|wheel| wheel.iso_class = 0);
     let healthy = recording_of_gearbox(500, [20.0, 60.0], 0.5);
-    let refused = estimate_of(ScenarioForm::Gearbox(ideal), healthy, FEW_DRAWS).unwrap_err();
+    let refused = estimate_of(ideal, healthy, FEW_DRAWS).unwrap_err();
     assert!(refused.to_string().contains("iso_class"), "{refused}");
 }
 
@@ -317,7 +317,7 @@ fn damage_behind_the_path_of_a_long_recording() {
 #[test]
 fn recordings_that_do_not_fit_are_refused() {
     let mut other = rig();
-    other.gears.gear_teeth = 37;
+    other.wheels[1].teeth = 37;
     let refused = estimate(recording(&other, 105, [40.0, 40.0], 3.0), FEW_DRAWS).unwrap_err();
     assert!(
         matches!(&refused, PathError::Recording { index: 0, problem: RecordingProblem::DoesNotFit(_) })

@@ -17,9 +17,9 @@ fn sensor(keys: &str) -> String {
 fn pair(model: Model, keys: &str) -> Scenario {
     let mut scenario = Scenario::from_toml(&appended(&format!("[rig]\n{keys}"))).unwrap();
     scenario.model = model;
-    scenario.gears.points_per_tooth = 1000;
+    scenario.meshes[0].points_per_tooth = 1000;
     scenario.solver.sampling_rate_hz = 1e4;
-    scenario.quality.din_grade = 6;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 6);
     scenario
 }
 

@@ -49,7 +49,7 @@ fn the_kept_signal_is_that_of_the_long_settling() {
     ] {
         let mut scenario = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
         scenario.model = Model::Linear;
-        scenario.quality.din_grade = 7;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
         for tolerance in [1e-3, 1e-6] {
             let (kept, start, differences) = differences(&scenario, tolerance);
@@ -81,7 +81,7 @@ fn what_does_not_repeat_settles_for_long() {
     assert_eq!(start(&|scenario| scenario.operation.torque_fluctuation_nm = 1.0), 0);
     assert_eq!(start(&|scenario| scenario.operation.speed_fluctuation_hz = 1.0), 0);
     assert_eq!(start(&|scenario| scenario.solver.initial_velocity = Some([0.0; 13])), 0);
-    assert_eq!(start(&|scenario| scenario.rig.damping_ratio = DampingRatio::Uniform(0.0)), 0);
+    assert_eq!(start(&|scenario| scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(0.0)), 0);
 }
 
 /// The number that follows some words of a warning.
@@ -138,18 +138,17 @@ fn advice_on_settling_and_profiles_can_be_followed_together() {
 
 #[test]
 fn a_gearbox_whose_profile_ends_says_how_it_can_last() {
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
-    gearbox.operation.drive.speed_profile_hz =
-        Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
-    (gearbox.solver.settings.duration_s, gearbox.solver.settings.settle_fraction) = (Some(0.5), 0.5);
-    let warnings = |gearbox: &Gearbox| {
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    gearbox.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
+    (gearbox.solver.duration_s, gearbox.solver.settle_fraction) = (Some(0.5), 0.5);
+    let warnings = |gearbox: &Scenario| {
         let warnings = stages(gearbox).unwrap().warnings();
         warnings.into_iter().filter(is_of_start).collect::<Vec<_>>()
     };
     let before = warnings(&gearbox);
     assert!(before.iter().any(|warning| warning.kind == WarningKind::ProfileEnded), "{before:?}");
     assert!(before.iter().any(|warning| warning.kind == WarningKind::Unsettled), "{before:?}");
-    follow(&before, &mut gearbox.operation.drive, &mut gearbox.solver.settings);
+    follow(&before, &mut gearbox.operation, &mut gearbox.solver);
     let after = warnings(&gearbox);
     assert!(after.is_empty(), "{before:?}\n{after:?}");
 }

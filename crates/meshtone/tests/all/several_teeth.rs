@@ -12,7 +12,7 @@ const CYCLE: usize = 17 * 38;
 fn pair(model: Model, faults: Vec<Fault>) -> Scenario {
     let mut scenario = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = model;
-    scenario.gears.points_per_tooth = 2_000;
+    scenario.meshes[0].points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 1e5;
     scenario.solver.settle_tolerance = 1e-9;
     scenario.faults = faults;
@@ -123,7 +123,7 @@ fn teeth_that_never_meet_have_no_class_together() {
                 Fault::new(WheelName::Gear, gear_tooth, crack(2.0)),
             ],
         );
-        (scenario.gears.pinion_teeth, scenario.gears.gear_teeth) = (18, 36);
+        (scenario.wheels[0].teeth, scenario.wheels[1].teeth) = (18, 36);
         let stages = stages(&scenario).unwrap();
         let kinds = mesh(&stages).sequence.classes().to_vec();
         kinds.iter().filter(|kind| kind.pinion.is_some() && kind.gear.is_some()).count()
@@ -204,8 +204,8 @@ fn pairs_get_softer_as_damage_grows_from_nothing() {
                         Model::Linear,
                         damage.map(|damage| Fault::new(wheel, 1, damage)).into_iter().collect(),
                     );
-                    scenario.gears.module_mm = module_mm;
-                    (scenario.gears.pinion_teeth, scenario.gears.gear_teeth) = (z_pinion, z_gear);
+                    scenario.meshes[0].module_mm = module_mm;
+                    (scenario.wheels[0].teeth, scenario.wheels[1].teeth) = (z_pinion, z_gear);
                     let stages = stages(&scenario).unwrap();
                     // A class of damaged pairs, or the sound one.
                     mesh(&stages).classes.last().map(stiffness_n_per_m).unwrap()

@@ -43,8 +43,8 @@ fn pairs() -> impl Strategy<Value = Scenario> {
     (0.5..12.0, teeth, angle, model, 500usize..12_000)
         .prop_map(|(module_mm, (pinion, gear), angle, model, points)| {
             let mut scenario = pair(model, module_mm, [pinion, gear]);
-            scenario.gears.pressure_angle_deg = angle;
-            scenario.gears.points_per_tooth = points;
+            scenario.meshes[0].pressure_angle_deg = angle;
+            scenario.meshes[0].points_per_tooth = points;
             scenario
         })
         .prop_filter("possible wheels", |scenario| scenario.validate().is_ok())
@@ -119,7 +119,7 @@ fn relative(value: f64, expected: f64) -> f64 {
 /// A quick simulation of a pair with deviations.
 fn quick(model: Model, teeth: [u32; 2]) -> Scenario {
     let mut scenario = pair(model, 3.0, teeth);
-    scenario.quality.din_grade = 7;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
@@ -192,7 +192,7 @@ proptest! {
     #[test]
     fn stiffness_falls_with_severity(scenario in pairs(), wheel in wheels()) {
         let mut scenario = scenario;
-        scenario.gears.points_per_tooth = 2_000;
+        scenario.meshes[0].points_per_tooth = 2_000;
         for damage in graded() {
             let severities = [0.05, 0.2, 0.4, 0.5, 0.6, 0.8, 1.0];
             let states = severities.map(|severity| of_damaged_pair(&with_severity(&scenario, &damage, wheel, severity)));
@@ -222,7 +222,7 @@ fn a_severity_follows_the_wheels() {
     assert!(relative(depth_mm(&larger), depth_mm(&scenario)) < 1e-3);
     // What is simulated has the sizes beside the severity.
     let stages = stages(&scenario).unwrap();
-    let simulated = stages.scenario.pair().unwrap();
+    let simulated = &stages.scenario;
     let Damage::RootCrack(RootCrack { depth_mm: of_stages, .. }) = simulated.faults[0].damage else {
         panic!("no crack")
     };

@@ -216,7 +216,7 @@ fn a_run_up_has_mesh_lines_one_bin_wide() {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.solver.sampling_rate_hz = 2e5;
-    scenario.rig.damping_ratio = DampingRatio::Uniform(0.2);
+    scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(0.2);
     let profile = Profile { time_s: vec![0.0, 1.0, 3.0], value: vec![20.0, 20.0, 60.0] };
     scenario.operation.speed_profile_hz = Some(profile);
     let simulation = simulate(&scenario).unwrap();

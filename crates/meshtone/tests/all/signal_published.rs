@@ -23,7 +23,7 @@ fn check(name: &str) {
     let scenario = scenario(name, &reference);
     let (simulation, trace) = trace_at(&scenario, rate_hz).unwrap();
     let channels = &simulation.channels;
-    let gears = &scenario.gears;
+    let gears = &scenario.gears();
     let gear_hz =
         scenario.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
 

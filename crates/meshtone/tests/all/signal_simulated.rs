@@ -19,7 +19,7 @@ fn faulty() -> Scenario {
         ..GearPair::example()
     });
     scenario.solver.sampling_rate_hz = 4e4;
-    scenario.quality.din_grade = 7;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
     scenario
 }
@@ -142,7 +142,7 @@ fn a_rising_speed_with_its_own_facts_is_not_doubted() {
 fn a_run_up_has_its_energy_at_mesh_orders_at_every_speed() {
     let mut scenario = faulty();
     scenario.faults.clear();
-    scenario.quality.din_grade = 0;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
     let (time_s, value) = (vec![0.0, 0.2, 2.0], vec![8.0, 8.0, 40.0]);
     scenario.operation.speed_profile_hz = Some(Profile { time_s, value });
     scenario.solver.settle_fraction = 0.1;

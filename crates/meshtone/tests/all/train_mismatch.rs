@@ -23,7 +23,7 @@ struct Recording {
 
 fn recording(seed: u64) -> Option<Recording> {
     let draws = &mut Draws::new(seed);
-    let mut gearbox = Gearbox::from_toml(&gearbox_template(None)).unwrap();
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
     for wheel in &mut gearbox.wheels {
         wheel.teeth = draws.count(20, 90);
         wheel.iso_class = draws.count(5, 8) as u8;
@@ -31,12 +31,12 @@ fn recording(seed: u64) -> Option<Recording> {
     gearbox.faults.clear();
     if draws.chance(0.5) {
         let wheel = draws.one(&["z1", "z2", "z3", "z4"]).to_owned();
-        gearbox.faults.push(GearboxFault { wheel, fault: Fault::new(WheelName::Gear, 5, MissingTooth) });
+        gearbox.faults.push(Fault::new(wheel, 5, MissingTooth));
     }
-    gearbox.sensors = vec![GearboxSensor::new(draws.one(&["input:0", "middle:1", "output:0"]))];
+    gearbox.sensors = vec![Sensor::at_place(draws.one(&["input:0", "middle:1", "output:0"]))];
     let input_hz = draws.between(10.0, 40.0);
-    gearbox.operation.drive.pinion_speed_hz = input_hz;
-    gearbox.solver.settings.duration_s = Some(draws.in_octaves(1.5, 4.0));
+    gearbox.operation.pinion_speed_hz = input_hz;
+    gearbox.solver.duration_s = Some(draws.in_octaves(1.5, 4.0));
     let channels = meshtone::simulate(&gearbox).ok()?.channels;
     let mut signal = channels.signals[0].values.clone();
     let rms = (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt();
@@ -44,7 +44,7 @@ fn recording(seed: u64) -> Option<Recording> {
     let noise = noise(seed, signal.len());
     signal.iter_mut().zip(noise).for_each(|(x, noise)| *x += amplitude * noise);
     Some(Recording {
-        train: GearTrain::of_gearbox(&gearbox).unwrap(),
+        train: GearTrain::of_scenario(&gearbox).unwrap(),
         input: ShaftPhase::of_simulated_input(&gearbox, channels.start_s, channels.len()).unwrap(),
         input_hz,
         signal,

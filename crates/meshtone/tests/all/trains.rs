@@ -99,9 +99,9 @@ fn two_scenarios() -> [Scenario; 2] {
     [(first, 1), (second, 2)].map(|(pair, seed)| {
         let mut scenario = Scenario::new(pair);
         scenario.seed = seed;
-        scenario.quality.din_grade = 7;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
         crate::physics::with_own_structure(&mut scenario);
-        scenario.rig.eccentricity_mm = 0.005;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.005);
         scenario
     })
 }
@@ -181,7 +181,7 @@ fn check_pairs_side_by_side(scenarios: &[Scenario; 2], first_pitch: [f64; 2]) ->
     let mut meshes = pairs.each_ref().map(|stages| stages.meshes[0].clone());
     meshes[1].turning.pitches_per_revolution *= SPEED_RATIO;
     let Stages { scenario, time, .. } = &pairs[0];
-    let operation = scenario.operation();
+    let operation = &scenario.operation;
     let nominal = [operation.pinion_speed_hz, operation.brake_torque_nm];
     let forcing = Forcing::new(
         pairs[0].motion(),
@@ -485,7 +485,7 @@ fn pairs_of_two_stages(model: Model) -> [Stages; 2] {
             brake_torque_nm: BRAKE_NM,
         });
         scenario.model = model;
-        scenario.quality.din_grade = 0;
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
         if model == Model::Contact {
             scenario.faults = vec![Fault::new(WheelName::Pinion, 2, MissingTooth)];
         }
@@ -510,7 +510,7 @@ fn against_dense(pairs: &[Stages; 2]) -> (f64, Vec<Vec<f64>>) {
     let (machine, time) = (driven_two_stages(), time_of_two_stages());
     let modes = Modes::damped_by_springs(&machine);
     let meshes = pairs.each_ref().map(|stages| stages.meshes[0].clone());
-    let motion = || pairs[0].scenario.pair().unwrap().motion(&time);
+    let motion = || pairs[0].scenario.motion(&time);
     let deviations = || pairs.each_ref().map(deviations_of);
     let forcing = Forcing::new(motion(), &time, [INPUT_HZ, BRAKE_NM], 0, meshes.iter().zip(deviations()));
     let velocity = &machine.rigid_rotation * (TAU * INPUT_HZ) + DVector::from_column_slice(&PUSH);

@@ -16,13 +16,13 @@ fn contact_that_is_lost() {
         ..GearPair::example()
     });
     scenario.model = Model::Linear;
-    scenario.rig.pinion_shaft.radius_mm = 4.2;
-    scenario.rig.gear_shaft.radius_mm = 4.2;
+    scenario.rig_mut().unwrap().pinion_shaft.radius_mm = 4.2;
+    scenario.rig_mut().unwrap().gear_shaft.radius_mm = 4.2;
     scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
     scenario.solver.sampling_rate_hz = 1e5;
-    scenario.gears.points_per_tooth = 2000;
-    scenario.rig.damping_ratio = DampingRatio::Uniform(0.0005);
-    scenario.rig.mesh_damping_ratio = 0.0;
+    scenario.meshes[0].points_per_tooth = 2000;
+    scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(0.0005);
+    scenario.meshes[0].damping_ratio = 0.0;
     let error = simulate(&scenario).map(drop).unwrap_err();
     assert!(
         matches!(&error, Error::Diverged { damping_ratios, .. } if *damping_ratios == [0.0005; 13]),

@@ -171,7 +171,7 @@ fn scenario(model: Model, pinion_speed_hz: f64, din_grade: u8, faults: Vec<Fault
     let mut scenario =
         Scenario::new(GearPair { pinion_speed_hz, brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = model;
-    scenario.quality.din_grade = din_grade;
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = din_grade);
     scenario.faults = faults;
     with_own_structure(&mut scenario);
     scenario.sensors = vec![mean_of_supports()];
@@ -352,10 +352,10 @@ fn what_cannot_be_is_refused() {
     let (key, text) = refused(Model::Published, vec![worn(WheelName::Gear, 1, 5.0)]);
     assert!(key == "fault.kind" && text.contains("is not supported by the published model"), "{text}");
     let mut small = scenario(Model::Linear, 40.0, 0, vec![worn(WheelName::Gear, 1, 99.0)]);
-    (small.gears.module_mm, small.gears.face_width_mm) = (0.05, 0.25);
-    small.gears.tip_chamfer_mm = None;
-    small.rig.pinion_shaft.radius_mm = 0.1;
-    small.rig.gear_shaft.radius_mm = 0.1;
+    small.meshes[0].module_mm = 0.05;
+    small.wheels.iter_mut().for_each(|wheel| (wheel.face_width_mm, wheel.tip_chamfer_mm) = (0.25, None));
+    small.rig_mut().unwrap().pinion_shaft.radius_mm = 0.1;
+    small.rig_mut().unwrap().gear_shaft.radius_mm = 0.1;
     let error = stages(&small).unwrap_err();
     assert!(
         error.key == "fault.depth_um" && error.problem.contains("less than the tooth's thickness"),

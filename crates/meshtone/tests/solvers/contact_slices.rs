@@ -89,7 +89,7 @@ fn by_slices(stages: &Stages, face: &Face, samples: usize) -> Vec<f64> {
     let gamma =
         Matrix2::from_fn(|r, c| lead * h * h * (0..n).map(|m| lines[r][m] * e[m] * lines[c][m]).sum::<f64>());
     let force = stages.static_force_n();
-    let torque = stages.scenario.operation().brake_torque_nm;
+    let torque = stages.scenario.operation.brake_torque_nm;
     let Drive::Brake { coordinate, .. } = machine.drives[1] else { panic!("no brake") };
     let brake = modes.shapes.row(coordinate).transpose() * torque;
     let steady = DVector::from_fn(n, |m, _| {
@@ -231,7 +231,7 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
         scenario.solver.settle_fraction = 0.0;
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
         let aligned = simulate(&scenario).unwrap();
-        scenario.rig.misalignment_um = misalignment_um;
+        scenario.meshes[0].misalignment_um = misalignment_um;
         let leaning = simulate(&scenario).unwrap();
         let mesh = mesh(&leaning.stages);
         let revolution = leaning.stages.time.samples_per_pinion_revolution;

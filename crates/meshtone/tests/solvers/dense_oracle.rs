@@ -31,7 +31,7 @@ fn difference(modal: &[Vec<f64>], dense: &[DVector<f64>]) -> f64 {
 fn driven_unsteadily(scenario: &mut Scenario, random: &mut impl FnMut(f64, f64) -> f64) {
     let operation = &mut scenario.operation;
     let (speed, torque) = (operation.pinion_speed_hz, operation.brake_torque_nm);
-    let seconds = 2.0 * f64::from(scenario.gears.gear_teeth) / speed;
+    let seconds = 2.0 * f64::from(scenario.wheels[1].teeth) / speed;
     let profile = |nominal: f64, factors: [f64; 3]| {
         Some(Profile {
             time_s: vec![0.0, 0.6 * seconds, 1.1 * seconds],
@@ -44,7 +44,7 @@ fn driven_unsteadily(scenario: &mut Scenario, random: &mut impl FnMut(f64, f64) 
     operation.torque_profile_nm = profile(torque, [1.0, 1.3, 0.8]);
     operation.speed_fluctuation_hz = random(0.0, 0.003) * speed;
     operation.torque_fluctuation_nm = random(0.0, 0.1) * torque;
-    scenario.rig.eccentricity_mm = random(0.0, 0.02);
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = random(0.0, 0.02));
 }
 
 fn damage(kind: usize, module: f64, width: f64, random: &mut impl FnMut(f64, f64) -> f64) -> Option<Damage> {
@@ -95,14 +95,14 @@ fn modal_and_dense_solutions_agree() {
                 with_own_structure(&mut scenario);
                 scenario.model = model;
                 scenario.seed = round;
-                scenario.gears.points_per_tooth = 2000;
-                scenario.quality.din_grade = random(0.0, 10.0) as u8;
-                scenario.rig.damping_ratio = DampingRatio::Uniform(random(0.01, 0.1));
+                scenario.meshes[0].points_per_tooth = 2000;
+                scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = random(0.0, 10.0) as u8);
+                scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(random(0.01, 0.1));
                 // Coarser steps let teeth that part bounce so wildly that rounding grows to be seen.
                 scenario.solver.sampling_rate_hz = 4e4;
                 // From the start on, where nothing has settled.
                 scenario.solver.settle_tolerance = 0.0;
-                scenario.gears.pressure_angle_deg = [20.0, 22.5, 18.0][round as usize];
+                scenario.meshes[0].pressure_angle_deg = [20.0, 22.5, 18.0][round as usize];
                 if round == 1 {
                     // Every mode and every direction of the mesh moves.
                     let speed = TAU * scenario.operation.pinion_speed_hz;
@@ -161,7 +161,7 @@ fn helical_teeth_agree_with_the_dense_solution() {
             brake_torque_nm: random(10.0, 80.0),
         });
         with_own_structure(&mut scenario);
-        let gears = &mut scenario.gears;
+        let mut gears = scenario.gears();
         // Spur teeth that are crowned in two cases.
         gears.helix_angle_deg = if case >= 6 { 0.0 } else { random(5.0, 30.0) };
         gears.hand = if case % 2 == 0 { Hand::Right } else { Hand::Left };
@@ -169,9 +169,10 @@ fn helical_teeth_agree_with_the_dense_solution() {
         if case != 0 {
             gears.lead_crowning_um = random(1.0, 8.0);
             gears.end_relief = EndRelief { length_mm: 0.2 * width, amount_um: random(0.0, 10.0) };
-            scenario.quality.iso_class = 6;
+            scenario.wheels.iter_mut().for_each(|wheel| wheel.iso_class = 6);
         }
-        scenario.rig.eccentricity_mm = 0.01;
+        scenario.set_gears(&gears);
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.01);
         scenario.solver.sampling_rate_hz = 4e4;
         scenario.solver.settle_tolerance = 0.0;
         if case % 3 == 2 {

@@ -5,19 +5,19 @@ use meshtone::sensor::NamedSignal;
 use std::f64::consts::TAU;
 
 use crate::dense::{Dense, DenseMesh};
-use meshtone::batch::{Control, simulate_many_gearboxes};
+use meshtone::batch::{Control, KeepOf, simulate_many};
 use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
 use meshtone::solver::InitialMotion;
 use meshtone::wheel::ErrorTable;
 use meshtone::{MeshedPair, Simulation, Stages, StepJudgement, stages, stages_within};
 
-fn gearbox(rig: Option<GearboxRig>) -> Gearbox {
-    Gearbox::from_toml(&gearbox_template(rig)).unwrap()
+fn gearbox(rig: Option<GearboxRig>) -> Scenario {
+    Scenario::from_toml(&gearbox_template(rig)).unwrap()
 }
 
 /// Two stages with teeth that have pitch deviations and run-out and no chamfer, of the references' steel.
-fn two_stages() -> Gearbox {
+fn two_stages() -> Scenario {
     let mut gearbox = gearbox(None);
     gearbox.material = Material::Given(MaterialConstants {
         youngs_modulus_gpa: 206.0,
@@ -36,7 +36,7 @@ fn two_stages() -> Gearbox {
     gearbox
 }
 
-fn simulate(gearbox: &Gearbox) -> Simulation {
+fn simulate(gearbox: &Scenario) -> Simulation {
     meshtone::simulate(gearbox).unwrap()
 }
 
@@ -58,15 +58,15 @@ fn rms(values: &[f64]) -> f64 {
 #[test]
 fn files_are_read_back() {
     let mut broken = gearbox(None);
-    broken.faults =
-        vec![GearboxFault { wheel: "z3".to_owned(), fault: Fault::new(WheelName::Gear, 7, MissingTooth) }];
+    broken.faults = vec![Fault::new("z3", 7, MissingTooth)];
     broken.operation.torque_ripple = vec![Ripple { order: 2.0, amplitude: 0.1, phase_deg: 30.0 }];
     let feet = vec![Foot { at_mm: [0.0, -100.0, 0.0], stiffness_n_per_m: 5e7 }];
-    broken.housing.as_mut().unwrap().feet = feet;
-    broken.shafts[1].radius_mm = None;
-    broken.shafts[1].segments = vec![[100.0, 8.0], [140.0, 10.0]];
+    let parts = broken.structure.shafts_mut().unwrap();
+    parts.housing.as_mut().unwrap().feet = feet;
+    parts.shafts[1].radius_mm = None;
+    parts.shafts[1].segments = vec![[100.0, 8.0], [140.0, 10.0]];
     for gearbox in [broken, two_stages(), gearbox(Some(GearboxRig::Tecnalia))] {
-        assert_eq!(Gearbox::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
+        assert_eq!(Scenario::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
     }
 }
 
@@ -75,7 +75,7 @@ fn files_are_read_back() {
 fn published_rigs_carry_their_torque() {
     for rig in GearboxRig::ALL {
         let mut gearbox = gearbox(Some(rig));
-        gearbox.solver.settings.duration_s = Some(0.5);
+        gearbox.solver.duration_s = Some(0.5);
         let simulation = simulate(&gearbox);
         let stages = &simulation.stages;
         let base_m =
@@ -128,18 +128,18 @@ fn stiffness_and_vibration_have_the_size_of_the_reference() {
 #[test]
 fn gearbox_moves_as_with_dense_matrices() {
     let mut gearbox = two_stages();
-    gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 4);
+    gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 4);
     // 105 samples for a pitch of the first mesh, 210 for one of the second.
-    gearbox.solver.settings.sampling_rate_hz = 105.0 * 32.0 * 30.0;
-    gearbox.housing = None;
+    gearbox.solver.sampling_rate_hz = 105.0 * 32.0 * 30.0;
+    gearbox.structure.shafts_mut().unwrap().housing = None;
     gearbox.solver.highest_mode_hz = Some(1e9);
-    gearbox.solver.settings.settle_fraction = 0.0;
-    gearbox.solver.settings.duration_s = Some(0.003);
+    gearbox.solver.settle_fraction = 0.0;
+    gearbox.solver.duration_s = Some(0.003);
     let simulation = simulate(&gearbox);
     let stages = &simulation.stages;
     let (machine, modes) = stages.machine_and_modes().unwrap();
     let time = &stages.time;
-    let nominal_rad_per_s = TAU * gearbox.operation.drive.pinion_speed_hz;
+    let nominal_rad_per_s = TAU * gearbox.operation.pinion_speed_hz;
     let deviations = |mesh: usize| PairDeviations {
         teeth: &stages.pairs[mesh].teeth,
         errors: stages.pairs[mesh].profile_errors.as_ref(),
@@ -160,7 +160,7 @@ fn gearbox_moves_as_with_dense_matrices() {
         is_steady: true,
         start: InitialMotion {
             nominal_rad_per_s,
-            brake_torque_nm: gearbox.operation.drive.brake_torque_nm,
+            brake_torque_nm: gearbox.operation.brake_torque_nm,
             motor_rad_per_s: nominal_rad_per_s,
             velocity: None,
         },
@@ -178,8 +178,8 @@ fn gearbox_moves_as_with_dense_matrices() {
 #[test]
 fn high_modes_are_flexibility_enough() {
     let mut gearbox = two_stages();
-    gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
-    gearbox.solver.settings.duration_s = Some(0.3);
+    gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
+    gearbox.solver.duration_s = Some(0.3);
     let truncated = simulate(&gearbox);
     gearbox.solver.highest_mode_hz = Some(1e9);
     let whole = simulate(&gearbox);
@@ -194,12 +194,11 @@ fn high_modes_are_flexibility_enough() {
 #[test]
 fn few_modes_leave_transmission_errors_as_they_are() {
     let mut steady = two_stages();
-    steady.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
-    steady.solver.settings.duration_s = Some(0.2);
+    steady.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
+    steady.solver.duration_s = Some(0.2);
     let mut run_up = steady.clone();
-    run_up.operation.drive.speed_profile_hz =
-        Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
-    (run_up.solver.settings.duration_s, run_up.solver.settings.settle_fraction) = (None, 0.5);
+    run_up.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
+    (run_up.solver.duration_s, run_up.solver.settle_fraction) = (None, 0.5);
     for (gearbox, highest_hz, vibration_um) in
         [(&steady, 5e3, 0.03), (&steady, 500.0, 0.6), (&run_up, 5e3, 0.03)]
     {
@@ -225,9 +224,9 @@ fn few_modes_leave_transmission_errors_as_they_are() {
 #[test]
 fn half_the_step_changes_little() {
     let mut gearbox = two_stages();
-    gearbox.solver.settings.duration_s = Some(0.3);
+    gearbox.solver.duration_s = Some(0.3);
     let [coarse, fine] = [1e5, 2e5].map(|rate_hz| {
-        gearbox.solver.settings.sampling_rate_hz = rate_hz;
+        gearbox.solver.sampling_rate_hz = rate_hz;
         simulate(&gearbox)
     });
     for (coarse, fine) in accelerations(&coarse).zip(accelerations(&fine)) {
@@ -241,8 +240,8 @@ fn half_the_step_changes_little() {
 #[test]
 fn motion_repeats_after_a_cycle() {
     let mut gearbox = two_stages();
-    gearbox.solver.settings.discard_and_keep(2.0, 1.0);
-    gearbox.solver.settings.settle_tolerance = 0.0;
+    gearbox.solver.discard_and_keep(2.0, 1.0);
+    gearbox.solver.settle_tolerance = 0.0;
     let simulation = simulate(&gearbox);
     assert_eq!(simulation.stages.layout.cycle_revolutions(), 15);
     let cycle = 15 * simulation.stages.time.samples_per_pinion_revolution;
@@ -257,7 +256,7 @@ fn motion_repeats_after_a_cycle() {
 }
 
 /// An idler with its mates in given directions.
-fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Gearbox {
+fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Scenario {
     let radius_mm = |wheel: usize| f64::from(teeth[wheel]);
     let at = |direction_deg: f64, distance_mm: f64| {
         let (sin, cos) = direction_deg.to_radians().sin_cos();
@@ -272,14 +271,14 @@ fn idler(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> Gearbox {
         (shaft.position_mm, shaft.couples_to) = (Some(positions[n]), coupled[n]);
         shaft
     });
-    let wheels = (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
+    let wheels = (0..3).map(|n| ScenarioWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
     let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-    Gearbox::new(
+    Scenario::of_shafts(
         shafts.collect(),
         wheels.collect(),
-        vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)],
+        vec![ScenarioMesh::new(["z1", "z2"], 2.0), ScenarioMesh::new(["z2", "z3"], 2.0)],
         bearings.collect(),
-        GearboxOperation::new(30.0, 10.0),
+        Operation::new(30.0, 10.0),
     )
 }
 
@@ -294,7 +293,7 @@ fn idler_phases_are_those_of_its_flanks() {
         ([20, 40, 25], [180.0, -70.0], 0.226837),
         ([23, 41, 57], [200.0, -33.0], 0.065243),
     ] {
-        let layout = GearboxLayout::new(&idler(teeth, [-first_deg, -second_deg])).unwrap();
+        let layout = idler(teeth, [-first_deg, -second_deg]).layout().unwrap();
         let found = (layout.phases[1] - layout.phases[0]).rem_euclid(1.0);
         println!("{teeth:?}: {found:.6}, not {expected}");
         assert!((found - expected).abs() < 1e-6, "{teeth:?}: {found:.6}, not {expected}");
@@ -308,7 +307,7 @@ fn profile_errors(teeth: u32, of: f64) -> ErrorTable {
 }
 
 /// The profile errors of the driving and of the driven wheel of each mesh; none of ideal wheels.
-fn errors_of_meshes(gearbox: &Gearbox) -> Vec<Option<[ErrorTable; 2]>> {
+fn errors_of_meshes(gearbox: &Scenario) -> Vec<Option<[ErrorTable; 2]>> {
     let of_pair = |pair: MeshedPair| {
         pair.profile_errors.map(|of| [of.pinion_profile_errors_mm, of.gear_profile_errors_mm])
     };
@@ -340,12 +339,14 @@ fn a_wheel_on_the_same_side_of_two_meshes_has_its_profile_errors_in_both() {
         (shaft.position_mm, shaft.couples_to) = (Some(position_mm), couples_to);
         shaft
     };
-    let mut gearbox = Gearbox::new(
+    let mut gearbox = Scenario::of_shafts(
         shafts.map(shaft).to_vec(),
-        shafts.map(|(name, ..)| GearboxWheel::new(&format!("z{name}"), name, 0.5, 24, 20.0)).to_vec(),
-        [["za", "zb"], ["za", "zc"], ["zb", "zd"], ["zc", "zd"]].map(|of| GearboxMesh::new(of, 2.0)).to_vec(),
+        shafts.map(|(name, ..)| ScenarioWheel::new(&format!("z{name}"), name, 0.5, 24, 20.0)).to_vec(),
+        [["za", "zb"], ["za", "zc"], ["zb", "zd"], ["zc", "zd"]]
+            .map(|of| ScenarioMesh::new(of, 2.0))
+            .to_vec(),
         shafts.iter().flat_map(|(name, ..)| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]).collect(),
-        GearboxOperation::new(30.0, 10.0),
+        Operation::new(30.0, 10.0),
     );
     let (first, last) = (profile_errors(24, 1e-3), profile_errors(24, 2e-3));
     gearbox.wheels[0].profile_errors_mm = Some(first.clone());
@@ -356,7 +357,7 @@ fn a_wheel_on_the_same_side_of_two_meshes_has_its_profile_errors_in_both() {
 }
 
 /// A gearbox of the one pair of the short form's example.
-fn one_pair() -> Gearbox {
+fn one_pair() -> Scenario {
     let names = ["input", "output"];
     let coupled = [Coupled::Motor, Coupled::Brake];
     let shafts = (0..2).map(|n| {
@@ -365,15 +366,15 @@ fn one_pair() -> Gearbox {
         shaft
     });
     let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-    Gearbox::new(
+    Scenario::of_shafts(
         shafts.collect(),
         vec![
-            GearboxWheel::new("z1", "input", 0.5, 17, 15.0),
-            GearboxWheel::new("z2", "output", 0.5, 38, 15.0),
+            ScenarioWheel::new("z1", "input", 0.5, 17, 15.0),
+            ScenarioWheel::new("z2", "output", 0.5, 38, 15.0),
         ],
-        vec![GearboxMesh::new(["z1", "z2"], 3.0)],
+        vec![ScenarioMesh::new(["z1", "z2"], 3.0)],
         bearings.collect(),
-        GearboxOperation::new(40.0, 10.0),
+        Operation::new(40.0, 10.0),
     )
 }
 
@@ -395,7 +396,7 @@ fn one_pair_has_the_forces_and_stiffness_of_the_short_form() {
 fn a_ripple_of_the_torque_comes_with_the_brakes_shaft() {
     let mut gearbox = one_pair();
     gearbox.operation.torque_ripple = vec![Ripple { order: 1.0, amplitude: 0.2, phase_deg: 0.0 }];
-    gearbox.solver.settings.discard_and_keep(1.0, 0.95);
+    gearbox.solver.discard_and_keep(1.0, 0.95);
     let simulation = simulate(&gearbox);
     let force = simulation.channels.signal("force_n.z1-z2").unwrap();
     // 38 revolutions of the input are 17 of the brake.
@@ -419,9 +420,8 @@ fn a_missing_tooth_of_any_wheel_is_felt_once_a_revolution() {
     let mut gearbox = two_stages();
     // Without chamfers the tip corners of the neighbours hold the wheels.
     gearbox.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = None);
-    gearbox.solver.settings.duration_s = Some(0.5);
-    gearbox.faults =
-        vec![GearboxFault { wheel: "z3".to_owned(), fault: Fault::new(WheelName::Gear, 5, MissingTooth) }];
+    gearbox.solver.duration_s = Some(0.5);
+    gearbox.faults = vec![Fault::new("z3", 5, MissingTooth)];
     let simulation = simulate(&gearbox);
     assert_eq!(simulation.stages.fault_severities, [1.0]);
     let mesh = &simulation.stages.meshes[1];
@@ -453,7 +453,7 @@ fn mistakes_are_named_with_their_key_and_line() {
     let text = gearbox_template(None);
     let change = |from: &str, to: &str| {
         assert!(text.contains(from), "{from}");
-        Gearbox::from_toml(&text.replacen(from, to, 1)).unwrap_err()
+        Scenario::from_toml(&text.replacen(from, to, 1)).unwrap_err()
     };
     for (from, to, key, problem) in [
         ("shaft = \"input\"", "shaft = \"inptu\"", "wheel[0].shaft", "is no shaft's name"),
@@ -491,8 +491,8 @@ fn mistakes_are_named_with_their_key_and_line() {
         let missing = from.starts_with("couples_to");
         assert!(error.line.is_some() || missing, "{error}");
     }
-    let overlapping = Gearbox::from_toml(&text.replace("at = 0.75", "at = 0.3")).unwrap_err();
-    let outside = Gearbox::from_toml(&text.replace("at = 0.25", "at = 0.03")).unwrap_err();
+    let overlapping = Scenario::from_toml(&text.replace("at = 0.75", "at = 0.3")).unwrap_err();
+    let outside = Scenario::from_toml(&text.replace("at = 0.25", "at = 0.03")).unwrap_err();
     assert_eq!((outside.key.as_str(), outside.line), ("wheel[0].at", Some(33)));
     assert!(outside.problem.contains("would reach from z = -2.325 to 16.725 mm"), "{outside}");
     assert_eq!(overlapping.key, "wheel[2].at");
@@ -500,7 +500,7 @@ fn mistakes_are_named_with_their_key_and_line() {
     let placed =
         text.replacen("couples_to = \"motor\"", "couples_to = \"motor\"\nposition_mm = [0.0, 0.0]", 1);
     let placed = placed.replacen("name = \"middle\"", "name = \"middle\"\nposition_mm = [90.0, 0.0]", 1);
-    let error = Gearbox::from_toml(&placed).unwrap_err();
+    let error = Scenario::from_toml(&placed).unwrap_err();
     assert_eq!(error.key, "shaft[1].position_mm");
     assert!(
         error
@@ -540,10 +540,10 @@ fn wheels_of_other_shafts_do_not_run_into_one_another() {
         ];
         let names = ["input", "middle", "output"];
         let wheels =
-            (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, [40, 20, 40][n], 20.0));
+            (0..3).map(|n| ScenarioWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, [40, 20, 40][n], 20.0));
         let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-        let meshes = vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)];
-        Gearbox::new(shafts, wheels.collect(), meshes, bearings.collect(), GearboxOperation::new(30.0, 10.0))
+        let meshes = vec![ScenarioMesh::new(["z1", "z2"], 2.0), ScenarioMesh::new(["z2", "z3"], 2.0)];
+        Scenario::of_shafts(shafts, wheels.collect(), meshes, bearings.collect(), Operation::new(30.0, 10.0))
     };
     assert!(with_last_at(180.0).validate().is_ok());
     let error = with_last_at(80.0).validate().unwrap_err();
@@ -563,22 +563,22 @@ fn codes(warnings: &[ScenarioWarning]) -> Vec<&'static str> {
 #[test]
 fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let mut settled = gearbox(None);
-    settled.solver.settings.discard_and_keep(5.0, 0.1);
-    let warnings = |change: &dyn Fn(&mut Gearbox)| {
+    settled.solver.discard_and_keep(5.0, 0.1);
+    let warnings = |change: &dyn Fn(&mut Scenario)| {
         let mut gearbox = settled.clone();
         change(&mut gearbox);
         stages(&gearbox).unwrap().warnings()
     };
     assert!(warnings(&|_| ()).is_empty());
-    let unsettled = warnings(&|gearbox| gearbox.solver.settings.discard_and_keep(1.0, 0.1));
+    let unsettled = warnings(&|gearbox| gearbox.solver.discard_and_keep(1.0, 0.1));
     assert_eq!(codes(&unsettled), ["unsettled"]);
-    let overload = warnings(&|gearbox| gearbox.operation.drive.brake_torque_nm = 4000.0);
+    let overload = warnings(&|gearbox| gearbox.operation.brake_torque_nm = 4000.0);
     assert_eq!(codes(&overload), ["overload", "overload"]);
     assert!(overload.iter().any(|warning| warning.message.contains("at most 3020 N m")), "{overload:?}");
     // Each mesh that would break is named; without a nominal torque the profile's counts all the same.
     let both = warnings(&|gearbox| {
-        gearbox.operation.drive.brake_torque_nm = 0.0;
-        gearbox.operation.drive.torque_profile_nm =
+        gearbox.operation.brake_torque_nm = 0.0;
+        gearbox.operation.torque_profile_nm =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 20_000.0] });
     });
     let named = |of: &str, kind| {
@@ -589,10 +589,10 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
         assert_eq!(named(mesh, WarningKind::Overload), 1, "{both:?}");
     }
     assert!(both.iter().any(|warning| warning.key == "operation.torque_profile_nm.value[1]"), "{both:?}");
-    let fast = warnings(&|gearbox| gearbox.operation.drive.pinion_speed_hz = 110.0);
+    let fast = warnings(&|gearbox| gearbox.operation.pinion_speed_hz = 110.0);
     assert!(codes(&fast).contains(&"gyroscopic"), "{fast:?}");
     let run_up = warnings(&|gearbox| {
-        gearbox.operation.drive.speed_profile_hz =
+        gearbox.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 105.0] });
     });
     let of_run_up = run_up.iter().find(|warning| warning.kind == WarningKind::Gyroscopic).unwrap();
@@ -613,10 +613,10 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     assert!(ignored[0].message.contains("beside given profile errors"), "{}", ignored[0]);
     assert!(ignored[2].message.contains("remove run_out_share, or the run-outs"), "{}", ignored[2]);
     let undamped = warnings(&|gearbox| {
-        gearbox.shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.0);
-        gearbox.bearings.iter_mut().for_each(|bearing| bearing.damping_ratio = 0.0);
+        gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = 0.0);
+        gearbox.bearings_mut().iter_mut().for_each(|bearing| bearing.damping_ratio = 0.0);
         gearbox.meshes.iter_mut().for_each(|mesh| mesh.damping_ratio = 0.0);
-        gearbox.housing = None;
+        gearbox.structure.shafts_mut().unwrap().housing = None;
     });
     assert_eq!(codes(&undamped), ["unsettled"]);
     assert!(undamped[0].message.ends_with("it never decays: a mode has no damping"), "{}", undamped[0]);
@@ -627,7 +627,7 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     assert_eq!(codes(&long), ["long-cycle"]);
     assert!(long[0].message.contains("hunting-tooth period is 7663 revolutions"), "{}", long[0]);
     let ended = warnings(&|gearbox| {
-        gearbox.operation.drive.torque_profile_nm =
+        gearbox.operation.torque_profile_nm =
             Some(Profile { time_s: vec![0.0, 1.0], value: vec![20.0, 21.0] });
     });
     assert_eq!(codes(&ended), ["profile-ended"]);
@@ -637,9 +637,9 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     });
     assert!(undercut.iter().any(|warning| warning.key == "wheel[2].teeth"), "{undercut:?}");
     let slow = warnings(&|gearbox| {
-        gearbox.operation.drive.speed_profile_hz =
+        gearbox.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 20.0] });
-        (gearbox.solver.settings.duration_s, gearbox.solver.settings.settle_fraction) = (None, 0.9);
+        (gearbox.solver.duration_s, gearbox.solver.settle_fraction) = (None, 0.9);
     });
     assert_eq!(codes(&slow), ["speed-profile-off"]);
     assert!(slow[0].message.contains("operation.input_speed_hz"), "{}", slow[0]);
@@ -649,8 +649,8 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
 #[test]
 fn forces_far_beyond_the_load_are_reported_of_each_mesh() {
     let mut gearbox = gearbox(None);
-    gearbox.solver.settings.duration_s = Some(0.2);
-    gearbox.operation.drive.brake_torque_nm = 1e-3;
+    gearbox.solver.duration_s = Some(0.2);
+    gearbox.operation.brake_torque_nm = 1e-3;
     let warnings = simulate(&gearbox).warnings_of_signals(StepJudgement::Estimated);
     let resonances: Vec<_> =
         warnings.iter().filter(|warning| warning.kind == WarningKind::Resonance).collect();
@@ -663,7 +663,7 @@ fn forces_far_beyond_the_load_are_reported_of_each_mesh() {
 #[test]
 fn a_shaft_that_turns_at_another_speed_is_told() {
     let mut gearbox = gearbox(None);
-    gearbox.solver.settings.duration_s = Some(0.2);
+    gearbox.solver.duration_s = Some(0.2);
     let mut simulation = simulate(&gearbox);
     let slipping = |simulation: &Simulation| {
         let warnings = simulation.warnings_of_signals(StepJudgement::Estimated);
@@ -683,15 +683,15 @@ fn a_shaft_that_turns_at_another_speed_is_told() {
 #[test]
 fn a_batch_gives_each_what_it_gives_alone() {
     let mut short = two_stages();
-    short.solver.settings.duration_s = Some(0.05);
+    short.solver.duration_s = Some(0.05);
     let mut stiffer = short.clone();
-    stiffer.bearings[0].stiffness_n_per_m *= 2.0;
+    stiffer.bearings_mut()[0].stiffness_n_per_m *= 2.0;
     let mut wrong = short.clone();
     wrong.wheels[0].at = 0.5;
     let boxes = [short.clone(), stiffer, wrong, short];
     let mut together = Vec::new();
-    let keep = |_: usize, simulation: Simulation| simulation.channels;
-    simulate_many_gearboxes(boxes.clone(), &keep, &Control::default(), |_, kept| together.push(kept));
+    let keep = KeepOf(|_: usize, simulation: Simulation| simulation.channels);
+    simulate_many(boxes.clone(), &keep, &Control::default(), |_, kept| together.push(kept));
     for (gearbox, together) in boxes.iter().zip(&together) {
         match (meshtone::simulate(gearbox).map(|simulation| simulation.channels), together) {
             (Ok(alone), Ok(together)) => assert_eq!(alone, *together),
@@ -706,9 +706,9 @@ fn a_batch_gives_each_what_it_gives_alone() {
 #[test]
 fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
     let mut gearbox = gearbox(None);
-    gearbox.solver.settings.discard_and_keep(5.0, 0.1);
+    gearbox.solver.discard_and_keep(5.0, 0.1);
     let mut reported = |speed_hz: f64| {
-        gearbox.operation.drive.pinion_speed_hz = speed_hz;
+        gearbox.operation.pinion_speed_hz = speed_hz;
         stages(&gearbox).unwrap().warnings().pop()
     };
     assert_eq!(reported(30.0), None);
@@ -722,17 +722,17 @@ fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
 #[test]
 fn a_step_that_is_too_long_is_reported() {
     let mut gearbox = gearbox(Some(GearboxRig::Uconn));
-    gearbox.solver.settings.duration_s = Some(0.5);
+    gearbox.solver.duration_s = Some(0.5);
     let simulation = simulate(&gearbox);
     let warnings = simulation.warnings_of_signals(StepJudgement::Repeated);
     assert_eq!(codes(&warnings), ["step-error"], "{warnings:?}");
     assert!(warnings[0].message.contains("at 40020 S/s the rms is"), "{}", warnings[0]);
-    gearbox.solver.settings.sampling_rate_hz = 4e5;
-    gearbox.solver.settings.duration_s = Some(0.2);
+    gearbox.solver.sampling_rate_hz = 4e5;
+    gearbox.solver.duration_s = Some(0.2);
     let warnings = simulate(&gearbox).warnings_of_signals(StepJudgement::Repeated);
     assert!(warnings.is_empty(), "{warnings:?}");
     // What the repetition may need is limited as the first simulation is: without it there is the estimate alone.
-    gearbox.solver.settings.sampling_rate_hz = 2e4;
+    gearbox.solver.sampling_rate_hz = 2e4;
     let limited = |bytes: u64| {
         let stages = stages_within(&gearbox, MemoryLimit::Given { bytes }).unwrap();
         stages.simulate().unwrap().warnings_of_signals(StepJudgement::Repeated)
@@ -747,8 +747,8 @@ fn a_step_that_is_too_long_is_reported() {
 fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
     let mut gearbox = gearbox(None);
     let missing = Fault::new(WheelName::Gear, (1..48).collect::<Vec<u32>>(), MissingTooth);
-    gearbox.faults = vec![GearboxFault { wheel: "z3".to_owned(), fault: missing }];
-    gearbox.solver.settings.duration_s = Some(8.0);
+    gearbox.faults = vec![missing];
+    gearbox.solver.duration_s = Some(8.0);
     let error = meshtone::simulate(&gearbox).map(drop).unwrap_err();
     let text = error.to_string();
     assert!(text.starts_with("the motion grows without bound within") && text.len() < 250, "{text}");
@@ -760,8 +760,8 @@ fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
 #[test]
 fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
     let mut gearbox = idler([24, 36, 30], [180.0, 0.0]);
-    gearbox.shafts[1].couples_to = Coupled::Brake;
-    gearbox.shafts[2].couples_to = Coupled::Nothing;
+    gearbox.structure.shafts_mut().unwrap().shafts[1].couples_to = Coupled::Brake;
+    gearbox.structure.shafts_mut().unwrap().shafts[2].couples_to = Coupled::Nothing;
     assert!(stages(&gearbox).is_ok());
     gearbox.wheels[2].deviations.helix_slope_um = Some(5.0);
     let error = stages(&gearbox).map(drop).unwrap_err();
@@ -774,9 +774,9 @@ fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
 #[test]
 fn a_locked_train_names_both_ratios() {
     let mut gearbox = one_pair();
-    gearbox.wheels.push(GearboxWheel::new("z3", "input", 0.2, 18, 15.0));
-    gearbox.wheels.push(GearboxWheel::new("z4", "output", 0.2, 37, 15.0));
-    gearbox.meshes.push(GearboxMesh::new(["z3", "z4"], 3.0));
+    gearbox.wheels.push(ScenarioWheel::new("z3", "input", 0.2, 18, 15.0));
+    gearbox.wheels.push(ScenarioWheel::new("z4", "output", 0.2, 37, 15.0));
+    gearbox.meshes.push(ScenarioMesh::new(["z3", "z4"], 3.0));
     let error = gearbox.validate().unwrap_err();
     assert_eq!(error.key, "mesh[1].wheels");
     assert!(error.problem.contains("-18/37") && error.problem.contains("-17/38"), "{error}");

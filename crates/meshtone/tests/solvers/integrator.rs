@@ -29,8 +29,8 @@ fn pushed(sampling_rate_hz: f64, damping_ratio: f64, torque_nm: f64) -> Scenario
         ..GearPair::example()
     });
     scenario.model = Model::Linear;
-    scenario.gears.points_per_tooth = 1000;
-    scenario.rig.damping_ratio = DampingRatio::Uniform(damping_ratio);
+    scenario.meshes[0].points_per_tooth = 1000;
+    scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(damping_ratio);
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
     // Each mode with an amplitude of its own, and each about as fast at the flank.
     let push = |n: usize| {
@@ -92,9 +92,9 @@ fn exact(stages: &Stages, swing: f64) -> [Vec<DVector<f64>>; 3] {
     let stiffness = machine.turn_back(&machine.stiffness()) + &of_mesh;
     let damping = modes.damping_matrix(machine) + of_mesh * mesh.damping_time_s;
     let mut force = DVector::zeros(n);
-    force[THETA_BRAKE] = stages.scenario.operation().brake_torque_nm;
+    force[THETA_BRAKE] = stages.scenario.operation.brake_torque_nm;
     let at_rest = stiffness.clone().lu().solve(&force).unwrap();
-    let velocity = DVector::from_row_slice(&stages.scenario.solver().initial_velocity.unwrap())
+    let velocity = DVector::from_row_slice(&stages.scenario.solver.initial_velocity.unwrap())
         - &machine.rigid_rotation * (TAU * PINION_SPEED_HZ);
     // Displacements times 1e5/s, and both times √m, so that all are about as large.
     let (rate, root) =
@@ -151,8 +151,9 @@ fn smoothly_forced(sampling_rate_hz: f64, seconds: f64, swing: f64, damping_rati
     let mut scenario = pushed(sampling_rate_hz, damping_ratio, 10.0);
     // A push would be falsified with the square of the step: a velocity of the steps is that of the trapezoidal rule.
     scenario.solver.initial_velocity = Some(rigid_rotation().map(|ratio| TAU * PINION_SPEED_HZ * ratio));
-    scenario.rig.mesh_damping_ratio = damping_ratio;
-    for shaft in [&mut scenario.rig.pinion_shaft, &mut scenario.rig.gear_shaft] {
+    scenario.meshes[0].damping_ratio = damping_ratio;
+    let rig = scenario.rig_mut().unwrap();
+    for shaft in [&mut rig.pinion_shaft, &mut rig.gear_shaft] {
         shaft.radius_mm = 6.0;
     }
     // A point at every sample: the profile's straight lines are not seen.
@@ -238,7 +239,7 @@ fn what_a_step_cannot_resolve_is_stable() {
 #[test]
 fn energy_is_kept_without_damping_and_forcing() {
     let mut scenario = pushed(1e5, 0.0, 0.0);
-    scenario.rig.mesh_damping_ratio = 0.0;
+    scenario.meshes[0].damping_ratio = 0.0;
     let stages = of_constant_stiffness(&scenario, 1.0);
     let machine = machine_of(&stages).0;
     let stiffness = machine.turn_back(&machine.closed_stiffness(&[mesh(&stages).mean_stiffness_n_per_m]));

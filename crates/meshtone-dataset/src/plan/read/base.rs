@@ -1,6 +1,6 @@
 //! The base scenario.
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone_io::experiment::Tuned;
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
 use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
@@ -11,12 +11,12 @@ use super::{PlanFile, Reading, in_another_file};
 /// Key of the base scenario.
 const KEY: &str = "scenario";
 
-pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<ScenarioForm> {
+pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Scenario> {
     let value =
         root.required(KEY, "the scenario that all records have in common: a file's name or a table")?;
     let scenario = if value.is_table() && !reading.is_copy {
         let files = FilesBeside::new(reading.directory);
-        let scenario = value.table()?.read(|table| ScenarioForm::from_table(table, &files))?;
+        let scenario = value.table()?.read(|table| Scenario::from_table(table, &files))?;
         scenario.validate().map_err(|error| {
             let error = TomlError::from(error);
             let key = format!("{KEY}.{}", error.key);
@@ -25,7 +25,7 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
         scenario
     } else {
         let name = if value.is_table() { "" } else { value.string()? };
-        let file = ScenarioFile::read_form(&reading.path_of(name, PlanFile::NAMES[1]));
+        let file = ScenarioFile::read(&reading.path_of(name, PlanFile::NAMES[1]));
         let file = file.map_err(|error| in_another_file(&value, error, reading))?;
         reading.sources.extend(file.sources().map(std::path::Path::to_path_buf));
         file.scenario
@@ -37,7 +37,7 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
     if let Some(ignored) = scenario.ignored_by_model().into_iter().next() {
         return Err(TomlError::new(format!("{KEY}.{}", ignored.key), "", ignored.message));
     }
-    if scenario.fault_count() > 0 {
+    if scenario.faults.len() > 0 {
         let problem = "the base scenario has a fault; must be healthy";
         let help = "faults belong to the classes: [[class]] with fault = { kind = … }";
         return Err(refused(format!("{KEY}.fault"), problem, help));
@@ -46,13 +46,13 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
 }
 
 /// The base with the numbers that were tuned.
-pub(super) fn tuned(base: &ScenarioForm, tuned: &Tuned, value: &TomlValue<'_>) -> ReadResult<ScenarioForm> {
-    let ScenarioForm::Pair(base) = base else {
+pub(super) fn tuned(base: &Scenario, tuned: &Tuned, value: &TomlValue<'_>) -> ReadResult<Scenario> {
+    if base.rig().is_none() {
         let error = value.error("is of one pair of gears, and the scenario is a gearbox");
         return Err(error.with_help("leave it out: tuning knows one pair"));
-    };
+    }
     if let Some(warning) = tuned.warning_for(base) {
         return Err(value.error(warning));
     }
-    tuned.apply(base).map(ScenarioForm::Pair).map_err(|error| value.error(error.to_string()))
+    tuned.apply(base).map_err(|error| value.error(error.to_string()))
 }

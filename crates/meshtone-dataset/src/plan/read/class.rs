@@ -1,6 +1,6 @@
 //! The array `[[class]]`.
 
-use meshtone::scenario::ScenarioForm;
+use meshtone::scenario::Scenario;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::split::largest_remainder;
@@ -16,7 +16,7 @@ enum Share {
     Weight(f64),
 }
 
-pub(super) fn read_all(root: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<Vec<Class>> {
+pub(super) fn read_all(root: &TomlTable<'_>, base: &Scenario) -> ReadResult<Vec<Class>> {
     let listed = root.required("class", "the classes, [[class]] each")?;
     let values = listed.array()?;
     if values.is_empty() {
@@ -69,7 +69,7 @@ fn counts(root: &TomlTable<'_>, classes: &[TomlValue<'_>], shares: &[Share]) -> 
     Ok(counts)
 }
 
-fn class(table: &TomlTable<'_>, base: &ScenarioForm) -> ReadResult<(Class, Share)> {
+fn class(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<(Class, Share)> {
     let label = table.required("label", "the class's name in the column label")?;
     let name = label.string()?;
     if name.is_empty() {

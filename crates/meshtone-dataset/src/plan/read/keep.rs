@@ -1,6 +1,6 @@
 //! The table `[keep]`.
 
-use meshtone::scenario::{ScenarioForm, Sensor, WheelName};
+use meshtone::scenario::{Scenario, WheelName};
 use meshtone::sensor::{Channel, ChannelKind};
 use meshtone::signal::GearTrain;
 use meshtone_io::channel_name::{accelerations, read_channel};
@@ -20,8 +20,8 @@ const MOST_REVOLUTIONS: u64 = 1 << 20;
 /// Absent keys take their values from a tuning, where the plan names one, so that the records are processed as the recordings were, and
 /// else from the base scenario. The checks of several keys against each other come after all of them have been read, because any of them
 /// may be missing.
-pub(super) fn read(table: &TomlTable<'_>, base: &ScenarioForm, tuned: Option<&Tuned>) -> ReadResult<Keep> {
-    let simulated_hz = base.solver().sampling_rate_hz;
+pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
+    let simulated_hz = base.solver.sampling_rate_hz;
     let known = Known::of(base);
     let default_hz = tuned.map_or(RATE_HZ.min(simulated_hz), |tuned| tuned.sampling_rate_hz);
     let given_hz = table.read_optional("sampling_rate_hz", |value| {
@@ -50,7 +50,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &ScenarioForm, tuned: Option<&Tu
     let wheel = table.read_optional("wheel", |value| wheels(value, base))?.or_else(of_tuned);
     let wheel = wheel.unwrap_or_else(|| default_wheels(base));
     // The meshes of all wheels on a shaft are taken away from the average over its revolutions.
-    let train = GearTrain::of_form(base)?;
+    let train = GearTrain::of_scenario(base)?;
     let is_averaged = |name: &str| wheel.all().iter().any(|wheel| wheel.name() == name);
     let averaged = train.wheels.iter().filter(|wheel| is_averaged(&wheel.name));
     let fewest = averaged.flat_map(|wheel| train.teeth_on(wheel.shaft)).min();
@@ -111,7 +111,7 @@ fn over_angle(table: &TomlTable<'_>) -> ReadResult<Option<OverAngle>> {
 }
 
 /// One wheel, or a list of several.
-fn wheels(value: &TomlValue<'_>, base: &ScenarioForm) -> ReadResult<AveragedWheels> {
+fn wheels(value: &TomlValue<'_>, base: &Scenario) -> ReadResult<AveragedWheels> {
     let all = Wheel::all(base);
     let choices: Vec<(&str, Wheel)> = all.iter().map(|wheel| (wheel.name(), wheel.clone())).collect();
     if !value.is_array() {
@@ -132,10 +132,10 @@ fn wheels(value: &TomlValue<'_>, base: &ScenarioForm) -> ReadResult<AveragedWhee
 }
 
 /// The gear of a pair; all wheels of a gearbox.
-fn default_wheels(base: &ScenarioForm) -> AveragedWheels {
-    match base {
-        ScenarioForm::Gearbox(_) => AveragedWheels::Each(Wheel::all(base)),
-        _ => AveragedWheels::One(WheelName::default().into()),
+fn default_wheels(base: &Scenario) -> AveragedWheels {
+    match base.rig() {
+        Some(_) => AveragedWheels::One(WheelName::default().into()),
+        None => AveragedWheels::Each(Wheel::all(base)),
     }
 }
 
@@ -153,29 +153,21 @@ struct Known {
 }
 
 impl Known {
-    fn of(base: &ScenarioForm) -> Self {
-        match base {
-            ScenarioForm::Gearbox(gearbox) => {
-                let sensors = gearbox.all_sensors().into_iter().map(|sensor| Channel::Sensor(sensor.name()));
-                let channels: Vec<Channel> = sensors.collect();
-                let leading = channels.first().cloned().unwrap_or_else(|| Channel::leading(&[]));
-                Self { accelerations: channels.clone(), usual: channels.clone(), leading, channels }
-            }
-            _ => {
-                let sensors: Vec<Sensor> =
-                    base.sensors().into_iter().map(|(_, sensor)| sensor.clone()).collect();
-                let usual = if sensors.is_empty() {
-                    [ChannelKind::Horizontal, ChannelKind::Vertical].map(Channel::from).into()
-                } else {
-                    sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect()
-                };
-                Self {
-                    channels: Channel::all(&sensors),
-                    accelerations: accelerations(&sensors),
-                    usual,
-                    leading: Channel::leading(&sensors),
-                }
-            }
+    fn of(base: &Scenario) -> Self {
+        let sensors = base.all_sensors();
+        let of_sensors: Vec<Channel> = sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect();
+        let leading = Channel::leading(&sensors);
+        if base.rig().is_none() {
+            let (accelerations, usual) = (of_sensors.clone(), of_sensors.clone());
+            return Self { channels: of_sensors, accelerations, usual, leading };
+        }
+        let horizontal_and_vertical =
+            || [ChannelKind::Horizontal, ChannelKind::Vertical].map(Channel::from).into();
+        Self {
+            channels: Channel::all(&sensors),
+            accelerations: accelerations(&sensors),
+            usual: if sensors.is_empty() { horizontal_and_vertical() } else { of_sensors },
+            leading,
         }
     }
 }

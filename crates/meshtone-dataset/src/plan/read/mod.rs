@@ -11,7 +11,7 @@ mod split;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{Model, ScenarioForm};
+use meshtone::scenario::{Model, Scenario};
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::scenario_file::{FileKind, ReadScenarioError, read_text};
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
@@ -162,18 +162,16 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
 /// The rules for all classes: those of the plan, then those of its variation for keys that nothing else decides.
 fn rules(
     root: &TomlTable<'_>,
-    base: &ScenarioForm,
+    base: &Scenario,
     tuned: Option<&Tuned>,
     classes: &[Class],
 ) -> ReadResult<Vec<Rule>> {
     let mut rules = rule::read_all(root)?;
     let Some(value) = root.optional("variation") else { return Ok(rules) };
     let variation = value.choice(&Variation::NAMES)?;
-    if let ScenarioForm::Pair(pair) = base
-        && pair.model != Model::Contact
-    {
+    if base.model != Model::Contact {
         let problem =
-            format!("is for the model \"contact\", and the scenario has model = \"{}\"", pair.model.name());
+            format!("is for the model \"contact\", and the scenario has model = \"{}\"", base.model.name());
         return Err(value.error(problem).with_help("leave it out and vary keys with [[vary]]"));
     }
     let of_classes = classes.iter().flat_map(|class| &class.rules);

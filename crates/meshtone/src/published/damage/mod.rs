@@ -173,7 +173,7 @@ mod tests {
             let mut scenario = Scenario::new(GearPair::example());
             scenario.model = Model::Published;
             scenario.faults = vec![Fault::on_first_gear_tooth(kind.example.clone())];
-            let teeth = crate::published::teeth(&scenario.gears, [10.0; 2]);
+            let teeth = crate::published::teeth(&scenario.gears(), [10.0; 2]);
             let (checked, made) = (scenario.validate(), geometry(&kind.example, &teeth, 0));
             assert_eq!(
                 checked.err().map(|error| error.key),

@@ -11,7 +11,7 @@ use coordinates::*;
 pub use modes::Modes;
 
 use super::mesh::{LoadState, MeshLoad};
-use crate::machine::{DecayingMode, Rig, Shaft, WheelBody, connected_groups, turn_planes};
+use crate::machine::{DecayingMode, Rig, RigParts, Shaft, WheelBody, connected_groups, turn_planes};
 use crate::wheel::{Gears, Teeth};
 
 /// What forces the equations of motion at one sample.
@@ -69,14 +69,14 @@ impl Machine {
     /// Assembles the equations of motion.
     ///
     /// # Arguments
-    /// * `gears` - for the material
-    /// * `rig` - bearings, shafts, brake
+    /// * `parts` - wheels, bearings, shafts, brake
     /// * `teeth` - both wheels
     /// * `load` - the mesh over the cycle
-    pub(super) fn new(gears: &Gears, rig: &Rig, teeth: &Teeth, load: &MeshLoad) -> Self {
-        let pinion = wheel_body(&teeth.pinion, gears.material, &rig.pinion_inertia);
-        let gear = wheel_body(&teeth.gear, gears.material, &rig.gear_inertia);
-        let mass = masses(&pinion, &gear, rig.brake_inertia_kgm2);
+    pub(super) fn new(parts: RigParts, teeth: &Teeth, load: &MeshLoad) -> Self {
+        let RigParts { gears, rig, inertias, brake_inertia_kgm2, .. } = parts;
+        let pinion = wheel_body(&teeth.pinion, gears.material, inertias[0]);
+        let gear = wheel_body(&teeth.gear, gears.material, inertias[1]);
+        let mass = masses(&pinion, &gear, brake_inertia_kgm2);
         let shaft_stiffness_nm_per_rad =
             [torsional_stiffness(&rig.pinion_shaft, gears), torsional_stiffness(&rig.gear_shaft, gears)];
         let constant_stiffness = constant_stiffness(rig, shaft_stiffness_nm_per_rad);

@@ -2,13 +2,14 @@
 
 mod files;
 
-use meshtone_toml::{ErrorKind, ReadResult, TomlDocument, TomlTable};
+use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 
 pub use self::files::ScenarioFiles;
 
 pub(super) use self::files::Numbers;
-use super::{Fault, Gearbox, MemoryLimit, Scenario, ScenarioError, Sensor};
-use crate::keys::{Keys, NoFiles, NumberFiles, read_keys};
+use super::structure::refused_as_pair;
+use super::{MemoryLimit, Scenario, ScenarioError, long, short};
+use crate::keys::{NoFiles, NumberFiles};
 use crate::wheel::WheelDeviations;
 
 impl Scenario {
@@ -82,7 +83,55 @@ impl Scenario {
     /// # Errors
     /// An unknown or missing key, a value of the wrong type, what `files` reports.
     pub fn from_table(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Self> {
-        read_scenario(table, &Numbers(files))
+        read(table, &Numbers(files))
+    }
+
+    /// Does what [`Scenario::from_toml_within`] does, where one pair is expected.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    /// * `files` - loads the files that the text names
+    /// * `limit` - most that [`Scenario::memory_estimate_bytes`] may be
+    ///
+    /// # Errors
+    /// Those of [`Scenario::from_toml_within`]; shafts of beams.
+    pub fn pair_from_toml_within(
+        text: &str,
+        files: &dyn ScenarioFiles,
+        limit: MemoryLimit,
+    ) -> Result<Self, ScenarioError> {
+        Self::refuse_long_form(text)?;
+        Self::from_toml_within(text, files, limit)
+    }
+
+    /// Does what [`Scenario::from_toml`] does, where one pair is expected.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    ///
+    /// # Errors
+    /// Those of [`Scenario::from_toml`]; shafts of beams.
+    pub fn pair_from_toml(text: &str) -> Result<Self, ScenarioError> {
+        Self::refuse_long_form(text)?;
+        Self::from_toml(text)
+    }
+
+    fn refuse_long_form(text: &str) -> Result<(), ScenarioError> {
+        let document = TomlDocument::parse(text)?;
+        let is_long = document.root().read(long::is_written_in)?;
+        if is_long { Err(located(&document, refused_as_pair())) } else { Ok(()) }
+    }
+
+    /// Whether a text is the long form of a scenario file: it has a section that only shafts of beams have, and none that only a rig has.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    ///
+    /// # Errors
+    /// Text that is not TOML; sections of both forms.
+    pub fn is_long_form(text: &str) -> Result<bool, ScenarioError> {
+        let document = TomlDocument::parse(text)?;
+        Ok(document.root().read(long::is_written_in)?)
     }
 }
 
@@ -114,59 +163,13 @@ fn read_and_validate(
     limit: MemoryLimit,
 ) -> Result<Scenario, ScenarioError> {
     let document = TomlDocument::parse(text)?;
-    if Gearbox::is_written_in(text)? {
-        return Err(document.locate(Gearbox::refused_as_pair()).into());
-    }
-    let scenario = document.root().read(|root| read_scenario(root, files))?;
+    let scenario = document.root().read(|root| read(root, files))?;
     scenario.validate_within(limit).map(|_| scenario).map_err(|error| located(&document, error))
 }
 
-fn read_scenario(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Scenario> {
-    let mut scenario = Scenario::start();
-    read_keys(&mut scenario, root, files)?;
-    section(&mut scenario.gears, root, "gears", files)?;
-    section(&mut scenario.operation, root, "operation", files)?;
-    section(&mut scenario.quality, root, "quality", files)?;
-    scenario.faults = Fault::list_from_table(root)?;
-    section(&mut scenario.rig, root, "rig", files)?;
-    scenario.sensors = Sensor::list_from_table(root, files)?;
-    section(&mut scenario.solver, root, "solver", files)?;
-    Ok(scenario)
-}
-
-fn section<S: Keys>(
-    parameters: &mut S,
-    root: &TomlTable<'_>,
-    name: &'static str,
-    files: &dyn NumberFiles,
-) -> ReadResult<()> {
-    root.table_or_empty(name)?.read(|table| {
-        refuse_not_modelled(name, table)?;
-        read_keys(parameters, table, files)
-    })
-}
-
-/// Keys that users may expect, and what is said of them: names of former versions, and what is not modelled.
-const NOT_MODELLED: [(&str, &str, &str); 7] = [
-    (
-        "gears",
-        "crowning_mm",
-        "is now called uniform_flank_reduction_mm: it is a constant reduction of the whole flank; lead crowning is lead_crowning_um",
-    ),
-    ("gears", "profile_crowning_um", "is not modelled: flank_relief relieves the profile's ends"),
-    ("gears", "internal", "is not modelled: both wheels are external gears"),
-    ("gears", "shaft_angle_deg", "is not modelled: the shafts are parallel"),
-    ("gears", "rim_thickness_mm", "is not modelled: the wheels' bodies are solid"),
-    ("operation", "temperature_c", "is not modelled: heat and oil are not simulated"),
-    ("operation", "oil_viscosity_mm2_per_s", "is not modelled: heat and oil are not simulated"),
-];
-
-fn refuse_not_modelled(section: &str, table: &TomlTable<'_>) -> ReadResult<()> {
-    let of_section = NOT_MODELLED.iter().filter(|(of, ..)| *of == section);
-    match of_section.map(|(_, key, problem)| (*key, *problem)).find(|(key, _)| table.has(key)) {
-        Some((key, problem)) => Err(table.error(key, problem).of_kind(ErrorKind::UnknownKey)),
-        None => Ok(()),
-    }
+/// Reads the form that a table has the sections of.
+fn read(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Scenario> {
+    if long::is_written_in(root)? { long::read(root, files) } else { short::read(root, files) }
 }
 
 /// An error with its line. One about deviations that came from a file is about the key that names the file, in `quality` or in `wheel[n]`.

@@ -88,7 +88,7 @@ fn speed_profile(scenario: &Scenario) -> Option<Candidate> {
 fn speed(scenario: &Scenario) -> Option<Candidate> {
     let Solver { duration_s: None, pinion_revolutions: None, .. } = scenario.solver else { return None };
     let speed_hz = scenario.operation.pinion_speed_hz;
-    let revolutions = crate::operation::nominal_revolutions(scenario.gears.gear_teeth);
+    let revolutions = crate::operation::nominal_revolutions(scenario.gears().gear_teeth);
     let seconds = f64::from(revolutions) / speed_hz;
     let help = format!(
         "raise it: {revolutions} revolutions of the pinion are simulated, which take {seconds:.4e} s at this speed"
@@ -99,14 +99,14 @@ fn speed(scenario: &Scenario) -> Option<Candidate> {
 }
 
 fn teeth(scenario: &Scenario) -> Candidate {
-    let gears = &scenario.gears;
+    let gears = &scenario.gears();
     let multiple = least_common_multiple(gears.pinion_teeth, gears.gear_teeth);
     let help = format!(
         "use tooth counts with a common factor, or fewer teeth: the cycle is divided by the counts' least common multiple, here \
          {multiple}, and without solver.duration_s twice as many revolutions as the gear has teeth are simulated"
     );
     Candidate::new(scenario, "gears.gear_teeth", gears.gear_teeth.to_string(), help, |ordinary| {
-        ordinary.gears.pinion_teeth = gears.gear_teeth;
+        ordinary.wheels[0].teeth = gears.gear_teeth;
     })
 }
 

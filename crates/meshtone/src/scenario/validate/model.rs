@@ -9,9 +9,9 @@ use crate::scenario::Scenario;
 use crate::wheel::{Gears, TipRelief, WheelName};
 
 /// Refuses keys that have no meaning under the scenario's model and whose defaults cannot stand for them.
-pub(super) fn check(scenario: &Scenario) -> Check {
+pub(super) fn check(scenario: &Scenario, rig: &Rig) -> Check {
     if scenario.model.has_meshes() {
-        refuse_keys_of_published(scenario)
+        refuse_keys_of_published(scenario, rig)
     } else {
         refuse_unknown_to_published(scenario)
     }
@@ -34,8 +34,8 @@ pub(crate) fn unknown_kind(damage: &Damage) -> ScenarioError {
 }
 
 /// Refuses keys that only a machine has whose wheels tilt on springs and whose modes are those of the closed mean mesh.
-fn refuse_keys_of_published(scenario: &Scenario) -> Check {
-    let (rig, model) = (&scenario.rig, scenario.model);
+fn refuse_keys_of_published(scenario: &Scenario, rig: &Rig) -> Check {
+    let model = scenario.model;
     let stiffness = rig.wheel_rotational_stiffness_nm_per_rad;
     let is_given = stiffness != Rig::start().wheel_rotational_stiffness_nm_per_rad;
     let ratios = match rig.damping_ratio {
@@ -67,19 +67,20 @@ const ONE_PLACE: &str = "the published model supports only one fault, on the gea
 
 /// Refuses helical wheels and other wheels than standard ones, those whose tips the relief takes away, and other faults than one, always on the same tooth.
 fn refuse_unknown_to_published(scenario: &Scenario) -> Check {
-    if let Some((key, value)) = scenario.gears.beyond_standard().first() {
+    let gears = scenario.gears();
+    if let Some((key, value)) = gears.beyond_standard().first() {
         let problem = if *key == "gears.helix_angle_deg" { ONLY_SPUR } else { ONLY_STANDARD };
         return Err(ScenarioError::new(*key, format!("{value:?}"), problem).with_help(STANDARD_HELP));
     }
-    relief_leaves_tips(&scenario.gears)?;
+    relief_leaves_tips(&gears)?;
     let error = match scenario.faults.as_slice() {
         [] => return Ok(()),
         // Before its place, which the file may not say.
         [fault] if !KINDS_OF_PUBLISHED.contains(&fault.damage.kind()) => {
             return Err(unknown_kind(&fault.damage));
         }
-        [fault] if fault.wheel != WheelName::Gear => {
-            ScenarioError::new("fault.wheel", format!("\"{}\"", fault.wheel.name()), ONE_PLACE)
+        [fault] if fault.side() != WheelName::Gear => {
+            ScenarioError::new("fault.wheel", format!("{:?}", fault.wheel), ONE_PLACE)
         }
         [fault] if fault.tooth.only() != Some(1) => {
             ScenarioError::new("fault.tooth", &fault.tooth, ONE_PLACE)

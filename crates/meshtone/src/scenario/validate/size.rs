@@ -55,16 +55,16 @@ impl Scenario {
     /// assert_eq!(scenario.memory_estimate_bytes() / 1_000_000, 25);
     /// ```
     pub fn memory_estimate_bytes(&self) -> u64 {
-        let time = self.time_grid();
-        let cycle = CycleGrid::new(self.gears.pinion_teeth, self.gears.gear_teeth, time.sampling_rate_hz);
+        let (time, gears) = (self.time_grid(), self.gears());
+        let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
         let filters = |sensor: &Sensor| sensor.resonance_hz.is_some() || sensor.frequency_response.is_some();
         let filtered = if self.sensors.iter().any(filters) { FILTERED_CHANNELS } else { 0.0 };
         let numbers = time.kept_samples() as f64 * (KEPT_CHANNELS + self.sensors.len() as f64 + filtered)
             + time.samples as f64 * EXCITATION_CHANNELS
             + cycle.points_per_gear_revolution as f64 * GRID_CHANNELS
-            + 2.0 * self.gears.points_per_tooth as f64 * PROFILE_CHANNELS
+            + 2.0 * gears.points_per_tooth as f64 * PROFILE_CHANNELS
             + self.damaged_kinds().iter().sum::<usize>() as f64
-                * self.gears.points_per_tooth as f64
+                * gears.points_per_tooth as f64
                 * DAMAGED_CHANNELS
             + (self.pair_classes() - 1) as f64 * self.points_per_class(&time) * PAIR_CHANNELS;
         (numbers * BYTES_PER_NUMBER) as u64
@@ -75,11 +75,12 @@ impl Scenario {
     /// Number of kinds of damaged teeth of the pinion and of the gear: teeth with the same faults are of one, and each tooth that
     /// something is drawn for is of its own.
     fn damaged_kinds(&self) -> [usize; 2] {
+        let gears = self.gears();
         WheelName::BOTH.map(|wheel| {
             let mut kinds = BTreeSet::new();
-            for tooth in 1..=self.gears.teeth(wheel) {
+            for tooth in 1..=gears.teeth(wheel) {
                 let on_tooth =
-                    |(_, fault): &(usize, &Fault)| fault.wheel == wheel && fault.tooth.contains(tooth);
+                    |(_, fault): &(usize, &Fault)| fault.side() == wheel && fault.tooth.contains(tooth);
                 let on_tooth: Vec<(usize, &Fault)> =
                     self.faults.iter().enumerate().filter(on_tooth).collect();
                 let is_drawn = on_tooth.iter().any(|(_, fault)| fault.damage.is_drawn());
@@ -95,13 +96,14 @@ impl Scenario {
     /// Largest number of classes of pairs that they make, that of sound teeth included.
     pub(super) fn pair_classes(&self) -> usize {
         let [pinion, gear] = self.damaged_kinds();
-        let met = least_common_multiple(self.gears.pinion_teeth, self.gears.gear_teeth);
+        let gears = self.gears();
+        let met = least_common_multiple(gears.pinion_teeth, gears.gear_teeth);
         ((pinion + 1) * (gear + 1)).min(met as usize + 1)
     }
 
     /// Points of a class's table.
     fn points_per_class(&self, time: &TimeGrid) -> f64 {
-        PAIR_PITCHES * time.samples_per_pinion_revolution as f64 / f64::from(self.gears.pinion_teeth)
+        PAIR_PITCHES * time.samples_per_pinion_revolution as f64 / f64::from(self.gears().pinion_teeth)
     }
 }
 

@@ -13,17 +13,17 @@ const USUAL_M_PER_S: f64 = 60.0;
 const TOLERATED_MEAN: f64 = 0.2;
 
 /// The speed of the shaft that the motor drives.
-pub(in crate::scenario) struct DrivenSpeed<'a> {
-    pub(in crate::scenario) operation: &'a Operation,
+pub(super) struct DrivenSpeed<'a> {
+    pub(super) operation: &'a Operation,
     /// Key of the nominal speed.
-    pub(in crate::scenario) key: &'static str,
+    pub(super) key: &'static str,
     /// (mm) Largest π m z of a wheel on that shaft; of a wheel on another, in a revolution of that shaft.
-    pub(in crate::scenario) pitch_line_mm: f64,
+    pub(super) pitch_line_mm: f64,
 }
 
 impl DrivenSpeed<'_> {
     /// Refuses a speed that no gear survives: one in revolutions per minute, most probably.
-    pub(in crate::scenario) fn check(&self) -> Check {
+    pub(super) fn check(&self) -> Check {
         let (key, speed_hz) = self.fastest();
         let speed_m_per_s = self.pitch_line_m_per_s(speed_hz);
         if speed_m_per_s <= FASTEST_M_PER_S {
@@ -48,7 +48,7 @@ impl DrivenSpeed<'_> {
     }
 
     /// Speeds that may be a typing error.
-    pub(in crate::scenario) fn warnings(&self) -> Vec<ScenarioWarning> {
+    pub(super) fn warnings(&self) -> Vec<ScenarioWarning> {
         [self.unusual(), self.far_from_nominal()].into_iter().flatten().collect()
     }
 
@@ -85,7 +85,7 @@ impl DrivenSpeed<'_> {
     }
 
     /// The key of the fastest speed, and the speed.
-    pub(in crate::scenario) fn fastest(&self) -> (String, f64) {
+    pub(super) fn fastest(&self) -> (String, f64) {
         let nominal = (self.key.to_owned(), self.operation.pinion_speed_hz);
         let values = self.operation.speed_profile_hz.iter().flat_map(|profile| &profile.value).enumerate();
         values.fold(nominal, |(key, fastest), (index, &value)| {
@@ -103,6 +103,6 @@ impl DrivenSpeed<'_> {
 }
 
 /// (mm) π m z.
-pub(in crate::scenario) fn pitch_line_mm(module_mm: f64, teeth: u32) -> f64 {
+pub(super) fn pitch_line_mm(module_mm: f64, teeth: u32) -> f64 {
     PI * module_mm * f64::from(teeth)
 }

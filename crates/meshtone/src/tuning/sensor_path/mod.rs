@@ -13,7 +13,6 @@ pub use error::{PathError, RecordingProblem};
 pub use recording::HealthyRecording;
 
 use std::ops::RangeInclusive;
-use std::sync::atomic::Ordering;
 
 use cells::{Cells, MeshOrders};
 use minimum_phase::minimum_phase_deg;
@@ -21,13 +20,13 @@ use recording::{InputRecording, Piece, pieces};
 use smoothing::{CellLevel, smooth};
 
 use super::ExperimentControl;
-use crate::batch::{Control, Keep, simulate_many, simulate_many_gearboxes};
+use crate::batch::{Control, Keep, simulate_many};
 use crate::error::{Error, ScenarioError};
 use crate::random::{Draws, Purpose};
-use crate::scenario::{Gearbox, Quality, Scenario, ScenarioForm, Sensor};
+use crate::scenario::{Scenario, ScenarioWheel, Sensor};
 use crate::sensor::{Channel, FrequencyResponse, ResponseInput};
 use crate::signal::{AngularSettings, GearTrain, SignalError, angular_resample, lines_off_shafts};
-use crate::simulate::{Simulation, Stages};
+use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
 
 /// (s) What is simulated before a piece of a recording, for the vibration to settle.
@@ -117,12 +116,12 @@ impl PathEstimate {
 /// # Errors
 /// A recording that is too short, or unlike this machine; recordings that no path explains; a scenario that cannot be simulated.
 pub fn estimate_path(
-    scenario: &ScenarioForm,
+    scenario: &Scenario,
     recordings: &[HealthyRecording],
     settings: &PathSettings,
     control: &ExperimentControl,
 ) -> Result<PathEstimate, PathError> {
-    let train = GearTrain::of_form(scenario)?;
+    let train = GearTrain::of_scenario(scenario)?;
     let meshes = MeshOrders::of(&train);
     if recordings.is_empty() {
         return Err(PathError::NoRecording);
@@ -130,10 +129,7 @@ pub fn estimate_path(
     if !PathSettings::DRAWS.contains(&settings.draws) {
         return Err(PathError::Draws { draws: settings.draws, allowed: PathSettings::DRAWS });
     }
-    match scenario {
-        ScenarioForm::Pair(scenario) => check_pair(scenario)?,
-        ScenarioForm::Gearbox(gearbox) => check_wheels(gearbox)?,
-    }
+    check_wheels(scenario)?;
     let refused = |index| move |problem| PathError::Recording { index, problem };
     let over_input = recordings.iter().enumerate();
     let over_input = over_input.map(|(index, of)| of.over_input(&train).map_err(refused(index)));
@@ -143,13 +139,10 @@ pub fn estimate_path(
         recording.check(&train).map_err(refused(index))?;
     }
     let rate_hz = recordings.iter().map(|recording| recording.sampling_rate_hz).fold(f64::INFINITY, f64::min);
-    let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * nominal_rate_hz(scenario));
+    let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * scenario.solver.sampling_rate_hz);
     let cells = Cells::new(&pieces, window_s, [most_hz, rate_hz / 2.0], &meshes);
     let measured = measured_powers(&over_input, &pieces, &cells, &train)?;
-    let simulated = match scenario {
-        ScenarioForm::Pair(scenario) => simulated_pairs(scenario, &pieces, &cells, settings, control)?,
-        ScenarioForm::Gearbox(gearbox) => simulated_gearboxes(gearbox, &pieces, &cells, settings, control)?,
-    };
+    let simulated = simulated(scenario, &pieces, &cells, settings, control)?;
     let levels = levels(&cells, &measured, &simulated);
     if levels.is_empty() {
         return Err(PathError::OnlyNoise);
@@ -181,54 +174,29 @@ pub fn estimate_path(
     })
 }
 
-/// (S/s) The sampling rate that a scenario states.
-fn nominal_rate_hz(scenario: &ScenarioForm) -> f64 {
-    scenario.solver().sampling_rate_hz
-}
-
-/// Refuses a pair of which every draw is the same, or whose sensor shows forces.
-fn check_pair(scenario: &Scenario) -> Result<(), ScenarioError> {
+/// Refuses wheels of which every draw is the same, and a sensor that shows forces.
+fn check_wheels(scenario: &Scenario) -> Result<(), ScenarioError> {
     if scenario.sensors.first().is_some_and(|sensor| sensor.response_input == ResponseInput::Force) {
         let problem = "the path that is estimated is a ratio of accelerations";
         return Err(ScenarioError::new("sensor.response_input", "\"force\"", problem)
             .with_help("remove response_input")
             .in_entry("sensor", 0, scenario.sensors.len()));
     }
-    check_is_drawn(&scenario.quality)
-}
-
-/// Refuses a gearbox with a wheel of which every draw is the same.
-fn check_wheels(gearbox: &Gearbox) -> Result<(), ScenarioError> {
-    let help = "state the class of the wheels with wheel.iso_class or wheel.din_grade";
-    let wheels = gearbox.wheels.len();
-    if let Some(given) = gearbox.wheels.iter().position(|wheel| wheel.profile_errors_mm.is_some()) {
-        let problem = "given, so that no draw of the wheel differs from another";
-        let error = ScenarioError::new("wheel.profile_errors_mm", "", problem).with_help(help);
-        return Err(error.in_entry("wheel", given, wheels));
+    let key = |wheel: usize, key: &str| scenario.key_of_quality(wheel, key);
+    let help =
+        format!("state the grade of the wheels with {} or {}", key(0, "din_grade"), key(0, "iso_class"));
+    if let Some(given) = scenario.wheels.iter().position(|wheel| wheel.profile_errors_mm.is_some()) {
+        let problem = "the errors of the teeth are given, so that no draw of the wheels differs from another";
+        let help =
+            format!("leave errors_file and profile errors out, and {help}, by which the wheels are drawn");
+        return Err(ScenarioError::new(key(given, "profile_errors_mm"), "", problem).with_help(help));
     }
-    if let Some(ideal) = gearbox.wheels.iter().position(|wheel| wheel.din_grade == 0 && wheel.iso_class == 0)
-    {
-        let problem = "an ideal wheel has no sidebands, and no draw of it differs from another";
-        let error = ScenarioError::new("wheel.iso_class", 0, problem).with_help(help);
-        return Err(error.in_entry("wheel", ideal, wheels));
+    let is_ideal = |wheel: &ScenarioWheel| wheel.din_grade == 0 && wheel.iso_class == 0;
+    if let Some(ideal) = scenario.wheels.iter().position(is_ideal) {
+        let problem = "ideal wheels have no sidebands, and no draw of them differs from another";
+        return Err(ScenarioError::new(key(ideal, "din_grade"), 0, problem).with_help(help));
     }
     Ok(())
-}
-
-/// Refuses wheels of which every draw is the same.
-fn check_is_drawn(quality: &Quality) -> Result<(), ScenarioError> {
-    let help = "state the grade of the wheels with quality.din_grade or quality.iso_class";
-    if quality.profile_errors.is_some() {
-        let problem = "the errors of the teeth are given, so that no draw of the wheels differs from another";
-        Err(ScenarioError::new("quality", "", problem).with_help(format!(
-            "leave errors_file and profile errors out, and {help}, by which the wheels are drawn"
-        )))
-    } else if quality.din_grade == 0 && quality.iso_class == 0 {
-        let problem = "ideal wheels have no sidebands, and no draw of them differs from another";
-        Err(ScenarioError::new("quality.din_grade", 0, problem).with_help(help))
-    } else {
-        Ok(())
-    }
 }
 
 /// (g²/Hz) Power of the recordings in each cell; 0 in a cell of hardly more than noise.
@@ -318,53 +286,6 @@ fn seeds(settings: &PathSettings) -> Vec<u64> {
     (0..settings.draws as u64).map(seed).collect()
 }
 
-/// (g²/Hz) Power in each cell of simulations of a gearbox with each draw of its wheels, piece by piece.
-fn simulated_gearboxes(
-    gearbox: &Gearbox,
-    pieces: &[Piece],
-    cells: &Cells,
-    settings: &PathSettings,
-    control: &ExperimentControl,
-) -> Result<Vec<Vec<f64>>, PathError> {
-    let seeds = seeds(settings);
-    let all = pieces.len() * seeds.len();
-    let mut powers = vec![vec![0.0; cells.cells.len()]; seeds.len()];
-    for (number, piece) in pieces.iter().enumerate() {
-        if control.cancelled.load(Ordering::Relaxed) {
-            return Err(PathError::Cancelled);
-        }
-        let of_piece = gearbox_at_speed_of(gearbox, piece);
-        let drawn: Vec<Gearbox> = seeds.iter().map(|&seed| Gearbox { seed, ..of_piece.clone() }).collect();
-        let keep = |_: usize, Simulation { channels, .. }: Simulation| {
-            let shown = channels.signals.first().map_or(&[][..], |signal| &signal.values);
-            cells.powers(number, &cells.spectra(number, shown, channels.sampling_rate_hz))
-        };
-        let mut of_draws = Vec::with_capacity(drawn.len());
-        simulate_many_gearboxes(drawn, &keep, &Control::default(), |_, powers| of_draws.push(powers));
-        for (sums, of_draw) in powers.iter_mut().zip(of_draws) {
-            sums.iter_mut().zip(of_draw?).for_each(|(sum, power)| *sum += power);
-        }
-        (control.progress)((number + 1) * seeds.len(), all);
-    }
-    Ok(powers)
-}
-
-/// The healthy gearbox at the speed of a piece of a recording.
-fn gearbox_at_speed_of(gearbox: &Gearbox, piece: &Piece) -> Gearbox {
-    let mut healthy = gearbox.clone();
-    healthy.faults.clear();
-    // Each draw has wheels of its own.
-    healthy.wheels_seed = None;
-    healthy.sensors = gearbox.all_sensors().into_iter().take(1).collect();
-    healthy.sensors.iter_mut().for_each(|of| of.sensor = without_path(of.sensor.clone()));
-    let drive = &mut healthy.operation.drive;
-    drive.pinion_speed_hz = piece.mean_speed_hz();
-    drive.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
-    drive.torque_profile_nm = None;
-    healthy.solver.settings.discard_and_keep(SETTLING_S, piece.length_s);
-    healthy
-}
-
 /// A sensor that shows the motion of its place, through its wall and its mounted resonance alone.
 fn without_path(sensor: Sensor) -> Sensor {
     Sensor {
@@ -377,8 +298,8 @@ fn without_path(sensor: Sensor) -> Sensor {
     }
 }
 
-/// (g²/Hz) Power in each cell of simulations of a pair with each draw of the wheels.
-fn simulated_pairs(
+/// (g²/Hz) Power in each cell of simulations with each draw of the wheels.
+fn simulated(
     scenario: &Scenario,
     pieces: &[Piece],
     cells: &Cells,
@@ -411,9 +332,10 @@ fn simulated_pairs(
 /// The healthy machine at the speed of a piece of a recording.
 fn at_speed_of(scenario: &Scenario, piece: &Piece) -> Scenario {
     let mut healthy = scenario.clone().with_faults(Vec::new());
-    healthy.sensors = vec![without_path(scenario.sensors.first().cloned().unwrap_or_default())];
+    let first = scenario.all_sensors().into_iter().next();
+    healthy.sensors = vec![without_path(first.unwrap_or_default())];
     // Other wheels than those of the scenario's own.
-    healthy.quality.seed = None;
+    healthy.wheels_seed = None;
     healthy.operation.pinion_speed_hz = piece.mean_speed_hz();
     healthy.operation.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
     healthy.operation.torque_profile_nm = None;
@@ -460,7 +382,7 @@ impl Keep for KeepPowers<'_> {
     type Kept = Vec<f64>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        Ok(vec![Channel::leading(&scenario.sensors).output(&scenario.sensors)?])
+        Ok(vec![Channel::leading(&scenario.sensors).output_of(scenario)?])
     }
 
     fn kept_bytes(&self, _: &Scenario) -> usize {

@@ -2,17 +2,15 @@
 
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use super::measured::{DEVIATION_KEYS, WheelDeviations};
+use super::measured::WheelDeviations;
 use crate::error_table::ErrorTable;
-use crate::keys::{
-    Field, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, documented, field, load, row,
-};
+use crate::keys::{KeyKind, KeyValue, NumberFiles, Written, array, load};
 use crate::wheel::WheelName;
 
 /// Number of radii at which a tooth's profile error is given.
 pub const ERROR_POINTS: usize = 100;
 
-/// Manufacturing quality of the teeth.
+/// Manufacturing quality of the teeth of two wheels in mesh, which a scenario states wheel by wheel.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Quality {
@@ -86,174 +84,6 @@ impl Quality {
     /// Other deviations of a wheel that are given instead of drawn.
     pub(crate) fn given(&self, wheel: WheelName) -> &WheelDeviations {
         wheel.choose(&self.pinion_deviations, &self.gear_deviations)
-    }
-}
-
-/// The rows of a wheel's deviations that are given beside the profiles.
-macro_rules! deviation_rows {
-    ($field:ident, $keys:expr) => {{
-        let [pitch, run_out, phase, helix] = $keys;
-        [
-            row(
-                pitch,
-                "µm",
-                "the working flanks' cumulative pitch deviations along the pitch circle, positive where \
-                 metal is added; they are added to given profile errors",
-                field!($field.cumulative_pitch_um),
-            )
-            .otherwise("drawn, or none beside given profile errors")
-            .rule("one a tooth, each below the module")
-            .alternative("[ one number a tooth ]"),
-            row(
-                run_out,
-                "µm",
-                "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)",
-                field!($field.run_out_um),
-            )
-            .otherwise("drawn, or none beside given profile errors or pitches, which contain it")
-            .range(Range::not_negative().implausible_above(1e4))
-            .alternative("0.0"),
-            row(
-                phase,
-                "rad",
-                "its phase φ; θ counts from where the wheel's first tooth enters contact",
-                field!($field.run_out_phase_rad),
-            )
-            .otherwise("drawn, or 0 beside given profile errors")
-            .alternative("0.0"),
-            row(
-                helix,
-                "µm",
-                "the helix slope deviation over the face width, positive where metal is added towards positive z",
-                field!($field.helix_slope_um),
-            )
-            .otherwise("drawn, or none beside given profile errors")
-            .range(Range::from_to(-1e3, 1e3))
-            .alternative("0.0"),
-        ]
-    }};
-}
-
-const ERROR_KEYS: [&str; 2] = ["pinion_profile_errors_mm", "gear_profile_errors_mm"];
-
-impl Keys for Quality {
-    const SECTION: &str = "quality";
-
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        let share = |name, meaning, field| row(name, "-", meaning, field).range(Range::from_to(0.0, 1.0));
-        let errors_row = |name, field| {
-            row(name, "mm", "the profile errors, instead of a draw: 100 rows of one number a tooth", field)
-                .otherwise("none")
-                .rule("100 × teeth, each below the module")
-                .alternative("[ 100 rows of one number a tooth ]")
-        };
-        vec![
-            row(
-                "din_grade",
-                "",
-                "the grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth",
-                field!(din_grade),
-            )
-            .range(Range::from_to(0.0, 12.0).message(
-                "must be a whole number from 0 to 12: a grade of DIN 3961, from 1 (best) to 12, or 0 for ideal teeth",
-            )),
-            row(
-                "seed",
-                "",
-                "the seed of the wheels alone, for several scenarios of the same wheels",
-                field!(seed),
-            )
-            .otherwise("the scenario's `seed`")
-            .alternative("2"),
-            row(
-                "iso_class",
-                "",
-                "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none",
-                field!(iso_class),
-            )
-            .range(Range::from_to(0.0, 11.0).message(
-                "must be a whole number from 0 to 11: a class of ISO 1328-1:2013, from 1 (best) to 11, or 0 for none",
-            )),
-            share(
-                "tooth_share",
-                "the part of the tolerances of profile slope and form that each tooth has of its own; the rest is \
-                 common to a wheel's teeth",
-                field!(tooth_share),
-            ),
-            share(
-                "pitch_share",
-                "a wheel's largest single pitch deviation over its tolerance f_p",
-                field!(pitch_share),
-            ),
-            share("run_out_share", "a wheel's run-out over its tolerance F_r", field!(run_out_share)),
-            share(
-                "helix_share",
-                "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ",
-                field!(helix_share),
-            ),
-            documented(
-                "errors_file",
-                "an .npz with the profile errors, instead of a draw, as `meshtone wheels` writes it; its entries are \
-                 the keys below",
-                KeyKind::File,
-            )
-            .otherwise("none")
-            .alternative("\"wheels.npz\""),
-            errors_row(
-                ERROR_KEYS[0],
-                Field::new(
-                    |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.pinion_profile_errors_mm),
-                    |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.pinion_profile_errors_mm),
-                ),
-            ),
-            errors_row(
-                ERROR_KEYS[1],
-                Field::new(
-                    |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.gear_profile_errors_mm),
-                    |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.gear_profile_errors_mm),
-                ),
-            ),
-        ]
-        .into_iter()
-        .chain(deviation_rows!(pinion_deviations, DEVIATION_KEYS[0]))
-        .chain(deviation_rows!(gear_deviations, DEVIATION_KEYS[1]))
-        .collect()
-    }
-
-    /// Profile errors from a file, from the two inline keys, or none.
-    fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        let file = table.optional("errors_file");
-        let [pinion, gear] = ERROR_KEYS.map(|key| table.optional(key));
-        self.profile_errors = match (file, pinion, gear) {
-            (None, None, None) => None,
-            (Some(file), None, None) => {
-                let [pinion_profile_errors_mm, gear_profile_errors_mm] =
-                    load(&file, |name| files.matrices(name))?;
-                [self.pinion_deviations, self.gear_deviations] = file_deviations(table, &file, files, Some)?;
-                Some(ProfileErrors { pinion_profile_errors_mm, gear_profile_errors_mm })
-            }
-            (None, Some(_), Some(_)) => Some(ProfileErrors {
-                pinion_profile_errors_mm: ErrorTable::default(),
-                gear_profile_errors_mm: ErrorTable::default(),
-            }),
-            (Some(_), _, _) => {
-                return Err(table
-                    .error("errors_file", "given beside inline profile errors; they have only one source")
-                    .with_help(
-                        "remove errors_file, or pinion_profile_errors_mm and gear_profile_errors_mm",
-                    ));
-            }
-            (None, pinion, _) => {
-                let missing = if pinion.is_some() { ERROR_KEYS[1] } else { ERROR_KEYS[0] };
-                let problem = "missing; profile errors are given for both wheels or for neither";
-                return Err(table.error(missing, problem));
-            }
-        };
-        Ok(())
     }
 }
 

@@ -18,7 +18,7 @@ pub struct WheelDeviations {
 }
 
 /// The keys of both wheels' deviations, which are the names of a file's entries too: the pinion's, then the gear's.
-pub(super) const DEVIATION_KEYS: [[&str; 4]; 2] = [
+pub(crate) const DEVIATION_KEYS: [[&str; 4]; 2] = [
     ["pinion_cumulative_pitch_um", "pinion_run_out_um", "pinion_run_out_phase_rad", "pinion_helix_slope_um"],
     ["gear_cumulative_pitch_um", "gear_run_out_um", "gear_run_out_phase_rad", "gear_helix_slope_um"],
 ];

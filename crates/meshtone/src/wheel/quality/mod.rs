@@ -11,6 +11,7 @@ pub use crate::error_table::ErrorTable;
 pub use deviations::{Deviations, RunOut, deviations};
 pub(crate) use errors::file_deviations;
 pub use errors::{ERROR_POINTS, ProfileErrors, Quality};
+pub(crate) use measured::DEVIATION_KEYS;
 pub use measured::WheelDeviations;
 pub(crate) use rules::{check_errors, ignored_shares, one_source};
 pub use tolerances::Tolerances;

@@ -3,13 +3,12 @@
 use super::{ERROR_POINTS, Quality, WheelDeviations};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::error_table::ErrorTable;
-use crate::keys::{Check, check_keys, refuse, require};
+use crate::keys::{Check, refuse, require};
 use crate::wheel::{Gears, WheelName};
 
 impl Quality {
-    /// Every key alone, and the profile errors with the wheels that have them.
+    /// The deviations with the wheels that have them; every key alone is in its range.
     pub(crate) fn check(&self, gears: &Gears) -> Check {
-        check_keys(self, "quality")?;
         one_source("quality", self.din_grade, self.iso_class, self.profile_errors.is_some())?;
         for wheel in WheelName::BOTH {
             let key = format!("quality.{}_cumulative_pitch_um", wheel.name());

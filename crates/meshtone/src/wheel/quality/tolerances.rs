@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn iso_classes_as_computed_elsewhere() {
-        let wheel = |name| Wheel::new(&Scenario::new(GearPair::example()).gears, name, 10.0);
+        let wheel = |name| Wheel::new(&Scenario::new(GearPair::example()).gears(), name, 10.0);
         for (name, class, expected) in [
             (WheelName::Pinion, 6, [8.840, 25.639, 7.426, 9.405, 8.079, 8.829]),
             (WheelName::Gear, 7, [12.628, 40.401, 10.628, 13.300, 11.779, 12.980]),
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn din_grades_step_by_1_4_and_1_6() {
-        let wheel = Wheel::new(&Scenario::new(GearPair::example()).gears, WheelName::Pinion, 10.0);
+        let wheel = Wheel::new(&Scenario::new(GearPair::example()).gears(), WheelName::Pinion, 10.0);
         let of = |grade| Tolerances::din_3961(&wheel, grade);
         for (finer, coarser, step) in [(4, 5, 1.4), (8, 9, 1.4), (9, 10, 1.6), (11, 12, 1.6)] {
             assert!((of(coarser).run_out_um / of(finer).run_out_um - step).abs() < 1e-12);

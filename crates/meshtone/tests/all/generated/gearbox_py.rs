@@ -5,7 +5,7 @@ use meshtone::scenario::{KeyDescription, KeyKind, gearbox_sections};
 use super::python::{HEAD, class_name, inside, table_class};
 
 /// Types that a pair has too: they are imported.
-const OF_PAIR: [&str; 5] = ["EndRelief", "FlankRelief", "Profile", "Unbalance", "WheelInertia"];
+const OF_PAIR: [&str; 6] = ["EndRelief", "FlankRelief", "Foundation", "Profile", "Unbalance", "WheelInertia"];
 const OF_SENSOR: &str = "SensorPath";
 
 /// The file: a class for each section, before it those of its tables.

@@ -1,35 +1,22 @@
-//! Where the sensors of a gearbox sit.
+//! Where sensors among shafts of beams sit.
 
 use super::layout::entry_key;
-use super::{Gearbox, GearboxLayout, GearboxSensor};
+use super::{Layout, Scenario};
 use crate::error::ScenarioError;
 use crate::machine::GearboxPlace;
 
 /// (-) How far from a bearing's place, as a part of the shaft's length, a sensor that names it may be.
 const SAME_PLACE: f64 = 1e-6;
 
-impl Gearbox {
-    /// The sensors: the listed ones, or a vertical one on every bearing's seat.
-    pub fn all_sensors(&self) -> Vec<GearboxSensor> {
-        if !self.sensors.is_empty() {
-            return self.sensors.clone();
-        }
-        self.bearings.iter().map(|bearing| GearboxSensor::new(&bearing.seat_name())).collect()
-    }
-
-    /// The channel of the first of [`Self::all_sensors`].
-    pub fn leading_channel(&self) -> String {
-        self.all_sensors().first().map(GearboxSensor::channel).unwrap_or_default()
-    }
-
+impl Scenario {
     /// Where each of [`Self::all_sensors`] sits.
     ///
     /// # Arguments
-    /// * `layout` - of this gearbox
+    /// * `layout` - of this scenario
     ///
     /// # Errors
     /// A place that there is not; a name that two sensors have.
-    pub fn places(&self, layout: &GearboxLayout) -> Result<Vec<GearboxPlace>, ScenarioError> {
+    pub fn places(&self, layout: &Layout) -> Result<Vec<GearboxPlace>, ScenarioError> {
         let sensors = self.all_sensors();
         let entries = sensors.len();
         let mut places = Vec::with_capacity(entries);
@@ -41,20 +28,21 @@ impl Gearbox {
                 let error = ScenarioError::new(key, format!("{name:?}"), problem);
                 return Err(error.with_help("give it a name of its own"));
             }
-            let place = self.place(&sensor.at, layout);
+            let place = self.place(sensor.at.name(), layout);
             places.push(place.map_err(|problem| {
                 let at = entry_key("sensor", index, entries, "at");
-                ScenarioError::new(at, format!("{:?}", sensor.at), problem).with_help(self.known_places())
+                ScenarioError::new(at, format!("{:?}", sensor.at.name()), problem)
+                    .with_help(self.known_places())
             })?);
         }
         Ok(places)
     }
 
-    fn place(&self, at: &str, layout: &GearboxLayout) -> Result<GearboxPlace, String> {
+    fn place(&self, at: &str, layout: &Layout) -> Result<GearboxPlace, String> {
         let parts: Vec<&str> = at.splitn(2, ':').collect();
         let along = |text: &str| {
             let (shaft, place) = text.split_once(':')?;
-            let number = self.shafts.iter().position(|known| known.name == shaft)?;
+            let number = self.shafts().iter().position(|known| known.name == shaft)?;
             let place: f64 = place.trim().parse().ok()?;
             (0.0..=1.0).contains(&place).then_some((number, place))
         };
@@ -63,7 +51,7 @@ impl Gearbox {
                 let inside = point.trim().strip_prefix('[').and_then(|point| point.strip_suffix(']'));
                 let numbers: Option<Vec<f64>> = inside
                     .and_then(|inside| inside.split(',').map(|number| number.trim().parse().ok()).collect());
-                match (numbers.as_deref(), &self.housing) {
+                match (numbers.as_deref(), self.housing()) {
                     (Some(&[x, y, z]), Some(_)) => Ok(GearboxPlace::Housing([x * 1e-3, y * 1e-3, z * 1e-3])),
                     (Some([_, _, _]), None) => Err("is on the housing, but there is no [housing]".to_owned()),
                     _ => Err("must be \"housing:[x, y, z]\", three numbers in mm".to_owned()),
@@ -78,7 +66,7 @@ impl Gearbox {
             _ => {
                 let (shaft, place) = along(at)
                     .ok_or("must be \"SHAFT:AT\", \"shaft:SHAFT:AT\" or \"housing:[x, y, z]\"".to_owned())?;
-                let mut bearings = self.bearings.iter().zip(&layout.shaft_of_bearing);
+                let mut bearings = self.bearings().iter().zip(&layout.shaft_of_bearing);
                 let seat = bearings
                     .position(|(bearing, of)| *of == shaft && (bearing.at - place).abs() < SAME_PLACE);
                 seat.map(GearboxPlace::Seat).ok_or_else(|| "names no bearing's place".to_owned())
@@ -88,7 +76,7 @@ impl Gearbox {
 
     fn known_places(&self) -> String {
         let seats: Vec<String> =
-            self.bearings.iter().map(|bearing| format!("{:?}", bearing.seat_name())).collect();
+            self.bearings().iter().map(|bearing| format!("{:?}", bearing.seat_name())).collect();
         format!("the bearings' seats are {}", seats.join(", "))
     }
 }

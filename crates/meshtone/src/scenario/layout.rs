@@ -1,12 +1,11 @@
-//! How the shafts, wheels and meshes of a gearbox stand and turn: what its names refer to, centres, speed ratios, phases.
+//! How the shafts, wheels and meshes stand and turn: what their names refer to, centres, speed ratios, phases.
 
 use std::f64::consts::{PI, TAU};
 
-use super::super::Scenario;
-use super::{Gearbox, GearboxMesh, GearboxWheel};
+use super::{Scenario, ScenarioMesh, ScenarioWheel, Shafts};
 use crate::damage::Fault;
 use crate::error::{ScenarioError, ScenarioWarning};
-use crate::machine::Coupled;
+use crate::machine::{Coupled, Rig};
 use crate::wheel::{
     ERROR_POINTS, ErrorTable, Gears, Hand, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
 };
@@ -87,15 +86,19 @@ fn greatest_common_divisor(a: i128, b: i128) -> i128 {
     a
 }
 
-/// How the parts of a machine stand and turn, by their numbers: of a gearbox with its names resolved, or of a pair, which has no bearings here.
+/// How the parts of a machine stand and turn, by their numbers, names resolved. A rig has no bearings here.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct GearboxLayout {
+pub struct Layout {
     /// Number of the shaft of each wheel.
     pub shaft_of_wheel: Vec<usize>,
     /// (mm) Radius of each wheel's bore, that of its shaft there.
     pub bore_radii_mm: Vec<f64>,
-    /// Name of each mesh; none of a pair's, which has only one.
+    /// Name of each shaft; of a rig those of its wheels.
+    pub shaft_names: Vec<String>,
+    /// Number of the shaft that the motor is coupled to.
+    pub input: usize,
+    /// Name of each mesh; none of a rig's, which has only one.
     pub mesh_names: Vec<Option<String>>,
     /// Numbers of the driving and of the driven wheel of each mesh.
     pub wheels_of_mesh: Vec<[usize; 2]>,
@@ -114,31 +117,31 @@ pub struct GearboxLayout {
 /// (mm) By how much shafts may stand nearer or farther than the centre distance of their mesh.
 const CENTRE_TOLERANCE_MM: f64 = 0.01;
 
-impl GearboxLayout {
-    /// Resolves the names and finds how everything stands and turns.
+impl Layout {
+    /// Resolves the names of shafts of beams and finds how everything stands and turns.
     ///
     /// # Arguments
-    /// * `gearbox` - whose keys are each in their range
+    /// * `scenario`, `shafts` - whose keys are each in their range, and its structure
     ///
     /// # Errors
     /// A name that nothing has or that two have, shafts that stand wrong, a train that cannot turn, wheels that do not fit one another.
-    pub fn new(gearbox: &Gearbox) -> Result<Self, ScenarioError> {
-        let shafts: Vec<&str> = gearbox.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
-        let wheels: Vec<&str> = gearbox.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
+    pub(super) fn of_shafts(scenario: &Scenario, of: &Shafts) -> Result<Self, ScenarioError> {
+        let shafts: Vec<&str> = of.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
+        let wheels: Vec<&str> = scenario.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
         unique("shaft", &shafts)?;
         unique("wheel", &wheels)?;
         let shaft_of = |list: &str, index: usize, entries: usize, name: &str| {
             find(&shafts, name, "shaft")
                 .map_err(|error| error.with_key(entry_key(list, index, entries, "shaft")))
         };
-        let shaft_of_wheel: Vec<usize> = (gearbox.wheels.iter().enumerate())
+        let shaft_of_wheel: Vec<usize> = (scenario.wheels.iter().enumerate())
             .map(|(index, wheel)| shaft_of("wheel", index, wheels.len(), &wheel.shaft))
             .collect::<Result<_, _>>()?;
-        let shaft_of_bearing: Vec<usize> = (gearbox.bearings.iter().enumerate())
-            .map(|(index, bearing)| shaft_of("bearing", index, gearbox.bearings.len(), &bearing.shaft))
+        let shaft_of_bearing: Vec<usize> = (scenario.bearings().iter().enumerate())
+            .map(|(index, bearing)| shaft_of("bearing", index, scenario.bearings().len(), &bearing.shaft))
             .collect::<Result<_, _>>()?;
-        let meshes = gearbox.meshes.len();
-        let wheels_of_mesh: Vec<[usize; 2]> = (gearbox.meshes.iter().enumerate())
+        let meshes = scenario.meshes.len();
+        let wheels_of_mesh: Vec<[usize; 2]> = (scenario.meshes.iter().enumerate())
             .map(|(index, mesh)| {
                 let number = |side: usize| {
                     let key = entry_key("mesh", index, meshes, &format!("wheels[{side}]"));
@@ -148,10 +151,12 @@ impl GearboxLayout {
             })
             .collect::<Result<_, ScenarioError>>()?;
         let bore_radius_mm =
-            |(wheel, &shaft): (&GearboxWheel, &usize)| gearbox.shafts[shaft].radius_at_mm(wheel.at);
+            |(wheel, &shaft): (&ScenarioWheel, &usize)| scenario.shafts()[shaft].radius_at_mm(wheel.at);
         let mut this = Self {
-            bore_radii_mm: gearbox.wheels.iter().zip(&shaft_of_wheel).map(bore_radius_mm).collect(),
-            mesh_names: gearbox.meshes.iter().map(|mesh| Some(mesh.name())).collect(),
+            bore_radii_mm: scenario.wheels.iter().zip(&shaft_of_wheel).map(bore_radius_mm).collect(),
+            shaft_names: shafts.iter().map(|&name| name.to_owned()).collect(),
+            input: 0,
+            mesh_names: scenario.meshes.iter().map(|mesh| Some(mesh.name())).collect(),
             gears: Vec::new(),
             positions_m: Vec::new(),
             ratios: Vec::new(),
@@ -160,54 +165,58 @@ impl GearboxLayout {
             wheels_of_mesh,
             shaft_of_bearing,
         };
-        for (index, mesh) in gearbox.meshes.iter().enumerate() {
-            let gears = this.gears_of(gearbox, index, mesh)?;
-            this.named(&gears, gearbox, index).check()?;
+        for (index, mesh) in scenario.meshes.iter().enumerate() {
+            let gears = this.gears_of(scenario, index, mesh)?;
+            this.named(&gears, scenario, index).check()?;
             this.gears.push(gears);
         }
-        this.check_helices(gearbox)?;
-        this.ratios = this.turn(gearbox)?;
-        this.positions_m = this.place(gearbox)?;
-        this.check_room(gearbox)?;
-        this.phases = this.find_phases(gearbox);
+        this.check_helices(scenario)?;
+        let [motor, brake] = this.ends(scenario)?;
+        this.input = motor;
+        this.ratios = this.turn(scenario, [motor, brake])?;
+        this.positions_m = this.place(scenario)?;
+        this.check_room(scenario)?;
+        this.phases = this.find_phases(scenario);
         Ok(this)
     }
 
-    /// A pair: the pinion on the first shaft, and the gear beside it on the second.
+    /// A pair in a rig: the pinion on the first shaft, and the gear beside it on the second.
     ///
     /// # Arguments
-    /// * `scenario` - a valid one
-    pub fn of_pair(scenario: &Scenario) -> Self {
-        let Scenario { gears, rig, .. } = scenario;
-        let centre_distance_m = Mounting::new(gears).centre_distance_mm * 1e-3;
+    /// * `scenario`, `rig` - what is simulated, and its structure
+    pub(super) fn of_rig(scenario: &Scenario, rig: &Rig) -> Self {
+        let gears = scenario.gears();
+        let centre_distance_m = Mounting::new(&gears).centre_distance_mm * 1e-3;
         Self {
             shaft_of_wheel: vec![0, 1],
             bore_radii_mm: vec![rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm],
+            shaft_names: WheelName::BOTH.map(String::from).to_vec(),
+            input: 0,
             mesh_names: vec![None],
             wheels_of_mesh: vec![[0, 1]],
             shaft_of_bearing: Vec::new(),
-            gears: vec![gears.clone()],
             positions_m: vec![[0.0; 2], [centre_distance_m, 0.0]],
             ratios: vec![
                 Ratio::ONE,
                 Ratio::ONE.times(-i64::from(gears.pinion_teeth), i64::from(gears.gear_teeth)),
             ],
-            phases: vec![0.0],
+            phases: vec![scenario.meshes.first().and_then(|mesh| mesh.phase).unwrap_or(0.0)],
+            gears: vec![gears],
         }
     }
 
     /// A wheel in several meshes has one helix.
-    fn check_helices(&self, gearbox: &Gearbox) -> Result<(), ScenarioError> {
+    fn check_helices(&self, scenario: &Scenario) -> Result<(), ScenarioError> {
         // (°) Positive of a right-hand helix.
         let helix = |(mesh, side): (usize, WheelName)| {
             let gears = &self.gears[mesh];
             side.choose(1.0, -1.0) * gears.hand.sign() * gears.helix_angle_deg
         };
-        for (wheel, of_file) in gearbox.wheels.iter().enumerate() {
+        for (wheel, of_file) in scenario.wheels.iter().enumerate() {
             let mut meshes = self.meshes_of(wheel);
             let Some(first) = meshes.next() else { continue };
             let Some(other) = meshes.find(|mesh| helix(*mesh) != helix(first)) else { continue };
-            let of_mesh = &gearbox.meshes[other.0];
+            let of_mesh = &scenario.meshes[other.0];
             let (key, value) = if helix(first).abs() == helix(other).abs() {
                 ("hand", if of_mesh.hand == Hand::Right { "\"right\"" } else { "\"left\"" }.to_owned())
             } else {
@@ -216,10 +225,10 @@ impl GearboxLayout {
             let problem = format!(
                 "wheel {:?} would have another helix than in mesh {}; hand is that of the driving wheel, and its mate has the opposite one",
                 of_file.name,
-                gearbox.meshes[first.0].name()
+                scenario.meshes[first.0].name()
             );
             return Err(ScenarioError::new(
-                entry_key("mesh", other.0, gearbox.meshes.len(), key),
+                entry_key("mesh", other.0, scenario.meshes.len(), key),
                 value,
                 problem,
             )
@@ -231,10 +240,11 @@ impl GearboxLayout {
     }
 
     /// The shaft of the motor, and the one of the brake.
-    fn ends(&self, gearbox: &Gearbox) -> Result<[usize; 2], ScenarioError> {
+    fn ends(&self, scenario: &Scenario) -> Result<[usize; 2], ScenarioError> {
         let end = |coupled: Coupled, name: &str| {
-            let ends: Vec<usize> =
-                (0..gearbox.shafts.len()).filter(|&n| gearbox.shafts[n].couples_to == coupled).collect();
+            let ends: Vec<usize> = (0..scenario.shafts().len())
+                .filter(|&n| scenario.shafts()[n].couples_to == coupled)
+                .collect();
             match ends[..] {
                 [end] => Ok(end),
                 [] => Err(ScenarioError::new(
@@ -244,7 +254,7 @@ impl GearboxLayout {
                 )
                 .with_help(format!("write couples_to = \"{name}\" in one [[shaft]]"))),
                 [_, second, ..] => {
-                    let key = entry_key("shaft", second, gearbox.shafts.len(), "couples_to");
+                    let key = entry_key("shaft", second, scenario.shafts().len(), "couples_to");
                     let problem = format!("is the second shaft that couples to the {name}; one must");
                     Err(ScenarioError::new(key, format!("\"{name}\""), problem)
                         .with_help("remove couples_to from all shafts but one"))
@@ -255,12 +265,11 @@ impl GearboxLayout {
     }
 
     /// Speed ratios: from the motor's shaft, mesh by mesh. What is reached twice must turn the same by both ways.
-    fn turn(&self, gearbox: &Gearbox) -> Result<Vec<Ratio>, ScenarioError> {
-        let [motor, brake] = self.ends(gearbox)?;
-        let mut ratios: Vec<Option<Ratio>> = vec![None; gearbox.shafts.len()];
+    fn turn(&self, scenario: &Scenario, [motor, brake]: [usize; 2]) -> Result<Vec<Ratio>, ScenarioError> {
+        let mut ratios: Vec<Option<Ratio>> = vec![None; scenario.shafts().len()];
         ratios[motor] = Some(Ratio::ONE);
         let shafts_of = |mesh: usize| self.wheels_of_mesh[mesh].map(|wheel| self.shaft_of_wheel[wheel]);
-        let meshes = gearbox.meshes.len();
+        let meshes = scenario.meshes.len();
         let mut reached = vec![false; meshes];
         while let Some(mesh) = (0..meshes)
             .find(|&mesh| !reached[mesh] && shafts_of(mesh).iter().any(|&shaft| ratios[shaft].is_some()))
@@ -269,8 +278,8 @@ impl GearboxLayout {
             let [driving, driven] = shafts_of(mesh);
             let Gears { pinion_teeth, gear_teeth, .. } = self.gears[mesh];
             let key = entry_key("mesh", mesh, meshes, "wheels");
-            let written = format!("{:?}", gearbox.meshes[mesh].wheels);
-            let name = |shaft: usize| gearbox.shafts[shaft].name.as_str();
+            let written = format!("{:?}", scenario.meshes[mesh].wheels);
+            let name = |shaft: usize| scenario.shafts()[shaft].name.as_str();
             match (ratios[driving], ratios[driven]) {
                 (Some(ratio), None) => {
                     ratios[driven] = Some(ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth)));
@@ -300,11 +309,11 @@ impl GearboxLayout {
         }
         let lost = ratios.iter().position(Option::is_none);
         if let Some(shaft) = lost {
-            let name = &gearbox.shafts[shaft].name;
+            let name = &scenario.shafts()[shaft].name;
             let to = if shaft == brake { "the motor" } else { "motor or brake" };
             let problem = format!("has no path of meshes to {to}");
             return Err(ScenarioError::new(
-                entry_key("shaft", shaft, gearbox.shafts.len(), "name"),
+                entry_key("shaft", shaft, scenario.shafts().len(), "name"),
                 format!("{name:?}"),
                 problem,
             )
@@ -314,11 +323,11 @@ impl GearboxLayout {
     }
 
     /// (m) Where the shafts stand: as given, or beside the shaft that they mesh with.
-    fn place(&self, gearbox: &Gearbox) -> Result<Vec<[f64; 2]>, ScenarioError> {
+    fn place(&self, scenario: &Scenario) -> Result<Vec<[f64; 2]>, ScenarioError> {
         let mut places: Vec<Option<[f64; 2]>> =
-            gearbox.shafts.iter().map(|shaft| shaft.position_mm).collect();
+            scenario.shafts().iter().map(|shaft| shaft.position_mm).collect();
         if places.iter().all(Option::is_none) {
-            let motor = gearbox.shafts.iter().position(|shaft| shaft.couples_to == Coupled::Motor);
+            let motor = scenario.shafts().iter().position(|shaft| shaft.couples_to == Coupled::Motor);
             places[motor.unwrap_or(0)] = Some([0.0; 2]);
         }
         let distances_mm: Vec<f64> =
@@ -342,10 +351,10 @@ impl GearboxLayout {
             let [a, b] = [places[driving], places[driven]];
             let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]);
             if (apart_mm - distance_mm).abs() > CENTRE_TOLERANCE_MM {
-                let shaft = if gearbox.shafts[driven].position_mm.is_some() { driven } else { driving };
-                let key = entry_key("shaft", shaft, gearbox.shafts.len(), "position_mm");
+                let shaft = if scenario.shafts()[driven].position_mm.is_some() { driven } else { driving };
+                let key = entry_key("shaft", shaft, scenario.shafts().len(), "position_mm");
                 let [x, y] = places[shaft];
-                let mesh = gearbox.meshes[mesh].name();
+                let mesh = scenario.meshes[mesh].name();
                 let problem = format!(
                     "is {apart_mm:.4} mm from the axis of its mating shaft, but the wheels of mesh {mesh} \
                      mesh at {distance_mm:.4} mm; must be the same within {CENTRE_TOLERANCE_MM} mm"
@@ -359,10 +368,15 @@ impl GearboxLayout {
     }
 
     /// The two wheels of a mesh as a pair: what they share must be the same.
-    fn gears_of(&self, gearbox: &Gearbox, index: usize, mesh: &GearboxMesh) -> Result<Gears, ScenarioError> {
+    fn gears_of(
+        &self,
+        scenario: &Scenario,
+        index: usize,
+        mesh: &ScenarioMesh,
+    ) -> Result<Gears, ScenarioError> {
         let numbers = self.wheels_of_mesh[index];
-        let [pinion, gear] = numbers.map(|number| &gearbox.wheels[number]);
-        let meshes = gearbox.meshes.len();
+        let [pinion, gear] = numbers.map(|number| &scenario.wheels[number]);
+        let meshes = scenario.meshes.len();
         let refuse = |problem: String, help: &str| {
             let key = entry_key("mesh", index, meshes, "wheels");
             Err(ScenarioError::new(key, format!("{:?}", mesh.wheels), problem).with_help(help))
@@ -374,6 +388,7 @@ impl GearboxLayout {
                 "name wheels of two shafts",
             );
         }
+        let material = |wheel: &ScenarioWheel| wheel.material.unwrap_or(scenario.material);
         let mates = [
             ("tip_chamfer_mm", pinion.tip_chamfer_mm == gear.tip_chamfer_mm),
             ("flank_relief", pinion.flank_relief == gear.flank_relief),
@@ -382,7 +397,8 @@ impl GearboxLayout {
                 "uniform_flank_reduction_mm",
                 pinion.uniform_flank_reduction_mm == gear.uniform_flank_reduction_mm,
             ),
-            ("material", self.material(gearbox, pinion) == self.material(gearbox, gear)),
+            ("eccentricity_mm", pinion.eccentricity_mm == gear.eccentricity_mm),
+            ("material", material(pinion) == material(gear)),
         ];
         if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {
             return refuse(
@@ -390,27 +406,8 @@ impl GearboxLayout {
                 "give both wheels the same",
             );
         }
-        let mut gears = Gears::new(
-            mesh.module_mm,
-            pinion.teeth,
-            gear.teeth,
-            pinion.face_width_mm.min(gear.face_width_mm),
-        );
-        gears.pressure_angle_deg = mesh.pressure_angle_deg;
-        (gears.helix_angle_deg, gears.hand) = (mesh.helix_angle_deg, mesh.hand);
-        (gears.lead_crowning_um, gears.end_relief, gears.slices) =
-            (mesh.lead_crowning_um, mesh.end_relief, mesh.slices);
-        (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion.profile_shift, gear.profile_shift);
-        (gears.pinion_addendum, gears.gear_addendum) = (pinion.addendum, gear.addendum);
-        (gears.pinion_dedendum, gears.gear_dedendum) = (pinion.dedendum, gear.dedendum);
-        gears.centre_distance_mm = mesh.centre_distance_mm;
-        gears.backlash_mm = mesh.backlash_mm;
-        gears.material = self.material(gearbox, pinion);
-        gears.flank_relief = pinion.flank_relief;
-        gears.tip_chamfer_mm = pinion.tip_chamfer_mm;
-        gears.active_profile_shortening = pinion.active_profile_shortening;
-        gears.uniform_flank_reduction_mm = pinion.uniform_flank_reduction_mm;
-        let apart_mm = numbers.map(|wheel| self.z_mm(gearbox, wheel));
+        let gears = mesh.gears(pinion, gear, scenario.material);
+        let apart_mm = numbers.map(|wheel| self.z_mm(scenario, wheel));
         let apart_mm = (apart_mm[0] - apart_mm[1]).abs();
         if apart_mm > gears.face_width_mm / 2.0 {
             let problem = format!(
@@ -422,19 +419,15 @@ impl GearboxLayout {
         Ok(gears)
     }
 
-    fn material(&self, gearbox: &Gearbox, wheel: &GearboxWheel) -> crate::wheel::Material {
-        wheel.material.unwrap_or(gearbox.material)
-    }
-
     /// (mm) z of a wheel's middle plane.
-    pub(super) fn z_mm(&self, gearbox: &Gearbox, wheel: usize) -> f64 {
-        gearbox.wheels[wheel].at * gearbox.shafts[self.shaft_of_wheel[wheel]].length_mm
+    pub(super) fn z_mm(&self, scenario: &Scenario, wheel: usize) -> f64 {
+        scenario.wheels[wheel].at * scenario.shafts()[self.shaft_of_wheel[wheel]].length_mm
     }
 
     /// What is doubtful about the teeth of each mesh.
-    pub(super) fn warnings_of_teeth(&self, gearbox: &Gearbox) -> Vec<ScenarioWarning> {
+    pub(super) fn warnings_of_teeth(&self, scenario: &Scenario) -> Vec<ScenarioWarning> {
         let mut warnings: Vec<ScenarioWarning> =
-            (0..self.gears.len()).flat_map(|mesh| self.named_gears(gearbox, mesh).warnings()).collect();
+            (0..self.gears.len()).flat_map(|mesh| self.named_gears(scenario, mesh).warnings()).collect();
         // A wheel in two meshes has the same teeth in both.
         warnings.sort_by(|a, b| a.key.cmp(&b.key));
         warnings.dedup_by(|a, b| a.key == b.key && a.kind == b.kind);
@@ -442,13 +435,13 @@ impl GearboxLayout {
     }
 
     /// A mesh's pair of wheels with their names.
-    pub(crate) fn named_gears<'a>(&'a self, gearbox: &'a Gearbox, mesh: usize) -> NamedGears<'a> {
-        self.named(&self.gears[mesh], gearbox, mesh)
+    pub(crate) fn named_gears<'a>(&'a self, scenario: &'a Scenario, mesh: usize) -> NamedGears<'a> {
+        self.named(&self.gears[mesh], scenario, mesh)
     }
 
-    fn named<'a>(&self, gears: &'a Gears, gearbox: &'a Gearbox, mesh: usize) -> NamedGears<'a> {
-        let wheels = self.wheels_of_mesh[mesh].map(|wheel| (wheel, gearbox.wheels[wheel].name.as_str()));
-        NamedGears::of_mesh(gears, section("mesh", mesh, gearbox.meshes.len()), wheels)
+    fn named<'a>(&self, gears: &'a Gears, scenario: &'a Scenario, mesh: usize) -> NamedGears<'a> {
+        let wheels = self.wheels_of_mesh[mesh].map(|wheel| (wheel, scenario.wheels[wheel].name.as_str()));
+        NamedGears::of_mesh(gears, section("mesh", mesh, scenario.meshes.len()), wheels)
     }
 
     /// (-) Rotation of a mesh's driving wheel over that of the input; negative where it turns against the input.
@@ -486,8 +479,8 @@ impl GearboxLayout {
     /// A tooth of such a wheel goes from the direction ψ_A of one mate to ψ_B of the other, `(ψ_B − ψ_A) z/2π` pitches in its sense of
     /// rotation. From the position at which it passes one pitch point that makes its position at the other. Where it is driven
     /// in one mesh and drives in the other, its flanks there are opposite ones, a tooth thickness apart.
-    fn find_phases(&self, gearbox: &Gearbox) -> Vec<f64> {
-        let mut phases: Vec<Option<f64>> = gearbox.meshes.iter().map(|mesh| mesh.phase).collect();
+    fn find_phases(&self, scenario: &Scenario) -> Vec<f64> {
+        let mut phases: Vec<Option<f64>> = scenario.meshes.iter().map(|mesh| mesh.phase).collect();
         for mesh in 0..phases.len() {
             if phases[mesh].is_some() {
                 continue;
@@ -549,7 +542,7 @@ impl GearboxLayout {
     pub fn faults_of_mesh(&self, faults: &[(usize, &Fault)], mesh: usize) -> Vec<(usize, Fault)> {
         let of_mesh = |(number, &(wheel, fault)): (usize, &(usize, &Fault))| {
             let side = self.wheels_of_mesh[mesh].iter().position(|of| *of == wheel)?;
-            Some((number, Fault { wheel: WheelName::BOTH[side], ..fault.clone() }))
+            Some((number, Fault { wheel: WheelName::BOTH[side].into(), ..fault.clone() }))
         };
         faults.iter().enumerate().filter_map(of_mesh).collect()
     }
@@ -557,11 +550,11 @@ impl GearboxLayout {
     /// The quality of a mesh's wheels as of a pair, with the shares of the wheel that is drawn.
     ///
     /// # Arguments
-    /// * `gearbox` - whose layout this is
+    /// * `scenario` - whose layout this is
     /// * `mesh` - number of the mesh
     /// * `drawn` - the wheel whose deviations are drawn with it
-    pub fn quality_of_mesh(&self, gearbox: &Gearbox, mesh: usize, drawn: WheelName) -> Quality {
-        let [pinion, gear] = self.wheels_of_mesh[mesh].map(|wheel| &gearbox.wheels[wheel]);
+    pub fn quality_of_mesh(&self, scenario: &Scenario, mesh: usize, drawn: WheelName) -> Quality {
+        let [pinion, gear] = self.wheels_of_mesh[mesh].map(|wheel| &scenario.wheels[wheel]);
         let of = drawn.choose(pinion, gear);
         // The flanks on the other side of a wheel that is driven in its first mesh and drives in another are others.
         let works =
@@ -581,6 +574,7 @@ impl GearboxLayout {
             tooth_share: of.tooth_share,
             pitch_share: of.pitch_share,
             run_out_share: of.run_out_share,
+            helix_share: of.helix_share,
             pinion_deviations: pinion.deviations.clone(),
             gear_deviations: gear.deviations.clone(),
             ..Quality::default()

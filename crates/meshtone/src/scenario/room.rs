@@ -1,19 +1,19 @@
-//! Whether the parts of a gearbox have room: each on its shaft, each shaft in its bearings, none in the way of another.
+//! Whether the parts of a scenario have room: each on its shaft, each shaft in its bearings, none in the way of another.
 
 use super::layout::entry_key;
-use super::{Gearbox, GearboxLayout};
+use super::{Layout, Scenario};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::wheel::WheelName;
 
 /// (mm) How far faces may overlap by rounding.
 const ROUNDING_MM: f64 = 1e-6;
 
-impl GearboxLayout {
+impl Layout {
     /// Bores within roots, supports of every shaft, wheels beside other shafts.
-    pub(super) fn check_room(&self, gearbox: &Gearbox) -> Result<(), ScenarioError> {
-        let entries = gearbox.shafts.len();
-        for (number, shaft) in gearbox.shafts.iter().enumerate() {
-            let supports: Vec<f64> = (gearbox.bearings.iter().zip(&self.shaft_of_bearing))
+    pub(super) fn check_room(&self, scenario: &Scenario) -> Result<(), ScenarioError> {
+        let entries = scenario.shafts().len();
+        for (number, shaft) in scenario.shafts().iter().enumerate() {
+            let supports: Vec<f64> = (scenario.bearings().iter().zip(&self.shaft_of_bearing))
                 .filter(|(_, of)| **of == number)
                 .map(|(bearing, _)| bearing.at)
                 .collect();
@@ -31,13 +31,13 @@ impl GearboxLayout {
                 .with_help("add a [[bearing]] with this shaft and another at"));
             }
         }
-        for (index, wheel) in gearbox.wheels.iter().enumerate() {
-            let shaft = &gearbox.shafts[self.shaft_of_wheel[index]];
+        for (index, wheel) in scenario.wheels.iter().enumerate() {
+            let shaft = &scenario.shafts()[self.shaft_of_wheel[index]];
             let bore_mm = shaft.radius_at_mm(wheel.at);
             let Some((mesh, _)) = self.mesh_of(index) else {
                 let problem = "is in no mesh; every wheel must be";
                 return Err(ScenarioError::new(
-                    entry_key("wheel", index, gearbox.wheels.len(), "name"),
+                    entry_key("wheel", index, scenario.wheels.len(), "name"),
                     format!("{:?}", wheel.name),
                     problem,
                 )
@@ -47,7 +47,7 @@ impl GearboxLayout {
             let root_mm = gears.transverse_module_mm() * f64::from(wheel.teeth) / 2.0
                 + gears.module_mm * (wheel.profile_shift - wheel.dedendum);
             if bore_mm >= root_mm {
-                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+                let key = entry_key("wheel", index, scenario.wheels.len(), "shaft");
                 let problem = format!(
                     "has a radius of {bore_mm:?} mm there; must be less than {root_mm:.4} mm, the root radius of {:?}",
                     wheel.name
@@ -55,37 +55,37 @@ impl GearboxLayout {
                 return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
                     .with_help("make the shaft thinner, or the wheel larger"));
             }
-            self.check_axial_support(gearbox, index)?;
-            self.check_on_shaft(gearbox, index)?;
-            self.check_clear_of_shafts(gearbox, index)?;
-            self.check_clear_of_wheels(gearbox, index)?;
+            self.check_axial_support(scenario, index)?;
+            self.check_on_shaft(scenario, index)?;
+            self.check_clear_of_shafts(scenario, index)?;
+            self.check_clear_of_wheels(scenario, index)?;
         }
         Ok(())
     }
 
     /// The shaft of a helical wheel is held along its axis.
-    fn check_axial_support(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
+    fn check_axial_support(&self, scenario: &Scenario, index: usize) -> Result<(), ScenarioError> {
         let own = self.shaft_of_wheel[index];
-        let mut bearings = gearbox.bearings.iter().zip(&self.shaft_of_bearing);
+        let mut bearings = scenario.bearings().iter().zip(&self.shaft_of_bearing);
         let is_held = bearings.any(|(bearing, of)| *of == own && bearing.axial_stiffness_n_per_m > 0.0);
         if is_held || self.meshes_of(index).all(|(mesh, _)| !self.gears[mesh].is_helical()) {
             return Ok(());
         }
-        let wheel = &gearbox.wheels[index];
+        let wheel = &scenario.wheels[index];
         let problem = format!(
             "no bearing holds the shaft along its axis, where {:?}, a helical wheel, pushes it; one must have \
              axial_stiffness_n_per_m above 0",
             wheel.name
         );
-        let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+        let key = entry_key("wheel", index, scenario.wheels.len(), "shaft");
         Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
             .with_help("give one of the shaft's bearings an axial_stiffness_n_per_m, such as 3e7"))
     }
 
     /// Shafts on which the axial forces of two helical wheels add up.
-    pub(super) fn added_thrusts(&self, gearbox: &Gearbox) -> impl Iterator<Item = ScenarioWarning> {
-        (0..gearbox.shafts.len()).filter_map(|shaft| {
-            let wheels = (0..gearbox.wheels.len()).filter(|wheel| self.shaft_of_wheel[*wheel] == shaft);
+    pub(super) fn added_thrusts(&self, scenario: &Scenario) -> impl Iterator<Item = ScenarioWarning> {
+        (0..scenario.shafts().len()).filter_map(|shaft| {
+            let wheels = (0..scenario.wheels.len()).filter(|wheel| self.shaft_of_wheel[*wheel] == shaft);
             let thrusts = wheels.flat_map(|wheel| self.meshes_of(wheel).map(move |(mesh, side)| (wheel, mesh, side)));
             let pushed: Vec<(usize, usize, f64)> = thrusts
                 .map(|(wheel, mesh, side)| {
@@ -98,26 +98,26 @@ impl GearboxLayout {
             let (last, others) = pushed.split_last()?;
             let adds_up = !others.is_empty() && others.iter().all(|other| other.2 * last.2 > 0.0);
             let names: Vec<&str> =
-                pushed.iter().map(|(wheel, ..)| gearbox.wheels[*wheel].name.as_str()).collect();
+                pushed.iter().map(|(wheel, ..)| scenario.wheels[*wheel].name.as_str()).collect();
             let message = format!(
                 "the axial forces of {} add up on shaft {:?}; with the other hand in this mesh they would oppose",
                 names.join(" and "),
-                gearbox.shafts[shaft].name
+                scenario.shafts()[shaft].name
             );
-            let key = entry_key("mesh", last.1, gearbox.meshes.len(), "hand");
+            let key = entry_key("mesh", last.1, scenario.meshes.len(), "hand");
             adds_up.then(|| ScenarioWarning::new(WarningKind::AddedThrust, key, message))
         })
     }
 
     /// A wheel sits on its shaft with its whole face.
-    fn check_on_shaft(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
-        let (wheel, shaft) = (&gearbox.wheels[index], &gearbox.shafts[self.shaft_of_wheel[index]]);
+    fn check_on_shaft(&self, scenario: &Scenario, index: usize) -> Result<(), ScenarioError> {
+        let (wheel, shaft) = (&scenario.wheels[index], &scenario.shafts()[self.shaft_of_wheel[index]]);
         let half_mm = wheel.face_width_mm / 2.0;
-        let [start_mm, end_mm] = self.face_mm(gearbox, index);
+        let [start_mm, end_mm] = self.face_mm(scenario, index);
         if start_mm >= -ROUNDING_MM && end_mm <= shaft.length_mm + ROUNDING_MM {
             return Ok(());
         }
-        let key = entry_key("wheel", index, gearbox.wheels.len(), "at");
+        let key = entry_key("wheel", index, scenario.wheels.len(), "at");
         let problem = format!(
             "the face of {:?} would reach from z = {start_mm:.3} to {end_mm:.3} mm; must stay on its shaft, from 0 to {:?} mm",
             wheel.name, shaft.length_mm
@@ -132,16 +132,16 @@ impl GearboxLayout {
     }
 
     /// (mm) From where to where along z the face of a wheel reaches.
-    fn face_mm(&self, gearbox: &Gearbox, wheel: usize) -> [f64; 2] {
-        let (middle_mm, half_mm) = (self.z_mm(gearbox, wheel), gearbox.wheels[wheel].face_width_mm / 2.0);
+    fn face_mm(&self, scenario: &Scenario, wheel: usize) -> [f64; 2] {
+        let (middle_mm, half_mm) = (self.z_mm(scenario, wheel), scenario.wheels[wheel].face_width_mm / 2.0);
         [middle_mm - half_mm, middle_mm + half_mm]
     }
 
     /// (mm) Tip radius of a wheel, which is in a mesh.
-    fn tip_mm(&self, gearbox: &Gearbox, wheel: usize) -> f64 {
+    fn tip_mm(&self, scenario: &Scenario, wheel: usize) -> f64 {
         let tip_mm = |(mesh, side): (usize, WheelName)| {
             let gears = &self.gears[mesh];
-            let of = &gearbox.wheels[wheel];
+            let of = &scenario.wheels[wheel];
             gears.transverse_module_mm() * f64::from(of.teeth) / 2.0
                 + gears.module_mm * (of.profile_shift + gears.addendum(side))
         };
@@ -149,10 +149,10 @@ impl GearboxLayout {
     }
 
     /// A wheel must not reach into an earlier one, on its shaft or on another, unless they mesh.
-    fn check_clear_of_wheels(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
-        let [start_mm, end_mm] = self.face_mm(gearbox, index);
+    fn check_clear_of_wheels(&self, scenario: &Scenario, index: usize) -> Result<(), ScenarioError> {
+        let [start_mm, end_mm] = self.face_mm(scenario, index);
         for other in 0..index {
-            let [other_start_mm, other_end_mm] = self.face_mm(gearbox, other);
+            let [other_start_mm, other_end_mm] = self.face_mm(scenario, other);
             let is_beside = end_mm <= other_start_mm + ROUNDING_MM || other_end_mm <= start_mm + ROUNDING_MM;
             let mesh =
                 self.wheels_of_mesh.iter().any(|wheels| wheels.contains(&index) && wheels.contains(&other));
@@ -161,11 +161,11 @@ impl GearboxLayout {
             }
             let [a, b] = [index, other].map(|wheel| self.positions_m[self.shaft_of_wheel[wheel]]);
             let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
-            let tips_mm = [index, other].map(|wheel| self.tip_mm(gearbox, wheel));
+            let tips_mm = [index, other].map(|wheel| self.tip_mm(scenario, wheel));
             if apart_mm >= tips_mm[0] + tips_mm[1] {
                 continue;
             }
-            let [wheel, known] = [index, other].map(|number| &gearbox.wheels[number]);
+            let [wheel, known] = [index, other].map(|number| &scenario.wheels[number]);
             let faces = format!(
                 "the face of {:?} reaches from z = {start_mm:.3} to {end_mm:.3} mm, that of {:?} from {other_start_mm:.3} to \
                  {other_end_mm:.3} mm",
@@ -180,7 +180,7 @@ impl GearboxLayout {
                     tips_mm[0], tips_mm[1]
                 )
             };
-            let key = entry_key("wheel", index, gearbox.wheels.len(), "at");
+            let key = entry_key("wheel", index, scenario.wheels.len(), "at");
             return Err(ScenarioError::new(key, wheel.at, problem)
                 .with_help("move one of the two along its shaft, make faces narrower, or give shafts another position_mm"));
         }
@@ -188,17 +188,17 @@ impl GearboxLayout {
     }
 
     /// A wheel must not reach into a shaft that it does not sit on.
-    fn check_clear_of_shafts(&self, gearbox: &Gearbox, index: usize) -> Result<(), ScenarioError> {
-        let (wheel, own) = (&gearbox.wheels[index], self.shaft_of_wheel[index]);
-        let tip_mm = self.tip_mm(gearbox, index);
-        let z_mm = self.z_mm(gearbox, index);
-        for (number, other) in gearbox.shafts.iter().enumerate().filter(|(number, _)| *number != own) {
+    fn check_clear_of_shafts(&self, scenario: &Scenario, index: usize) -> Result<(), ScenarioError> {
+        let (wheel, own) = (&scenario.wheels[index], self.shaft_of_wheel[index]);
+        let tip_mm = self.tip_mm(scenario, index);
+        let z_mm = self.z_mm(scenario, index);
+        for (number, other) in scenario.shafts().iter().enumerate().filter(|(number, _)| *number != own) {
             let passes = z_mm <= other.length_mm;
             let [a, b] = [self.positions_m[own], self.positions_m[number]];
             let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
             let radius_mm = other.radius_at_mm((z_mm / other.length_mm).min(1.0));
             if passes && apart_mm < tip_mm + radius_mm {
-                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+                let key = entry_key("wheel", index, scenario.wheels.len(), "shaft");
                 let problem = format!(
                     "{:?} reaches {tip_mm:.3} mm from its axis, into shaft {:?}, whose axis is {apart_mm:.3} mm away and whose radius is \
                      {radius_mm:?} mm",

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use super::body::WheelBody;
 use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
 use super::shaft_bending::wheel_flexibility;
-use super::{Rig, Shaft, TurningForce, Unbalance};
+use super::{Rig, RigParts, Shaft, TurningForce, Unbalance};
 use crate::wheel::{Gears, Teeth, Wheel, WheelName};
 
 /// Names of the coordinates, as in the paper; the last four are those of the supports.
@@ -66,7 +66,7 @@ pub enum Supports {
 
 /// The rig of one gear pair as a machine.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Train {
+pub struct RigMachine {
     /// Its parts.
     pub machine: Machine,
     /// Mass and inertias of the pinion and of the gear.
@@ -114,20 +114,20 @@ pub fn support_modes(machine: &Machine, mesh_stiffness_n_per_m: &[f64]) -> Vec<S
     frequencies_hz.iter().zip(shapes).map(mode).filter(|mode| mode.share > MUCH).collect()
 }
 
-impl Train {
+impl RigMachine {
     /// Assembles the rig of one gear pair.
     ///
     /// Springs and supports are first written in vertical and horizontal coordinates, as a rig's numbers are given, and then turned to
     /// the line of action, in which the mesh acts on one coordinate of each wheel.
     ///
     /// # Arguments
-    /// * `gears` - for the material
-    /// * `rig` - shafts, bearings, supports, brake
+    /// * `parts` - wheels, shafts, bearings, supports, brake
     /// * `teeth` - both wheels
     /// * `supports` - whether the supports move
-    pub fn new(gears: &Gears, rig: &Rig, teeth: &Teeth, supports: Supports) -> Self {
-        let pinion = WheelBody::new(&teeth.pinion, gears.material, &rig.pinion_inertia);
-        let gear = WheelBody::new(&teeth.gear, gears.material, &rig.gear_inertia);
+    pub fn new(parts: RigParts, teeth: &Teeth, supports: Supports) -> Self {
+        let RigParts { gears, rig, inertias, .. } = parts;
+        let pinion = WheelBody::new(&teeth.pinion, gears.material, inertias[0]);
+        let gear = WheelBody::new(&teeth.gear, gears.material, inertias[1]);
         let coordinates = match supports {
             Supports::Moving => NAMES.len(),
             Supports::Held => WITHOUT_SUPPORTS,
@@ -148,14 +148,14 @@ impl Train {
             shaft_stiffness_nm_per_rad: torsion,
             machine: Machine {
                 names: NAMES[..coordinates].iter().map(|&name| name.into()).collect(),
-                mass: DMatrix::from_diagonal(&DVector::from_vec(masses(&pinion, &gear, rig, coordinates))),
+                mass: DMatrix::from_diagonal(&DVector::from_vec(masses(&pinion, &gear, parts, coordinates))),
                 springs: springs(gears, rig, torsion, supports, coordinates)
                     .iter()
                     .map(|spring| spring.turned(&turn))
                     .collect(),
                 lines: vec![line_of_action(gears, teeth, coordinates)],
                 bearings: Vec::new(),
-                turning_forces: unbalances(rig, &turn, &rigid_rotation),
+                turning_forces: unbalances(parts.unbalances, &turn, &rigid_rotation),
                 drives: vec![
                     Drive::Motor {
                         coordinate: THETA_PINION,
@@ -177,11 +177,12 @@ impl Train {
 /// # Arguments
 /// * `turn` - unit vectors of the turned coordinates
 /// * `rigid_rotation` - of all coordinates per unit rotation of the motor
-fn unbalances(rig: &Rig, turn: &DMatrix<f64>, rigid_rotation: &DVector<f64>) -> Vec<TurningForce> {
-    let wheels = [
-        (&rig.pinion_unbalance, THETA_PINION, [X_PINION, Y_PINION]),
-        (&rig.gear_unbalance, THETA_GEAR, [X_GEAR, Y_GEAR]),
-    ];
+fn unbalances(
+    [pinion, gear]: [&Unbalance; 2],
+    turn: &DMatrix<f64>,
+    rigid_rotation: &DVector<f64>,
+) -> Vec<TurningForce> {
+    let wheels = [(pinion, THETA_PINION, [X_PINION, Y_PINION]), (gear, THETA_GEAR, [X_GEAR, Y_GEAR])];
     let unbalanced = wheels.into_iter().filter(|(unbalance, ..)| unbalance.g_mm > 0.0);
     let force = |(unbalance, rotation, plane): (&Unbalance, usize, [usize; 2])| {
         let motion = plane.map(|coordinate| turn.row(coordinate).transpose());
@@ -191,8 +192,8 @@ fn unbalances(rig: &Rig, turn: &DMatrix<f64>, rigid_rotation: &DVector<f64>) -> 
 }
 
 /// (kg, kg m²) Mass or moment of inertia of each coordinate.
-fn masses(pinion: &WheelBody, gear: &WheelBody, rig: &Rig, coordinates: usize) -> Vec<f64> {
-    let mut mass = vec![rig.support.mass_kg; coordinates];
+fn masses(pinion: &WheelBody, gear: &WheelBody, parts: RigParts, coordinates: usize) -> Vec<f64> {
+    let mut mass = vec![parts.rig.support.mass_kg; coordinates];
     for (wheel, of_wheel) in [
         (gear, [X_GEAR, Y_GEAR, Z_GEAR, THETA_GEAR, PHI_GEAR, PSI_GEAR]),
         (pinion, [X_PINION, Y_PINION, Z_PINION, THETA_PINION, PHI_PINION, PSI_PINION]),
@@ -203,7 +204,7 @@ fn masses(pinion: &WheelBody, gear: &WheelBody, rig: &Rig, coordinates: usize) -
             mass[coordinate] = value;
         }
     }
-    mass[THETA_BRAKE] = rig.brake_inertia_kgm2;
+    mass[THETA_BRAKE] = parts.brake_inertia_kgm2;
     mass
 }
 
@@ -402,8 +403,10 @@ mod tests {
     use crate::wheel::teeth;
 
     fn machine(rig: &Rig) -> Machine {
-        let gears = Scenario::new(GearPair::example()).gears;
-        Train::new(&gears, rig, &teeth(&gears, [10.0; 2]), Supports::Moving).machine
+        let scenario = Scenario::new(GearPair::example());
+        let gears = scenario.gears();
+        let parts = RigParts { rig, ..scenario.rig_parts(&gears).unwrap() };
+        RigMachine::new(parts, &teeth(&gears, [10.0; 2]), Supports::Moving).machine
     }
 
     /// Stiffness in the coordinates themselves, with the brake's rotation held.

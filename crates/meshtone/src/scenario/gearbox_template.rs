@@ -153,10 +153,10 @@ const EXAMPLE_FAULT: &str = "\
 /// * `rig` - which; none for the example
 ///
 /// ```
-/// use meshtone::scenario::{Gearbox, GearboxRig, gearbox_template};
+/// use meshtone::scenario::{Scenario, GearboxRig, gearbox_template};
 ///
 /// for rig in GearboxRig::ALL {
-///     assert_eq!(Gearbox::from_toml(&gearbox_template(Some(rig)))?.shafts.len(), 3);
+///     assert_eq!(Scenario::from_toml(&gearbox_template(Some(rig)))?.shafts.len(), 3);
 /// }
 /// # Ok::<(), meshtone::scenario::ScenarioError>(())
 /// ```
