@@ -65,7 +65,9 @@ def test_gallery_includes_its_scripts(script: Path) -> None:
 
 
 SHORTER = {
+    "campbell": [("np.linspace(10, 60, 101)", "np.linspace(10, 60, 21)")],
     "classifier": [("records = 400\n", "records = 100\n")],
+    "root_crack": [("np.linspace(0, 4.25, 18)", "np.linspace(0, 4.25, 6)")],
     "sensor_path": [
         ('"time_s": [1, 11], "value": [20, 60]}, duration_s=10, settle_fraction=1 / 11', '"time_s": [1, 3], "value": [20, 60]}, duration_s=2, settle_fraction=1 / 3'),
         ("duration_s=5)", "duration_s=1)"),

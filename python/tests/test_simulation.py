@@ -179,7 +179,7 @@ def press_control_c() -> None:
 @pytest.mark.usefixtures("control_c")
 def test_control_c_stops() -> None:
     timer = threading.Timer(0.3, press_control_c)
-    scenarios = [examples.healthy().copy(seed=seed) for seed in range(4000)]
+    scenarios = [examples.healthy().copy(seed=seed) for seed in range(1000)]
     timer.start()
     start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):

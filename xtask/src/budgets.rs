@@ -15,6 +15,9 @@ use crate::step::{StepRunner, StepTime, cargo};
 /// The file of the budgets, from the workspace's root.
 const FILE: &str = "budgets.toml";
 
+/// The numbers of [processor_seconds] that are not of one step.
+const OF_NO_STEP: [&str; 4] = ["slack", "first_command", "all_checks", "any_other_step"];
+
 /// The budgets of one table of the file.
 struct Budgets {
     name: &'static str,
@@ -54,6 +57,14 @@ impl Budgets {
             )
         };
         Ok((used > budget * slack).then(problem))
+    }
+
+    /// The budgets of steps that there are no more, and so would never be exceeded.
+    fn without_step(&self, times: &[StepTime]) -> impl Iterator<Item = String> {
+        let names = self.table.keys().filter(|key| !OF_NO_STEP.contains(&key.as_str()));
+        names.filter(|key| times.iter().all(|time| time.name != **key)).map(|key| {
+            format!("{FILE}: [{}] has a budget of `{key}`, and no step has this name: take it out", self.name)
+        })
     }
 }
 
@@ -110,6 +121,7 @@ pub fn of_checks(root: &Path, times: &[StepTime]) -> Result<Vec<String>, String>
     let slack = seconds.number("slack")?;
     let total: f64 = times.iter().map(|time| time.processor_s).sum();
     let mut problems = vec![seconds.problem("all_checks", total, slack)?];
+    problems.extend(seconds.without_step(times).map(Some));
     for time in times {
         let name = if seconds.table.contains_key(&time.name) { &time.name } else { "any_other_step" };
         let problem = seconds.problem(name, time.processor_s, slack)?;
@@ -199,6 +211,15 @@ mod tests {
         assert!(problem.contains("11") && problem.contains("10") && problem.contains("`lines` in [sources]"));
         assert_eq!(budgets.problem("seconds", 3.0, 1.5), Ok(None));
         assert!(budgets.problem("words", 1.0, 1.0).is_err_and(|error| error.contains("`words`")));
+    }
+
+    #[test]
+    fn a_budget_of_a_step_that_is_gone_is_found() {
+        let table = "slack = 1.5\nrenamed = 10\ntests = 20".parse().expect("a table");
+        let budgets = Budgets { name: "processor_seconds", table };
+        let times = [StepTime { name: "tests".into(), processor_s: 1.0 }];
+        let problems: Vec<String> = budgets.without_step(&times).collect();
+        assert!(matches!(&problems[..], [problem] if problem.contains("`renamed`")), "{problems:?}");
     }
 
     #[test]

@@ -13,6 +13,10 @@ simulation = mt.simulate(mt.examples.healthy().copy(sampling_rate_hz=1e4))
 assert simulation.vertical_g.std() > 0
 ";
 
+/// Maturin's argument that leaves the names out of a module. The linker does so, and so the module is compiled for it: with and without are
+/// two compilations.
+const STRIPPED: &str = "--strip";
+
 /// Name of the benchmark's data set, by which the Python package knows it.
 const BENCHMARK: &str = "benchmark-1";
 
@@ -99,7 +103,7 @@ pub fn program(row: &StepRunner) -> Result<PathBuf, u8> {
 /// The exit code of what failed.
 pub fn wheel(row: &StepRunner, python: &Path) -> Result<PathBuf, u8> {
     row.step("Python wheel", || {
-        maturin(row, python, "whl", &["build", "--release", "--locked", "--quiet", "--strip"])
+        maturin(row, python, "whl", &["build", "--release", "--locked", "--quiet", STRIPPED])
     })
 }
 
@@ -180,10 +184,13 @@ pub fn try_wheel(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8
 pub fn try_source(row: &StepRunner, python: &Path, source: &Path) -> Result<(), u8> {
     row.step("Source distribution, in an empty environment", || {
         row.program(Command::new(python).args(["-c", COMPARISON]).arg(source).arg(row.root()))?;
-        let target = [("CARGO_TARGET_DIR", row.root().join("target").into_os_string())];
+        let alike = [
+            ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
+            ("MATURIN_PEP517_ARGS", STRIPPED.into()),
+        ];
         let built = empty_folder(row, "source wheel")?;
         environment::pip_wheel(row, python, &built, |pip| {
-            pip.envs(row.environment()).envs(target).arg(source)
+            pip.envs(row.environment()).envs(alike).arg(source)
         })?;
         let wheel = of_kind(row, &built, "whl")?.pop();
         let wheel = wheel.ok_or_else(|| row.fail(&format!("{}: nothing was made", built.display())))?;
