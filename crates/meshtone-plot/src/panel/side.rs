@@ -41,7 +41,7 @@ impl<'a> Side<'a> {
             WheelName::Gear => ["Gear", "output shaft", "gear "],
         };
         let heading = [title.to_owned(), shaft.to_owned()];
-        let overlap = stages.meshes.first().map_or(0.0, |mesh| mesh.overlap);
+        let overlap = stages.meshes.first().map_or(0.0, |mesh| mesh.face.overlap());
         Self::of_pair(name, heading, of_tooth, (&stages.pairs[0], overlap), stages.tip_lengths_mm())
     }
 
@@ -55,7 +55,7 @@ impl<'a> Side<'a> {
         let (of_mesh, of_file) = (&stages.pairs[mesh], &gearbox.wheels[wheel]);
         let heading = [of_file.name.clone(), format!("shaft {}", of_file.shaft)];
         let tips_mm = stages.layout.gears[mesh].tip_lengths_mm();
-        Some(Self::of_pair(name, heading, "", (of_mesh, stages.meshes[mesh].overlap), tips_mm))
+        Some(Self::of_pair(name, heading, "", (of_mesh, stages.meshes[mesh].face.overlap()), tips_mm))
     }
 
     /// One of two wheels in mesh, with (base pitches) how much farther on its path a pair is at the end of the face at positive z than at

@@ -9,10 +9,8 @@ impl DamagedTooth {
     /// Whether what is lost differs along the face, or along the flank, along which the contact line of helical teeth runs.
     pub(crate) fn varies_over_face(&self) -> bool {
         let is_partial = |widths_mm: &[f64]| widths_mm.iter().any(|width_mm| *width_mm > 0.0);
-        let is_cut = self.gone_from_index < self.flank_y_mm.len()
-            || self.descriptions.iter().any(|damage| damage.part.is_of_flank());
         !self.is_missing()
-            && (is_cut
+            && (self.descriptions.iter().any(|damage| damage.part.is_of_flank())
                 || is_partial(&self.missing_width_mm)
                 || is_partial(&self.corner_width_mm)
                 || self.pits.is_some()

@@ -1,11 +1,12 @@
 //! What drives the machine, sample by sample: motor and brake, and the pairs of each mesh.
 
+use std::array::from_fn;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use super::deviations::{Eccentricity, FlankErrors, PairDeviations};
-use super::gear_mesh::{Mesh, PairTable};
-use super::path_table::PairState;
+use super::gear_mesh::{FaceForm, Mesh, PairTable};
+use super::path_table::{CornerTable, PairState};
 use crate::bearing::{BearingBlock, BearingTurning};
 use crate::machine::TurningForce;
 use crate::operation::{Motion, TimeGrid};
@@ -56,31 +57,48 @@ pub struct PairsBlock {
     pub offset: Vec<Vec<f64>>,
     /// (m) Where along the face the load acts; empty where that is the middle throughout.
     pub face_centre: Vec<f64>,
+    /// What each spring has outside the path, before its start and beyond its end; none of spur teeth.
+    pub(crate) corners: Vec<[CornerBlock; 2]>,
+    /// Of each place, the classes of its pairs, each from a sample on; none of spur teeth.
+    pub(crate) classes: Vec<Vec<(usize, usize)>>,
+}
+
+/// One corner of a spring at successive samples: as [`CornerAt`](super::law::CornerAt).
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CornerBlock {
+    pub(crate) offset: Vec<f64>,
+    pub(crate) near: Vec<f64>,
+    pub(crate) far: Vec<f64>,
 }
 
 impl PairsBlock {
-    /// Room for `samples` samples of some springs, whatever they hold: the tabulated forcing sets each.
-    fn resize(&mut self, springs: usize, samples: usize, tilts: bool) {
+    /// Room for `samples` samples of the springs of a mesh, whatever they hold: the tabulated forcing sets each.
+    fn resize(&mut self, mesh: &Mesh, samples: usize, tilts: bool) {
+        let (springs, has_corners) = (mesh.springs(), mesh.has_corners());
         self.stiffness.resize_with(springs, Vec::new);
         self.offset.resize_with(springs, Vec::new);
-        for values in self.stiffness.iter_mut().chain(&mut self.offset) {
+        self.corners.resize_with(if has_corners { springs } else { 0 }, Default::default);
+        self.classes.resize_with(if has_corners { mesh.pairs_at_once() } else { 0 }, Vec::new);
+        let of_corners = self.corners.iter_mut().flatten();
+        let of_corners =
+            of_corners.flat_map(|corner| [&mut corner.offset, &mut corner.near, &mut corner.far]);
+        for values in self.stiffness.iter_mut().chain(&mut self.offset).chain(of_corners) {
             values.resize(samples, 0.0);
         }
+        self.classes.iter_mut().for_each(Vec::clear);
         self.face_centre.resize(if tilts { samples } else { 0 }, 0.0);
     }
 
     /// `samples` samples without pairs.
-    fn clear(&mut self, springs: usize, samples: usize, tilts: bool) {
-        self.resize(springs, 0, false);
-        self.resize(springs, samples, tilts);
+    fn clear(&mut self, mesh: &Mesh, samples: usize, tilts: bool) {
+        self.resize(mesh, 0, false);
+        self.resize(mesh, samples, tilts);
     }
 
-    /// (N/m, m) Stiffness and offset of every spring at a sample.
-    pub(crate) fn springs(&self, sample: usize) -> impl Iterator<Item = [f64; 2]> {
-        self.stiffness
-            .iter()
-            .zip(&self.offset)
-            .map(move |(stiffness, offset)| [stiffness[sample], offset[sample]])
+    /// The class of the pair in a place at a sample; that of sound pairs before the first one.
+    pub(crate) fn class_at(&self, place: usize, sample: usize) -> usize {
+        let before = self.classes[place].iter().rev().find(|(from, _)| *from <= sample);
+        before.map_or(SOUND, |(_, class)| *class)
     }
 
     /// (m) Where along the face the load acts at a sample.
@@ -135,7 +153,7 @@ impl<'a> Forcing<'a> {
                 (true, false) => Reading::BetweenPoints { points_per_sample },
                 (false, _) => Reading::AnyMotion,
             };
-            MeshForcing::new(mesh, &deviations, time.step_s(), reading)
+            MeshForcing::new(mesh, &deviations, time.step_s(), (reading, points_per_sample))
         });
         Self {
             motion,
@@ -340,10 +358,16 @@ struct TabulatedPairs {
     further_apart_m: Vec<Vec<f64>>,
     /// (m) Deviation by tooth, at the mesh's points of flanks; none where all are ideal.
     pinion_m: Vec<Vec<f64>>,
-    /// (m) Deviation by tooth, and where the face is one slice `−S` of sound pairs: all that most pairs need beside the pinion's.
+    /// (m) Deviation by tooth, and of spur teeth `−S` of sound pairs: all that most pairs need beside the pinion's.
     gear_m: Vec<Vec<f64>>,
-    /// (m) Where the face has slices, what all slices of a tooth deviate by alike, by wheel and tooth; none where all turn true.
+    /// (m) Of teeth with corners or slices, what all places of a tooth deviate by alike, by wheel and tooth; none where all turn true.
     alike_m: Option<[Vec<Vec<f64>>; 2]>,
+    /// (m) Of teeth with corners, deviations by wheel and tooth at single places of the flanks.
+    flanks_m: [Vec<Vec<f64>>; 2],
+    /// (√m) Of each class, slice and end the edges of what lies outside the path, near to it and far from it, with the damping's lead.
+    corners: Vec<Vec<[[Vec<f64>; 2]; 2]>>,
+    /// (base pitches) That lead.
+    lead_of_corners: f64,
     /// By class; none where the load stays midway along the face.
     bearing: Vec<BorneLoad>,
 }
@@ -390,22 +414,30 @@ fn add_lead(offset_m: &mut [f64], lead: f64) {
 impl TabulatedPairs {
     /// Tabulates stiffness, separation and deviations.
     ///
-    /// Where the face is one slice, everything that a tooth adds to the offset is put into one table of it, so that a pair takes two.
-    /// Slices read a tooth's deviations at points of their own.
+    /// Of spur teeth alike along the face, everything that a tooth adds to the offset is put into one table of it, so that a pair takes two.
+    /// Others read a tooth's deviations at points of their own.
+    ///
+    /// # Arguments
+    /// * `lead` - (-) τ over the time from one point to the next, of what is read with the damping's lead
+    /// * `lead_of_corners` - (base pitches) how far the wheels turn in τ
     fn new(
         mesh: &Mesh,
         flanks: [&FlankErrors; 2],
         eccentricity: Option<&Eccentricity>,
         tilts: bool,
-        lead: f64,
+        [lead, lead_of_corners]: [f64; 2],
     ) -> Self {
         let sound = &mesh.classes[SOUND].states;
-        let is_whole = mesh.slices() == 1;
+        let is_whole = mesh.face == FaceForm::Spur;
         let teeth = |wheel: WheelName| vec![vec![0.0; mesh.points()]; mesh.sequence.teeth_of(wheel)];
         let tabulate = |wheel: WheelName| -> Vec<Vec<f64>> {
             let mut tables = flanks[wheel as usize].tabulate_at(mesh.flank_positions());
-            if is_whole {
-                tables = if tables.is_empty() { teeth(wheel) } else { mesh.averaged_along_face(tables) };
+            if !is_whole {
+                tables = mesh.averaged_along_face(&tables);
+            } else {
+                if tables.is_empty() {
+                    tables = teeth(wheel);
+                }
                 if let Some(eccentricity) = eccentricity {
                     eccentricity.add_to(&mut tables, mesh, wheel);
                 }
@@ -424,6 +456,15 @@ impl TabulatedPairs {
                 tables.iter_mut().for_each(|table| add_lead(table, lead));
                 tables
             })
+        };
+        let of_corners = |class: &PairTable| {
+            let of_slice = |ends: &[CornerTable; 2]| from_fn(|end| ends[end].roots(end, lead_of_corners));
+            class.corners.iter().map(of_slice).collect()
+        };
+        let at_places = |wheel: WheelName| {
+            // A flank does not change at its end: there is no damping's lead.
+            let tables = || flanks[wheel as usize].tabulate_at(mesh.flank_positions());
+            if mesh.has_corners() { tables() } else { Vec::new() }
         };
         let further_apart = |class: &PairTable| {
             let states = sound.iter().zip(&class.states);
@@ -444,6 +485,9 @@ impl TabulatedPairs {
             pinion_m: tabulate(WheelName::Pinion),
             gear_m: tabulate(WheelName::Gear),
             alike_m: eccentricity.filter(|_| !is_whole).map(alike),
+            flanks_m: WheelName::BOTH.map(at_places),
+            corners: mesh.classes.iter().map(of_corners).collect(),
+            lead_of_corners,
         }
     }
 
@@ -456,14 +500,29 @@ impl TabulatedPairs {
         let points = mesh.points();
         let alike = self.alike_m.iter().flatten().zip(teeth).map(|(tables, tooth)| (&tables[tooth][..], 0));
         let slice = |slice: usize| {
-            let of_class = (class != SOUND || mesh.slices() > 1)
+            let of_class = (class != SOUND || mesh.face != FaceForm::Spur)
                 .then(|| (&self.further_apart_m[class][slice * points..(slice + 1) * points], 0));
             let from = mesh.first_flank_point(slice);
             let of_teeth =
                 flanks().filter_map(|(tables, tooth)| tables.get(tooth)).map(|table| (&table[..], from));
+            let corners = self.corners[class].get(slice).map(|ends| {
+                [0, 1].map(|end| {
+                    let [near, far] = ends[end].each_ref().map(Vec::as_slice);
+                    let table = &mesh.classes[class].corners[slice][end];
+                    let flanks = self.flanks_m.iter().zip(teeth);
+                    CornerParts {
+                        near,
+                        far,
+                        apart_m: table.separation_m - table.deeper_m(self.lead_of_corners),
+                        flanks: flanks.filter_map(|(tables, tooth)| Some(&tables.get(tooth)?[..])).collect(),
+                        reading: mesh.corner_reading(slice, end, table.place),
+                    }
+                })
+            });
             SliceParts {
                 stiffness: &self.stiffness[class][slice * points..(slice + 1) * points],
                 offsets: of_teeth.chain(of_class).collect(),
+                corners,
             }
         };
         PairParts { class, alike: alike.collect(), slices: (0..mesh.slices()).map(slice).collect() }
@@ -487,10 +546,52 @@ struct SliceParts<'a> {
     stiffness: &'a [f64],
     /// Their sum is the slice's offset, but for what all slices have.
     offsets: Vec<FromPoint<'a>>,
+    /// What it has outside the path; none of spur teeth, nor of missing ones.
+    corners: Option<[CornerParts<'a>; 2]>,
+}
+
+/// The tables of one corner of a slice.
+struct CornerParts<'a> {
+    /// (√m) Its edges at the pair's points.
+    near: &'a [f64],
+    far: &'a [f64],
+    /// (m) Separation at the end of the path, less what the damping's lead makes the penetration deeper.
+    apart_m: f64,
+    /// (m) Deviations of both flanks, at the mesh's points of flanks.
+    flanks: Vec<&'a [f64]>,
+    reading: CornerReading,
+}
+
+/// Where the deviations are read that a corner feels: at the part of the contact line outside the path that is nearest to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CornerReading {
+    /// The point of the flanks' tables that this part is at when the pair is at its first point.
+    pub(super) first: f64,
+    /// The points between which it lies outside the path.
+    pub(super) outside: [f64; 2],
+}
+
+impl CornerParts<'_> {
+    /// (m) What deviations and separation add at a point of the pair.
+    fn offset_m(&self, point: f64) -> f64 {
+        let [least, most] = self.reading.outside;
+        let at = (self.reading.first + point).clamp(least, most);
+        let (index, part) = (at as usize, at - at.floor());
+        let read = |table: &[f64]| {
+            let [here, next] = [index, index + 1].map(|n| table[n.min(table.len() - 1)]);
+            here + part * (next - here)
+        };
+        self.flanks.iter().map(|table| read(table)).sum::<f64>() - self.apart_m
+    }
 }
 
 impl<'a> MeshForcing<'a> {
-    fn new(mesh: &'a Mesh, deviations: &PairDeviations<'a>, step_s: f64, reading: Reading) -> Self {
+    fn new(
+        mesh: &'a Mesh,
+        deviations: &PairDeviations<'a>,
+        step_s: f64,
+        (reading, nominal_points_per_sample): (Reading, f64),
+    ) -> Self {
         let [pinion, gear] = FlankErrors::of_both(deviations);
         let lead = mesh.damping_time_s / step_s;
         let eccentricity = Eccentricity::of(deviations);
@@ -499,10 +600,17 @@ impl<'a> MeshForcing<'a> {
         let lead_of_points = match reading {
             Reading::EveryPoint => Some(lead),
             Reading::BetweenPoints { points_per_sample } => Some(lead * points_per_sample),
-            Reading::AnyMotion => (mesh.overlap != 0.0 || mesh.slices() > 1).then_some(0.0),
+            Reading::AnyMotion => (mesh.face != FaceForm::Spur).then_some(0.0),
         };
-        let tables = lead_of_points
-            .map(|lead| TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, lead));
+        let points_per_sample = match reading {
+            Reading::EveryPoint => 1.0,
+            Reading::BetweenPoints { points_per_sample } => points_per_sample,
+            Reading::AnyMotion => nominal_points_per_sample,
+        };
+        let of_corners = lead * points_per_sample / mesh.points_per_pitch as f64;
+        let tables = lead_of_points.map(|lead| {
+            TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, [lead, of_corners])
+        });
         let before = vec![(i64::MIN, [0.0; 2]); mesh.springs()];
         Self { mesh, pinion, gear, eccentricity, tilts, lead, reading, tables, before }
     }
@@ -512,20 +620,19 @@ impl<'a> MeshForcing<'a> {
     /// # Arguments
     /// * `revolutions` - (rev) rotation of the motor at each, where the samples are not points of the tables
     fn next_block(&mut self, first: usize, samples: usize, revolutions: &[f64], block: &mut PairsBlock) {
-        let springs = self.mesh.springs();
         match (&self.tables, self.reading) {
             (Some(tables), Reading::EveryPoint) => {
-                block.resize(springs, samples, self.tilts);
+                block.resize(self.mesh, samples, self.tilts);
                 self.copy_from(tables, first, block);
             }
             (Some(tables), _) => {
-                block.clear(springs, samples, self.tilts);
+                block.clear(self.mesh, samples, self.tilts);
                 let mut before = std::mem::take(&mut self.before);
                 self.read_tables_between_points(tables, revolutions, &mut before, block);
                 self.before = before;
             }
             (None, _) => {
-                block.clear(springs, samples, self.tilts);
+                block.clear(self.mesh, samples, self.tilts);
                 self.read_between_points(revolutions, block);
             }
         }
@@ -548,6 +655,9 @@ impl<'a> MeshForcing<'a> {
             let place = pair.rem_euclid(at_once as i64) as usize;
             let PairParts { class, alike, slices: parts } = tables.of_pair(self.mesh, pair);
             leans |= tables.bearing.get(class).is_some_and(|bearing| bearing.leans);
+            if let Some(classes) = block.classes.get_mut(place) {
+                classes.push((from, class));
+            }
             for (slice, part) in parts.iter().enumerate() {
                 let spring = place * slices + slice;
                 block.stiffness[spring][set[place]..from].fill(0.0);
@@ -570,12 +680,35 @@ impl<'a> MeshForcing<'a> {
                 for term in terms {
                     offsets.iter_mut().zip(term).for_each(|(offset, term)| *offset += term);
                 }
+                let Some(corners) = block.corners.get_mut(spring) else { continue };
+                for (end, CornerBlock { offset, near, far }) in corners.iter_mut().enumerate() {
+                    near[set[place]..from].fill(0.0);
+                    far[set[place]..from].fill(0.0);
+                    let Some(corner) = part.corners.as_ref().map(|corners| &corners[end]) else {
+                        near[from..until].fill(0.0);
+                        far[from..until].fill(0.0);
+                        continue;
+                    };
+                    let points = point..point + until - from;
+                    near[from..until].copy_from_slice(&corner.near[points.clone()]);
+                    far[from..until].copy_from_slice(&corner.far[points.clone()]);
+                    for (offset, point) in offset[from..until].iter_mut().zip(points) {
+                        *offset = corner.offset_m(point as f64);
+                        *offset += alike.iter().map(|(table, begin)| table[begin + point]).sum::<f64>();
+                    }
+                }
             }
             set[place] = until;
         }
         for (spring, (stiffness, offset)) in block.stiffness.iter_mut().zip(&mut block.offset).enumerate() {
             stiffness[set[spring / slices]..].fill(0.0);
             offset[set[spring / slices]..].fill(0.0);
+        }
+        for (spring, corners) in block.corners.iter_mut().enumerate() {
+            for CornerBlock { near, far, .. } in corners {
+                near[set[spring / slices]..].fill(0.0);
+                far[set[spring / slices]..].fill(0.0);
+            }
         }
         block.face_centre.fill(0.0);
         if leans {
@@ -625,7 +758,7 @@ impl<'a> MeshForcing<'a> {
     fn face_centre_m(&self, point: usize) -> f64 {
         let (mut moment, mut whole) = (0.0, 0.0);
         let (mut least_m, mut of_nearest) = (f64::INFINITY, 0.0);
-        for (_, state) in self.mesh.pairs_at(point) {
+        for (.., state) in self.mesh.pairs_at(point) {
             let load = self.mesh.borne_n(state, point + self.mesh.points_before);
             moment += load * state.face_centre_m;
             whole += load;
@@ -665,8 +798,10 @@ impl<'a> MeshForcing<'a> {
         let reach = mesh.points() as f64 - 1.0;
         for pair in ((first - reach) / per_pitch).floor() as i64..=(last / per_pitch).floor() as i64 {
             let begins = pair as f64 * per_pitch;
-            let first_spring = pair.rem_euclid(mesh.pairs_at_once() as i64) as usize * mesh.slices();
+            let place = pair.rem_euclid(mesh.pairs_at_once() as i64) as usize;
+            let first_spring = place * mesh.slices();
             let parts = tables.of_pair(mesh, pair);
+            let mut is_first = true;
             // As many as are certainly in it; each is checked again.
             let from = if step > 0.0 { ((begins - first) / step - 1.0).max(0.0) as usize } else { 0 };
             let until = if step > 0.0 {
@@ -680,6 +815,21 @@ impl<'a> MeshForcing<'a> {
                     continue;
                 }
                 let (index, part) = (point as usize, point - point.floor());
+                if let Some(classes) = block.classes.get_mut(place)
+                    && is_first
+                {
+                    classes.push((k, parts.class));
+                    is_first = false;
+                }
+                for (spring, slice) in (first_spring..).zip(&parts.slices) {
+                    for (end, corner) in slice.corners.iter().flatten().enumerate() {
+                        let [near, far] = [corner.near, corner.far].map(|table| between(table, index, part));
+                        let CornerBlock { offset: offsets, near: nears, far: fars } =
+                            &mut block.corners[spring][end];
+                        (nears[k], fars[k]) = (near, far);
+                        offsets[k] = corner.offset_m(point) + parts.alike_between(index, part);
+                    }
+                }
                 for (spring, [stiffness, offset]) in (first_spring..).zip(parts.between_points(index, part)) {
                     block.stiffness[spring][k] = stiffness;
                     block.offset[spring][k] =
@@ -763,16 +913,24 @@ impl PairParts<'_> {
     /// * `index` - of the point before
     /// * `part` - (-) of the way to the next one
     fn between_points(&self, index: usize, part: f64) -> impl Iterator<Item = [f64; 2]> {
-        let between = move |table: &[f64], from: usize| {
-            let at = index + from;
-            table[at] + part * (table[at + 1] - table[at])
-        };
         let sum = move |terms: &[FromPoint<'_>]| {
-            terms.iter().map(|(table, from)| between(table, *from)).sum::<f64>()
+            terms.iter().map(|(table, from)| between(table, index + from, part)).sum::<f64>()
         };
-        let alike = sum(&self.alike);
-        self.slices.iter().map(move |slice| [between(slice.stiffness, 0), sum(&slice.offsets) + alike])
+        let alike = self.alike_between(index, part);
+        self.slices
+            .iter()
+            .map(move |slice| [between(slice.stiffness, index, part), sum(&slice.offsets) + alike])
     }
+
+    /// (m) What all slices add to their offset between two points.
+    fn alike_between(&self, index: usize, part: f64) -> f64 {
+        self.alike.iter().map(|(table, from)| between(table, index + from, part)).sum()
+    }
+}
+
+/// A table between two of its points.
+fn between(table: &[f64], index: usize, part: f64) -> f64 {
+    table[index] + part * (table[index + 1] - table[index])
 }
 
 /// The samples of a block in which a pair takes part, and its point at the first of them.

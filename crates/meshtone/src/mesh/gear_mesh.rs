@@ -3,17 +3,85 @@
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
+use super::corner::REACH;
 use super::face_load::{FaceLoad, FaceSlope};
-use super::forcing::{PAIRS, Turning};
-use super::law::{Contact, MeshLaw, deflection_at_rest};
+use super::forcing::{CornerReading, PAIRS, Turning};
+use super::law::{Contact, CornerLaw, MeshLaw, Springs, deflection_at_rest};
 use super::pair::Pairs;
-use super::path_table::{PairState, PairTables, PathEnds, TipShape, share_on_path};
+use super::path_table::{AlongPath, CornerTable, PairState, PairTables, TipShape, share_on_path};
 use super::sequence::{PairKind, PairSequence};
-use super::window::{Integral, Window, place_on_face};
+use super::window::{Window, place_on_face};
 use crate::machine::ClosedMesh;
 
-/// (base pitches) How far outside its path a pair is looked at: a corner there is some mm away from the flank.
-const REACH: f64 = 0.6;
+/// How the flanks of a pair lie along the face.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FaceForm {
+    /// Spur teeth alike along the face: they touch at one position of the path, on it or with a corner outside of it.
+    Spur,
+    /// Helical teeth alike along the face. Their contact line is one spring for what lies on the path, and a corner's law for what
+    /// lies outside of it at either end: a sum, which is exact, and not one spring at a mean distance.
+    Helical {
+        /// (base pitches) How much farther on its path a pair is at the end of the face at positive z than at the other one: the overlap
+        /// ratio with the sign of the end that enters contact first.
+        overlap: f64,
+    },
+    /// A face whose gap varies, in slices: each of them is such a spur or helical face.
+    Sliced {
+        /// (base pitches) As of helical teeth; 0 of spur teeth.
+        overlap: f64,
+        /// (m) Of each slice, how much farther apart its flanks are than those in the middle of the face.
+        gaps_m: Vec<f64>,
+    },
+}
+
+impl FaceForm {
+    /// Number of slices; 1 where the face is taken as a whole.
+    pub fn slices(&self) -> usize {
+        match self {
+            Self::Spur | Self::Helical { .. } => 1,
+            Self::Sliced { gaps_m, .. } => gaps_m.len(),
+        }
+    }
+
+    /// (base pitches) Overlap of the whole face, with the sign of the end that enters contact first; 0 of spur teeth.
+    pub fn overlap(&self) -> f64 {
+        match self {
+            Self::Spur => 0.0,
+            Self::Helical { overlap } | Self::Sliced { overlap, .. } => *overlap,
+        }
+    }
+
+    /// (m) How much farther apart the flanks of a slice are than those in the middle of the face.
+    fn gap_m(&self, slice: usize) -> f64 {
+        match self {
+            Self::Spur | Self::Helical { .. } => 0.0,
+            Self::Sliced { gaps_m, .. } => gaps_m[slice],
+        }
+    }
+
+    /// The stretch of the path that a slice spans.
+    pub(super) fn window(&self, slice: usize) -> Window {
+        let slices = self.slices();
+        let middle = place_on_face(slice as f64 + 0.5, slices);
+        Window { overlap: self.overlap(), middle, width: 1.0 / slices as f64 }
+    }
+
+    /// (base pitches) How far outside the path pairs are looked at.
+    ///
+    /// # Arguments
+    /// * `contact` - how their flanks touch
+    /// * `path` - (base pitches) length of the path
+    /// * `step` - (base pitches) from one point of the tables to the next
+    fn reach(&self, contact: Contact, path: f64, step: f64) -> f64 {
+        match (self.window(0).is_a_point(), contact) {
+            // As many pairs of spur wheels as a step looks at reach from the first point to the last.
+            (true, _) => REACH.min((PAIRS as f64 - path) / 2.0).max(0.0),
+            (false, Contact::Unilateral) => self.overlap().abs() / 2.0 + REACH,
+            // A point more, as the last one lies before the end of the reach.
+            (false, Contact::Bilateral) => self.overlap().abs() / 2.0 + 2.0 * step,
+        }
+    }
+}
 
 /// The mesh of two wheels as a sequence of tooth pairs.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,9 +106,8 @@ pub struct Mesh {
     pub backlash_m: Option<f64>,
     /// (-) Contact ratio of sound teeth: the length of their path between the chamfers, in base pitches of the transverse section.
     pub contact_ratio: f64,
-    /// (base pitches) How much farther on its path a pair is at the end of the face at positive z than at the other one: the overlap ratio
-    /// with the sign of the end that enters contact first; 0 of spur wheels.
-    pub overlap: f64,
+    /// How the flanks lie along the face.
+    pub face: FaceForm,
     /// (m) How far the nominal load presses the mean mesh together.
     pub nominal_deflection_m: f64,
     /// (-) Largest load per length of face over its mean, of sound teeth under the nominal load: the face load factor K_Hβ of
@@ -50,13 +117,11 @@ pub struct Mesh {
     pub contact: Contact,
     /// How it turns with the motor.
     pub turning: Turning,
-    /// Number of slices of the face.
-    slices: usize,
     /// (m) How far the nominal load presses sound pairs together at each point of a pitch, counted as those of the tables; none where that
     /// is taken as [`Self::nominal_deflection_m`] throughout.
     pressed_m: Vec<f64>,
-    /// (N/m) Stiffness of a sound pair of helical teeth at each point if its whole face touched there; none of spur wheels and of faces in slices.
-    of_path_n_per_m: Vec<f64>,
+    /// Sound pairs of helical teeth along their path; none of spur wheels.
+    along_path: Option<AlongPath>,
 }
 
 /// A class of pairs, point by point.
@@ -67,6 +132,9 @@ pub struct PairTable {
     pub kind: PairKind,
     /// The pair at each point; where the face has slices all points of the first one, then those of the next one.
     pub states: Vec<PairState>,
+    /// Of each slice, what its contact lines have outside the path, before its start and beyond its end; none of spur teeth, whose states
+    /// are those of corners there.
+    pub corners: Vec<[CornerTable; 2]>,
 }
 
 impl PairTable {
@@ -92,13 +160,11 @@ pub(crate) struct MeshParameters {
     /// (N) Nominal load along the line of action.
     pub(crate) static_force_n: f64,
     /// How the flanks close along the face; none where they close alike.
-    pub(crate) face: Option<FaceSlope>,
-    /// (base pitches) As [`Mesh::overlap`].
-    pub(crate) overlap: f64,
+    pub(crate) slope: Option<FaceSlope>,
+    /// How they lie along it otherwise.
+    pub(crate) face: FaceForm,
     /// (m) Face width.
     pub(crate) face_width_m: f64,
-    /// (m) Of each slice, how much farther apart its flanks are than those in the middle of the face: crowning and end relief.
-    pub(crate) gaps_m: Vec<f64>,
 }
 
 impl Mesh {
@@ -107,9 +173,8 @@ impl Mesh {
 
     /// Tabulates the pairs.
     ///
-    /// The tables of spur wheels reach as far beyond the path as a tip corner can touch, those of helical ones until the last end of a tooth
-    /// has left it. Where the flanks close unevenly along the face, the states of all pairs are changed to those of the part of the face
-    /// that bears under the nominal load; slices have their own separations instead.
+    /// The tables reach as far beyond the path as a tip corner can touch. Where the flanks close unevenly along the face, the states of all
+    /// pairs are changed to those of the part of the face that bears under the nominal load; slices have their own separations instead.
     ///
     /// # Arguments
     /// * `faces` - the tooth pairs of each slice
@@ -125,107 +190,104 @@ impl Mesh {
         parameters: MeshParameters,
     ) -> Self {
         let MeshParameters {
-            contact, turning, damping_ratio, mesh_mass_kg, backlash_m, static_force_n, ..
+            contact,
+            turning,
+            damping_ratio,
+            mesh_mass_kg,
+            backlash_m,
+            static_force_n,
+            slope,
+            face,
+            face_width_m,
         } = parameters;
-        let (overlap, slices) = (parameters.overlap, faces.len());
         let points_per_pitch = points_per_pitch.get();
         let per_pitch = points_per_pitch as f64;
         let step = 1.0 / per_pitch;
-        let has_corners = contact == Contact::Unilateral && overlap == 0.0;
-        let ends_of_path = if has_corners { PathEnds::Corners } else { PathEnds::Sharp };
         let tables: Vec<PairTables> =
-            faces.iter().map(|pairs| PairTables::new(pairs, shape, ends_of_path)).collect();
+            faces.iter().map(|pairs| PairTables::new(pairs, shape, contact)).collect();
         let [begins, ends] = tables[0].path_of_sound_teeth();
-        // As many pairs of spur wheels as a step looks at reach from the first point to the last.
-        let reach = if overlap == 0.0 {
-            REACH.min((PAIRS as f64 - (ends - begins)) / 2.0).max(0.0)
-        } else {
-            // A point more, as the last one lies before the end of the reach.
-            overlap.abs() / 2.0 + 2.0 * step
-        };
+        let reach = face.reach(contact, ends - begins, step);
         let points_before = ((reach - begins) * per_pitch).floor().max(0.0) as usize;
         let points = ((ends + reach) * per_pitch).floor() as usize + points_before;
-        let points = if overlap == 0.0 { points.min(PAIRS * points_per_pitch) } else { points };
+        let is_spur = face.window(0).is_a_point();
+        let points = if is_spur { points.min(PAIRS * points_per_pitch) } else { points };
         let positions: Vec<f64> =
             (0..points).map(|point| (point as f64 - points_before as f64) / per_pitch).collect();
-        let middle = |slice: usize| place_on_face(slice as f64 + 0.5, slices);
         let sound = sequence.classes()[0];
         // Slices of sound pairs are alike.
-        let along_path = (overlap != 0.0).then(|| tables[0].along_path(&sound));
-        let of_slice = |kind: &PairKind, slice: usize| -> Vec<PairState> {
-            let window = Window { overlap, middle: middle(slice), width: 1.0 / slices as f64 };
-            let mut states = match &along_path {
-                None => tables[slice].tabulate(kind, &positions, step),
-                Some(sound) if kind.is_sound() => {
-                    sound.over_face(&positions, window, parameters.face_width_m)
+        let along_path = if is_spur { None } else { tables[0].along_path(&sound) };
+        let along_path_of = |kind: &PairKind, slice: usize| {
+            if kind.is_sound() { along_path.clone() } else { tables[slice].along_path(kind) }
+        };
+        let table = |&kind: &PairKind| {
+            let mut table = PairTable { kind, states: Vec::new(), corners: Vec::new() };
+            for slice in 0..face.slices() {
+                let window = face.window(slice);
+                let mut states = match along_path_of(&kind, slice) {
+                    _ if is_spur => tables[slice].tabulate(&kind, &positions, step),
+                    None => vec![PairState::APART; points],
+                    Some(along_path) => {
+                        if contact == Contact::Unilateral {
+                            let mut corners = along_path.corners(&positions, window);
+                            corners.iter_mut().for_each(|corner| corner.separation_m += face.gap_m(slice));
+                            table.corners.push(corners);
+                        }
+                        along_path.over_face(&positions, window)
+                    }
+                };
+                for state in &mut states {
+                    state.separation_m += face.gap_m(slice);
+                    state.face_centre_m += window.middle * face_width_m;
                 }
-                Some(_) => {
-                    tables[slice].along_path(kind).over_face(&positions, window, parameters.face_width_m)
-                }
-            };
-            for state in states.iter_mut().filter(|_| slices > 1) {
-                state.separation_m += parameters.gaps_m[slice];
-                state.face_centre_m += window.middle * parameters.face_width_m;
+                table.states.append(&mut states);
             }
-            states
+            table
         };
-        let classes = (sequence.classes().iter())
-            .map(|&kind| PairTable {
-                kind,
-                states: (0..slices).flat_map(|slice| of_slice(&kind, slice)).collect(),
-            })
-            .collect();
-        let of_path_n_per_m = if overlap == 0.0 || slices > 1 {
-            Vec::new()
-        } else {
-            tables[0].tabulate(&sound, &positions, step).iter().map(|state| state.stiffness_n_per_m).collect()
+        let classes: Vec<PairTable> = sequence.classes().iter().map(table).collect();
+        // Spur teeth keep their stiffness where only a corner touches.
+        let share = |at: f64| match (is_spur, contact) {
+            (true, Contact::Unilateral) => share_on_path(at, step, [begins, ends]),
+            _ => 1.0,
         };
+        let mean_stiffness = |classes: &[PairTable]| {
+            let states = classes[0].states.iter().zip(positions.iter().cycle());
+            states.map(|(state, at)| share(*at) * state.stiffness_n_per_m).sum::<f64>() / per_pitch
+        };
+        let mean_stiffness_n_per_m = mean_stiffness(&classes);
         let mut mesh = Self {
             points_per_pitch,
             sequence,
             classes,
             points_before,
-            mean_stiffness_n_per_m: 0.0,
-            closed_stiffness_n_per_m: 0.0,
+            mean_stiffness_n_per_m,
+            closed_stiffness_n_per_m: mean_stiffness_n_per_m,
             damping_time_s: 0.0,
             backlash_m: (contact == Contact::Unilateral).then_some(backlash_m),
             contact_ratio: ends - begins,
-            overlap,
+            face,
             nominal_deflection_m: 0.0,
             face_load_factor: 1.0,
             contact,
             turning,
-            slices,
             pressed_m: Vec::new(),
-            of_path_n_per_m,
+            along_path,
         };
-        let share = |at: f64| if has_corners { share_on_path(at, step, [begins, ends]) } else { 1.0 };
-        let mean_stiffness = |classes: &[PairTable]| {
-            let states = classes[0].states.iter().zip(positions.iter().cycle());
-            states.map(|(state, at)| share(*at) * state.stiffness_n_per_m).sum::<f64>() / per_pitch
-        };
-        mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
-        mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
-        match parameters.face {
-            Some(face) if slices == 1 => {
-                let of_mean = FaceLoad::new(face, static_force_n / mesh.mean_stiffness_n_per_m);
-                mesh.lean(face, &of_mean, static_force_n);
+        match slope {
+            Some(slope) if mesh.slices() == 1 => {
+                let of_mean = FaceLoad::new(slope, static_force_n / mesh.mean_stiffness_n_per_m);
+                mesh.lean(slope, &of_mean, static_force_n);
                 mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
                 mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
                 mesh.face_load_factor = of_mean.factor();
             }
-            face => {
-                if let Some(face) = face {
+            slope => {
+                if let Some(slope) = slope {
                     // Slices touch at one deflection: the wheels' tilt under the load is taken off beforehand.
-                    let slope =
-                        FaceLoad::new(face, static_force_n / mesh.mean_stiffness_n_per_m).loaded_slope();
-                    let closer_m = |slice: usize| slope * middle(slice) * parameters.face_width_m;
-                    for states in mesh.classes.iter_mut().map(|class| &mut class.states) {
-                        let numbered = states.iter_mut().enumerate();
-                        numbered.for_each(|(n, state)| state.separation_m -= closer_m(n / points));
-                    }
+                    let loaded =
+                        FaceLoad::new(slope, static_force_n / mesh.mean_stiffness_n_per_m).loaded_slope();
+                    mesh.close_slices(loaded * face_width_m);
                 }
-                if slices > 1 && contact == Contact::Unilateral && static_force_n > 0.0 {
+                if mesh.slices() > 1 && contact == Contact::Unilateral && static_force_n > 0.0 {
                     mesh.press(static_force_n);
                 }
             }
@@ -233,6 +295,22 @@ impl Mesh {
         mesh.damping_time_s = 2.0 * damping_ratio * (mesh_mass_kg / mesh.mean_stiffness_n_per_m).sqrt();
         mesh.nominal_deflection_m = static_force_n / mesh.mean_stiffness_n_per_m;
         mesh
+    }
+
+    /// Brings the slices closer together towards one end of the face.
+    ///
+    /// # Arguments
+    /// * `closer_m` - (m) by how much more over the whole face
+    fn close_slices(&mut self, closer_m: f64) {
+        let points = self.points();
+        let closer_m = |slice: usize| closer_m * self.face.window(slice).middle;
+        for PairTable { states, corners, .. } in &mut self.classes {
+            let numbered = states.iter_mut().enumerate();
+            numbered.for_each(|(n, state)| state.separation_m -= closer_m(n / points));
+            for (slice, corners) in corners.iter_mut().enumerate() {
+                corners.iter_mut().for_each(|corner| corner.separation_m -= closer_m(slice));
+            }
+        }
     }
 
     /// Makes pairs whose flanks close alike along the face such whose flanks close as given.
@@ -254,7 +332,7 @@ impl Mesh {
         let (per_pitch, points) = (self.points_per_pitch, self.points());
         let states = &self.classes[0].states;
         let mut stiffness_n_per_m = 0.0;
-        let mut load_n = vec![0.0; self.slices];
+        let mut load_n = vec![0.0; self.slices()];
         let mut pressed_m = Vec::with_capacity(per_pitch);
         for from in 0..per_pitch {
             let together = || {
@@ -262,15 +340,15 @@ impl Mesh {
                     states.iter().skip(from).step_by(per_pitch).map(move |state| (slice, state))
                 })
             };
-            let springs = springs_of(together().map(|(_, state)| state));
-            let deflection_m = deflection_at_rest(self.contact, springs, static_force_n);
+            let springs = together().map(|(_, state)| state);
+            let deflection_m = deflection_of_springs(self.contact, springs, static_force_n);
             for (slice, state) in together().filter(|(_, state)| state.separation_m < deflection_m) {
                 stiffness_n_per_m += state.stiffness_n_per_m;
                 load_n[slice] += state.stiffness_n_per_m * (deflection_m - state.separation_m);
             }
             pressed_m.push(deflection_m);
         }
-        let mean_n = load_n.iter().sum::<f64>() / self.slices as f64;
+        let mean_n = load_n.iter().sum::<f64>() / self.slices() as f64;
         self.face_load_factor = load_n.iter().copied().fold(0.0, f64::max) / mean_n;
         self.mean_stiffness_n_per_m = stiffness_n_per_m / per_pitch as f64;
         self.pressed_m = pressed_m;
@@ -278,17 +356,28 @@ impl Mesh {
 
     /// Number of slices of the face; 1 where it is taken as a whole.
     pub fn slices(&self) -> usize {
-        self.slices
+        self.face.slices()
     }
 
     /// Number of pairs that are looked at together.
     pub(crate) fn pairs_at_once(&self) -> usize {
-        if self.overlap == 0.0 { PAIRS } else { self.points().div_ceil(self.points_per_pitch) }
+        self.points().div_ceil(self.points_per_pitch).max(PAIRS)
     }
 
     /// Number of springs that are looked at together: slices of pairs.
     pub(crate) fn springs(&self) -> usize {
-        self.pairs_at_once() * self.slices
+        self.pairs_at_once() * self.slices()
+    }
+
+    /// The laws of all corners: of each class, of each slice, at the start of the path and at its end; none of spur teeth. Classes of missing
+    /// teeth have laws of no stiffness.
+    pub(crate) fn corner_laws(&self) -> Vec<CornerLaw> {
+        let of_class = |class: &PairTable| -> Vec<CornerLaw> {
+            let none = vec![CornerLaw::NONE; 2 * self.slices()];
+            let laws = class.corners.iter().flatten().map(|corner| corner.law);
+            if class.corners.is_empty() { none } else { laws.collect() }
+        };
+        if self.has_corners() { self.classes.iter().flat_map(of_class).collect() } else { Vec::new() }
     }
 
     /// (N) The part of the nominal load that a slice of a pair bears: its weight where the place of the load along the face is found.
@@ -303,11 +392,12 @@ impl Mesh {
     }
 
     /// Points by which the flanks' tables begin before a pair's, and end after it: as many as the first slice is ahead of the middle.
-    fn flank_margin(&self) -> usize {
-        if self.slices == 1 {
-            0
-        } else {
-            (self.overlap.abs() / 2.0 * self.points_per_pitch as f64).ceil() as usize
+    pub(super) fn flank_margin(&self) -> usize {
+        match self.face {
+            FaceForm::Spur | FaceForm::Helical { .. } => 0,
+            FaceForm::Sliced { overlap, .. } => {
+                (overlap.abs() / 2.0 * self.points_per_pitch as f64).ceil() as usize
+            }
         }
     }
 
@@ -325,39 +415,58 @@ impl Mesh {
     /// # Arguments
     /// * `slice` - its number
     pub(super) fn first_flank_point(&self, slice: usize) -> usize {
-        let middle = place_on_face(slice as f64 + 0.5, self.slices);
-        let ahead = (self.overlap * middle * self.points_per_pitch as f64).round() as i64;
-        (self.flank_margin() as i64 + ahead).max(0) as usize
+        let ahead = self.face.overlap() * self.face.window(slice).middle * self.points_per_pitch as f64;
+        (self.flank_margin() as i64 + ahead.round() as i64).max(0) as usize
     }
 
-    /// Tables over the points of flanks as means along the contact lines of helical teeth, weighted by stiffness: as long as a whole line
-    /// touches, its deviation is this mean.
+    /// Whether its teeth have corners beside the springs of their path.
+    pub(crate) fn has_corners(&self) -> bool {
+        self.contact == Contact::Unilateral && self.along_path.is_some()
+    }
+
+    /// Where the flanks' deviations are read that a corner feels.
     ///
     /// # Arguments
-    /// * `tables` - a quantity of each tooth, at the mesh's points
-    pub(super) fn averaged_along_face(&self, tables: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-        if self.overlap == 0.0 {
-            return tables;
+    /// * `slice`, `end` - of which slice, and at which end of the path
+    /// * `place` - (base pitches) where the end is
+    pub(super) fn corner_reading(&self, slice: usize, end: usize, place: f64) -> CornerReading {
+        let per_pitch = self.points_per_pitch as f64;
+        let window = self.face.window(slice);
+        let [ahead, half] = [window.middle * window.overlap, window.overlap.abs() * window.width / 2.0];
+        let margin = self.flank_margin() as f64;
+        let (at_end, last) = (
+            place * per_pitch + self.points_before as f64 + margin,
+            self.points() as f64 + 2.0 * margin - 1.0,
+        );
+        match end {
+            0 => CornerReading { first: margin + (ahead + half) * per_pitch, outside: [0.0, at_end] },
+            _ => CornerReading { first: margin + (ahead - half) * per_pitch, outside: [at_end, last] },
         }
-        let window = Window { overlap: self.overlap, middle: 0.0, width: 1.0 };
-        let (first, step) = (self.position(0), 1.0 / self.points_per_pitch as f64);
-        let weight = Integral::new(first, step, self.of_path_n_per_m.iter().copied());
-        let mean = |table: Vec<f64>| {
-            let weighted = self.of_path_n_per_m.iter().zip(&table).map(|(weight, value)| weight * value);
-            let weighted = Integral::new(first, step, weighted);
-            let at = |point: usize| {
-                let [from, until] = window.around(self.position(point));
-                let whole = weight.between(from, until);
-                if whole > 0.0 { weighted.between(from, until) / whole } else { table[point] }
-            };
-            (0..table.len()).map(at).collect()
+    }
+
+    /// Tables over the points of flanks as means along what a slice's contact lines have on the path.
+    ///
+    /// # Arguments
+    /// * `tables` - a quantity of each tooth, at the mesh's points of flanks
+    pub(super) fn averaged_along_face(&self, tables: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let Some(along_path) = &self.along_path else { return tables.to_vec() };
+        let positions: Vec<f64> = self.flank_positions().collect();
+        let window = Window { middle: 0.0, ..self.face.window(0) };
+        let mean = |table: &Vec<f64>| {
+            along_path.mean(&positions, window, |position| {
+                let place = (position - positions[0]) * self.points_per_pitch as f64;
+                let place = place.clamp(0.0, (table.len() - 1) as f64);
+                let (point, part) = (place as usize, place - place.floor());
+                let next = table[(point + 1).min(table.len() - 1)];
+                table[point] + part * (next - table[point])
+            })
         };
-        tables.into_iter().map(mean).collect()
+        tables.iter().map(mean).collect()
     }
 
     /// Number of points of a pair.
     pub fn points(&self) -> usize {
-        self.classes[0].states.len() / self.slices
+        self.classes[0].states.len() / self.slices()
     }
 
     /// (base pitches) Position of a point of a pair since the start of its path.
@@ -392,7 +501,7 @@ impl Mesh {
     /// (N/m) Sum of the stiffnesses of the pairs that touch at a point, counted from the start of the simulation: under a light load, and
     /// where the face has slices under the nominal one.
     pub(crate) fn whole_stiffness_at(&self, point: usize) -> f64 {
-        self.touching_n_per_m(&self.pairs_at(point).map(|(_, state)| *state).collect::<Vec<_>>())
+        self.touching_n_per_m(&self.pairs_at(point).map(|(_, _, state)| *state).collect::<Vec<_>>())
     }
 
     /// (N/mm) Sum of the stiffnesses of the pairs that touch, at every point of some pitches: under a light load, and where the face has slices
@@ -428,7 +537,7 @@ impl Mesh {
             Contact::Unilateral if self.pressed_m.is_empty() => nearest_m(pairs()) + TOUCHING_M,
             Contact::Unilateral => {
                 let force_n = self.nominal_deflection_m * self.mean_stiffness_n_per_m;
-                self.deflection_at_rest(states.iter(), force_n).unwrap_or(f64::NEG_INFINITY)
+                deflection_of_springs(self.contact, states.iter(), force_n)
             }
             Contact::Bilateral => f64::INFINITY,
         };
@@ -436,27 +545,24 @@ impl Mesh {
         // A sum of no numbers is −0.
         touching.fold(0.0, |sum, state| sum + state.stiffness_n_per_m)
     }
-
-    /// (m) Deflection at which some pairs carry a force at rest, and whether any of them can touch at all.
-    ///
-    /// # Arguments
-    /// * `states` - of the pairs that are looked at together
-    /// * `force_n` - (N) the force, 0 or more
-    pub(super) fn deflection_at_rest<'a>(
-        &self,
-        states: impl Iterator<Item = &'a PairState>,
-        force_n: f64,
-    ) -> Option<f64> {
-        let mut springs = springs_of(states).peekable();
-        springs.peek()?;
-        Some(deflection_at_rest(self.contact, springs, force_n))
-    }
 }
 
-/// (N/m, m) Pairs without deviations, of which all that can touch, as springs of the time loop.
-fn springs_of<'a>(states: impl Iterator<Item = &'a PairState>) -> impl Iterator<Item = [f64; 2]> {
+/// (m) Deflection at which pairs without deviations carry a force at rest, of which all that can touch are springs of the time loop.
+///
+/// # Arguments
+/// * `contact` - how they touch
+/// * `states` - the pairs, without corners of their own
+/// * `force_n` - (N) the force, 0 or more
+fn deflection_of_springs<'a>(
+    contact: Contact,
+    states: impl Iterator<Item = &'a PairState>,
+    force_n: f64,
+) -> f64 {
     let can_touch = |state: &&PairState| state.stiffness_n_per_m > 0.0;
-    states.filter(can_touch).map(|state| [state.stiffness_n_per_m, -state.separation_m])
+    let (stiffness, offset): (Vec<f64>, Vec<f64>) =
+        states.filter(can_touch).map(|state| (state.stiffness_n_per_m, -state.separation_m)).unzip();
+    let springs = Springs { stiffness: &stiffness, offset: &offset, corners: &[], laws: &[] };
+    deflection_at_rest(contact, springs, force_n)
 }
 
 /// (m) How far a load presses the nearest of sound pairs together at rest.
@@ -469,7 +575,7 @@ fn springs_of<'a>(states: impl Iterator<Item = &'a PairState>) -> impl Iterator<
 fn pressed_m(states: &[PairState], from: usize, per_pitch: usize, force_n: f64) -> f64 {
     let together =
         || states.iter().skip(from).step_by(per_pitch).filter(|state| state.stiffness_n_per_m > 0.0);
-    deflection_at_rest(Contact::Unilateral, springs_of(together()), force_n) - nearest_m(together())
+    deflection_of_springs(Contact::Unilateral, together(), force_n) - nearest_m(together())
 }
 
 /// (m) Least separation of some pairs.

@@ -1,18 +1,24 @@
 //! The law of a mesh: `f = Σ k_n max(0, x_n + τ ẋ_n) − k̄ max(0, −j − (δ + τ δ̇))` with `x_n = δ + e_n − S_n`, summed over its springs: the
 //! pairs of teeth, or the slices of each pair where its gap varies along the face.
 //!
+//! A contact line of helical teeth that leaves its path touches there with a corner, place by place: with S the corner's separation, and
+//! k' the stiffness per base pitch, what lies from p to q base pitches outside the path carries `k' ∫ max(0, x − S) ds`, which is in closed form
+//! ([`CornerLaw`]). It is added to the spring of what lies on the path.
+//!
 //! Flanks push and never pull. Where they may pull, as in a linear mesh, every pair on its path carries `k_n (x_n + τ ẋ_n)` of either
 //! sign, and coast flanks are out of reach.
 //!
 //! Stiffness, deviation and separation of every pair are known functions of the rotation, so a mesh has one unknown in a step, the
 //! deflection with its damping's lead, `D = δ + τ δ̇`. At the step's end `D = D₀ − Γ f(D)`, where D₀ is what it would be without
 //! the mesh's force: a rising, piecewise linear equation, solved exactly by Newton's method. The drive flanks' force is
-//! convex, so that from the first iterate on the method comes down to the solution, and ends when no pair leaves.
+//! convex, so that from the first iterate on the method comes down to the solution, and ends when no pair leaves. With corners it is smooth:
+//! there the method ends when an iterate is so near to the last one that the tangent is exact between them.
 //!
 //! Where two teeth meet at speed the force begins when `x + τ ẋ` crosses 0, which is earlier than x does by τ, a few
 //! microseconds: so the force has no jump, and the equation always a solution.
 
-use super::forcing::PairsBlock;
+use super::corner::TERMS;
+use super::forcing::{CornerBlock, PairsBlock};
 use crate::simd::{Instructions, Lanes};
 
 /// How two flanks touch.
@@ -42,23 +48,170 @@ impl Contact {
     }
 }
 
-/// The pairs of a mesh at one sample, of which `P` are looked at together. Aligned so that eight numbers side by side never straddle two
+/// What a contact line of helical teeth carries outside its path, at one of its ends.
+///
+/// Per unit of stiffness a line from the path's end to where the corner reaches at `m²` carries `κ(D, m) = J(v) + s*(v) (D − v²)` with
+/// `v = min(√D, m)` and `J = ∫ s* dD`: the corner touches as far as it reaches, or the whole line does. A line from one place to
+/// another carries the difference of two of these. κ is smooth and convex in D, its slope is s*(v). With the damping's lead a line may lie on
+/// the other side of the corner's place, where S is the same: there m is negative, and κ is odd.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct CornerLaw {
+    /// (N/m) Stiffness per base pitch of the contact line.
+    pub stiffness_n_per_m: f64,
+    /// (base pitches per m^(j/2)) a_j of the reach `s*(D) = Σ a_j v^j`, from j = 1.
+    pub coefficients: [f64; TERMS],
+}
+
+/// Parts of a_j in `s* − J/v²`: `κ = D Σ a_j v^j − v² Σ a_j v^j j/(j + 2)`.
+const OF_DEPTH: [f64; TERMS] = [1.0 / 3.0, 2.0 / 4.0, 3.0 / 5.0, 4.0 / 6.0, 5.0 / 7.0, 6.0 / 8.0];
+
+impl CornerLaw {
+    /// Of no stiffness.
+    pub(crate) const NONE: Self = Self { stiffness_n_per_m: 0.0, coefficients: [0.0; TERMS] };
+
+    /// (m, base pitches) κ and its slope, at a penetration, its root and the edge m.
+    #[inline(always)]
+    fn until(&self, penetration_m: f64, root: f64, edge: f64) -> [f64; 2] {
+        let v = root.min(edge.abs());
+        let [mut reach, mut depth] = [0.0; 2];
+        for (a, part) in self.coefficients.iter().zip(OF_DEPTH).rev() {
+            reach = (reach + a) * v;
+            depth = (depth + a * part) * v;
+        }
+        [penetration_m * reach - v * v * depth, reach].map(|value| value.copysign(edge))
+    }
+}
+
+/// A corner at one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CornerAt {
+    /// Number of its law.
+    pub(crate) law: u32,
+    /// (m) What deviations and separation add to the deflection at the end of the path.
+    pub(crate) offset_m: f64,
+    /// (√m) The edges of the line, as the v at which the corner reaches them: that nearer to the path, and the farther one.
+    pub(crate) near: f64,
+    pub(crate) far: f64,
+}
+
+impl CornerAt {
+    /// Whether any part of the contact line lies outside the path, and within reach.
+    pub(crate) fn can_touch(&self) -> bool {
+        self.far > self.near
+    }
+
+    /// (N, N/m) Force and slope.
+    ///
+    /// # Arguments
+    /// * `laws` - among which is its own
+    /// * `deflection_m` - (m) D
+    #[inline(always)]
+    pub(crate) fn force_and_slope(&self, laws: &[CornerLaw], deflection_m: f64) -> [f64; 2] {
+        let penetration_m = deflection_m + self.offset_m;
+        let nearest = self.near.max(-self.far).max(0.0);
+        if penetration_m <= nearest * nearest {
+            return [0.0; 2];
+        }
+        let (law, root) = (&laws[self.law as usize], penetration_m.sqrt());
+        let far = law.until(penetration_m, root, self.far);
+        let near = law.until(penetration_m, root, self.near);
+        [0, 1].map(|n| law.stiffness_n_per_m * (far[n] - near[n]))
+    }
+}
+
+/// The laws of the corners of some pairs, of which there are none of spur teeth, side by side.
+pub(crate) type CornerLanes<const L: usize, const C: usize> = [[CornerLane<L>; 2]; C];
+
+/// One corner's law in each of `L` simulations: its stiffness, and its coefficients for reach and depth.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct CornerLane<const L: usize> {
+    stiffness: Lanes<L>,
+    of_reach: [Lanes<L>; TERMS],
+    of_depth: [Lanes<L>; TERMS],
+}
+
+impl<const L: usize> CornerLane<L> {
+    /// Lines the laws of `L` simulations up.
+    pub(crate) fn new(laws: [CornerLaw; L]) -> Self {
+        Self {
+            stiffness: Lanes::from_fn(|l| laws[l].stiffness_n_per_m),
+            of_reach: std::array::from_fn(|j| Lanes::from_fn(|l| laws[l].coefficients[j])),
+            of_depth: std::array::from_fn(|j| Lanes::from_fn(|l| laws[l].coefficients[j] * OF_DEPTH[j])),
+        }
+    }
+
+    /// κ and its slope, as [`CornerLaw::until`].
+    #[inline(always)]
+    fn until<I: Instructions>(
+        &self,
+        simd: I,
+        [penetration, root]: [Lanes<L>; 2],
+        edge: Lanes<L>,
+    ) -> [Lanes<L>; 2] {
+        let v = root.min(simd, edge.max(simd, edge.neg(simd)));
+        let [mut reach, mut depth] = [self.of_reach[TERMS - 1], self.of_depth[TERMS - 1]];
+        for j in (0..TERMS - 1).rev() {
+            reach = reach.mul_add(simd, v, self.of_reach[j]);
+            depth = depth.mul_add(simd, v, self.of_depth[j]);
+        }
+        let reach = reach.mul(simd, v);
+        let depth = depth.mul(simd, v).mul(simd, v.mul(simd, v));
+        let (zero, kappa) = (Lanes::splat(0.0), penetration.mul(simd, reach).sub(simd, depth));
+        [kappa, reach].map(|value| value.neg(simd).where_less(simd, edge, zero, value))
+    }
+}
+
+/// A corner of a pair at one sample, in each of `L` simulations: as [`CornerAt`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CornerSample<const L: usize> {
+    offset: Lanes<L>,
+    near: Lanes<L>,
+    far: Lanes<L>,
+}
+
+impl<const L: usize> CornerSample<L> {
+    const NONE: Self = Self { offset: Lanes([0.0; L]), near: Lanes([0.0; L]), far: Lanes([0.0; L]) };
+
+    /// (N, N/m) Force and slope at a deflection.
+    #[inline(always)]
+    fn force_and_slope<I: Instructions>(
+        &self,
+        simd: I,
+        law: &CornerLane<L>,
+        deflection: Lanes<L>,
+    ) -> [Lanes<L>; 2] {
+        let penetration = deflection.add(simd, self.offset).max(simd, Lanes::splat(0.0));
+        let at = [penetration, penetration.sqrt(simd)];
+        let [far, near] = [law.until(simd, at, self.far), law.until(simd, at, self.near)];
+        [0, 1].map(|n| law.stiffness.mul(simd, far[n].sub(simd, near[n])))
+    }
+}
+
+/// The pairs of a mesh at one sample, of which `P` are looked at together, and `C` have corners of their own. Aligned so that eight numbers side by side never straddle two
 /// cache lines.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct PairsSample<const L: usize, const P: usize> {
+pub(crate) struct PairsSample<const L: usize, const P: usize, const C: usize> {
     /// (N/m) Stiffness of each pair; 0 where there is none.
     pub(crate) stiffness: [Lanes<L>; P],
     /// (m) What deviations, damage and separation add to the deflection, with the damping's lead: `o + τ ȯ`, `o = e − S`.
     pub(crate) offset: [Lanes<L>; P],
     /// (m) Where along the face the load acts.
     pub(crate) face_centre: Lanes<L>,
+    /// What lies outside the path, before its start and beyond its end.
+    pub(crate) corners: [[CornerSample<L>; 2]; C],
 }
 
-impl<const L: usize, const P: usize> PairsSample<L, P> {
+impl<const L: usize, const P: usize, const C: usize> PairsSample<L, P, C> {
     /// No pairs.
-    pub(crate) const NONE: Self =
-        Self { stiffness: [Lanes([0.0; L]); P], offset: [Lanes([0.0; L]); P], face_centre: Lanes([0.0; L]) };
+    pub(crate) const NONE: Self = Self {
+        stiffness: [Lanes([0.0; L]); P],
+        offset: [Lanes([0.0; L]); P],
+        face_centre: Lanes([0.0; L]),
+        corners: [[CornerSample::NONE; 2]; C],
+    };
 
     /// Lines the blocks of `L` simulations up, sample by sample: all lanes of a number lie in one line of the cache. Places that a
     /// simulation has not got hold no pair.
@@ -70,6 +223,16 @@ impl<const L: usize, const P: usize> PairsSample<L, P> {
             };
             line_up(samples, part(|pairs| &pairs.stiffness), |sample| &mut sample.stiffness[place]);
             line_up(samples, part(|pairs| &pairs.offset), |sample| &mut sample.offset[place]);
+        }
+        for (place, end) in (0..C).flat_map(|place| [(place, 0), (place, 1)]) {
+            let part = |of: fn(&CornerBlock) -> &Vec<f64>| {
+                blocks.map(|pairs| {
+                    pairs.corners.get(place).map_or(&none[..], |corners| of(&corners[end]).as_slice())
+                })
+            };
+            line_up(samples, part(|corner| &corner.offset), |sample| &mut sample.corners[place][end].offset);
+            line_up(samples, part(|corner| &corner.near), |sample| &mut sample.corners[place][end].near);
+            line_up(samples, part(|corner| &corner.far), |sample| &mut sample.corners[place][end].far);
         }
         for (lane, pairs) in blocks.iter().enumerate() {
             for (sample, z) in samples.iter_mut().zip(&pairs.face_centre) {
@@ -109,13 +272,17 @@ pub(crate) fn line_up<T, const L: usize>(
     }
 }
 
-/// The springs of a mesh at one sample: pairs of teeth, or their slices.
+/// The springs of a mesh at one sample: pairs of teeth, or their slices, and their corners.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Springs<'a> {
     /// (N/m) Stiffness of each; 0 where there is none.
     pub(crate) stiffness: &'a [f64],
     /// (m) What deviations, damage and separation add to the deflection, with the damping's lead.
     pub(crate) offset: &'a [f64],
+    /// What helical teeth have outside their path.
+    pub(crate) corners: &'a [CornerAt],
+    /// The laws of these.
+    pub(crate) laws: &'a [CornerLaw],
 }
 
 /// Springs that are summed at once.
@@ -127,11 +294,30 @@ pub(crate) struct SpringSamples {
     /// Numbers of a sample: stiffnesses, then offsets, with zeros up to whole sums.
     values: Vec<f64>,
     springs: usize,
+    /// The corners that can touch, sample by sample, and where those of each sample end.
+    corners: Vec<CornerAt>,
+    corners_until: Vec<usize>,
+    /// The laws of all corners of the mesh.
+    laws: Vec<CornerLaw>,
     /// (m) Where along the face the load acts at each sample; empty where that is the middle throughout.
     face_centre: Vec<f64>,
 }
 
 impl SpringSamples {
+    /// No samples of a mesh.
+    ///
+    /// # Arguments
+    /// * `laws` - of its corners
+    pub(crate) fn new(laws: Vec<CornerLaw>) -> Self {
+        Self { laws, ..Self::default() }
+    }
+
+    /// Whether the mesh has corners, so that its force is smooth.
+    #[inline(always)]
+    pub(crate) fn is_smooth(&self) -> bool {
+        !self.laws.is_empty()
+    }
+
     /// Takes the samples of a block.
     pub(crate) fn line_up(&mut self, block: &PairsBlock) {
         let samples = block.stiffness.first().map_or(0, Vec::len);
@@ -146,6 +332,35 @@ impl SpringSamples {
             }
         }
         self.face_centre.clone_from(&block.face_centre);
+        self.line_corners_up(block, samples);
+    }
+
+    /// Takes the corners that can touch, sample by sample.
+    fn line_corners_up(&mut self, block: &PairsBlock, samples: usize) {
+        self.corners.clear();
+        self.corners_until.clear();
+        if !self.is_smooth() {
+            return;
+        }
+        let slices = block.corners.len() / block.classes.len().max(1);
+        for sample in 0..samples {
+            for (spring, ends) in block.corners.iter().enumerate() {
+                for (end, corner) in ends.iter().enumerate() {
+                    let at = CornerAt {
+                        law: 0,
+                        offset_m: corner.offset[sample],
+                        near: corner.near[sample],
+                        far: corner.far[sample],
+                    };
+                    if at.can_touch() {
+                        let class = block.class_at(spring / slices, sample);
+                        let law = (class * slices + spring % slices) * 2 + end;
+                        self.corners.push(CornerAt { law: law as u32, ..at });
+                    }
+                }
+            }
+            self.corners_until.push(self.corners.len());
+        }
     }
 
     /// The springs at a sample.
@@ -153,7 +368,9 @@ impl SpringSamples {
     pub(crate) fn at(&self, sample: usize) -> Springs<'_> {
         let stride = 2 * self.springs;
         let (stiffness, offset) = self.values[sample * stride..(sample + 1) * stride].split_at(self.springs);
-        Springs { stiffness, offset }
+        let until = |sample: usize| self.corners_until.get(sample).copied().unwrap_or(0);
+        let from = sample.checked_sub(1).map_or(0, until);
+        Springs { stiffness, offset, corners: &self.corners[from..until(sample)], laws: &self.laws }
     }
 
     /// (m) Where along the face the load acts at a sample.
@@ -220,7 +437,12 @@ impl MeshLaw {
             sums[0][0] += force;
             sums[1][0] += slope;
         }
-        let [force, slope] = sums.map(|[a, b, c, d]| (a + b) + (c + d));
+        let [mut force, mut slope] = sums.map(|[a, b, c, d]| (a + b) + (c + d));
+        for corner in springs.corners {
+            let [of_corner, slope_of_corner] = corner.force_and_slope(springs.laws, deflection_m);
+            force += of_corner;
+            slope += slope_of_corner;
+        }
         let back_m = self.back_touches_at_m() - deflection_m;
         let back = if back_m > 0.0 { self.back_stiffness_n_per_m } else { 0.0 };
         [force - back * back_m.max(0.0), slope + back]
@@ -263,16 +485,25 @@ impl<const L: usize> LawLanes<L> {
     /// * `free` - (m) deflection with its damping's lead in g₀ and g₁ at the step's end, without the new force
     /// * `compliance` - (m/N) the same deflection in each of them per new force in each
     /// * `sample` - the pairs at the step's end
-    /// * `touching` - the pairs that touched at the step's start; set to those that do at its end
+    /// * `corners` - their laws
+    /// * `last` - what touched at the step's start; set to what does at its end
     #[inline(always)]
-    pub(crate) fn force<I: Instructions, const R: usize, const P: usize>(
+    pub(crate) fn force<I: Instructions, const R: usize, const P: usize, const C: usize>(
         &self,
         simd: I,
         free: &[Lanes<L>; R],
         compliance: &[[Lanes<L>; R]; R],
-        sample: &PairsSample<L, P>,
-        touching: &mut Touching<L>,
+        sample: &PairsSample<L, P, C>,
+        corners: &CornerLanes<L, C>,
+        last: &mut LastContact<L>,
     ) -> [Lanes<L>; R] {
+        if C > 0 {
+            // Teeth with corners act midway along the face.
+            let mut result = [Lanes::splat(0.0); R];
+            result[0] = self.smooth_force(simd, free[0], compliance[0][0], sample, corners, last);
+            return result;
+        }
+        let touching = &mut last.touching;
         let (z, gamma) = (sample.face_centre, compliance);
         let (mut load, mut compliance) = (free[0], gamma[0][0]);
         // What the static force, which acts midway, adds to the deflection.
@@ -312,6 +543,74 @@ impl<const L: usize> LawLanes<L> {
         result
     }
 
+    /// (N) The force of a mesh of teeth with corners, relative to the static one.
+    ///
+    /// Newton's method begins at the last step's deflection, from where it mostly takes two iterations. The last evaluation is spared: once
+    /// an iterate has moved by less than a ten-millionth, the force goes on along the tangent, which is wrong by the square of that. A
+    /// simulation that has come so far stays as it is while others side by side go on, so that their number changes nothing.
+    #[inline(always)]
+    fn smooth_force<I: Instructions, const P: usize, const C: usize>(
+        &self,
+        simd: I,
+        free: Lanes<L>,
+        compliance: Lanes<L>,
+        sample: &PairsSample<L, P, C>,
+        corners: &CornerLanes<L, C>,
+        last: &mut LastContact<L>,
+    ) -> Lanes<L> {
+        let load = compliance.mul_add(simd, self.static_force, free);
+        let mut deflection = last.deflection;
+        let mut force = Lanes::splat(0.0);
+        let mut is_found = [false; L];
+        for _ in 0..MOST_SMOOTH_ITERATIONS {
+            let [now, slope] = self.force_and_slope(simd, sample, corners, deflection);
+            let residual = load.sub(simd, deflection).sub(simd, compliance.mul(simd, now));
+            let step = residual.div(simd, compliance.mul_add(simd, slope, Lanes::splat(1.0)));
+            let next = deflection.add(simd, step);
+            let ahead = slope.mul_add(simd, step, now);
+            let mut all_found = true;
+            for l in 0..L {
+                if !is_found[l] {
+                    (deflection.0[l], force.0[l]) = (next.0[l], ahead.0[l]);
+                    is_found[l] = step.0[l].abs() <= TANGENT_PART * next.0[l].abs() + TANGENT_M;
+                }
+                all_found &= is_found[l];
+            }
+            if all_found {
+                break;
+            }
+        }
+        last.deflection = deflection;
+        self.static_force.sub(simd, force)
+    }
+
+    /// (N, N/m) The force of teeth with corners at a deflection, and its slope.
+    #[inline(always)]
+    fn force_and_slope<I: Instructions, const P: usize, const C: usize>(
+        &self,
+        simd: I,
+        sample: &PairsSample<L, P, C>,
+        corners: &CornerLanes<L, C>,
+        deflection: Lanes<L>,
+    ) -> [Lanes<L>; 2] {
+        let zero = Lanes::splat(0.0);
+        let [mut force, mut slope] = [zero; 2];
+        for n in 0..P {
+            let penetration = deflection.add(simd, sample.offset[n]);
+            let stiffness = sample.stiffness[n].where_less(simd, self.lets_go, penetration, zero);
+            force = stiffness.mul_add(simd, penetration, force);
+            slope = slope.add(simd, stiffness);
+        }
+        for (corner, law) in sample.corners.iter().flatten().zip(corners.iter().flatten()) {
+            let [of_corner, slope_of_corner] = corner.force_and_slope(simd, law, deflection);
+            force = force.add(simd, of_corner);
+            slope = slope.add(simd, slope_of_corner);
+        }
+        let back = self.back_stiffness.where_less(simd, deflection, self.back_touches, zero);
+        let pressed = deflection.sub(simd, self.back_touches);
+        [back.mul_add(simd, pressed, force), slope.add(simd, back)]
+    }
+
     /// Solves `a D + Γ Σ k (D + o) = b` over the pairs that touch at D.
     ///
     /// Begins with the pairs that touched in the step before, which mostly are those of this one: then only `b` waits for that
@@ -322,10 +621,10 @@ impl<const L: usize> LawLanes<L> {
     /// * `sample`, `compliance`, `own`, `load` - the pairs, Γ, a and b
     /// * `touching` - the pairs that may touch; set to those that do
     #[inline(always)]
-    fn solve<I: Instructions, const P: usize>(
+    fn solve<I: Instructions, const P: usize, const C: usize>(
         &self,
         simd: I,
-        sample: &PairsSample<L, P>,
+        sample: &PairsSample<L, P, C>,
         [compliance, own, load]: [Lanes<L>; 3],
         touching: &mut Touching<L>,
     ) -> (Lanes<L>, [Lanes<L>; 2]) {
@@ -352,10 +651,10 @@ impl<const L: usize> LawLanes<L> {
 
     /// The pairs that touch at a deflection.
     #[inline(always)]
-    fn touching_at<I: Instructions, const P: usize>(
+    fn touching_at<I: Instructions, const P: usize, const C: usize>(
         &self,
         simd: I,
-        sample: &PairsSample<L, P>,
+        sample: &PairsSample<L, P, C>,
         deflection: Lanes<L>,
     ) -> Touching<L> {
         let mut touching = [0; L];
@@ -370,13 +669,36 @@ impl<const L: usize> LawLanes<L> {
 }
 
 /// Which pairs touch, of each simulation: a bit for each place.
-pub(crate) type Touching<const L: usize> = [usize; L];
+type Touching<const L: usize> = [usize; L];
+
+/// Where a step begins its search.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct LastContact<const L: usize> {
+    /// (m) D at the last step, of teeth with corners.
+    deflection: Lanes<L>,
+    /// The pairs that touched, of teeth without.
+    touching: Touching<L>,
+}
+
+impl<const L: usize> LastContact<L> {
+    /// Before the first step.
+    pub(crate) const fn none() -> Self {
+        Self { deflection: Lanes([0.0; L]), touching: [0; L] }
+    }
+}
+
+/// Most of Newton's iterations of a smooth, rising law, which has needed 5 at most.
+const MOST_SMOOTH_ITERATIONS: usize = 30;
+/// (-, m) Move of an iterate, by the deflection and beside it, within which the tangent of a smooth law is the law.
+pub(crate) const TANGENT_PART: f64 = 1e-7;
+pub(crate) const TANGENT_M: f64 = 1e-16;
 
 /// Sums over pairs: of k, and of k times the offset.
 #[inline(always)]
-fn sums_over<I: Instructions, const L: usize, const P: usize>(
+fn sums_over<I: Instructions, const L: usize, const P: usize, const C: usize>(
     simd: I,
-    sample: &PairsSample<L, P>,
+    sample: &PairsSample<L, P, C>,
     touching: &Touching<L>,
 ) -> [Lanes<L>; 2] {
     let zero = Lanes::splat(0.0);
@@ -394,32 +716,60 @@ fn sums_over<I: Instructions, const L: usize, const P: usize>(
     sums
 }
 
-/// (m) Deflection at which some springs carry a force at rest. Where it is 0, the one at which the first would touch.
+/// (m) Deflection at which some springs and corners carry a force at rest. Where it is 0, the one at which the first would touch.
+///
+/// Those without corners in the order in which they touch, then on from there: with corners the force is larger, and convex, so that Newton's
+/// method comes down to the solution.
 ///
 /// # Arguments
 /// * `contact` - how the flanks touch
-/// * `springs` - (N/m, m) stiffness and offset of each
+/// * `springs` - stiffness and offset of each, and the corners
 /// * `force_n` - (N) the force, 0 or more
-pub(crate) fn deflection_at_rest(
-    contact: Contact,
-    springs: impl Iterator<Item = [f64; 2]>,
-    force_n: f64,
-) -> f64 {
-    let mut springs: Vec<[f64; 2]> = springs.filter(|[stiffness, _]| *stiffness > 0.0).collect();
+pub(crate) fn deflection_at_rest(contact: Contact, springs: Springs, force_n: f64) -> f64 {
+    let numbers =
+        springs.stiffness.iter().zip(springs.offset).map(|(&stiffness, &offset)| [stiffness, offset]);
+    let mut ordered: Vec<[f64; 2]> = numbers.filter(|[stiffness, _]| *stiffness > 0.0).collect();
     // The one that touches first has the largest offset.
-    springs.sort_by(|a, b| b[1].total_cmp(&a[1]));
+    ordered.sort_by(|a, b| b[1].total_cmp(&a[1]));
     let (mut stiffness, mut load) = (0.0, force_n);
-    let mut deflection = springs.first().map_or(0.0, |[_, offset]| -offset);
-    for [k, offset] in springs {
-        if stiffness > 0.0 && !contact.touches(deflection + offset) {
+    let mut deflection = ordered.first().map(|[_, offset]| -offset);
+    for [k, offset] in ordered {
+        if let Some(so_far) = deflection.filter(|_| stiffness > 0.0)
+            && !contact.touches(so_far + offset)
+        {
             break;
         }
         stiffness += k;
         load -= k * offset;
-        deflection = load / stiffness;
+        deflection = Some(load / stiffness);
     }
-    deflection
+    let touches_at = |corner: &CornerAt| corner.near.max(0.0).powi(2) - corner.offset_m;
+    let Some(first) = springs.corners.iter().map(touches_at).reduce(f64::min) else {
+        return deflection.unwrap_or(0.0);
+    };
+    if force_n <= 0.0 {
+        return deflection.map_or(first, |deflection| deflection.min(first));
+    }
+    let law = MeshLaw { contact, damping_time_s: 0.0, back_stiffness_n_per_m: 0.0, backlash_m: None };
+    // Where nothing is on its path a deflection that is too large is found first.
+    let mut pressed_m = FIRST_PRESSED_M;
+    let mut at = deflection.unwrap_or(first);
+    while law.force_and_slope(springs, at)[0] < force_n && deflection.is_none() && pressed_m < 1.0 {
+        (at, pressed_m) = (first + pressed_m, 2.0 * pressed_m);
+    }
+    for _ in 0..MOST_SMOOTH_ITERATIONS {
+        let [carried_n, slope] = law.force_and_slope(springs, at);
+        let step = (force_n - carried_n) / slope.max(f64::MIN_POSITIVE);
+        at += step;
+        if step.abs() <= 1e-15 * at.abs() {
+            break;
+        }
+    }
+    at
 }
+
+/// (m) Where a deflection that is too large is sought at first.
+const FIRST_PRESSED_M: f64 = 1e-6;
 
 #[cfg(test)]
 mod tests {
@@ -458,14 +808,11 @@ mod tests {
             let mut states = Vec::with_capacity(self.steps);
             for step in 1..=self.steps {
                 let (stiffness, offset, now) = (self.at)(step as f64 * 2.0 * h);
-                let sample = PairsSample {
-                    stiffness: stiffness.map(Lanes::splat),
-                    offset: offset.map(Lanes::splat),
-                    face_centre: Lanes::splat(0.0),
-                };
+                let sample = sample(stiffness, offset);
                 let change = 2.0 * e * s + h * h * e * (w + load + now);
                 let (free, compliance) = ([Lanes([x + change])], [[Lanes([h * h * e])]]);
-                let [Lanes([new])] = law.force(simd, &free, &compliance, &sample, &mut [0]);
+                let [Lanes([new])] =
+                    law.force(simd, &free, &compliance, &sample, &[], &mut LastContact::none());
                 let change = change + h * h * e * new;
                 (x, s, w, load) = (x + change, change - s, new, now);
                 states.push([x, new + now - 2.0 * self.damping_ratio * s / h]);
@@ -535,21 +882,20 @@ mod tests {
         assert!((least + 0.51).abs() < 2e-4 && (most - 0.01).abs() < 2e-4, "{least} {most}");
     }
 
-    fn sample(stiffness: [f64; PAIRS], offset: [f64; PAIRS]) -> PairsSample<1, PAIRS> {
+    fn sample(stiffness: [f64; PAIRS], offset: [f64; PAIRS]) -> PairsSample<1, PAIRS, 0> {
         PairsSample {
             stiffness: stiffness.map(Lanes::splat),
             offset: offset.map(Lanes::splat),
-            face_centre: Lanes::splat(0.0),
+            ..PairsSample::NONE
         }
     }
 
     #[test]
     fn two_pairs_share_a_load_as_in_closed_form() {
         let (stiffness, offset) = ([2e8, 1e8, 0.0], [1e-6, -2e-6, 0.0]);
-        let two = Springs { stiffness: &stiffness, offset: &offset };
-        let springs = || stiffness.into_iter().zip(offset).map(<[f64; 2]>::from);
+        let two = Springs { stiffness: &stiffness, offset: &offset, corners: &[], laws: &[] };
         // Light: the first alone. Heavy: both, δ = (F − Σ k o)/Σ k.
-        let at_rest = |contact, load| deflection_at_rest(contact, springs(), load);
+        let at_rest = |contact, load| deflection_at_rest(contact, two, load);
         assert!((at_rest(Contact::Unilateral, 100.0) - (100.0 / 2e8 - 1e-6)).abs() < 1e-15);
         assert!((at_rest(Contact::Unilateral, 3000.0) - 3000.0 / 3e8).abs() < 1e-15);
         // Flanks that may pull share every load.
@@ -571,14 +917,14 @@ mod tests {
             law: &'a LawLanes<1>,
             free: f64,
             compliance: f64,
-            pairs: &'a PairsSample<1, PAIRS>,
+            pairs: &'a PairsSample<1, PAIRS, 0>,
         }
         impl Task for Solve<'_> {
             type Output = f64;
             #[inline(always)]
             fn run<I: Instructions>(self, simd: I) -> f64 {
                 let (free, compliance) = ([Lanes([self.free])], [[Lanes([self.compliance])]]);
-                self.law.force(simd, &free, &compliance, self.pairs, &mut [0])[0].0[0]
+                self.law.force(simd, &free, &compliance, self.pairs, &[], &mut LastContact::none())[0].0[0]
             }
         }
         let mut draws = Draws::new(1, Purpose::Candidate, 0);
@@ -599,7 +945,7 @@ mod tests {
             let pairs = sample(stiffness, offset);
             let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
             let force = 300.0 - InstructionSet::fastest().run(solve);
-            let springs = Springs { stiffness: &stiffness, offset: &offset };
+            let springs = Springs { stiffness: &stiffness, offset: &offset, corners: &[], laws: &[] };
             let of = |d: f64| law.force_and_slope(springs, d)[0];
             let relative = |d: f64| 300.0 - of(d);
             let (mut low, mut high) = (-1e-3, 1e-3);

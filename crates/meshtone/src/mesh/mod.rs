@@ -14,6 +14,7 @@ mod sequence;
 mod static_mesh;
 mod window;
 
+pub use corner::CornerReach;
 pub use curve::MeshCurve;
 pub use deviations::PairDeviations;
 pub(crate) use face_load::FaceSlope;
@@ -24,12 +25,15 @@ pub use forcing::ForcingBlock;
 pub(crate) use forcing::PAIRS;
 pub use forcing::{Forcing, Turning};
 pub(crate) use gear_mesh::MeshParameters;
-pub use gear_mesh::{Mesh, PairTable};
-pub use law::{Contact, MeshLaw};
-pub(crate) use law::{LawLanes, PairsSample, SpringSamples, Springs, Touching, deflection_at_rest, line_up};
+pub use gear_mesh::{FaceForm, Mesh, PairTable};
+pub use law::{Contact, CornerLaw, MeshLaw};
+pub(crate) use law::{
+    CornerLane, CornerLanes, LastContact, LawLanes, PairsSample, SpringSamples, TANGENT_M, TANGENT_PART,
+    deflection_at_rest, line_up,
+};
 pub use pair::{LoadedPair, Pairs};
-pub use path_table::PairState;
 pub(crate) use path_table::TipShape;
+pub use path_table::{CornerTable, PairState};
 pub use sequence::{PairKind, PairSequence};
 pub use static_mesh::StaticMesh;
-pub(crate) use window::place_on_face;
+pub(crate) use window::{Window, place_on_face};

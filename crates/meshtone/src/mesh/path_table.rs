@@ -1,7 +1,10 @@
 //! Pairs of teeth from before their path of contact to beyond it: how stiff they are, and how far their flanks are apart.
 
+use std::array::from_fn;
+
 use super::bridging::bridged;
-use super::corner::Corner;
+use super::corner::{Corner, CornerReach};
+use super::law::{Contact, CornerLaw};
 use super::pair::Pairs;
 use super::sequence::PairKind;
 use super::window::{Integral, Window};
@@ -20,7 +23,7 @@ pub struct PairState {
 }
 
 impl PairState {
-    const APART: Self = Self { stiffness_n_per_m: 0.0, separation_m: 0.0, face_centre_m: 0.0 };
+    pub(super) const APART: Self = Self { stiffness_n_per_m: 0.0, separation_m: 0.0, face_centre_m: 0.0 };
 }
 
 /// What shapes the tips and flanks of all teeth.
@@ -42,20 +45,19 @@ struct Tooth {
     tip_curvature_mm: f64,
 }
 
-/// How a pair leaves its path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PathEnds {
-    /// With the corner of a tip, as spur wheels that push do.
-    Corners,
-    /// At once: flanks that may pull, and each place of helical teeth's contact line, of which only the last one has the corner.
-    Sharp,
+/// Where the pairs of a class leave their path, at its start and at its end.
+struct Ends {
+    /// (base pitches) Since the start of the path of whole teeth.
+    places: [f64; 2],
+    /// Of the gear's tip, and of the pinion's.
+    corners: [Corner; 2],
 }
 
 /// Tabulates the pairs of a mesh.
 pub(crate) struct PairTables<'a> {
     pairs: &'a Pairs<'a>,
     shape: TipShape,
-    ends: PathEnds,
+    contact: Contact,
     /// (-) Cosine of the base helix angle: of what is lost across the teeth in the transverse section.
     base_cos: f64,
 }
@@ -69,9 +71,9 @@ impl<'a> PairTables<'a> {
     /// # Arguments
     /// * `pairs` - the tooth pairs
     /// * `shape` - of all tips
-    /// * `ends` - how a pair leaves its path
-    pub(crate) fn new(pairs: &'a Pairs<'a>, shape: TipShape, ends: PathEnds) -> Self {
-        Self { pairs, shape, ends, base_cos: pairs.teeth().pinion.base_helix_angle_rad().cos() }
+    /// * `contact` - how the flanks touch: those that push leave their path with the corner of a tip, those that may pull at once
+    pub(crate) fn new(pairs: &'a Pairs<'a>, shape: TipShape, contact: Contact) -> Self {
+        Self { pairs, shape, contact, base_cos: pairs.teeth().pinion.base_helix_angle_rad().cos() }
     }
 
     fn tooth(&self, wheel: WheelName, damage: Option<&DamagedTooth>) -> Tooth {
@@ -97,6 +99,24 @@ impl<'a> PairTables<'a> {
             .map(|wheel| path.position(wheel, self.tooth(wheel, None).tip_curvature_mm))
     }
 
+    /// Where the pairs of a class leave their path; none where a tooth is missing.
+    fn ends_of(&self, kind: &PairKind) -> Option<Ends> {
+        let damages = WheelName::BOTH.map(|wheel| self.pairs.damage_of(kind, wheel));
+        if damages.iter().flatten().any(|damage| damage.is_missing()) {
+            return None;
+        }
+        let teeth = self.pairs.teeth();
+        let path = &teeth.path;
+        // The gear's tip begins, the pinion's ends the path.
+        let [begins, ends] = [WheelName::Gear, WheelName::Pinion].map(|wheel| {
+            let tooth = self.tooth(wheel, damages[wheel as usize]);
+            let (own, mate) = (teeth.wheel(wheel), teeth.wheel(wheel.mate()));
+            let corner = Corner::new(own, mate, path.line_mm, tooth.tip_radius_mm);
+            (path.position(wheel, tooth.tip_curvature_mm), corner)
+        });
+        Some(Ends { places: [begins.0, ends.0], corners: [begins.1, ends.1] })
+    }
+
     /// A class of pairs at uniform positions.
     ///
     /// On its path a pair touches with its flanks, apart by what damage and relief take from them. Outside of it the corner of a tip
@@ -107,71 +127,85 @@ impl<'a> PairTables<'a> {
     /// * `positions` - (base pitches) since the start of the path of whole teeth, rising
     /// * `step` - (base pitches) between two of them
     pub(crate) fn tabulate(&self, kind: &PairKind, positions: &[f64], step: f64) -> Vec<PairState> {
-        let damages = WheelName::BOTH.map(|wheel| self.pairs.damage_of(kind, wheel));
-        if damages.iter().flatten().any(|damage| damage.is_missing()) {
+        let Some(Ends { places: [begins, ends], corners: [gear_corner, pinion_corner] }) = self.ends_of(kind)
+        else {
             return vec![PairState::APART; positions.len()];
-        }
-        let teeth = self.pairs.teeth();
-        let path = &teeth.path;
-        let [pinion, gear] = WheelName::BOTH.map(|wheel| self.tooth(wheel, damages[wheel as usize]));
-        // The gear's tip begins, the pinion's ends the path.
-        let begins = path.position(WheelName::Gear, gear.tip_curvature_mm);
-        let ends = path.position(WheelName::Pinion, pinion.tip_curvature_mm);
-        let [gear_corner, pinion_corner] =
-            [(WheelName::Gear, &gear), (WheelName::Pinion, &pinion)].map(|(wheel, tooth)| {
-                Corner::new(teeth.wheel(wheel), teeth.wheel(wheel.mate()), path.line_mm, tooth.tip_radius_mm)
-            });
+        };
         // Where flanks touch, at the positions inside the path, and at the ends outside of it.
         let on_path: Vec<f64> =
             positions.iter().map(|position| position.max(begins.min(ends)).min(ends.max(begins))).collect();
+        let base_pitch_mm = self.pairs.teeth().path.base_pitch_mm;
+        let at_end = |(mut state, position): (PairState, &f64)| {
+            match self.contact {
+                Contact::Unilateral => {
+                    let before_mm = (begins - position) * base_pitch_mm;
+                    let beyond_mm = (position - ends) * base_pitch_mm;
+                    state.separation_m += 1e-3
+                        * (gear_corner.separation_mm(before_mm) + pinion_corner.separation_mm(beyond_mm));
+                }
+                Contact::Bilateral => {
+                    state.stiffness_n_per_m *= share_on_path(*position, step, [begins, ends]);
+                }
+            }
+            state
+        };
+        self.flanks_at(kind, &on_path).into_iter().zip(positions).map(at_end).collect()
+    }
+
+    /// A class of pairs whose flanks touch at some positions, none of them outside the path.
+    ///
+    /// # Arguments
+    /// * `kind` - the class
+    /// * `on_path` - (base pitches) positions, rising
+    fn flanks_at(&self, kind: &PairKind, on_path: &[f64]) -> Vec<PairState> {
+        let path = &self.pairs.teeth().path;
         let [of_pinion, of_gear] =
-            WheelName::BOTH.map(|wheel| self.gaps(wheel, damages[wheel as usize], &on_path));
-        (0..positions.len())
+            WheelName::BOTH.map(|wheel| self.gaps(wheel, self.pairs.damage_of(kind, wheel), on_path));
+        (0..on_path.len())
             .map(|n| {
-                let (corner, share) = match self.ends {
-                    PathEnds::Corners => {
-                        let before_mm = (begins - positions[n]) * path.base_pitch_mm;
-                        let beyond_mm = (positions[n] - ends) * path.base_pitch_mm;
-                        let corners =
-                            gear_corner.separation_mm(before_mm) + pinion_corner.separation_mm(beyond_mm);
-                        (corners, 1.0)
-                    }
-                    PathEnds::Sharp => (0.0, share_on_path(positions[n], step, [begins, ends])),
-                };
-                let separation = corner + of_pinion[n].0 + of_gear[n].0;
                 // At the edge of a hollow the load acts at the edge.
                 let hollow = if of_gear[n].0 > of_pinion[n].0 { of_gear[n].1 } else { of_pinion[n].1 };
                 let touched = on_path[hollow];
                 let curvature = WheelName::BOTH.map(|wheel| path.curvature_mm(wheel, touched));
                 let state = self.pairs.loaded_at(kind, curvature);
                 PairState {
-                    stiffness_n_per_m: share * state.stiffness_n_per_mm * 1e3,
-                    separation_m: separation * 1e-3,
+                    stiffness_n_per_m: state.stiffness_n_per_mm * 1e3,
+                    separation_m: (of_pinion[n].0 + of_gear[n].0) * 1e-3,
                     face_centre_m: state.face_centre_m,
                 }
             })
             .collect()
     }
 
-    /// A class of pairs of helical teeth along its path, to be averaged over contact lines.
+    /// A class of pairs of helical teeth along its path, of which each contact line has a stretch; none where a tooth is missing.
     ///
     /// # Arguments
     /// * `kind` - the class
-    pub(crate) fn along_path(&self, kind: &PairKind) -> AlongPath {
-        let step = 1.0 / PER_PITCH;
-        let points = (self.pairs.teeth().path.contact_ratio * PER_PITCH).ceil() as i64 + 2;
-        let path: Vec<f64> = (-2..points).map(|point| point as f64 * step).collect();
-        let states = self.tabulate(kind, &path, step);
-        let integral = |of: &dyn Fn(&PairState, f64) -> f64| {
-            let weighted =
-                states.iter().zip(&path).map(|(state, at)| state.stiffness_n_per_m * of(state, *at));
-            Integral::new(path[0], step, weighted)
+    pub(crate) fn along_path(&self, kind: &PairKind) -> Option<AlongPath> {
+        let Ends { places: [begins, ends], corners } = self.ends_of(kind)?;
+        let base_pitch_mm = self.pairs.teeth().path.base_pitch_mm;
+        // Where broken tips leave no path, both corners touch at one place, or nearly.
+        let middle = (begins + ends) / 2.0;
+        let places = if begins < ends { [begins, ends] } else { [middle; 2] };
+        let before_mm = [places[0] - begins, ends - places[1]].map(|inside| -inside * base_pitch_mm);
+        let apart_mm: f64 =
+            corners.iter().zip(before_mm).map(|(corner, before)| corner.separation_mm(before)).sum();
+        let intervals = ((places[1] - places[0]) * PER_PITCH).ceil().max(1.0);
+        let step = (places[1] - places[0]) / intervals;
+        let positions: Vec<f64> = (0..=intervals as usize).map(|n| places[0] + n as f64 * step).collect();
+        let mut states = self.flanks_at(kind, &positions);
+        states.iter_mut().for_each(|state| state.separation_m += apart_mm * 1e-3);
+        let integral = |of: &dyn Fn(&PairState) -> f64| {
+            Integral::new(places, &states.iter().map(of).collect::<Vec<_>>())
         };
-        AlongPath {
-            stiffness: integral(&|_, _| 1.0),
-            separation: integral(&|state, _| state.separation_m),
-            place: integral(&|_, at| at),
-        }
+        let at_ends = [states[0], states[states.len() - 1]];
+        Some(AlongPath {
+            stiffness: integral(&|state| state.stiffness_n_per_m),
+            separation: integral(&|state| state.stiffness_n_per_m * state.separation_m),
+            stiffness_n_per_m: states.iter().map(|state| state.stiffness_n_per_m).collect(),
+            places,
+            corners: from_fn(|end| (CornerReach::new(&corners[end], base_pitch_mm), at_ends[end])),
+        })
     }
 
     /// (mm) How far one flank's damage and relief keep the mate off at each position, and the number of the position whose
@@ -208,38 +242,138 @@ impl<'a> PairTables<'a> {
     }
 }
 
-/// Integrals along the path of contact of a class of pairs, each weighted by the pair's stiffness.
+/// A class of pairs of helical teeth along its path of contact.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AlongPath {
+    /// Of the stiffness.
     stiffness: Integral,
+    /// Of the separation, weighted by the stiffness.
     separation: Integral,
-    place: Integral,
+    /// (N/m) Stiffness at equal distances from one end to the other.
+    stiffness_n_per_m: Vec<f64>,
+    /// (base pitches) Where it begins and ends.
+    places: [f64; 2],
+    /// The corners there, each with the pair that touches there.
+    corners: [(CornerReach, PairState); 2],
 }
 
 impl AlongPath {
-    /// The pairs at positions of the middle of the face: means along a slice's contact line.
+    /// The pairs at positions of the middle of the face: what a slice's contact line has on the path.
     ///
-    /// A spring that stands for a slice has the stiffness of all its places together and their mean separation, weighted by stiffness, and
-    /// acts where their stiffnesses have their centre. While all of them touch that is exact.
+    /// A spring that stands for it has the stiffness of all its places together and their mean separation, weighted by stiffness. While
+    /// all of them touch that is exact.
     ///
     /// # Arguments
     /// * `positions` - (base pitches) since the start of the path of whole teeth
     /// * `window` - the slice
-    /// * `face_width_m` - (m) of the whole face
-    pub(crate) fn over_face(&self, positions: &[f64], window: Window, face_width_m: f64) -> Vec<PairState> {
+    pub(super) fn over_face(&self, positions: &[f64], window: Window) -> Vec<PairState> {
         let state = |&position: &f64| {
-            let [from, until] = window.around(position);
-            let whole = self.stiffness.between(from, until);
+            let stretch = window.around(position);
+            let whole = self.stiffness.between(stretch);
             if whole <= 0.0 {
                 return PairState::APART;
             }
-            let beyond_middle = self.place.between(from, until) / whole - (from + until) / 2.0;
             PairState {
-                stiffness_n_per_m: whole / (until - from),
-                separation_m: self.separation.between(from, until) / whole,
-                face_centre_m: beyond_middle / window.overlap * face_width_m,
+                stiffness_n_per_m: whole / (stretch[1] - stretch[0]),
+                separation_m: self.separation.between(stretch) / whole,
+                face_centre_m: 0.0,
             }
         };
         positions.iter().map(state).collect()
+    }
+
+    /// What the same contact lines have outside the path: that before its start, and that beyond its end.
+    ///
+    /// # Arguments
+    /// * `positions`, `window` - as of [`Self::over_face`]
+    pub(super) fn corners(&self, positions: &[f64], window: Window) -> [CornerTable; 2] {
+        let stretches: Vec<[f64; 2]> = positions.iter().map(|position| window.around(*position)).collect();
+        let of_end = |end: usize| {
+            let (reach, state) = self.corners[end];
+            let outside = |[from, until]: [f64; 2]| match end {
+                0 => [self.places[0] - until, self.places[0] - from],
+                _ => [from - self.places[1], until - self.places[1]],
+            };
+            let edges =
+                |edge: usize| stretches.iter().map(|stretch| outside(*stretch)[edge].max(0.0)).collect();
+            CornerTable {
+                law: CornerLaw {
+                    stiffness_n_per_m: state.stiffness_n_per_m / (window.overlap.abs() * window.width),
+                    coefficients: reach.coefficients,
+                },
+                reach,
+                separation_m: state.separation_m,
+                place: self.places[end],
+                near: edges(0),
+                far: edges(1),
+            }
+        };
+        from_fn(of_end)
+    }
+
+    /// The mean of a quantity over what contact lines have on the path, weighted by stiffness: as long as that touches, its deviation is
+    /// this mean. At the nearer end of lines that have nothing on it.
+    ///
+    /// # Arguments
+    /// * `positions`, `window` - as of [`Self::over_face`]
+    /// * `of` - the quantity at a position
+    pub(super) fn mean(&self, positions: &[f64], window: Window, of: impl Fn(f64) -> f64) -> Vec<f64> {
+        let [begins, ends] = self.places;
+        let intervals = self.stiffness_n_per_m.len().saturating_sub(1).max(1) as f64;
+        let at = |n: usize| begins + n as f64 / intervals * (ends - begins);
+        let weighted: Vec<f64> =
+            self.stiffness_n_per_m.iter().enumerate().map(|(n, stiffness)| stiffness * of(at(n))).collect();
+        let weighted = Integral::new(self.places, &weighted);
+        let mean = |&position: &f64| {
+            let stretch = window.around(position);
+            let whole = self.stiffness.between(stretch);
+            if whole > 0.0 { weighted.between(stretch) / whole } else { of(position.clamp(begins, ends)) }
+        };
+        positions.iter().map(mean).collect()
+    }
+}
+
+/// What the contact lines of a slice have outside the path at one of its ends, point by point.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct CornerTable {
+    /// The corner's law.
+    pub law: CornerLaw,
+    /// How far the corner touches beyond the path.
+    pub reach: CornerReach,
+    /// (m) How far the flanks are apart at the end of the path.
+    pub separation_m: f64,
+    /// (base pitches) Where the end is.
+    pub place: f64,
+    /// (base pitches) How far outside the path the edge of the stretch is that is nearer to it; 0 of one that reaches onto it.
+    pub near: Vec<f64>,
+    /// (base pitches) The same of the other edge; 0 of one that is on the path.
+    pub far: Vec<f64>,
+}
+
+impl CornerTable {
+    /// (√m) The v at which the corner reaches near and far edge at a point, with the damping's lead.
+    ///
+    /// What penetrates with the lead ℓ, in base pitches, is `D − S ∓ ℓ S'`: a pair that leaves its path parts from its mate, one that enters
+    /// it approaches. As S begins as s², that is `D + S(ℓ) − S(s ± ℓ)`: the corner's law, deeper by S(ℓ), over a stretch that is
+    /// shifted by the lead, of a pair that enters to the other side of the corner where S is the same.
+    ///
+    /// # Arguments
+    /// * `end` - 0 at the start of the path, 1 at its end
+    /// * `lead` - (base pitches) ℓ
+    pub(super) fn roots(&self, end: usize, lead: f64) -> [Vec<f64>; 2] {
+        let shift = if end == 0 { -lead } else { lead };
+        let shifted =
+            |edges: &[f64]| edges.iter().map(|edge| self.reach.signed_root_at(edge + shift)).collect();
+        [shifted(&self.near), shifted(&self.far)]
+    }
+
+    /// (m) S(ℓ), by which a lead makes the penetration deeper.
+    ///
+    /// # Arguments
+    /// * `lead` - (base pitches) ℓ
+    pub(super) fn deeper_m(&self, lead: f64) -> f64 {
+        self.reach.root_at(lead).powi(2)
     }
 }
 

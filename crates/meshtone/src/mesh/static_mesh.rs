@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::gear_mesh::Mesh;
+use super::law::{CornerAt, Springs, deflection_at_rest};
 use super::path_table::PairState;
 
 /// A mesh at rest, point by point.
@@ -50,32 +51,63 @@ impl Mesh {
     pub fn at_rest(&self, force_n: f64, pitches: Range<usize>) -> StaticMesh {
         let per_pitch = self.points_per_pitch;
         let points = pitches.start * per_pitch..pitches.end * per_pitch;
-        let first_pair = self.pairs_at(points.start).map(|(pair, _)| pair).min().unwrap_or(0);
+        let first_pair = self.pairs_at(points.start).map(|(pair, ..)| pair).min().unwrap_or(0);
         let last_pair =
-            points.clone().last().and_then(|point| self.pairs_at(point).map(|(pair, _)| pair).max());
+            points.clone().last().and_then(|point| self.pairs_at(point).map(|(pair, ..)| pair).max());
         let rows = last_pair.map_or(0, |last| (last + 1 - first_pair).max(0) as usize);
         let mut pair_force_n = vec![vec![0.0; points.len()]; rows];
         let mut deflection_m = Vec::with_capacity(points.len());
+        let laws = self.corner_laws();
         for (column, point) in points.enumerate() {
-            let states = self.pairs_at(point).map(|(_, state)| state);
-            let Some(deflection) = self.deflection_at_rest(states, force_n) else {
+            let touching: Vec<_> =
+                self.pairs_at(point).filter(|(.., state)| state.stiffness_n_per_m > 0.0).collect();
+            let numbers = touching.iter().map(|(.., state)| (state.stiffness_n_per_m, -state.separation_m));
+            let (stiffness, offset): (Vec<f64>, Vec<f64>) = numbers.unzip();
+            let (of_corner, corners): (Vec<i64>, Vec<CornerAt>) = self.corners_at(point).into_iter().unzip();
+            if touching.is_empty() && corners.is_empty() {
                 deflection_m.push(f64::NAN);
                 continue;
-            };
+            }
+            let springs = Springs { stiffness: &stiffness, offset: &offset, corners: &corners, laws: &laws };
+            let deflection = deflection_at_rest(self.contact, springs, force_n);
             deflection_m.push(deflection);
-            for (pair, state) in self.pairs_at(point) {
+            for (pair, _, state) in touching {
                 let penetration = deflection - state.separation_m;
                 if self.contact.touches(penetration) {
                     pair_force_n[(pair - first_pair) as usize][column] +=
                         state.stiffness_n_per_m * penetration;
                 }
             }
+            for (pair, corner) in of_corner.iter().zip(&corners) {
+                pair_force_n[(pair - first_pair) as usize][column] +=
+                    corner.force_and_slope(&laws, deflection)[0];
+            }
         }
         StaticMesh { deflection_m, first_pair, pair_force_n }
     }
 
-    /// The pairs whose tables reach a point, counted from the start of the simulation: the newest first, slice by slice.
-    pub(super) fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, &PairState)> {
+    /// The corners that can touch at a point, each with the number of its pair.
+    fn corners_at(&self, point: usize) -> Vec<(i64, CornerAt)> {
+        let mut corners = Vec::new();
+        for (pair, at, _) in self.pairs_at(point) {
+            let (slice, at) = (at / self.points(), at % self.points());
+            let class = self.sequence.class(pair);
+            for (end, table) in self.classes[class].corners.get(slice).into_iter().flatten().enumerate() {
+                let corner = CornerAt {
+                    law: ((class * self.slices() + slice) * 2 + end) as u32,
+                    offset_m: -table.separation_m,
+                    near: table.reach.signed_root_at(table.near[at]),
+                    far: table.reach.signed_root_at(table.far[at]),
+                };
+                corners.extend(corner.can_touch().then_some((pair, corner)));
+            }
+        }
+        corners
+    }
+
+    /// The pairs whose tables reach a point, counted from the start of the simulation, each with the number of its state: the newest first,
+    /// slice by slice.
+    pub(super) fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, usize, &PairState)> {
         let (newest, since) = (
             (point + self.points_before) / self.points_per_pitch,
             (point + self.points_before) % self.points_per_pitch,
@@ -83,8 +115,8 @@ impl Mesh {
         let points = (since..self.points()).step_by(self.points_per_pitch).enumerate();
         points.flat_map(move |(age, at)| {
             let pair = newest as i64 - age as i64;
-            let states = &self.classes[self.sequence.class(pair)].states;
-            states[at..].iter().step_by(self.points()).map(move |state| (pair, state))
+            let states = self.classes[self.sequence.class(pair)].states.iter().enumerate();
+            states.skip(at).step_by(self.points()).map(move |(number, state)| (pair, number, state))
         })
     }
 }
@@ -121,8 +153,8 @@ mod tests {
             assert!((shared.iter().sum::<f64>() / force - 1.0).abs() < 1e-12);
             // Away from tip corners δ = F/Σ k.
             let on_path: Vec<f64> = (mesh.pairs_at(point))
-                .filter(|(_, state)| state.separation_m == 0.0)
-                .map(|(_, state)| state.stiffness_n_per_m)
+                .filter(|(.., state)| state.separation_m == 0.0)
+                .map(|(.., state)| state.stiffness_n_per_m)
                 .collect();
             let alone = force / on_path.iter().sum::<f64>();
             if shared.len() == on_path.len() {
@@ -141,8 +173,8 @@ mod tests {
         let mesh = mesh(|scenario| scenario.wheels.iter_mut().for_each(|wheel| wheel.flank_relief = relief));
         let point = 20;
         let two: Vec<[f64; 2]> = (mesh.pairs_at(point))
-            .filter(|(_, state)| state.separation_m < 25e-6)
-            .map(|(_, state)| [state.stiffness_n_per_m, state.separation_m])
+            .filter(|(.., state)| state.separation_m < 25e-6)
+            .map(|(.., state)| [state.stiffness_n_per_m, state.separation_m])
             .collect();
         let [first, second] = two.try_into().unwrap();
         // Both carry beyond the force at which the stiffer placed one sinks in as far as the other is away.

@@ -2,45 +2,51 @@
 //!
 //! Helical teeth touch along a line that runs over the face from one position of the path to another, ε_β base pitches away. What is read
 //! at a single position of spur teeth is the mean over that stretch here; over the stretch of a slice, where the face has slices. The
-//! mean is that of the tabulated quantity, taken as constant between the middles of its steps, so that no number of slices adds anything
-//! of its own.
+//! integrals are exact to the last place between the ends of the path, so that no number of slices adds anything of its own.
 
-/// The integral of a tabulated quantity, from the left of its table on.
+/// The integral along the path of a quantity that is given at equal distances, straight between them and 0 outside the path.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Integral {
-    /// (base pitches) Left edge of the table's first step.
+    /// (base pitches) Where the path begins.
     from: f64,
-    /// (base pitches) From one position of the table to the next.
+    /// (base pitches) From one value to the next.
     step: f64,
-    /// Up to each edge.
-    until_edge: Vec<f64>,
+    values: Vec<f64>,
+    /// Up to each value.
+    until_value: Vec<f64>,
 }
 
 impl Integral {
-    /// Sums a table up.
+    /// Sums a quantity up.
     ///
     /// # Arguments
-    /// * `first`, `step` - (base pitches) position of the first value, and from one to the next
-    /// * `values` - constant half a step to either side
-    pub(super) fn new(first: f64, step: f64, values: impl Iterator<Item = f64>) -> Self {
+    /// * `ends` - (base pitches) of the path
+    /// * `values` - from one end to the other, at least two
+    pub(super) fn new([begins, ends]: [f64; 2], values: &[f64]) -> Self {
+        let step = (ends - begins) / values.len().saturating_sub(1).max(1) as f64;
         let mut sum = 0.0;
-        let sums = values.map(|value| {
-            sum += value * step;
+        let sums = values.windows(2).map(|pair| {
+            sum += (pair[0] + pair[1]) / 2.0 * step;
             sum
         });
-        Self { from: first - step / 2.0, step, until_edge: std::iter::once(0.0).chain(sums).collect() }
+        let until_value = std::iter::once(0.0).chain(sums).collect();
+        Self { from: begins, step, values: values.to_vec(), until_value }
     }
 
-    /// The integral between two positions; beyond the table the quantity is 0.
-    pub(super) fn between(&self, from: f64, until: f64) -> f64 {
+    /// The integral between two positions.
+    pub(super) fn between(&self, [from, until]: [f64; 2]) -> f64 {
         self.until(until) - self.until(from)
     }
 
     fn until(&self, position: f64) -> f64 {
-        let last = self.until_edge.len() - 1;
+        let last = self.values.len() - 1;
+        if self.step <= 0.0 {
+            return 0.0;
+        }
         let place = ((position - self.from) / self.step).clamp(0.0, last as f64);
-        let edge = (place as usize).min(last.saturating_sub(1));
-        let [before, after] = [edge, (edge + 1).min(last)].map(|edge| self.until_edge[edge]);
-        before + (place - edge as f64) * (after - before)
+        let n = (place as usize).min(last.saturating_sub(1));
+        let (part, [here, next]) = (place - n as f64, [n, (n + 1).min(last)].map(|n| self.values[n]));
+        self.until_value[n] + self.step * part * (here + part / 2.0 * (next - here))
     }
 }
 
@@ -66,6 +72,14 @@ pub(crate) struct Window {
 }
 
 impl Window {
+    /// (base pitches) Length below which a stretch is a point: beyond rounding the two laws are the same.
+    pub(crate) const POINT: f64 = 1e-6;
+
+    /// Whether the slice touches at one position, as spur teeth do.
+    pub(crate) fn is_a_point(&self) -> bool {
+        self.overlap.abs() * self.width < Self::POINT
+    }
+
     /// (base pitches) The stretch while the middle of the face is at a position.
     pub(super) fn around(&self, position: f64) -> [f64; 2] {
         let (at, half) = (position + self.overlap * self.middle, self.overlap.abs() * self.width / 2.0);

@@ -109,6 +109,8 @@ pub(crate) trait Instructions: Copy {
     fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L];
     /// `a / b`.
     fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L];
+    /// `√a`.
+    fn sqrt<const L: usize>(self, a: [f64; L]) -> [f64; L];
     /// `yes` where `a < b`, else `no`.
     fn where_less<const L: usize>(self, a: [f64; L], b: [f64; L], yes: [f64; L], no: [f64; L]) -> [f64; L];
 }
@@ -146,6 +148,11 @@ impl Instructions for Plain {
     #[inline(always)]
     fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
         std::array::from_fn(|l| a[l] / b[l])
+    }
+
+    #[inline(always)]
+    fn sqrt<const L: usize>(self, a: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| a[l].sqrt())
     }
 
     #[inline(always)]
@@ -220,6 +227,11 @@ impl<S: pulp::Simd> Instructions for Fused<S> {
     #[inline(always)]
     fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
         by_register!(self, |a, b| self.0.div_f64s(a, b), |a: f64, b: f64| a / b, a, b)
+    }
+
+    #[inline(always)]
+    fn sqrt<const L: usize>(self, a: [f64; L]) -> [f64; L] {
+        by_register!(self, |a| self.0.sqrt_f64s(a), f64::sqrt, a)
     }
 
     #[inline(always)]

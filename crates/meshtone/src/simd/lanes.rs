@@ -61,6 +61,21 @@ impl<const L: usize> Lanes<L> {
         Self(simd.div(self.0, other.0))
     }
 
+    #[inline(always)]
+    pub(crate) fn sqrt<I: Instructions>(self, simd: I) -> Self {
+        Self(simd.sqrt(self.0))
+    }
+
+    #[inline(always)]
+    pub(crate) fn min<I: Instructions>(self, simd: I, other: Self) -> Self {
+        self.where_less(simd, self, other, other)
+    }
+
+    #[inline(always)]
+    pub(crate) fn max<I: Instructions>(self, simd: I, other: Self) -> Self {
+        self.where_less(simd, other, self, other)
+    }
+
     /// `self` where `left < right`, `other` elsewhere.
     #[inline(always)]
     pub(crate) fn where_less<I: Instructions>(self, simd: I, left: Self, right: Self, other: Self) -> Self {

@@ -6,8 +6,8 @@ use super::{AssembledMachine, MeshedPair};
 use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
 use crate::mesh::{
-    Contact, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
-    place_on_face,
+    Contact, FaceForm, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
+    Window, place_on_face,
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
@@ -76,7 +76,7 @@ fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
             format!("lower {} or {}", gears.key("tip_chamfer_mm"), gears.key("active_profile_shortening"));
         return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
     }
-    if mesh.overlap == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
+    if mesh.face.overlap() == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
         let keys = [gears.whole(), gears.key("pressure_angle_deg")];
         return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
     }
@@ -112,12 +112,25 @@ impl MeshOf<'_> {
             return Err(ScenarioError::no_load_along_the_face(gears.load()));
         }
         let width_m = gears.face_width_mm * 1e-3;
-        let face = || FaceSlope {
+        let slope = || FaceSlope {
             slope: closer_um * 1e-6 / width_m,
             width_m,
             tilt_rad_per_m: machine.modes.tilt_rad_per_nm(&machine.machine, number) * static_force_n,
         };
         let slices = if self.gap_varies_along_face() { gears.slices as usize } else { 1 };
+        let overlap = self.sense * gears.hand.sign() * gears.overlap_ratio();
+        let is_spur = Window { overlap, middle: 0.0, width: 1.0 / slices as f64 }.is_a_point();
+        let gaps_m = || {
+            (0..slices)
+                .map(|slice| [slice, slice + 1].map(|edge| place_on_face(edge as f64, slices)))
+                .map(|ends| gears.mean_gap_mm(ends) * 1e-3)
+                .collect()
+        };
+        let face = match (slices, is_spur) {
+            (1, true) => FaceForm::Spur,
+            (1, false) => FaceForm::Helical { overlap },
+            _ => FaceForm::Sliced { overlap: if is_spur { 0.0 } else { overlap }, gaps_m: gaps_m() },
+        };
         let parameters = MeshParameters {
             contact: self.contact,
             turning: self.turning,
@@ -126,13 +139,9 @@ impl MeshOf<'_> {
             // Across the teeth, as it is measured; in the transverse section it is larger.
             backlash_m: gears.normal_backlash_mm() * 1e-3 / gears.base_helix_angle_rad().cos(),
             static_force_n,
-            face: (closer_um != 0.0).then(face),
-            overlap: self.sense * gears.hand.sign() * gears.overlap_ratio(),
+            slope: (closer_um != 0.0).then(slope),
+            face,
             face_width_m: width_m,
-            gaps_m: (0..slices)
-                .map(|slice| [slice, slice + 1].map(|edge| place_on_face(edge as f64, slices)))
-                .map(|ends| gears.mean_gap_mm(ends) * 1e-3)
-                .collect(),
         };
         let shape = TipShape {
             chamfer_mm: gears.chamfer_mm(),

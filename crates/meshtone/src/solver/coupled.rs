@@ -6,7 +6,8 @@
 //! spring that the machine has in its place. Their slopes may be negative, but `1 + G K` is as regular as if the machine had no such spring.
 //!
 //! Newton's method takes the slopes at the last iterate, that is the springs that touch, and solves the linear equations that these make.
-//! It ends when the same pairs touch at the new iterate, which is exact, and the bearings have moved by no more than [`BEARING_MOVES_M`]. In
+//! It ends when the same pairs touch at the new iterate, which is exact, the deflections of meshes with corners have moved by no more than a
+//! ten-millionth, and the bearings by no more than [`BEARING_MOVES_M`]. In
 //! theory it can go round in a circle; after [`MOST_PLAIN_ITERATIONS`] each iterate goes only as far towards Newton's as makes the residual
 //! smaller.
 
@@ -17,7 +18,7 @@ use super::integrate::{Block, Diverged, Problem, Recorder, StepCounts, is_bounde
 use super::outputs::{EXTERNALS, OutputWeights, dot};
 use super::prepare::{FirstState, Prepared};
 use crate::bearing::{BearingLoad, RollingBearing};
-use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples};
+use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples, TANGENT_M, TANGENT_PART};
 use crate::simd::{InstructionSet, Instructions, Lanes, Task};
 
 /// Most meshes that one machine has.
@@ -172,9 +173,11 @@ pub(super) fn integrate(
     let (start, end) = (problem.time.first_simulated_sample, problem.time.samples);
     let mut block = ForcingBlock::default();
     problem.forcing.next_block(1, &mut block);
-    let mut springs = vec![SpringSamples::default(); prepared.laws.len()];
+    let mut springs: Vec<SpringSamples> =
+        problem.forcing.meshes().map(|mesh| SpringSamples::new(mesh.corner_laws())).collect();
     let first_external = external(&block, 0);
-    let first = prepared.first_state(&problem.machine, &block, first_external);
+    springs.iter_mut().zip(&block.meshes).for_each(|(springs, block)| springs.line_up(block));
+    let first = prepared.first_state(&problem.machine, &block, &springs, first_external);
     let mut state = State::new(first, first_external, &prepared, &order);
     let mut history = History::new(&constants.outputs);
     let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
@@ -538,6 +541,9 @@ trait Law {
     /// (N, N/m) Of a mesh at (m) a deflection: rising and piecewise linear.
     fn of_mesh(&self, mesh: usize, deflection_m: f64) -> [f64; 2];
 
+    /// Whether the force of a mesh is smooth, so that between iterates that are near to one another its tangent is the force.
+    fn is_smooth(&self, mesh: usize) -> bool;
+
     /// Of a bearing at (m) a stretch.
     fn of_bearing(&self, bearing: usize, stretch_m: [f64; 2]) -> BearingLoad;
 }
@@ -563,6 +569,11 @@ impl Law for ContactLaw<'_> {
     #[inline(always)]
     fn of_mesh(&self, mesh: usize, deflection_m: f64) -> [f64; 2] {
         self.laws[mesh].force_and_slope(self.sample.springs[mesh].at(self.sample.k), deflection_m)
+    }
+
+    #[inline(always)]
+    fn is_smooth(&self, mesh: usize) -> bool {
+        self.sample.springs[mesh].is_smooth()
     }
 
     #[inline(always)]
@@ -604,6 +615,13 @@ const BEARING_MOVES_M: f64 = 1e-8;
 fn moves(from: &OfUnknowns, to: &OfUnknowns, unknown: usize) -> bool {
     let move_m = (to[unknown] - from[unknown]).abs();
     move_m > BEARING_MOVES_M || move_m.is_nan()
+}
+
+/// Whether the deflection of a smooth mesh moves more than its tangent allows.
+#[inline(always)]
+fn moves_beyond_tangent(from: &OfUnknowns, to: &OfUnknowns, unknown: usize) -> bool {
+    let move_m = (to[unknown] - from[unknown]).abs();
+    move_m > TANGENT_PART * to[unknown].abs() + TANGENT_M || move_m.is_nan()
 }
 
 /// The equations of a step, `D + G f(D) = D₀`.
@@ -653,7 +671,7 @@ impl Equations {
             let (now, new) = if iteration % 2 == 0 { (even, odd) } else { (odd, even) };
             self.newton(free, deflection, now, next);
             self.set_next_loads(law, [deflection, next], now, new);
-            let same = self.is_same(now, new, deflection, next);
+            let same = self.is_same(law, [now, new], deflection, next);
             if !same && iteration >= MOST_PLAIN_ITERATIONS {
                 *next = self.towards(law, free, deflection, next);
                 self.set_loads(law, next, new);
@@ -667,23 +685,33 @@ impl Equations {
         Found { loads: MOST_ITERATIONS % 2, iterations: MOST_ITERATIONS as u64, searched: 1 }
     }
 
-    /// Whether the same pairs touch before and after an iteration, and no bearing has moved.
+    /// Whether the same pairs touch before and after an iteration, and neither a smooth mesh nor a bearing has moved.
     #[inline(always)]
     fn is_same(
         &self,
-        loads: &Loads,
-        next: &Loads,
+        law: &impl Law,
+        [loads, next]: [&Loads; 2],
         deflection: &OfUnknowns,
         next_deflection: &OfUnknowns,
     ) -> bool {
         let has_moved = |a: usize| moves(deflection, next_deflection, a);
-        loads.slopes[..self.meshes] == next.slopes[..self.meshes] && !(self.meshes..self.count).any(has_moved)
+        let is_other = |a: usize| match law.is_smooth(a) {
+            true => moves_beyond_tangent(deflection, next_deflection, a),
+            false => loads.slopes[a] != next.slopes[a],
+        };
+        !(0..self.meshes).any(is_other) && !(self.meshes..self.count).any(has_moved)
     }
 
-    /// Sets the loads at the next iterate: of a bearing that has hardly moved those of its tangent.
+    /// Sets the loads at the next iterate: of a smooth mesh or a bearing that has hardly moved those of its tangent.
     #[inline(always)]
     fn set_next_loads(&self, law: &impl Law, [from, to]: [&OfUnknowns; 2], loads: &Loads, next: &mut Loads) {
-        self.set_mesh_loads(law, to, next);
+        for a in 0..self.meshes {
+            [next.forces[a], next.slopes[a]] = if law.is_smooth(a) && !moves_beyond_tangent(from, to, a) {
+                [loads.forces[a] + loads.slopes[a] * (to[a] - from[a]), loads.slopes[a]]
+            } else {
+                law.of_mesh(a, to[a])
+            };
+        }
         for (bearing, a) in (self.meshes..self.count).step_by(2).enumerate() {
             if moves(from, to, a) || moves(from, to, a + 1) {
                 self.set_bearing_loads(law, bearing, to, next);
@@ -866,6 +894,10 @@ mod tests {
             self.0(mesh, deflection_m)
         }
 
+        fn is_smooth(&self, _: usize) -> bool {
+            false
+        }
+
         fn of_bearing(&self, _: usize, _: [f64; 2]) -> BearingLoad {
             BearingLoad { force_n: [0.0; 2], slope_n_per_m: [0.0; 3] }
         }
@@ -927,6 +959,10 @@ mod tests {
     impl Law for MeshAndBearing {
         fn of_mesh(&self, _: usize, deflection_m: f64) -> [f64; 2] {
             if deflection_m > 0.0 { [3e8 * deflection_m, 3e8] } else { [0.0; 2] }
+        }
+
+        fn is_smooth(&self, _: usize) -> bool {
+            false
         }
 
         fn of_bearing(&self, _: usize, [x_m, y_m]: [f64; 2]) -> BearingLoad {

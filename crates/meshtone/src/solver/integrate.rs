@@ -1,5 +1,6 @@
 //! Integration of one simulation, or of several side by side.
 
+use std::array::from_fn;
 use std::fmt;
 
 use super::coupled;
@@ -11,10 +12,13 @@ use super::prepare::Prepared;
 use super::repetition::Repeating;
 use super::step::{
     Coefficients, MOST_MODES, MOST_PAIRS, MOST_STEADY_MODES, MOST_TURNING_MODES, MOST_UNDRIVEN_MODES,
-    MOVED_IN_PLANE, Size, State, StepBlock, TurningSample, law_lanes,
+    MOVED_IN_PLANE, Size, State, StepBlock, TurningSample, USUAL_PAIRS, law_lanes,
 };
 use crate::bearing::RollingBearing;
-use crate::mesh::{Forcing, ForcingBlock, Mesh, MeshLaw, PAIRS, PairsSample, line_up};
+use crate::mesh::{
+    CornerLane, CornerLanes, CornerLaw, Forcing, ForcingBlock, Mesh, MeshLaw, PAIRS, PairsSample,
+    SpringSamples, line_up,
+};
 use crate::operation::TimeGrid;
 use crate::simd::{InstructionSet, Lanes};
 
@@ -234,19 +238,27 @@ fn of_size<const L: usize>(
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
     match Size::of(&problems) {
-        Size::Flat => run::<L, 8, 8, 1, PAIRS>(problems, instructions, recorders),
+        Size::Flat => run::<L, 8, 8, 1, PAIRS, 0>(problems, instructions, recorders),
         Size::Tilting => {
             const N: usize = MOST_UNDRIVEN_MODES;
-            run::<L, N, N, 2, PAIRS>(problems, instructions, recorders)
+            run::<L, N, N, 2, PAIRS, 0>(problems, instructions, recorders)
         }
         Size::Turning => {
-            run::<L, MOST_TURNING_MODES, MOVED_IN_PLANE, 1, PAIRS>(problems, instructions, recorders)
+            run::<L, MOST_TURNING_MODES, MOVED_IN_PLANE, 1, PAIRS, 0>(problems, instructions, recorders)
         }
         Size::Steady => {
             const N: usize = MOST_STEADY_MODES;
-            run::<L, N, N, 2, PAIRS>(problems, instructions, recorders)
+            run::<L, N, N, 2, PAIRS, 0>(problems, instructions, recorders)
         }
-        Size::General => run::<L, MOST_MODES, MOST_MODES, 2, MOST_PAIRS>(problems, instructions, recorders),
+        Size::General => run::<L, MOST_MODES, MOST_MODES, 2, PAIRS, 0>(problems, instructions, recorders),
+        Size::Helical => {
+            const N: usize = MOST_STEADY_MODES;
+            run::<L, N, N, 1, USUAL_PAIRS, USUAL_PAIRS>(problems, instructions, recorders)
+        }
+        Size::GeneralHelical => {
+            const N: usize = MOST_MODES;
+            run::<L, N, N, 1, MOST_PAIRS, MOST_PAIRS>(problems, instructions, recorders)
+        }
     }
 }
 
@@ -254,7 +266,7 @@ fn of_size<const L: usize>(
 ///
 /// Time is divided into blocks of samples. For each block the forcing is tabulated first, then all steps are made, and then the outputs
 /// are computed from the states of the block, so that each of the three loops is short and its numbers stay in the cache.
-fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize>(
+fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize, const C: usize>(
     mut problems: [Problem; L],
     instructions: InstructionSet,
     recorders: Vec<&mut dyn Recorder>,
@@ -268,11 +280,13 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
         .map(|output| OutputTerms::new::<N, R>(prepared.each_ref().map(|of| of.outputs.get(output)), start))
         .collect();
     let mut out = LaneOutputs::new(problems.each_ref(), outputs, BLOCK, recorders);
-    let mut forcing = LaneForcing::<L, P>::new(problems.each_ref());
+    let mut forcing = LaneForcing::<L, P, C>::new(problems.each_ref());
     forcing.fill(&mut problems, 1);
-    let first = std::array::from_fn(|l| {
+    let first = from_fn(|l| {
         let external = forcing.external[0].map(|external| external.0[l]);
-        prepared[l].first_state(&problems[l].machine, &forcing.blocks[l], external)
+        let mut springs = SpringSamples::new(forcing.laws[l].clone());
+        springs.line_up(&forcing.blocks[l].meshes[0]);
+        prepared[l].first_state(&problems[l].machine, &forcing.blocks[l], &[springs], external)
     });
     let mut state: State<L, N, R> = coefficients.first_state(&first);
     let mut history = History::<L, N, R>::new();
@@ -286,6 +300,7 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
             law: &law,
             state: &mut state,
             pairs: &forcing.pairs[..steps],
+            corners: &forcing.corners,
             external: forcing.is_driven.then_some(&forcing.external[..steps]),
             turning: &forcing.turning,
             history: recorded.then_some(&mut history),
@@ -308,9 +323,13 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
 const NO_FORCE: &[f64] = &[0.0; BLOCK];
 
 /// Forcing of one block of samples of `L` simulations, side by side.
-struct LaneForcing<const L: usize, const P: usize> {
+struct LaneForcing<const L: usize, const P: usize, const C: usize> {
     /// The pairs of the one mesh.
-    pairs: Vec<PairsSample<L, P>>,
+    pairs: Vec<PairsSample<L, P, C>>,
+    /// The laws of the corners of the mesh in each lane: of each class, at the start of the path and at its end.
+    laws: [Vec<CornerLaw>; L],
+    /// The laws of the pairs' corners, each up to a sample: until a pair of another class comes to a place.
+    corners: Vec<(usize, CornerLanes<L, C>)>,
     /// Whether any motor or brake is not steady.
     is_driven: bool,
     /// Motor lead, torque deviation and speed deviation; 0 while motor and brake are steady.
@@ -320,18 +339,20 @@ struct LaneForcing<const L: usize, const P: usize> {
     blocks: [ForcingBlock; L],
 }
 
-impl<const L: usize, const P: usize> LaneForcing<L, P> {
+impl<const L: usize, const P: usize, const C: usize> LaneForcing<L, P, C> {
     fn new(problems: [&Problem; L]) -> Self {
         let turning_forces = problems.map(|problem| problem.machine.turning_forces.len());
         Self {
             pairs: vec![PairsSample::NONE; BLOCK],
+            laws: problems.map(|problem| problem.forcing.meshes().flat_map(Mesh::corner_laws).collect()),
+            corners: Vec::new(),
             is_driven: problems.iter().any(|problem| !problem.is_steady),
             external: vec![[Lanes::splat(0.0); EXTERNALS]; BLOCK],
             turning: vec![
                 vec![TurningSample([Lanes::splat(0.0); 2]); BLOCK];
                 turning_forces.into_iter().max().unwrap_or(0)
             ],
-            blocks: std::array::from_fn(|_| ForcingBlock::default()),
+            blocks: from_fn(|_| ForcingBlock::default()),
         }
     }
 
@@ -349,6 +370,7 @@ impl<const L: usize, const P: usize> LaneForcing<L, P> {
             &mut self.pairs[..samples],
             &self.blocks.each_ref().map(|block| &block.meshes[0]),
         );
+        self.line_corners_up(samples);
         for (force, turning) in self.turning.iter_mut().enumerate() {
             for side in 0..2 {
                 let parts = self.blocks.each_ref().map(|block| {
@@ -356,6 +378,33 @@ impl<const L: usize, const P: usize> LaneForcing<L, P> {
                 });
                 line_up(&mut turning[..samples], parts, |sample| &mut sample.0[side]);
             }
+        }
+    }
+}
+
+impl<const L: usize, const P: usize, const C: usize> LaneForcing<L, P, C> {
+    /// Lines the laws of the corners up, anew from each sample on at which a pair of another class comes to a place.
+    fn line_corners_up(&mut self, samples: usize) {
+        self.corners.clear();
+        let blocks = self.blocks.each_ref().map(|block| &block.meshes[0]);
+        let class = |l: usize, place: usize, sample: usize| {
+            if place < blocks[l].classes.len() { blocks[l].class_at(place, sample) } else { 0 }
+        };
+        let spans = blocks.iter().flat_map(|block| block.classes.iter().take(C));
+        let mut starts: Vec<usize> = spans.flatten().map(|(from, _)| *from).chain([0]).collect();
+        starts.sort_unstable();
+        starts.dedup();
+        let differs = |at: &usize| {
+            let places = (0..L).flat_map(|l| (0..C).map(move |place| (l, place)));
+            *at == 0 || places.into_iter().any(|(l, place)| class(l, place, *at) != class(l, place, at - 1))
+        };
+        let starts: Vec<usize> = starts.into_iter().filter(differs).collect();
+        for (n, start) in starts.iter().enumerate() {
+            let law = |l: usize, place: usize, end: usize| {
+                self.laws[l].get(2 * class(l, place, *start) + end).copied().unwrap_or(CornerLaw::NONE)
+            };
+            let lanes = from_fn(|place| from_fn(|end| CornerLane::new(from_fn(|l| law(l, place, end)))));
+            self.corners.push((starts.get(n + 1).copied().unwrap_or(samples), lanes));
         }
     }
 }
@@ -440,15 +489,15 @@ mod tests {
 
     #[test]
     fn helical_teeth_move_both_steppers_alike() {
-        check_both_steppers(&pair(5.0, 15.0), Size::Steady, "two pairs at once");
-        check_both_steppers(&pair(20.0, 30.0), Size::Steady, "three pairs at once");
-        check_both_steppers(&pair(25.0, 60.0), Size::General, "more pairs at once");
-        check_both_steppers(&unbalanced(pair(20.0, 15.0)), Size::General, "unbalanced wheels");
+        check_both_steppers(&pair(5.0, 15.0), Size::Helical, "two pairs at once");
+        check_both_steppers(&pair(20.0, 30.0), Size::Helical, "three pairs at once");
+        check_both_steppers(&pair(25.0, 60.0), Size::GeneralHelical, "more pairs at once");
+        check_both_steppers(&unbalanced(pair(20.0, 15.0)), Size::Helical, "unbalanced wheels");
         let mut missing = pair(20.0, 15.0);
         missing.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
-        check_both_steppers(&missing, Size::Steady, "a missing tooth");
+        check_both_steppers(&missing, Size::Helical, "a missing tooth");
         let mut varying = pair(20.0, 15.0);
         varying.operation.speed_fluctuation_hz = 0.3;
-        check_both_steppers(&varying, Size::General, "a speed that varies");
+        check_both_steppers(&varying, Size::GeneralHelical, "a speed that varies");
     }
 }

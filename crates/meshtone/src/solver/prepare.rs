@@ -7,7 +7,7 @@ use super::modal::ModalMachine;
 use super::mode_step::StepOfMode;
 use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
 use crate::bearing::RollingBearing;
-use crate::mesh::{ForcingBlock, MeshLaw, Springs, deflection_at_rest};
+use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples, deflection_at_rest};
 
 /// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh, and then those of the
 /// bearings, along x and y of each.
@@ -188,12 +188,13 @@ impl Prepared {
     ///
     /// # Arguments
     /// * `model` - the machine
-    /// * `block` - whose first sample it is
+    /// * `block`, `springs` - whose first sample it is
     /// * `external` - the externals at that sample
     pub(super) fn first_state(
         &self,
         model: &ModalMachine,
         block: &ForcingBlock,
+        springs: &[SpringSamples],
         external: [f64; EXTERNALS],
     ) -> FirstState {
         let (columns, blocks) = (&self.columns_of_unknown, &block.meshes);
@@ -212,7 +213,7 @@ impl Prepared {
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
                 let force_n = self.static_force_n[mesh].max(0.0);
-                let closed = deflection_at_rest(law.contact, blocks[mesh].springs(0), force_n);
+                let closed = deflection_at_rest(law.contact, springs[mesh].at(0), force_n);
                 let (at_rest, tilted) =
                     at_face_centre(mesh, &|column| self.columns[column].static_deflection);
                 closed - at_rest - tilted - dot(lines[columns[mesh].start], &turned)
@@ -226,10 +227,7 @@ impl Prepared {
                 self.columns[column].static_deflection + dot(lines[column], &displacement)
             });
             let lead = law.damping_time_s * dot(lines[columns[mesh].start], &model.initial_velocity);
-            let (stiffness, offset): (Vec<f64>, Vec<f64>) =
-                blocks[mesh].springs(0).map(|[stiffness, offset]| (stiffness, offset)).unzip();
-            let springs = Springs { stiffness: &stiffness, offset: &offset };
-            let [carried, _] = law.force_and_slope(springs, deflection + tilted + lead);
+            let [carried, _] = law.force_and_slope(springs[mesh].at(0), deflection + tilted + lead);
             let whole = self.static_force_n[mesh] - carried;
             force.push(whole);
             let z = blocks[mesh].face_centre_m(0);

@@ -21,7 +21,7 @@ use super::history::History;
 use super::integrate::{Problem, is_bounded};
 use super::outputs::EXTERNALS;
 use super::prepare::{FirstState, Prepared};
-use crate::mesh::{LawLanes, Mesh, PAIRS, PairsSample, Touching};
+use crate::mesh::{CornerLanes, LastContact, LawLanes, Mesh, PAIRS, PairsSample};
 use crate::simd::{Chains, Instructions, Lanes, Task};
 
 /// Number of modes above which a step is compiled for forces that turn with the shafts; up to it, the mesh alone moves the machine. A
@@ -41,7 +41,11 @@ pub(super) const MOST_STEADY_MODES: usize = 13;
 /// Number of modes of the largest machine that a step is compiled for; larger ones are stepped by [`super::coupled`].
 pub(super) const MOST_MODES: usize = 17;
 
-/// Most pairs of helical teeth that a step is compiled for: as many as overlap where the contact ratios of profile and face add up to 5.
+/// Pairs of helical teeth that most wheels have at once, with what their corners reach.
+pub(super) const USUAL_PAIRS: usize = 4;
+
+/// Most pairs of helical teeth that a step is compiled for: as many as overlap, with what their corners reach, where the contact ratios of
+/// profile and face add up to 4.8.
 pub(super) const MOST_PAIRS: usize = 6;
 
 /// Constants of one simulation (`L` = 1) or of several side by side: `N` modes, of which the mesh moves the first `M`, and `R` columns of the mesh's line of action, one at the
@@ -93,8 +97,8 @@ pub(super) struct State<const L: usize, const N: usize, const R: usize> {
     pub(super) force: [Lanes<L>; R],
     /// (m) The next deflection that [`Prediction`] makes of the state, but for the share of the state's own force.
     predicted: [Lanes<L>; R],
-    /// The pairs that touch.
-    touching: Touching<L>,
+    /// Where the next step begins its search.
+    last: LastContact<L>,
 }
 
 impl<const L: usize, const N: usize, const M: usize, const R: usize> Coefficients<L, N, M, R> {
@@ -153,7 +157,14 @@ impl<const L: usize, const N: usize, const M: usize, const R: usize> Coefficient
             }
             predicted
         };
-        State { predicted: items(&predicted), displacement, velocity, acceleration, force, touching: [0; L] }
+        State {
+            predicted: items(&predicted),
+            displacement,
+            velocity,
+            acceleration,
+            force,
+            last: LastContact::none(),
+        }
     }
 
     /// Whether the motion of lane `l` is bounded.
@@ -168,16 +179,16 @@ impl<const L: usize, const N: usize, const M: usize, const R: usize> Coefficient
     /// mode.
     ///
     /// # Arguments
-    /// * `law` - the mesh
+    /// * `law`, `corners` - the mesh
     /// * `state` - moves on by one sample
     /// * `pairs`, `driven` - at the step's end
     #[inline(always)]
-    fn step<I: Instructions, const P: usize>(
+    fn step<I: Instructions, const P: usize, const C: usize>(
         &self,
         simd: I,
-        law: &LawLanes<L>,
+        (law, corners): (&LawLanes<L>, &CornerLanes<L, C>),
         state: &mut State<L, N, R>,
-        pairs: &PairsSample<L, P>,
+        pairs: &PairsSample<L, P, C>,
         driven: DrivenSample<L>,
     ) {
         let mut ahead = Ahead::new();
@@ -198,7 +209,7 @@ impl<const L: usize, const N: usize, const M: usize, const R: usize> Coefficient
         }
         let deflection = self.free_deflection(simd, state, driven);
         state.predicted = ahead.predict(simd, &self.static_deflection, &self.prediction);
-        let force = law.force(simd, &deflection, &self.compliance, pairs, &mut state.touching);
+        let force = law.force(simd, &deflection, &self.compliance, pairs, corners, &mut state.last);
         for n in 0..M {
             for r in 0..R {
                 state.acceleration[n] = self.push[r][n].mul_add(simd, force[r], state.acceleration[n]);
@@ -346,12 +357,15 @@ pub(super) struct StepBlock<
     const M: usize,
     const R: usize,
     const P: usize,
+    const C: usize,
 > {
     pub(super) coefficients: &'a Coefficients<L, N, M, R>,
     pub(super) law: &'a LawLanes<L>,
     pub(super) state: &'a mut State<L, N, R>,
     /// Pairs at the samples after the state's.
-    pub(super) pairs: &'a [PairsSample<L, P>],
+    pub(super) pairs: &'a [PairsSample<L, P, C>],
+    /// The laws of their corners: each up to a sample, the last one to the end of the block.
+    pub(super) corners: &'a [(usize, CornerLanes<L, C>)],
     /// Externals at the same; none while all motors and brakes are steady.
     pub(super) external: Option<&'a [[Lanes<L>; EXTERNALS]]>,
     /// Each force that turns with a shaft, at the same.
@@ -360,8 +374,8 @@ pub(super) struct StepBlock<
     pub(super) history: Option<&'a mut History<L, N, R>>,
 }
 
-impl<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize> Task
-    for StepBlock<'_, L, N, M, R, P>
+impl<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize, const C: usize> Task
+    for StepBlock<'_, L, N, M, R, P, C>
 {
     type Output = ();
 
@@ -369,13 +383,17 @@ impl<const L: usize, const N: usize, const M: usize, const R: usize, const P: us
     fn run<I: Instructions>(mut self, simd: I) {
         // A copy, which the compiler can keep in registers.
         let mut state = *self.state;
-        for (k, pairs) in self.pairs.iter().enumerate() {
-            if let Some(history) = &mut self.history {
-                history.store(k, &state);
+        let mut k = 0;
+        for (until, corners) in self.corners {
+            for pairs in &self.pairs[k..*until] {
+                if let Some(history) = &mut self.history {
+                    history.store(k, &state);
+                }
+                let external = self.external.and_then(|external| external.get(k));
+                let driven = DrivenSample { external, turning: self.turning, sample: k };
+                self.coefficients.step(simd, (self.law, corners), &mut state, pairs, driven);
+                k += 1;
             }
-            let external = self.external.and_then(|external| external.get(k));
-            let driven = DrivenSample { external, turning: self.turning, sample: k };
-            self.coefficients.step(simd, self.law, &mut state, pairs, driven);
         }
         *self.state = state;
     }
@@ -400,10 +418,14 @@ pub(super) enum Size {
     /// A load midway along the face, and forces that turn with the shafts: as many modes as a pair has then whose wheels sit midway on their
     /// shafts, [`MOVED_IN_PLANE`] along the line of action and four across it.
     Turning,
-    /// A load that moves along the face, with forces that turn with the shafts or of helical teeth: [`MOST_STEADY_MODES`].
+    /// A load that moves along the face, with forces that turn with the shafts: [`MOST_STEADY_MODES`].
     Steady,
-    /// Any motion of motor and brake, any initial velocity, and any pair of helical teeth: [`MOST_MODES`] and [`MOST_PAIRS`].
+    /// Any motion of motor and brake, and any initial velocity, of spur teeth: [`MOST_MODES`].
     General,
+    /// Helical teeth, steady: [`MOST_STEADY_MODES`] and [`USUAL_PAIRS`].
+    Helical,
+    /// Helical teeth in any motion, and any that overlap: [`MOST_MODES`] and [`MOST_PAIRS`].
+    GeneralHelical,
 }
 
 impl Size {
@@ -416,7 +438,12 @@ impl Size {
         let is_steady = problems.iter().all(|problem| problem.is_steady);
         let springs = most(|problem| problem.forcing.meshes().map(Mesh::springs).max().unwrap_or(0));
         let turning_forces = most(|problem| problem.machine.turning_forces.len());
-        if !is_steady || springs > PAIRS || modes > MOST_STEADY_MODES {
+        let has_corners = problems.iter().any(|problem| problem.forcing.meshes().any(Mesh::has_corners));
+        let is_small = is_steady && modes <= MOST_STEADY_MODES;
+        if has_corners || springs > PAIRS {
+            return if is_small && springs <= USUAL_PAIRS { Self::Helical } else { Self::GeneralHelical };
+        }
+        if !is_small {
             return Self::General;
         }
         match (turning_forces, modes, columns) {

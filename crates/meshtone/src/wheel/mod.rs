@@ -143,7 +143,7 @@ impl Teeth {
     ///
     /// # Arguments
     /// * `wheel` - on whose tooth
-    /// * `overlap` - (base pitches) as [`Mesh::overlap`](crate::mesh::Mesh::overlap)
+    /// * `overlap` - (base pitches) as [`FaceForm::overlap`](crate::mesh::FaceForm::overlap)
     /// * `position` - (base pitches) of the middle of the face since the start of the path
     pub fn contact_line_mm(&self, wheel: WheelName, overlap: f64, position: f64) -> Vec<[f64; 2]> {
         const POINTS: usize = 40;

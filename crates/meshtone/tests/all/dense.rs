@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use meshtone::Stages;
 use meshtone::interpolation::NotAKnotSpline;
 use meshtone::machine::{Drive, Machine, Modes};
-use meshtone::mesh::{Contact, Mesh, PairDeviations, PairState};
+use meshtone::mesh::{Contact, CornerTable, Mesh, PairDeviations, PairState};
 use meshtone::operation::{MotionSample, TimeGrid};
 use meshtone::solver::{Block, InitialMotion, Output, Recorder};
 use meshtone::wheel::WheelName;
@@ -64,14 +64,72 @@ pub struct DenseMesh<'a> {
 }
 
 /// What a mesh does at one sample.
-struct Load {
+struct Load<'a> {
     contact: Contact,
     /// (N/m, m) Stiffness of each pair, or of each slice of it, and what it adds to the deflection, with the damping's lead.
     pairs: Vec<[f64; 2]>,
+    /// The same of what helical teeth have outside their path: a stretch of contact line each.
+    corners: Vec<Stretch<'a>>,
     /// (N/m, m) The same of the coast flanks.
     back: Option<[f64; 2]>,
     /// (m) Where along the face the load acts.
     face_centre_m: f64,
+}
+
+/// A stretch of a contact line outside its path, at one sample.
+struct Stretch<'a> {
+    corner: &'a CornerTable,
+    /// (base pitches) Its edges, outside the corner's place; on the other side of that the corner is as far apart.
+    edges: [f64; 2],
+    /// (m) What the pair adds to the deflection.
+    offset_m: f64,
+}
+
+impl Stretch<'_> {
+    /// Places and weights of Gauss's rule with five points, which is exact for the law's integrand.
+    const GAUSS: [[f64; 2]; 5] = [
+        [-0.906_179_845_938_664, 0.236_926_885_056_189_1],
+        [-0.538_469_310_105_683_1, 0.478_628_670_499_366_5],
+        [0.0, 0.568_888_888_888_888_9],
+        [0.538_469_310_105_683_1, 0.478_628_670_499_366_5],
+        [0.906_179_845_938_664, 0.236_926_885_056_189_1],
+    ];
+
+    /// (base pitches) s* at a v.
+    fn reach(&self, v: f64) -> f64 {
+        self.corner.reach.coefficients.iter().zip(1..).map(|(a, j)| a * v.powi(j)).sum()
+    }
+
+    /// (√m) The v at which the corner reaches a place, by halves.
+    fn root(&self, place: f64) -> f64 {
+        let (mut low, mut high) = (0.0, self.corner.reach.most);
+        for _ in 0..60 {
+            let middle = f64::midpoint(low, high);
+            if self.reach(middle) < place { low = middle } else { high = middle }
+        }
+        f64::midpoint(low, high)
+    }
+
+    /// (m, base pitches) `∫ max(0, x − S) ds` from the corner's place to another one, and its slope.
+    fn until(&self, x: f64, place: f64) -> [f64; 2] {
+        let far = x.max(0.0).sqrt().min(self.root(place.abs()));
+        let mut sums = [0.0; 2];
+        for [at, weight] in Self::GAUSS {
+            let v = far / 2.0 * (1.0 + at);
+            let coefficients = self.corner.reach.coefficients.iter().zip(1..);
+            let per_v: f64 = coefficients.map(|(a, j)| f64::from(j) * a * v.powi(j - 1)).sum();
+            let part = weight * far / 2.0 * per_v;
+            sums = [sums[0] + part * (x - v * v), sums[1] + part];
+        }
+        sums.map(|sum| sum.copysign(place))
+    }
+
+    /// (N, N/m) Force and slope.
+    fn force_and_slope(&self, deflection_m: f64) -> [f64; 2] {
+        let x = deflection_m + self.offset_m;
+        let [near, far] = self.edges.map(|edge| self.until(x, edge));
+        [0, 1].map(|n| self.corner.law.stiffness_n_per_m * (far[n] - near[n]))
+    }
 }
 
 impl<'a> DenseMesh<'a> {
@@ -126,7 +184,7 @@ impl<'a> DenseMesh<'a> {
         let between = |of: fn(&PairState) -> f64| of(here) + part * (of(next) - of(here));
         let per_pitch = self.mesh.points_per_pitch as f64;
         // A slice is read off at the nearest point.
-        let ahead = self.mesh.overlap * ((slice as f64 + 0.5) / self.mesh.slices() as f64 - 0.5);
+        let ahead = self.mesh.face.overlap() * ((slice as f64 + 0.5) / self.mesh.slices() as f64 - 0.5);
         let deviation_at = |point: f64| -> f64 {
             let position = (point - self.mesh.points_before as f64) / per_pitch;
             let of_slice = position + (ahead * per_pitch).round() / per_pitch;
@@ -141,6 +199,64 @@ impl<'a> DenseMesh<'a> {
         Some([between(|state| state.stiffness_n_per_m), deviation - between(|state| state.separation_m)])
     }
 
+    /// What the slices of a pair have outside their path at a point of its tables. The places that corners reach have the damping's lead by
+    /// the nominal speed, and where that is steady what all of a wheel's teeth deviate by alike; a flank at its end does not change.
+    fn corners_at(
+        &self,
+        pair: i64,
+        point: f64,
+        (on_points, is_steady): (bool, bool),
+        time: &TimeGrid,
+    ) -> Vec<Stretch<'a>> {
+        let mesh = self.mesh;
+        let point = if on_points { point.round() } else { point };
+        let last = (mesh.points() - 1) as f64;
+        if !(0.0..last + f64::from(u8::from(on_points))).contains(&point) {
+            return Vec::new();
+        }
+        let per_pitch = mesh.points_per_pitch as f64;
+        let points_per_sample =
+            per_pitch * mesh.turning.pitches_per_revolution / time.samples_per_pinion_revolution as f64;
+        let lead = mesh.damping_time_s / time.step_s() * points_per_sample;
+        // Straight between the points.
+        let read = |table: &[f64], shift: f64, stretch: &Stretch| {
+            let (index, part) = (point as usize, point - point.floor());
+            let [here, next] = [index, (index + 1).min(table.len() - 1)]
+                .map(|n| stretch.root((table[n] + shift).abs()).copysign(table[n] + shift));
+            let v = here + part * (next - here);
+            stretch.reach(v.abs()).copysign(v)
+        };
+        let ahead_pitches = lead / per_pitch;
+        let windows = mesh.slices() as f64;
+        let half = mesh.face.overlap().abs() / windows / 2.0;
+        let stretch = |slice: usize, end: usize, corner: &'a CornerTable| {
+            let position = (point - mesh.points_before as f64) / per_pitch;
+            let ahead = mesh.face.overlap() * ((slice as f64 + 0.5) / windows - 0.5);
+            let nearest = match end {
+                0 => (position + ahead + half).min(corner.place),
+                _ => (position + ahead - half).max(corner.place),
+            };
+            let at =
+                |wheel, points: f64| self.deviation_m(wheel, pair, position + points / per_pitch, nearest);
+            let deviation = |wheel| {
+                let change = if is_steady { (at(wheel, 1.0) - at(wheel, -1.0)) / 2.0 } else { 0.0 };
+                at(wheel, 0.0) + lead * change
+            };
+            let offset_m = WheelName::BOTH.map(deviation).iter().sum::<f64>() - corner.separation_m;
+            let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m };
+            let shift = if end == 0 { -ahead_pitches } else { ahead_pitches };
+            stretch.edges = [&corner.near, &corner.far].map(|table| read(table, shift, &stretch));
+            // The damping's lead makes the penetration deeper.
+            stretch.offset_m += stretch.root(ahead_pitches).powi(2);
+            stretch
+        };
+        let slices = mesh.classes[mesh.sequence.class(pair)].corners.iter().enumerate();
+        slices
+            .flat_map(|(slice, ends)| ends.iter().enumerate().map(move |(end, corner)| (slice, end, corner)))
+            .map(|(slice, end, corner)| stretch(slice, end, corner))
+            .collect()
+    }
+
     /// The pairs that can touch after some pitches, the newest first, with the points of their tables.
     fn pairs_after(&self, pitches: f64) -> impl Iterator<Item = (i64, f64)> {
         let (per_pitch, before) = (self.mesh.points_per_pitch as f64, self.mesh.points_before as f64);
@@ -153,7 +269,7 @@ impl<'a> DenseMesh<'a> {
     ///
     /// Where every sample is a point of the tables, the offset's derivative is a central difference of the table. Elsewhere the next
     /// sample is not known, and the derivative is that of the parabola through the last three.
-    fn load(&self, revolutions: &[f64], sample: usize, is_steady: bool, time: &TimeGrid) -> Load {
+    fn load(&self, revolutions: &[f64], sample: usize, is_steady: bool, time: &TimeGrid) -> Load<'a> {
         let mesh = self.mesh;
         let per_pitch = mesh.points_per_pitch as f64;
         let samples_per_revolution = time.samples_per_pinion_revolution as f64;
@@ -190,6 +306,9 @@ impl<'a> DenseMesh<'a> {
                 .flat_map(|pair| (0..mesh.slices()).map(move |slice| (pair, slice)))
                 .filter_map(of_slice)
                 .collect(),
+            corners: (self.pairs_after(pitches(sample)))
+                .flat_map(|(pair, point)| self.corners_at(pair, point, (on_points, is_steady), time))
+                .collect(),
             back: mesh.backlash_m.map(|backlash_m| [mesh.closed_stiffness_n_per_m, backlash_m]),
             face_centre_m: self.face_centre_m((pitches(sample) * per_pitch).round()),
         }
@@ -210,7 +329,8 @@ impl<'a> DenseMesh<'a> {
         } else {
             let sound = pairs.iter().flat_map(|(_, at)| states_of(0, *at));
             let pairs = sound.map(|state| [state.stiffness_n_per_m, -state.separation_m]).collect();
-            Load { contact: mesh.contact, pairs, back: None, face_centre_m: 0.0 }.at_rest_m(nominal_n)
+            Load { contact: mesh.contact, pairs, corners: Vec::new(), back: None, face_centre_m: 0.0 }
+                .at_rest_m(nominal_n)
         };
         let (mut load, mut moment) = (0.0, 0.0);
         let (mut least_m, mut of_nearest_m) = (f64::INFINITY, 0.0);
@@ -228,14 +348,16 @@ impl<'a> DenseMesh<'a> {
     }
 }
 
-impl Load {
+impl Load<'_> {
     /// (N/m, N) Slope and constant of the straight line on which the force lies about a deflection.
     fn straight(&self, deflection_m: f64) -> [f64; 2] {
         let touching =
             |&&[_, offset]: &&[f64; 2]| self.contact == Contact::Bilateral || deflection_m + offset > 0.0;
         let drive = self.pairs.iter().filter(touching).map(|[k, offset]| [*k, k * offset]);
         let back = self.back.filter(|[_, backlash]| deflection_m + backlash < 0.0);
-        let all = drive.chain(back.map(|[k, backlash]| [k, k * backlash]));
+        let corners = self.corners.iter().map(|corner| corner.force_and_slope(deflection_m));
+        let corners = corners.map(|[force, slope]| [slope, force - slope * deflection_m]);
+        let all = drive.chain(back.map(|[k, backlash]| [k, k * backlash])).chain(corners);
         all.fold([0.0; 2], |[slope, constant], [k, force]| [slope + k, constant + force])
     }
 
@@ -355,7 +477,7 @@ impl<'a> Dense<'a> {
         let stiffness = machine.turn_back(&machine.stiffness());
         let implicit = &steps.mass + &steps.damping * (dt / 2.0) + &stiffness * &steps.beta * (dt * dt);
         let revolutions: Vec<f64> = self.motion.iter().map(|motion| motion.revolutions).collect();
-        let loads_at = |sample: usize| -> Vec<Load> {
+        let loads_at = |sample: usize| -> Vec<Load<'a>> {
             self.meshes
                 .iter()
                 .map(|mesh| mesh.load(&revolutions, sample, self.is_steady, self.time))
@@ -410,7 +532,9 @@ impl<'a> Dense<'a> {
                 }
                 a = matrix.lu().solve(&right).unwrap();
                 let now = straight(&a);
-                if now == touching {
+                // What corners carry is found to rounding.
+                let is_near = |(now, before): (&f64, &f64)| (now - before).abs() <= 1e-13 * before.abs();
+                if now.iter().flatten().zip(touching.iter().flatten()).all(is_near) {
                     break;
                 }
                 touching = now;

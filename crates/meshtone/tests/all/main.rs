@@ -8,6 +8,7 @@ mod contact_rigs;
 #[allow(dead_code)]
 mod dense;
 mod drive;
+mod face;
 mod fault_limits;
 mod faults_anywhere;
 mod gearbox_machine;
