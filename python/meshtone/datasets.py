@@ -244,10 +244,10 @@ def verify_dataset(path: str | PathLike[str]) -> dict[str, str]:
     FileNotFoundError, NotADirectoryError
         There is no such directory, or no data set in it.
     ValueError
-        A manifest that cannot be read, or of a later version.
+        A manifest that cannot be read, or of another version.
     """
     _check_place(path, "manifest.json")
-    _, _, missing, problems = _core.verify_dataset(fspath(path), True)
+    _, missing, problems = _core.verify_dataset(fspath(path), True)
     return {**problems, **dict.fromkeys(missing, "it is missing")}
 
 
@@ -270,7 +270,7 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
     FileNotFoundError, NotADirectoryError
         There is no such directory, or no data set in it.
     ValueError
-        A file that the manifest does not name, or that has another size than it says; counts that disagree; a manifest of a later
+        A file that the manifest does not name, or that has another size than it says; counts that disagree; a manifest of another
         version; with `verify` whatever is not as it was written.
     ModuleNotFoundError
         pyarrow is not installed.
@@ -278,13 +278,6 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
     opened = _open(path, verify)
     if not opened.is_complete:
         warn([f"{opened.place} is not complete: it has {len(opened)} records; generate_dataset goes on with it"])
-    elif opened.manifest.get("format_version") == 1:
-        warn(
-            [
-                f"{opened.place} was made by an earlier version: its hashes are of what was on the disk when it was completed, not of "
-                "what was written"
-            ]
-        )
     return opened
 
 
@@ -340,8 +333,8 @@ def _check_published(place: Path, name: str, manifest: bytes, remedy: str) -> No
 def _unpack(archive: Path, name: str, folder: Path) -> None:
     """Unpack a published data set.
 
-    The manifest is compared first with what was published, and every file that it names with the size and the SHA-256 there; other files of
-    the archive are not read. The folder appears whole or not at all.
+    The manifest is compared first with what was published, and every file that it names with the size and the SHA-256 there; the digits of a
+    shard's own SHA-256, its seal, count as zeros in it. Other files of the archive are not read. The folder appears whole or not at all.
     """
     try:
         with zipfile.ZipFile(archive) as packed, tempfile.TemporaryDirectory(dir=archive.parent) as unfinished:
@@ -351,7 +344,9 @@ def _unpack(archive: Path, name: str, folder: Path) -> None:
             for file in [*stated["documents"], *stated["files"]]:
                 member = packed.getinfo(f"{name}/{file['name']}")
                 content = packed.read(member) if member.file_size == file["bytes"] else b""
-                if hashlib.sha256(content).hexdigest() != file["sha256"]:
+                seal = file.get("seal", "")
+                hashed = content.replace(seal.encode(), b"0" * len(seal)) if seal else content
+                if hashlib.sha256(hashed).hexdigest() != (seal or file["sha256"]):
                     raise ValueError(f"{archive} is not the published {name}: {file['name']} in it has other bytes; fetch it again")
                 (whole / file["name"]).parent.mkdir(parents=True, exist_ok=True)
                 (whole / file["name"]).write_bytes(content)
@@ -368,7 +363,7 @@ def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
 
     place = fspath(path)
     _check_place(place, "manifest.json")
-    _, names, _, problems = _core.verify_dataset(fspath(path), verify)
+    names, _, problems = _core.verify_dataset(fspath(path), verify)
     # A data card that is missing is no reason not to read the data.
     wrong = {name: what for name, what in problems.items() if verify or name.startswith(("data/", "manifest.json"))}
     if wrong:

@@ -181,7 +181,7 @@ fn draws(set: &Finished) -> String {
     };
     let rows = varied_keys(&set.plan.content).into_iter().map(|(rule, key)| {
         let name = column_name(key);
-        let ends = set.contents.summary.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
+        let ends = set.contents.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
         let (level, [least, largest]) = (rule.level.name(), ends.map(short));
         format!("| `{name}` | `{key}` | {level} | {least} | {largest} |\n")
     });
@@ -237,7 +237,7 @@ fn columns(set: &Finished) -> String {
     let (indicators, others): (Vec<&Column>, Vec<&Column>) =
         set.columns.iter().partition(|column| matches!(column.topic, Topic::Indicator { .. }));
     let row = |column: &Column| {
-        let range = set.contents.summary.ranges.get(&column.name);
+        let range = set.contents.ranges.get(&column.name);
         let constant = range.filter(|[least, largest]| least == largest);
         let value = constant.map_or(String::new(), |[value, _]| format!(" (always {})", short(*value)));
         let kind = if column.is_signal() { "; list of 32-bit numbers" } else { "" };
@@ -281,12 +281,12 @@ fn is_empty(set: &Finished, column: &Column) -> bool {
             column.name.starts_with("fault_")
                 && set.plan.content.classes.iter().all(|class| class.faults.is_empty())
         }
-        _ => !set.contents.summary.ranges.contains_key(&column.name),
+        _ => !set.contents.ranges.contains_key(&column.name),
     }
 }
 
 fn files(set: &Finished) -> String {
-    let bytes: u64 = set.contents.files.values().map(|file| file.digest.bytes).sum();
+    let bytes: u64 = set.contents.files.values().map(|file| file.bytes).sum();
     format!(
         "## Files\n\n{} in `data/`, {} each at most, {:.1} MB together. Every file has records of one split, in \
          random order, so that it is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n\n",

@@ -7,11 +7,10 @@ use crate::contents::{Contents, SampledRecord, SummaryColumns};
 use crate::croissant;
 use crate::digest::Digest;
 use crate::error::DatasetError;
-use crate::manifest::{self, CARD, CROISSANT, Document, MANIFEST, PREVIEW, ReadManifest};
-use crate::part_list::{self, PartList};
+use crate::manifest::{self, CARD, CROISSANT, Document, MANIFEST, PREVIEW};
 use crate::plan::{Plan, Wheel, column_part};
 use crate::shard::{self, Column, Shards, Topic, Wanted};
-use crate::store::Destination;
+use crate::store::{Destination, Files};
 use crate::words::{counted, words_of};
 
 /// Signals of an average that a preview shows, the first that is kept.
@@ -40,35 +39,23 @@ pub(crate) fn finish_if_complete(
     to: &Destination,
 ) -> Result<bool, DatasetError> {
     let files = to.files()?;
-    let manifest = manifest::read(to)?;
-    let was_complete = manifest.as_ref().is_some_and(|manifest| manifest.complete);
-    let mut contents = Contents::default();
-    contents.add_place(plan, to, &files, manifest.filter(ReadManifest::can_be_relied_on))?;
-    let is_there =
-        |shard: u64| files.contains_key(&shards.name(shard)) && contents.files.contains_key(&shard);
-    if !(0..shards.count()).all(is_there) {
-        // Another part may have completed the data set meanwhile and removed the lists.
-        return Ok(!was_complete && manifest::read(to)?.is_some_and(|manifest| manifest.complete));
+    let is_complete = (0..shards.count()).all(|shard| files.contains_key(&shards.name(shard)));
+    if is_complete {
+        finish(plan, shards, to, &files)?;
     }
-    contents.resolve_conflicts(to, shards)?;
-    let has_size = |shard: u64| files.get(&shards.name(shard)) == Some(&contents.files[&shard].digest.bytes);
-    if !(0..shards.count()).all(has_size) {
-        return Ok(false);
-    }
-    finish(plan, shards, to, contents)?;
-    Ok(true)
+    Ok(is_complete)
 }
 
-/// Writes data card, preview, Croissant metadata and manifest of a data set whose shards are all there and known.
+/// Writes data card, preview, Croissant metadata and manifest of a data set whose shards are all there. Returns what these hold.
 pub(crate) fn finish(
     plan: &Plan,
     shards: &Shards,
     to: &Destination,
-    mut contents: Contents,
-) -> Result<(), DatasetError> {
+    files: &Files,
+) -> Result<Contents, DatasetError> {
     let columns = shard::columns(plan);
     let summary_columns = SummaryColumns::new(&columns, shards);
-    contents.count_all(&summary_columns, shards, to)?;
+    let contents = Contents::scan(plan, &summary_columns, shards, to, files)?;
     if let (0, Some(first)) = (contents.rows(), contents.failures.values().next()) {
         return Err(DatasetError::NoRecord { records: plan.records(), first: first.clone() });
     }
@@ -89,9 +76,8 @@ pub(crate) fn finish(
     documents.push(Document { name: CROISSANT.to_owned(), digest: Digest::of(metadata.as_bytes()) });
     documents.sort_by(|a, b| a.name.cmp(&b.name));
     // The manifest is written last: a data set with it has everything.
-    to.write(MANIFEST, |file| manifest::write_complete(file, &set, &documents))?;
-    // The manifest has what the lists had.
-    PartList::names(&to.files_in(part_list::FOLDER)?).try_for_each(|name| to.remove(name))
+    to.write_bytes(MANIFEST, manifest::complete(&set, &documents).as_bytes())?;
+    Ok(contents)
 }
 
 /// What the preview of a data set shows: an example of each class, the keys that vary, and the indicators.
@@ -101,7 +87,7 @@ pub(crate) fn finish(
 /// neither is kept.
 fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destination) -> DatasetPreview {
     let Finished { plan, shards, contents, columns } = *set;
-    let sampled: Vec<&SampledRecord> = contents.summary.sampled.values().collect();
+    let sampled: Vec<&SampledRecord> = contents.sampled.values().collect();
     let shown_column = |column: &Column| {
         let place = summary_columns.sampled.iter().position(|sampled| *sampled == column.name)?;
         let values = sampled.iter().map(|record| record.values[place]).collect();
@@ -124,7 +110,7 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
     let signal_name = SHOWN.into_iter().find(|name| first.is_some_and(|column| column.name.ends_with(name)));
     let signal_name = signal_name.or_else(|| first.map(|column| column.name.as_str()));
     let examples = classes.iter().filter_map(|label| {
-        let &(shard, row) = contents.summary.first.get(label)?;
+        let &(shard, row) = contents.first.get(label)?;
         let file = shards.name(shard);
         let signal = shown(label).map_or_else(Vec::new, |column| signal(to, &file, row, &column.name));
         Some(Example { label: label.clone(), conditions: conditions(plan, to, &file, row), signal })
@@ -132,7 +118,7 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
     let place = |names: &[String], name: &str| names.iter().position(|other| other == name).unwrap_or(0);
     let splits: Vec<String> = plan.content.splits.names().into_iter().map(str::to_owned).collect();
     let varies = |column: &&Column| {
-        let range = contents.summary.ranges.get(&column.name);
+        let range = contents.ranges.get(&column.name);
         column.is_drawn() && range.is_some_and(|[least, largest]| least < largest)
     };
     let indicators = columns.iter().filter(|column| column.is_previewed_indicator());

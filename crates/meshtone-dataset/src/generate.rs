@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, Seek, SeekFrom};
+use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
@@ -12,16 +12,15 @@ use meshtone::batch::{Control, KeepOf, simulate_many};
 use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
 use rayon::prelude::*;
 
-use crate::contents::{Contents, SummaryColumns, WRONG_BYTES, WarningCounts, add_warnings};
+use crate::contents::{OTHER_SHARD, WRONG_BYTES, WarningCounts, add_warnings, warnings};
 use crate::digest::Hashing;
 use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::finish;
-use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
-use crate::part_list::Listing;
+use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
 use crate::plan::{Plan, with_faults};
 use crate::record::{KeepRecords, Record, Role, simulated_scenario};
-use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards};
+use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards, WARNINGS, Wanted};
 use crate::store::Destination;
 
 /// Largest number of records that wait to be written.
@@ -104,7 +103,7 @@ impl Generated {
 /// * `part` - the part to generate
 /// * `control` - progress and cancellation
 ///
-/// A file that is there is kept if it has the SHA-256 that was computed while it was written; otherwise it is made again. When all
+/// A shard that is there is kept if it has the SHA-256 in its footer, which was computed while it was written; otherwise it is made again. When all
 /// shards are there, the data card, the preview and the complete manifest are written.
 ///
 /// # Errors
@@ -174,7 +173,7 @@ pub fn generate(
     let _claimed = to.claim(&format!("part-{number}-{of}"), &format!("is making {making} in"))?;
     to.remove_leftovers();
     let PartContents { missing, mut generated, .. } = there.map_or_else(look, Ok)?;
-    let run = Run { plan, sampler: &sampler, shards: &shards, to, part, control };
+    let run = Run { plan, sampler: &sampler, shards: &shards, to, control };
     run.generate(&missing, &mut generated)?;
     generated.complete = finish::finish_if_complete(plan, &shards, to)?;
     Ok(generated)
@@ -191,7 +190,7 @@ struct PartContents {
 }
 
 impl PartContents {
-    /// Reads all files of a part that are there, and compares them with what the manifest and the lists say about them.
+    /// Reads all files of a part that are there.
     ///
     /// Shards that are as they were written are kept; all others are missing, and those that were damaged are listed with the reason.
     fn look(plan: &Plan, shards: &Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
@@ -208,27 +207,39 @@ impl PartContents {
             let remade = |file: &str| Remade { file: file.to_owned(), reason: WRONG_BYTES.to_owned() };
             generated.remade.extend(wrong.map(remade));
         }
-        let has_documents =
+        let mut has_documents =
             generated.remade.is_empty() && wanted.into_iter().all(|name| files.contains_key(name));
-        let mut contents = Contents::default();
-        contents.add_place(plan, to, &files, manifest.filter(ReadManifest::can_be_relied_on))?;
         let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
-        let objections = own.map(|shard| {
+        let found = own.map(|shard| {
             let name = shards.name(shard);
-            let size = files.get(&name);
-            (shard, size.map(|&size| contents.objection(shard, size, || to.digest(&name))))
+            let read = files.contains_key(&name).then(|| to.proven_shard(&name, Wanted::Columns(&[])));
+            let wanted = shards.metadata(plan.hash(), shard);
+            let is_it = |read: &ShardMetadata| read.is_of(&wanted);
+            (
+                shard,
+                read.map(|read| {
+                    read.and_then(
+                        |read| if is_it(&read.metadata) { Ok(read) } else { Err(OTHER_SHARD.to_owned()) },
+                    )
+                }),
+            )
         });
         let mut missing = Vec::new();
-        for (shard, objection) in objections.collect::<Vec<_>>() {
-            if let Some(None) = objection {
-                generated.kept_shards += 1;
-                let failures = shards.records(shard).filter_map(|record| contents.failures.get(&record));
-                generated.earlier_failures.extend(failures.cloned());
-                continue;
+        for (shard, found) in found.collect::<Vec<_>>() {
+            match found {
+                Some(Ok(read)) => {
+                    generated.kept_shards += 1;
+                    generated.earlier_failures.extend(read.metadata.failures);
+                    // The manifest may be that of shards which another processor has made.
+                    let listed = manifest.as_ref().and_then(|manifest| manifest.files.get(shard as usize));
+                    has_documents &= listed.is_some_and(|listed| listed.shard.seal == read.seal);
+                }
+                Some(Err(reason)) => {
+                    missing.push(shard);
+                    generated.remade.push(Remade { file: shards.name(shard), reason });
+                }
+                None => missing.push(shard),
             }
-            missing.push(shard);
-            let remade = objection.flatten().map(|reason| Remade { file: shards.name(shard), reason });
-            generated.remade.extend(remade);
         }
         Ok(Self { missing, has_documents, generated })
     }
@@ -240,7 +251,6 @@ struct Run<'a> {
     sampler: &'a Sampler<'a>,
     shards: &'a Shards<'a>,
     to: &'a Destination,
-    part: Part,
     control: &'a GenerateControl<'a>,
 }
 
@@ -359,8 +369,6 @@ impl Run<'_> {
         stop: &AtomicBool,
     ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
         let columns = shard::columns(self.plan);
-        let summary_columns = SummaryColumns::new(&columns, self.shards);
-        let mut listing = Listing::new(self.to, self.plan.hash().to_owned(), self.part);
         let mut done = 0;
         let mut next = || {
             if self.control.cancelled.load(Ordering::Relaxed) {
@@ -376,7 +384,7 @@ impl Run<'_> {
         };
         let (mut failures, mut warnings) = (Vec::new(), WarningCounts::new());
         for &shard in missing {
-            let written = self.write_shard(shard, &columns, &summary_columns, &mut listing, &mut next);
+            let written = self.write_shard(shard, &columns, &mut next);
             let (failed, doubtful) = written.inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
             failures.extend(failed);
             add_warnings(&mut warnings, doubtful);
@@ -384,36 +392,28 @@ impl Run<'_> {
         Ok((failures, warnings))
     }
 
-    /// Writes and lists a shard. Returns its records that failed, and how many have which warning.
+    /// Writes a shard. Returns its records that failed, and how many have which warning.
     fn write_shard(
         &self,
         shard: u64,
         columns: &[Column],
-        summary_columns: &SummaryColumns<'_>,
-        listing: &mut Listing<'_>,
         next: impl FnMut() -> Option<Item>,
     ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
-        let records = self.shards.len(shard);
-        let metadata = ShardMetadata { plan: self.plan.hash().to_owned(), records, failures: Vec::new() };
-        let content = &self.plan.content;
+        let metadata = self.shards.metadata(self.plan.hash(), shard);
         let written = self.to.write(&self.shards.name(shard), |file: &mut File| {
             let mut hashing = Hashing::new(&mut *file);
-            shard::write(&mut hashing, content, columns, metadata, next)?;
+            let metadata = shard::write(&mut hashing, &self.plan.content, columns, metadata, next)?;
             let digest = hashing.digest();
-            let read = shard::read(file.try_clone()?, summary_columns.wanted())?;
-            let (contents, summary) = summary_columns.summarize(shard, read, digest);
-            // Reading has moved the position at which the file would be written on.
-            file.seek(SeekFrom::End(0))?;
-            let doubts = (contents.failures.clone(), contents.warnings.clone());
-            // The shard is listed before its file gets its name, so that no file is there that is not listed.
-            Ok(listing.add(shard, contents, summary).map(|()| doubts))
+            let read = shard::read(file.try_clone()?, Wanted::Columns(&[WARNINGS]))?;
+            shard::seal(file, digest.sha256)?;
+            Ok((metadata.failures, warnings(&read)))
         });
         written.map_err(|error| match error {
             DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {
                 DatasetError::Stopped
             }
             error => error,
-        })?
+        })
     }
 }
 

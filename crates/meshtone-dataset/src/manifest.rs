@@ -1,7 +1,5 @@
 //! The manifest: it says what a data set is and whether it is complete.
 
-use std::io::{self, BufWriter, Write};
-
 use meshtone_io::scenario_file::ReadScenarioError;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -11,9 +9,7 @@ use crate::contents::{Counts, ShardFile};
 use crate::digest::Digest;
 use crate::error::DatasetError;
 use crate::finish::Finished;
-use crate::part_list;
 use crate::plan::{Plan, PlanFile};
-use crate::sealed;
 use crate::shard::{FOLDER, FailedRecord, Shards};
 use crate::store::{Destination, Files};
 
@@ -21,20 +17,15 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 pub(crate) const CARD: &str = "README.md";
 pub(crate) const CROISSANT: &str = "croissant.json";
 pub(crate) const PREVIEW: [&str; 2] = ["preview.svg", "preview.png"];
-/// Since format 2, a shard's SHA-256 is computed from the bytes that were to be written; in format 1 it was computed from the disk.
-/// Since format 3, records have the column [`crate::shard::WARNINGS`] and the one of the time in which the teeth do not push. Since format
-/// 4, a shard has the records of one split only; before, it had all records of a range of numbers.
-pub(crate) const FORMAT_VERSION: u64 = 4;
+/// In format 5, a shard has its own seal in its footer. Earlier formats were those of versions before the first release.
+pub(crate) const FORMAT_VERSION: u64 = 5;
 
 /// Begins a data set or goes on with one.
 pub(crate) fn begin(plan: &Plan, to: &Destination) -> Result<(), DatasetError> {
     to.check_writable()?;
     plan.files.iter().try_for_each(|file| to.write_unless_there(file.name, file.text.as_bytes()))?;
-    let mut manifest = Vec::new();
-    let written = sealed::write(&mut manifest, &head(plan, false), |_| Ok(()));
-    written.map_err(DatasetError::write(MANIFEST))?;
     // The manifest is written last: it marks a data set that was begun.
-    to.write_unless_there(MANIFEST, &manifest)
+    to.write_unless_there(MANIFEST, sealed(&head(plan, false), "").as_bytes())
 }
 
 /// Checks that the data set of a plan may be written to a place. Returns whether all of it is there already. Nothing is written.
@@ -83,7 +74,6 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
         let help = "go on with that version, or name another directory with -o";
         return Err(DatasetError::refused(problem, help));
     }
-    manifest.check_format(to)?;
     if manifest.plan != plan.hash() {
         let problem = format!(
             "the data set in {to} was begun with another plan, or by a Meshtone whose simulations gave other numbers"
@@ -98,14 +88,12 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
 /// Returns whether a name is that of a file of a data set.
 pub(crate) fn is_of_a_data_set(name: &str) -> bool {
     let known = [MANIFEST, CARD, CROISSANT].into_iter().chain(PREVIEW).chain(PlanFile::NAMES);
-    known.into_iter().any(|known| known == name) || Shards::is_name(name) || part_list::is_list(name)
+    known.into_iter().any(|known| known == name) || Shards::is_name(name)
 }
 
 /// The content of a manifest.
 #[derive(Debug, Deserialize)]
 pub(crate) struct ReadManifest {
-    #[serde(rename = "format_version")]
-    pub format: u64,
     #[serde(rename = "plan_sha256")]
     pub plan: String,
     #[serde(rename = "meshtone_version", default = "unknown")]
@@ -133,12 +121,6 @@ fn unknown() -> String {
 }
 
 impl ReadManifest {
-    /// Returns whether what the manifest says about shards can be relied on. It can if the manifest is as it was written, or if only
-    /// the hashes of the shards are taken from it: nothing else proves which records failed and why.
-    pub fn can_be_relied_on(&self) -> bool {
-        self.is_whole || self.failures.is_empty()
-    }
-
     /// Names of those documents that are there but are not as they were written.
     ///
     /// # Arguments
@@ -151,18 +133,6 @@ impl ReadManifest {
             Err(error) => Some(Err(error)),
         });
         changed.collect()
-    }
-
-    /// Refuses to go on with a data set of an earlier format.
-    fn check_format(&self, place: &Destination) -> Result<(), DatasetError> {
-        if self.format == FORMAT_VERSION {
-            return Ok(());
-        }
-        let problem = format!(
-            "the data set in {place} has the format {}, whose files or columns are others than those of format {FORMAT_VERSION}",
-            self.format
-        );
-        Err(DatasetError::refused(problem, "name another directory with -o, and make all of it there"))
     }
 }
 
@@ -178,7 +148,7 @@ impl<'de> Deserialize<'de> for NamedShard {
         let entry = Value::deserialize(deserializer)?;
         let read = || Some((entry["name"].as_str()?.to_owned(), ShardFile::deserialize(&entry).ok()?));
         let (name, shard) =
-            read().ok_or_else(|| D::Error::custom("a file lacks its name, bytes, sha256 or rows"))?;
+            read().ok_or_else(|| D::Error::custom("a file lacks its name, bytes, seal or rows"))?;
         Ok(Self { name, shard })
     }
 }
@@ -227,10 +197,10 @@ fn parse(text: &str, place: &Destination) -> Result<ReadManifest, DatasetError> 
     };
     let any: AnyFormat = serde_json::from_str(text).map_err(|error| damaged(error.to_string()))?;
     match any.format_version {
-        Some(1..=FORMAT_VERSION) => {}
+        Some(FORMAT_VERSION) => {}
         Some(other) => {
             let problem = format!(
-                "{place}/{MANIFEST} has the format {other}; this version of Meshtone knows those up to {FORMAT_VERSION}"
+                "{place}/{MANIFEST} has the format {other}; this version of Meshtone knows format {FORMAT_VERSION}"
             );
             let help = format!("use version {} of Meshtone for it", any.meshtone_version);
             return Err(DatasetError::refused(problem, help));
@@ -238,7 +208,7 @@ fn parse(text: &str, place: &Destination) -> Result<ReadManifest, DatasetError> 
         None => return Err(damaged("it has no format_version".to_owned())),
     }
     let manifest: ReadManifest = serde_json::from_str(text).map_err(|error| damaged(error.to_string()))?;
-    Ok(ReadManifest { is_whole: manifest.format == 1 || sealed::is_whole(text), ..manifest })
+    Ok(ReadManifest { is_whole: is_whole(text), ..manifest })
 }
 
 /// The entries that manifests of complete and of incomplete data sets have in common.
@@ -256,12 +226,11 @@ fn head(plan: &Plan, complete: bool) -> Value {
     })
 }
 
-/// Writes the manifest of a complete data set.
+/// The manifest of a complete data set.
 ///
 /// # Arguments
-/// * `to` - where it is written to; it needs no buffer
 /// * `documents` - all files but the shards and the manifest
-pub(crate) fn write_complete(to: impl Write, set: &Finished, documents: &[Document]) -> io::Result<()> {
+pub(crate) fn complete(set: &Finished, documents: &[Document]) -> String {
     let Finished { plan, shards, contents, .. } = *set;
     let mut manifest = head(plan, true);
     manifest["records_per_shard"] = json!(shards.records_per_shard);
@@ -271,20 +240,31 @@ pub(crate) fn write_complete(to: impl Write, set: &Finished, documents: &[Docume
     manifest["warnings"] = json!(contents.warnings);
     manifest["failures"] = contents.failures.values().map(|failed| json!(failed)).collect();
     manifest["documents"] = json!(documents);
-    sealed::write(BufWriter::new(to), &manifest, |to| {
-        write!(to, ",\n  \"files\": [")?;
-        for (&shard, file) in &contents.files {
-            let Digest { bytes, sha256 } = file.digest;
-            let comma = if shard == 0 { "" } else { "," };
-            let name = shards.name(shard);
-            write!(
-                to,
-                "{comma}\n    {{\"name\": \"{name}\", \"bytes\": {bytes}, \"sha256\": \"{sha256}\", \"rows\": {}}}",
-                file.rows
-            )?;
-        }
-        write!(to, "\n  ]")
-    })
+    // A line a shard: there may be a million of them.
+    let line = |(&shard, file): (&u64, &ShardFile)| {
+        let (name, ShardFile { bytes, seal, rows }) = (shards.name(shard), file);
+        format!("    {{\"name\": \"{name}\", \"bytes\": {bytes}, \"seal\": \"{seal}\", \"rows\": {rows}}}")
+    };
+    let files: Vec<String> = contents.files.iter().map(line).collect();
+    sealed(&manifest, &format!(",\n  \"files\": [\n{}\n  ]", files.join(",\n")))
+}
+
+/// The text of an object with further entries, of which the last one is the SHA-256 of the text before it.
+fn sealed(head: &Value, rest: &str) -> String {
+    let text = format!("{head:#}");
+    let text = text.strip_suffix("\n}").unwrap_or(&text).to_owned() + rest;
+    let seal = seal(&text);
+    text + &seal
+}
+
+fn seal(before: &str) -> String {
+    format!(",\n  \"sha256\": \"{}\"\n}}\n", Digest::of(before.as_bytes()).sha256)
+}
+
+/// Returns whether a manifest is as it was written.
+fn is_whole(text: &str) -> bool {
+    let place = text.len().checked_sub(seal("").len()).filter(|&place| text.is_char_boundary(place));
+    place.is_some_and(|place| text[place..] == seal(&text[..place]))
 }
 
 /// The error of a plan that was found after the plan had been read.

@@ -1,20 +1,19 @@
 //! Merging the parts of a data set that were made separately.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use meshtone_io::own_file::Claim;
 use meshtone_io::scenario_file::ReadScenarioError;
 
-use crate::contents::{Contents, ShardFile};
 use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::finish;
 use crate::generate::Generated;
-use crate::manifest::{self, MANIFEST, ReadManifest};
+use crate::manifest::{self, MANIFEST};
 use crate::plan::{Plan, PlanFile};
-use crate::shard::Shards;
-use crate::store::{Destination, Files};
+use crate::shard::{Shards, Wanted};
+use crate::store::Destination;
 use crate::verify::Check;
 
 /// Merges the parts of a data set.
@@ -28,8 +27,8 @@ use crate::verify::Check;
 /// * `to` - the place of the whole data set, which may be that of a part
 /// * `check` - how the shards that are already in `to` are checked
 ///
-/// A shard that is copied is compared with the SHA-256 that was computed while it was made. Everything else is taken from the manifests
-/// and lists of the parts. Of shards that are already in `to`, only the sizes are checked, unless `check` asks for their bytes.
+/// A shard that is copied is compared with the SHA-256 in its footer, which was computed while it was made. Of shards that are already in
+/// `to`, only the footers are read, unless `check` asks for their bytes.
 ///
 /// # Errors
 /// A place has no data set; the parts have different plans or versions; no part has an undamaged copy of some shard; another program is
@@ -43,62 +42,50 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     let shards = Shards::new(&plan, &sampler);
     // The place is claimed before it is examined, so that it has to be examined only once.
     let claimed = if to.text(MANIFEST)?.is_some() { Some(claim(to)?) } else { None };
-    let mut contents = Contents::default();
     let mut places = Vec::with_capacity(parts.len());
     for part in parts {
-        let manifest = manifest::read_begun(part)?;
-        let mut place = MergeSource::look(part, Some(manifest), &plan, &shards, &mut contents)?;
-        if !is_same(part, to) {
-            // The names are not needed any more; a million of them take a hundred megabytes.
-            place.files.clear();
-        }
-        places.push(place);
+        manifest::read_begun(part)?;
+        places.push(MergeSource::look(part, &plan, &shards)?);
     }
-    let nowhere = |shard: &u64| !places.iter().any(|place| place.shards.contains_key(shard));
+    let nowhere = |shard: &u64| !places.iter().any(|place| place.shards.contains(shard));
     let missing: Vec<u64> = (0..shards.count()).filter(nowhere).collect();
     if let Some(&shard) = missing.first() {
-        return Err(no_part_has(shard, missing.len(), &shards, &places));
+        let (all, name) = (shards.count(), shards.name(shard));
+        let problem =
+            format!("{} of {all} shards are in none of the parts; the first is {name}", missing.len());
+        let help = "make them: run `meshtone dataset PLAN.toml -o DIR --part I/N` again";
+        return Err(DatasetError::refused(problem, help));
     }
-    let mut merged = Generated {
-        earlier_failures: contents.failures.values().cloned().collect(),
-        complete: true,
-        ..Generated::default()
-    };
-    let target = match places.iter().find(|place| is_same(place.at, to)) {
-        Some(part) => part,
-        None => &MergeSource::look(to, manifest::read(to)?, &plan, &shards, &mut Contents::default())?,
-    };
-    let was_complete = target.is_complete;
-    if !was_complete {
+    let target = MergeSource::look(to, &plan, &shards)?;
+    if !target.is_complete {
         manifest::begin(&plan, to)?;
     }
     let _claimed = claimed.map_or_else(|| claim(to), Ok)?;
     to.remove_leftovers();
+    let mut merged = Generated { complete: true, ..Generated::default() };
     for shard in 0..shards.count() {
         let name = shards.name(shard);
-        let of_parts: Vec<Offer> =
-            places.iter().filter_map(|place| Some((place.at, *place.shards.get(&shard)?))).collect();
-        let file = match target.has(shard, &name, &of_parts, check)? {
-            Some(file) => {
-                merged.kept_shards += 1;
-                file
-            }
-            None => {
-                merged.written_shards += 1;
-                merged.written_records += shards.len(shard);
-                take_over(&name, &of_parts, to)?
-            }
-        };
-        contents.choose(shard, file);
+        let wanted = Wanted::Columns(&[]);
+        let read = target.shards.contains(&shard).then(|| match check {
+            Check::Sizes => to.read_shard(&name, wanted).ok(),
+            Check::Bytes => to.proven_shard(&name, wanted).ok(),
+        });
+        let metadata = shards.metadata(plan.hash(), shard);
+        if read.flatten().is_some_and(|read| read.metadata.is_of(&metadata)) {
+            merged.kept_shards += 1;
+            continue;
+        }
+        take_over(shard, &name, &places, to)?;
+        merged.written_shards += 1;
+        merged.written_records += shards.len(shard);
     }
-    if !was_complete || merged.written_shards > 0 {
-        finish::finish(&plan, &shards, to, contents)?;
-    }
+    merged.earlier_failures = if target.is_complete && merged.written_shards == 0 {
+        manifest::read_begun(to)?.failures
+    } else {
+        finish::finish(&plan, &shards, to, &to.files()?)?.failures.into_values().collect()
+    };
     Ok(merged)
 }
-
-/// A place that lists a shard, and the file that it lists.
-type Offer<'p> = (&'p Destination, ShardFile);
 
 /// Claims the place of the whole data set for this program alone.
 fn claim(to: &Destination) -> Result<Option<Claim>, DatasetError> {
@@ -110,83 +97,36 @@ fn is_same(place: &Destination, other: &Destination) -> bool {
 }
 
 /// Copies a shard from the first part that has an undamaged copy.
-fn take_over(name: &str, of_parts: &[Offer], to: &Destination) -> Result<ShardFile, DatasetError> {
-    for (at, file) in of_parts {
+fn take_over(shard: u64, name: &str, places: &[MergeSource], to: &Destination) -> Result<(), DatasetError> {
+    let having: Vec<&MergeSource> = places.iter().filter(|place| place.shards.contains(&shard)).collect();
+    for place in &having {
         // The copy in `to` has already been found missing or damaged.
-        if !is_same(at, to) && to.take_over(at, name, &file.digest)? {
-            return Ok(*file);
+        if !is_same(place.at, to) && to.take_over(place.at, name)? {
+            return Ok(());
         }
     }
-    let places: Vec<String> = of_parts.iter().map(|(at, _)| at.to_string()).collect();
-    let places = places.join(" and in ");
+    let places = having.iter().map(|place| place.at.to_string()).collect::<Vec<_>>().join(" and in ");
     let problem = format!("{name} is damaged in {places}: its SHA-256 is not that of what was written");
     let help = "make it again: run `meshtone dataset PLAN.toml -o DIR --part I/N` there";
     Err(DatasetError::refused(problem, help))
 }
 
-/// The place of a part, or of the whole data set, and the files that are there.
+/// The place of a part, or of the whole data set, and the shards that are there.
 struct MergeSource<'p> {
     at: &'p Destination,
     /// Whether the whole data set is there.
     is_complete: bool,
-    /// All files, with their sizes.
-    files: Files,
-    /// Shards that were made there and have the sizes that are listed.
-    shards: BTreeMap<u64, ShardFile>,
-    /// Other shards that are there.
-    doubtful: Vec<u64>,
+    /// Numbers of the shards.
+    shards: BTreeSet<u64>,
 }
 
 impl<'p> MergeSource<'p> {
     /// Examines a place. This is done only once for each place, since listing very many names takes seconds.
-    ///
-    /// # Arguments
-    /// * `contents` - receives what the place's manifest and lists say
-    fn look(
-        at: &'p Destination,
-        manifest: Option<ReadManifest>,
-        plan: &Plan,
-        shards: &Shards,
-        contents: &mut Contents,
-    ) -> Result<Self, DatasetError> {
+    fn look(at: &'p Destination, plan: &Plan, shards: &Shards) -> Result<Self, DatasetError> {
         let files = at.files()?;
-        let is_complete = manifest::check_place(plan, shards, at, &files, manifest.as_ref())?;
-        let mut listed = contents.add_place(plan, at, &files, manifest)?;
-        let there: BTreeMap<u64, u64> =
-            files.iter().filter_map(|(name, &bytes)| Some((shards.number(name)?, bytes))).collect();
-        listed.retain(|shard, file| there.get(shard) == Some(&file.digest.bytes));
-        let doubtful = there.into_keys().filter(|shard| !listed.contains_key(shard)).collect();
-        Ok(Self { at, is_complete, files, shards: listed, doubtful })
+        let is_complete = manifest::check_place(plan, shards, at, &files, manifest::read(at)?.as_ref())?;
+        Ok(Self { at, is_complete, shards: files.keys().filter_map(|name| shards.number(name)).collect() })
     }
-
-    /// The shard if it is there already and undamaged. A shard that is not listed there may come from a merge that was stopped.
-    fn has(
-        &self,
-        shard: u64,
-        name: &str,
-        of_parts: &[Offer],
-        check: Check,
-    ) -> Result<Option<ShardFile>, DatasetError> {
-        let own = self.shards.get(&shard).copied();
-        if own.is_some() && check == Check::Sizes {
-            return Ok(own);
-        }
-        if !self.files.contains_key(name) {
-            return Ok(None);
-        }
-        let digest = self.at.digest(name)?;
-        let mut known = own.into_iter().chain(of_parts.iter().map(|(_, file)| *file));
-        Ok(known.find(|file| file.digest == digest))
-    }
-}
-
-fn no_part_has(shard: u64, count: usize, shards: &Shards, places: &[MergeSource<'_>]) -> DatasetError {
-    let (all, name) = (shards.count(), shards.name(shard));
-    let mut problem = format!("{count} of {all} shards are in none of the parts; the first is {name}");
-    if let Some(place) = places.iter().find(|place| place.doubtful.contains(&shard)) {
-        problem += &format!(" (that of {} is of another size than listed, or not listed)", place.at);
-    }
-    DatasetError::refused(problem, "make them: run `meshtone dataset PLAN.toml -o DIR --part I/N` again")
 }
 
 /// Reads the plan that a data set was made by from the copies beside its data.
@@ -227,14 +167,9 @@ fn with_path(error: ReadScenarioError, named: impl Fn(&Path) -> PathBuf) -> Read
 mod tests {
     #![allow(clippy::unwrap_used)]
 
-    use std::fs::{self, File};
+    use std::fs;
 
     use super::*;
-    use crate::contents::{Counts, ShardContents, WarningCounts};
-    use crate::digest::Digest;
-    use crate::generate::Part;
-    use crate::part_list::Listing;
-    use crate::verify::verify;
 
     const PLAN: &str = r#"
         records = 100
@@ -255,13 +190,6 @@ mod tests {
         records_per_shard = 100
     "#;
 
-    /// (MB) The most memory that this program has had.
-    fn peak_mb() -> f64 {
-        let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-        let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix(" kB"));
-        peak.map_or(f64::NAN, |kilobytes| kilobytes.trim().parse::<f64>().unwrap() / 1e3)
-    }
-
     #[test]
     fn an_error_names_the_parts_own_files() {
         let directory = tempfile::tempdir().unwrap();
@@ -280,72 +208,5 @@ mod tests {
             assert!(error.contains("wrong"), "{error}");
             fs::write(&path, text).unwrap();
         }
-    }
-
-    /// (s) Processor time that this program has taken, where the system says so.
-    fn processor_s() -> f64 {
-        const TICKS_PER_S: f64 = 100.0;
-        let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
-        let ticks = stat.rsplit(") ").next().unwrap_or_default().split(' ').skip(11).take(2);
-        ticks.filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / TICKS_PER_S
-    }
-
-    /// Parts of very many shards that were made in one place. Only their names, sizes and lists are there: merging reads no data.
-    ///
-    /// `MESHTONE_SHARDS=1000000 cargo test --release -p meshtone-dataset very_many -- --nocapture` prints time and memory.
-    #[test]
-    fn very_many_shards_are_merged_without_being_read() {
-        let shards = std::env::var("MESHTONE_SHARDS").map_or(3_000, |shards| shards.parse().unwrap());
-        let text = PLAN.replacen("records = 100", &format!("records = {}", 100 * shards), 1);
-        let plan = Plan::read_text(text, std::path::Path::new("plan.toml")).unwrap();
-        let sampler = Sampler::new(&plan.content).unwrap();
-        let start = processor_s();
-        let all = Shards::new(&plan, &sampler);
-        println!(
-            "{} records divided into shards in {:.1} s of the processor",
-            plan.records(),
-            processor_s() - start
-        );
-        let shards = all.count();
-        let directory = tempfile::tempdir().unwrap();
-        let to = Destination::directory(directory.path());
-        manifest::begin(&plan, &to).unwrap();
-        let start = processor_s();
-        for number in 1..=64 {
-            let part = Part { number, of: 64 };
-            let mut listing = Listing::new(&to, plan.hash().to_owned(), part);
-            let made = (0..shards).filter(|&shard| part.has(shard)).map(|shard| {
-                let name = all.name(shard);
-                let digest = Digest { bytes: 1000 + shard % 7, ..Digest::of(name.as_bytes()) };
-                let path = directory.path().join(&name);
-                fs::create_dir_all(path.parent().unwrap()).unwrap();
-                File::create(path).unwrap().set_len(digest.bytes).unwrap();
-                let counts =
-                    Counts::from([("train".to_owned(), [("healthy".to_owned(), all.len(shard))].into())]);
-                let file = ShardFile { digest, rows: all.len(shard) };
-                let (warnings, failures) = (WarningCounts::new(), Vec::new());
-                (shard, ShardContents { file, counts, warnings, failures })
-            });
-            listing.add_all(made).unwrap();
-        }
-        println!("{shards} shards listed in {:.1} s of the processor", processor_s() - start);
-        let start = processor_s();
-        let merged = merge(std::slice::from_ref(&to), &to, Check::Sizes).unwrap();
-        assert_eq!((merged.kept_shards, merged.written_shards, merged.complete), (shards, 0, true));
-        println!("merged in {:.1} s of the processor, {:.0} MB at most", processor_s() - start, peak_mb());
-        let start = processor_s();
-        let found = verify(&to, Check::Sizes).unwrap();
-        assert!(found.is_good() && found.complete && found.rows == plan.records(), "{:?}", found.problems);
-        println!(
-            "names, sizes and counts in {:.1} s of the processor, {:.0} MB at most",
-            processor_s() - start,
-            peak_mb()
-        );
-        // A name says its shard's number, and no folder has more than a thousand.
-        assert!((0..shards).all(|shard| all.number(&all.name(shard)) == Some(shard)));
-        let folders =
-            fs::read_dir(directory.path().join("data")).unwrap().map(|folder| folder.unwrap().path());
-        assert!(folders.into_iter().all(|folder| fs::read_dir(folder).unwrap().count() <= 1000));
-        assert!(!directory.path().join("parts").exists());
     }
 }

@@ -1,20 +1,18 @@
 //! Verifying that the files of a data set are as they were written.
 
 use std::collections::BTreeMap;
-use std::fmt::Display;
 
 use meshtone_io::table::FoundColumn;
 use rayon::prelude::*;
 
-use crate::contents::{Counts, SHARDS_AT_A_TIME, ShardFile, WRONG_BYTES, add_counts, count, wrong_size};
+use crate::contents::{Counts, SHARDS_AT_A_TIME, ShardFile, WRONG_BYTES, add_counts, count};
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, Document, MANIFEST, PREVIEW, ReadManifest};
-use crate::part_list::PartList;
 use crate::shard::{FOLDER, Shards, Wanted};
 use crate::store::{Destination, Files};
 use crate::words::counted;
 
-/// The shards that a manifest or the lists of parts name, by the names of their files.
+/// Shards by the names of their files.
 type ListedFiles = BTreeMap<String, ShardFile>;
 
 /// The thoroughness with which files are checked.
@@ -31,8 +29,6 @@ pub enum Check {
 pub struct Verified {
     /// Whether the manifest calls the data set complete.
     pub complete: bool,
-    /// Format of the manifest. In format 1, the hashes were computed from the finished files on the disk, not while they were written.
-    pub format: u64,
     /// Names of the shards that are listed and there.
     pub shards: Vec<String>,
     /// Number of records in the shards that are there.
@@ -52,12 +48,11 @@ pub struct Verified {
 /// * `check` - how thoroughly files are checked
 ///
 /// # Errors
-/// The place has no data set, or its manifest cannot be read or has a later format.
+/// The place has no data set, or its manifest cannot be read or has another format.
 pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetError> {
     let manifest = manifest::read_begun(place)?;
     let files = place.files()?;
-    let mut verified =
-        Verified { complete: manifest.complete, format: manifest.format, ..Verified::default() };
+    let mut verified = Verified { complete: manifest.complete, ..Verified::default() };
     if !manifest.is_whole {
         verified.object(MANIFEST, "it is not as it was written: its own SHA-256 differs");
     }
@@ -65,7 +60,7 @@ pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetErro
         verified.check_counts(&manifest);
         manifest.files.iter().map(|file| (file.name.clone(), file.shard)).collect()
     } else {
-        verified.read_lists(place, &files, &manifest.plan)?
+        verified.read_footers(place, &files)
     };
     verified.check_names(&files, &listed);
     let shards = verified.check_sizes(&files, &listed, &manifest);
@@ -104,25 +99,18 @@ impl Verified {
         }
     }
 
-    /// The shards that the lists of parts name, as far as they are there. Missing ones are not found: the lists do not say how many
-    /// shards the data set will have, and so how many digits their names have.
-    fn read_lists(
-        &mut self,
-        place: &Destination,
-        files: &Files,
-        plan: &str,
-    ) -> Result<ListedFiles, DatasetError> {
-        let mut shards = BTreeMap::new();
-        for name in PartList::names(files) {
-            match PartList::read(place, name, plan)? {
-                Some(list) => {
-                    shards.extend(list.shards.into_iter().map(|(shard, contents)| (shard, contents.file)));
+    /// The shards that are there of a data set that is not complete. Missing ones are not found: it is not said how many it will have.
+    fn read_footers(&mut self, place: &Destination, files: &Files) -> ListedFiles {
+        let mut listed = BTreeMap::new();
+        for (name, &bytes) in files.iter().filter(|(name, _)| Shards::is_name(name)) {
+            match place.read_shard(name, Wanted::Columns(&[])) {
+                Ok(read) => {
+                    listed.insert(name.clone(), ShardFile { bytes, seal: read.seal, rows: read.rows });
                 }
-                None => self.object(name, "it is not as it was written, or of another plan"),
+                Err(error) => self.object(name, format!("it cannot be read: {error}")),
             }
         }
-        let listed = |name: &String| Some((name.clone(), *shards.get(&Shards::number_of(name)?)?));
-        Ok(files.keys().filter_map(listed).collect())
+        listed
     }
 
     /// Checks that every shard is listed, and that a complete data set has its documents.
@@ -130,7 +118,7 @@ impl Verified {
         // Files beside the folders may be the user's own. In the folders, programs read every file that is there.
         let in_folder = |name: &&String| name.starts_with(FOLDER) && !listed.contains_key(*name);
         for name in files.keys().filter(in_folder) {
-            self.object(name, "no manifest or list of a part names it");
+            self.object(name, "the manifest does not name it");
         }
         if self.complete {
             let absent = [CARD].into_iter().chain(PREVIEW).filter(|name| !files.contains_key(*name));
@@ -161,10 +149,10 @@ impl Verified {
             self.rows += file.rows;
             self.bytes += size;
             self.shards.push(name.clone());
-            if size == file.digest.bytes {
+            if size == file.bytes {
                 of_size.push((name, *file));
             } else {
-                self.object(name, wrong_size(size, file.digest.bytes));
+                self.object(name, wrong_size(size, file.bytes));
             }
         }
         of_size
@@ -178,13 +166,10 @@ impl Verified {
         manifest: &ReadManifest,
     ) {
         // Of a damaged shard the columns may be others.
-        let read = |(name, file): &(&String, ShardFile)| {
-            place.digest(name).ok().filter(|digest| *digest == file.digest)?;
-            place.read_shard(name, Wanted::Columns(&[])).ok()
-        };
+        let read = |(name, _): &(&String, ShardFile)| place.proven_shard(name, Wanted::Columns(&[])).ok();
         let schema = shards.iter().find_map(read).map(|read| read.schema).unwrap_or_default();
         let mut counts = Counts::new();
-        for some in shards.chunks(SHARDS_AT_A_TIME) {
+        for some in shards.chunks(SHARDS_AT_A_TIME as usize) {
             let checked = some
                 .par_iter()
                 .map(|(name, file)| (name, check_shard(place, name, file, &schema, &manifest.plan)));
@@ -209,12 +194,10 @@ fn check_shard(
     schema: &[FoundColumn],
     plan: &str,
 ) -> Result<Counts, String> {
-    let unreadable = |error: &dyn Display| format!("it cannot be read: {error}");
-    if place.digest(name).map_err(|error| unreadable(&error))? != file.digest {
+    let read = place.proven_shard(name, Wanted::Columns(&["label", "split"]))?;
+    if read.seal != file.seal {
         return Err(WRONG_BYTES.to_owned());
     }
-    let wanted = Wanted::Columns(&["label", "split"]);
-    let read = place.read_shard(name, wanted).map_err(|error| unreadable(&error))?;
     if read.rows != file.rows {
         return Err(format!("it has {} instead of {}", counted(read.rows, "record"), file.rows));
     }
@@ -225,4 +208,9 @@ fn check_shard(
         return Err("its columns are not those of the first shard".to_owned());
     }
     Ok(count(&read))
+}
+
+/// Says that a file has another size than the expected one.
+fn wrong_size(size: u64, expected: u64) -> String {
+    format!("it has {size} bytes instead of {expected}")
 }

@@ -75,15 +75,15 @@ pub fn merge_datasets(py: Python<'_>, parts: Vec<String>, to: &str, verify: bool
     py.detach(|| merge(&parts, &to, check(verify))).map(drop).map_err(dataset_error)
 }
 
-/// Format, shards that are there, shards that are missing, what is wrong by files.
-type Found = (u64, Vec<String>, Vec<String>, BTreeMap<String, String>);
+/// Shards that are there, shards that are missing, what is wrong by files.
+type Found = (Vec<String>, Vec<String>, BTreeMap<String, String>);
 
 /// Looks at names, sizes and counts of a data set, or at every byte.
 #[pyfunction]
 pub fn verify_dataset(py: Python<'_>, path: &str, bytes: bool) -> PyResult<Found> {
     let place = destination(path)?;
     let found = py.detach(|| verify(&place, check(bytes))).map_err(dataset_error)?;
-    Ok((found.format, found.shards, found.missing, found.problems))
+    Ok((found.shards, found.missing, found.problems))
 }
 
 /// The channels of a recording by their names, none of the analysed one, and the phase of a shaft.

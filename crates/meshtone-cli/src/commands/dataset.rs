@@ -219,16 +219,12 @@ impl Verify {
 
 fn report(found: &Verified, place: &Destination, sizes_only: bool) -> String {
     let what = if sizes_only { "names, sizes and counts are" } else { "every byte is" };
-    let mut text = format!(
-        "  {} in {}, {:.1} MB: {what} as written\n",
+    format!(
+        "  {} in {}, {:.1} MB: {what} as written\n\n{place}\n",
         counted(found.rows, "record"),
         counted(found.shards.len() as u64, "shard"),
         found.bytes as f64 / 1e6
-    );
-    if found.format == 1 {
-        text += "  of an earlier version (format 1): its hashes are of what was on the disk when it was completed\n";
-    }
-    text + &format!("\n{place}\n")
+    )
 }
 
 impl Scenario {

@@ -367,7 +367,7 @@ fn a_data_set_is_verified() {
     let output = workplace.command(&["dataset", "verify", "set"]).assert().code(1);
     let message = crate::support::stderr(&output);
     assert!(message.starts_with("manifest.json: it is not as it was written"), "{message}");
-    assert!(message.contains("data/notes.txt: no manifest or list of a part names it"), "{message}");
+    assert!(message.contains("data/notes.txt: the manifest does not name it"), "{message}");
 }
 
 /// A part of it is as it was written, and is not what the plan asks for. Scripts see that by the exit code.
@@ -418,8 +418,7 @@ fn nothing_unfinished_stays() {
     let workplace = workplace();
     let unfinished = || {
         let hidden = |name: &String| name.starts_with(".meshtone-");
-        let folders =
-            ["set", "set/data", "set/parts"].into_iter().filter(|folder| workplace.path(folder).exists());
+        let folders = ["set", "set/data"].into_iter().filter(|folder| workplace.path(folder).exists());
         folders.flat_map(|folder| workplace.names(folder)).filter(hidden).count()
     };
     let end = |signal: &str, part: f64| {

@@ -121,7 +121,6 @@ pub fn readers(work: &Path) -> Vec<Reader> {
         ),
         reader("summary", "summary.json", &["summary.json"], Box::new(|path| read_run(path).is_ok())),
         reader("manifest", "manifest of a data set", &["set/manifest.json"], Box::new(verified)),
-        reader("parts", "list of a part", &["part/parts/part-1-2-000000.json"], Box::new(verified)),
         reader("shard", "shard of a data set", &["set/data/train-000000.parquet"], Box::new(verified)),
         reader(
             "signal_set",
@@ -180,10 +179,8 @@ fn make_others(work: &Path) {
     let plan =
         Plan::read_text(PLAN.to_owned(), &work.join("plan.toml")).unwrap_or_else(|error| panic!("{error}"));
     let control = GenerateControl { progress: &|_, _| {}, cancelled: &AtomicBool::new(false) };
-    for (name, part) in [("set", Part::WHOLE), ("part", Part { number: 1, of: 2 })] {
-        generate(&plan, &Destination::directory(work.join(name)), part, &control)
-            .unwrap_or_else(|error| panic!("{error}"));
-    }
+    generate(&plan, &Destination::directory(work.join("set")), Part::WHOLE, &control)
+        .unwrap_or_else(|error| panic!("{error}"));
     make_signal_set(&work.join("signal_set"));
 }
 

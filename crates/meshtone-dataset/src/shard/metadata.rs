@@ -8,8 +8,12 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::reader::ChunkReader;
 use serde::{Deserialize, Serialize};
 
+use super::seal::{KEY, UNSEALED};
+use crate::digest::Hash;
+
 const PLAN: &str = "meshtone.plan_sha256";
 const VERSION: &str = "meshtone.version";
+const FIRST: &str = "meshtone.first_record";
 const RECORDS: &str = "meshtone.records";
 const FAILURES: &str = "meshtone.failures";
 
@@ -27,6 +31,8 @@ pub struct FailedRecord {
 pub struct ShardMetadata {
     /// Hash of the plan.
     pub plan: String,
+    /// Number of the first record.
+    pub first: u64,
     /// Number of the shard's records, including those that failed.
     pub records: u64,
     /// The records that failed.
@@ -38,25 +44,37 @@ impl ShardMetadata {
         let values = [
             (PLAN, self.plan.clone()),
             (VERSION, env!("CARGO_PKG_VERSION").to_owned()),
+            (FIRST, self.first.to_string()),
             (RECORDS, self.records.to_string()),
             (FAILURES, serde_json::to_string(&self.failures)?),
+            (KEY, UNSEALED.to_owned()),
         ];
         Ok(values.map(|(key, value)| (key.to_owned(), value)).to_vec())
     }
 
-    fn from_key_values(values: &[KeyValue]) -> Option<Self> {
+    /// The metadata and the seal.
+    fn from_key_values(values: &[KeyValue]) -> Option<(Self, Hash)> {
         let text = |key: &str| values.iter().find(|value| value.key == key)?.value.as_deref();
-        Some(Self {
+        let metadata = Self {
             plan: text(PLAN)?.to_owned(),
+            first: text(FIRST)?.parse().ok()?,
             records: text(RECORDS)?.parse().ok()?,
             failures: serde_json::from_str(text(FAILURES)?).ok()?,
-        })
+        };
+        Some((metadata, text(KEY)?.to_owned().try_into().ok()?))
+    }
+
+    /// Returns whether a shard is the one that was to be made, whatever failed in it.
+    pub(crate) fn is_of(&self, wanted: &Self) -> bool {
+        (&self.plan, self.first, self.records) == (&wanted.plan, wanted.first, wanted.records)
     }
 }
 
 /// The parts of a shard that were read.
 pub(crate) struct ReadShard {
     pub metadata: ShardMetadata,
+    /// The seal that its footer states.
+    pub seal: Hash,
     pub rows: u64,
     /// Names and types of the shard's columns.
     pub schema: Vec<FoundColumn>,
@@ -101,7 +119,7 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
     let table = TableReader::new(file).map_err(into_io)?;
     let head = table.metadata().file_metadata();
     let metadata = head.key_value_metadata().and_then(|values| ShardMetadata::from_key_values(values));
-    let metadata = metadata.ok_or_else(|| io::Error::other("is no shard of a data set"))?;
+    let (metadata, seal) = metadata.ok_or_else(|| io::Error::other("is no shard of a data set"))?;
     let rows = u64::try_from(head.num_rows()).unwrap_or(0);
     let expected = metadata.records.checked_sub(metadata.failures.len() as u64);
     if expected != Some(rows) {
@@ -109,7 +127,7 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
     }
     let (numbers, texts) = (BTreeMap::new(), BTreeMap::new());
     let schema = table.columns().to_vec();
-    let mut read = ReadShard { metadata, rows, schema, numbers, texts, signal: Vec::new() };
+    let mut read = ReadShard { metadata, seal, rows, schema, numbers, texts, signal: Vec::new() };
     match wanted {
         Wanted::Columns(names) => {
             for column in names.iter().filter_map(|name| table.column(name)) {

@@ -1,15 +1,17 @@
 //! Shards: Parquet files of so many records each.
 //!
-//! Each row is a record. The key-value metadata of the file hold the plan's hash, the range of records, and the records that failed
-//! with the reasons. All bytes of a shard depend only on the plan and the shard's number.
+//! Each row is a record. The key-value metadata of the file hold the plan's hash, the range of records, the records that failed
+//! with the reasons, and a seal of the whole file. All bytes of a shard depend only on the plan and the shard's number.
 
 mod columns;
 mod metadata;
+mod seal;
 mod write;
 
 pub(crate) use columns::{BETWEEN_CODES, Column, Topic, WARNINGS, column_name, columns, varied_keys};
 pub use metadata::{FailedRecord, ShardMetadata};
 pub(crate) use metadata::{ReadShard, Wanted, read};
+pub(crate) use seal::{proven, seal};
 pub(crate) use write::{Item, write, write_table};
 
 use crate::draw::Sampler;
@@ -108,6 +110,16 @@ impl<'a> Shards<'a> {
         self.all[shard as usize].records
     }
 
+    /// The metadata of a shard before its records are made.
+    ///
+    /// # Arguments
+    /// * `plan` - hash of the plan
+    /// * `shard` - its number
+    pub(crate) fn metadata(&self, plan: &str, shard: u64) -> ShardMetadata {
+        let Shard { first, records, .. } = self.all[shard as usize];
+        ShardMetadata { plan: plan.to_owned(), first, records, failures: Vec::new() }
+    }
+
     /// Numbers of the records of a shard.
     ///
     /// # Arguments
@@ -160,13 +172,8 @@ impl<'a> Shards<'a> {
     /// # Arguments
     /// * `name` - from the data set's directory
     pub fn number(&self, name: &str) -> Option<u64> {
-        let number = Self::number_of(name)?;
+        let number = number_in(name)?.parse().ok()?;
         (number < self.count() && self.name(number) == name).then_some(number)
-    }
-
-    /// The number in the name of a shard of some data set.
-    pub(crate) fn number_of(name: &str) -> Option<u64> {
-        number_in(name)?.parse().ok()
     }
 
     /// Returns whether a shard of some data set may have a name.

@@ -16,8 +16,9 @@ use crate::record::Record;
 
 /// Higher levels hardly compress the noise-like digits of a vibration better.
 const COMPRESSION_LEVEL: i32 = 1;
-/// (bytes) Size of the signals that are gathered before they are compressed.
+/// (bytes) Size of the signals, and number of the records, that are gathered before they are compressed: a reader of one record reads so much.
 const GROUP_BYTES: usize = 8 << 20;
+const GROUP_RECORDS: usize = 64;
 /// (bytes) Size of a page; the default would make pages of signals too small.
 const PAGE_BYTES: usize = 1 << 20;
 
@@ -81,7 +82,7 @@ pub(crate) fn write(
         }
         finished += 1;
         let is_last = finished == metadata.records;
-        if !records.is_empty() && (is_last || bytes >= GROUP_BYTES) {
+        if !records.is_empty() && (is_last || bytes >= GROUP_BYTES || records.len() == GROUP_RECORDS) {
             table.write_rows(columns.iter().map(|column| (column.cells)(&records)).collect())?;
             records.clear();
             bytes = 0;

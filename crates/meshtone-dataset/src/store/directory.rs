@@ -9,7 +9,6 @@ use meshtone_io::atomic_file;
 use meshtone_io::own_file::{self, PREFIX};
 
 use super::{Files, Storage};
-use crate::part_list;
 use crate::shard::{self, ReadShard, Wanted};
 
 /// A directory, which need not exist.
@@ -20,12 +19,10 @@ pub(super) struct Directory {
 
 impl Storage for Directory {
     /// Unfinished files are left out.
-    fn files(&self, folder: &str) -> io::Result<Files> {
+    fn files(&self) -> io::Result<Files> {
         let mut files = Files::new();
-        let path = self.path.join(folder);
-        if path.exists() {
-            let before = if folder.is_empty() { String::new() } else { format!("{folder}/") };
-            collect(&path, &before, &mut files)?;
+        if self.path.exists() {
+            collect(&self.path, "", &mut files)?;
         }
         Ok(files)
     }
@@ -46,16 +43,6 @@ impl Storage for Directory {
         atomic_file::write_atomically(&path, content).map_err(|error| error.source)
     }
 
-    /// Removes the file, and its folder of the data set if that is then empty.
-    fn remove(&self, name: &str) -> io::Result<()> {
-        let path = self.path.join(name);
-        fs::remove_file(&path)?;
-        if let (Some(folder), true) = (path.parent(), name.contains('/')) {
-            let _ = fs::remove_dir(folder);
-        }
-        Ok(())
-    }
-
     fn name_of(&self, name: &str) -> String {
         self.path.join(name).display().to_string()
     }
@@ -67,13 +54,13 @@ impl fmt::Display for Directory {
     }
 }
 
-/// Returns whether a folder is one of a data set: those of its shards, and that of its parts' lists.
+/// Returns whether a folder is one of a data set: those of its shards.
 ///
 /// # Arguments
 /// * `before` - the folder that it is in, with a `/` at its end; empty for the data set's own directory
 fn is_own_folder(before: &str, name: &str) -> bool {
     match before {
-        "" => name == shard::FOLDER || name == part_list::FOLDER,
+        "" => name == shard::FOLDER,
         before => {
             before.strip_suffix('/') == Some(shard::FOLDER) && name.bytes().all(|byte| byte.is_ascii_digit())
         }

@@ -13,15 +13,16 @@ mod remote_file;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
+use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use meshtone_io::own_file::Claim;
 
+use crate::contents::WRONG_BYTES;
 use crate::digest::{Digest, Hashing};
 use crate::error::DatasetError;
-use crate::shard::{ReadShard, Wanted};
+use crate::shard::{self, ReadShard, Wanted};
 use directory::Directory;
 #[cfg(feature = "objects")]
 use object::Objects;
@@ -39,11 +40,8 @@ pub struct Destination {
 
 /// Files by their names, with `/` between folders. A storage is displayed as users name it.
 trait Storage: fmt::Debug + fmt::Display + Send + Sync {
-    /// The names of all files in a folder with their sizes in bytes; none where the folder does not exist.
-    ///
-    /// # Arguments
-    /// * `folder` - a folder of the data set; empty for the data set's own directory, with all folders
-    fn files(&self, folder: &str) -> io::Result<Files>;
+    /// The names of all files with their sizes in bytes; none where the place does not exist.
+    fn files(&self) -> io::Result<Files>;
 
     /// Reads a file from its start.
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>>;
@@ -53,9 +51,6 @@ trait Storage: fmt::Debug + fmt::Display + Send + Sync {
 
     /// Writes a file that appears whole or not at all. `content` is called once.
     fn write(&self, name: &str, content: &mut dyn FnMut(&mut File) -> io::Result<()>) -> io::Result<()>;
-
-    /// Removes a file.
-    fn remove(&self, name: &str) -> io::Result<()>;
 
     /// The name of a file for messages.
     fn name_of(&self, name: &str) -> String;
@@ -142,12 +137,7 @@ impl Destination {
     /// All files that are there: names from the data set's own directory, with `/` between folders, and sizes in bytes. There are none
     /// where the place does not exist.
     pub(crate) fn files(&self) -> Result<Files, DatasetError> {
-        self.files_in("")
-    }
-
-    /// The files of one of the data set's folders, as [`Self::files`] gives them.
-    pub(crate) fn files_in(&self, folder: &str) -> Result<Files, DatasetError> {
-        self.storage.files(folder).map_err(DatasetError::read(self.to_string()))
+        self.storage.files().map_err(DatasetError::read(self.to_string()))
     }
 
     /// The content of a small file; none where there is no such file.
@@ -206,14 +196,25 @@ impl Destination {
         self.write(name, |file| file.write_all(bytes))
     }
 
-    /// Copies a file from another place if it has the expected digest. Returns whether it has.
-    pub(crate) fn take_over(&self, other: &Self, name: &str, digest: &Digest) -> Result<bool, DatasetError> {
+    /// Reads a shard to its end and then some values of it.
+    ///
+    /// # Errors
+    /// In words, what is wrong with it.
+    pub(crate) fn proven_shard(&self, name: &str, wanted: Wanted) -> Result<ReadShard, String> {
+        let unreadable = |error: io::Error| format!("it cannot be read: {error}");
+        let proven = self.storage.open(name).and_then(shard::proven).map_err(unreadable)?;
+        proven.ok_or(WRONG_BYTES)?;
+        self.read_shard(name, wanted).map_err(unreadable)
+    }
+
+    /// Copies a shard from another place if it is as it was written. Returns whether it is.
+    pub(crate) fn take_over(&self, other: &Self, name: &str) -> Result<bool, DatasetError> {
         let mut reader = other.storage.open(name).map_err(DatasetError::read(other.storage.name_of(name)))?;
         let mut differs = false;
         let written = self.write(name, |file| {
-            let mut hashing = Hashing::new(file);
-            io::copy(&mut BufReader::with_capacity(READ_BYTES, &mut reader), &mut hashing)?;
-            differs = hashing.digest() != *digest;
+            io::copy(&mut BufReader::with_capacity(READ_BYTES, &mut reader), file)?;
+            file.rewind()?;
+            differs = shard::proven(&mut *file)?.is_none();
             // After an error, the file does not get its name.
             if differs { Err(io::Error::other("it is damaged")) } else { Ok(()) }
         });
@@ -223,16 +224,6 @@ impl Destination {
     /// The name of a file for messages.
     pub(crate) fn name_of(&self, name: &str) -> String {
         self.storage.name_of(name)
-    }
-
-    /// Removes a file if it is there.
-    pub(crate) fn remove(&self, name: &str) -> Result<(), DatasetError> {
-        match self.storage.remove(name) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                Err(DatasetError::write(self.storage.name_of(name))(error))
-            }
-            _ => Ok(()),
-        }
     }
 
     /// Claims something of the place for this program alone until the claim is dropped. An object store has no claims.

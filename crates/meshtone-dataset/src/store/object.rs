@@ -57,10 +57,9 @@ impl Objects {
 }
 
 impl Storage for Objects {
-    fn files(&self, folder: &str) -> io::Result<Files> {
-        let folder = self.location(folder);
+    fn files(&self) -> io::Result<Files> {
         wait(async {
-            let mut listed = self.store.list(Some(&folder));
+            let mut listed = self.store.list(Some(&self.prefix));
             let mut files = Files::new();
             while let Some(object) = listed.next().await {
                 let object = object?;
@@ -94,10 +93,6 @@ impl Storage for Objects {
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)?;
         wait(async { self.store.put(&path, PutPayload::from(bytes)).await.map(|_| ()) })
-    }
-
-    fn remove(&self, name: &str) -> io::Result<()> {
-        wait(self.store.delete(&self.location(name)))
     }
 
     fn name_of(&self, name: &str) -> String {

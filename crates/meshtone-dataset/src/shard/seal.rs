@@ -1,0 +1,60 @@
+//! The seal of a shard: the SHA-256 of its file, which stands in the file's own footer.
+//!
+//! The seal's digits count as zeros in what is hashed, so that it proves every bit of the file, itself included. It is computed while the
+//! file is written, and not from the disk.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+
+use crate::digest::{Digest, Hash, Hashing};
+
+/// Key of the seal, the last one of the footer's.
+pub(super) const KEY: &str = "meshtone.seal";
+/// What stands there until the file is sealed.
+pub(super) const UNSEALED: &str = "0000000000000000000000000000000000000000000000000000000000000000";
+/// (bytes) The end of a file in which its seal lies: behind it stands nothing but two bytes a column.
+const TAIL: usize = 1 << 16;
+/// (bytes) Of Thrift between key and value: the value's type and its length.
+const BETWEEN: usize = 2;
+/// (bytes) Size of the pieces in which a file is read.
+const READ_BYTES: u64 = 1 << 20;
+
+/// Puts the seal into a file that is written to its end.
+///
+/// # Arguments
+/// * `file` - the file, open for reading and writing
+/// * `hash` - of what has been written
+pub(crate) fn seal(file: &mut File, hash: Hash) -> io::Result<()> {
+    let end = file.seek(SeekFrom::End(0))?;
+    let from = file.seek(SeekFrom::Start(end.saturating_sub(TAIL as u64)))?;
+    let mut tail = Vec::new();
+    file.read_to_end(&mut tail)?;
+    let place = place(&tail).ok_or_else(|| io::Error::other("the footer has no place for a seal"))?;
+    file.seek(SeekFrom::Start(from + place as u64))?;
+    file.write_all(hash.to_string().as_bytes())?;
+    file.seek(SeekFrom::End(0)).map(drop)
+}
+
+/// Reads a shard from its start to its end. Returns its size and its seal; none where it is not as it was written.
+pub(crate) fn proven(mut from: impl Read) -> io::Result<Option<Digest>> {
+    let (mut hashing, mut tail) = (Hashing::new(io::sink()), Vec::new());
+    // What may hold the seal is hashed last.
+    while from.by_ref().take(READ_BYTES).read_to_end(&mut tail)? > 0 {
+        let settled = tail.len().saturating_sub(TAIL);
+        hashing.write_all(&tail[..settled])?;
+        tail.drain(..settled);
+    }
+    let Some(place) = place(&tail) else { return Ok(None) };
+    let digits = &mut tail[place..place + UNSEALED.len()];
+    let stated = String::from_utf8_lossy(digits).into_owned();
+    digits.copy_from_slice(UNSEALED.as_bytes());
+    hashing.write_all(&tail)?;
+    Ok(Some(hashing.digest()).filter(|found| found.sha256.to_string() == stated))
+}
+
+/// Where the digits of the seal lie.
+fn place(tail: &[u8]) -> Option<usize> {
+    let key = tail.windows(KEY.len()).rposition(|window| window == KEY.as_bytes())?;
+    let place = key + KEY.len() + BETWEEN;
+    (place + UNSEALED.len() <= tail.len()).then_some(place)
+}
