@@ -18,11 +18,11 @@ use crate::physics::rms;
 /// What the independent simulator was given, for a short time.
 fn pair(helix_angle_deg: f64) -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
-    scenario.gears.helix_angle_deg = helix_angle_deg;
-    (scenario.gears.tip_chamfer_mm, scenario.gears.active_profile_shortening) = (Some(0.69), 0.1);
-    scenario.gears.points_per_tooth = 2000;
-    scenario.rig.mesh_damping_ratio = 0.15;
-    scenario.quality.din_grade = 0;
+    let mesh = &mut scenario.meshes[0];
+    (mesh.helix_angle_deg, mesh.points_per_tooth, mesh.damping_ratio) = (helix_angle_deg, 2000, 0.15);
+    for wheel in &mut scenario.wheels {
+        (wheel.tip_chamfer_mm, wheel.active_profile_shortening, wheel.din_grade) = (Some(0.69), 0.1, 0);
+    }
     scenario.solver.duration_s = Some(0.15);
     scenario
 }
@@ -37,7 +37,7 @@ fn vertical_g(kind: &str, helix_angle_deg: f64) -> f64 {
         "broken" => Some(broken.into()),
         "cracked" => Some(RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None }.into()),
         "deviating" => {
-            (scenario.quality.din_grade, scenario.quality.helix_share) = (7, 0.0);
+            scenario.wheels.iter_mut().for_each(|wheel| (wheel.din_grade, wheel.helix_share) = (7, 0.0));
             None
         }
         _ => None,
@@ -89,7 +89,7 @@ fn slices_add_up_to_the_whole_contact_line() {
         for slices in [5, 41] {
             let mut scenario = pair(angle);
             // Flat to the last place.
-            (scenario.gears.slices, scenario.gears.lead_crowning_um) = (slices, 1e-13);
+            (scenario.meshes[0].slices, scenario.meshes[0].lead_crowning_um) = (slices, 1e-13);
             let sliced = mesh(&scenario);
             assert_eq!(sliced.slices(), slices as usize);
             for force_n in [20.0, 187.0, 5000.0] {
@@ -107,7 +107,8 @@ fn slices_add_up_to_the_whole_contact_line() {
 fn a_whole_overlap_gives_way_alike_at_any_time() {
     for overlap in [1.0, 2.0] {
         let mut scenario = pair(20.0);
-        scenario.gears.face_width_mm = overlap * PI * 3.0 / 20f64.to_radians().sin();
+        let face_width_mm = overlap * PI * 3.0 / 20f64.to_radians().sin();
+        scenario.wheels.iter_mut().for_each(|wheel| wheel.face_width_mm = face_width_mm);
         let at_rest = mesh(&scenario).at_rest(5000.0, 0..1);
         let part = at_rest.peak_to_peak_m() / at_rest.deflection_m[0];
         println!("overlap {overlap}: {part:.1e} of {:.3e} m", at_rest.deflection_m[0]);
