@@ -10,7 +10,7 @@ from typing import Any, Literal, TypedDict
 
 import numpy.typing as npt
 
-from ._keys import EndRelief, FlankRelief, Profile, Unbalance, WheelInertia
+from ._keys import EndRelief, FlankRelief, Foundation, Profile, Unbalance, WheelInertia
 from ._sensor import SensorPath
 
 
@@ -116,6 +116,9 @@ class GearboxWheel(TypedDict, total=False):
         Its mass and inertias, any of the three.
     unbalance : Unbalance
         Its unbalance.
+    eccentricity_mm : float
+        (mm) The eccentricity of its seat. Allowed: ≥ 0; less than the module; the same of both wheels of a mesh; of a wheel
+        in one mesh.
     din_grade : int
         The grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
     iso_class : int
@@ -126,6 +129,8 @@ class GearboxWheel(TypedDict, total=False):
         (-) Its largest single pitch deviation over its tolerance f_p. Allowed: 0…1.
     run_out_share : float
         (-) Its run-out over its tolerance F_r. Allowed: 0…1.
+    helix_share : float
+        (-) Its largest helix slope deviation, of either sign, over its tolerance f_Hβ. Allowed: 0…1.
     profile_errors_mm : array of float64, shape (100, teeth)
         (mm) Its profile errors, instead of a draw: 100 rows of one number a tooth, in the order of contact in its first
         mesh. Allowed: 100 × teeth, each below the module; not beside errors_file, din_grade, iso_class.
@@ -156,11 +161,13 @@ class GearboxWheel(TypedDict, total=False):
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float]
     inertia: WheelInertia
     unbalance: Unbalance
+    eccentricity_mm: float
     din_grade: int
     iso_class: int
     tooth_share: float
     pitch_share: float
     run_out_share: float
+    helix_share: float
     profile_errors_mm: npt.ArrayLike
     cumulative_pitch_um: Sequence[float]
     run_out_um: float
@@ -198,6 +205,15 @@ class GearboxMesh(TypedDict, total=False):
     backlash_mm : float
         (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least that of a given centre
         distance.
+    misalignment_um : float
+        (µm) The misalignment of the shafts in the plane of action over the face width, including their slope under the
+        nominal load; positive where flanks come closer towards positive z. The tilt by an uneven load is computed.
+        Allowed: −1000…1000.
+    points_per_tooth : int
+        The number of points along a tooth's profile. Allowed: whole number 500…1000000.
+    foundation : Foundation
+        The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
+        Duverger (2004).
     phase : float
         (base pitches) Where on its path of contact the first pair of teeth is at the start.
     damping_ratio : float
@@ -215,6 +231,9 @@ class GearboxMesh(TypedDict, total=False):
     slices: int
     centre_distance_mm: float
     backlash_mm: float
+    misalignment_um: float
+    points_per_tooth: int
+    foundation: Foundation
     phase: float
     damping_ratio: float
 

@@ -7,7 +7,6 @@ use meshtone::signal::{
     foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
     synchronous_part,
 };
-use meshtone::wheel::WheelName;
 use meshtone_fourier::{Complex64, from_real_spectrum};
 use meshtone_learn::{MESH_ORDERS, PASSED, WheelLines, separations};
 
@@ -112,17 +111,14 @@ impl Observation {
     /// # Errors
     /// Fewer than two whole revolutions of a shaft; those of [`meshtone::signal::angular_resample`].
     pub fn of_recording(recording: &TrainRecording, other: Option<&Self>) -> Result<Self, SignalError> {
-        let TrainRecording { train, sampling_rate_hz, turning, .. } = *recording;
+        let TrainRecording { train, sampling_rate_hz, .. } = *recording;
         let settings = AngularSettings::default();
         let angular = (0..train.wheels.len()).map(|wheel| recording.angular(wheel, &settings));
         let angular = angular.collect::<Result<Vec<_>, _>>()?;
         let phase = |shaft| recording.phase(shaft);
         let zeros = train.wheels.iter().map(|wheel| Ok(phase(wheel.shaft)?.zero));
         let zero: Vec<AngleZero> = zeros.collect::<Result<_, SignalError>>()?;
-        let input_speed_hz = match turning {
-            TrainTurning::SimulatedPair(shafts) => shafts.mean_speed_hz(WheelName::Pinion),
-            TrainTurning::Shaft { .. } => phase(train.input())?.mean_speed_hz(sampling_rate_hz),
-        };
+        let input_speed_hz = recording.mean_speed_hz(train.input())?;
         let against = mismatch(recording, &angular)?;
         let observed = Self::of_angles(train, &angular, input_speed_hz)?;
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();

@@ -4,7 +4,7 @@ use clap::Args;
 use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS, NamedBearing};
 use meshtone::signal::{
     BearingRecords, BearingSeparation, BearingSettings, FrequencyBand, GearTrain, SignalError, TrainBearing,
-    TrainRecording, TrainTurning,
+    TrainRecording,
 };
 use meshtone_io::indicators::BearingEntry;
 
@@ -185,10 +185,7 @@ impl BearingOptions {
         }
         self.check_band(recording.sampling_rate_hz)?;
         let shafts = &recording.train.shafts;
-        let own = match recording.turning {
-            TrainTurning::Shaft { shaft, .. } => *shaft,
-            TrainTurning::SimulatedPair(_) => recording.train.input(),
-        };
+        let own = recording.turning.known_shaft(recording.train);
         let place = |of: &NamedChoice| -> Result<TrainBearing, Failure> {
             let shaft = match &of.shaft {
                 Some(name) => {

@@ -21,7 +21,7 @@ face_width_mm = 15.0
 [scenario.operation]
 pinion_speed_hz = 40.0
 brake_torque_nm = 200.0
-[scenario.quality()]
+[scenario.quality]
 din_grade = 7
 [[class]]
 label = "healthy"

@@ -253,8 +253,8 @@ fn more_than_is_simulated() {
     let some = plan(&FAST.replacen("[keep]", &keep(0.1), 1)).foreseen_failures();
     assert!(!some.is_empty() && some.len() < 60, "{}", some.len());
     assert!(some[0].reason.starts_with("keep.duration_s = 0.1"), "{}", some[0].reason);
-    let profile = "[scenario.operation.speed_profile_hz]\ntime_s = [0.0, 1.0]\nvalue = [40.0, 50.0]\n[scenario.quality()]";
-    let run_up = FAST.replacen("[scenario.quality()]", profile, 1);
+    let profile = "[scenario.operation.speed_profile_hz]\ntime_s = [0.0, 1.0]\nvalue = [40.0, 50.0]\n[scenario.quality]";
+    let run_up = FAST.replacen("[scenario.quality]", profile, 1);
     let run_up =
         run_up.replace("[[vary]]\nkey = \"operation.pinion_speed_hz\"\nuniform = [30.0, 60.0]\n", "");
     let run_up = run_up.replace("when = \"operation.pinion_speed_hz > 50\"", "when = \"noise.snr_db > 20\"");
@@ -330,7 +330,7 @@ fn base_scenarios() {
     refused_with(
         "module_mm = 3.0",
         "module_mm = -3.0",
-        &["line", "scenario.meshes[0].module_mm = -3.0", "more than 0"],
+        &["line", "scenario.gears.module_mm = -3.0", "more than 0"],
     );
     refused_with("module_mm = 3.0", "modul_mm = 3.0", &["did you mean `module_mm`?"]);
     refused_with(
@@ -341,7 +341,7 @@ fn base_scenarios() {
     refused_with(
         "din_grade = 7",
         "din_grade = 7\nseed = 3",
-        &["scenario.quality().seed", "wheels of its own"],
+        &["scenario.quality.seed", "wheels of its own"],
     );
     refused("scenario = \"absent.toml\"\nunits = 1", &["line 1", "absent.toml"]);
 }

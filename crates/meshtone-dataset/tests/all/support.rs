@@ -27,7 +27,7 @@ points_per_tooth = 1000
 [scenario.operation]
 pinion_speed_hz = 40.0
 brake_torque_nm = 200.0
-[scenario.quality()]
+[scenario.quality]
 din_grade = 7
 [scenario.solver]
 sampling_rate_hz = 1e4

@@ -49,6 +49,14 @@ impl TrainTurning {
             stated: StatedTurning::Other,
         })
     }
+
+    /// Number of the shaft whose phase is known: of what was simulated the input.
+    pub fn known_shaft(&self, train: &GearTrain) -> usize {
+        match self {
+            Self::Shaft { shaft, .. } => *shaft,
+            Self::SimulatedPair(_) => train.input(),
+        }
+    }
 }
 
 /// A channel of a recording of a pair or a gearbox, with the angles of its shafts.
@@ -156,6 +164,20 @@ impl TrainRecording<'_> {
         match self.turning {
             TrainTurning::Shaft { shaft: of, phase, .. } => self.train.carried(phase, *of, shaft),
             TrainTurning::SimulatedPair(shafts) => shafts.phase(WheelName::BOTH[shaft.min(1)]),
+        }
+    }
+
+    /// (Hz) Mean speed of a shaft.
+    ///
+    /// # Arguments
+    /// * `shaft` - its number
+    ///
+    /// # Errors
+    /// Those of [`TrainRecording::phase`].
+    pub fn mean_speed_hz(&self, shaft: usize) -> Result<f64, SignalError> {
+        match self.turning {
+            TrainTurning::SimulatedPair(shafts) => Ok(shafts.mean_speed_hz(WheelName::BOTH[shaft.min(1)])),
+            TrainTurning::Shaft { .. } => Ok(self.phase(shaft)?.mean_speed_hz(self.sampling_rate_hz)),
         }
     }
 

@@ -145,7 +145,8 @@ fn mixed_in_space() -> Vec<Scenario> {
     }
     let mut wide = small(20, 30, None);
     wide.model = Model::Contact;
-    (wide.meshes[0].helix_angle_deg, wide.wheels[0].face_width_mm) = (30.0, 60.0);
+    wide.meshes[0].helix_angle_deg = 30.0;
+    wide.wheels.iter_mut().for_each(|wheel| wheel.face_width_mm = 60.0);
     scenarios.push(wide);
     let mut refused = small(17, 38, None);
     refused.meshes[0].module_mm = -1.0;
@@ -237,7 +238,8 @@ fn what_is_stepped_alone_has_a_reason() {
     let mut crowned = helical.clone();
     crowned.meshes[0].lead_crowning_um = 3.0;
     let mut wide = helical.clone();
-    (wide.meshes[0].helix_angle_deg, wide.wheels[0].face_width_mm) = (30.0, 120.0);
+    wide.meshes[0].helix_angle_deg = 30.0;
+    wide.wheels.iter_mut().for_each(|wheel| wheel.face_width_mm = 120.0);
     let scenarios = [unbalanced, helical, published, crowned, wide];
     let expected = [
         None,

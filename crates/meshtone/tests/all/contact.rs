@@ -163,8 +163,9 @@ fn a_deviation_of_all_teeth_is_a_rotation() {
     let drawn = simulate(&scenario).unwrap();
     let mut errors = drawn.stages.pairs[0].profile_errors.clone().unwrap();
     errors.pinion_profile_errors_mm = errors.pinion_profile_errors_mm.map(|error| error + 0.01);
-    scenario.quality().profile_errors = Some(errors);
-    scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
+    let mut quality = scenario.quality();
+    (quality.profile_errors, quality.din_grade) = (Some(errors), 0);
+    scenario.set_quality(quality);
     let thicker = simulate(&scenario).unwrap();
     let (a, b) = (&drawn.channels["vertical_g"], &thicker.channels["vertical_g"]);
     let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
@@ -233,7 +234,9 @@ fn small_damages_are_small() {
 #[test]
 fn mesh_stiffness_is_the_linear_one() {
     let mut scenario = pair(10.0);
-    (scenario.wheels[0].tip_chamfer_mm, scenario.wheels[0].active_profile_shortening) = (Some(0.0), 0.0);
+    for wheel in &mut scenario.wheels {
+        (wheel.tip_chamfer_mm, wheel.active_profile_shortening) = (Some(0.0), 0.0);
+    }
     let mean = |scenario: &Scenario| stages(scenario).unwrap().mesh_curves()[0].mean_stiffness_n_per_mm;
     let contact = mean(&scenario);
     scenario.model = Model::Linear;

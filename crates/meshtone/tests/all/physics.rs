@@ -53,7 +53,9 @@ pub fn with_own_structure(scenario: &mut Scenario) {
         .iter_mut()
         .for_each(|wheel| wheel.tip_chamfer_mm = Some(0.2 * scenario.meshes[0].module_mm));
     scenario.wheels.iter_mut().for_each(|wheel| wheel.active_profile_shortening = 0.0);
-    (scenario.wheels[0].tooth_share, scenario.wheels[0].pitch_share) = (0.4, 0.15);
+    for wheel in &mut scenario.wheels {
+        (wheel.tooth_share, wheel.pitch_share) = (0.4, 0.15);
+    }
 }
 
 /// What both supports do on average.

@@ -72,10 +72,8 @@ pub fn scenario(name: &str, reference: &Reference) -> Scenario {
             let values = &reference[key];
             ErrorTable::from_fn(values.shape()[0], values.shape()[1], |r, c| values[[r, c]])
         };
-        scenario.quality().profile_errors = Some(ProfileErrors {
-            pinion_profile_errors_mm: matrix("pinion_profile_errors_mm"),
-            gear_profile_errors_mm: matrix("gear_profile_errors_mm"),
-        });
+        scenario.wheels[0].profile_errors_mm = Some(matrix("pinion_profile_errors_mm"));
+        scenario.wheels[1].profile_errors_mm = Some(matrix("gear_profile_errors_mm"));
     }
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
     let destruction = |start, line| ToothDestruction { start, line, offset_mm: 0.0, noise_mm: 0.0 };

@@ -3,7 +3,7 @@
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
     DampingRatio, DestructionLine, Fault, GearPair, MEMORY_LIMIT_BYTES, MemoryLimit, Model, Profile,
-    ProfileErrors, Scenario, ToothDestruction, WarningKind,
+    Scenario, ToothDestruction, WarningKind,
 };
 use meshtone::wheel::ErrorTable;
 
@@ -260,11 +260,9 @@ fn values_that_only_code_can_give() {
 
 #[test]
 fn transposed_profile_errors_are_recognised() {
-    let scenario = Scenario::new(GearPair::example());
-    scenario.quality().profile_errors = Some(ProfileErrors {
-        pinion_profile_errors_mm: ErrorTable::filled(17, 100, 0.0),
-        gear_profile_errors_mm: ErrorTable::filled(100, 38, 0.0),
-    });
+    let mut scenario = Scenario::new(GearPair::example());
+    scenario.wheels[0].profile_errors_mm = Some(ErrorTable::filled(17, 100, 0.0));
+    scenario.wheels[1].profile_errors_mm = Some(ErrorTable::filled(100, 38, 0.0));
     let error = scenario.validate().unwrap_err();
     assert_eq!(error.key, "quality.pinion_profile_errors_mm");
     assert_eq!(error.value, "17 × 100");

@@ -7,7 +7,7 @@ use super::super::{
 use super::{DrivenSpeed, pitch_line_mm};
 use crate::bearing::RollingParts;
 use crate::damage::check_faults;
-use crate::keys::{Keys, below, check_keys, check_rows};
+use crate::keys::{Keys, below, check_keys, check_rows, require};
 use crate::machine::Bearing;
 use crate::wheel::quality::{check_errors, one_source};
 
@@ -178,6 +178,9 @@ impl Scenario {
             let module_mm = layout.mesh_of(index).map_or(f64::NAN, |(mesh, _)| layout.gears[mesh].module_mm);
             let eccentricity = format!("{section}.eccentricity_mm");
             below(&eccentricity, wheel.eccentricity_mm, module_mm, "the module")?;
+            // Its direction counts from the line of centres, of which such a wheel has several.
+            let is_in_one = layout.meshes_of(index).count() == 1 || wheel.eccentricity_mm == 0.0;
+            require(&eccentricity, wheel.eccentricity_mm, is_in_one, "must be 0 of a wheel in several meshes")?;
             one_source(&section, wheel.din_grade, wheel.iso_class, wheel.profile_errors_mm.is_some())?;
             let pitches = format!("{section}.cumulative_pitch_um");
             wheel.deviations.check_pitches(&pitches, wheel.teeth, module_mm)?;
