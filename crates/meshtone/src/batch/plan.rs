@@ -1,6 +1,7 @@
 //! Which scenarios are simulated side by side.
 
 use super::group::Numbered;
+use crate::mesh::is_slanted;
 use crate::scenario::Scenario;
 use crate::solver::LANES;
 
@@ -14,6 +15,8 @@ struct Cost {
     varies: bool,
     /// Whether its face is probably cut into slices, so that it is simulated alone: it would leave a lane of the rest idle.
     is_sliced: bool,
+    /// Whether its teeth leave their path with corners of their own: their law is another one.
+    has_corners: bool,
     /// Whether it has more modes than spur wheels alone: helical ones, or a force that turns with a shaft.
     has_more_modes: bool,
     /// Whether some damage moves the forces of its pairs.
@@ -29,6 +32,7 @@ impl Cost {
             is_sliced: gears.lead_crowning_um > 0.0
                 || gears.end_relief.amount_um > 0.0
                 || gears.is_helical() && (gears.flank_relief.amount_um > 0.0 || !scenario.faults.is_empty()),
+            has_corners: scenario.model.teeth_part() && is_slanted(gears.overlap_ratio()),
             has_more_modes: gears.is_helical() || unbalanced,
             varies: !scenario.operation.is_steady() || scenario.solver.initial_velocity.is_some(),
             moves_forces: scenario.faults.iter().any(|fault| fault.damage.moves_forces()),
@@ -37,7 +41,12 @@ impl Cost {
 
     /// Whether simulations of both costs may be in one group.
     fn goes_with(self, other: Self) -> bool {
-        !self.alone && !other.alone && self.varies == other.varies && self.is_sliced == other.is_sliced
+        let is_like = |of: fn(Self) -> bool| of(self) == of(other);
+        !self.alone
+            && !other.alone
+            && is_like(|cost| cost.varies)
+            && is_like(|cost| cost.is_sliced)
+            && is_like(|cost| cost.has_corners)
     }
 }
 

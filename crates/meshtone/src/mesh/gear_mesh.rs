@@ -235,9 +235,12 @@ impl Mesh {
                         along_path.over_face(&positions, window)
                     }
                 };
+                // The load of slices moves along the face where this leans; otherwise it acts midway.
+                let leans = face == FaceForm::Spur || slope.is_some();
                 for state in &mut states {
                     state.separation_m += face.gap_m(slice);
-                    state.face_centre_m += window.middle * face_width_m;
+                    state.face_centre_m =
+                        if leans { state.face_centre_m + window.middle * face_width_m } else { 0.0 };
                 }
                 table.states.append(&mut states);
             }

@@ -36,4 +36,4 @@ pub(crate) use path_table::TipShape;
 pub use path_table::{CornerTable, PairState};
 pub use sequence::{PairKind, PairSequence};
 pub use static_mesh::StaticMesh;
-pub(crate) use window::{Window, place_on_face};
+pub(crate) use window::{is_slanted, place_on_face};

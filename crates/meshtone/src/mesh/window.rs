@@ -71,13 +71,19 @@ pub(crate) struct Window {
     pub(crate) width: f64,
 }
 
-impl Window {
-    /// (base pitches) Length below which a stretch is a point: beyond rounding the two laws are the same.
-    pub(crate) const POINT: f64 = 1e-6;
+/// Whether teeth of an overlap are helical ones: below a millionth of a base pitch they touch at one position of the path, as spur teeth do. The
+/// limit is for rounding alone, the two laws are the same there.
+///
+/// # Arguments
+/// * `overlap` - (base pitches) of the face or of a slice
+pub(crate) fn is_slanted(overlap: f64) -> bool {
+    overlap.abs() > 1e-6
+}
 
+impl Window {
     /// Whether the slice touches at one position, as spur teeth do.
     pub(crate) fn is_a_point(&self) -> bool {
-        self.overlap.abs() * self.width < Self::POINT
+        !is_slanted(self.overlap * self.width)
     }
 
     /// (base pitches) The stretch while the middle of the face is at a position.

@@ -7,7 +7,7 @@ use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
 use crate::mesh::{
     Contact, FaceForm, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
-    Window, place_on_face,
+    is_slanted, place_on_face,
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
@@ -119,7 +119,7 @@ impl MeshOf<'_> {
         };
         let slices = if self.gap_varies_along_face() { gears.slices as usize } else { 1 };
         let overlap = self.sense * gears.hand.sign() * gears.overlap_ratio();
-        let is_spur = Window { overlap, middle: 0.0, width: 1.0 / slices as f64 }.is_a_point();
+        let is_spur = !is_slanted(overlap / slices as f64);
         let gaps_m = || {
             (0..slices)
                 .map(|slice| [slice, slice + 1].map(|edge| place_on_face(edge as f64, slices)))

@@ -172,6 +172,11 @@ impl fmt::Display for SteppedAlone {
 }
 
 impl Problem<'_> {
+    /// Whether its teeth have corners of their own, so that the law is smooth: such go side by side with one another only.
+    pub(super) fn has_corners(&self) -> bool {
+        self.forcing.meshes().any(Mesh::has_corners)
+    }
+
     /// Why the steps that are compiled for simulations side by side do not hold it; none where they do.
     pub(crate) fn stepped_alone(&self) -> Option<SteppedAlone> {
         SteppedAlone::of(&self.machine, self.forcing.meshes())
@@ -250,7 +255,10 @@ fn of_size<const L: usize>(
             const N: usize = MOST_STEADY_MODES;
             run::<L, N, N, 2, PAIRS, 0>(problems, instructions, recorders)
         }
-        Size::General => run::<L, MOST_MODES, MOST_MODES, 2, PAIRS, 0>(problems, instructions, recorders),
+        Size::General => {
+            const N: usize = MOST_MODES;
+            run::<L, N, N, 2, MOST_PAIRS, 0>(problems, instructions, recorders)
+        }
         Size::Helical => {
             const N: usize = MOST_STEADY_MODES;
             run::<L, N, N, 1, USUAL_PAIRS, USUAL_PAIRS>(problems, instructions, recorders)

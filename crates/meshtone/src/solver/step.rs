@@ -420,7 +420,7 @@ pub(super) enum Size {
     Turning,
     /// A load that moves along the face, with forces that turn with the shafts: [`MOST_STEADY_MODES`].
     Steady,
-    /// Any motion of motor and brake, and any initial velocity, of spur teeth: [`MOST_MODES`].
+    /// Any motion of motor and brake, any initial velocity, and flanks of helical teeth that may pull: [`MOST_MODES`] and [`MOST_PAIRS`].
     General,
     /// Helical teeth, steady: [`MOST_STEADY_MODES`] and [`USUAL_PAIRS`].
     Helical,
@@ -438,12 +438,11 @@ impl Size {
         let is_steady = problems.iter().all(|problem| problem.is_steady);
         let springs = most(|problem| problem.forcing.meshes().map(Mesh::springs).max().unwrap_or(0));
         let turning_forces = most(|problem| problem.machine.turning_forces.len());
-        let has_corners = problems.iter().any(|problem| problem.forcing.meshes().any(Mesh::has_corners));
         let is_small = is_steady && modes <= MOST_STEADY_MODES;
-        if has_corners || springs > PAIRS {
+        if problems.iter().any(Problem::has_corners) {
             return if is_small && springs <= USUAL_PAIRS { Self::Helical } else { Self::GeneralHelical };
         }
-        if !is_small {
+        if !is_small || springs > PAIRS {
             return Self::General;
         }
         match (turning_forces, modes, columns) {
