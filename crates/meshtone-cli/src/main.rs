@@ -7,7 +7,6 @@ mod check;
 mod choice;
 mod commands;
 mod diagnose;
-mod earlier_results;
 mod experiment_files;
 mod failure;
 mod indicators;

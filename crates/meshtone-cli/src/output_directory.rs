@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 use meshtone_io::atomic_file::{check_target, check_writable};
 use meshtone_io::own_file::{Claim, NewDirectory};
 
-use crate::earlier_results;
 use crate::failure::Failure;
-use crate::results::RESULTS;
+use crate::results::{RESULTS, finish_interrupted};
 use crate::same_file::is_same_file;
 
 /// A directory that exists, can be written to, and is this program's alone. What had to be created for it is removed again, unless
@@ -48,10 +47,10 @@ pub fn claim(directory: &Path) -> Result<Claim, Failure> {
 }
 
 impl OutputDirectory {
-    /// Prepares a directory for the results of `meshtone simulate`, after it has put back what an interrupted run replaced.
+    /// Prepares a directory for the results of `meshtone simulate`, after it has named what an interrupted run had finished.
     pub fn prepare(path: &Path, read: &[&Path]) -> Result<Self, Failure> {
         let directory = Self::for_files(path, &RESULTS, read)?;
-        earlier_results::put_back(path)?;
+        finish_interrupted(path)?;
         Ok(directory)
     }
 

@@ -14,9 +14,8 @@ use meshtone_io::trace_npz::write_trace;
 use meshtone_plot::{Figure, PlotError};
 use serde_json::Value;
 
-use crate::earlier_results;
 use crate::failure::Failure;
-use crate::replacement::{cannot_draw, replace, stage_figure};
+use crate::replacement::{cannot_draw, finish, replace, stage_figure};
 
 /// The file of signals that also contains the scenario.
 pub const SIGNALS: &str = SignalFormat::Parquet.file_name();
@@ -87,10 +86,10 @@ pub fn write(
     let drawn = panel.map(|panel| staged.extend(panel));
     let mut summary = results.summary.clone();
     summary[FILES] = staged.iter().filter_map(|file| file.path.file_name()?.to_str()).collect();
-    let summary = StagedFile::write(&directory.join(SUMMARY), |file| write_json(&summary, file))?;
+    staged.push(StagedFile::write(&directory.join(SUMMARY), |file| write_json(&summary, file))?);
     // The trace may lie elsewhere; it carries the run's identity.
     trace.map(StagedFile::commit).transpose()?;
-    undisturbed(|| replace_earlier(directory, staged, summary))?;
+    undisturbed(|| replace(directory, &RESULTS, &earlier_files(directory), staged))?;
     drawn.map_err(|failure| failure.with_help("the other results are written; see --no-panel"))
 }
 
@@ -118,18 +117,7 @@ fn earlier_files(directory: &Path) -> Vec<&'static str> {
     RESULTS.into_iter().filter(|name| *name == SUMMARY || PANEL.contains(name) || is_listed(name)).collect()
 }
 
-/// Gives the files their names; where that fails, the results of the earlier run are put back.
-fn replace_earlier(
-    directory: &Path,
-    staged: Vec<StagedFile>,
-    summary: StagedFile,
-) -> Result<(), WriteFileError> {
-    earlier_results::keep(directory);
-    let named = replace(directory, &earlier_files(directory), staged, summary);
-    if named.is_ok() {
-        earlier_results::forget(directory);
-    } else {
-        earlier_results::put_back(directory)?;
-    }
-    named
+/// Gives the results of a run that was interrupted behind the last of its work their names. Returns whether there were any.
+pub fn finish_interrupted(directory: &Path) -> Result<bool, WriteFileError> {
+    finish(directory, &RESULTS, &earlier_files(directory))
 }

@@ -229,12 +229,12 @@ impl Diagnose {
         json: &Value,
         rig: &[TrainWheel],
     ) -> Result<(), Failure> {
-        let staged = match self.no_figure {
+        let mut staged = match self.no_figure {
             true => Vec::new(),
             false => stage_figure(directory, FIGURE, &figure::draw(answer, &self.title(), rig))?,
         };
-        let json = stage_text(&directory.join(JSON), &format!("{json:#}\n"))?;
-        Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)
+        staged.push(stage_text(&directory.join(JSON), &format!("{json:#}\n"))?);
+        Ok(undisturbed(|| replace(directory, &FILES, &FILES, staged))?)
     }
 
     fn title(&self) -> String {

@@ -15,11 +15,10 @@ use meshtone_io::signals::{Recorded, read_signals};
 use meshtone_io::summary::read_run;
 use meshtone_plot::panel;
 
-use crate::earlier_results;
 use crate::failure::Failure;
 use crate::other_kind::or_other_kind;
 use crate::output_directory::claim;
-use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
+use crate::results::{PANEL, SIGNALS, SUMMARY, finish_interrupted, stage_panel};
 use crate::terminal::{print_unless, warn};
 
 /// Description of the input of the panel.
@@ -42,12 +41,11 @@ pub struct Panel {
 
 impl Panel {
     pub fn run(&self) -> Result<(), Failure> {
-        // Nothing is put back while another program replaces it.
+        // Nothing is named while another program replaces it.
         let _claim = self.directory.is_dir().then(|| claim(&self.directory)).transpose()?;
-        if earlier_results::put_back(&self.directory)? {
+        if finish_interrupted(&self.directory)? {
             warn(format_args!(
-                "the last run into {} was interrupted while it replaced the results of the run before it, which \
-                 have been put back",
+                "the last run into {} was interrupted while it gave its results their names, which they have now",
                 self.directory.display()
             ));
         }

@@ -82,8 +82,8 @@ impl Tune {
         }
         let toml = write_tuned(&Tuned::of(experiment, result), &name);
         staged.push(stage_text(&directory.join(TUNED), &toml)?);
-        let json = stage_text(&directory.join(TUNING), &tuning_json(file, result))?;
-        Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)
+        staged.push(stage_text(&directory.join(TUNING), &tuning_json(file, result))?);
+        Ok(undisturbed(|| replace(directory, &FILES, &FILES, staged))?)
     }
 }
 

@@ -71,6 +71,6 @@ pub fn write(directory: &Path, results: &IndicatorResults, figures: &Figures) ->
         let table = directory.join(BEARINGS_TABLE);
         staged.push(StagedFile::write(&table, |file| results.write_bearings_parquet(file))?);
     }
-    let json = StagedFile::write(&directory.join(JSON), |file| results.write_json(file))?;
-    Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)
+    staged.push(StagedFile::write(&directory.join(JSON), |file| results.write_json(file))?);
+    Ok(undisturbed(|| replace(directory, &FILES, &FILES, staged))?)
 }

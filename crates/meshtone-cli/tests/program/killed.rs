@@ -1,5 +1,5 @@
 //! A run that is killed leaves the results of the run before it whole; where it is killed while it gives its files
-//! their names, this can be seen, and the next command puts the earlier results back.
+//! their names, this can be seen, and the next command names the others.
 
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -47,22 +47,19 @@ impl Contest {
         while !now() && child.try_wait().unwrap().is_none() {}
         child.kill().unwrap();
         let killed = !child.wait().unwrap().success();
-        self.assert_whole_or_put_back();
+        self.assert_whole_or_finished();
         killed
     }
 
-    fn assert_whole_or_put_back(&self) {
-        // Every file is whole, whatever happened.
-        let signals = read_signals(&self.workplace.path(FILES[0])).unwrap();
-        let run_of_signals = signals.run.to_string();
+    fn assert_whole_or_finished(&self) {
         if !self.workplace.path(SUMMARY).exists() {
             self.caught.set(true);
             let warning = stderr(&self.workplace.succeeds(&["panel", "out"]));
-            assert!(warning.contains("have been put back"), "{warning}");
-            assert!(FILES.map(|name| self.workplace.read(name)) == self.earlier, "an earlier result is lost");
-            return;
+            assert!(warning.contains("which they have now"), "{warning}");
         }
-        // With a summary, all files are of one run.
+        // With a summary, all files are of one run, and every one is whole.
+        let signals = read_signals(&self.workplace.path(FILES[0])).unwrap();
+        let run_of_signals = signals.run.to_string();
         assert_eq!(read_run(&self.workplace.path(SUMMARY)).unwrap(), signals.run);
         for name in FILES {
             let bytes = self.workplace.read(name);
@@ -99,7 +96,10 @@ impl Contest {
 
     fn remove_what_the_killed_left(&self) {
         for name in self.workplace.names("out").iter().filter(|name| name.starts_with(".meshtone-")) {
-            std::fs::remove_file(self.workplace.path("out").join(name)).unwrap();
+            let path = self.workplace.path("out").join(name);
+            let removed =
+                if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+            removed.unwrap();
         }
     }
 }

@@ -230,7 +230,7 @@ fn wrong_experiments_are_refused() {
         table(|case, name, record| (case == 1 && name == "rms" && record == 3).then(|| "NaN".into())),
     );
     refused(&workplace, &good, &["table.csv", "line 25", "NaN", "finite"]);
-    workplace.write("table.csv", "indicator,value\n");
+    workplace.write("table.csv", "indicator,value\nrms,0.1\n");
     refused(&workplace, &good, &["missing field `severity`"]);
     workplace.fails(2, &["tune", "absent.toml"], &["absent.toml"]);
 }

@@ -77,7 +77,10 @@ pub(super) fn read(
         if let Some(lacking) = of_case.iter().position(Vec::is_empty) {
             let (indicator, severity, label) =
                 (wanted.indicators[lacking].name(), case.severity, &case.label);
-            let held = held.into_iter().collect::<Vec<_>>().join(", ");
+            let held = match held.len() {
+                0 => "no row".to_owned(),
+                _ => held.into_iter().collect::<Vec<_>>().join(", "),
+            };
             return Err(problem(format!(
                 "has no {indicator} of severity {severity} (case \"{label}\"); it holds {held}"
             )));
