@@ -338,11 +338,7 @@ fn base_scenarios() {
         "[scenario.fault]\nkind = \"missing-tooth\"\n[scenario.solver]",
         &["must be healthy", "[[class]]"],
     );
-    refused_with(
-        "din_grade = 7",
-        "din_grade = 7\nseed = 3",
-        &["scenario.quality.seed", "wheels of its own"],
-    );
+    refused_with("din_grade = 7", "din_grade = 7\nseed = 3", &["scenario.quality.seed", "wheels of its own"]);
     refused("scenario = \"absent.toml\"\nunits = 1", &["line 1", "absent.toml"]);
 }
 

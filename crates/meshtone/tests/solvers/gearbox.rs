@@ -391,7 +391,8 @@ fn one_pair_has_the_forces_and_stiffness_of_the_short_form() {
         let points = long.meshes[0].points_per_pitch.try_into().unwrap();
         let mesh = &short.meshes_at(points).unwrap()[0];
         assert!((long.meshes[0].mean_stiffness_n_per_m / mesh.mean_stiffness_n_per_m - 1.0).abs() < 1e-9);
-        let error = |mesh: &meshtone::mesh::Mesh| mesh.at_rest(short.static_force_n(), 0..38).peak_to_peak_m();
+        let error =
+            |mesh: &meshtone::mesh::Mesh| mesh.at_rest(short.static_force_n(), 0..38).peak_to_peak_m();
         assert!((error(&long.meshes[0]) / error(mesh) - 1.0).abs() < 1e-9);
         long.meshes[0].mean_stiffness_n_per_m
     });

@@ -180,7 +180,12 @@ impl Scenario {
             below(&eccentricity, wheel.eccentricity_mm, module_mm, "the module")?;
             // Its direction counts from the line of centres, of which such a wheel has several.
             let is_in_one = layout.meshes_of(index).count() == 1 || wheel.eccentricity_mm == 0.0;
-            require(&eccentricity, wheel.eccentricity_mm, is_in_one, "must be 0 of a wheel in several meshes")?;
+            require(
+                &eccentricity,
+                wheel.eccentricity_mm,
+                is_in_one,
+                "must be 0 of a wheel in several meshes",
+            )?;
             one_source(&section, wheel.din_grade, wheel.iso_class, wheel.profile_errors_mm.is_some())?;
             let pitches = format!("{section}.cumulative_pitch_um");
             wheel.deviations.check_pitches(&pitches, wheel.teeth, module_mm)?;
