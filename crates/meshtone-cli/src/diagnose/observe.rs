@@ -61,14 +61,13 @@ impl<'a> Observer<'a> {
     ///
     /// # Arguments
     /// * `path` - the file
-    /// * `other` - an observation that it is compared with
-    pub fn observe(&self, path: &Path, other: Option<&Observation>) -> Result<Observed, Failure> {
+    pub fn observe(&self, path: &Path) -> Result<Observed, Failure> {
         match self.scenario {
             ScenarioForm::Pair(pair) if self.signal != SignalKind::Recording => {
                 let ratio = f64::from(pair.gears.pinion_teeth) / f64::from(pair.gears.gear_teeth);
                 self.revolution(path, pair.gears.gear_teeth, pair.operation.pinion_speed_hz * ratio)
             }
-            _ => self.recording(path, other),
+            _ => self.recording(path),
         }
     }
 
@@ -100,7 +99,7 @@ impl<'a> Observer<'a> {
         Failure::refuse(problem, "leave out --signal: a whole recording is averaged here")
     }
 
-    fn recording(&self, path: &Path, other: Option<&Observation>) -> Result<Observed, Failure> {
+    fn recording(&self, path: &Path) -> Result<Observed, Failure> {
         let mut input = Input::read(path, self.reading, self.phase.channel())?;
         to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
         let turned = Turned::new(&input, self.phase, self.shafts, Some(self.scenario))?;
@@ -120,7 +119,7 @@ impl<'a> Observer<'a> {
             turning: &turning,
         };
         let what = format!("channel {}", input.channel.name);
-        let observation = Observation::of_recording(&recording, other);
+        let observation = Observation::of_recording(&recording);
         let observation = observation.map_err(|error| refuse(&input.source, &what, subject, &error))?;
         let doubtful = doubtful.iter().map(|warning| about(&input.source, warning));
         Ok((observation, warnings.into_iter().chain(doubtful).collect()))

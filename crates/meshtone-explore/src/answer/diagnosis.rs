@@ -164,7 +164,7 @@ fn of_recording(
         let (train, turning) = (GearTrain::of_pair(simulated), TrainTurning::SimulatedPair(shafts));
         let recording =
             TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
-        return Ok((Observation::of_recording(&recording, None)?, doubts));
+        return Ok((Observation::of_recording(&recording)?, doubts));
     }
     let train = GearTrain::of_pair(rig);
     let (stated, phase) = match tachometer {
@@ -179,7 +179,7 @@ fn of_recording(
     let turning = TrainTurning::Shaft { shaft: 0, phase, stated };
     let recording =
         TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
-    Ok((Observation::of_recording(&recording, None)?, doubts))
+    Ok((Observation::of_recording(&recording)?, doubts))
 }
 
 fn messages<'w>(warnings: impl IntoIterator<Item = &'w DiagnosisWarning>) -> Vec<&'w str> {
