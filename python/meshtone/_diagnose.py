@@ -191,7 +191,7 @@ def diagnose(
     if tuned is not None and isinstance(rig, _core.Scenario):
         rig = _core.tuned_rig(rig, tuned)
     now = _observations("recordings", recordings, scenario, signal)
-    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal, now[0])
+    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal)
     count = _records(records)
     known = typed((code, message, []) for code, message in _core.check_diagnosis(rig, now, before))
     warn_of_signal(known)

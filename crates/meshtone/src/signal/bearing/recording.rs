@@ -138,7 +138,10 @@ impl TrainRecording<'_> {
         let kurtogram = kurtogram(&signal, self.sampling_rate_hz, LEVELS)?;
         let chosen = kurtogram.best(LEAST_WIDTH * pass_hz.fold(0.0, f64::max));
         let stated = match settings.band {
-            EnvelopeBand::Verdict => defects.races.first().map(|strongest| strongest.band),
+            EnvelopeBand::Verdict => {
+                let unexplained = defects.unexplained.as_ref().map(|comb| comb.band);
+                unexplained.or(defects.races.first().map(|strongest| strongest.band))
+            }
             EnvelopeBand::Kurtogram => None,
             EnvelopeBand::Stated(band) => Some(band),
         };

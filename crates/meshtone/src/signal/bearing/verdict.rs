@@ -85,6 +85,8 @@ pub enum CannotTell {
     Unresolved,
     /// The lines of a race stand out, but chance may do as much.
     Trace(DefectKind),
+    /// Lines stand out that are of no stated race: [`BearingDefects::unexplained`].
+    DoesNotFit,
 }
 
 /// What a recording says about a bearing.
@@ -136,7 +138,9 @@ impl BearingDefects {
         let named: Vec<DefectKind> = of_bearing().filter(|of| of.is_detected()).map(|of| of.race).collect();
         let trace = of_bearing().find(|of| of.false_alarm_probability < RaceTest::DETECTED);
         let untold = self.untold.iter().find(|(place, _)| *place == bearing);
-        let doubt = trace.map(|of| CannotTell::Trace(of.race)).or(untold.map(|(_, why)| *why));
+        let is_of_shaft = |comb: &&UnexplainedComb| comb.ratios.iter().any(|(_, place, _)| *place == bearing);
+        let misfit = self.unexplained.as_ref().filter(is_of_shaft).map(|_| CannotTell::DoesNotFit);
+        let doubt = misfit.or(trace.map(|of| CannotTell::Trace(of.race))).or(untold.map(|(_, why)| *why));
         match doubt {
             _ if !named.is_empty() => BearingVerdict::Defect(named),
             Some(why) => BearingVerdict::CannotTell(why),

@@ -19,6 +19,7 @@ impl std::fmt::Display for CannotTell {
                 "the lines of a race cannot be separated from the orders of shafts or from those of another race; record longer, or at a \
                  higher rate"
             ),
+            Self::DoesNotFit => write!(to, "lines stand out that are of no stated race"),
             Self::Trace(race) => {
                 write!(to, "there is a trace of {}, which chance may have made", race.named())
             }
