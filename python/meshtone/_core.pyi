@@ -311,6 +311,7 @@ def bearings_of_train(
     bearings: Sequence[tuple[tuple[int, float, float, float], str | None]] | None,
     separation: str,
     band_hz: tuple[float, float] | None,
+    of_kurtogram: bool,
 ) -> dict[str, Any]: ...
 def best_band(levels: Sequence[_Array], sampling_rate_hz: float, least_width_hz: float) -> tuple[float, float, float] | None: ...
 def spectral_kurtosis(signal: _Array, block_samples: int) -> _Array: ...
@@ -353,7 +354,7 @@ def enhance(scenario: Scenario, tuned: _Path, draws: int, seed: int) -> tuple[_A
 class Observation:
     @staticmethod
     def of_simulated(
-        machine: Scenario, signal: _Array, start_s: float, other: Observation | None
+        machine: Scenario, signal: _Array, start_s: float
     ) -> Observation: ...
     @staticmethod
     def of_measured(
@@ -362,7 +363,6 @@ class Observation:
         phase: ShaftPhase,
         shaft: str | None,
         machine: Scenario,
-        other: Observation | None,
     ) -> Observation: ...
     @staticmethod
     def of_revolution(values: _Array, gear_teeth: int, signal: str) -> Observation: ...

@@ -46,8 +46,8 @@ class Diagnosis:
         The same of a damage whatever its kind: ``severity``, ``wheel``, ``tooth`` and their probabilities, ``one_tooth_probability``.
     bearings : list of dict
         Of a gearbox with ball or roller bearings every race, those with a defect first: ``bearings``, the names of those that it may be of, ``race``,
-        ``is_defect``, ``is_detected`` (lines that a sound bearing can have, too), ``false_alarm_probability``, ``order``, ``found_order``,
-        ``over_median``, ``healthy_over_median``. No severity is estimated.
+        ``is_defect``, ``is_detected`` (lines that a sound bearing can have, too), ``false_alarm_probability`` (0.01 stands for all below), ``order``,
+        ``found_order``, ``slip``, ``band_hz``, ``depth``, ``healthy_depth``. No severity is estimated.
     summary : str
         What it comes to, in a sentence.
     damaged : float
@@ -191,7 +191,7 @@ def diagnose(
     if tuned is not None:
         rig = _core.tuned_rig(rig, tuned)
     now = _observations("recordings", recordings, scenario, signal)
-    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal, now[0])
+    before = [] if healthy is None else _observations("healthy", healthy, scenario, signal)
     count = _records(records)
     known = typed((code, message, []) for code, message in _core.check_diagnosis(rig, now, before))
     warn_of_signal(known)
@@ -228,36 +228,29 @@ def _observations(
     given: Recorded | Sequence[Recorded],
     scenario: Scenario | Gearbox,
     signal: str,
-    other: _core.Observation | None = None,
 ) -> list[_core.Observation]:
     several: Sequence[Any] = given if isinstance(given, list) else [given]
     if not several:
         raise ValueError(f"{name}: must be at least one")
-    observed: list[_core.Observation] = []
-    for one in several:
-        # All in the band of the first one, in which the lines of bearings are compared.
-        observed.append(_observation(name, one, scenario, signal, other or next(iter(observed), None)))
-    return observed
+    return [_observation(name, one, scenario, signal) for one in several]
 
 
-def _observation(
-    name: str, one: Any, scenario: Scenario | Gearbox, signal: str, other: _core.Observation | None
-) -> _core.Observation:
+def _observation(name: str, one: Any, scenario: Scenario | Gearbox, signal: str) -> _core.Observation:
     if signal != "recording" and isinstance(scenario, Scenario):
         return _core.Observation.of_revolution(finite_signal(one), scenario.gear_teeth, signal)
     if isinstance(one, Simulation):
         values = getattr(one, chosen_channel(one.scenario, None))
-        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s, other)
+        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
     if isinstance(one, Recording) and one.scenario is not None:
         values = one[chosen_channel(one.scenario, None)]
-        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s, other)
+        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
     gearbox = one.gearbox if isinstance(one, (GearboxSimulation, Recording)) else None
     if gearbox is not None:
         values = one[gearbox._native.leading_channel()]
-        return _core.Observation.of_simulated(gearbox._native, values, one.start_s, other)
+        return _core.Observation.of_simulated(gearbox._native, values, one.start_s)
     known = measured(one)
     if known is not None:
-        return _core.Observation.of_measured(*known, native_machine(scenario), other)
+        return _core.Observation.of_measured(*known, native_machine(scenario))
     raise TypeError(
         f"{name}: must be simulations, recordings of them, (signal_g, sampling_rate_hz, phase), or a signal.TrainRecording"
     )

@@ -345,6 +345,7 @@ def test_bearings_on_the_shafts_of_a_gearbox() -> None:
     # The line of the input is at the fifth harmonic of that of the output.
     strength = [{line.line: line.amplitude for line in lines}["BPFO"] for lines in found.lines]
     assert strength[0] > strength[1] > 0
+    assert recording.bearings([bearing], band_hz="kurtogram").kurtosis is not None
     # The output turns 18 times, which is enough; in one second it is not.
     assert recording.bearings([bearing]).warnings == []
     short = ShaftPhase.constant(30.0, 20_000.0, 20_000)
@@ -362,6 +363,22 @@ def test_bearings_on_the_shafts_of_a_gearbox() -> None:
     assert machine != gearbox
     found = signal.TrainRecording(ringing + tone, phase, 20_000.0, machine).bearings(separation="none", band_hz=(3000, 5000))
     assert found.bearings == [(bearing, "output")]
+
+
+def test_verdicts_name_the_race_or_what_does_not_fit() -> None:
+    phase = ShaftPhase.constant(30.0, 20_000.0, 80_000)
+    bearing = signal.Bearing.named("6205")
+    since_s = (phase.revolutions * bearing.defect_orders.outer_race % 1) / (30 * bearing.defect_orders.outer_race)
+    noise = np.random.default_rng(1).standard_normal(since_s.size)
+    ringing = 2 * np.exp(-800 * since_s) * np.sin(2 * np.pi * 4000 * since_s) + noise
+    judged = signal.TrainRecording(ringing, phase, 20_000.0).bearings([bearing])
+    [of] = judged.verdicts
+    assert of.verdict == of.races[0].race == "outer race" and "false alarm below 1 in 100" in of.in_words
+    assert of.races[0].is_detected and of.races[0].false_alarm_probability == 0.01 and abs(of.races[0].slip) < 0.01
+    assert judged.band_hz == of.races[0].band_hz and judged.kurtosis is None and of.unexplained is None
+    other = signal.TrainRecording(ringing, phase, 20_000.0).bearings([signal.Bearing(8, 6.747, 28.5)]).verdicts[0]
+    assert other.unexplained is not None and other.unexplained.order == pytest.approx(bearing.defect_orders.outer_race, rel=0.01)
+    assert signal.TrainRecording(noise, phase, 20_000.0).bearings([bearing]).verdicts[0].verdict == "nothing"
 
 
 def test_tones_noise_and_velocity() -> None:

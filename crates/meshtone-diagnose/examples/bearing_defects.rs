@@ -16,10 +16,7 @@ use std::fs;
 use meshtone::Simulation;
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{Bearing, BearingDefect, BearingKind, DefectPlace, Scenario};
-use meshtone::signal::{
-    BearingDefects, BearingSettings, DefectKind, FrequencyBand, GearTrain, RaceTest, TrainRecording,
-    TrainTurning,
-};
+use meshtone::signal::{BearingDefects, DefectKind, GearTrain, RaceTest, TrainRecording, TrainTurning};
 use meshtone_diagnose::{BearingAnswer, Drawn, Prior};
 use meshtone_fourier::{from_real_spectrum, real_spectrum};
 use rayon::prelude::*;
@@ -69,11 +66,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(|number| ask(&prior, number).map_err(|error| error.to_string()));
     let asked: Vec<Asked> = asked.collect::<Result<Vec<_>, _>>()?.concat();
     let mut rows = String::from(
-        "recording,teeth,bearing,race,size,on_seat,tested_bearings,tested_race,is_true,p,over_median,healthy_over_median\n",
+        "recording,teeth,bearing,race,size,on_seat,tested_bearings,tested_race,is_true,p,depth,healthy_depth\n",
     );
     for (number, (truth, found)) in asked.iter().enumerate() {
         let (bearing, race, size) = truth.defect.unwrap_or((9, 9, 0.0));
-        for BearingAnswer { bearings, test, healthy_over_median } in found {
+        for BearingAnswer { bearings, test, healthy_depth } in found {
             writeln!(
                 rows,
                 "{number},{},{bearing},{race},{size:.3},{},{},{},{},{:.2e},{:.2},{:.2}",
@@ -83,8 +80,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 test.race.name(),
                 is_true(truth, test),
                 test.false_alarm_probability,
-                test.over_median,
-                healthy_over_median.unwrap_or(f64::NAN),
+                test.depth,
+                healthy_depth.unwrap_or(f64::NAN),
             )?;
         }
     }
@@ -124,12 +121,15 @@ fn ask(prior: &Prior, number: u64) -> Result<Vec<Asked>, Box<dyn Error>> {
         return Ok(Vec::new());
     };
     let on_seat = |seat: usize| {
-        let now = now.defects(seat, None, &mut draws)?;
-        let healthy = healthy.defects(seat, now.band, &mut draws)?;
+        let now = now.defects(seat, &mut draws)?;
+        let healthy = healthy.defects(seat, &mut draws)?;
         let answer = |test: &RaceTest| BearingAnswer {
             bearings: test.bearings.iter().map(usize::to_string).collect(),
             test: test.clone(),
-            healthy_over_median: healthy.over_median_of(test, now.revolutions),
+            healthy_depth: {
+                let is_same = |of: &&RaceTest| (of.race, &of.bearings) == (test.race, &test.bearings);
+                healthy.races.iter().find(is_same).map(|of| of.depth)
+            },
         };
         let is_on_seat = defect.is_some_and(|(bearing, ..)| bearing == seat);
         Ok((Truth { has_damaged_teeth, defect, is_on_seat }, now.races.iter().map(answer).collect()))
@@ -166,16 +166,9 @@ impl Simulated {
         Ok(Some(Self { drawn, gearbox, form, simulation }))
     }
 
-    /// What the sensor on a seat shows in a band.
-    fn defects(
-        &self,
-        seat: usize,
-        band: Option<FrequencyBand>,
-        draws: &mut Draws,
-    ) -> Result<BearingDefects, Box<dyn Error>> {
+    /// What the sensor on a seat shows.
+    fn defects(&self, seat: usize, draws: &mut Draws) -> Result<BearingDefects, Box<dyn Error>> {
         let channels = &self.simulation.channels;
-        let band =
-            band.map(|band| FrequencyBand { to_hz: band.to_hz.min(0.5 * channels.sampling_rate_hz), ..band });
         let train = GearTrain::of_scenario(&self.form)?;
         let turning = TrainTurning::of_simulated(&self.form, channels.start_s, channels.len())?;
         let bearings: Vec<_> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
@@ -189,7 +182,7 @@ impl Simulated {
             train: &train,
             turning: &turning,
         };
-        Ok(recording.bearing_defects(&bearings, &BearingSettings { band, ..BearingSettings::default() })?)
+        Ok(recording.bearing_defects(&bearings)?)
     }
 }
 

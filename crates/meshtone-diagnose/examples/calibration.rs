@@ -331,7 +331,7 @@ fn strange(prior: &Prior, number: u64, what: &str, level_g: f64) -> Result<Obser
     let train = GearTrain::of_wheels([("pinion", stated[0]), ("gear", stated[1])]);
     let recording =
         TrainRecording { signal: &signal, sampling_rate_hz: stated_hz, train: &train, turning: &turning };
-    Ok(Observation::of_recording(&recording, None)?)
+    Ok(Observation::of_recording(&recording)?)
 }
 
 fn row(

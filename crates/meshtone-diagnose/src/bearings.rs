@@ -1,4 +1,4 @@
-//! What is said about the bearings of a rig. It needs no simulation: their defects repeat with no shaft.
+//! What is said about the bearings of a rig. It needs no simulation: their defects repeat with no shaft, and the verdict is that of `meshtone indicators`.
 
 use meshtone::signal::{BearingDefects, DefectKind, GearTrain, RaceTest};
 
@@ -9,22 +9,21 @@ use crate::learn::Question;
 pub struct BearingAnswer {
     /// Names of the bearings that the defect may be of: shaft and place, such as `input:0`; several where their orders differ by less than slip does.
     pub bearings: Vec<String>,
-    /// What the recording with the least false-alarm probability shows; that probability is over all races and recordings. The strength is no severity.
+    /// What the recording with the least false-alarm probability shows; that probability is over all races and recordings. The depth is no severity.
     pub test: RaceTest,
-    /// (-) The largest [`BearingDefects::over_median_of`] the same lines in a healthy recording; none without one in which they are tested.
-    pub healthy_over_median: Option<f64>,
+    /// (-) The largest depth of the same race's lines in a healthy recording; none without one in which they are tested.
+    pub healthy_depth: Option<f64>,
 }
 
 impl BearingAnswer {
-    /// (-) Strength of the lines over that in a healthy recording, from which on they are of a defect: 7 in 282 recordings of sound bearings reached it (`--example
-    /// bearing_defects`).
+    /// (-) Depth of the lines over that in a healthy recording, from which on they are of a defect. A guess.
     pub const RISE: f64 = 2.0;
 
-    /// Returns whether the race is said to have a defect: its lines are there, and at least [`Self::RISE`] times as strong as in a healthy recording. Without one
+    /// Returns whether the race is said to have a defect: its lines are there, and at least [`Self::RISE`] times as deep as in a healthy recording. Without one
     /// those of an outer race are of no defect, because elements that pass the outer race of a sound bearing under load excite the same lines.
     pub fn is_defect(&self) -> bool {
-        let has_risen = match self.healthy_over_median {
-            Some(healthy) => self.test.over_median >= Self::RISE * healthy,
+        let has_risen = match self.healthy_depth {
+            Some(healthy) => self.test.depth >= Self::RISE * healthy,
             None => self.test.race != DefectKind::OuterRace,
         };
         self.test.is_detected() && has_risen
@@ -32,7 +31,7 @@ impl BearingAnswer {
 
     /// Returns whether its lines are there, and no healthy recording says whether a sound outer race excites them.
     fn may_be_defect(&self) -> bool {
-        self.test.is_detected() && !self.is_defect() && self.healthy_over_median.is_none()
+        self.test.is_detected() && !self.is_defect() && self.healthy_depth.is_none()
     }
 
     /// `the outer race of bearing input:0 or input:1`.
@@ -45,22 +44,16 @@ impl BearingAnswer {
         format!("{part} of bearing {}", self.bearings.join(" or "))
     }
 
-    /// Place and strength of its lines.
+    /// What is seen of its lines.
     fn in_words(&self) -> String {
-        let RaceTest { order, found_order, over_median, false_alarm_probability, .. } = &self.test;
         let healthy =
-            self.healthy_over_median.map(|healthy| format!(" ({healthy:.1} in the healthy recording)"));
+            self.healthy_depth.map(|healthy| format!(" (depth {healthy:.2} in the healthy recording)"));
         let alike = if self.bearings.len() > 1 {
             "; the orders of these bearings differ by less than slip"
         } else {
             ""
         };
-        format!(
-            "{}: lines at order {found_order:.3} of its shaft ({order:.3} without slip), {over_median:.1} times the median{}, false alarm {}{alike}",
-            self.named(),
-            healthy.unwrap_or_default(),
-            crate::p_in_words(*false_alarm_probability)
-        )
+        format!("{}: {}{}{alike}", self.named(), self.test.in_words(), healthy.unwrap_or_default())
     }
 }
 
@@ -71,15 +64,15 @@ impl BearingAnswer {
 /// * `question` - the recordings
 pub(crate) fn answers(train: &GearTrain, question: &Question) -> Vec<BearingAnswer> {
     let mut all: Vec<BearingAnswer> = Vec::new();
-    for BearingDefects { races, revolutions, .. } in question.now.iter().map(|asked| &asked.bearings) {
+    for BearingDefects { races, .. } in question.now.iter().map(|asked| &asked.bearings) {
         for test in races {
-            let healthy =
-                question.healthy.iter().filter_map(|of| of.bearings.over_median_of(test, *revolutions));
+            let is_same = |of: &&RaceTest| (of.race, &of.bearings) == (test.race, &test.bearings);
+            let healthy = question.healthy.iter().filter_map(|of| of.bearings.races.iter().find(is_same));
             let false_alarm_probability = (question.now.len() as f64 * test.false_alarm_probability).min(1.0);
             let answer = BearingAnswer {
                 bearings: test.bearings.iter().map(|place| train.bearings[*place].0.clone()).collect(),
                 test: RaceTest { false_alarm_probability, ..test.clone() },
-                healthy_over_median: healthy.reduce(f64::max),
+                healthy_depth: healthy.map(|of| of.depth).reduce(f64::max),
             };
             let is_same =
                 |of: &&mut BearingAnswer| (of.test.race, &of.test.bearings) == (test.race, &test.bearings);
@@ -105,32 +98,15 @@ pub(crate) fn answers(train: &GearTrain, question: &Question) -> Vec<BearingAnsw
 pub(crate) fn doubts(train: &GearTrain, question: &Question) -> Vec<String> {
     let name = |place: &usize| &train.bearings[*place].0;
     let mut doubts = Vec::new();
-    for BearingDefects { too_short, unresolved, hidden, warnings, .. } in
-        question.now.iter().map(|of| &of.bearings)
-    {
-        doubts.extend(too_short.iter().map(|(place, turns, needed)| {
-            format!(
-                "no defect of bearing {} is looked for: its cage turns {turns:.1} times, and {needed:.0} are needed; record longer",
-                name(place)
-            )
-        }));
-        doubts.extend(unresolved.iter().map(|place| {
-            format!(
-                "not all races of bearing {} are looked at: their lines are beyond the band of the recording, or too near to the orders of shafts; \
-                 record longer, or at a higher rate",
-                name(place)
-            )
-        }));
-        doubts.extend(hidden.iter().map(|place| {
-            format!(
-                "not all races of bearing {} are looked at: their lines are too near to those of a race that is detected",
-                name(place)
-            )
-        }));
-        doubts.extend(warnings.iter().map(ToString::to_string));
+    for BearingDefects { untold, unexplained, .. } in question.now.iter().map(|of| &of.bearings) {
+        doubts.extend(
+            untold.iter().map(|(place, why)| format!("not all is said about bearing {}: {why}", name(place))),
+        );
+        doubts.extend(
+            unexplained.iter().map(|comb| format!("shaft {}: {comb}", train.shafts[comb.shaft].name)),
+        );
     }
-    let is_uncompared =
-        |answer: &&BearingAnswer| answer.test.is_detected() && answer.healthy_over_median.is_none();
+    let is_uncompared = |answer: &&BearingAnswer| answer.test.is_detected() && answer.healthy_depth.is_none();
     if !question.healthy.is_empty() {
         doubts.extend(answers(train, question).iter().filter(is_uncompared).map(|of| {
             format!(
@@ -165,9 +141,9 @@ pub(crate) fn notes(answers: &[BearingAnswer]) -> Vec<String> {
     let mut notes: Vec<String> = detected
         .iter()
         .map(|of| {
-            let is_as_healthy = !of.is_defect() && of.healthy_over_median.is_some();
+            let is_as_healthy = !of.is_defect() && of.healthy_depth.is_some();
             let healthy = if is_as_healthy {
-                "; less than twice as strong as in the healthy recording, so no defect is stated"
+                "; less than twice as deep as in the healthy recording, so no defect is stated"
             } else {
                 ""
             };
@@ -193,28 +169,24 @@ mod tests {
     use crate::observation::Observation;
     use meshtone::random::{Draws, Purpose};
     use meshtone::scenario::{BearingDefect, BearingKind, DefectPlace, Scenario};
-    use meshtone::signal::{TrainRecording, TrainTurning};
+    use meshtone::signal::{FrequencyBand, TrainRecording, TrainTurning};
 
     use super::*;
 
-    fn answer(
-        bearings: &[&str],
-        race: DefectKind,
-        p: f64,
-        healthy_over_median: Option<f64>,
-    ) -> BearingAnswer {
+    fn answer(bearings: &[&str], race: DefectKind, p: f64, healthy_depth: Option<f64>) -> BearingAnswer {
         let test = RaceTest {
             race,
             bearings: (0..bearings.len()).collect(),
             order: 3.052,
             found_order: 3.049,
-            over_median: 41.0,
+            band: FrequencyBand { from_hz: 1500.0, to_hz: 2250.0 },
+            depth: 0.4,
             false_alarm_probability: p,
         };
         BearingAnswer {
             bearings: bearings.iter().map(|name| (*name).to_owned()).collect(),
             test,
-            healthy_over_median,
+            healthy_depth,
         }
     }
 
@@ -230,7 +202,9 @@ mod tests {
         let notes = notes(&answers);
         assert_eq!(notes.len(), 1);
         assert!(
-            notes[0].contains("false alarm p < 0.001; the orders of these bearings differ by less than slip"),
+            notes[0].contains(
+                "false alarm below 1 in 100; the orders of these bearings differ by less than slip"
+            ),
             "{}",
             notes[0]
         );
@@ -240,21 +214,22 @@ mod tests {
     #[test]
     fn lines_are_of_a_defect_where_they_have_risen() {
         let outer = |healthy| answer(&["input:0"], DefectKind::OuterRace, 1e-5, healthy);
-        assert!(outer(Some(20.0)).is_defect() && !outer(Some(21.0)).is_defect() && !outer(None).is_defect());
-        assert_eq!(sentence(&[outer(Some(21.0))]), None);
+        assert!(outer(Some(0.19)).is_defect() && !outer(Some(0.21)).is_defect() && !outer(None).is_defect());
+        assert_eq!(sentence(&[outer(Some(0.21))]), None);
         assert!(
-            notes(&[outer(Some(21.0))])[0].contains("41.0 times the median (21.0 in the healthy recording)")
+            notes(&[outer(Some(0.21))])[0]
+                .contains("depth 0.40, false alarm below 1 in 100 (depth 0.21 in the healthy recording)")
         );
         // An inner race needs no comparison, but is compared where it can be.
         let inner = |healthy| answer(&["input:0"], DefectKind::InnerRace, 1e-5, healthy);
-        assert!(inner(None).is_defect() && inner(Some(20.0)).is_defect() && !inner(Some(21.0)).is_defect());
+        assert!(inner(None).is_defect() && inner(Some(0.19)).is_defect() && !inner(Some(0.21)).is_defect());
     }
 
     /// From the simulation of a gearbox on ball bearings to the answer: a spall on the outer race is a defect beside the recording of the sound bearing, and
     /// the sound bearing beside itself has none.
     #[test]
     fn spall_of_a_simulated_bearing_is_a_defect_and_a_sound_bearing_is_none() {
-        let observed = |spall: Option<BearingDefect>, other: Option<&Observation>| {
+        let observed = |spall: Option<BearingDefect>, seed: u64| {
             let mut gearbox = Scenario::from_toml(include_str!("../../../examples/gearbox.toml")).unwrap();
             gearbox.bearings_mut()[0].kind = BearingKind::Ball;
             gearbox.bearings_mut()[0].name = Some("ER-10K".to_owned());
@@ -264,18 +239,17 @@ mod tests {
             let channels = meshtone::simulate(&gearbox).unwrap().channels;
             let train = GearTrain::of_scenario(&gearbox).unwrap();
             let turning = TrainTurning::of_simulated(&gearbox, channels.start_s, channels.len()).unwrap();
-            let mut draws = Draws::new(1, Purpose::DiagnosisNoise, u64::from(other.is_none()));
+            let mut draws = Draws::new(1, Purpose::DiagnosisNoise, seed);
             let signal = channels.signal(&gearbox.leading_channel()).unwrap();
             let signal: Vec<f64> = signal.iter().map(|value| value + 0.1 * draws.normal()).collect();
             let sampling_rate_hz = channels.sampling_rate_hz;
             let recording =
                 TrainRecording { signal: &signal, sampling_rate_hz, train: &train, turning: &turning };
-            (Observation::of_recording(&recording, other).unwrap(), train)
+            (Observation::of_recording(&recording).unwrap(), train)
         };
         let defects = |spall: Option<BearingDefect>| {
-            let (now, train) = observed(spall, None);
-            let healthy = [observed(None, Some(&now)).0];
-            assert_eq!(healthy[0].bearings.band, now.bearings.band);
+            let (now, train) = observed(spall, 0);
+            let healthy = [observed(None, 1).0];
             let question = Question { now: &[now], healthy: &healthy };
             let defects = answers(&train, &question).into_iter().filter(BearingAnswer::is_defect);
             defects.map(|of| (of.bearings.concat(), of.test.race)).collect::<Vec<_>>()

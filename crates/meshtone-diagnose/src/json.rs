@@ -55,11 +55,13 @@ fn bearing(of: &BearingAnswer) -> Value {
         "race": of.test.race.name().replace(' ', "-"),
         "is_defect": of.is_defect(),
         "is_detected": of.test.is_detected(),
-        "false_alarm_probability": of.test.false_alarm_probability,
+        "false_alarm_probability": of.test.stated_probability(),
         "order": of.test.order,
         "found_order": of.test.found_order,
-        "over_median": of.test.over_median,
-        "healthy_over_median": of.healthy_over_median,
+        "slip": of.test.slip(),
+        "band_hz": [of.test.band.from_hz, of.test.band.to_hz],
+        "depth": of.test.depth,
+        "healthy_depth": of.healthy_depth,
     })
 }
 

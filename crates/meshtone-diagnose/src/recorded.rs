@@ -1,11 +1,10 @@
 //! Observation of recordings by the angles of the shafts.
 
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, BearingDefects, BearingSettings, ForeignTones, FrequencyBand,
-    GearTrain, LinesOffShafts, Mismatch, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning,
-    SynchronousAverage, TrainBearing, TrainRecording, TrainTurning, TrainWheel, find_train_mismatch,
-    foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation, synchronous_average,
-    synchronous_part,
+    AngleZero, AngularSettings, AngularSignal, BearingDefects, ForeignTones, GearTrain, LinesOffShafts,
+    Mismatch, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage,
+    TrainBearing, TrainRecording, TrainTurning, TrainWheel, find_train_mismatch, foreign_tones, kurtosis,
+    lines_off_shafts, rms, standard_deviation, synchronous_average, synchronous_part,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum};
 use meshtone_learn::{MESH_ORDERS, PASSED, WheelLines, separations};
@@ -98,20 +97,16 @@ fn nothing_synchronous(
 /// (-) Level of the quietest revolution over that of the loudest, below which the sensor did not measure all the time.
 const QUIETEST: f64 = 1.0 / 30.0;
 
-/// (-) By so much two sampling rates may differ and are the same to the band of an envelope: those of simulations have a whole number of samples a revolution.
-const NEARLY: f64 = 0.02;
-
 impl Observation {
     /// Observes the wheels of a rig in a recording, with what speaks against the statements about it.
     ///
     /// # Arguments
     /// * `recording` - a channel, in g, with the rig's shafts and how they turned
-    /// * `other` - an observation that this one is compared with: bearings are looked for in its band, and not at all where this recording does not reach it
     ///
     /// # Errors
     /// Fewer than two whole revolutions of a shaft; those of [`meshtone::signal::angular_resample`].
-    pub fn of_recording(recording: &TrainRecording, other: Option<&Self>) -> Result<Self, SignalError> {
-        let TrainRecording { train, sampling_rate_hz, .. } = *recording;
+    pub fn of_recording(recording: &TrainRecording) -> Result<Self, SignalError> {
+        let train = recording.train;
         let settings = AngularSettings::default();
         let angular = (0..train.wheels.len()).map(|wheel| recording.angular(wheel, &settings));
         let angular = angular.collect::<Result<Vec<_>, _>>()?;
@@ -122,18 +117,7 @@ impl Observation {
         let against = mismatch(recording, &angular)?;
         let observed = Self::of_angles(train, &angular, input_speed_hz)?;
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
-        let band = other.and_then(|other| other.bearings.band);
-        let highest_hz = 0.5 * sampling_rate_hz;
-        let bearings = match band {
-            Some(band) if band.to_hz > (1.0 + NEARLY) * highest_hz => BearingDefects::default(),
-            _ => recording.bearing_defects(
-                &bearings,
-                &BearingSettings {
-                    band: band.map(|band| FrequencyBand { to_hz: band.to_hz.min(highest_hz), ..band }),
-                    ..BearingSettings::default()
-                },
-            )?,
-        };
+        let bearings = recording.bearing_defects(&bearings)?;
         let observed = Self { zero, bearings, ..observed };
         Ok(match against {
             Some(against) => observed.with_mismatch(against),

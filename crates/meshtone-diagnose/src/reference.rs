@@ -192,7 +192,7 @@ mod tests {
         let turning = TrainTurning::of_simulated(&gearbox, channels.start_s, signal.len()).unwrap();
         let (sampling_rate_hz, train) = (channels.sampling_rate_hz, &prior.train);
         let recording = TrainRecording { signal, sampling_rate_hz, train, turning: &turning };
-        let observed = Observation::of_recording(&recording, None).unwrap();
+        let observed = Observation::of_recording(&recording).unwrap();
         assert_eq!(observed.mismatch, None);
         assert!((observed.input_speed_hz.unwrap() / record.input_speed_hz - 1.0).abs() < 1e-6);
         for (wheel, (kept, seen)) in record.wheels.iter().zip(&observed.wheels).enumerate() {

@@ -2,7 +2,7 @@
 
 use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS};
 use meshtone::signal::{
-    self as steps, BearingSeparation, BearingSettings, FrequencyBand, GearTrain, Kurtogram,
+    self as steps, BearingSeparation, BearingSettings, EnvelopeBand, FrequencyBand, GearTrain, Kurtogram,
     SquaredEnvelopeSpectrum, TrainBearing, TrainRecording,
 };
 use pyo3::prelude::*;
@@ -54,6 +54,14 @@ pub fn defect_lines(
     Ok(py.detach(|| steps::defect_lines(&spectrum, &orders, shaft)).iter().map(line).collect())
 }
 
+/// Race, order, place where it was found, band, depth, probability, whether it is detected.
+type Race = (&'static str, f64, f64, (f64, f64), f64, f64, bool);
+
+fn race_test(of: &steps::RaceTest) -> Race {
+    let band_hz = (of.band.from_hz, of.band.to_hz);
+    (of.race.name(), of.order, of.found_order, band_hz, of.depth, of.stated_probability(), of.is_detected())
+}
+
 fn line(of: &steps::DefectLine) -> Line {
     let part = of.kind.name();
     (of.name(), part, of.order, of.found_order, of.amplitude, of.over_median, of.is_beside_shaft_order)
@@ -73,6 +81,7 @@ pub fn bearings_of_train<'py>(
     bearings: Option<Vec<(Geometry, Option<String>)>>,
     separation: &str,
     band_hz: Option<(f64, f64)>,
+    of_kurtogram: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let signal = samples(&signal)?;
     let train = machine.map_or_else(|| Ok(GearTrain::of_shaft("shaft")), |machine| train(&machine))?;
@@ -100,9 +109,15 @@ pub fn bearings_of_train<'py>(
             return Err(value_error(format!("separation = '{other}': must be one of {allowed}")));
         }
     };
-    let settings = BearingSettings { separation, band: frequencies(band_hz) };
+    let band = match frequencies(band_hz) {
+        Some(band) => EnvelopeBand::Stated(band),
+        None if of_kurtogram => EnvelopeBand::Kurtogram,
+        None => EnvelopeBand::Verdict,
+    };
+    let settings = BearingSettings { separation, band };
     let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
     let found = py.detach(|| recording.bearings(&placed, &settings)).map_err(value_error)?;
+    let defects = &found.defects;
     let levels = found.kurtogram.levels.into_iter().map(|level| array(py, level));
     let of_bearing = |(spectrum, lines): (SquaredEnvelopeSpectrum, Vec<steps::DefectLine>)| {
         (spectrum.step, array(py, spectrum.amplitudes), lines.iter().map(line).collect::<Vec<_>>())
@@ -110,6 +125,17 @@ pub fn bearings_of_train<'py>(
     let of_train = |bearing: &TrainBearing| (numbers(bearing.geometry), &train.shafts[bearing.shaft].name);
     let all = PyDict::new(py);
     all.set_item("placed", placed.iter().map(of_train).collect::<Vec<_>>())?;
+    let verdict = |place| {
+        let races = defects.races.iter().filter(|of| of.bearings.contains(&place)).map(race_test);
+        let unexplained = defects.unexplained.as_ref().filter(|of| of.shaft == placed[place].shaft);
+        let unexplained = unexplained.map(|of| {
+            let ratios: Vec<_> = of.ratios.iter().map(|(race, _, ratio)| (race.name(), *ratio)).collect();
+            (of.order, (of.band.from_hz, of.band.to_hz), ratios, of.to_string())
+        });
+        let (name, in_words) = (defects.verdict(place).name(), defects.in_words(place));
+        (name, in_words, races.collect::<Vec<_>>(), unexplained)
+    };
+    all.set_item("verdicts", (0..placed.len()).map(verdict).collect::<Vec<_>>())?;
     all.set_item("levels", levels.collect::<Vec<_>>())?;
     all.set_item("band_hz", (found.band.from_hz, found.band.to_hz))?;
     all.set_item("kurtosis", found.kurtosis)?;

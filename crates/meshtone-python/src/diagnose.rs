@@ -25,14 +25,13 @@ pub struct Observation(Observed);
 
 #[pymethods]
 impl Observation {
-    /// Of a simulated signal, in g, in the band of another observation that it is compared with.
+    /// Of a simulated signal, in g.
     #[staticmethod]
     fn of_simulated(
         py: Python<'_>,
         machine: PyRef<'_, Scenario>,
         signal: Signal<'_>,
         start_s: f64,
-        other: Option<&Self>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
         let form = machine.0.clone();
@@ -41,13 +40,12 @@ impl Observation {
             let turning = TrainTurning::of_simulated(&form, start_s, signal.len())?;
             let sampling_rate_hz = form.time_grid().sampling_rate_hz;
             let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
-            Observed::of_recording(&recording, other.map(|other| &other.0))
+            Observed::of_recording(&recording)
         };
         py.detach(observe).map(Self).map_err(value_error)
     }
 
-    /// Observes a measured signal, in g, by the phase of a shaft (the pinion's or the input where none is named), in the band of another observation
-    /// that it is compared with.
+    /// Observes a measured signal, in g, by the phase of a shaft (the pinion's or the input where none is named).
     #[staticmethod]
     fn of_measured(
         py: Python<'_>,
@@ -56,7 +54,6 @@ impl Observation {
         phase: &ShaftPhase,
         shaft: Option<&str>,
         machine: PyRef<'_, Scenario>,
-        other: Option<&Self>,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
         let form = machine.0.clone();
@@ -64,8 +61,7 @@ impl Observation {
         let (shaft, stated) = stated_of_rig(&form, &train, phase, shaft)?;
         let turning = TrainTurning::Shaft { shaft, phase: phase.0.clone(), stated };
         let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
-        let other = other.map(|other| &other.0);
-        py.detach(|| Observed::of_recording(&recording, other)).map(Self).map_err(value_error)
+        py.detach(|| Observed::of_recording(&recording)).map(Self).map_err(value_error)
     }
 
     /// Of one revolution of the gear, in g.

@@ -50,13 +50,23 @@ from .random_part import (
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
 from .spectra import envelope, envelope_spectrum, order_spectrum
-from .train import BearingRecords, ForeignLine, TrainRecord, TrainRecording, process_train
+from .train import (
+    BearingRecords,
+    BearingVerdict,
+    ForeignLine,
+    RaceTest,
+    TrainRecord,
+    TrainRecording,
+    UnexplainedComb,
+    process_train,
+)
 
 __all__ = [
     "NAMED_BEARINGS",
     "AngularSignal",
     "Bearing",
     "BearingRecords",
+    "BearingVerdict",
     "DefectLine",
     "DefectOrders",
     "DiscreteRandomParts",
@@ -67,6 +77,7 @@ __all__ = [
     "Mismatch",
     "OrderMap",
     "Parts",
+    "RaceTest",
     "Record",
     "ShaftPhase",
     "SignalWarning",
@@ -74,6 +85,7 @@ __all__ = [
     "SynchronousResidual",
     "TrainRecord",
     "TrainRecording",
+    "UnexplainedComb",
     "angular_resample",
     "cepstral_prewhitening",
     "check_recording",

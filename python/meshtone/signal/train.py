@@ -79,12 +79,92 @@ class TrainRecord:
         return self.wheels[wheel]
 
 
+@dataclass(frozen=True)
+class RaceTest:
+    """What a recording shows of one race of a bearing.
+
+    Attributes
+    ----------
+    race : str
+        ``outer race``, ``inner race`` or ``rolling element``.
+    order, found_order : float
+        (orders of the shaft) Its first line without slip, and where its lines are strongest together, within 3 %.
+    band_hz : (float, float)
+        (Hz) Band in which they are strongest.
+    depth : float
+        (-) Amplitude of the first line over the mean of the squared envelope. Compare it with an earlier recording; it is no severity.
+    false_alarm_probability : float
+        (-) Probability that some race looks like this without a defect; 0.01 stands for all below.
+    is_detected : bool
+        Whether it is below 0.01.
+    """
+
+    race: str
+    order: float
+    found_order: float
+    band_hz: tuple[float, float]
+    depth: float
+    false_alarm_probability: float
+    is_detected: bool
+
+    @property
+    def slip(self) -> float:
+        """(-) How far its lines are from where they would be without slip, as a part."""
+        return self.found_order / self.order - 1
+
+
+@dataclass(frozen=True)
+class UnexplainedComb:
+    """The strongest comb of lines that is of no stated race.
+
+    Attributes
+    ----------
+    order : float
+        (orders of the bearing's shaft) Its first line.
+    band_hz : (float, float)
+        (Hz) Band in which it is strongest.
+    ratios : list of (str, float)
+        For each race how many times as fast the shaft would have to turn to explain it.
+    in_words : str
+        All that as a sentence.
+    """
+
+    order: float
+    band_hz: tuple[float, float]
+    ratios: list[tuple[str, float]]
+    in_words: str
+
+
+@dataclass(frozen=True)
+class BearingVerdict:
+    """What a recording says about a bearing.
+
+    Attributes
+    ----------
+    verdict : str
+        ``outer race``, ``inner race`` or ``rolling element``, of several the first that was found; ``nothing``; ``cannot tell``.
+    in_words : str
+        A sentence: the race with its band, slip and probability, or why the recording does not tell.
+    races : list of RaceTest
+        Its races, those with a defect first.
+    unexplained : UnexplainedComb or None
+        Lines of no stated race, where none is named: speed, rate or geometry does not fit.
+    """
+
+    verdict: str
+    in_words: str
+    races: list[RaceTest]
+    unexplained: UnexplainedComb | None
+
+
 @dataclass(frozen=True, eq=False)
 class BearingRecords:
     """What a recording shows about bearings.
 
     Attributes
     ----------
+    verdicts : list of BearingVerdict
+        The verdict about each bearing.
     kurtogram : Kurtogram
         Of what was left after the separation.
     band_hz : (float, float)
@@ -101,6 +181,7 @@ class BearingRecords:
         ``not-averaged``: shafts with fewer than eight revolutions, whose tones are left.
     """
 
+    verdicts: list[BearingVerdict]
     kurtogram: Kurtogram = field(repr=False)
     band_hz: tuple[float, float]
     kurtosis: float | None
@@ -139,9 +220,11 @@ class TrainRecording:
         bearings: Sequence[Bearing | tuple[Bearing, str]] | None = None,
         *,
         separation: Literal["averages", "discrete-random", "prewhitening", "none"] = "averages",
-        band_hz: tuple[float, float] | None = None,
+        band_hz: tuple[float, float] | Literal["kurtogram"] | None = None,
     ) -> BearingRecords:
-        """Look for the defects of bearings, as ``meshtone indicators`` does.
+        """Judge bearings and look at the lines of their defects, as ``meshtone indicators`` does.
+
+        The verdict holds for bearings at whose seat the sensor is. It does not depend on ``separation`` and ``band_hz``, which are of the lines and spectra.
 
         Parameters
         ----------
@@ -150,9 +233,9 @@ class TrainRecording:
             the machine, each geometry on a shaft once.
         separation : {'averages', 'discrete-random', 'prewhitening', 'none'}
             What is removed first because it comes from the gears.
-        band_hz : (float, float), optional
-            (Hz) Band of the squared envelope; by default that of the largest kurtosis among those at least three times as wide as the
-            largest BPFI.
+        band_hz : (float, float) or 'kurtogram', optional
+            (Hz) Band of the squared envelope; by default that in which the verdict sees most. That of the kurtogram has the largest kurtosis among those at
+            least three times as wide as the largest BPFI.
 
         Returns
         -------
@@ -174,8 +257,11 @@ class TrainRecording:
         >>> phase = ShaftPhase.constant(30.0, 20_000.0, 60_000)
         >>> since_s = (phase.revolutions * bearing.defect_orders.outer_race % 1) / (30 * bearing.defect_orders.outer_race)
         >>> ringing = np.exp(-800 * since_s) * np.sin(2 * np.pi * 4000 * since_s)
-        >>> recording = TrainRecording(ringing + np.cos(2 * np.pi * 19 * phase.revolutions), phase, 20_000.0)
+        >>> noise = np.random.default_rng(1).standard_normal(ringing.size)
+        >>> recording = TrainRecording(ringing + noise + np.cos(2 * np.pi * 19 * phase.revolutions), phase, 20_000.0)
         >>> found = recording.bearings([bearing])
+        >>> found.verdicts[0].verdict
+        'outer race'
         >>> max(found.lines[0], key=lambda line: line.amplitude).line
         'BPFO'
         """
@@ -189,11 +275,19 @@ class TrainRecording:
             self.shaft,
             None if placed is None else [(of._native, shaft) for of, shaft in placed],
             separation,
-            band_hz,
+            None if band_hz == "kurtogram" else band_hz,
+            band_hz == "kurtogram",
         )
         warnings = typed(parts["warnings"])
         warn_of_signal(warnings)
+        verdicts = [
+            BearingVerdict(
+                name, in_words, [RaceTest(*of) for of in races], None if unexplained is None else UnexplainedComb(*unexplained)
+            )
+            for name, in_words, races, unexplained in parts["verdicts"]
+        ]
         return BearingRecords(
+            verdicts=verdicts,
             kurtogram=Kurtogram(parts["levels"], rate_hz),
             band_hz=parts["band_hz"],
             kurtosis=parts["kurtosis"],

@@ -105,8 +105,8 @@ impl Diagnose {
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = self.scenario()?;
         let observer = Observer::new(&scenario, self.signal, &self.reading, &self.phase, &self.shafts)?;
-        let (now, of_now) = observe(&observer, &self.recordings, None)?;
-        let (healthy, of_healthy) = observe(&observer, &self.healthy, now.first())?;
+        let (now, of_now) = observe(&observer, &self.recordings)?;
+        let (healthy, of_healthy) = observe(&observer, &self.healthy)?;
         let question = Question { now: &now, healthy: &healthy };
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.recordings[0], "diagnosis"));
         let recordings = self.recordings.iter().chain(&self.healthy).map(PathBuf::as_path);
@@ -242,15 +242,11 @@ impl Diagnose {
     }
 }
 
-/// Observes files, all as the other observation that they are compared with, or as the first one.
-fn observe(
-    observer: &Observer,
-    paths: &[PathBuf],
-    other: Option<&Observation>,
-) -> Result<(Vec<Observation>, Vec<WarningEntry>), Failure> {
+/// Observes files.
+fn observe(observer: &Observer, paths: &[PathBuf]) -> Result<(Vec<Observation>, Vec<WarningEntry>), Failure> {
     let (mut observations, mut warnings) = (Vec::new(), Vec::new());
     for path in paths {
-        let (observation, of_path) = observer.observe(path, other.or(observations.first()))?;
+        let (observation, of_path) = observer.observe(path)?;
         observations.push(observation);
         warnings.extend(of_path);
     }

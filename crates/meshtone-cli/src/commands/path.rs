@@ -6,7 +6,9 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use meshtone::Error;
 use meshtone::scenario::Scenario;
-use meshtone::signal::{SignalWarning, StatedFacts, StatedTurning, TrainTurning};
+use meshtone::signal::{
+    SignalWarning, StatedFacts, StatedTurning, TrainBearing, TrainRecording, TrainTurning,
+};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
     estimate_path,
@@ -123,6 +125,22 @@ impl Path {
         let Input { source, channel, sampling_rate_hz, .. } = input;
         let what = format!("channel {}", channel.name);
         let refused = |error| refuse(&source, &what, RefusedInput::Phase, &error);
+        let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
+        let heard =
+            TrainRecording { signal: &channel.samples, sampling_rate_hz, train: &train, turning: &turning };
+        let heard = heard.bearing_defects(&bearings).map_err(refused)?;
+        // The path of a damaged machine would take its bursts for the path's.
+        let unsound = heard.races.iter().filter(|race| race.is_detected()).map(|race| {
+            let (part, seats, seen) =
+                (race.race.name(), &train.bearings[race.bearings[0]].0, race.in_words());
+            about(
+                &source,
+                format_args!(
+                    "the machine should be healthy, but the {part} of bearing {seats} has a defect: {seen}"
+                ),
+            )
+        });
+        let unsound: Vec<WarningEntry> = unsound.collect();
         let (shaft, phase, stated) = match turning {
             TrainTurning::Shaft { shaft, phase, stated } => (shaft, phase, stated),
             TrainTurning::SimulatedPair(shafts) => {
@@ -140,7 +158,7 @@ impl Path {
             return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
         }
         let doubtful = phase.warnings.iter().map(|warning| about(&source, warning));
-        let warnings = warnings.into_iter().chain(doubtful).collect();
+        let warnings = warnings.into_iter().chain(doubtful).chain(unsound).collect();
         Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, shaft, phase, stated }, warnings))
     }
 

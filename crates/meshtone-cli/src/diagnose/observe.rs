@@ -61,10 +61,9 @@ impl<'a> Observer<'a> {
     ///
     /// # Arguments
     /// * `path` - the file
-    /// * `other` - an observation that it is compared with
-    pub fn observe(&self, path: &Path, other: Option<&Observation>) -> Result<Observed, Failure> {
+    pub fn observe(&self, path: &Path) -> Result<Observed, Failure> {
         if self.signal == SignalKind::Recording {
-            return self.recording(path, other);
+            return self.recording(path);
         }
         let gears = self.scenario.gears();
         let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
@@ -99,7 +98,7 @@ impl<'a> Observer<'a> {
         Failure::refuse(problem, "leave out --signal: a whole recording is averaged here")
     }
 
-    fn recording(&self, path: &Path, other: Option<&Observation>) -> Result<Observed, Failure> {
+    fn recording(&self, path: &Path) -> Result<Observed, Failure> {
         let mut input = Input::read(path, self.reading, self.phase.channel())?;
         to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
         let turned = Turned::new(&input, self.phase, self.shafts, Some(self.scenario))?;
@@ -119,7 +118,7 @@ impl<'a> Observer<'a> {
             turning: &turning,
         };
         let what = format!("channel {}", input.channel.name);
-        let observation = Observation::of_recording(&recording, other);
+        let observation = Observation::of_recording(&recording);
         let observation = observation.map_err(|error| refuse(&input.source, &what, subject, &error))?;
         let doubtful = doubtful.iter().map(|warning| about(&input.source, warning));
         Ok((observation, warnings.into_iter().chain(doubtful).collect()))

@@ -1,12 +1,13 @@
-//! Bearings: the options that name them, and the lines of their defects in a recording.
+//! Bearings: the options that name them, the verdict about each, and the lines of their defects in a recording.
 
 use clap::Args;
 use meshtone::bearing::{BearingGeometry, NAMED_BEARINGS, NamedBearing};
 use meshtone::signal::{
-    BearingRecords, BearingSeparation, BearingSettings, FrequencyBand, GearTrain, SignalError, TrainBearing,
-    TrainRecording,
+    BearingRecords, BearingSeparation, BearingSettings, EnvelopeBand, FrequencyBand, GearTrain, SignalError,
+    TrainBearing, TrainRecording,
 };
 use meshtone_io::indicators::BearingEntry;
+use serde_json::{Value, json};
 
 use super::train::find;
 use crate::choice::{Choice, name_of, one_of};
@@ -16,15 +17,16 @@ use crate::failure::Failure;
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Bearings")]
 pub struct BearingOptions {
-    /// Rolling bearing whose defect lines are looked for, and the shaft in its inner ring: by its name, or by the number of its elements, their
+    /// Rolling bearing that is judged, by what a sensor at its seat records, and the shaft in its inner ring: by its name, or by the number of its elements, their
     /// diameter, the pitch diameter (mm) and the contact angle (°), such as 6205, ER-10K@output or 9,7.94,39.04,0@pinion. May be repeated.
     /// [default: the rolling bearings of the scenario; default shaft: the one that speed or pulses are of]
     #[arg(long = "bearing", value_name = "BEARING[@SHAFT]", value_parser = bearing)]
     pub bearings: Vec<NamedChoice>,
-    /// (Hz) Band of the squared envelope. [default: that of the largest kurtosis, at least three times as wide as the largest BPFI]
+    /// (Hz) Band of the squared envelope that is drawn; `kurtogram` takes that of the largest kurtosis, at least three times as wide as the largest BPFI. The verdict
+    /// looks at many bands. [default: that in which the verdict sees most]
     #[arg(long, value_name = "FROM,TO", value_parser = band)]
-    pub band_hz: Option<FrequencyBand>,
-    /// What is removed from the recording first [default: averages]
+    pub band_hz: Option<EnvelopeBand>,
+    /// What is removed from the recording before its envelope is drawn [default: averages]
     #[arg(long, value_parser = one_of(&SEPARATIONS))]
     pub bearing_separation: Option<BearingSeparation>,
 }
@@ -99,12 +101,17 @@ fn geometry(text: &str) -> Result<BearingGeometry, String> {
     BearingGeometry::new(elements as u32, element_mm, pitch_mm, angle_deg).map_err(|error| error.to_string())
 }
 
-fn band(text: &str) -> Result<FrequencyBand, String> {
+fn band(text: &str) -> Result<EnvelopeBand, String> {
+    if text == "kurtogram" {
+        return Ok(EnvelopeBand::Kurtogram);
+    }
     let ends = text.split_once(',').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
     match ends {
-        Some((from_hz, to_hz)) if 0.0 <= from_hz && from_hz < to_hz => Ok(FrequencyBand { from_hz, to_hz }),
-        _ => Err("must be two frequencies in Hz, the lower one first, both from 0 to half the sampling rate, as in 2000,5500; leave \
-                  the option out for the band of the largest kurtosis"
+        Some((from_hz, to_hz)) if 0.0 <= from_hz && from_hz < to_hz => {
+            Ok(EnvelopeBand::Stated(FrequencyBand { from_hz, to_hz }))
+        }
+        _ => Err("must be two frequencies in Hz, the lower one first, both from 0 to half the sampling rate, as in 2000,5500, or kurtogram; leave \
+                  the option out for the band in which the verdict sees most"
             .to_owned()),
     }
 }
@@ -113,6 +120,15 @@ impl BearingOptions {
     /// What is removed first.
     fn removed(&self) -> BearingSeparation {
         self.bearing_separation.unwrap_or_default()
+    }
+
+    /// The band as it was stated: two frequencies, or `kurtogram`.
+    pub fn stated_band(&self) -> Value {
+        match self.band_hz {
+            None | Some(EnvelopeBand::Verdict) => Value::Null,
+            Some(EnvelopeBand::Kurtogram) => "kurtogram".into(),
+            Some(EnvelopeBand::Stated(band)) => json!([band.from_hz, band.to_hz]),
+        }
     }
 
     /// Name of the separation.
@@ -144,11 +160,11 @@ impl BearingOptions {
     fn check_band(&self, sampling_rate_hz: f64) -> Result<(), Failure> {
         let half_hz = 0.5 * sampling_rate_hz;
         match self.band_hz {
-            Some(FrequencyBand { from_hz, to_hz }) if to_hz > half_hz => {
+            Some(EnvelopeBand::Stated(FrequencyBand { from_hz, to_hz })) if to_hz > half_hz => {
                 let problem = format!(
                     "--band-hz {from_hz},{to_hz}: the band ends above {half_hz} Hz, half the sampling rate; must be within 0 to {half_hz} Hz"
                 );
-                let help = "name a band around a resonance, or leave the option out for the band of the largest kurtosis";
+                let help = "name a band around a resonance, or leave the option out for the band in which the verdict sees most";
                 Failure::refuse(problem, help)
             }
             _ => Ok(()),
@@ -197,13 +213,15 @@ impl BearingOptions {
             Ok(TrainBearing { geometry: of.geometry, shaft })
         };
         let placed = chosen.iter().map(place).collect::<Result<Vec<_>, _>>()?;
-        let settings = BearingSettings { separation: self.removed(), band: self.band_hz };
+        let settings = BearingSettings { separation: self.removed(), band: self.band_hz.unwrap_or_default() };
         let records = recording.bearings(&placed, &settings).map_err(|error| refuse(&error))?;
         let is_plain = |unit: &str| unit.chars().all(char::is_alphanumeric);
         let squared = |unit: &str| if is_plain(unit) { format!("{unit}²") } else { format!("({unit})²") };
         let unit = unit.filter(|_| self.removed() != BearingSeparation::Prewhitening).map(squared);
         let mut entries = Vec::new();
-        for ((of, bearing), (_, lines)) in chosen.iter().zip(placed).zip(&records.bearings) {
+        for (place, ((of, bearing), (_, lines))) in
+            chosen.iter().zip(placed).zip(&records.bearings).enumerate()
+        {
             let phase = recording.phase(bearing.shaft).map_err(|error| refuse(&error))?;
             entries.push(BearingEntry {
                 recording: 0,
@@ -211,6 +229,15 @@ impl BearingOptions {
                 bearing,
                 shaft: shafts[bearing.shaft].name.clone(),
                 mean_speed_hz: phase.mean_speed_hz(recording.sampling_rate_hz),
+                verdict: (records.defects.verdict(place).name(), records.defects.in_words(place)),
+                races: records
+                    .defects
+                    .races
+                    .iter()
+                    .filter(|test| test.bearings.contains(&place))
+                    .cloned()
+                    .collect(),
+                unexplained: records.defects.unexplained.clone().filter(|comb| comb.shaft == bearing.shaft),
                 band: records.band,
                 band_kurtosis: records.kurtosis,
                 amplitude_unit: unit.clone(),

@@ -205,7 +205,7 @@ pub fn settings(
         ("revolutions_of_a_segment", json!(processing.revolutions)),
         ("interpolation", json!(name_of(&INTERPOLATIONS, processing.interpolation))),
         ("bearings", json!(looked_for)),
-        ("band_hz", json!(bearings.band_hz.map(|band| [band.from_hz, band.to_hz]))),
+        ("band_hz", bearings.stated_band()),
         ("bearing_separation", json!(separation)),
     ];
     settings.into_iter().map(|(name, setting)| (name.to_owned(), setting)).collect()

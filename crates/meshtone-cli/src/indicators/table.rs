@@ -39,7 +39,7 @@ pub fn table(series: &Series) -> String {
     text + &velocities(series)
 }
 
-/// The defect lines of a bearing in a recording.
+/// The verdict about a bearing in a recording, and its lines.
 fn bearing(series: &Series, entry: &BearingEntry) -> String {
     let BearingEntry { name, shaft, mean_speed_hz, band, .. } = entry;
     let of = match series.results.recordings.get(entry.recording - 1) {
@@ -50,12 +50,12 @@ fn bearing(series: &Series, entry: &BearingEntry) -> String {
     };
     let kurtosis =
         entry.band_kurtosis.map_or_else(String::new, |value| format!(", kurtosis {}", short(value)));
-    let mut text = format!(
-        "\n  bearing {name} on {shaft} at {} Hz{of}: squared envelope of {} to {} Hz{kurtosis}\n",
-        short(*mean_speed_hz),
-        short(band.from_hz),
-        short(band.to_hz)
-    );
+    let mut text =
+        format!("\n  bearing {name} on {shaft} at {} Hz{of}: {}\n", short(*mean_speed_hz), entry.verdict.0);
+    text += &format!("    {}\n", entry.verdict.1);
+    text += &entry.unexplained.iter().map(|comb| format!("    {comb}\n")).collect::<String>();
+    text +=
+        &format!("    squared envelope of {} to {} Hz{kurtosis}\n", short(band.from_hz), short(band.to_hz));
     let heads = ["order", "found at", "amplitude", "over the median"];
     text += &line(format_args!("{:<12}", ""), heads, 17);
     for of in &entry.lines {

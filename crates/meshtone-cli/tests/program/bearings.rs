@@ -54,13 +54,27 @@ fn a_bearing_of_a_rig_without_gears() {
     workplace.write("sound.csv", csv(RATE_HZ, &recording(3, 0.0, 0.0), tacho(SHAFT_HZ, RATE_HZ)));
     let common = ["-c", "bearing", "--tach", "tacho", "--bearing", "6205", "-o", "out"];
     let output = workplace.succeeds(&[&["indicators", "run.csv"], &common[..]].concat());
-    for words in ["bearing 6205 on shaft at 30.00 Hz", "2 BPFO", "velocity from 10 to 1000 Hz"] {
+    for words in [
+        "bearing 6205 on shaft at 30.00 Hz: outer race",
+        "false alarm below 1 in 100",
+        "2 BPFO",
+        "velocity from 10 to 1000 Hz",
+    ] {
         assert!(stdout(&output).contains(words), "{}", stdout(&output));
     }
     let all = results(&workplace);
     let bearing = &all["bearings"][0];
     assert!((bearing["defect_orders"]["BPFO"].as_f64().unwrap() - 3.58478).abs() < 1e-5);
     assert!(bearing["source"].as_str().unwrap().contains("Case Western"));
+    assert_eq!(
+        (&bearing["verdict"], &bearing["races"][0]["race"]),
+        (&"outer race".into(), &"outer race".into())
+    );
+    assert_eq!(
+        (&bearing["races"][0]["false_alarm_probability"], &bearing["unexplained"]),
+        (&0.01.into(), &Value::Null)
+    );
+    assert!(bearing["races"][0]["slip"].as_f64().unwrap().abs() < 0.01 && bearing["band_kurtosis"].is_null());
     let band_hz = [0, 1].map(|end| bearing["band_hz"][end].as_f64().unwrap());
     assert!(band_hz[0] < 4300.0 && band_hz[1] > 4300.0, "{band_hz:?}");
     assert!(over_median(bearing, "BPFO") > 30.0 && over_median(bearing, "BPFI") < 10.0, "{bearing}");
@@ -79,11 +93,20 @@ fn a_bearing_of_a_rig_without_gears() {
     let outer = names.iter().position(|name| name.as_deref() == Some("BPFO")).unwrap();
     assert!((column.values[outer] / over_median(bearing, "BPFO") - 1.0).abs() < 1e-12);
 
+    // The kurtogram is a tool for people who look; the verdict does not depend on it.
+    workplace.succeeds(
+        &[&["indicators", "run.csv", "--band-hz", "kurtogram", "--no-figure"], &common[..]].concat(),
+    );
+    let all = results(&workplace);
+    assert!(all["bearings"][0]["verdict"] == "outer race" && all["bearings"][0]["band_kurtosis"].is_number());
+    assert_eq!(all["settings"]["band_hz"], "kurtogram");
+
     // A series has every recording's lines, and a stated band is kept.
     let stated = ["indicators", "sound.csv", "run.csv", "--band-hz", "3000,6000", "--no-figure"];
     let output = workplace.succeeds(&[&stated, &common[..]].concat());
     assert!(
-        stdout(&output).contains("in sound.csv: squared envelope of 3000 to 6000 Hz"),
+        stdout(&output).contains("in sound.csv: nothing")
+            && stdout(&output).contains("squared envelope of 3000 to 6000 Hz"),
         "{}",
         stdout(&output)
     );
@@ -153,6 +176,12 @@ fn bearings_of_a_gearbox_are_on_its_shafts() {
         ),
         "{}",
         stderr(&output)
+    );
+    assert_eq!(results(&workplace)["bearings"][0]["verdict"], "cannot tell");
+    assert!(
+        stdout(&output).contains("1.9 of the cycles after which the same teeth meet again"),
+        "{}",
+        stdout(&output)
     );
     workplace.fails(2, &command(&["6206"]), &["must be one of 6203, 6205, ER-10K"]);
     // The bearings of this gearbox are linear.

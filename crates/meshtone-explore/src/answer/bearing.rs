@@ -1,7 +1,7 @@
 //! What a signal of a gearbox shows of one of its rolling bearings.
 
 use meshtone::signal::{
-    BearingSettings, DefectLine, FrequencyBand, SignalError, TrainBearing, TrainRecording,
+    BearingSettings, DefectLine, EnvelopeBand, FrequencyBand, SignalError, TrainBearing, TrainRecording,
 };
 use serde_json::{Value, json};
 
@@ -32,7 +32,7 @@ impl LookedAtBearing {
         let found = recording.and_then(|recording| {
             // A simulation has no noise: the most impulsive band is one in which there is next to nothing.
             let band = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * recording.sampling_rate_hz };
-            let settings = BearingSettings { band: Some(band), ..BearingSettings::default() };
+            let settings = BearingSettings { band: EnvelopeBand::Stated(band), ..BearingSettings::default() };
             recording.bearings(&[self.placed], &settings)
         });
         let mut said = json!({ "name": self.name, "shaft": self.shaft });
@@ -43,6 +43,7 @@ impl LookedAtBearing {
                 return said;
             }
         };
+        said["verdict"] = records.defects.in_words(0).into();
         said["warnings"] = records.warnings.iter().map(ToString::to_string).collect();
         for (spectrum, lines) in &records.bearings {
             let sent = SENT_ORDERS * self.placed.geometry.defect_orders().inner_race / spectrum.step;

@@ -162,7 +162,7 @@ fn of_recording(
         let train = GearTrain::of_scenario(simulated)?;
         let recording =
             TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
-        return Ok((Observation::of_recording(&recording, None)?, doubts));
+        return Ok((Observation::of_recording(&recording)?, doubts));
     }
     let train = GearTrain::of_scenario(rig)?;
     let (stated, phase) = match tachometer {
@@ -177,7 +177,7 @@ fn of_recording(
     let turning = TrainTurning::Shaft { shaft: 0, phase, stated };
     let recording =
         TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
-    Ok((Observation::of_recording(&recording, None)?, doubts))
+    Ok((Observation::of_recording(&recording)?, doubts))
 }
 
 fn messages<'w>(warnings: impl IntoIterator<Item = &'w DiagnosisWarning>) -> Vec<&'w str> {

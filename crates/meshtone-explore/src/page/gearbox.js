@@ -304,6 +304,7 @@ function drawBearing({ signal, bearing, train: { bearings } }) {
   const rows = lines.map(([name, ...numbers]) => element("tr", {}, element("th", { scope: "row" }, name), ...numbers.map((number) => element("td", {}, shown(number)))));
   rows.forEach((row, index) => row.addEventListener("click", () => plots.envelope.zoom([Math.max(lines[index][1] - 1, 0), lines[index][1] + 1])));
   byId("defect-lines").replaceChildren(...(rows.length ? [head, element("tbody", {}, ...rows)] : []));
+  byId("bearing-verdict").textContent = bearing.verdict ? `Verdict: ${bearing.verdict}.` : "";
   byId("bearing-warnings").replaceChildren(...(bearing.warnings ?? []).map((warning) => element("li", {}, warning)));
 }
 

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use meshtone::bearing::NamedBearing;
-use meshtone::signal::{DefectKind, DefectLine, FrequencyBand, TrainBearing};
+use meshtone::signal::{DefectKind, DefectLine, FrequencyBand, RaceTest, TrainBearing, UnexplainedComb};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
@@ -25,7 +25,13 @@ pub struct BearingEntry {
     pub shaft: String,
     /// (Hz) Mean speed of its shaft.
     pub mean_speed_hz: f64,
-    /// The band of the squared envelope.
+    /// The verdict in one or two words, and in a sentence.
+    pub verdict: (&'static str, String),
+    /// What is seen of each of its races, those with a defect first.
+    pub races: Vec<RaceTest>,
+    /// A comb of lines on its shaft that is of no stated race.
+    pub unexplained: Option<UnexplainedComb>,
+    /// The band of the squared envelope that is drawn.
     pub band: FrequencyBand,
     /// (-) Kurtosis in it, where the kurtogram chose it.
     pub band_kurtosis: Option<f64>,
@@ -59,6 +65,27 @@ impl Serialize for BearingEntry {
                 "is_beside_shaft_order": line.is_beside_shaft_order,
             })
         };
+        let race = |of: &RaceTest| {
+            json!({
+                "race": of.race.name(),
+                "order": of.order,
+                "found_order": of.found_order,
+                "slip": of.slip(),
+                "band_hz": [of.band.from_hz, of.band.to_hz],
+                "depth": of.depth,
+                "is_detected": of.is_detected(),
+                "false_alarm_probability": of.stated_probability(),
+            })
+        };
+        let unexplained = |comb: &UnexplainedComb| {
+            let ratio = |(race, _, ratio): &(DefectKind, usize, f64)| (race.name().to_owned(), json!(ratio));
+            json!({
+                "order": comb.order,
+                "band_hz": [comb.band.from_hz, comb.band.to_hz],
+                "ratios": comb.ratios.iter().map(ratio).collect::<Map<_, _>>(),
+                "in_words": comb.to_string(),
+            })
+        };
         let all = json!({
             "recording": self.recording,
             "bearing": self.name,
@@ -69,6 +96,10 @@ impl Serialize for BearingEntry {
             "contact_angle_deg": geometry.contact_angle_deg,
             "shaft": self.shaft,
             "mean_speed_hz": self.mean_speed_hz,
+            "verdict": self.verdict.0,
+            "in_words": self.verdict.1,
+            "races": self.races.iter().map(race).collect::<Vec<_>>(),
+            "unexplained": self.unexplained.as_ref().map(unexplained),
             "defect_orders": orders,
             "band_hz": [self.band.from_hz, self.band.to_hz],
             "band_kurtosis": self.band_kurtosis,

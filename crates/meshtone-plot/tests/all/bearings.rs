@@ -64,7 +64,7 @@ fn every_line_has_its_name() {
 fn odd_recordings_can_be_drawn() {
     let stated = BearingSettings {
         separation: BearingSeparation::None,
-        band: Some(FrequencyBand { from_hz: 0.0, to_hz: RATE_HZ / 2.0 }),
+        band: EnvelopeBand::Stated(FrequencyBand { from_hz: 0.0, to_hz: RATE_HZ / 2.0 }),
     };
     for (signal, settings) in [
         (ringing(1.0, 2_000), BearingSettings::default()),

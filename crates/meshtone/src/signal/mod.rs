@@ -13,7 +13,7 @@
 //! | every shaft of a pair or a gearbox | [`GearTrain`], [`TrainRecording`], [`foreign_tones`] |
 //! | whether it fits what the user stated | [`check_recording`], of [`find_mismatch`] and [`lines_off_shafts`]; [`synchronous_part`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
-//! | bearings | [`TrainRecording::bearings`], [`TrainRecording::bearing_defects`]; [`BearingGeometry`](crate::bearing::BearingGeometry), [`defect_lines`] of [`squared_envelope_spectrum`] and [`squared_envelope_order_spectrum`] |
+//! | bearings | [`TrainRecording::bearing_defects`]; for people who look [`TrainRecording::bearings`], [`BearingGeometry`](crate::bearing::BearingGeometry), [`defect_lines`] of [`squared_envelope_spectrum`] and [`squared_envelope_order_spectrum`] |
 //! | bands that are impulsive | [`kurtogram`], [`spectral_kurtosis`] |
 //! | what is not periodic | [`synchronous_residual`], [`discrete_random_separation`], [`cepstral_prewhitening`] |
 //! | a machine as a whole | [`velocity_rms`] |
@@ -59,8 +59,8 @@ pub use average::{
     FEWEST_REVOLUTIONS, SynchronousAverage, revolution_average, segmented_averages, synchronous_average,
 };
 pub use bearing::{
-    BearingDefects, BearingRecords, BearingSeparation, BearingSettings, DefectKind, DefectLine, RaceTest,
-    TrainBearing, defect_lines,
+    BearingDefects, BearingRecords, BearingSeparation, BearingSettings, BearingVerdict, CannotTell,
+    DefectKind, DefectLine, EnvelopeBand, RaceTest, TrainBearing, UnexplainedComb, defect_lines,
 };
 pub use check::check_channel;
 pub use check_recording::check_recording;

@@ -1,6 +1,7 @@
 //! The library, used as its users use it. One test program, because each is linked with all libraries.
 
 mod batch;
+mod bearing_verdict;
 mod compliances;
 mod contact;
 mod contact_rigs;

@@ -3,8 +3,10 @@
 use crate::bearing::DefectOrders;
 use crate::signal::SquaredEnvelopeSpectrum;
 
-/// (-) How far slip moves a line, on either side.
-pub(super) const SLIP: f64 = 0.015;
+/// (-) How far slip moves a line, on either side, and a stated geometry's orders are off.
+pub(super) const SLIP: f64 = 0.03;
+/// (-) How far from its place a single line is looked for, on either side.
+const REACH: f64 = 0.015;
 /// (lines) A line of the spectrum with a Hann window is so wide on either side.
 const WIDTH: f64 = 2.0;
 /// Lines on either side, and shaft orders if these are more lines, whose median a line is compared with.
@@ -165,7 +167,7 @@ fn line(
     others: &[f64],
 ) -> Option<DefectLine> {
     let lines_per_order = shaft / spectrum.step;
-    let reach = (SLIP * order * lines_per_order).max(1.0);
+    let reach = (REACH * order * lines_per_order).max(1.0);
     let place = order * lines_per_order;
     let within = |reach: f64| {
         let from = (place - reach).ceil().max(1.0) as usize;

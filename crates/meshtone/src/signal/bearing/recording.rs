@@ -1,6 +1,6 @@
 //! Bearings in a recording of a train: from the channel to the lines of their defects.
 
-use super::{DefectLine, defect_lines};
+use super::{BearingDefects, DefectLine, defect_lines};
 use crate::bearing::BearingGeometry;
 use crate::signal::{
     FrequencyBand, Kurtogram, KurtogramBand, ShaftPhase, SignalError, SignalWarning, SquaredEnvelopeSpectrum,
@@ -8,10 +8,12 @@ use crate::signal::{
     squared_envelope_order_spectrum, synchronous_residual,
 };
 
-/// Fewest revolutions, or cycles, whose average is removed: it contains one part in so many of the power of all else.
+/// Fewest revolutions of shafts whose average is removed: it contains one part in so many of the power of all else.
 const FEWEST_REVOLUTIONS: f64 = 8.0;
+/// Fewest cycles, after which the same teeth meet again. Fewer than of revolutions, since nothing else removes what depends on which teeth meet.
+pub(super) const FEWEST_CYCLES: f64 = 4.0;
 /// (frequencies of the inner race) Least width of a band that is chosen: two harmonics and sidebands of the envelope have room in it.
-const LEAST_WIDTH: f64 = 3.0;
+pub(super) const LEAST_WIDTH: f64 = 3.0;
 /// (rev) Length of a block of the discrete-random separation, of the slowest shaft, and its largest part of the recording.
 const BLOCK: (f64, usize) = (4.0, 16);
 /// Levels of the kurtogram.
@@ -21,7 +23,7 @@ const LEVELS: u32 = 7;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum BearingSeparation {
     /// The average over the cycle after which the same teeth meet again, which is a cycle of all shafts; where the recording has less than
-    /// eight cycles those over the revolutions of all shafts with at least eight revolutions: [`synchronous_residual`].
+    /// four cycles those over the revolutions of all shafts with at least eight revolutions: [`synchronous_residual`].
     #[default]
     Averages,
     /// The tones of a constant speed: [`discrete_random_separation`] with blocks of four revolutions of the slowest shaft.
@@ -41,19 +43,33 @@ pub struct TrainBearing {
     pub shaft: usize,
 }
 
-/// How bearings are looked for.
+/// The band whose squared envelope is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum EnvelopeBand {
+    /// That in which the verdict sees most; where it tells nothing that of the kurtogram.
+    #[default]
+    Verdict,
+    /// That of the largest kurtosis among those at least three times as wide as the largest BPFI.
+    Kurtogram,
+    /// A stated one.
+    Stated(FrequencyBand),
+}
+
+/// How the lines of bearings are looked at; the verdict is the same for all.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingSettings {
     /// What is removed first.
     pub separation: BearingSeparation,
-    /// The band of the squared envelope; none for that of the largest kurtosis among those at least three times as wide as the largest BPFI.
-    pub band: Option<FrequencyBand>,
+    /// The band of the squared envelope.
+    pub band: EnvelopeBand,
 }
 
 /// What a recording shows about bearings.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct BearingRecords {
+    /// The verdict about each bearing.
+    pub defects: BearingDefects,
     /// Kurtosis in bands of all widths of what was left.
     pub kurtogram: Kurtogram,
     /// The band of the squared envelope.
@@ -67,23 +83,23 @@ pub struct BearingRecords {
 }
 
 /// A recording after a separation.
-struct Separated {
+pub(super) struct Separated {
     /// The sample of the recording that it begins at.
-    first_sample: usize,
-    values: Vec<f64>,
+    pub first_sample: usize,
+    pub values: Vec<f64>,
     warnings: Vec<SignalWarning>,
 }
 
 impl TrainRecording<'_> {
-    /// Looks for defects of bearings: removes what comes from the gears, chooses the band in which it is most impulsive, and finds the
-    /// defect lines in the spectrum of the squared envelope over the orders of each bearing's shaft.
+    /// Looks at bearings: [`Self::bearing_defects`] judges them, and for people who look there are the kurtogram of what is left without the gears, and in one band
+    /// the spectrum of its squared envelope over the orders of each bearing's shaft with its defect lines.
     ///
     /// # Arguments
     /// * `bearings` - the bearings, any number
     /// * `settings` - how
     ///
     /// # Errors
-    /// A bearing on a shaft that the train does not have; those of the functions that [`BearingSeparation`] names, of [`kurtogram`] and of [`squared_envelope_order_spectrum`].
+    /// A bearing on a shaft that the train does not have; those of the functions that [`BearingSeparation`] names, of [`kurtogram`] and of [`squared_envelope_order_spectrum`]; those of [`Self::bearing_defects`].
     ///
     /// ```
     /// use meshtone::bearing::NamedBearing;
@@ -111,25 +127,25 @@ impl TrainRecording<'_> {
         bearings: &[TrainBearing],
         settings: &BearingSettings,
     ) -> Result<BearingRecords, SignalError> {
-        check_channel(self.signal)?;
-        let shafts = self.train.shafts.len();
-        if let Some(of) = bearings.iter().find(|of| of.shaft >= shafts) {
-            return Err(SignalError::parameter(
-                "shaft of a bearing",
-                of.shaft as f64,
-                "the number of a shaft of the train, counted from 0",
-            ));
-        }
-        let phases: Vec<ShaftPhase> = (0..shafts).map(|shaft| self.phase(shaft)).collect::<Result<_, _>>()?;
+        let defects = self.bearing_defects(bearings)?;
+        let phases = self.phases_of(bearings)?;
         let Separated { first_sample, values: signal, warnings } =
             self.separated(&phases, settings.separation)?;
         let speed_hz = |shaft: usize| phases[shaft].mean_speed_hz(self.sampling_rate_hz);
         let pass_hz = bearings.iter().map(|of| of.geometry.defect_orders().inner_race * speed_hz(of.shaft));
         let kurtogram = kurtogram(&signal, self.sampling_rate_hz, LEVELS)?;
         let chosen = kurtogram.best(LEAST_WIDTH * pass_hz.fold(0.0, f64::max));
-        let chosen = chosen.filter(|_| settings.band.is_none());
+        let stated = match settings.band {
+            EnvelopeBand::Verdict => {
+                let unexplained = defects.unexplained.as_ref().map(|comb| comb.band);
+                unexplained.or(defects.races.first().map(|strongest| strongest.band))
+            }
+            EnvelopeBand::Kurtogram => None,
+            EnvelopeBand::Stated(band) => Some(band),
+        };
+        let chosen = chosen.filter(|_| stated.is_none());
         let whole = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * self.sampling_rate_hz };
-        let band = settings.band.or(chosen.map(|KurtogramBand { band, .. }| band)).unwrap_or(whole);
+        let band = stated.or(chosen.map(|KurtogramBand { band, .. }| band)).unwrap_or(whole);
         let record = |of: &TrainBearing| {
             let phase = within(&phases[of.shaft], first_sample, signal.len());
             let spectrum =
@@ -141,7 +157,38 @@ impl TrainRecording<'_> {
         };
         let bearings = bearings.iter().map(record).collect::<Result<_, SignalError>>()?;
         let kurtosis = chosen.map(|of| of.kurtosis);
-        Ok(BearingRecords { kurtogram, band, kurtosis, bearings, warnings })
+        Ok(BearingRecords { defects, kurtogram, band, kurtosis, bearings, warnings })
+    }
+
+    /// The phases of all shafts, which have those of the bearings.
+    pub(super) fn phases_of(&self, bearings: &[TrainBearing]) -> Result<Vec<ShaftPhase>, SignalError> {
+        check_channel(self.signal)?;
+        let shafts = self.train.shafts.len();
+        if let Some(of) = bearings.iter().find(|of| of.shaft >= shafts) {
+            return Err(SignalError::parameter(
+                "shaft of a bearing",
+                of.shaft as f64,
+                "the number of a shaft of the train, counted from 0",
+            ));
+        }
+        (0..shafts).map(|shaft| self.phase(shaft)).collect()
+    }
+
+    /// The recording without the average over the cycle after which the same teeth meet again, which is a cycle of all shafts; or how many cycles it has, where
+    /// they are too few.
+    pub(super) fn without_cycle(&self, phases: &[ShaftPhase]) -> Result<Result<Separated, f64>, SignalError> {
+        let (_, cycles_per_revolution) = self.train.spacings(0);
+        let mut cycle = phases[0].clone();
+        cycle.revolutions.iter_mut().for_each(|angle| *angle *= cycles_per_revolution);
+        if cycle.span_rev() < FEWEST_CYCLES {
+            return Ok(Err(cycle.span_rev()));
+        }
+        let residual = synchronous_residual(self.signal, &[cycle])?;
+        Ok(Ok(Separated {
+            first_sample: residual.first_sample,
+            values: residual.values,
+            warnings: Vec::new(),
+        }))
     }
 
     /// The recording after the separation.
@@ -164,16 +211,12 @@ impl TrainRecording<'_> {
                 Ok(Separated { first_sample: block / 2, values, warnings: Vec::new() })
             }
             BearingSeparation::Averages => {
-                let (_, cycles_per_revolution) = self.train.spacings(0);
-                let mut cycle = phases[0].clone();
-                cycle.revolutions.iter_mut().for_each(|angle| *angle *= cycles_per_revolution);
-                let are_enough = |phase: &ShaftPhase| phase.span_rev() >= FEWEST_REVOLUTIONS;
-                let (averaged, warnings) = if are_enough(&cycle) {
-                    (vec![cycle], Vec::new())
-                } else {
-                    let enough = phases.iter().filter(|phase| are_enough(phase)).cloned();
-                    (enough.collect(), self.not_averaged(phases).into_iter().collect())
-                };
+                if let Ok(separated) = self.without_cycle(phases)? {
+                    return Ok(separated);
+                }
+                let enough = phases.iter().filter(|phase| phase.span_rev() >= FEWEST_REVOLUTIONS);
+                let averaged: Vec<ShaftPhase> = enough.cloned().collect();
+                let warnings = self.not_averaged(phases).into_iter().collect();
                 if averaged.is_empty() {
                     let values = self.signal.to_vec();
                     return Ok(Separated { first_sample: 0, values, warnings });
@@ -202,7 +245,7 @@ impl TrainRecording<'_> {
 }
 
 /// The phase over a part of its recording.
-fn within(phase: &ShaftPhase, first_sample: usize, samples: usize) -> ShaftPhase {
+pub(super) fn within(phase: &ShaftPhase, first_sample: usize, samples: usize) -> ShaftPhase {
     let from = phase.first_sample.max(first_sample).min(phase.first_sample + phase.revolutions.len());
     let end = (phase.first_sample + phase.revolutions.len()).min(first_sample + samples).max(from);
     let revolutions = phase.revolutions[from - phase.first_sample..end - phase.first_sample].to_vec();
