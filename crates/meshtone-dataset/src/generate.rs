@@ -342,7 +342,7 @@ impl Run<'_> {
             }
         };
         let mut scenarios = vec![scenario];
-        if self.plan.content.tuned.is_some() && scenarios[0].faults.len() > 0 {
+        if self.plan.content.tuned.is_some() && !scenarios[0].faults.is_empty() {
             asked.add(Role::HealthyTwin(record.clone(), window.clone()));
             scenarios.insert(0, with_faults(&scenarios[0], &[]));
         }

@@ -421,7 +421,7 @@ impl Prior {
             let fault = Fault::new(&usual.wheel, teeth.clone(), of_kind.example.clone());
             let faults = vec![self.on_wheel(wheel, &fault.with_severity(severity))];
             let sized = healthy.clone().with_faults(faults).with_own_sizes()?;
-            if sized.faults.len() == 0 {
+            if sized.faults.is_empty() {
                 continue;
             }
             let spread = if attempt + 1 < attempts { SIZE_SPREAD } else { 0.0 };

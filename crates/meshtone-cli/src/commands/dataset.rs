@@ -280,7 +280,7 @@ impl Scenario {
             record.unit,
             meshtone::made_by()
         );
-        if scenario.faults.len() > 0 {
+        if !scenario.faults.is_empty() {
             head += "# Teeth count from where the first two meet; in the data set, fault_tooth counts from the record's start.\n";
         }
         print(&(head + &scenario.to_toml()))

@@ -37,7 +37,7 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
     if let Some(ignored) = scenario.ignored_by_model().into_iter().next() {
         return Err(TomlError::new(format!("{KEY}.{}", ignored.key), "", ignored.message));
     }
-    if scenario.faults.len() > 0 {
+    if !scenario.faults.is_empty() {
         let problem = "the base scenario has a fault; must be healthy";
         let help = "faults belong to the classes: [[class]] with fault = { kind = … }";
         return Err(refused(format!("{KEY}.fault"), problem, help));
