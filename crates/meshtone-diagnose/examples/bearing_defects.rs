@@ -99,7 +99,8 @@ fn rig() -> Result<Scenario, Box<dyn Error>> {
         bearing.name = Some(name.to_owned());
         bearing
     };
-    gearbox.structure.shafts_mut().unwrap().bearings = BEARINGS.map(bearing).into();
+    let shafts = gearbox.structure.shafts_mut().ok_or("the example is a gearbox")?;
+    shafts.bearings = BEARINGS.map(bearing).into();
     gearbox.sensors.clear();
     Ok(gearbox)
 }

@@ -118,8 +118,11 @@ impl Scenario {
 
     fn refuse_long_form(text: &str) -> Result<(), ScenarioError> {
         let document = TomlDocument::parse(text)?;
-        let is_long = document.root().read(long::is_written_in)?;
-        if is_long { Err(located(&document, refused_as_pair())) } else { Ok(()) }
+        if long::is_written_in(&document.root())? {
+            Err(located(&document, refused_as_pair()))
+        } else {
+            Ok(())
+        }
     }
 
     /// Whether a text is the long form of a scenario file: it has a section that only shafts of beams have, and none that only a rig has.
@@ -131,7 +134,7 @@ impl Scenario {
     /// Text that is not TOML; sections of both forms.
     pub fn is_long_form(text: &str) -> Result<bool, ScenarioError> {
         let document = TomlDocument::parse(text)?;
-        Ok(document.root().read(long::is_written_in)?)
+        Ok(long::is_written_in(&document.root())?)
     }
 }
 
