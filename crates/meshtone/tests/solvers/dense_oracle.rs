@@ -96,7 +96,8 @@ fn modal_and_dense_solutions_agree() {
                 scenario.model = model;
                 scenario.seed = round;
                 scenario.meshes[0].points_per_tooth = 2000;
-                scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = random(0.0, 10.0) as u8);
+                let din_grade = random(0.0, 10.0) as u8;
+                scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = din_grade);
                 scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(random(0.01, 0.1));
                 // Coarser steps let teeth that part bounce so wildly that rounding grows to be seen.
                 scenario.solver.sampling_rate_hz = 4e4;

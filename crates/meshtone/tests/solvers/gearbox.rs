@@ -772,7 +772,7 @@ fn a_step_that_is_too_long_is_reported() {
 #[test]
 fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
     let mut gearbox = gearbox(None);
-    let missing = Fault::new(WheelName::Gear, (1..48).collect::<Vec<u32>>(), MissingTooth);
+    let missing = Fault::new("z3", (1..48).collect::<Vec<u32>>(), MissingTooth);
     gearbox.faults = vec![missing];
     gearbox.solver.duration_s = Some(8.0);
     let error = meshtone::simulate(&gearbox).map(drop).unwrap_err();

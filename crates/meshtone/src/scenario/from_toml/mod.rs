@@ -118,11 +118,8 @@ impl Scenario {
 
     fn refuse_long_form(text: &str) -> Result<(), ScenarioError> {
         let document = TomlDocument::parse(text)?;
-        if long::is_written_in(&document.root())? {
-            Err(located(&document, refused_as_pair()))
-        } else {
-            Ok(())
-        }
+        let is_long = long::is_written_in(&document.root()).map_err(|error| document.locate(error))?;
+        if is_long { Err(located(&document, refused_as_pair())) } else { Ok(()) }
     }
 
     /// Whether a text is the long form of a scenario file: it has a section that only shafts of beams have, and none that only a rig has.
@@ -134,7 +131,7 @@ impl Scenario {
     /// Text that is not TOML; sections of both forms.
     pub fn is_long_form(text: &str) -> Result<bool, ScenarioError> {
         let document = TomlDocument::parse(text)?;
-        Ok(long::is_written_in(&document.root())?)
+        long::is_written_in(&document.root()).map_err(|error| document.locate(error).into())
     }
 }
 
