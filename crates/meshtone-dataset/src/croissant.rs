@@ -167,7 +167,6 @@ fn data_type(column: &Column) -> Value {
         CellType::Int32 | CellType::Int64 => "sc:Integer",
         CellType::Float64 | CellType::Float32List => "sc:Float",
         CellType::Text => "sc:Text",
-        CellType::Boolean => "sc:Boolean",
     };
     if column.name == "label" { json!([cells, "cr:Label"]) } else { json!(cells) }
 }

@@ -44,7 +44,6 @@ const DOUBLE_PRECISION: i16 = 2;
 const TYPE_INTEGER: u8 = 2;
 const TYPE_FLOATING_POINT: u8 = 3;
 const TYPE_TEXT: u8 = 5;
-const TYPE_BOOLEAN: u8 = 6;
 const TYPE_DATE: u8 = 8;
 const TYPE_TIME: u8 = 9;
 const TYPE_TIMESTAMP: u8 = 10;
@@ -205,7 +204,6 @@ fn put_type(buffer: &mut FlatBufferBuilder, cells: Option<CellType>) -> (u8, Fla
             TYPE_FLOATING_POINT
         }
         Some(CellType::Text) => TYPE_TEXT,
-        Some(CellType::Boolean) => TYPE_BOOLEAN,
         Some(CellType::Float32List) => TYPE_LIST,
     };
     (code, buffer.end_table(start))

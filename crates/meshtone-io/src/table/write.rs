@@ -6,9 +6,7 @@ use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::writer::{ColumnWriter, get_typed_column_writer_mut};
-use parquet::data_type::{
-    BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type,
-};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -48,8 +46,6 @@ pub enum CellType {
     Float64,
     /// Text.
     Text,
-    /// Truth values.
-    Boolean,
     /// Lists of numbers in single precision, none of them empty.
     Float32List,
 }
@@ -66,8 +62,6 @@ pub enum Cells<'c> {
     Signal(&'c [f64]),
     /// Of [`CellType::Text`].
     Text(Vec<Option<String>>),
-    /// Of [`CellType::Boolean`], none of them empty.
-    Boolean(Vec<bool>),
     /// Of [`CellType::Float32List`].
     Float32List(Vec<&'c [f32]>),
 }
@@ -104,7 +98,6 @@ impl TableColumn {
             CellType::Int64 => of(Physical::INT64, None),
             CellType::Float64 => of(Physical::DOUBLE, None),
             CellType::Text => of(Physical::BYTE_ARRAY, Some(LogicalType::String)),
-            CellType::Boolean => of(Physical::BOOLEAN, None),
             CellType::Float32List => {
                 let item = Type::primitive_type_builder(LIST_ITEM, Physical::FLOAT)
                     .with_repetition(Repetition::REQUIRED)
@@ -268,9 +261,6 @@ fn write_cells(writer: &mut ColumnWriter, column: &TableColumn, cells: Cells) ->
         (CellType::Text, Cells::Text(cells)) => {
             let texts = cells.into_iter().map(|cell| cell.map(|text| ByteArray::from(text.into_bytes())));
             write::<ByteArrayType>(writer, column, texts)
-        }
-        (CellType::Boolean, Cells::Boolean(cells)) => {
-            write::<BoolType>(writer, column, cells.into_iter().map(Some))
         }
         (CellType::Float32List, Cells::Float32List(lists)) if !column.nullable => write_lists(writer, &lists),
         _ => Err(ParquetError::General(format!("column {} holds {:?}", column.name, column.cells))),
