@@ -59,9 +59,8 @@ class Base:
     """
 
     def __init__(self, text: str) -> None:
-        self.is_gearbox = _core.Gearbox.is_written_in(text)
-        native: Any = _core.Gearbox.from_toml(text) if self.is_gearbox else _core.Scenario.from_toml(text)
-        self.sections: dict[str, Any] = native.sections()
+        self.is_gearbox = _core.Scenario.is_of_gearbox(text)
+        self.sections: dict[str, Any] = _core.Scenario.from_toml(text, not self.is_gearbox).sections()
         self.sensors: list[dict[str, Any]] = self.sections.get("sensor", [])
         if self.is_gearbox and not self.sensors:
             bearings = self.sections["bearing"]
