@@ -539,13 +539,14 @@ impl Stages {
     /// The error of teeth that are missing side by side.
     fn without_bearing(&self, wheel: usize, missing: usize, ratio: f64, time_s: f64) -> ScenarioError {
         let wheel = &self.scenario.wheels[wheel].name;
+        let article = if self.scenario.rig().is_some() { "the " } else { "" };
         let faults = self.scenario.faults.iter().enumerate();
         let of_wheel =
             faults.filter(|(_, fault)| fault.wheel == *wheel && fault.damage.part() == ToothPart::Whole);
         let named: Vec<String> = of_wheel.map(|(n, _)| format!("fault[{n}]")).collect();
         let named = named.join(", ");
         let problem = format!(
-            "{missing} neighbouring teeth of the {wheel} are missing ({named}), more than the {ratio:.2} pairs in contact at once: \
+            "{missing} neighbouring teeth of {article}{wheel} are missing ({named}), more than the {ratio:.2} pairs in contact at once: \
              nothing bears while they pass, and the motion grows without bound within {time_s:.4} s"
         );
         let help = "remove some of these faults, or some numbers from their fault.tooth";

@@ -44,7 +44,8 @@ fn driven_unsteadily(scenario: &mut Scenario, random: &mut impl FnMut(f64, f64) 
     operation.torque_profile_nm = profile(torque, [1.0, 1.3, 0.8]);
     operation.speed_fluctuation_hz = random(0.0, 0.003) * speed;
     operation.torque_fluctuation_nm = random(0.0, 0.1) * torque;
-    scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = random(0.0, 0.02));
+    let eccentricity_mm = random(0.0, 0.02);
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = eccentricity_mm);
 }
 
 fn damage(kind: usize, module: f64, width: f64, random: &mut impl FnMut(f64, f64) -> f64) -> Option<Damage> {

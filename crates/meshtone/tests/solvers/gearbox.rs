@@ -770,19 +770,16 @@ fn a_step_that_is_too_long_is_reported() {
 
 // Only one tooth is left of a wheel, and whenever it meets its mate the train is thrown farther.
 #[test]
-fn a_motion_without_bound_names_the_keys_of_a_gearbox() {
+fn a_motion_without_bound_names_the_missing_teeth() {
     let mut gearbox = gearbox(None);
-    let missing = Fault::new("z3", (1..48).collect::<Vec<u32>>(), MissingTooth);
-    gearbox.faults = vec![missing];
+    gearbox.faults = vec![Fault::new("z3", (1..48).collect::<Vec<u32>>(), MissingTooth)];
     gearbox.solver.duration_s = Some(8.0);
     let error = meshtone::simulate(&gearbox).map(drop).unwrap_err();
     let text = error.to_string();
-    assert!(text.starts_with("the motion grows without bound within") && text.len() < 250, "{text}");
-    assert!(text.contains("with bearing.damping_ratio = 0.0 to 0.02;"), "{text}");
-    assert!(error.help().unwrap().ends_with("or change operation.input_speed_hz"), "{error:?}");
+    assert!(text.contains("47 neighbouring teeth of z3 are missing (fault[0])"), "{text}");
+    assert!(text.contains("the motion grows without bound within"), "{text}");
 }
 
-// The second shaft of an idler's train that carries nothing is a dead end.
 #[test]
 fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
     let mut gearbox = idler([24, 36, 30], [180.0, 0.0]);

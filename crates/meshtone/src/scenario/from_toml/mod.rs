@@ -163,7 +163,7 @@ fn read_and_validate(
     limit: MemoryLimit,
 ) -> Result<Scenario, ScenarioError> {
     let document = TomlDocument::parse(text)?;
-    let scenario = document.root().read(|root| read(root, files))?;
+    let scenario = document.root().read(|root| read(root, files)).map_err(|error| document.locate(error))?;
     scenario.validate_within(limit).map(|_| scenario).map_err(|error| located(&document, error))
 }
 
