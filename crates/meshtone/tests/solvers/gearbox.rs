@@ -380,49 +380,16 @@ fn one_pair() -> Scenario {
 
 #[test]
 fn one_pair_has_the_forces_and_stiffness_of_the_short_form() {
-    let mean_n_per_m = [0.0, 20.0].map(|misalignment_um| {
-        let (mut long, mut scenario) = (one_pair(), Scenario::new(GearPair::example()));
-        long.meshes[0].misalignment_um = misalignment_um;
-        scenario.meshes[0].misalignment_um = misalignment_um;
-        let long: Stages = stages(long).unwrap();
-        let short = meshtone::stages(&scenario).unwrap();
-        assert!((long.pairs[0].static_force_n / short.static_force_n() - 1.0).abs() < 1e-9);
-        // The tables of both have other points.
-        let points = long.meshes[0].points_per_pitch.try_into().unwrap();
-        let mesh = &short.meshes_at(points).unwrap()[0];
-        assert!((long.meshes[0].mean_stiffness_n_per_m / mesh.mean_stiffness_n_per_m - 1.0).abs() < 1e-9);
-        let error =
-            |mesh: &meshtone::mesh::Mesh| mesh.at_rest(short.static_force_n(), 0..38).peak_to_peak_m();
-        assert!((error(&long.meshes[0]) / error(mesh) - 1.0).abs() < 1e-9);
-        long.meshes[0].mean_stiffness_n_per_m
-    });
-    assert!(mean_n_per_m[1] < 0.95 * mean_n_per_m[0], "{mean_n_per_m:?}");
-}
-
-#[test]
-fn eccentric_wheels_of_a_gearbox_come_once_a_revolution() {
-    let mut gearbox = one_pair();
-    gearbox.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.02);
-    gearbox.solver.discard_and_keep(1.0, 0.95);
-    let simulation = simulate(&gearbox);
-    let error = simulation.channels.signal("transmission_error_um.z1-z2").unwrap();
-    let line = |turns: f64| line(error, turns);
-    println!("{} {} {}", line(38.0), line(17.0), line(19.0));
-
-    // Of an idler the direction from one mesh to the other would be open.
-    let mut gearbox = idler([24, 36, 30], [180.0, 0.0]);
-    gearbox.wheels.iter_mut().for_each(|wheel| wheel.eccentricity_mm = 0.02);
-    assert_eq!(gearbox.validate().unwrap_err().key, "wheel[1].eccentricity_mm");
-}
-
-/// Amplitude of what comes `turns` times in the whole of a signal.
-fn line(signal: &[f64], turns: f64) -> f64 {
-    let samples = signal.len() as f64;
-    let angle = |n: usize| TAU * turns * n as f64 / samples;
-    let [cos, sin] = [f64::cos, f64::sin].map(|of| {
-        signal.iter().enumerate().map(|(n, value)| value * of(angle(n))).sum::<f64>() * 2.0 / samples
-    });
-    cos.hypot(sin)
+    let long: Stages = stages(one_pair()).unwrap();
+    let scenario = Scenario::new(GearPair::example());
+    let short = meshtone::stages(&scenario).unwrap();
+    assert!((long.pairs[0].static_force_n / short.static_force_n() - 1.0).abs() < 1e-9);
+    // The tables of both have other points.
+    let points = long.meshes[0].points_per_pitch.try_into().unwrap();
+    let mesh = &short.meshes_at(points).unwrap()[0];
+    assert!((long.meshes[0].mean_stiffness_n_per_m / mesh.mean_stiffness_n_per_m - 1.0).abs() < 1e-9);
+    let error = |mesh: &meshtone::mesh::Mesh| mesh.at_rest(short.static_force_n(), 0..38).peak_to_peak_m();
+    assert!((error(&long.meshes[0]) / error(mesh) - 1.0).abs() < 1e-9);
 }
 
 #[test]
@@ -433,7 +400,14 @@ fn a_ripple_of_the_torque_comes_with_the_brakes_shaft() {
     let simulation = simulate(&gearbox);
     let force = simulation.channels.signal("force_n.z1-z2").unwrap();
     // 38 revolutions of the input are 17 of the brake.
-    let line = |turns: f64| line(force, turns);
+    let samples = force.len() as f64;
+    let line = |turns: f64| {
+        let angle = |n: usize| TAU * turns * n as f64 / samples;
+        let [cos, sin] = [f64::cos, f64::sin].map(|of| {
+            force.iter().enumerate().map(|(n, value)| value * of(angle(n))).sum::<f64>() * 2.0 / samples
+        });
+        cos.hypot(sin)
+    };
     let static_force_n = simulation.stages.pairs[0].static_force_n;
     println!("{} {}", line(17.0) / static_force_n, line(19.0) / static_force_n);
     // The first torsional mode, at 48 Hz, makes 1.16 times as much of the ripple's 18 Hz.
