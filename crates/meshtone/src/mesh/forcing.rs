@@ -692,9 +692,10 @@ impl<'a> MeshForcing<'a> {
                     let points = point..point + until - from;
                     near[from..until].copy_from_slice(&corner.near[points.clone()]);
                     far[from..until].copy_from_slice(&corner.far[points.clone()]);
-                    for (offset, point) in offset[from..until].iter_mut().zip(points) {
-                        *offset = corner.offset_m(point as f64);
-                        *offset += alike.iter().map(|(table, begin)| table[begin + point]).sum::<f64>();
+                    let outside = |point: &usize| corner.far[*point] > corner.near[*point];
+                    for at in points.filter(outside) {
+                        let alike_m: f64 = alike.iter().map(|(table, begin)| table[begin + at]).sum();
+                        offset[from + at - point] = corner.offset_m(at as f64) + alike_m;
                     }
                 }
             }

@@ -447,14 +447,17 @@ impl Mesh {
         }
     }
 
-    /// Tables over the points of flanks as means along what a slice's contact lines have on the path.
+    /// Tables over the points of flanks, of helical teeth alike along the face as means along what their contact lines have on the path.
     ///
     /// # Arguments
     /// * `tables` - a quantity of each tooth, at the mesh's points of flanks
     pub(super) fn averaged_along_face(&self, tables: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let Some(along_path) = &self.along_path else { return tables.to_vec() };
+        // Slices are so narrow that they are read off at their middle.
+        let (FaceForm::Helical { .. }, Some(along_path)) = (&self.face, &self.along_path) else {
+            return tables.to_vec();
+        };
         let positions: Vec<f64> = self.flank_positions().collect();
-        let window = Window { middle: 0.0, ..self.face.window(0) };
+        let window = self.face.window(0);
         let mean = |table: &Vec<f64>| {
             along_path.mean(&positions, window, |position| {
                 let place = (position - positions[0]) * self.points_per_pitch as f64;

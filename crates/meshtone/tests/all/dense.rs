@@ -236,8 +236,19 @@ impl<'a> DenseMesh<'a> {
                 0 => (position + ahead + half).min(corner.place),
                 _ => (position + ahead - half).max(corner.place),
             };
-            let at =
-                |wheel, points: f64| self.deviation_m(wheel, pair, position + points / per_pitch, nearest);
+            // Tabulated at points, straight between them.
+            let before = mesh.points_before as f64;
+            let place = nearest * per_pitch + before;
+            let between = |at: f64, of: &dyn Fn(f64) -> f64| {
+                of(at.floor()) + (at - at.floor()) * (of(at.floor() + 1.0) - of(at.floor()))
+            };
+            let at = |wheel, by: f64| {
+                let of_points = |point: f64, place: f64| {
+                    let [position, of_slice] = [point, place].map(|point| (point - before) / per_pitch);
+                    self.deviation_m(wheel, pair, position, of_slice)
+                };
+                between(point + by, &|point| between(place, &|place| of_points(point, place)))
+            };
             let deviation = |wheel| {
                 let change = if is_steady { (at(wheel, 1.0) - at(wheel, -1.0)) / 2.0 } else { 0.0 };
                 at(wheel, 0.0) + lead * change
