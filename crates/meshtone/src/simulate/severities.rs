@@ -1,7 +1,7 @@
 //! Severities of a scenario's faults.
 
 use super::healthy_teeth;
-use crate::damage::Fault;
+use crate::damage::{Damage, Fault};
 use crate::error::ScenarioError;
 use crate::scenario::Scenario;
 use crate::wheel::Teeth;
@@ -33,10 +33,12 @@ impl Scenario {
     /// # Errors
     /// Those of [`Scenario::validate`].
     pub fn with_own_sizes(&self) -> Result<Self, ScenarioError> {
-        let sized = |fault: &Fault, teeth: &Teeth| {
-            Some(Fault::new(&fault.wheel, fault.tooth.clone(), fault.sized(teeth)?))
+        let sizes = self.of_faults(|fault: &Fault, teeth: &Teeth| fault.sized(teeth))?;
+        // In its mesh a wheel is the pinion or the gear, whatever its name.
+        let sized = |(fault, damage): (&Fault, Option<Damage>)| {
+            Some(Fault::new(&fault.wheel, fault.tooth.clone(), damage?))
         };
-        let faults = self.of_faults(sized)?.into_iter().flatten().collect();
+        let faults = self.faults.iter().zip(sizes).filter_map(sized).collect();
         Ok(self.clone().with_faults(faults))
     }
 
