@@ -275,6 +275,8 @@ class Seat(TypedDict, total=False):
         (kg m²) Its moment of inertia about every axis. Allowed: > 0, ≤ 1e9.
     stiffness_n_per_m : float
         (N/m) Its stiffness to the housing or to the ground, in every direction. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) Its stiffness along y, where it differs. Allowed: > 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
         (N m/rad) Its rotational stiffness about every axis. Allowed: > 0, ≤ 1e15.
     """
@@ -282,6 +284,7 @@ class Seat(TypedDict, total=False):
     mass_kg: float
     inertia_kgm2: float
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float
 
 
@@ -320,6 +323,9 @@ class GearboxBearing(TypedDict, total=False):
         The spalls of a rolling bearing, one by one.
     stiffness_n_per_m : float
         (N/m) The radial stiffness of a linear bearing. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) The radial stiffness of a linear bearing along y, where it differs from that along x. Allowed: > 0, ≤
+        1e15.
     axial_stiffness_n_per_m : float
         (N/m) The axial stiffness; 0 where the shaft may slide. Allowed: ≥ 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
@@ -344,6 +350,7 @@ class GearboxBearing(TypedDict, total=False):
     slip_percent: float
     defect: Sequence[BearingDefect]
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
     axial_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float
     seat: Seat
@@ -359,10 +366,13 @@ class Foot(TypedDict, total=False):
         (mm) Where it is: x, y, z. Allowed: > −100000, < 100000.
     stiffness_n_per_m : float
         (N/m) Its stiffness in every direction. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) Its stiffness along y, where it differs. Allowed: > 0, ≤ 1e15.
     """
 
     at_mm: Sequence[float]
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
 
 
 class GearboxHousing(TypedDict, total=False):
@@ -421,9 +431,9 @@ class GearboxOperation(TypedDict, total=False):
         (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
         torque.
     speed_profile_hz : dict of time_s and value
-        (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between the
-        points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at least 2
-        points, times increasing, values > 0. Ignored by published.
+        (s, Hz) The speed against time from the start of the kept signal, which ends with it, { time_s = […], value =
+        […] }, straight between the points, constant outside them; or { file = "….csv" } with the columns time_s and
+        value. Allowed: at least 2 points, times increasing, values > 0. Ignored by published.
     torque_profile_nm : dict of time_s and value
         (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0.
     brake_inertia_kgm2 : float

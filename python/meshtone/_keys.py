@@ -165,7 +165,6 @@ SECTION_OF_KEY: dict[str, str] = {
     "pinion_teeth": "gears",
     "gear_teeth": "gears",
     "face_width_mm": "gears",
-    "pinion_speed_hz": "operation",
     "brake_torque_nm": "operation",
     "model": "",
     "seed": "",
@@ -190,6 +189,7 @@ SECTION_OF_KEY: dict[str, str] = {
     "uniform_flank_reduction_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
+    "pinion_speed_hz": "operation",
     "speed_fluctuation_hz": "operation",
     "torque_fluctuation_nm": "operation",
     "speed_profile_hz": "operation",
@@ -241,7 +241,6 @@ REQUIRED_KEYS = (
     "pinion_teeth",
     "gear_teeth",
     "face_width_mm",
-    "pinion_speed_hz",
     "brake_torque_nm",
 )
 """Keys without a default."""
@@ -257,7 +256,6 @@ class ScenarioChanges(TypedDict, total=False):
     pinion_teeth: Any
     gear_teeth: Any
     face_width_mm: Any
-    pinion_speed_hz: Any
     brake_torque_nm: Any
     model: Any
     seed: Any
@@ -282,6 +280,7 @@ class ScenarioChanges(TypedDict, total=False):
     uniform_flank_reduction_mm: Any
     points_per_tooth: Any
     foundation: Any
+    pinion_speed_hz: Any
     speed_fluctuation_hz: Any
     torque_fluctuation_nm: Any
     speed_profile_hz: Any
@@ -335,7 +334,6 @@ class ScenarioKeys:
     pinion_teeth: int
     gear_teeth: int
     face_width_mm: float
-    pinion_speed_hz: float
     brake_torque_nm: float
     model: Literal["contact", "linear", "published"]
     seed: int
@@ -360,6 +358,7 @@ class ScenarioKeys:
     uniform_flank_reduction_mm: float
     points_per_tooth: int
     foundation: Foundation
+    pinion_speed_hz: float | None
     speed_fluctuation_hz: float
     torque_fluctuation_nm: float
     speed_profile_hz: dict[str, list[float]] | None
@@ -408,7 +407,6 @@ class ScenarioKeys:
         pinion_teeth: int,
         gear_teeth: int,
         face_width_mm: float,
-        pinion_speed_hz: float,
         brake_torque_nm: float,
         fault: Fault | None = None,
         faults: Sequence[Fault] | None = None,
@@ -436,6 +434,7 @@ class ScenarioKeys:
         uniform_flank_reduction_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
+        pinion_speed_hz: float | None = None,
         speed_fluctuation_hz: float | None = None,
         torque_fluctuation_nm: float | None = None,
         speed_profile_hz: Profile | None = None,
@@ -491,9 +490,6 @@ class ScenarioKeys:
             not simulated, with a warning.
         face_width_mm : float
             (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
-        pinion_speed_hz : float
-            (rev/s) The nominal speed of the motor and the pinion; the sampling rate is chosen for it. Allowed: > 0, ≤
-            100000.
         brake_torque_nm : float
             (N m) The nominal torque of the brake on the gear's shaft. Allowed: ≥ 0, ≤ 1e9.
         fault : a fault, optional
@@ -559,6 +555,9 @@ class ScenarioKeys:
         foundation : Foundation, optional
             The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
             Duverger (2004). Ignored by published.
+        pinion_speed_hz : float, optional
+            (rev/s) The nominal speed of the motor and the pinion; the sampling rate is chosen for it. Allowed: > 0, ≤
+            100000. Required, unless ``speed_profile_hz`` is given.
         speed_fluctuation_hz : float, optional
             (Hz) The amplitude of the uniform random error of every sample's speed. Allowed: ≥ 0; less than the lowest
             speed. Default: 0.0.
@@ -566,9 +565,9 @@ class ScenarioKeys:
             (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
             torque. Default: 0.0.
         speed_profile_hz : dict of time_s and value, optional
-            (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between
-            the points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at
-            least 2 points, times increasing, values > 0. Default: none. Ignored by published.
+            (s, Hz) The speed against time from the start of the kept signal, which ends with it, { time_s = […], value
+            = […] }, straight between the points, constant outside them; or { file = "….csv" } with the columns time_s
+            and value. Allowed: at least 2 points, times increasing, values > 0. Default: none. Ignored by published.
         torque_profile_nm : dict of time_s and value, optional
             (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
         din_grade : int, optional
@@ -649,8 +648,7 @@ class ScenarioKeys:
             Default: see pinion_revolutions.
         pinion_revolutions : float, optional
             (-) The same as a number of revolutions of the pinion; settling comes before them. Allowed: > 0; not beside
-            duration_s, not with a speed profile. Default: 2 z_g revolutions, or the time of a speed profile, less
-            settling.
+            duration_s, not with a speed profile. Default: 2 z_g revolutions less settling, or as long as a profile.
         settle_fraction : float, optional
             (-) The part of the simulated time that is discarded from the start, while the vibration settles. Allowed: ≥
             0, < 1. Default: 0.5.

@@ -230,7 +230,7 @@ fn warnings_are_columns_and_are_counted() {
             );
         }
         println!("{model}: {counts:?}");
-        let common = if model == "linear" { "mesh-pulls" } else { "unsettled" };
+        let common = if model == "linear" { "mesh-pulls" } else { "rattle" };
         assert!(counts.get(common).is_some_and(|count| *count > 2), "{counts:?}");
         let file =
             |name: &str| std::fs::read_to_string(made.directory.path().join("set").join(name)).unwrap();

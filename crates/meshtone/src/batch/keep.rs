@@ -165,7 +165,7 @@ impl SignalRecorder {
         let time = &stages.time;
         Signals {
             sampling_rate_hz: time.sampling_rate_hz,
-            start_s: time.kept_from_s(),
+            start_s: 0.0,
             channels: self.channels_by(|channel, motion| stages.shown(channel, motion)),
         }
     }

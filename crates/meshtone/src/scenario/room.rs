@@ -67,7 +67,7 @@ impl Layout {
     fn check_axial_support(&self, scenario: &Scenario, index: usize) -> Result<(), ScenarioError> {
         let own = self.shaft_of_wheel[index];
         let mut bearings = scenario.bearings().iter().zip(&self.shaft_of_bearing);
-        let is_held = bearings.any(|(bearing, of)| *of == own && bearing.axial_stiffness_n_per_m > 0.0);
+        let is_held = bearings.any(|(bearing, of)| *of == own && bearing.axial_n_per_m() > 0.0);
         if is_held || self.meshes_of(index).all(|(mesh, _)| !self.gears[mesh].is_helical()) {
             return Ok(());
         }

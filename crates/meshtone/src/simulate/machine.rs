@@ -26,6 +26,8 @@ pub struct AssembledMachine {
     pub wheels: Vec<WheelBody>,
     /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to.
     pub shaft_stiffness_nm_per_rad: Vec<f64>,
+    /// (kg m²) What turns with the nodes of shafts of beams: [`GearboxMachine::spinning`]; nothing of a rig.
+    pub spinning: Vec<(usize, f64)>,
     /// (kg) The mass that the wheels' rotation has along each line of action.
     pub mesh_mass_kg: Vec<f64>,
     /// (-) Damping ratio of each mesh.
@@ -78,6 +80,7 @@ fn rig(scenario: &Scenario, parts: RigParts, teeth: &Teeth) -> AssembledMachine 
         modes: Arc::new(modes),
         wheels: wheels.to_vec(),
         shaft_stiffness_nm_per_rad: shaft_stiffness_nm_per_rad.to_vec(),
+        spinning: Vec::new(),
         mesh_mass_kg: vec![mesh_mass_kg],
         mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
         highest_of_slow_hz: f64::INFINITY,
@@ -169,6 +172,7 @@ fn shafts_of_beams(
         wheels: discs.iter().map(|disc| disc.body).collect(),
         shaft_stiffness_nm_per_rad: scenario.shafts().iter().map(GearboxShaft::coupling_nm_per_rad).collect(),
         mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
+        spinning: machine.spinning(&parts),
         mesh_mass_kg: mass_kg.collect(),
         highest_of_slow_hz: HIGHEST_OF_SLOW_HZ,
         stepped_up_to_hz: scenario.solver.highest_mode_hz(scenario.time_grid().sampling_rate_hz),

@@ -1,5 +1,6 @@
 //! Sums over a simulation's signals that show whether they can be right, gathered while they come.
 
+use crate::checks::WindowSums;
 use crate::sensor::ChannelKind;
 use crate::simulate::Stages;
 
@@ -9,6 +10,8 @@ pub struct Observer {
     pub(super) force: ForceFigures,
     /// (Hz) Of the pinion's and of the gear's speed.
     speeds_hz: [Sum; 2],
+    /// The same two over windows of the kept time.
+    pub(super) windows: [WindowSums; 2],
     /// The vertical acceleration and the mesh force over turns of the wheels, where a motion lasts that repeats with them.
     pub(super) turns: Option<[WheelTurnSums; 2]>,
 }
@@ -28,7 +31,10 @@ impl Observer {
     /// * `stages` - of the simulation
     pub fn new(stages: &Stages) -> Self {
         let turns = lasts(stages).then(|| [WheelTurnSums::new(stages), WheelTurnSums::new(stages)]);
-        Self { force: ForceFigures::default(), speeds_hz: [Sum::default(); 2], turns }
+        let gears = &stages.layout.gears[0];
+        let of_gear = stages.time.samples_per_pitch(gears) * gears.gear_teeth as usize;
+        let windows = [(); 2].map(|()| WindowSums::new(stages.time.kept_samples(), of_gear));
+        Self { force: ForceFigures::default(), speeds_hz: [Sum::default(); 2], windows, turns }
     }
 
     /// Sees some samples, the next ones of the kept time.
@@ -40,6 +46,9 @@ impl Observer {
         self.force.add(force_n);
         for (sum, speeds) in self.speeds_hz.iter_mut().zip([pinion_hz, gear_hz]) {
             sum.add(speeds, |speed| speed);
+        }
+        for (windows, signal) in self.windows.iter_mut().zip([vertical_g, force_n]) {
+            windows.add(signal);
         }
         for (turns, signal) in self.turns.iter_mut().flatten().zip([vertical_g, force_n]) {
             turns.add(signal);

@@ -60,7 +60,8 @@ fn files_are_read_back() {
     let mut broken = gearbox(None);
     broken.faults = vec![Fault::new("z3", 7, MissingTooth)];
     broken.operation.torque_ripple = vec![Ripple { order: 2.0, amplitude: 0.1, phase_deg: 30.0 }];
-    let feet = vec![Foot { at_mm: [0.0, -100.0, 0.0], stiffness_n_per_m: 5e7 }];
+    let feet =
+        vec![Foot { at_mm: [0.0, -100.0, 0.0], stiffness_n_per_m: 5e7, vertical_stiffness_n_per_m: None }];
     let parts = broken.structure.shafts_mut().unwrap();
     parts.housing.as_mut().unwrap().feet = feet;
     parts.shafts[1].radius_mm = None;
@@ -570,14 +571,13 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
         stages(&gearbox).unwrap().warnings()
     };
     assert!(warnings(&|_| ()).is_empty());
-    let unsettled = warnings(&|gearbox| gearbox.solver.discard_and_keep(1.0, 0.1));
-    assert_eq!(codes(&unsettled), ["unsettled"]);
     let overload = warnings(&|gearbox| gearbox.operation.brake_torque_nm = 4000.0);
     assert_eq!(codes(&overload), ["overload", "overload"]);
     assert!(overload.iter().any(|warning| warning.message.contains("at most 3020 N m")), "{overload:?}");
     // Each mesh that would break is named; without a nominal torque the profile's counts all the same.
     let both = warnings(&|gearbox| {
         gearbox.operation.brake_torque_nm = 0.0;
+        gearbox.solver.duration_s = None;
         gearbox.operation.torque_profile_nm =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 20_000.0] });
     });
@@ -592,12 +592,13 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let fast = warnings(&|gearbox| gearbox.operation.pinion_speed_hz = 110.0);
     assert!(codes(&fast).contains(&"gyroscopic"), "{fast:?}");
     let run_up = warnings(&|gearbox| {
+        gearbox.solver.duration_s = None;
         gearbox.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 105.0] });
     });
     let of_run_up = run_up.iter().find(|warning| warning.kind == WarningKind::Gyroscopic).unwrap();
     assert_eq!(of_run_up.key, "operation.speed_profile_hz.value[1]");
-    assert!(of_run_up.message.contains("shaft \"input\" turns at 105.0 rev/s"), "{of_run_up}");
+    assert!(of_run_up.message.starts_with("at 105.0 rev/s gyroscopic moments"), "{of_run_up}");
     // What is given is not drawn, and a share of it has no effect.
     let ignored = warnings(&|gearbox| {
         let [first, second, ..] = &mut gearbox.wheels[..] else { unreachable!() };
@@ -626,11 +627,6 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     // 32/97 · 48/79 in lowest terms.
     assert_eq!(codes(&long), ["long-cycle"]);
     assert!(long[0].message.contains("hunting-tooth period is 7663 revolutions"), "{}", long[0]);
-    let ended = warnings(&|gearbox| {
-        gearbox.operation.torque_profile_nm =
-            Some(Profile { time_s: vec![0.0, 1.0], value: vec![20.0, 21.0] });
-    });
-    assert_eq!(codes(&ended), ["profile-ended"]);
     let undercut = warnings(&|gearbox| {
         (gearbox.wheels[2].teeth, gearbox.wheels[3].teeth) = (16, 96);
         gearbox.meshes[1].module_mm = 2.0;
@@ -722,6 +718,7 @@ fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
 #[test]
 fn a_step_that_is_too_long_is_reported() {
     let mut gearbox = gearbox(Some(GearboxRig::Uconn));
+    gearbox.solver.sampling_rate_hz = 2e4;
     gearbox.solver.duration_s = Some(0.5);
     let simulation = simulate(&gearbox);
     let warnings = simulation.warnings_of_signals(StepJudgement::Repeated);

@@ -221,8 +221,10 @@ pub struct Bearing {
     pub defect: Vec<BearingDefect>,
     /// (N/m) Stiffness of a linear bearing across the shaft, in every direction. Default 1.5e8.
     pub stiffness_n_per_m: f64,
-    /// (N/m) Stiffness along the shaft. Default 3e7; 0 of a bearing that lets the shaft slide.
-    pub axial_stiffness_n_per_m: f64,
+    /// (N/m) That along y, where it differs.
+    pub vertical_stiffness_n_per_m: Option<f64>,
+    /// (N/m) Stiffness along the shaft. Default 3e7, and 0 of cylindrical rollers, on which the shaft slides.
+    pub axial_stiffness_n_per_m: Option<f64>,
     /// (N m/rad) Stiffness against tilting. Default 100.
     pub tilt_stiffness_nm_per_rad: f64,
     /// What it sits in.
@@ -260,6 +262,11 @@ impl Bearing {
         format!("{}:{}", self.shaft, self.at)
     }
 
+    /// (N/m) Stiffness along the shaft, given or by the kind of bearing: cylindrical rollers let their ring slide.
+    pub fn axial_n_per_m(&self) -> f64 {
+        self.axial_stiffness_n_per_m.unwrap_or(if self.kind == BearingKind::Roller { 0.0 } else { 3e7 })
+    }
+
     /// Kind of its elements; none of a linear bearing.
     pub fn element(&self) -> Option<RollingElement> {
         match self.kind {
@@ -279,6 +286,12 @@ impl Bearing {
             let problem = "given for a rolling bearing, whose stiffness follows from its elements";
             return Err(ScenarioError::new("stiffness_n_per_m", self.stiffness_n_per_m, problem)
                 .with_help("remove it"));
+        }
+        if let Some(stiffness) = self.vertical_stiffness_n_per_m {
+            let problem = "given for a rolling bearing, whose stiffness follows from its elements";
+            return Err(
+                ScenarioError::new("vertical_stiffness_n_per_m", stiffness, problem).with_help("remove it")
+            );
         }
         let geometry = match &self.name {
             Some(name) => self.named_geometry(name, element)?,
@@ -423,7 +436,8 @@ impl Keys for Bearing {
             slip_percent: 1.0,
             defect: Vec::new(),
             stiffness_n_per_m: 1.5e8,
-            axial_stiffness_n_per_m: 3e7,
+            vertical_stiffness_n_per_m: None,
+            axial_stiffness_n_per_m: None,
             tilt_stiffness_nm_per_rad: 100.0,
             seat: Seat::default(),
             damping_ratio: 0.02,
@@ -476,12 +490,23 @@ impl Keys for Bearing {
             row("stiffness_n_per_m", "N/m", "the radial stiffness of a linear bearing", field!(stiffness_n_per_m))
                 .range(STIFFNESS),
             row(
+                "vertical_stiffness_n_per_m",
+                "N/m",
+                "the radial stiffness of a linear bearing along y, where it differs from that along x",
+                field!(vertical_stiffness_n_per_m),
+            )
+            .otherwise("stiffness_n_per_m")
+            .range(STIFFNESS)
+            .alternative("1e8"),
+            row(
                 "axial_stiffness_n_per_m",
                 "N/m",
                 "the axial stiffness; 0 where the shaft may slide",
                 field!(axial_stiffness_n_per_m),
             )
-            .range(MAYBE_STIFF),
+            .otherwise("3e7; 0 of a roller bearing")
+            .range(MAYBE_STIFF)
+            .alternative("3e7"),
             row(
                 "tilt_stiffness_nm_per_rad",
                 "N m/rad",
@@ -505,13 +530,21 @@ pub struct Seat {
     pub inertia_kgm2: f64,
     /// (N/m) Stiffness in every direction. Default 4e8.
     pub stiffness_n_per_m: f64,
+    /// (N/m) That along y, where it differs.
+    pub vertical_stiffness_n_per_m: Option<f64>,
     /// (N m/rad) Stiffness against every rotation. Default 1e6.
     pub tilt_stiffness_nm_per_rad: f64,
 }
 
 impl Default for Seat {
     fn default() -> Self {
-        Self { mass_kg: 1.0, inertia_kgm2: 1e-3, stiffness_n_per_m: 4e8, tilt_stiffness_nm_per_rad: 1e6 }
+        Self {
+            mass_kg: 1.0,
+            inertia_kgm2: 1e-3,
+            stiffness_n_per_m: 4e8,
+            vertical_stiffness_n_per_m: None,
+            tilt_stiffness_nm_per_rad: 1e6,
+        }
     }
 }
 
@@ -532,6 +565,15 @@ impl Keys for Seat {
                 field!(stiffness_n_per_m),
             )
             .range(STIFFNESS),
+            row(
+                "vertical_stiffness_n_per_m",
+                "N/m",
+                "its stiffness along y, where it differs",
+                field!(vertical_stiffness_n_per_m),
+            )
+            .otherwise("stiffness_n_per_m")
+            .range(STIFFNESS)
+            .alternative("2e8"),
             row(
                 "tilt_stiffness_nm_per_rad",
                 "N m/rad",
@@ -602,11 +644,13 @@ pub struct Foot {
     pub at_mm: [f64; 3],
     /// (N/m) Its stiffness in every direction. Default 6e7.
     pub stiffness_n_per_m: f64,
+    /// (N/m) That along y, where it differs.
+    pub vertical_stiffness_n_per_m: Option<f64>,
 }
 
 impl Keys for Foot {
     fn start() -> Self {
-        Self { at_mm: [f64::NAN; 3], stiffness_n_per_m: 6e7 }
+        Self { at_mm: [f64::NAN; 3], stiffness_n_per_m: 6e7, vertical_stiffness_n_per_m: None }
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
@@ -616,6 +660,15 @@ impl Keys for Foot {
                 .range(Range::between(Excluded(-1e5), Excluded(1e5))),
             row("stiffness_n_per_m", "N/m", "its stiffness in every direction", field!(stiffness_n_per_m))
                 .range(STIFFNESS),
+            row(
+                "vertical_stiffness_n_per_m",
+                "N/m",
+                "its stiffness along y, where it differs",
+                field!(vertical_stiffness_n_per_m),
+            )
+            .otherwise("stiffness_n_per_m")
+            .range(STIFFNESS)
+            .alternative("3e7"),
         ]
     }
 }

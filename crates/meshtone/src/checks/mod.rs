@@ -1,0 +1,12 @@
+//! Laws that a result must obey before it leaves, as functions of what was simulated: bounds that a machine can reach, the balance of torques,
+//! a motion that has settled.
+//!
+//! They know no scenario: [`Stages`](crate::Stages) and warnings say in its words which law is broken.
+
+mod bounds;
+mod settled;
+mod torques;
+
+pub(crate) use bounds::{overlap_modules, speed_factor};
+pub(crate) use settled::{WindowSums, transient_part};
+pub(crate) use torques::{TorqueBalance, mean_in_middle};

@@ -1,0 +1,116 @@
+//! The balance of torques of every shaft that nothing but meshes and a brake holds.
+
+use nalgebra::DVector;
+
+use crate::machine::{Drive, Machine, connected_groups};
+
+/// How the torques on a shaft, with all that turns with it, add up. All of it is per unit of the motor's rotation, by which a shaft turns faster or
+/// slower: that changes no balance, and makes those of all shafts alike.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TorqueBalance {
+    /// (m) What the force of each mesh turns the shaft with; only meshes that do.
+    pub(crate) meshes: Vec<(usize, f64)>,
+    /// (-) The part of the brake's torque that acts on it.
+    brake: f64,
+    /// (kg m²) Its moment of inertia.
+    inertia_kgm2: f64,
+    /// What the shaft's rotation moves.
+    shaft: DVector<f64>,
+}
+
+impl TorqueBalance {
+    /// Those of all shafts that no motor holds.
+    ///
+    /// # Arguments
+    /// * `machine` - without its meshes
+    pub(crate) fn of(machine: &Machine) -> Vec<Self> {
+        let rigid = &machine.rigid_rotation;
+        let turning: Vec<usize> = (0..rigid.len()).filter(|&n| rigid[n] != 0.0).collect();
+        let connects = |row: usize, column: usize| {
+            let entry = (turning[row], turning[column]);
+            machine.mass[entry] != 0.0 || machine.springs.iter().any(|spring| spring.stiffness[entry] != 0.0)
+        };
+        let groups = connected_groups(turning.len(), connects).into_iter();
+        let is_driven = |shaft: &DVector<f64>| {
+            machine
+                .drives
+                .iter()
+                .any(|drive| matches!(drive, Drive::Motor { coordinate, .. } if shaft[*coordinate] != 0.0))
+        };
+        let shafts = groups.map(|group| {
+            let mut shaft = DVector::zeros(rigid.len());
+            group.iter().map(|&n| turning[n]).for_each(|n| shaft[n] = rigid[n]);
+            shaft
+        });
+        shafts.filter(|shaft| !is_driven(shaft)).map(|shaft| Self::of_shaft(machine, &shaft)).collect()
+    }
+
+    fn of_shaft(machine: &Machine, shaft: &DVector<f64>) -> Self {
+        let arms_m = machine.lines.iter().map(|line| line.at_middle.dot(shaft)).enumerate();
+        let brakes = machine.drives.iter().map(|drive| match *drive {
+            Drive::Brake { coordinate, torque_share } => torque_share * shaft[coordinate],
+            Drive::Motor { .. } => 0.0,
+        });
+        Self {
+            meshes: arms_m.filter(|(_, arm_m)| *arm_m != 0.0).collect(),
+            brake: brakes.sum(),
+            inertia_kgm2: (&machine.mass * shaft).dot(shaft),
+            shaft: shaft.clone(),
+        }
+    }
+
+    /// (-) Rotation of the shaft per unit of the motor's, seen at a place on it; none of a place elsewhere.
+    ///
+    /// # Arguments
+    /// * `weights` - of the coordinates in the rotation of the place
+    pub(crate) fn rotation_at(&self, weights: &DVector<f64>) -> Option<f64> {
+        Some(self.shaft.dot(weights)).filter(|rotation| *rotation != 0.0)
+    }
+
+    /// (N m) The brake's part and what speeds the shaft up, less what the meshes hold: 0 where they balance.
+    ///
+    /// # Arguments
+    /// * `forces_n` - (N) mean force of each mesh
+    /// * `torque_nm` - (N m) mean torque of the brake
+    /// * `acceleration_rad_per_s2` - (rad/s²) mean acceleration of the motor
+    pub(crate) fn missing_nm(&self, forces_n: &[f64], torque_nm: f64, acceleration_rad_per_s2: f64) -> f64 {
+        let held: f64 = self.meshes.iter().map(|&(mesh, arm_m)| arm_m * forces_n[mesh]).sum();
+        self.brake * torque_nm - held - self.inertia_kgm2 * acceleration_rad_per_s2
+    }
+
+    /// (N m) What an imbalance counts against: the largest torque on the shaft.
+    ///
+    /// # Arguments
+    /// * `forces_n` - (N) rms of the force of each mesh
+    /// * `torque_nm` - (N m) largest torque of the brake
+    pub(crate) fn largest_nm(&self, forces_n: &[f64], torque_nm: f64) -> f64 {
+        let held = self.meshes.iter().map(|&(mesh, arm_m)| (arm_m * forces_n[mesh]).abs());
+        held.fold((self.brake * torque_nm).abs(), f64::max)
+    }
+}
+
+/// A mean that hardly counts the ends, so that of a vibration about as much is left as of a whole number of its periods: by a window that
+/// rises evenly to the middle and falls again.
+///
+/// # Arguments
+/// * `values` - equally spaced
+pub(crate) fn mean_in_middle(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len();
+    let weight = |n: usize| (n + 1).min(count - n) as f64;
+    let sums = values
+        .enumerate()
+        .fold([0.0; 2], |[sum, weights], (n, value)| [sum + weight(n) * value, weights + weight(n)]);
+    sums[0] / sums[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_leaves_nothing_of_a_vibration() {
+        let vibration = |n: usize| 3.0 + (0.1 * n as f64).cos();
+        assert!((mean_in_middle((0..1000).map(vibration)) - 3.0).abs() < 1e-3);
+        assert_eq!(mean_in_middle([2.0; 7].into_iter()), 2.0);
+    }
+}
