@@ -231,7 +231,6 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     let workplace = Workplace::new();
     // Of shafts in few elements hundreds are simulated soon.
     let mut gearbox = small_gearbox();
-    gearbox.solver.sampling_rate_hz = 8e3;
     gearbox.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.elements = 2);
     let gone = "\n[[fault]]\nwheel = \"z3\"\nkind = \"missing-tooth\"\ntooth = 8\n";
     workplace.write("box.toml", gearbox.to_toml());
