@@ -1185,7 +1185,7 @@ class Rows:
 
     The first access to a file writes what is wanted of it, uncompressed, to a temporary file in Arrow's format, which is mapped into
     memory: each file is decoded once, in whatever order records are read, and the system keeps in memory what fits there. Processes that are
-    forked from this one, such as a ``DataLoader``'s workers, share the files.
+    forked from this one, such as a ``DataLoader``'s workers, share the files that were read before.
 
     Parameters
     ----------
@@ -1200,6 +1200,7 @@ class Rows:
         self._fragments = list(dataset.arrow.get_fragments())
         self._ends = np.cumsum([fragment.count_rows(filter=dataset._filter) for fragment in self._fragments], dtype=int)
         self._mapped: dict[int, list[tuple[str, Any, Any]]] = {}
+        # Made here and not by the first reader: a forked worker that makes one leaves it behind.
         self._folder = _TemporaryFolder()
 
     def __reduce__(self) -> tuple[type[Rows], tuple[Dataset, list[str]]]:
@@ -1243,12 +1244,10 @@ class _TemporaryFolder:
     """A folder that is removed with the object, by the process that made it only."""
 
     def __init__(self) -> None:
-        self._name: str | None = None
+        self._name = tempfile.mkdtemp(prefix="meshtone-")
+        weakref.finalize(self, _remove_as, os.getpid(), self._name)
 
     def new_file(self) -> str:
-        if self._name is None:
-            self._name = tempfile.mkdtemp(prefix="meshtone-")
-            weakref.finalize(self, _remove_as, os.getpid(), self._name)
         handle, name = tempfile.mkstemp(dir=self._name)
         os.close(handle)
         return name

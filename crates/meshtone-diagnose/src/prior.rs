@@ -127,7 +127,7 @@ impl Prior {
     /// * `rig` - the rig's scenario, of a pair or a gearbox; its faults are left out
     ///
     /// # Errors
-    /// Those of [`GearTrain::of_form`].
+    /// Those of [`GearTrain::of_scenario`].
     pub fn new(rig: &Scenario) -> Result<Self, ScenarioError> {
         let mut base = rig.clone().with_faults(Vec::new());
         base.sensors.truncate(1);

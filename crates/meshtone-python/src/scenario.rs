@@ -56,7 +56,11 @@ impl Scenario {
         } else {
             scenario::Scenario::from_toml(text)
         };
-        read.map(Self).map_err(|error| scenario_error(&error))?.of_form(of_pair, "from_toml")
+        let this = read.map(Self).map_err(|error| scenario_error(&error))?;
+        match this.other_form(of_pair, "from_toml") {
+            Some(problem) => Err(value_error(problem)),
+            None => Ok(this),
+        }
     }
 
     /// From a scenario file, and the files that it names, of one pair or of a gearbox.
@@ -64,8 +68,11 @@ impl Scenario {
     fn from_file(path: PathBuf, of_pair: bool) -> PyResult<Self> {
         let read = if of_pair { ScenarioFile::read_pair(&path) } else { ScenarioFile::read(&path) };
         let file = read.map_err(|error| read_error(&path, &error))?;
-        let named = |error: PyErr| value_error(format!("{}: {error}", path.display()));
-        Self(file.scenario).of_form(of_pair, "from_file").map_err(named)
+        let this = Self(file.scenario);
+        match this.other_form(of_pair, "from_file") {
+            Some(problem) => Err(value_error(format!("{}: {problem}", path.display()))),
+            None => Ok(this),
+        }
     }
 
     /// Whether a scenario file's text is of a gearbox.
@@ -131,11 +138,9 @@ impl Scenario {
 
 impl Scenario {
     /// The scenario, where it has the form that is asked for.
-    fn of_form(self, of_pair: bool, constructor: &str) -> PyResult<Self> {
-        if self.is_pair() == of_pair {
-            return Ok(self);
-        }
-        Err(value_error(format!("is of one pair of gears; Scenario.{constructor} reads it")))
+    fn other_form(&self, of_pair: bool, constructor: &str) -> Option<String> {
+        let is_other = self.is_pair() != of_pair;
+        is_other.then(|| format!("is of one pair of gears; Scenario.{constructor} reads it"))
     }
 }
 

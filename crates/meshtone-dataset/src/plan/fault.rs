@@ -42,10 +42,10 @@ impl ClassFault {
     /// * `table` - the class
     /// * `base` - the scenario whose wheels and bearings are damaged
     pub(super) fn read_all(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<Vec<Self>> {
-        let read = |of: &TomlTable<'_>| match (of.optional("bearing"), base.rig()) {
-            (_, Some(_)) => Fault::from_table(of).map(Self::Teeth),
-            (Some(_), None) => Self::of_bearing(of, base),
-            (None, None) => Fault::on_named_wheel(of).map(Self::Teeth),
+        let read = |of: &TomlTable<'_>| match base.rig() {
+            Some(_) => Fault::from_table(of).map(Self::Teeth),
+            None if of.optional("bearing").is_some() => Self::of_bearing(of, base),
+            None => Fault::on_named_wheel(of).map(Self::Teeth),
         };
         let faults: Vec<Self> =
             table.tables("fault")?.into_iter().map(|of| of.read(read)).collect::<Result<_, _>>()?;

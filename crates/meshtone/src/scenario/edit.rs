@@ -239,7 +239,7 @@ impl Scenario {
         for (wheel, before) in changed.wheels.iter_mut().zip(&self.wheels) {
             wheel.profile_errors_mm.clone_from(&before.profile_errors_mm);
         }
-        Ok(changed)
+        changed.validate().map(|_| changed)
     }
 
     /// Every key of the scenario file at which this scenario has a single number, defaults included.

@@ -302,24 +302,30 @@ impl Sensor {
         self.response_input == ResponseInput::Acceleration
     }
 
-    fn check(&self, model: Model) -> Check {
-        check_keys(self, "sensor")?;
+    /// What a sensor makes of the motion of its place, wherever that is: name, path, converter.
+    pub(crate) fn check_signal(&self) -> Check {
         self.path.check()?;
         if let Some(name) = &self.name {
             check_name(name)?;
-        }
-        // Where the place is ignored, every sensor sits on the wheels.
-        let on_support = self.at != SensorPlace::Wheels && !model.ignores("sensor.at");
-        if on_support && self.reads_its_place() && self.direction == SensorDirection::Axial {
-            let problem = "cannot be measured at a support, which moves only across the shafts";
-            return Err(ScenarioError::new("sensor.direction", "\"axial\"", problem)
-                .with_help("write sensor.at = \"wheels\", or take another direction"));
         }
         if let (Some(bits), None) = (self.bits, self.range_g) {
             let problem = "needs sensor.range_g: the steps divide the range";
             return Err(
                 ScenarioError::new("sensor.bits", bits, problem).with_help("write sensor.range_g too")
             );
+        }
+        Ok(())
+    }
+
+    fn check(&self, model: Model) -> Check {
+        check_keys(self, "sensor")?;
+        self.check_signal()?;
+        // Where the place is ignored, every sensor sits on the wheels.
+        let on_support = self.at != SensorPlace::Wheels && !model.ignores("sensor.at");
+        if on_support && self.reads_its_place() && self.direction == SensorDirection::Axial {
+            let problem = "cannot be measured at a support, which moves only across the shafts";
+            return Err(ScenarioError::new("sensor.direction", "\"axial\"", problem)
+                .with_help("write sensor.at = \"wheels\", or take another direction"));
         }
         if self.response_input == ResponseInput::Force && self.frequency_response.is_none() {
             let problem = "needs sensor.frequency_response: a force is no acceleration";

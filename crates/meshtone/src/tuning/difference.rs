@@ -84,7 +84,7 @@ impl DifferenceChain {
 /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
 ///
 /// let mut healthy = Scenario::new(GearPair::example());
-/// healthy.wheels[0].din_grade = 7;
+/// healthy.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
 /// let broken = healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
 /// let signals = difference_signals(vec![healthy, broken], &DifferenceChain::new(25e3))?;
 /// assert_eq!((signals.len(), signals[0].len()), (2, 2048));

@@ -1,5 +1,6 @@
 //! Rules of a pair in a rig.
 
+use super::super::layout::entry_key;
 use super::super::short::{self, Section};
 use super::super::{MemoryLimit, Scenario, ScenarioError, ScenarioWarning};
 use super::{DrivenSpeed, duration, model, pitch_line_mm, size};
@@ -70,6 +71,13 @@ fn check_values(scenario: &Scenario, rig: &Rig) -> Check {
         return Err(ScenarioError::new("quality.profile_errors_mm", "", problem));
     }
     scenario.quality().check(&gears)?;
+    for (number, fault) in scenario.faults.iter().enumerate() {
+        if !WheelName::BOTH.iter().any(|of| of.name() == fault.wheel) {
+            let key = entry_key("fault", number, scenario.faults.len(), "wheel");
+            let problem = "is no wheel of a pair; must be \"pinion\" or \"gear\"";
+            return Err(ScenarioError::new(key, format!("{:?}", fault.wheel), problem));
+        }
+    }
     let numbers: Vec<usize> = (0..scenario.faults.len()).collect();
     check_faults(&scenario.faults, &numbers, numbers.len(), &named)?;
     model::check(scenario, rig)?;

@@ -29,6 +29,7 @@ impl Scenario {
         check_list("bearing", bearings)?;
         for (index, sensor) in self.sensors.iter().enumerate() {
             check_rows(&Sensor::rows_of_shafts(), sensor, "sensor")
+                .and_then(|()| sensor.check_signal())
                 .map_err(|error| error.in_entry("sensor", index, self.sensors.len()))?;
         }
         if let Some(housing) = housing {

@@ -136,7 +136,7 @@ impl BearingDefects {
     pub fn verdict(&self, bearing: usize) -> BearingVerdict {
         let of_bearing = || self.races.iter().filter(|of| of.bearings.contains(&bearing));
         let named: Vec<DefectKind> = of_bearing().filter(|of| of.is_detected()).map(|of| of.race).collect();
-        let trace = of_bearing().find(|of| of.false_alarm_probability < RaceTest::DETECTED);
+        let trace = of_bearing().find(|of| of.false_alarm_probability < RaceTest::TRACE);
         let untold = self.untold.iter().find(|(place, _)| *place == bearing);
         let is_of_shaft = |comb: &&UnexplainedComb| comb.ratios.iter().any(|(_, place, _)| *place == bearing);
         let misfit = self.unexplained.as_ref().filter(is_of_shaft).map(|_| CannotTell::DoesNotFit);
