@@ -75,7 +75,7 @@ pub(crate) fn transient_part(variances: &[f64], decay_per_window: f64) -> f64 {
     let count = variances.len();
     let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / count as f64;
     let whole = mean(&mut variances.iter().copied());
-    if count < FEWEST_WINDOWS || !(whole > 0.0) {
+    if count < FEWEST_WINDOWS || whole.is_nan() || whole <= 0.0 {
         return 0.0;
     }
     // A mode that hardly decays is still one that fades: its trend is straight.

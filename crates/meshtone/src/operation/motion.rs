@@ -72,7 +72,7 @@ impl<'a> Motion<'a> {
     /// # Arguments
     /// * `sample` - its number
     /// * `revolutions` - (rev) revolutions of the motor up to it
-    pub(crate) fn from_sample(mut self, sample: usize, revolutions: f64) -> Self {
+    pub(crate) fn starting_at(mut self, sample: usize, revolutions: f64) -> Self {
         (self.sample, self.revolutions) = (sample, revolutions);
         self.speed_hz = self.draw_speed();
         self

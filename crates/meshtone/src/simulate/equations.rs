@@ -275,7 +275,7 @@ impl Stages {
         let before = self
             .motion()
             .nth(sample * self.time.samples_per_pinion_revolution / time.samples_per_pinion_revolution);
-        motion.from_sample(sample, before.map_or(0.0, |before| before.revolutions))
+        motion.starting_at(sample, before.map_or(0.0, |before| before.revolutions))
     }
 
     /// The simulation as the solver sees it, in its own division of time or a finer one.
