@@ -82,10 +82,14 @@ impl<'a> NamedGears<'a> {
                 let uneven = "rig.misalignment_um, quality.helix_share and given helix slopes of [quality]";
                 ("operation.brake_torque_nm".to_owned(), uneven.to_owned())
             }
-            Some(_) => (
-                self.whole(),
-                WheelName::BOTH.map(|wheel| self.key_of(wheel, "helix_slope_um")).join(" and "),
-            ),
+            Some((section, _)) => {
+                let slopes = WheelName::BOTH.map(|wheel| self.key_of(wheel, "helix_slope_um"));
+                let uneven = format!(
+                    "{section}.misalignment_um, {} and helix_share of both wheels",
+                    slopes.join(", ")
+                );
+                (self.whole(), uneven)
+            }
         }
     }
 
@@ -93,7 +97,10 @@ impl<'a> NamedGears<'a> {
     pub(crate) fn foundation(&self) -> (String, &'static str) {
         match &self.mesh {
             None => (self.key("foundation"), "leave gears.foundation out for Sainsot's coefficients"),
-            Some(_) => (self.whole(), "change wheel.teeth, or shaft.radius_mm where the wheels sit"),
+            Some(_) => (
+                self.whole(),
+                "change wheel.teeth, or shaft.radius_mm where the wheels sit, or leave mesh.foundation out",
+            ),
         }
     }
 }

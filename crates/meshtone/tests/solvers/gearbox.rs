@@ -761,7 +761,7 @@ fn a_mesh_that_carries_nothing_is_named_with_the_keys_of_its_wheels() {
     let error = stages(&gearbox).map(drop).unwrap_err();
     assert_eq!(error.key, "mesh[1].wheels");
     assert!(error.problem.starts_with("the mesh is unloaded"), "{error}");
-    assert!(error.help.unwrap().contains("set wheel[1].helix_slope_um and wheel[2].helix_slope_um to 0"));
+    assert!(error.help.unwrap().contains("set mesh[1].misalignment_um, wheel[1].helix_slope_um, wheel[2].helix_slope_um and helix_share of both wheels to 0"));
 }
 
 // A second mesh between two shafts that are geared already locks them unless its ratio is the same.

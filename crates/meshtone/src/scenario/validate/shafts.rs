@@ -22,6 +22,10 @@ impl Scenario {
             let problem = "must be \"contact\" for a gearbox; the other models accept one pair only";
             return Err(ScenarioError::new("model", format!("\"{}\"", self.model.name()), problem));
         }
+        if self.solver.initial_displacement.is_some() || self.solver.initial_velocity.is_some() {
+            let problem = "is of the coordinates of a pair in a rig; gearboxes start in equilibrium";
+            return Err(ScenarioError::new("solver.initial_velocity", "", problem));
+        }
         check_rows(&long::top().rows, self, "")?;
         check_list("shaft", shafts)?;
         check_list("wheel", &self.wheels)?;

@@ -183,18 +183,25 @@ fn check_wheels(scenario: &Scenario) -> Result<(), ScenarioError> {
             .in_entry("sensor", 0, scenario.sensors.len()));
     }
     let key = |wheel: usize, key: &str| scenario.key_of_quality(wheel, key);
-    let help =
-        format!("state the grade of the wheels with {} or {}", key(0, "din_grade"), key(0, "iso_class"));
+    let help = |wheel: usize| {
+        format!(
+            "state the grade of the wheels with {} or {}",
+            key(wheel, "din_grade"),
+            key(wheel, "iso_class")
+        )
+    };
     if let Some(given) = scenario.wheels.iter().position(|wheel| wheel.profile_errors_mm.is_some()) {
         let problem = "the errors of the teeth are given, so that no draw of the wheels differs from another";
-        let help =
-            format!("leave errors_file and profile errors out, and {help}, by which the wheels are drawn");
+        let help = format!(
+            "leave errors_file and profile errors out, and {}, by which the wheels are drawn",
+            help(given)
+        );
         return Err(ScenarioError::new(key(given, "profile_errors_mm"), "", problem).with_help(help));
     }
     let is_ideal = |wheel: &ScenarioWheel| wheel.din_grade == 0 && wheel.iso_class == 0;
     if let Some(ideal) = scenario.wheels.iter().position(is_ideal) {
         let problem = "ideal wheels have no sidebands, and no draw of them differs from another";
-        return Err(ScenarioError::new(key(ideal, "din_grade"), 0, problem).with_help(help));
+        return Err(ScenarioError::new(key(ideal, "din_grade"), 0, problem).with_help(help(ideal)));
     }
     Ok(())
 }
