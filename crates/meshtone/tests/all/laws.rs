@@ -23,7 +23,8 @@ fn codes(simulation: &Simulation) -> Vec<&'static str> {
 // makes the tolerance.
 #[test]
 fn a_spring_that_is_a_constraint_keeps_the_balance() {
-    let cases: [(&str, &dyn Fn(&mut Scenario)); 4] = [
+    type Change<'a> = &'a dyn Fn(&mut Scenario);
+    let cases: [(&str, Change); 4] = [
         ("brake's coupling", &|gearbox| {
             gearbox.structure.shafts_mut().unwrap().shafts[2].coupling_stiffness_nm_per_rad = Some(1e13)
         }),
