@@ -563,7 +563,7 @@ mod tests {
         check_both_steppers(&pair(5.0, 15.0), Size::Helical, "two pairs at once");
         check_both_steppers(&pair(20.0, 30.0), Size::Helical, "three pairs at once");
         check_both_steppers(&pair(25.0, 60.0), Size::GeneralHelical, "more pairs at once");
-        check_both_steppers(&unbalanced(pair(20.0, 15.0)), Size::Helical, "unbalanced wheels");
+        check_both_steppers(&unbalanced(pair(20.0, 15.0)), Size::GeneralHelical, "unbalanced wheels");
         let mut missing = pair(20.0, 15.0);
         missing.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
         check_both_steppers(&missing, Size::Helical, "a missing tooth");
