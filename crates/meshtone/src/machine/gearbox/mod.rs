@@ -154,6 +154,23 @@ fn node_places(shaft: &GearboxShaft, places: impl Iterator<Item = f64>) -> Vec<f
     nodes
 }
 
+/// (rad/s) Natural frequency, 1.6 MHz, from which on a spring between two bodies is a constraint: no motion that is simulated tells it from a
+/// stiffer one. The modes are found to 2e-16 of the square of the highest one, so that a stiffer spring would take the digits of
+/// all others: at 1e13 N m/rad free rotation would be a vibration of 10 Hz.
+const CONSTRAINT_RAD_PER_S: f64 = 1e7;
+
+/// (N/m, N m/rad) The stiffness of a spring, or that of a constraint in its place.
+///
+/// # Arguments
+/// * `mass` - of all bodies
+/// * `stretch` - number of a coordinate and its weight in what the spring resists
+/// * `stiffness` - (N/m, N m/rad) as it is given
+fn limited_stiffness(mass: &DMatrix<f64>, stretch: &[(usize, f64)], stiffness: f64) -> f64 {
+    let per_mass: f64 =
+        stretch.iter().map(|&(coordinate, weight)| weight * weight / mass[(coordinate, coordinate)]).sum();
+    stiffness.min(CONSTRAINT_RAD_PER_S.powi(2) / per_mass)
+}
+
 /// The machine while it is put together.
 struct Assembly {
     names: Vec<Cow<'static, str>>,
@@ -171,6 +188,17 @@ impl Assembly {
             self.springs.len() - 1
         });
         &mut self.springs[number]
+    }
+
+    /// Adds a spring between bodies whose masses are all there: one so stiff that it is a constraint as [`CONSTRAINT_RAD_PER_S`] says.
+    ///
+    /// # Arguments
+    /// * `stretch` - number of a coordinate and its weight in what the spring resists
+    /// * `stiffness` - (N/m, N m/rad) as it is given
+    /// * `damping_ratio` - (-) of the spring
+    fn hold(&mut self, stretch: &[(usize, f64)], stiffness: f64, damping_ratio: f64) {
+        let limited = limited_stiffness(&self.mass, stretch, stiffness);
+        self.spring(damping_ratio).resist(stretch, limited);
     }
 
     /// Adds a rigid body at a node.
@@ -274,12 +302,12 @@ impl GearboxMachine {
         let Assembly { names, mass, springs } = assembly;
         let mut machine = Machine {
             names,
-            mass,
             springs,
             lines: parts.meshes.iter().map(|mesh| this.line_of_action(parts, mesh, coordinates)).collect(),
             bearings: this.rolling_bearings(parts, coordinates),
             turning_forces: this.turning_forces(parts, coordinates),
-            drives: this.drives(parts, brake),
+            drives: this.drives(parts, brake, &mass),
+            mass,
             ..this.machine
         };
         for (nodes, ratio) in this.nodes.iter().zip(parts.speed_ratios) {
@@ -311,24 +339,27 @@ impl GearboxMachine {
                 let beam = beam_between(shaft, [ends[0].0, ends[1].0], parts.material);
                 assembly.add_beam([ends[0].1, ends[1].1], &beam, shaft.damping_ratio);
             }
-            let stiffness = shaft.coupling_nm_per_rad();
-            let (first, last) = (nodes[0].1 + ABOUT_Z, nodes[nodes.len() - 1].1 + ABOUT_Z);
-            let spring = assembly.spring(shaft.damping_ratio);
-            match shaft.couples_to {
-                Coupled::Motor => spring.resist(&[(first, 1.0)], stiffness),
-                Coupled::Brake => spring.resist(&[(last, 1.0), (brake, -1.0)], stiffness),
-                Coupled::Nothing => {}
-            }
         }
         for (number, disc) in parts.discs.iter().enumerate() {
             let WheelBody { mass_kg, polar_kgm2, transverse_kgm2 } = disc.body;
             let node = self.node_of_disc(parts, number);
             assembly.add_body(node, mass_kg, [transverse_kgm2, transverse_kgm2, polar_kgm2]);
         }
+        for (nodes, (shaft, _)) in self.nodes.iter().zip(parts.shafts) {
+            let stretch = match shaft.couples_to {
+                Coupled::Motor => vec![(first_rotation(nodes), 1.0)],
+                Coupled::Brake => vec![(nodes[nodes.len() - 1].1 + ABOUT_Z, 1.0), (brake, -1.0)],
+                Coupled::Nothing => continue,
+            };
+            assembly.hold(&stretch, shaft.coupling_nm_per_rad(), shaft.damping_ratio);
+        }
     }
 
     /// Adds bearings, seats and the housing with its feet.
     fn add_supports(&self, parts: &GearboxParts, assembly: &mut Assembly) {
+        if let (Some(housing), Some((body, _))) = (parts.housing, self.housing) {
+            assembly.add_body(body, housing.mass_kg, [housing.moment_of_inertia_kgm2(); 3]);
+        }
         for (&SeatedBearing { shaft, bearing, radial_n_per_m }, &seat) in
             parts.bearings.iter().zip(&self.seats)
         {
@@ -337,14 +368,14 @@ impl GearboxMachine {
             let node = self.node(shaft, z_m);
             let Seat { mass_kg, inertia_kgm2, stiffness_n_per_m, tilt_stiffness_nm_per_rad } = bearing.seat;
             assembly.add_body(seat, mass_kg, [inertia_kgm2; 3]);
-            let spring = assembly.spring(bearing.damping_ratio);
             let tilt = bearing.tilt_stiffness_nm_per_rad;
             let [[xx, xy], [_, yy]] = radial_n_per_m;
             let inner = [xx, yy, bearing.axial_stiffness_n_per_m, tilt, tilt];
             let stretch = |coordinate: usize| [(node + coordinate, 1.0), (seat + coordinate, -1.0)];
             for (coordinate, stiffness) in inner.into_iter().enumerate() {
-                spring.resist(&stretch(coordinate), stiffness);
+                assembly.hold(&stretch(coordinate), stiffness, bearing.damping_ratio);
             }
+            let spring = assembly.spring(bearing.damping_ratio);
             spring.couple(&stretch(0), &stretch(1), xy);
             spring.couple(&stretch(1), &stretch(0), xy);
             let held = match self.housing {
@@ -354,19 +385,17 @@ impl GearboxMachine {
             for (axis, held) in held.into_iter().enumerate() {
                 let mut stretch = vec![(seat + axis, 1.0)];
                 stretch.extend(held.into_iter().map(|(coordinate, weight)| (coordinate, -weight)));
-                spring.resist(&stretch, stiffness_n_per_m);
+                assembly.hold(&stretch, stiffness_n_per_m, bearing.damping_ratio);
                 let mut twist = vec![(seat + 3 + axis, 1.0)];
                 twist.extend(self.housing.map(|(housing, _)| (housing + 3 + axis, -1.0)));
-                spring.resist(&twist, tilt_stiffness_nm_per_rad);
+                assembly.hold(&twist, tilt_stiffness_nm_per_rad, bearing.damping_ratio);
             }
         }
         if let (Some(housing), Some((body, centre))) = (parts.housing, self.housing) {
-            assembly.add_body(body, housing.mass_kg, [housing.moment_of_inertia_kgm2(); 3]);
             for foot in feet(housing, parts.shafts) {
                 let place = Vector3::from(foot.at_mm) * 1e-3;
-                let spring = assembly.spring(housing.damping_ratio);
                 for stretch in point_of_body(body, place - centre) {
-                    spring.resist(&stretch, foot.stiffness_n_per_m);
+                    assembly.hold(&stretch, foot.stiffness_n_per_m, housing.damping_ratio);
                 }
             }
         }
@@ -488,15 +517,22 @@ impl GearboxMachine {
     }
 
     /// The motor turns its shaft at z = 0; the brake's torque acts against its rotation.
-    fn drives(&self, parts: &GearboxParts, brake: usize) -> Vec<Drive> {
+    fn drives(&self, parts: &GearboxParts, brake: usize, mass: &DMatrix<f64>) -> Vec<Drive> {
         let mut drives = Vec::new();
         for ((nodes, (shaft, _)), ratio) in self.nodes.iter().zip(parts.shafts).zip(parts.speed_ratios) {
             match shaft.couples_to {
-                Coupled::Motor => drives.push(Drive::Motor {
-                    coordinate: nodes[0].1 + ABOUT_Z,
-                    stiffness_nm_per_rad: shaft.coupling_nm_per_rad(),
-                    speed_ratio: *ratio,
-                }),
+                Coupled::Motor => {
+                    let coordinate = first_rotation(nodes);
+                    drives.push(Drive::Motor {
+                        coordinate,
+                        stiffness_nm_per_rad: limited_stiffness(
+                            mass,
+                            &[(coordinate, 1.0)],
+                            shaft.coupling_nm_per_rad(),
+                        ),
+                        speed_ratio: *ratio,
+                    });
+                }
                 Coupled::Brake => {
                     drives.push(Drive::Brake { coordinate: brake, torque_share: -ratio.signum() });
                 }
@@ -564,6 +600,11 @@ impl GearboxMachine {
 const ABOUT_X: usize = 3;
 const ABOUT_Y: usize = 4;
 const ABOUT_Z: usize = 5;
+
+/// The coordinate that the motor turns: the rotation of a shaft's first node.
+fn first_rotation(nodes: &[(f64, usize)]) -> usize {
+    nodes[0].1 + ABOUT_Z
+}
 
 /// The beam of a shaft between two nodes.
 ///
