@@ -103,7 +103,7 @@ impl TrainRecording<'_> {
     ///
     /// ```
     /// use meshtone::bearing::NamedBearing;
-    /// use meshtone::signal::{///     BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning, ///};
+    /// use meshtone::signal::{BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning};
     ///
     /// // A resonance at 4 kHz that rings whenever a ball passes a place of the outer race, and a mesh of 19 teeth.
     /// let geometry = NamedBearing::find("6205").ok_or("no such bearing")?.geometry;
