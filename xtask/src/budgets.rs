@@ -15,7 +15,7 @@ use crate::step::{StepRunner, StepTime, cargo};
 /// The file of the budgets, from the workspace's root.
 const FILE: &str = "budgets.toml";
 
-/// The numbers of [processor_seconds] that are not of one step.
+/// The numbers of `[processor_seconds]` that are not of one step.
 const OF_NO_STEP: [&str; 4] = ["slack", "first_command", "all_checks", "any_other_step"];
 
 /// The budgets of one table of the file.

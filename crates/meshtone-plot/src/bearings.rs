@@ -51,7 +51,7 @@ pub struct BearingsFigure<'a> {
 ///
 /// ```
 /// use meshtone::bearing::NamedBearing;
-/// use meshtone::signal::{///     BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning, ///};
+/// use meshtone::signal::{BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning};
 /// use meshtone_plot::bearings::{self, BearingsFigure};
 ///
 /// let geometry = NamedBearing::find("6205").ok_or("no such bearing")?.geometry;

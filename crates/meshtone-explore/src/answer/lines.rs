@@ -194,7 +194,7 @@ mod tests {
         }
         // Sidebands reach as far as half way to the next harmonic.
         assert_eq!(tones().name(700.0, 0.5), "1 × mesh z3-z4 + 22 × shaft middle");
-        assert!(tones().name(703.0, 0.5).starts_with("no sideband"));
+        assert!(tones().name(703.0, 0.5).starts_with("not identified"));
         // Lines 4 Hz apart distinguish no sidebands of 6 and 10 Hz.
         assert!(tones().name(486.0, 4.0).starts_with("beside a mesh harmonic"));
     }

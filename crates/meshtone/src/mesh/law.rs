@@ -159,7 +159,11 @@ impl<const L: usize> CornerLane<L> {
         let reach = reach.mul(simd, v);
         let depth = depth.mul(simd, v).mul(simd, v.mul(simd, v));
         let (zero, kappa) = (Lanes::splat(0.0), penetration.mul(simd, reach).sub(simd, depth));
-        [kappa, reach].map(|value| value.neg(simd).where_less(simd, edge, zero, value))
+        // Not as a closure over an array, which is compiled without the instruction set.
+        [
+            kappa.neg(simd).where_less(simd, edge, zero, kappa),
+            reach.neg(simd).where_less(simd, edge, zero, reach),
+        ]
     }
 }
 
@@ -185,7 +189,10 @@ impl<const L: usize> CornerSample<L> {
         let penetration = deflection.add(simd, self.offset).max(simd, Lanes::splat(0.0));
         let at = [penetration, penetration.sqrt(simd)];
         let [far, near] = [law.until(simd, at, self.far), law.until(simd, at, self.near)];
-        [0, 1].map(|n| law.stiffness.mul(simd, far[n].sub(simd, near[n])))
+        [
+            law.stiffness.mul(simd, far[0].sub(simd, near[0])),
+            law.stiffness.mul(simd, far[1].sub(simd, near[1])),
+        ]
     }
 }
 

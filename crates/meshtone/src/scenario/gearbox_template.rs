@@ -160,7 +160,7 @@ const EXAMPLE_FAULT: &str = "\
 /// use meshtone::scenario::{Scenario, GearboxRig, gearbox_template};
 ///
 /// for rig in GearboxRig::ALL {
-///     assert_eq!(Scenario::from_toml(&gearbox_template(Some(rig)))?.shafts.len(), 3);
+///     assert_eq!(Scenario::from_toml(&gearbox_template(Some(rig)))?.shafts().len(), 3);
 /// }
 /// # Ok::<(), meshtone::scenario::ScenarioError>(())
 /// ```

@@ -775,3 +775,30 @@ fn a_locked_train_names_both_ratios() {
     assert_eq!(error.key, "mesh[1].wheels");
     assert!(error.problem.contains("-18/37") && error.problem.contains("-17/38"), "{error}");
 }
+
+// Springs up to the stiffest that are legal: the forces of both meshes are those of the statics. What is left of the start in 0.4 s makes the
+// tolerance.
+#[test]
+fn a_spring_that_is_a_constraint_keeps_the_balance() {
+    type Change<'a> = &'a dyn Fn(&mut Scenario);
+    let couplings: Change = &|gearbox| {
+        let shafts = &mut gearbox.structure.shafts_mut().unwrap().shafts;
+        (shafts[0].coupling_stiffness_nm_per_rad, shafts[2].coupling_stiffness_nm_per_rad) =
+            (Some(1e15), Some(1e13));
+    };
+    let tilt: Change = &|gearbox| gearbox.bearings_mut()[0].tilt_stiffness_nm_per_rad = 1e13;
+    for change in [couplings, tilt] {
+        let mut gearbox = gearbox(None);
+        gearbox.faults.clear();
+        gearbox.solver.duration_s = Some(0.4);
+        change(&mut gearbox);
+        let simulation = simulate(&gearbox);
+        for (mesh, name) in ["force_n.z1-z2", "force_n.z3-z4"].into_iter().enumerate() {
+            let force_n = simulation.channels.signal(name).unwrap();
+            let mean_n = force_n.iter().sum::<f64>() / force_n.len() as f64;
+            let off = mean_n / simulation.stages.pairs[mesh].static_force_n - 1.0;
+            println!("{name}: {off:.1e}");
+            assert!(off.abs() < 2e-3, "{name}: {off}");
+        }
+    }
+}

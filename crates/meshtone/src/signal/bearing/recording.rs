@@ -103,7 +103,7 @@ impl TrainRecording<'_> {
     ///
     /// ```
     /// use meshtone::bearing::NamedBearing;
-    /// use meshtone::signal::{///     BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning, ///};
+    /// use meshtone::signal::{BearingSettings, GearTrain, ShaftPhase, StatedTurning, TrainBearing, TrainRecording, TrainTurning};
     ///
     /// // A resonance at 4 kHz that rings whenever a ball passes a place of the outer race, and a mesh of 19 teeth.
     /// let geometry = NamedBearing::find("6205").ok_or("no such bearing")?.geometry;
@@ -127,10 +127,11 @@ impl TrainRecording<'_> {
         bearings: &[TrainBearing],
         settings: &BearingSettings,
     ) -> Result<BearingRecords, SignalError> {
-        let defects = self.bearing_defects(bearings)?;
         let phases = self.phases_of(bearings)?;
+        let without_cycle = self.without_cycle(&phases)?;
+        let defects = self.defects_without(without_cycle.as_ref(), &phases, bearings)?;
         let Separated { first_sample, values: signal, warnings } =
-            self.separated(&phases, settings.separation)?;
+            self.separated(&phases, settings.separation, without_cycle)?;
         let speed_hz = |shaft: usize| phases[shaft].mean_speed_hz(self.sampling_rate_hz);
         let pass_hz = bearings.iter().map(|of| of.geometry.defect_orders().inner_race * speed_hz(of.shaft));
         let kurtogram = kurtogram(&signal, self.sampling_rate_hz, LEVELS)?;
@@ -191,11 +192,12 @@ impl TrainRecording<'_> {
         }))
     }
 
-    /// The recording after the separation.
+    /// The recording after the separation, which may be that of its cycles.
     fn separated(
         &self,
         phases: &[ShaftPhase],
         separation: BearingSeparation,
+        without_cycle: Result<Separated, f64>,
     ) -> Result<Separated, SignalError> {
         let whole = |values| Ok(Separated { first_sample: 0, values, warnings: Vec::new() });
         match separation {
@@ -211,7 +213,7 @@ impl TrainRecording<'_> {
                 Ok(Separated { first_sample: block / 2, values, warnings: Vec::new() })
             }
             BearingSeparation::Averages => {
-                if let Ok(separated) = self.without_cycle(phases)? {
+                if let Ok(separated) = without_cycle {
                     return Ok(separated);
                 }
                 let enough = phases.iter().filter(|phase| phase.span_rev() >= FEWEST_REVOLUTIONS);

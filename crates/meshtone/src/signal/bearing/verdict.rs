@@ -6,7 +6,7 @@ use super::TrainBearing;
 use super::bands::{BandSpectra, band_spectra};
 use super::comb::{Comb, Readable, Scores};
 use super::lines::{DefectKind, SLIP};
-use super::recording::{FEWEST_CYCLES, LEAST_WIDTH, within};
+use super::recording::{FEWEST_CYCLES, LEAST_WIDTH, Separated, within};
 use crate::signal::{FrequencyBand, ShaftPhase, SignalError, TrainRecording};
 
 /// (rev) Fewest turns of a shaft: slip would move a race's line over those beside it.
@@ -187,16 +187,31 @@ impl TrainRecording<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn bearing_defects(&self, bearings: &[TrainBearing]) -> Result<BearingDefects, SignalError> {
-        let mut found = BearingDefects::default();
         let phases = self.phases_of(bearings)?;
         if bearings.is_empty() {
-            return Ok(found);
+            return Ok(BearingDefects::default());
         }
-        let untold = |why: CannotTell| (0..bearings.len()).map(move |place| (place, why));
-        let separated = match self.without_cycle(&phases)? {
+        self.defects_without(self.without_cycle(&phases)?.as_ref(), &phases, bearings)
+    }
+
+    /// Judges bearings by what is left of the recording.
+    ///
+    /// # Arguments
+    /// * `left` - the recording without its cycles, or how many of these it has, where they are too few
+    /// * `phases` - of all shafts
+    /// * `bearings` - the bearings
+    pub(super) fn defects_without(
+        &self,
+        left: Result<&Separated, &f64>,
+        phases: &[ShaftPhase],
+        bearings: &[TrainBearing],
+    ) -> Result<BearingDefects, SignalError> {
+        let mut found = BearingDefects::default();
+        let separated = match left {
             Ok(separated) => separated,
-            Err(cycles) => {
-                found.untold = untold(CannotTell::FewCycles { cycles, needed: FEWEST_CYCLES }).collect();
+            Err(&cycles) => {
+                let why = CannotTell::FewCycles { cycles, needed: FEWEST_CYCLES };
+                found.untold = (0..bearings.len()).map(|place| (place, why)).collect();
                 return Ok(found);
             }
         };
