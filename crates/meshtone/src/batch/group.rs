@@ -46,7 +46,8 @@ pub(super) fn simulate_group<K: Keep>(
     }
     let divergences = integrate_ready(&mut ready, instructions);
     for (ready, divergence) in ready.into_iter().zip(divergences) {
-        let kept = divergence.map(|()| keep.keep(ready.index, ready.stages, ready.recorder));
+        let sound = divergence.and_then(|()| keep.check(&ready.stages, &ready.recorder));
+        let kept = sound.map(|()| keep.keep(ready.index, ready.stages, ready.recorder));
         results.push((ready.index, kept));
     }
     results

@@ -4,9 +4,11 @@
 //! They know no scenario: [`Stages`](crate::Stages) and warnings say in its words which law is broken.
 
 mod bounds;
+mod figures;
 mod settled;
 mod torques;
 
 pub(crate) use bounds::{overlap_modules, speed_factor};
+pub(crate) use figures::{Figures, SignalFigures};
 pub(crate) use settled::{WindowSums, transient_part};
-pub(crate) use torques::{TorqueBalance, mean_in_middle};
+pub(crate) use torques::TorqueBalance;

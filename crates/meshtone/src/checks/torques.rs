@@ -88,29 +88,3 @@ impl TorqueBalance {
         held.fold((self.brake * torque_nm).abs(), f64::max)
     }
 }
-
-/// A mean that hardly counts the ends, so that of a vibration about as much is left as of a whole number of its periods: by a window that
-/// rises evenly to the middle and falls again.
-///
-/// # Arguments
-/// * `values` - equally spaced
-pub(crate) fn mean_in_middle(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len();
-    let weight = |n: usize| (n + 1).min(count - n) as f64;
-    let sums = values
-        .enumerate()
-        .fold([0.0; 2], |[sum, weights], (n, value)| [sum + weight(n) * value, weights + weight(n)]);
-    sums[0] / sums[1]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mean_leaves_nothing_of_a_vibration() {
-        let vibration = |n: usize| 3.0 + (0.1 * n as f64).cos();
-        assert!((mean_in_middle((0..1000).map(vibration)) - 3.0).abs() < 1e-3);
-        assert_eq!(mean_in_middle([2.0; 7].into_iter()), 2.0);
-    }
-}

@@ -3,11 +3,13 @@
 use std::f64::consts::TAU;
 
 use super::{Simulation, Stages};
-use crate::checks::{TorqueBalance, mean_in_middle, overlap_modules, speed_factor};
+use crate::checks::{Figures, SignalFigures, TorqueBalance, overlap_modules, speed_factor};
 use crate::error::Error;
-use crate::scenario::Shafts;
+use crate::operation::MotionSample;
+use crate::scenario::{Ratio, Shafts};
 use crate::sensor::{Channels, SignalSource};
 use crate::solver::Output;
+use crate::wheel::Gears;
 
 /// (-) Part of the largest torque on a shaft by which its torques may not balance in a result.
 const REFUSED_IMBALANCE: f64 = 0.1;
@@ -29,19 +31,33 @@ pub(crate) struct Imbalance {
 }
 
 impl Stages {
+    /// What the laws look at in the kept signals.
+    ///
+    /// # Arguments
+    /// * `channels` - all kept signals
+    pub(crate) fn figures(&self, channels: &Channels) -> Figures {
+        let of = |source| SignalFigures::of(channels.of(source).iter().copied());
+        Figures {
+            forces: (0..self.meshes.len()).map(|mesh| of(SignalSource::MeshForce(mesh))).collect(),
+            speeds: (0..self.layout.shaft_names.len())
+                .map(|shaft| of(SignalSource::ShaftSpeed(shaft)))
+                .collect(),
+        }
+    }
+
     /// Refuses signals that no machine can have, or that break a law.
     ///
     /// # Arguments
-    /// * `channels` - the kept signals
+    /// * `figures` - of the kept signals
     ///
     /// # Errors
     /// Flanks that overlap by more than a module, a shaft that is off its speed by more than a factor of 3, torques that are off balance by
     /// more than a tenth.
-    pub(super) fn check_laws(&self, channels: &Channels) -> Result<(), Error> {
-        if self.machine().is_none() || channels.is_empty() {
+    pub(crate) fn check_laws(&self, figures: &Figures) -> Result<(), Error> {
+        if self.machine().is_none() || self.time.kept_samples() == 0 {
             return Ok(());
         }
-        if let Some(problem) = self.overlap(channels).or_else(|| self.lost_speed(channels)) {
+        if let Some(problem) = self.overlap(figures).or_else(|| self.lost_speed(figures)) {
             let rate_hz = self.time.sampling_rate_hz;
             let help = format!(
                 "raise solver.sampling_rate_hz from {rate_hz:.0} to {:.0} S/s; where that changes nothing, lower operation.brake_torque_nm, \
@@ -50,7 +66,7 @@ impl Stages {
             );
             return Err(Error::Impossible { problem, help });
         }
-        let worst = self.imbalances(channels).into_iter().max_by(|a, b| a.lost.total_cmp(&b.lost));
+        let worst = self.imbalances(figures).into_iter().max_by(|a, b| a.lost.total_cmp(&b.lost));
         match worst.filter(|worst| worst.lost.is_nan() || worst.lost > REFUSED_IMBALANCE) {
             Some(worst) => Err(Error::Impossible { problem: worst.words, help: self.help_of_imbalance() }),
             None => Ok(()),
@@ -58,35 +74,29 @@ impl Stages {
     }
 
     /// Teeth that have passed through each other.
-    fn overlap(&self, channels: &Channels) -> Option<String> {
-        let meshes =
-            self.mean_stiffness_n_per_m().into_iter().zip(&self.layout.gears).zip(&self.layout.mesh_names);
-        let of_mesh = |(mesh, ((stiffness_n_per_m, gears), name)): (
+    fn overlap(&self, figures: &Figures) -> Option<String> {
+        let meshes = self.mean_stiffness_n_per_m().into_iter().zip(&self.layout.gears).zip(&figures.forces);
+        let of_mesh = |(mesh, ((stiffness_n_per_m, gears), force)): (
             usize,
-            ((f64, &crate::wheel::Gears), &Option<String>),
+            ((f64, &Gears), &SignalFigures),
         )| {
-            let force_n = channels.of(SignalSource::MeshForce(mesh));
-            // A sum, which keeps what is no number.
-            let largest_n = force_n
-                .iter()
-                .fold(0.0, |most: f64, force| if force.abs() <= most { most } else { force.abs() });
+            let largest_n = force.largest();
             let modules = overlap_modules(largest_n, stiffness_n_per_m, gears.module_mm)?;
-            let of = name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
             Some(format!(
-                "the force of the mesh{of} reaches {largest_n:.3e} N, with which its flanks would overlap by {modules:.3} modules: no machine \
-                 moves like that"
+                "the force of {} reaches {largest_n:.3e} N, with which its flanks would overlap by {modules:.3} modules: no machine \
+                 moves like that",
+                self.mesh_in_words(mesh)
             ))
         };
         meshes.enumerate().find_map(of_mesh)
     }
 
     /// A shaft that does not turn as it is driven.
-    fn lost_speed(&self, channels: &Channels) -> Option<String> {
-        let driven_hz = self.mean_driven_hz(channels.len());
-        let shafts = self.shaft_names().into_iter().zip(&self.layout.ratios).enumerate();
-        let of_shaft = |(shaft, (name, ratio)): (usize, (String, &crate::scenario::Ratio))| {
-            let speed_hz = channels.of(SignalSource::ShaftSpeed(shaft));
-            let mean_hz = speed_hz.iter().sum::<f64>() / speed_hz.len() as f64;
+    fn lost_speed(&self, figures: &Figures) -> Option<String> {
+        let driven_hz = self.mean_driven_hz();
+        let shafts = self.shaft_names().into_iter().zip(&self.layout.ratios).zip(&figures.speeds);
+        let of_shaft = |((name, ratio), speed_hz): ((String, &Ratio), &SignalFigures)| {
+            let mean_hz = speed_hz.mean();
             let driven_hz = driven_hz * ratio.value().abs();
             speed_factor(mean_hz.abs(), driven_hz).map(|_| {
                 format!("{name} turns at {mean_hz:.4e} Hz on average, while the motor drives it at {driven_hz:.4} Hz: no machine moves like that")
@@ -96,12 +106,27 @@ impl Stages {
     }
 
     /// (Hz) Mean speed of the motor over the kept samples.
-    pub(crate) fn mean_driven_hz(&self, samples: usize) -> f64 {
+    pub(crate) fn mean_driven_hz(&self) -> f64 {
         if self.scenario.operation.speed_profile_hz.is_none() {
             return self.scenario.operation.pinion_speed_hz;
         }
-        let kept = self.motion().skip(self.time.first_kept_sample).take(samples);
-        kept.map(|motion| motion.speed_hz).sum::<f64>() / samples as f64
+        let kept = self.kept_motion(self.time.kept_samples());
+        SignalFigures::of(kept.iter().map(|motion| motion.speed_hz)).mean()
+    }
+
+    /// Motor and brake at the first kept samples.
+    fn kept_motion(&self, samples: usize) -> Vec<MotionSample> {
+        self.motion().skip(self.time.first_kept_sample).take(samples).collect()
+    }
+
+    /// What a mesh is called.
+    ///
+    /// # Arguments
+    /// * `mesh` - its number
+    pub(crate) fn mesh_in_words(&self, mesh: usize) -> String {
+        self.layout.mesh_names[mesh]
+            .as_ref()
+            .map_or_else(|| "the mesh".to_owned(), |name| format!("mesh {name}"))
     }
 
     /// What each shaft is called.
@@ -117,29 +142,19 @@ impl Stages {
     /// the mean torque of the brake and its own acceleration ask for.
     ///
     /// # Arguments
-    /// * `channels` - the kept signals
-    pub(crate) fn imbalances(&self, channels: &Channels) -> Vec<Imbalance> {
+    /// * `figures` - of the kept signals
+    pub(crate) fn imbalances(&self, figures: &Figures) -> Vec<Imbalance> {
         let Some((assembled, _)) = self.machine() else { return Vec::new() };
-        let forces = || (0..self.meshes.len()).map(|mesh| channels.of(SignalSource::MeshForce(mesh)));
-        let mean_n: Vec<f64> = forces().map(|force_n| mean_in_middle(force_n.iter().copied())).collect();
-        let rms_n: Vec<f64> = forces()
-            .map(|force_n| {
-                (force_n.iter().map(|force| force * force).sum::<f64>() / force_n.len() as f64).sqrt()
-            })
-            .collect();
+        let mean_n: Vec<f64> = figures.forces.iter().map(SignalFigures::mean_in_middle).collect();
+        let rms_n: Vec<f64> = figures.forces.iter().map(SignalFigures::rms).collect();
         let operation = &self.scenario.operation;
         let (torque_nm, acceleration) = if self.is_steady() {
             (operation.brake_torque_nm, 0.0)
         } else {
-            let kept: Vec<_> =
-                self.motion().skip(self.time.first_kept_sample).take(channels.len() + 1).collect();
-            let faster = kept
-                .windows(2)
-                .map(|pair| TAU * (pair[1].speed_hz - pair[0].speed_hz) * self.time.sampling_rate_hz);
-            (
-                mean_in_middle(kept[..channels.len()].iter().map(|motion| motion.torque_nm)),
-                mean_in_middle(faster.collect::<Vec<_>>().into_iter()),
-            )
+            let kept = self.kept_motion(self.time.kept_samples());
+            let torque_nm = SignalFigures::of(kept.iter().map(|motion| motion.torque_nm));
+            let speed_hz = SignalFigures::of(kept.iter().map(|motion| motion.speed_hz));
+            (torque_nm.mean_in_middle(), TAU * self.time.sampling_rate_hz * speed_hz.rise())
         };
         let balances = TorqueBalance::of(&assembled.machine);
         // A shaft that idles is no better known than the loaded ones.
@@ -151,19 +166,13 @@ impl Stages {
             let largest_nm = balance.largest_nm(&rms_n, torque_nm).max(IDLE_PART * loaded_nm);
             let missing =
                 |acceleration: f64| balance.missing_nm(&mean_n, torque_nm, acceleration).abs() / largest_nm;
-            let own = self.acceleration_rad_per_s2(&balance, channels).unwrap_or(acceleration);
+            let own = self.acceleration_rad_per_s2(&balance, figures).unwrap_or(acceleration);
             let (part, lost) = (missing(acceleration), missing(own).min(missing(acceleration)));
-            let meshes: Vec<String> = (balance.meshes.iter())
-                .map(|&(mesh, _)| {
-                    let name = self.layout.mesh_names[mesh]
-                        .as_ref()
-                        .map_or_else(String::new, |name| format!(" {name}"));
-                    format!(
-                        "{:.4} N in the mesh{name}, where the load asks for {:.4} N",
-                        mean_n[mesh], self.pairs[mesh].static_force_n
-                    )
-                })
-                .collect();
+            let of_mesh = |&(mesh, _): &(usize, f64)| {
+                let (name, static_n) = (self.mesh_in_words(mesh), self.pairs[mesh].static_force_n);
+                format!("{:.4} N in {name}, where the load asks for {static_n:.4} N", mean_n[mesh])
+            };
+            let meshes: Vec<String> = balance.meshes.iter().map(of_mesh).collect();
             let why = if lost < 0.5 * part { ", as the shaft still changes its speed" } else { "" };
             let words = format!(
                 "the mean torques on a shaft are off balance by {:.1} % of the largest{why}: {}",
@@ -176,17 +185,17 @@ impl Stages {
     }
 
     /// (rad/s²) Mean acceleration of a shaft by its own speed, per unit of the motor's rotation; none of a shaft without a signal.
-    fn acceleration_rad_per_s2(&self, balance: &TorqueBalance, channels: &Channels) -> Option<f64> {
+    fn acceleration_rad_per_s2(&self, balance: &TorqueBalance, figures: &Figures) -> Option<f64> {
         let (_, modal) = self.machine()?;
-        let signals = channels.signals.iter().zip(self.scenario.outputs());
-        let (speed_hz, rotation) = signals.into_iter().find_map(|(signal, output)| {
-            let Output::Velocity { place, axis, .. } = output else { return None };
+        self.scenario.signals_and_outputs().into_iter().find_map(|(signal, output)| {
+            let (SignalSource::ShaftSpeed(shaft), Output::Velocity { place, axis, .. }) =
+                (signal.source, output)
+            else {
+                return None;
+            };
             let rotation = balance.rotation_at(&modal.weights(&place, axis))?;
-            matches!(signal.source, SignalSource::ShaftSpeed(_)).then_some((&signal.values, rotation))
-        })?;
-        let faster =
-            (1..speed_hz.len()).map(|n| TAU * (speed_hz[n] - speed_hz[n - 1]) * channels.sampling_rate_hz);
-        (speed_hz.len() > 1).then(|| mean_in_middle(faster) / rotation)
+            Some(TAU * self.time.sampling_rate_hz * figures.speeds.get(shaft)?.rise() / rotation)
+        })
     }
 
     /// What can be done where torques do not balance: the stiffest spring takes the most digits.
@@ -227,7 +236,7 @@ fn stiffest_spring(of: &Shafts) -> (String, f64) {
 impl Simulation {
     /// Refuses a simulation that breaks a law: see [`Stages::check_laws`].
     pub(super) fn lawful(self) -> Result<Self, Error> {
-        self.stages.check_laws(&self.channels)?;
+        self.stages.check_laws(&self.stages.figures(&self.channels))?;
         Ok(self)
     }
 }

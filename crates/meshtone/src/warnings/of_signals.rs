@@ -3,7 +3,7 @@
 use super::largest_torque;
 use super::observer::{ForceFigures, Observer};
 use super::step_error::{StepError, StepJudgement, step_error, step_error_of_part, step_error_of_signals};
-use crate::checks::WindowSums;
+use crate::checks::{Figures, SignalFigures, WindowSums};
 use crate::error::{ScenarioWarning, WarningKind};
 use crate::sensor::SignalSource;
 use crate::simulate::{Simulation, Stages};
@@ -51,8 +51,6 @@ impl Simulation {
         let rate_hz = self.channels.sampling_rate_hz;
         let step = self.is_judged_in_part(judgement).then(|| step_error_of_part(self)).flatten();
         warnings.extend(step.and_then(|error| long_step(error, rate_hz, TOLERATED_STEP_OF_PART)));
-        warnings.extend(self.imbalance());
-        warnings.extend(self.rattle());
         warnings.extend(self.silent_sensors());
         warnings
     }
@@ -70,38 +68,6 @@ impl Simulation {
             && (!stages.is_steady()
                 || !stages.bearings.is_empty()
                 || stages.teeth_part() && (0..stages.meshes.len()).any(parts))
-    }
-
-    /// A shaft whose torques do not balance.
-    fn imbalance(&self) -> Option<ScenarioWarning> {
-        let worst = self
-            .stages
-            .imbalances(&self.channels)
-            .into_iter()
-            .max_by(|a, b| a.part.max(a.lost).total_cmp(&b.part.max(b.lost)))?;
-        (worst.part.max(worst.lost) > TOLERATED_IMBALANCE).then(|| {
-            let message = format!("{}; {}", worst.words, self.stages.help_of_imbalance());
-            ScenarioWarning::new(WarningKind::TorqueImbalance, "operation.brake_torque_nm", message)
-        })
-    }
-
-    /// A mesh whose teeth bounce: their motion is chaotic, and another step, seed or settling gives another.
-    fn rattle(&self) -> Option<ScenarioWarning> {
-        let apart = |mesh: usize| {
-            let force_n = self.channels.of(SignalSource::MeshForce(mesh));
-            force_n.iter().filter(|force| **force == 0.0).count() as f64 / force_n.len().max(1) as f64
-        };
-        let meshes = 0..if self.stages.teeth_part() { self.stages.meshes.len() } else { 0 };
-        let (mesh, part) = meshes.map(|mesh| (mesh, apart(mesh))).max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (part > TOLERATED_APART).then(|| {
-            let name = self.stages.layout.mesh_names[mesh].as_ref().map_or_else(String::new, |name| format!(" {name}"));
-            let message = format!(
-                "the teeth of the mesh{name} are apart for {:.0} % of the time: they bounce, and when each strikes depends on the smallest change \
-                 of rate, seed or settling; compare statistics of long signals, or load the teeth",
-                100.0 * part
-            );
-            ScenarioWarning::new(WarningKind::Rattle, "operation.brake_torque_nm", message)
-        })
     }
 
     /// Sensors that show nothing at all.
@@ -126,19 +92,15 @@ impl Simulation {
         let (stages, channels) = (&self.stages, &self.channels);
         let (_, torque_nm) = largest_torque(&stages.scenario.operation);
         let static_n = stages.forces_of_torque_n(torque_nm);
-        let meshes = stages.layout.mesh_names.iter().zip(static_n).enumerate();
-        let forces = meshes.filter_map(|(number, (mesh, static_n))| {
-            let force_n = channels.of(SignalSource::MeshForce(number));
-            let largest_n = force_n.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-            let name = mesh.as_ref().map_or_else(|| "the mesh".to_owned(), |mesh| format!("mesh {mesh}"));
-            resonance(&name, stages.scenario.speed_key(), largest_n, static_n)
+        let figures = stages.figures(channels);
+        let meshes = figures.forces.iter().zip(static_n).enumerate();
+        let forces = meshes.filter_map(|(mesh, (force_n, static_n))| {
+            resonance(&stages.mesh_in_words(mesh), stages.scenario.speed_key(), force_n.largest(), static_n)
         });
-        let driven_hz = stages.mean_driven_hz(channels.len());
-        let shafts = stages.layout.shaft_names.iter().zip(&stages.layout.ratios).enumerate();
-        let speeds = shafts.filter_map(|(number, (shaft, ratio))| {
-            let speed_hz = channels.of(SignalSource::ShaftSpeed(number));
-            let mean_hz = speed_hz.iter().sum::<f64>() / speed_hz.len() as f64;
-            other_speed(&format!("shaft {shaft:?}"), driven_hz * ratio.value().abs(), mean_hz.abs())
+        let driven_hz = stages.mean_driven_hz();
+        let shafts = stages.layout.shaft_names.iter().zip(&stages.layout.ratios).zip(&figures.speeds);
+        let speeds = shafts.filter_map(|((shaft, ratio), speed_hz)| {
+            other_speed(&format!("shaft {shaft:?}"), driven_hz * ratio.value().abs(), speed_hz.mean().abs())
         });
         let rate_hz = channels.sampling_rate_hz;
         let step =
@@ -156,7 +118,8 @@ impl Simulation {
                 windows
             })
             .collect();
-        forces.chain(speeds).chain(step).chain(stages.unsettled(&windows)).collect()
+        let broken = stages.imbalance(&figures).into_iter().chain(stages.rattle(&figures));
+        forces.chain(speeds).chain(step).chain(stages.unsettled(&windows)).chain(broken).collect()
     }
 }
 
@@ -177,8 +140,37 @@ impl Stages {
         let resonance = resonance("the mesh", self.scenario.speed_key(), observer.force.largest_n, static_n);
         let braked = self.braked_rotation(observer.force.mean_n());
         let unsettled = self.unsettled(&observer.windows);
-        let doubtful = [pulling, resonance, braked, self.other_speed(observer), step, unsettled];
+        let (imbalance, rattle) = (self.imbalance(&observer.figures), self.rattle(&observer.figures));
+        let doubtful =
+            [pulling, resonance, braked, self.other_speed(observer), step, unsettled, imbalance, rattle];
         doubtful.into_iter().flatten().collect()
+    }
+
+    /// A shaft whose torques do not balance.
+    fn imbalance(&self, figures: &Figures) -> Option<ScenarioWarning> {
+        let worst = self
+            .imbalances(figures)
+            .into_iter()
+            .max_by(|a, b| a.part.max(a.lost).total_cmp(&b.part.max(b.lost)))?;
+        (worst.part.max(worst.lost) > TOLERATED_IMBALANCE).then(|| {
+            let message = format!("{}; {}", worst.words, self.help_of_imbalance());
+            ScenarioWarning::new(WarningKind::TorqueImbalance, "operation.brake_torque_nm", message)
+        })
+    }
+
+    /// A mesh whose teeth bounce: their motion is chaotic, and another step, seed or settling gives another.
+    fn rattle(&self, figures: &Figures) -> Option<ScenarioWarning> {
+        let meshes = figures.forces.iter().map(SignalFigures::part_of_zeros).enumerate();
+        let (mesh, part) = meshes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (self.teeth_part() && part > TOLERATED_APART).then(|| {
+            let message = format!(
+                "the teeth of {} are apart for {:.0} % of the time: they bounce, and when each strikes depends on the smallest change \
+                 of rate, seed or settling; compare statistics of long signals, or load the teeth",
+                self.mesh_in_words(mesh),
+                100.0 * part
+            );
+            ScenarioWarning::new(WarningKind::Rattle, "operation.brake_torque_nm", message)
+        })
     }
 
     /// A mean mesh force under the published model that is not the load's, because its damping acts on the rotation of the whole machine too.
@@ -197,8 +189,8 @@ impl Stages {
 
     /// A shaft whose mean speed is not what it is driven at.
     fn other_speed(&self, observer: &Observer) -> Option<ScenarioWarning> {
-        let [pinion_hz, gear_hz] = observer.mean_speeds_hz();
-        let driven_hz = self.mean_driven_hz(observer.force.samples);
+        let [pinion_hz, gear_hz] = [0, 1].map(|shaft| observer.figures.speeds[shaft].mean());
+        let driven_hz = self.mean_driven_hz();
         let Gears { pinion_teeth, gear_teeth, .. } = self.layout.gears[0];
         let ratio = f64::from(pinion_teeth) / f64::from(gear_teeth);
         let turning = [("pinion", driven_hz, pinion_hz), ("gear", driven_hz * ratio, gear_hz)];

@@ -17,6 +17,7 @@ fn rig(rig: GearboxRig, bearing: &str) -> Scenario {
     let mut gearbox = Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap();
     gearbox.solver.sampling_rate_hz = 100_000.0;
     gearbox.solver.duration_s = Some(1.0);
+    gearbox.operation.pinion_speed_hz = 30.0;
     gearbox.sensors.clear();
     gearbox
 }
