@@ -198,7 +198,9 @@ fn warnings_are_columns_and_are_counted() {
         .replace("records = 60", "records = 12")
         .replace("brake_torque_nm = 200.0", "brake_torque_nm = 3.0")
         .replacen("sampling_rate_hz = 1e4", "sampling_rate_hz = 1e5", 1);
-    let undercut = light.replace("pinion_teeth = 20", "pinion_teeth = 14");
+    let undercut = light
+        .replace("pinion_teeth = 20", "pinion_teeth = 14")
+        .replace("brake_torque_nm = 3.0", "brake_torque_nm = 200.0");
     for (model, text) in [("linear", light), ("contact", undercut)] {
         let sections = format!("[scenario]\nmodel = \"{model}\"\n[scenario.gears]");
         let plan = plan(&text.replace("[scenario.gears]", &sections));

@@ -56,7 +56,8 @@ impl SignalFigures {
         };
         self.parts[part] += value;
         // A value that is no number stays.
-        self.largest = if value.abs() <= self.largest { self.largest } else { value.abs() };
+        let stays = self.largest.is_nan() || value.abs() <= self.largest;
+        self.largest = if stays { self.largest } else { value.abs() };
         self.zeros += usize::from(value == 0.0);
     }
 

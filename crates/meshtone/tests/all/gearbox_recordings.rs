@@ -150,7 +150,7 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
         gearbox.solver.duration_s = Some(3.0);
         if rig.is_some() {
             // At the rate of the rig's recordings: far above it, where nothing is noise, lines count of less than a hundred-thousandth of the power.
-            gearbox.solver.sampling_rate_hz = 2e4;
+            gearbox.solver.sampling_rate_hz = 20_480.0;
         }
         gearbox.sensors = ["input:0", "middle:1", "output:1"].map(Sensor::at_place).to_vec();
         let channels = meshtone::simulate(&gearbox).unwrap().channels;
