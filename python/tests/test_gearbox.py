@@ -72,7 +72,8 @@ def test_batch_gives_the_same_as_alone() -> None:
 
 
 def test_judgement_does_not_depend_on_how_many_there_are() -> None:
-    doubtful = mt.Gearbox.from_toml(mt.gearbox_template("uconn").replace("duration_s = 1.0", "duration_s = 0.2"))
+    text = mt.gearbox_template("uconn").replace("duration_s = 1.0", "duration_s = 0.2")
+    doubtful = mt.Gearbox.from_toml(text.replace("sampling_rate_hz = 100000.0", "sampling_rate_hz = 20000.0"))
     [alone] = mt.simulate_gearboxes([doubtful])
     [one, other] = mt.simulate_gearboxes([doubtful, doubtful])
     assert alone.warnings == one.warnings == other.warnings

@@ -1,7 +1,7 @@
 //! Gearboxes from their keys to their signals.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use meshtone::sensor::NamedSignal;
+use meshtone::sensor::{NamedSignal, SignalSource};
 use std::f64::consts::TAU;
 
 use crate::dense::{Dense, DenseMesh};
@@ -803,4 +803,90 @@ fn a_spring_that_is_a_constraint_keeps_the_balance() {
             assert!(off.abs() < 2e-3, "{name}: {off}");
         }
     }
+}
+
+/// Two layshafts between coaxial input and output, whose axes are one and whose ends are `apart_mm` apart.
+fn power_split(apart_mm: f64) -> String {
+    let shaft = |name: &str, length_mm: f64, more: String| {
+        let bearings: String =
+            [0.0, 1.0].iter().map(|at| format!("[[bearing]]\nshaft = \"{name}\"\nat = {at:?}\n")).collect();
+        format!(
+            "[[shaft]]\nname = \"{name}\"\nlength_mm = {length_mm:?}\nradius_mm = 10.0\n{more}\n{bearings}"
+        )
+    };
+    let wheel = |name: &str, shaft: &str, teeth: u32, at: f64| {
+        format!(
+            "[[wheel]]\nname = \"{name}\"\nshaft = \"{shaft}\"\nat = {at:?}\nteeth = {teeth}\nface_width_mm = 15.0\n"
+        )
+    };
+    let mesh = |a: &str, b: &str| {
+        format!("[[mesh]]\nwheels = [\"{a}\", \"{b}\"]\nmodule_mm = 2.0\npressure_angle_deg = 20.0\n")
+    };
+    let at = |z_mm: f64| z_mm / (240.0 + apart_mm);
+    [
+        shaft("in", 120.0, "position_mm = [0.0, 0.0]\ncouples_to = \"motor\"".to_owned()),
+        shaft("left", 240.0 + apart_mm, "position_mm = [-60.0, 0.0]".to_owned()),
+        shaft("right", 240.0 + apart_mm, "position_mm = [60.0, 0.0]".to_owned()),
+        shaft(
+            "out",
+            120.0,
+            format!("start_mm = {:?}\nposition_mm = [0.0, 0.0]\ncouples_to = \"brake\"", 120.0 + apart_mm),
+        ),
+        wheel("a", "in", 20, 0.5),
+        wheel("b", "left", 40, at(60.0)),
+        wheel("c", "right", 40, at(60.0)),
+        wheel("d", "left", 20, at(180.0 + apart_mm)),
+        wheel("e", "right", 20, at(180.0 + apart_mm)),
+        wheel("f", "out", 40, 0.5),
+        [mesh("a", "b"), mesh("a", "c"), mesh("d", "f"), mesh("e", "f")].concat(),
+        "[operation]\ninput_speed_hz = 20.0\nbrake_torque_nm = 100.0\n".to_owned(),
+        "[solver]\nsampling_rate_hz = 1e5\nduration_s = 0.5\nsettle_fraction = 0.7\n".to_owned(),
+    ]
+    .concat()
+}
+
+/// Input and output of one axis stand behind one another, and each way carries half of the load.
+#[test]
+fn a_coaxial_power_split_shares_its_load() {
+    let gearbox = Scenario::from_toml(&power_split(20.0)).unwrap();
+    let simulation = simulate(&gearbox);
+    let base_radius_m = 0.020 * 20f64.to_radians().cos();
+    // Of the output, and half a turn as fast half as much.
+    for (mesh, radius_m) in [
+        (0, 4.0 * base_radius_m),
+        (1, 4.0 * base_radius_m),
+        (2, 2.0 * base_radius_m),
+        (3, 2.0 * base_radius_m),
+    ] {
+        let (share_n, static_n) = (50.0 / radius_m, simulation.stages.pairs[mesh].static_force_n);
+        let force_n = simulation.channels.of(SignalSource::MeshForce(mesh));
+        let mean_n = force_n.iter().sum::<f64>() / force_n.len() as f64;
+        println!(
+            "mesh {mesh}: {share_n:.6} N, statics {:.1e}, mean {:.1e}",
+            static_n / share_n - 1.0,
+            mean_n / share_n - 1.0
+        );
+        assert!((static_n / share_n - 1.0).abs() < 1e-6 && (mean_n / share_n - 1.0).abs() < 1e-4);
+    }
+    // Nearer, the ends of both would overlap.
+    let error =
+        Scenario::from_toml(&power_split(20.0).replace("start_mm = 140.0", "start_mm = 119.0")).unwrap_err();
+    assert_eq!(error.key, "shaft[3].start_mm", "{error}");
+    assert!(error.problem.contains("runs into shaft \"in\" from z = 119.000 to 120.000 mm"), "{error}");
+}
+
+/// Where z = 0 lies does not matter.
+#[test]
+fn a_gearbox_may_begin_anywhere() {
+    let gearbox = two_stages();
+    let mut moved = gearbox.clone();
+    moved.structure.shafts_mut().unwrap().shafts.iter_mut().for_each(|shaft| shaft.start_mm = 1234.5);
+    let frequencies = |gearbox: &Scenario| stages(gearbox).unwrap().natural_frequencies_hz();
+    for (here, there) in frequencies(&gearbox).iter().zip(frequencies(&moved)).skip(1) {
+        assert!((here / there - 1.0).abs() < 1e-7, "{here} {there}");
+    }
+    // A shaft alone that is moved takes its wheel out of mesh.
+    gearbox.validate().unwrap();
+    moved.structure.shafts_mut().unwrap().shafts[0].start_mm = 0.0;
+    assert_eq!(moved.validate().unwrap_err().key, "mesh[0].wheels");
 }

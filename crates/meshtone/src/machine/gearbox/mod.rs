@@ -116,7 +116,7 @@ pub enum GearboxPlace {
 pub struct GearboxMachine {
     /// Its parts.
     pub machine: Machine,
-    /// (m) For each shaft, z of its nodes, with the first coordinate of each.
+    /// (m) For each shaft, how far from its beginning its nodes lie, with the first coordinate of each.
     nodes: Vec<Vec<(f64, usize)>>,
     /// First coordinate of the housing and (m) its centre; none without one.
     housing: Option<(usize, Vector3<f64>)>,
@@ -246,7 +246,7 @@ fn point_of_body(body: usize, r: Vector3<f64>) -> [Vec<(usize, f64)>; 3] {
 impl GearboxMachine {
     /// Puts the machine together.
     ///
-    /// Coordinates are counted shaft by shaft, node by node from z = 0 on; then come the housing, the seats in the order of the bearings,
+    /// Coordinates are counted shaft by shaft, node by node from its beginning on; then come the housing, the seats in the order of the bearings,
     /// and the brake's rotation. The parts are then added one after the other.
     ///
     /// # Arguments
@@ -366,8 +366,8 @@ impl GearboxMachine {
             parts.bearings.iter().zip(&self.seats)
         {
             let (of_shaft, [x_m, y_m]) = parts.shafts[shaft];
-            let z_m = bearing.at * of_shaft.length_mm * 1e-3;
-            let node = self.node(shaft, z_m);
+            let z_m = of_shaft.z_mm(bearing.at) * 1e-3;
+            let node = self.node(shaft, bearing.at * of_shaft.length_mm * 1e-3);
             let Seat { mass_kg, inertia_kgm2, tilt_stiffness_nm_per_rad, .. } = bearing.seat;
             let of_seat = along_axes(bearing.seat.stiffness_n_per_m, bearing.seat.vertical_stiffness_n_per_m);
             assembly.add_body(seat, mass_kg, [inertia_kgm2; 3]);
@@ -544,7 +544,7 @@ impl GearboxMachine {
         line
     }
 
-    /// The motor turns its shaft at z = 0; the brake's torque acts against its rotation.
+    /// The motor turns its shaft at its beginning; the brake's torque acts against its rotation.
     fn drives(&self, parts: &GearboxParts, brake: usize, mass: &DMatrix<f64>) -> Vec<Drive> {
         let mut drives = Vec::new();
         for ((nodes, (shaft, _)), ratio) in self.nodes.iter().zip(parts.shafts).zip(parts.speed_ratios) {
@@ -599,7 +599,7 @@ impl GearboxMachine {
         [0, 1, 2].map(|axis| vec![(before + axis, 1.0 - part), (after + axis, part)])
     }
 
-    /// Names the rotation of a shaft at z = 0, positive as it turns.
+    /// Names the rotation of a shaft at its beginning, positive as it turns.
     ///
     /// # Arguments
     /// * `name` - the name that an output has for it
@@ -655,12 +655,12 @@ fn beam_between(shaft: &GearboxShaft, [from_m, to_m]: [f64; 2], material: Materi
     }
 }
 
-/// (m) Centre of the housing: the mean of the shafts' axes, at half the length of the longest.
+/// (m) Centre of the housing: the mean of the shafts' axes, midway between the first beginning and the last end of a shaft.
 fn centre_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> Vector3<f64> {
     let mean = |axis: usize| {
         shafts.iter().map(|(_, position_m)| position_m[axis]).sum::<f64>() / shafts.len() as f64
     };
-    Vector3::new(mean(0), mean(1), longest_m(shafts) / 2.0)
+    Vector3::new(mean(0), mean(1), ends_mm(shafts).iter().sum::<f64>() * 0.5e-3)
 }
 
 /// (m) Least and largest coordinate of the shafts' axes.
@@ -669,8 +669,10 @@ fn extremes(shafts: &[(&GearboxShaft, [f64; 2])], axis: usize) -> [f64; 2] {
     [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-fn longest_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> f64 {
-    shafts.iter().map(|(shaft, _)| shaft.length_mm * 1e-3).fold(0.0, f64::max)
+/// (mm) z of the first beginning and of the last end of a shaft.
+fn ends_mm(shafts: &[(&GearboxShaft, [f64; 2])]) -> [f64; 2] {
+    let ends = |at: f64| shafts.iter().map(move |(shaft, _)| shaft.z_mm(at));
+    [ends(0.0).fold(f64::INFINITY, f64::min), ends(1.0).fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// The housing's feet, given or by default.
@@ -681,6 +683,7 @@ fn feet(housing: &Housing, shafts: &[(&GearboxShaft, [f64; 2])]) -> Vec<Foot> {
     const OUTSIDE_MM: f64 = 100.0;
     let [[left, right], [low, _]] = [0, 1].map(|axis| extremes(shafts, axis).map(|value| value * 1e3));
     let corners = [left - OUTSIDE_MM, right + OUTSIDE_MM].into_iter();
-    let ends = [0.0, longest_m(shafts) * 1e3];
-    corners.flat_map(|x| ends.map(|z| Foot { at_mm: [x, low - OUTSIDE_MM, z], ..Foot::start() })).collect()
+    corners
+        .flat_map(|x| ends_mm(shafts).map(|z| Foot { at_mm: [x, low - OUTSIDE_MM, z], ..Foot::start() }))
+        .collect()
 }

@@ -18,9 +18,11 @@ pub struct GearboxShaft {
     pub name: String,
     /// (mm) Length.
     pub length_mm: f64,
+    /// (mm) z of its beginning. Default 0.
+    pub start_mm: f64,
     /// (mm) Radius, also of the bores of the wheels on it; of a shaft of several radii see [`Self::segments`].
     pub radius_mm: Option<f64>,
-    /// (mm) Length and radius of each piece, from z = 0 on, instead of one radius. Empty: one radius.
+    /// (mm) Length and radius of each piece, from its beginning on, instead of one radius. Empty: one radius.
     pub segments: Vec<[f64; 2]>,
     /// (mm) Radius of the shaft's own bore. Default 0: solid.
     pub bore_radius_mm: f64,
@@ -28,7 +30,7 @@ pub struct GearboxShaft {
     pub position_mm: Option<[f64; 2]>,
     /// Number of beam elements, shared among its pieces by their length. Default 12.
     pub elements: u32,
-    /// What it is coupled to at an end: the motor at z = 0, the brake at the other. Default nothing.
+    /// What it is coupled to at an end: the motor at its beginning, the brake at the other. Default nothing.
     pub couples_to: Coupled,
     /// (N m/rad) Torsional stiffness of that coupling. Default 2e3 of a motor's, 4e3 of a brake's.
     pub coupling_stiffness_nm_per_rad: Option<f64>,
@@ -55,12 +57,34 @@ impl GearboxShaft {
         self.coupling_stiffness_nm_per_rad.unwrap_or(usual)
     }
 
+    /// (mm) z of a place.
+    ///
+    /// # Arguments
+    /// * `at` - (-) the place as a part of the length
+    pub fn z_mm(&self, at: f64) -> f64 {
+        self.start_mm + at * self.length_mm
+    }
+
     /// (mm) Length and radius of each piece.
     pub fn pieces_mm(&self) -> Vec<[f64; 2]> {
         match self.radius_mm {
             Some(radius_mm) if self.segments.is_empty() => vec![[self.length_mm, radius_mm]],
             _ => self.segments.clone(),
         }
+    }
+
+    /// (mm) The largest radius between two places.
+    ///
+    /// # Arguments
+    /// * `ends_mm` - (mm) z of the places
+    pub fn largest_radius_mm(&self, [from_mm, until_mm]: [f64; 2]) -> f64 {
+        let mut end_mm = self.start_mm;
+        let reaches = |[length_mm, radius_mm]: [f64; 2]| {
+            let begins_mm = end_mm;
+            end_mm += length_mm;
+            if begins_mm < until_mm && end_mm > from_mm { radius_mm } else { 0.0 }
+        };
+        self.pieces_mm().into_iter().map(reaches).fold(0.0, f64::max)
     }
 
     /// (mm) Radius at a place.
@@ -94,7 +118,7 @@ by_name!(Coupled, ["nothing" => Coupled::Nothing, "motor" => Coupled::Motor, "br
 
 /// (-) A place along a shaft.
 const ALONG: Range = Range::between(Included(0.0), Included(1.0))
-    .message("must be from 0 to 1, the part of the shaft's length from the end at z = 0");
+    .message("must be from 0 to 1, the part of the shaft's length from its beginning");
 const STIFFNESS: Range = Range::positive().implausible_above(1e15);
 const MAYBE_STIFF: Range = Range::not_negative().implausible_above(1e15);
 const MASS: Range = Range::positive().implausible_above(1e9);
@@ -107,6 +131,7 @@ impl Keys for GearboxShaft {
         Self {
             name: String::new(),
             length_mm: f64::NAN,
+            start_mm: 0.0,
             radius_mm: None,
             segments: Vec::new(),
             bore_radius_mm: 0.0,
@@ -123,9 +148,16 @@ impl Keys for GearboxShaft {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("name", "", "the shaft's name", field!(name)).required().rule("no other shaft's"),
-            row("length_mm", "mm", "the shaft's length, from z = 0 on", field!(length_mm))
+            row("length_mm", "mm", "the shaft's length", field!(length_mm))
                 .required()
                 .range(Range::positive().implausible_above(1e5)),
+            row(
+                "start_mm",
+                "mm",
+                "z of its beginning: shafts of one axis stand behind one another",
+                field!(start_mm),
+            )
+            .range(Range::between(Excluded(-1e5), Excluded(1e5))),
             row("radius_mm", "mm", "its radius, also of the bores of the wheels on it", field!(radius_mm))
                 .otherwise("required, unless segments is given")
                 .range(Range::positive())
@@ -133,7 +165,7 @@ impl Keys for GearboxShaft {
             row(
                 "segments",
                 "mm",
-                "the length and the radius of each piece, from z = 0 on, in place of one radius",
+                "the length and the radius of each piece, from its beginning on, in place of one radius",
                 field!(segments),
             )
             .otherwise("one piece of radius_mm")
@@ -154,7 +186,7 @@ impl Keys for GearboxShaft {
             row(
                 "couples_to",
                 "",
-                "what it is coupled to: the motor at z = 0, or the brake at the other end",
+                "what it is coupled to: the motor at its beginning, or the brake at the other end",
                 field!(couples_to),
             )
             .rule("one shaft to the motor, one to the brake"),
@@ -447,7 +479,7 @@ impl Keys for Bearing {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("shaft", "", "the name of its shaft", field!(shaft)).required(),
-            row("at", "-", "the position along the shaft, as a fraction of its length from z = 0", field!(at))
+            row("at", "-", "the position along the shaft, as a fraction of its length from its beginning", field!(at))
                 .required()
                 .range(ALONG),
             row("kind", "", "the kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact", field!(kind)),
