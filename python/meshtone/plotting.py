@@ -283,11 +283,14 @@ def plot_spectrum(simulation: Simulation, channel: str | None = None, *, ax: Axe
     limit_hz = min(40 * max(meshes_hz), frequency_hz[-1])
     shown = (frequency_hz > 0) & (frequency_hz <= limit_hz)
     ax.semilogy(frequency_hz[shown] / 1e3, np.maximum(amplitude[shown], 1e-12), color=GREY, linewidth=0.6, label="spectrum")
-    for (colour, marker), name, mesh_hz in zip(LINES, simulation.meshes, meshes_hz if _speed_profile(simulation) is None else ()):
-        of_mesh = "mesh harmonics" if len(meshes_hz) == 1 else f"harmonics of {name}"
+    steady = meshes_hz if _speed_profile(simulation) is None else []
+    for number, ((colour, marker), mesh_hz) in enumerate(zip(LINES, steady)):
+        of_mesh = "mesh harmonics" if len(steady) == 1 else f"harmonics of {simulation.meshes[number]}"
+        # Where harmonics of several meshes coincide, the larger markers of the first ones show around those of the last.
+        size = 3 + 2 * (len(steady) - 1 - number)
         harmonics = mesh_hz * np.arange(1, int(limit_hz / mesh_hz) + 1)
         lines = np.minimum(np.searchsorted(frequency_hz, harmonics - frequency_hz[1] / 2), amplitude.size - 1)
-        ax.plot(harmonics / 1e3, amplitude[lines], marker, markersize=3, color=colour, label=f"{of_mesh} ({mesh_hz:g} Hz)")
+        ax.plot(harmonics / 1e3, amplitude[lines], marker, markersize=size, color=colour, label=f"{of_mesh} ({mesh_hz:g} Hz)")
     top = amplitude[shown].max()
     ax.set_ylim(top * 1e-6, top * 3)
     ax.set_xlim(0, limit_hz / 1e3)
@@ -516,16 +519,18 @@ def plot_simulation(simulation: Simulation) -> Figure:
         shown.append(leading.name)
     wheels = [wheel_of(scenario, wheel) for wheel in shown]
     teeth = [f"tooth {wheel.name}" for wheel in wheels]
+    # As few columns as have the teeth beside one another and the row divided into thirds and halves: more make the layout fail.
+    columns = math.lcm(6, len(teeth))
     if len(wheels) == len(meshes) == 1:
-        top = [teeth * 20 + ["stiffness 0"] * 40]
+        top = [teeth * 2 + ["stiffness 0"] * 4]
     else:
-        top = [[tooth for tooth in teeth for _ in range(60 // len(teeth))], *([f"stiffness {mesh}"] * 60 for mesh in meshes)]
-        top[0] += [teeth[-1]] * (60 - len(top[0]))
+        top = [[tooth for tooth in teeth for _ in range(columns // len(teeth))], *([f"stiffness {mesh}"] * columns for mesh in meshes)]
+    halves = columns // 2
     layout: list[Any] = [
         *top,
-        ["signal"] * 60,
-        ["spectrum"] * 60,
-        *([f"average {wheel.name}"] * 30 + [f"difference {wheel.name}"] * 30 for wheel in wheels),
+        ["signal"] * columns,
+        ["spectrum"] * columns,
+        *([f"average {wheel.name}"] * halves + [f"difference {wheel.name}"] * halves for wheel in wheels),
     ]
     figure = _new_figure((11.0, 2.5 * len(layout)))
     axes = figure.subplot_mosaic(layout, height_ratios=[1.5] + [1] * (len(layout) - 1))

@@ -99,7 +99,7 @@ impl KeepNamed {
 
 /// A simulation on its way to its kept channels: of a pair these alone, of a gearbox all.
 enum KeptRecorder {
-    OfPair(ObservedRecorder),
+    OfPair(Box<ObservedRecorder>),
     All(Channels),
 }
 
@@ -147,7 +147,7 @@ impl Keep for KeepNamed {
 
     fn recorder(&self, stages: &Stages) -> KeptRecorder {
         match stages.scenario.rig() {
-            Some(_) => KeptRecorder::OfPair(self.of_pair(&stages.scenario).recorder(stages)),
+            Some(_) => KeptRecorder::OfPair(Box::new(self.of_pair(&stages.scenario).recorder(stages))),
             None => KeptRecorder::All(KeepSimulation.recorder(stages)),
         }
     }
@@ -156,7 +156,7 @@ impl Keep for KeepNamed {
         let names = self.names(&stages.scenario);
         match recorder {
             KeptRecorder::OfPair(recorder) => {
-                let observed = self.of_pair(&stages.scenario).keep(index, stages, recorder);
+                let observed = self.of_pair(&stages.scenario).keep(index, stages, *recorder);
                 let (signals, observation) = (observed.signals, observed.observation);
                 Kept {
                     sampling_rate_hz: signals.sampling_rate_hz,

@@ -17,6 +17,9 @@ use crate::error::{read_error, scenario_error, value_error};
 use crate::process::train;
 use crate::value::table;
 
+/// Name, tooth count, (mm) face width, (Hz) nominal speed, (rev) angle where that of its shaft is 0.
+type StatedWheel = (String, u32, f64, f64, f64);
+
 /// A scenario as the library has it.
 #[pyclass(frozen, eq, module = "meshtone._core")]
 #[derive(Clone, PartialEq)]
@@ -80,8 +83,8 @@ impl Scenario {
         self.0.all_sensors().iter().map(Sensor::channel).collect()
     }
 
-    /// Of each wheel its name, tooth count, (mm) face width, (Hz) nominal speed, and (rev) angle where that of its shaft is 0.
-    fn wheels(&self) -> PyResult<Vec<(String, u32, f64, f64, f64)>> {
+    /// What is stated of each wheel.
+    fn wheels(&self) -> PyResult<Vec<StatedWheel>> {
         let train = train(self)?;
         let wheel = |(of, stated): (TrainWheel, &ScenarioWheel)| {
             let speed_hz = train.shafts[of.shaft].speed_ratio.value() * self.0.operation.pinion_speed_hz;
