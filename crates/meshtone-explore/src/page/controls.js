@@ -331,6 +331,8 @@ export class Controls {
 
   /** (s) About where the signal ends. */
   get end_s() {
+    const given = this.tree.solver?.duration_s;
+    if (given) return given;
     if (!this.#answer) return 1;
     const { start_s: start, values, sampling_rate_hz: rate } = this.#answer.signal;
     return Number((start + values.length / rate).toPrecision(2));
