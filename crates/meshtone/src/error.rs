@@ -276,7 +276,7 @@ warning_kinds! {
     IgnoredKey "ignored-key" "a key has no effect";
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than gears usually run";
-    Gyroscopic "gyroscopic" "gyroscopic moments, which are neglected, shift a natural frequency by more than 5 %";
+    Gyroscopic "gyroscopic" "gyroscopic moments, which are neglected, shift a natural frequency by more than 2 %";
     AddedThrust "added-thrust" "the axial forces of two helical wheels add up on their shaft";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";

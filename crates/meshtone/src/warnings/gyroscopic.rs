@@ -6,7 +6,7 @@ use crate::error::{ScenarioWarning, WarningKind};
 use crate::simulate::Stages;
 
 /// (-) Shift of a mode's frequency that is left out without a warning.
-const TOLERATED_SHIFT: f64 = 0.05;
+const TOLERATED_SHIFT: f64 = 0.02;
 
 /// A mode that gyroscopic moments shift.
 #[derive(Debug, Clone, Copy, PartialEq)]
