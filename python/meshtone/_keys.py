@@ -183,12 +183,14 @@ class GearboxShaft(TypedDict, total=False):
     name : str
         The shaft's name. Allowed: no other shaft's.
     length_mm : float
-        (mm) The shaft's length, from z = 0 on. Allowed: > 0, ≤ 100000.
+        (mm) The shaft's length. Allowed: > 0, ≤ 100000.
+    start_mm : float
+        (mm) Z of its beginning: shafts of one axis stand behind one another. Allowed: > −100000, < 100000.
     radius_mm : float
         (mm) Its radius, also of the bores of the wheels on it. Allowed: > 0; less than the wheels' root radii.
     segments : sequence of pairs of floats
-        (mm) The length and the radius of each piece, from z = 0 on, in place of one radius. Allowed: > 0; lengths add
-        up to length_mm.
+        (mm) The length and the radius of each piece, from its beginning on, in place of one radius. Allowed: > 0;
+        lengths add up to length_mm.
     bore_radius_mm : float
         (mm) The radius of the shaft's own bore. Allowed: ≥ 0; less than its radius.
     position_mm : sequence of 2 floats
@@ -197,7 +199,7 @@ class GearboxShaft(TypedDict, total=False):
     elements : int
         The number of its beam elements. Allowed: whole number 2…60.
     couples_to : {'nothing', 'motor', 'brake'}
-        What it is coupled to: the motor at z = 0, or the brake at the other end.
+        What it is coupled to: the motor at its beginning, or the brake at the other end.
     coupling_stiffness_nm_per_rad : float
         (N m/rad) The torsional stiffness of that coupling. Allowed: > 0, ≤ 1e15.
     damping_ratio : float
@@ -210,6 +212,7 @@ class GearboxShaft(TypedDict, total=False):
 
     name: str
     length_mm: float
+    start_mm: float
     radius_mm: float
     segments: npt.ArrayLike
     bore_radius_mm: float
@@ -232,8 +235,8 @@ class GearboxWheel(TypedDict, total=False):
     shaft : str
         The name of its shaft.
     at : float
-        (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1; within half a face width
-        of its mating wheels.
+        (-) The position along the shaft, as a fraction of its length from its beginning. Allowed: 0…1; within half a
+        face width of its mating wheels.
     teeth : int
         The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is not
         simulated, with a warning.
@@ -421,6 +424,8 @@ class Seat(TypedDict, total=False):
         (kg m²) Its moment of inertia about every axis. Allowed: > 0, ≤ 1e9.
     stiffness_n_per_m : float
         (N/m) Its stiffness to the housing or to the ground, in every direction. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) Its stiffness along y, where it differs. Allowed: > 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
         (N m/rad) Its rotational stiffness about every axis. Allowed: > 0, ≤ 1e15.
     """
@@ -428,6 +433,7 @@ class Seat(TypedDict, total=False):
     mass_kg: float
     inertia_kgm2: float
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float
 
 
@@ -439,7 +445,7 @@ class GearboxBearing(TypedDict, total=False):
     shaft : str
         The name of its shaft.
     at : float
-        (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1.
+        (-) The position along the shaft, as a fraction of its length from its beginning. Allowed: 0…1.
     kind : {'linear', 'ball', 'roller'}
         The kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact.
     name : str
@@ -466,6 +472,9 @@ class GearboxBearing(TypedDict, total=False):
         The spalls of a rolling bearing, one by one.
     stiffness_n_per_m : float
         (N/m) The radial stiffness of a linear bearing. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) The radial stiffness of a linear bearing along y, where it differs from that along x. Allowed: > 0, ≤
+        1e15.
     axial_stiffness_n_per_m : float
         (N/m) The axial stiffness; 0 where the shaft may slide. Allowed: ≥ 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
@@ -490,6 +499,7 @@ class GearboxBearing(TypedDict, total=False):
     slip_percent: float
     defect: Sequence[BearingDefect]
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
     axial_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float
     seat: Seat
@@ -505,10 +515,13 @@ class Foot(TypedDict, total=False):
         (mm) Where it is: x, y, z. Allowed: > −100000, < 100000.
     stiffness_n_per_m : float
         (N/m) Its stiffness in every direction. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) Its stiffness along y, where it differs. Allowed: > 0, ≤ 1e15.
     """
 
     at_mm: Sequence[float]
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
 
 
 class GearboxHousing(TypedDict, total=False):
@@ -567,9 +580,9 @@ class GearboxOperation(TypedDict, total=False):
         (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
         torque.
     speed_profile_hz : dict of time_s and value
-        (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between the
-        points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at least 2
-        points, times increasing, values > 0. Ignored by published.
+        (s, Hz) The speed against time from the start of the kept signal, which ends with it, { time_s = […], value =
+        […] }, straight between the points, constant outside them; or { file = "….csv" } with the columns time_s and
+        value. Allowed: at least 2 points, times increasing, values > 0. Ignored by published.
     torque_profile_nm : dict of time_s and value
         (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0.
     brake_inertia_kgm2 : float
