@@ -95,7 +95,7 @@ impl<'a> Motion<'a> {
 
     /// Returns whether the motor's speed is constant.
     pub(crate) fn is_steady(&self) -> bool {
-        self.speed_draws.is_none() && self.operation.speed_profile_hz.is_none()
+        self.operation.turns_evenly()
     }
 
     /// Returns whether the brake's torque is constant.
