@@ -139,7 +139,7 @@ impl<'a> Forcing<'a> {
     /// * `motion` - motor and brake from the start
     /// * `time` - division of time
     /// * `nominal` - (Hz, N m) nominal speed and torque
-    /// * `first_sample` - beyond 0 only while motor and brake are steady
+    /// * `first_sample` - beyond 0 only while the motor is steady
     /// * `meshes` - each mesh, with the deviations of its flanks
     pub fn new(
         motion: Motion<'a>,
@@ -165,7 +165,7 @@ impl<'a> Forcing<'a> {
             MeshForcing::new(mesh, &deviations, time.step_s(), (reading, points_per_sample))
         });
         Self {
-            motion,
+            motion: motion.starting_at(first_sample),
             is_steady,
             turns_evenly,
             sample: first_sample,

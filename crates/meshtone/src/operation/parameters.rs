@@ -49,7 +49,8 @@ impl Operation {
         }
     }
 
-    /// Whether speed and torque are constant: neither follows a profile, fluctuates nor has harmonics.
+    /// Whether speed and torque are constant, or the torque varies with whole harmonics of shafts alone, so that the motion repeats itself with the
+    /// wheels': neither follows a profile or fluctuates.
     ///
     /// ```
     /// assert!(meshtone::operation::Operation::new(40.0, 10.0).is_steady());
@@ -58,7 +59,7 @@ impl Operation {
         self.turns_evenly()
             && self.torque_profile_nm.is_none()
             && self.torque_fluctuation_nm == 0.0
-            && self.torque_ripple.is_empty()
+            && self.torque_ripple.iter().all(|ripple| ripple.order.fract() == 0.0)
     }
 
     /// Whether the speed is constant.
