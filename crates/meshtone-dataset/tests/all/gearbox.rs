@@ -237,7 +237,7 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         .replace("duration_s = 0.6     ", "duration_s = 0.53    ")
         .replace("settle_tolerance = 1e-2", "settle_tolerance = 1e-6")
         // What is random is no part of the motion that repeats itself.
-        .replace("module_mm = 1.5875\n", "module_mm = 1.5875\nrandom_force = 0.0\n");
+        .replace("log_uniform = [0.02, 0.2]", "fixed = 0.0");
     let text = text.replace("settle_fraction = 0.5", "settle_fraction = 0.95");
     let text = &text[..text.find("[[split.shift]]").unwrap()];
     let plan = plan(text);
