@@ -10,6 +10,8 @@ use crate::machine::{Drive, Machine, connected_groups};
 pub(crate) struct TorqueBalance {
     /// (m) What the force of each mesh turns the shaft with; only meshes that do.
     pub(crate) meshes: Vec<(usize, f64)>,
+    /// (m) What friction across the line of action of each of these meshes turns it with at the pitch point; 0 without friction.
+    across_m: Vec<f64>,
     /// (-) The part of the brake's torque that acts on it.
     brake: f64,
     /// (kg m²) Its moment of inertia.
@@ -47,12 +49,17 @@ impl TorqueBalance {
 
     fn of_shaft(machine: &Machine, shaft: &DVector<f64>) -> Self {
         let arms_m = machine.lines.iter().map(|line| line.at_middle.dot(shaft)).enumerate();
+        let meshes: Vec<(usize, f64)> = arms_m.filter(|(_, arm_m)| *arm_m != 0.0).collect();
+        let across_m = |&(mesh, _): &(usize, f64)| {
+            machine.lines[mesh].across.as_ref().map_or(0.0, |across| across.at_pitch_point.dot(shaft).abs())
+        };
         let brakes = machine.drives.iter().map(|drive| match *drive {
             Drive::Brake { coordinate, torque_share } => torque_share * shaft[coordinate],
             Drive::Motor { .. } => 0.0,
         });
         Self {
-            meshes: arms_m.filter(|(_, arm_m)| *arm_m != 0.0).collect(),
+            across_m: meshes.iter().map(across_m).collect(),
+            meshes,
             brake: brakes.sum(),
             inertia_kgm2: (&machine.mass * shaft).dot(shaft),
             shaft: shaft.clone(),
@@ -76,6 +83,17 @@ impl TorqueBalance {
     pub(crate) fn missing_nm(&self, forces_n: &[f64], torque_nm: f64, acceleration_rad_per_s2: f64) -> f64 {
         let held: f64 = self.meshes.iter().map(|&(mesh, arm_m)| arm_m * forces_n[mesh]).sum();
         self.brake * torque_nm - held - self.inertia_kgm2 * acceleration_rad_per_s2
+    }
+
+    /// (N m) By how much friction can put the torques off balance at most: it pushes one way before the pitch point and the other way behind it.
+    ///
+    /// # Arguments
+    /// * `forces_n` - (N) rms of the force of each mesh
+    /// * `coefficients` - (-) of friction of each mesh
+    pub(crate) fn friction_nm(&self, forces_n: &[f64], coefficients: &[f64]) -> f64 {
+        let of_mesh =
+            |(&(mesh, _), across_m): (&(usize, f64), &f64)| coefficients[mesh] * forces_n[mesh] * across_m;
+        self.meshes.iter().zip(&self.across_m).map(of_mesh).sum()
     }
 
     /// (N m) What an imbalance counts against: the largest torque on the shaft.

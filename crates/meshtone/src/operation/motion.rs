@@ -72,7 +72,7 @@ impl<'a> Motion<'a> {
     /// # Arguments
     /// * `sample` - its number
     /// * `revolutions` - (rev) revolutions of the motor up to it
-    pub(crate) fn starting_at(mut self, sample: usize, revolutions: f64) -> Self {
+    pub(crate) fn resumed_at(mut self, sample: usize, revolutions: f64) -> Self {
         (self.sample, self.revolutions) = (sample, revolutions);
         self.speed_hz = self.draw_speed();
         self
@@ -84,6 +84,17 @@ impl<'a> Motion<'a> {
     /// * `ripple` - the harmonics
     pub fn with_ripple(self, ripple: Vec<TorqueHarmonic>) -> Self {
         Self { ripple, ..self }
+    }
+
+    /// The motion from a later sample on, which is known only where the speed is constant.
+    ///
+    /// # Arguments
+    /// * `sample` - number of the sample
+    pub(crate) fn starting_at(mut self, sample: usize) -> Self {
+        if self.is_steady() {
+            (self.sample, self.revolutions) = (sample, sample as f64 / self.samples_per_revolution);
+        }
+        self
     }
 
     fn draw_speed(&mut self) -> f64 {
@@ -111,7 +122,7 @@ impl<'a> Motion<'a> {
 
     /// Returns whether the motor's speed is constant.
     pub(crate) fn is_steady(&self) -> bool {
-        self.speed_draws.is_none() && self.operation.speed_profile_hz.is_none()
+        self.operation.turns_evenly()
     }
 
     /// Returns whether the brake's torque is constant.

@@ -275,7 +275,7 @@ impl Stages {
         let before = self
             .motion()
             .nth(sample * self.time.samples_per_pinion_revolution / time.samples_per_pinion_revolution);
-        motion.starting_at(sample, before.map_or(0.0, |before| before.revolutions))
+        motion.resumed_at(sample, before.map_or(0.0, |before| before.revolutions))
     }
 
     /// The simulation as the solver sees it, in its own division of time or a finer one.
@@ -312,7 +312,7 @@ impl Stages {
             )
             .with_bearings(self.bearings.iter().map(turning).collect())
             .with_turning_forces(&machine.machine.turning_forces),
-            is_steady: self.is_steady(),
+            is_steady: self.is_steady() && operation.torque_ripple.is_empty(),
             hunting_period_samples: self.cycle_samples(),
             outputs,
             first_sample,

@@ -156,6 +156,7 @@ impl Stages {
             let speed_hz = SignalFigures::of(kept.iter().map(|motion| motion.speed_hz));
             (torque_nm.mean_in_middle(), TAU * self.time.sampling_rate_hz * speed_hz.rise())
         };
+        let friction: Vec<f64> = self.scenario.meshes.iter().map(|mesh| mesh.friction).collect();
         let balances = TorqueBalance::of(&assembled.machine);
         // A shaft that idles is no better known than the loaded ones.
         let loaded_nm = balances
@@ -164,8 +165,13 @@ impl Stages {
             .fold(LEAST_TORQUE_NM, f64::max);
         let of_shaft = |balance: TorqueBalance| {
             let largest_nm = balance.largest_nm(&rms_n, torque_nm).max(IDLE_PART * loaded_nm);
-            let missing =
-                |acceleration: f64| balance.missing_nm(&mean_n, torque_nm, acceleration).abs() / largest_nm;
+            // What friction may take is no imbalance.
+            let rubbed_nm = balance.friction_nm(&rms_n, &friction);
+            let missing = |acceleration: f64| {
+                let missing_nm = balance.missing_nm(&mean_n, torque_nm, acceleration).abs();
+                // What is no number stays.
+                if missing_nm <= rubbed_nm { 0.0 } else { (missing_nm - rubbed_nm) / largest_nm }
+            };
             let own = self.acceleration_rad_per_s2(&balance, figures).unwrap_or(acceleration);
             let (part, lost) = (missing(acceleration), missing(own).min(missing(acceleration)));
             let of_mesh = |&(mesh, _): &(usize, f64)| {

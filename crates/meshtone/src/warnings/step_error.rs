@@ -222,8 +222,10 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
 pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
     let Simulation { stages, channels, states, .. } = simulation;
     let signals = channels.signals.iter().zip(stages.scenario.outputs());
+    // What a random force adds to a sensor is not in its motion, which alone is simulated again.
+    let is_motion = |source| !(stages.random_forces.is_some() && matches!(source, SignalSource::Sensor(_)));
     let (signals, outputs): (Vec<_>, Vec<Output>) =
-        signals.filter(|(of, _)| is_judged(of.source, stages)).unzip();
+        signals.filter(|(of, _)| is_judged(of.source, stages) && is_motion(of.source)).unzip();
     let part = |state: &MotionState| {
         let from = state.sample - stages.time.first_kept_sample;
         from..(from + channels.len() / 10).min(channels.len())
