@@ -825,7 +825,7 @@ fn power_split(apart_mm: f64) -> String {
         )
     };
     let mesh = |a: &str, b: &str| {
-        format!("[[mesh]]\nwheels = [\"{a}\", \"{b}\"]\nmodule_mm = 2.0\npressure_angle_deg = 20.0\n")
+        format!("[[mesh]]\nwheels = [\"{a}\", \"{b}\"]\nmodule_mm = 2.0\npressure_angle_deg = 20.0\nfriction = 0.0\n")
     };
     let at = |z_mm: f64| z_mm / (240.0 + apart_mm);
     [
