@@ -39,3 +39,16 @@ impl WheelBody {
         }
     }
 }
+
+/// (N m/rad) Torsional stiffness of a wheel's body between bore and root circle, `4π G W/(1/r_i² − 1/r_f²)`: of a plane ring that is clamped
+/// at its bore. The rotation is that which a tooth's foundation has in its h² where it is taken as the tooth's.
+///
+/// # Arguments
+/// * `wheel` - geometry
+/// * `material` - for the shear modulus
+pub(crate) fn body_stiffness_nm_per_rad(wheel: &Wheel, material: Material) -> f64 {
+    let of_radius = |radius_mm: f64| (radius_mm * 1e-3).powi(-2);
+    let width_m = wheel.face_width_mm * 1e-3;
+    4.0 * PI * material.shear_modulus_mpa() * 1e6 * width_m
+        / (of_radius(wheel.bore_radius_mm) - of_radius(wheel.root_radius_mm))
+}

@@ -4,12 +4,13 @@
 //! in m, rotations in rad. Each wheel hangs in its support by the flexibility of its shaft and bearings, in deflection and slope; the
 //! supports stand on the base and hold one another.
 
+use std::array::from_fn;
 use std::f64::consts::PI;
 use std::ops::IndexMut;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::body::WheelBody;
+use super::body::{WheelBody, body_stiffness_nm_per_rad};
 use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
 use super::shaft_bending::wheel_flexibility;
 use super::{Rig, Shaft, TurningForce, Unbalance};
@@ -132,8 +133,13 @@ impl Train {
             Supports::Moving => NAMES.len(),
             Supports::Held => WITHOUT_SUPPORTS,
         };
-        let torsion =
+        let shafts =
             [torsional_stiffness(&rig.pinion_shaft, gears), torsional_stiffness(&rig.gear_shaft, gears)];
+        // The body of each wheel turns behind its shaft.
+        let torsion: [f64; 2] = from_fn(|n| {
+            let wheel = [&teeth.pinion, &teeth.gear][n];
+            1.0 / (1.0 / shafts[n] + 1.0 / body_stiffness_nm_per_rad(wheel, gears.material))
+        });
         let turn = turn(teeth.gear.working_pressure_angle_rad, coordinates);
         let ratio = f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth);
         let mut rigid_rotation = DVector::zeros(coordinates);
@@ -145,7 +151,7 @@ impl Train {
         Self {
             mesh_mass_kg: 1.0 / (of_rotation(&teeth.pinion, &pinion) + of_rotation(&teeth.gear, &gear)),
             wheels: [pinion, gear],
-            shaft_stiffness_nm_per_rad: torsion,
+            shaft_stiffness_nm_per_rad: shafts,
             machine: Machine {
                 names: NAMES[..coordinates].iter().map(|&name| name.into()).collect(),
                 mass: DMatrix::from_diagonal(&DVector::from_vec(masses(&pinion, &gear, rig, coordinates))),
@@ -322,7 +328,7 @@ pub fn torsional_stiffness(shaft: &Shaft, gears: &Gears) -> f64 {
 /// All springs: shafts and bearings, the shafts' torsion, and the supports where they move.
 ///
 /// # Arguments
-/// * `torsion` - (N m/rad) stiffness of the pinion's and of the gear's shaft
+/// * `torsion` - (N m/rad) stiffness of the pinion's and of the gear's shaft with the wheel's body
 fn springs(
     gears: &Gears,
     rig: &Rig,

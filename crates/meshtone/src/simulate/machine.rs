@@ -7,7 +7,7 @@ use crate::bearing::{RollingBearing, RollingParts};
 use crate::error::ScenarioError;
 use crate::machine::{
     Disc, GearboxMachine, GearboxParts, GearboxShaft, KnownModes, Machine, MeshLine, Modes, PlacedUnbalance,
-    SeatedBearing, Supports, Train, WheelBody,
+    SeatedBearing, Supports, Train, WheelBody, body_stiffness_nm_per_rad,
 };
 use crate::scenario::{Gearbox, GearboxLayout, Scenario, ScenarioForm};
 use crate::solver::{InitialMotion, ModalMachine};
@@ -95,8 +95,13 @@ fn shafts_of_beams(
             let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
             let mut tooth = *teeth[mesh].wheel(side);
             tooth.face_width_mm = wheel.face_width_mm;
-            let body = WheelBody::new(&tooth, layout.gears[mesh].material, &wheel.inertia);
-            Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
+            let material = layout.gears[mesh].material;
+            Disc {
+                shaft: layout.shaft_of_wheel[number],
+                at: wheel.at,
+                body: WheelBody::new(&tooth, material, &wheel.inertia),
+                body_stiffness_nm_per_rad: Some(body_stiffness_nm_per_rad(&tooth, material)),
+            }
         })
         .collect();
     let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears))

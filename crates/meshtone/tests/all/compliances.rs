@@ -134,7 +134,7 @@ fn cantilever_under_a_load_beside_the_middle() {
         let load = load_at_the_end(&profile, alpha_deg, z_mm, WIDTH);
         let damaged = untouched(WheelName::Gear, &profile);
         let compliances = [None, Some(&damaged)]
-            .map(|damage| loaded(&wheel, &profile, damage, &rigid_foundation()).compliance_mm_per_n(&load));
+            .map(|damage| loaded(&wheel, &profile, damage, &body_in_the_tooth(&rigid_foundation())).compliance_mm_per_n(&load));
         assert_close(
             &format!("cantilever at {alpha_deg}°, z = {z_mm} mm"),
             1e-11,
@@ -366,7 +366,7 @@ fn unsymmetric_bending_of_a_damaged_tooth_from_equilibrium() {
     let mut damage = untouched(WheelName::Pinion, &profile);
     damage.corner_width_mm.fill(corner_mm);
     damage.corner_y_mm.fill(step);
-    let tooth = loaded(&wheel, &profile, Some(&damage), &rigid_foundation());
+    let tooth = loaded(&wheel, &profile, Some(&damage), &body_in_the_tooth(&rigid_foundation()));
     let load = load_at_the_end(&profile, alpha_deg, load_z, WIDTH - corner_mm);
     assert_close(
         "unsymmetric bending of a damaged tooth",

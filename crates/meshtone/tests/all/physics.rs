@@ -110,6 +110,15 @@ pub fn stiffness_n_per_m(pairs: &PairTable) -> Vec<f64> {
     pairs.states.iter().map(|state| state.stiffness_n_per_m).collect()
 }
 
+/// Coefficients of the foundation with which a tooth has the rotation of its wheel's whole body too, `(1 + ν)(h² − 1)/(2π)`, as in other programs
+/// and in the published model, up to a root circle of 7 bores.
+pub fn body_in_the_tooth(coefficients: &FoundationCoefficients) -> FoundationCoefficients {
+    let (mut whole, rotation) = (*coefficients, 1.3 / std::f64::consts::TAU);
+    whole.p[1] += rotation;
+    whole.p[5] -= rotation;
+    whole
+}
+
 /// A wheel's body that does not give way.
 pub fn rigid_foundation() -> FoundationCoefficients {
     FoundationCoefficients { l: [0.0; 6], m: [0.0; 6], p: [0.0; 6], q: [0.0; 6] }
