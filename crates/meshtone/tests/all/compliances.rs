@@ -133,8 +133,10 @@ fn cantilever_under_a_load_beside_the_middle() {
             + fa * fa * length / (E * area);
         let load = load_at_the_end(&profile, alpha_deg, z_mm, WIDTH);
         let damaged = untouched(WheelName::Gear, &profile);
-        let compliances = [None, Some(&damaged)]
-            .map(|damage| loaded(&wheel, &profile, damage, &body_in_the_tooth(&rigid_foundation())).compliance_mm_per_n(&load));
+        let compliances = [None, Some(&damaged)].map(|damage| {
+            loaded(&wheel, &profile, damage, &body_in_the_tooth(&rigid_foundation()))
+                .compliance_mm_per_n(&load)
+        });
         assert_close(
             &format!("cantilever at {alpha_deg}°, z = {z_mm} mm"),
             1e-11,

@@ -6,9 +6,9 @@
 
 use crate::physics::*;
 use meshtone::machine::{LineOfAction, Machine, Modes, Spring, Supports, Train};
+use meshtone::mesh::Pairs;
 use meshtone::published::compliance::ToothCompliance;
 use meshtone::published::damage::ToothSection;
-use meshtone::mesh::Pairs;
 use meshtone::scenario::{FoundationCoefficients, GearPair, Gears, Material, Scenario, WheelName};
 use meshtone::stiffness::hertz_compliance_mm_per_n;
 use meshtone::wheel::{Teeth, ToothProfile, Wheel, contact_ratio};
@@ -393,12 +393,9 @@ fn iso_single_stiffness() {
 // to 1.1 times c_gamma, where with the rotation in the tooth it was half as stiff on a thin shaft. Numbers of an independent program.
 #[test]
 fn mean_stiffness_is_near_the_standard_s_on_any_bore() {
-    for (teeth, bore, expected) in [
-        ([32, 96], 15.88, 1.02),
-        ([48, 80], 15.88, 0.92),
-        ([32, 96], 30.0, 1.05),
-        ([48, 80], 30.0, 0.95),
-    ] {
+    for (teeth, bore, expected) in
+        [([32, 96], 15.88, 1.02), ([48, 80], 15.88, 0.92), ([32, 96], 30.0, 1.05), ([48, 80], 30.0, 0.95)]
+    {
         let gears = Gears::new(1.5875, teeth[0], teeth[1], 19.0);
         let of_pair = linear_teeth(&gears, bore);
         let gamma = 0.8
