@@ -14,6 +14,7 @@ mod support;
 mod turning_force;
 
 pub use body::WheelBody;
+pub(crate) use body::body_stiffness_nm_per_rad;
 pub use gearbox::{
     Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft,
     Housing, MeshLine, PlacedUnbalance, Seat, SeatedBearing,

@@ -7,7 +7,7 @@ use crate::bearing::{RollingBearing, RollingParts};
 use crate::error::ScenarioError;
 use crate::machine::{
     Disc, GearboxMachine, GearboxParts, GearboxShaft, KnownModes, Machine, MeshLine, Modes, PlacedUnbalance,
-    RigMachine, RigParts, SeatedBearing, Supports, WheelBody,
+    RigMachine, RigParts, SeatedBearing, Supports, WheelBody, body_stiffness_nm_per_rad,
 };
 use crate::scenario::{Layout, Scenario};
 use crate::solver::{InitialMotion, ModalMachine};
@@ -24,7 +24,7 @@ pub struct AssembledMachine {
     pub modes: Arc<Modes>,
     /// Mass and inertias of each wheel.
     pub wheels: Vec<WheelBody>,
-    /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to.
+    /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to, of a pair between wheel and coupling.
     pub shaft_stiffness_nm_per_rad: Vec<f64>,
     /// (kg) The mass that the wheels' rotation has along each line of action.
     pub mesh_mass_kg: Vec<f64>,
@@ -104,8 +104,13 @@ fn shafts_of_beams(
             let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
             let mut tooth = *teeth[mesh].wheel(side);
             tooth.face_width_mm = wheel.face_width_mm;
-            let body = WheelBody::new(&tooth, layout.gears[mesh].material, &wheel.inertia);
-            Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
+            let gears = &layout.gears[mesh];
+            Disc {
+                shaft: layout.shaft_of_wheel[number],
+                at: wheel.at,
+                body: WheelBody::new(&tooth, gears.material, &wheel.inertia),
+                body_stiffness_nm_per_rad: body_stiffness_nm_per_rad(&tooth, gears),
+            }
         })
         .collect();
     let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears))

@@ -79,7 +79,7 @@ impl TwoStages {
             let mass_kg = PI * r * r * b * 7850.0;
             let transverse_kgm2 = mass_kg * (3.0 * r * r + b * b) / 12.0;
             let body = WheelBody { mass_kg, polar_kgm2: mass_kg * r * r / 2.0, transverse_kgm2 };
-            Disc { shaft: [0, 1, 1, 2][wheel], at: self.at[wheel / 2], body }
+            Disc { shaft: [0, 1, 1, 2][wheel], at: self.at[wheel / 2], body, body_stiffness_nm_per_rad: None }
         };
         let alpha = (20f64.to_radians().tan() / self.helix_angle_rad.cos()).atan();
         let thrust = self.helix_angle_rad.tan() * alpha.cos();

@@ -4,8 +4,8 @@
 use meshtone::Stages;
 use meshtone::mesh::{Mesh, PairKind, PairTable, Pairs};
 use meshtone::scenario::{
-    FoundationCoefficients, GearPair, Gears, Scenario, Sensor, SensorPath, SensorPlace, Support,
-    SupportSprings,
+    BodyRotation, FoundationCoefficients, GearPair, Gears, Scenario, Sensor, SensorPath, SensorPlace,
+    Support, SupportSprings,
 };
 use meshtone::wheel::{Teeth, teeth};
 
@@ -115,9 +115,20 @@ pub fn stiffness_n_per_m(pairs: &PairTable) -> Vec<f64> {
     pairs.states.iter().map(|state| state.stiffness_n_per_m).collect()
 }
 
+/// A foundation with which a tooth has the rotation of its wheel's whole body too, as in other programs and in the published model.
+pub fn body_in_the_tooth(coefficients: &FoundationCoefficients) -> FoundationCoefficients {
+    FoundationCoefficients { rotation: BodyRotation::Tooth, ..*coefficients }
+}
+
 /// A wheel's body that does not give way.
 pub fn rigid_foundation() -> FoundationCoefficients {
-    FoundationCoefficients { l: [0.0; 6], m: [0.0; 6], p: [0.0; 6], q: [0.0; 6] }
+    FoundationCoefficients {
+        l: [0.0; 6],
+        m: [0.0; 6],
+        p: [0.0; 6],
+        q: [0.0; 6],
+        rotation: BodyRotation::Tooth,
+    }
 }
 
 /// Abscissae and weights of Gauss and Legendre's rule with 5 points on \[−1, 1\]: exact up to degree 9.

@@ -15,9 +15,10 @@ fn crack(depth_mm: f64, length_mm: Option<f64>) -> RootCrack {
     RootCrack { depth_mm, angle_deg: 45.0, length_mm }
 }
 
-/// The example's wheels, with bores of 10 mm radius.
+/// The example's wheels, with bores of 10 mm radius, and with the rotation of the wheels' bodies in the teeth, as the other program has it.
 fn wheels() -> (Gears, Teeth) {
-    let gears = example_gears();
+    let mut gears = example_gears();
+    gears.foundation = body_in_the_tooth(&gears.foundation);
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }

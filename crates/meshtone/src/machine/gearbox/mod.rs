@@ -49,6 +49,8 @@ pub struct Disc {
     pub at: f64,
     /// Mass and inertias.
     pub body: WheelBody,
+    /// (N m/rad) Torsional stiffness of its body between the bore and the rim with its inertia; none of a rigid disc.
+    pub body_stiffness_nm_per_rad: Option<f64>,
 }
 
 /// An unbalance on its shaft.
@@ -120,6 +122,8 @@ pub struct GearboxMachine {
     housing: Option<(usize, Vector3<f64>)>,
     /// First coordinate of each bearing's seat.
     seats: Vec<usize>,
+    /// The coordinate of each wheel's rotation: that of its node where the disc is rigid.
+    rotations: Vec<usize>,
     /// Rotation of each shaft over that of the input.
     pub speed_ratios: Vec<f64>,
 }
@@ -245,7 +249,7 @@ impl GearboxMachine {
     /// Puts the machine together.
     ///
     /// Coordinates are counted shaft by shaft, node by node from z = 0 on; then come the housing, the seats in the order of the bearings,
-    /// and the brake's rotation. The parts are then added one after the other.
+    /// the brake's rotation, and those of the wheels that turn on elastic bodies. The parts are then added one after the other.
     ///
     /// # Arguments
     /// * `parts` - what it is made of
@@ -275,6 +279,18 @@ impl GearboxMachine {
             .collect();
         let brake = next;
         names.push("phi_z_brake".into());
+        let node_of = |disc: &Disc| {
+            let z_m = disc.at * parts.shafts[disc.shaft].0.length_mm * 1e-3;
+            nearest_node(&nodes[disc.shaft], z_m)
+        };
+        let rotation = |(number, disc): (usize, &Disc)| match disc.body_stiffness_nm_per_rad {
+            Some(_) => {
+                names.push(format!("phi_z_wheel_{number}").into());
+                names.len() - 1
+            }
+            None => node_of(disc) + ABOUT_Z,
+        };
+        let rotations: Vec<usize> = parts.discs.iter().enumerate().map(rotation).collect();
         let coordinates = names.len();
         let mut assembly =
             Assembly { names, mass: DMatrix::zeros(coordinates, coordinates), springs: Vec::new() };
@@ -295,6 +311,7 @@ impl GearboxMachine {
             nodes,
             housing,
             seats,
+            rotations,
             speed_ratios: parts.speed_ratios.to_vec(),
         };
         this.add_shafts(parts, brake, &mut assembly);
@@ -313,6 +330,9 @@ impl GearboxMachine {
         for (nodes, ratio) in this.nodes.iter().zip(parts.speed_ratios) {
             nodes.iter().for_each(|(_, node)| machine.rigid_rotation[node + ABOUT_Z] = *ratio);
         }
+        for (rotation, disc) in this.rotations.iter().zip(parts.discs) {
+            machine.rigid_rotation[*rotation] = parts.speed_ratios[disc.shaft];
+        }
         let brakes = parts.shafts.iter().zip(parts.speed_ratios);
         let ratio_of_brake =
             brakes.filter(|((shaft, _), _)| shaft.couples_to == Coupled::Brake).map(|(_, ratio)| *ratio);
@@ -322,8 +342,7 @@ impl GearboxMachine {
 
     /// First coordinate of the node of a shaft nearest to a place.
     fn node(&self, shaft: usize, z_m: f64) -> usize {
-        let nodes = self.nodes[shaft].iter();
-        nodes.min_by(|a, b| (a.0 - z_m).abs().total_cmp(&(b.0 - z_m).abs())).map_or(0, |(_, node)| *node)
+        nearest_node(&self.nodes[shaft], z_m)
     }
 
     /// First coordinate of a wheel's node.
@@ -343,7 +362,13 @@ impl GearboxMachine {
         for (number, disc) in parts.discs.iter().enumerate() {
             let WheelBody { mass_kg, polar_kgm2, transverse_kgm2 } = disc.body;
             let node = self.node_of_disc(parts, number);
-            assembly.add_body(node, mass_kg, [transverse_kgm2, transverse_kgm2, polar_kgm2]);
+            assembly.add_body(node, mass_kg, [transverse_kgm2, transverse_kgm2, 0.0]);
+            let rotation = self.rotations[number];
+            assembly.mass[(rotation, rotation)] += polar_kgm2;
+            if let Some(stiffness) = disc.body_stiffness_nm_per_rad {
+                let (shaft, _) = parts.shafts[disc.shaft];
+                assembly.hold(&[(rotation, 1.0), (node + ABOUT_Z, -1.0)], stiffness, shaft.damping_ratio);
+            }
         }
         for (nodes, (shaft, _)) in self.nodes.iter().zip(parts.shafts) {
             let stretch = match shaft.couples_to {
@@ -512,6 +537,7 @@ impl GearboxMachine {
                 line.at_middle[node + 3 + axis] = side * moment[axis];
                 line.per_m[node + 3 + axis] = side * per_m[axis];
             }
+            line.at_middle.swap_rows(node + ABOUT_Z, self.rotations[disc]);
         }
         line
     }
@@ -589,8 +615,7 @@ impl GearboxMachine {
     /// * `mesh` - its number
     pub fn add_transmission_error(&mut self, name: String, mesh: usize) {
         let line = &self.machine.lines[mesh].at_middle;
-        let nodes = self.nodes.iter().flatten();
-        let turned = nodes.map(|(_, node)| (node + ABOUT_Z, line[node + ABOUT_Z]));
+        let turned = self.rotations.iter().map(|&rotation| (rotation, line[rotation]));
         let motion = turned.filter(|(_, weight)| *weight != 0.0).collect();
         self.machine.places.push(Place { name: name.into(), motion: vec![(Axis::Rotation, motion)] });
     }
@@ -604,6 +629,12 @@ const ABOUT_Z: usize = 5;
 /// The coordinate that the motor turns: the rotation of a shaft's first node.
 fn first_rotation(nodes: &[(f64, usize)]) -> usize {
     nodes[0].1 + ABOUT_Z
+}
+
+/// First coordinate of the one of a shaft's nodes that is nearest to a place.
+fn nearest_node(nodes: &[(f64, usize)], z_m: f64) -> usize {
+    let nearest = nodes.iter().min_by(|a, b| (a.0 - z_m).abs().total_cmp(&(b.0 - z_m).abs()));
+    nearest.map_or(0, |(_, node)| *node)
 }
 
 /// The beam of a shaft between two nodes.
