@@ -252,8 +252,12 @@ fn machine_parts(
         })
         .collect::<Result<_, _>>()?;
     clock.lap("profile errors and faults");
-    let meshes = meshes::meshes(scenario, layout, time, (&pairs, &machine), None)?;
+    let mut meshes = meshes::meshes(scenario, layout, time, (&pairs, &machine), None)?;
     clock.lap("mesh stiffness");
+    if scenario.model().teeth_part() {
+        let factors = meshes::face_load_factors(scenario, layout, &machine, &pairs, &meshes);
+        meshes.iter_mut().zip(factors).for_each(|(mesh, factor)| mesh.face_load_factor = factor);
+    }
     let face_reach_m: Vec<f64> = meshes.iter().map(Mesh::face_reach_m).collect();
     let is_tilted = face_reach_m.iter().any(|reach_m| *reach_m > 0.0);
     let modal = if is_tilted { machine.modal(scenario, &face_reach_m) } else { modal };

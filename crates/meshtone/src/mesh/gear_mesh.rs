@@ -100,6 +100,8 @@ pub struct Mesh {
     /// (N/m) The same if the whole face of all pairs touched: of coast flanks that hit, and a bound of what the drive flanks reach. It differs
     /// where slices of the face are apart under the nominal load.
     pub closed_stiffness_n_per_m: f64,
+    /// (N/m) The same if the flanks lay alike along the face.
+    pub(crate) even_stiffness_n_per_m: f64,
     /// (s) Damping of a contact over its stiffness, `2 ζ √(m/k̄)`.
     pub damping_time_s: f64,
     /// (m) Normal backlash; none where the mesh may pull, so that coast flanks never touch.
@@ -264,6 +266,7 @@ impl Mesh {
             points_before,
             mean_stiffness_n_per_m,
             closed_stiffness_n_per_m: mean_stiffness_n_per_m,
+            even_stiffness_n_per_m: mean_stiffness_n_per_m,
             damping_time_s: 0.0,
             backlash_m: (contact == Contact::Unilateral).then_some(backlash_m),
             contact_ratio: ends - begins,

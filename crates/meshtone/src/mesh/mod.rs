@@ -12,6 +12,7 @@ mod pair;
 mod path_table;
 mod sequence;
 mod static_mesh;
+mod uneven_face;
 mod window;
 
 pub use corner::CornerReach;
@@ -36,4 +37,5 @@ pub(crate) use path_table::TipShape;
 pub use path_table::{CornerTable, PairState};
 pub use sequence::{PairKind, PairSequence};
 pub use static_mesh::StaticMesh;
+pub(crate) use uneven_face::{UnevenFace, face_load_factors};
 pub(crate) use window::{is_slanted, place_on_face};

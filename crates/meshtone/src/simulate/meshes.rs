@@ -7,7 +7,7 @@ use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
 use crate::mesh::{
     Contact, FaceForm, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
-    is_slanted, place_on_face,
+    UnevenFace, face_load_factors as uneven_factors, is_slanted, place_on_face,
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
@@ -42,7 +42,7 @@ pub(super) fn meshes(
             number,
             // Flanks that may pull bear on the whole face.
             closer_um: match contact {
-                Contact::Unilateral => pair.misalignment_um + pair.helix_slope_um.iter().sum::<f64>(),
+                Contact::Unilateral => pair.closer_um(),
                 Contact::Bilateral => 0.0,
             },
             contact,
@@ -53,6 +53,30 @@ pub(super) fn meshes(
         mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))
     };
     pairs.iter().enumerate().map(mesh).collect()
+}
+
+/// (-) The face load factor of each mesh: by the lean of the shafts under the nominal load, misalignment, slopes of the flanks, crowning and end
+/// relief, of the machine at rest; 1 without a load.
+pub(super) fn face_load_factors(
+    scenario: &ScenarioForm,
+    layout: &GearboxLayout,
+    machine: &AssembledMachine,
+    pairs: &[MeshedPair],
+    meshes: &[Mesh],
+) -> Vec<f64> {
+    if pairs.iter().any(|pair| pair.static_force_n <= 0.0) {
+        return vec![1.0; meshes.len()];
+    }
+    let widths_m: Vec<f64> = layout.gears.iter().map(|gears| gears.face_width_mm * 1e-3).collect();
+    let (leans, compliance) = machine.modal(scenario, &widths_m).tilts();
+    let face = |(((mesh, pair), width_m), number): (((&Mesh, &MeshedPair), &f64), usize)| {
+        let gears = scenario.named_gears(layout, number);
+        let slope = pair.closer_um() * 1e-6 / width_m;
+        let numbers = [*width_m, mesh.even_stiffness_n_per_m, pair.static_force_n, slope];
+        UnevenFace::new(numbers, |part| gears.mean_gap_mm(part) * 1e-3)
+    };
+    let faces: Vec<UnevenFace> = meshes.iter().zip(pairs).zip(&widths_m).zip(0..).map(face).collect();
+    uneven_factors(&faces, &leans, &compliance)
 }
 
 /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of

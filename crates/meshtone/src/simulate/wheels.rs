@@ -88,6 +88,11 @@ pub(super) fn sound_pair(
 }
 
 impl MeshedPair {
+    /// (µm) By how much more the unloaded flanks close at one end of the face than at the other, positive towards positive z.
+    pub(super) fn closer_um(&self) -> f64 {
+        self.misalignment_um + self.helix_slope_um.iter().sum::<f64>()
+    }
+
     /// The pair with its damaged teeth.
     ///
     /// # Arguments
