@@ -275,6 +275,7 @@ warning_kinds! {
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
     Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";
     Overload "overload" "the load would break the teeth";
+    UnevenFace "uneven-face" "the shafts lean so much that the load is at one end of the face";
     NoContact "no-contact" "no pair of teeth is in mesh for a part of a revolution, and the linear mesh has no stiffness there";
     MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would separate";
     Resonance "resonance" "the mesh force is far beyond what a machine survives";

@@ -26,7 +26,7 @@ use crate::bearing::RollingBearing;
 use crate::damage::{DamagedTooth, ToothPart};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::{DecayingMode, Drive, KnownModes};
-use crate::mesh::{Contact, Mesh, Pairs};
+use crate::mesh::{Contact, FacesAtRest, Mesh, Pairs};
 use crate::operation::{Motion, TimeGrid, TorqueHarmonic};
 use crate::published::Published;
 use crate::scenario::{Layout, MemoryLimit, Ripple, Scenario};
@@ -252,12 +252,8 @@ fn machine_parts(
         })
         .collect::<Result<_, _>>()?;
     clock.lap("profile errors and faults");
-    let mut meshes = meshes::meshes(scenario, layout, time, (&pairs, &machine), None)?;
+    let meshes = meshes::meshes(scenario, layout, time, (&pairs, &machine), None)?;
     clock.lap("mesh stiffness");
-    if scenario.model().teeth_part() {
-        let factors = meshes::face_load_factors(scenario, layout, &machine, &pairs, &meshes);
-        meshes.iter_mut().zip(factors).for_each(|(mesh, factor)| mesh.face_load_factor = factor);
-    }
     let face_reach_m: Vec<f64> = meshes.iter().map(Mesh::face_reach_m).collect();
     let is_tilted = face_reach_m.iter().any(|reach_m| *reach_m > 0.0);
     let modal = if is_tilted { machine.modal(scenario, &face_reach_m) } else { modal };
@@ -324,6 +320,17 @@ impl Stages {
     /// Whether flanks that are pulled part, as real ones do.
     pub(crate) fn teeth_part(&self) -> bool {
         self.meshes.iter().any(|mesh| mesh.contact == Contact::Unilateral)
+    }
+
+    /// How the meshes would bear along their faces at rest on other shafts; none where they always bear evenly.
+    ///
+    /// # Arguments
+    /// * `changed` - a scenario that differs from this one in its shafts, or in where wheels sit on them
+    pub(crate) fn faces_at_rest_of(&self, changed: &Scenario) -> Option<FacesAtRest> {
+        let layout = changed.layout().ok()?;
+        let teeth: Vec<Teeth> = self.pairs.iter().map(|pair| pair.teeth.clone()).collect();
+        let machine = machine::bare(changed, &layout, &teeth).ok()?;
+        meshes::faces_at_rest(changed, &layout, &machine, &self.pairs, &self.meshes)
     }
 
     /// The tooth pairs of the first mesh, at any position of their path; not under the published model, whose flanks are not conjugate.

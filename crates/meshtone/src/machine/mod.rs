@@ -22,8 +22,8 @@ pub use gearbox::{
 pub(crate) use modes::KnownModes;
 pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
-pub(crate) use parts::weights;
 pub use parts::{Axis, Drive, Machine, Place};
+pub(crate) use parts::{Leans, weights};
 #[cfg(feature = "internals")]
 pub use parts::{LineOfAction, Spring};
 pub use rig::{DampingRatio, Rig, RigParts, Shaft, WheelInertia};

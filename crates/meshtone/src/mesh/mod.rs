@@ -37,5 +37,6 @@ pub(crate) use path_table::TipShape;
 pub use path_table::{CornerTable, PairState};
 pub use sequence::{PairKind, PairSequence};
 pub use static_mesh::StaticMesh;
-pub(crate) use uneven_face::{UnevenFace, face_load_factors};
+pub use uneven_face::LoadAlongFace;
+pub(crate) use uneven_face::{FacesAtRest, UnevenFace};
 pub(crate) use window::{is_slanted, place_on_face};

@@ -4,8 +4,34 @@
 //! deflection D₀ is that at which they carry the load; D₁ is the slope that the wheels take: that of the machine under a load midway, plus
 //! that of the flanks, less what the moment of the load about the middle of the face tilts the wheels.
 
+use crate::machine::Leans;
+
 /// Strips of a face. The last one that bears is the narrower part of a strip.
 const STRIPS: usize = 100;
+
+/// How a mesh at rest under the nominal load bears along its face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct LoadAlongFace {
+    /// (m) By how much more the shafts' lean under the load closes the flanks at the end of the face at positive z than at the other one,
+    /// before the load moves there.
+    pub lean_m: f64,
+    /// (-) χ = c k̄ b²/12, c the tilt of the wheels against one another per moment about the middle of the face: of so much a part of the
+    /// flanks' unevenness the wheels yield while the whole face bears, χ/(1 + χ).
+    pub tilt_product: f64,
+    /// (-) Largest load per length of face over its mean, of sound teeth: the face load factor K_Hβ of ISO 6336-1.
+    pub face_load_factor: f64,
+}
+
+/// (-) Middle of a strip, from −½ to ½.
+fn place(strip: usize) -> f64 {
+    (strip as f64 + 0.5) / STRIPS as f64 - 0.5
+}
+
+impl LoadAlongFace {
+    /// An even load.
+    pub(super) const EVEN: Self = Self { lean_m: 0.0, tilt_product: 0.0, face_load_factor: 1.0 };
+}
 
 /// A face of a mean mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,11 +68,11 @@ impl UnevenFace {
     /// # Arguments
     /// * `tilt` - (-) D₁
     fn pressed_m(&self, tilt: f64) -> Vec<f64> {
-        let place_m = |n: usize| ((n as f64 + 0.5) / STRIPS as f64 - 0.5) * self.width_m;
+        let place_m = |n: usize| place(n) * self.width_m;
         let offsets: Vec<f64> =
             self.gaps_m.iter().enumerate().map(|(n, gap)| place_m(n) * (tilt + self.slope) - gap).collect();
         // The load less the first strips' shares falls convexly: Newton's method comes down to the solution from where all of them touch.
-        let needed_m = self.force_n / self.stiffness_n_per_m * STRIPS as f64;
+        let needed_m = self.needed_m();
         let most_m = offsets.iter().copied().fold(f64::INFINITY, f64::min);
         let mut deflection_m = needed_m - most_m;
         for _ in 0..STRIPS {
@@ -61,12 +87,37 @@ impl UnevenFace {
         offsets.iter().map(|offset| (deflection_m + offset).max(0.0)).collect()
     }
 
+    /// (m) Penetrations of all strips together.
+    fn needed_m(&self) -> f64 {
+        self.force_n / self.stiffness_n_per_m * STRIPS as f64
+    }
+
     /// (N m) Moment of the load about the middle of the face.
     fn moment_nm(&self, tilt: f64) -> f64 {
         let strip_n_per_m = self.stiffness_n_per_m / STRIPS as f64;
-        let place_m = |n: usize| ((n as f64 + 0.5) / STRIPS as f64 - 0.5) * self.width_m;
+        let place_m = |n: usize| place(n) * self.width_m;
         self.pressed_m(tilt).iter().enumerate().map(|(n, pressed)| place_m(n) * pressed).sum::<f64>()
             * strip_n_per_m
+    }
+
+    /// (-) D₁ where the moment of the load holds the wheels.
+    ///
+    /// # Arguments
+    /// * `free` - (-) D₁ without the moment
+    /// * `rad_per_nm` - (rad/(N m)) how much less per moment
+    fn held_tilt(&self, free: f64, rad_per_nm: f64) -> f64 {
+        if free + self.slope == 0.0 {
+            // Crowning and end relief alone load both halves of the face alike.
+            return free;
+        }
+        // The more the wheels lean, the larger is the moment that holds them: they lie between what none and the largest one leaves.
+        let most = rad_per_nm * self.force_n * self.width_m / 2.0;
+        let (mut low, mut high) = (free - most, free + most);
+        for _ in 0..HALVINGS {
+            let tilt = (low + high) / 2.0;
+            if tilt + rad_per_nm * self.moment_nm(tilt) > free { high = tilt } else { low = tilt }
+        }
+        (low + high) / 2.0
     }
 
     /// (-) Largest load per length of face over its mean: the face load factor K_Hβ of ISO 6336-1.
@@ -75,44 +126,59 @@ impl UnevenFace {
         let largest_m = pressed_m.iter().copied().fold(0.0, f64::max);
         // The load is largest at an end of the face, half a strip from the last strip's middle.
         let towards_end = (tilt + self.slope).abs() * self.width_m / STRIPS as f64 / 2.0;
-        (largest_m + towards_end) * STRIPS as f64 / pressed_m.iter().sum::<f64>()
+        (largest_m + towards_end) / (self.needed_m() / STRIPS as f64)
     }
 }
 
-/// (-) Face load factors of meshes that tilt their wheels together.
-///
-/// # Arguments
-/// * `faces` - of each mesh
-/// * `leans` - (-) slope of the wheels of each mesh against one another, where all loads act midway
-/// * `compliance_rad_per_nm` - (rad/(N m)) how much less that is per moment of each mesh's load
-pub(crate) fn face_load_factors(
-    faces: &[UnevenFace],
-    leans: &[f64],
-    compliance_rad_per_nm: &[Vec<f64>],
-) -> Vec<f64> {
-    let mut tilts = leans.to_vec();
-    // Meshes on one shaft tilt one another little, so that few rounds suffice.
-    for _ in 0..ROUNDS {
-        for (mesh, face) in faces.iter().enumerate() {
-            let row = &compliance_rad_per_nm[mesh];
-            let others = (0..faces.len()).filter(|other| *other != mesh);
-            let of_others: f64 = others.map(|other| row[other] * faces[other].moment_nm(tilts[other])).sum();
-            let free = leans[mesh] - of_others;
-            // The more the wheels lean, the larger the moment that holds them: between leaning freely and not at all against the flanks.
-            let (mut low, mut high) = (free.min(-face.slope), free.max(-face.slope));
-            for _ in 0..HALVINGS {
-                let tilt = (low + high) / 2.0;
-                if tilt + row[mesh] * face.moment_nm(tilt) > free { high = tilt } else { low = tilt }
-            }
-            tilts[mesh] = (low + high) / 2.0;
-        }
+/// The faces of meshes that tilt their wheels together.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FacesAtRest {
+    /// Of each mesh.
+    pub(crate) faces: Vec<UnevenFace>,
+    /// Of the machine around them.
+    pub(crate) leans: Leans,
+}
+
+impl FacesAtRest {
+    /// The faces with more crowning in one mesh.
+    ///
+    /// # Arguments
+    /// * `mesh` - its number
+    /// * `crowning_m` - (m) how much farther apart the flanks are at both ends of the face
+    pub(crate) fn crowned(&self, mesh: usize, crowning_m: f64) -> Self {
+        let mut this = self.clone();
+        let gaps = this.faces[mesh].gaps_m.iter_mut().enumerate();
+        gaps.for_each(|(n, gap_m)| *gap_m += 4.0 * crowning_m * place(n).powi(2));
+        this
     }
-    faces.iter().zip(tilts).map(|(face, tilt)| face.factor(tilt)).collect()
+
+    /// How the meshes bear.
+    pub(crate) fn loads(&self) -> Vec<LoadAlongFace> {
+        let Self { faces, leans: Leans { slopes, rad_per_nm } } = self;
+        let mut tilts = slopes.clone();
+        // Meshes on one shaft tilt one another little, so that few rounds suffice.
+        let rounds = if faces.len() > 1 { ROUNDS } else { 1 };
+        for _ in 0..rounds {
+            for (mesh, face) in faces.iter().enumerate() {
+                let row = &rad_per_nm[mesh];
+                let others = (0..faces.len()).filter(|other| *other != mesh);
+                let of_others: f64 =
+                    others.map(|other| row[other] * faces[other].moment_nm(tilts[other])).sum();
+                tilts[mesh] = face.held_tilt(slopes[mesh] - of_others, row[mesh]);
+            }
+        }
+        let load = |(mesh, face): (usize, &UnevenFace)| LoadAlongFace {
+            lean_m: slopes[mesh] * face.width_m,
+            tilt_product: rad_per_nm[mesh][mesh] * face.stiffness_n_per_m * face.width_m.powi(2) / 12.0,
+            face_load_factor: face.factor(tilts[mesh]),
+        };
+        faces.iter().enumerate().map(load).collect()
+    }
 }
 
 const ROUNDS: usize = 6;
-/// Halvings of an interval until a thousandth of a micrometre over the face is left.
-const HALVINGS: usize = 30;
+/// Halvings of an interval until a millionth of it is left.
+const HALVINGS: usize = 24;
 
 #[cfg(test)]
 mod tests {
@@ -124,16 +190,22 @@ mod tests {
         })
     }
 
+    fn factor(face: UnevenFace, slope: f64, rad_per_nm: f64) -> f64 {
+        let leans = Leans { slopes: vec![slope], rad_per_nm: vec![vec![rad_per_nm]] };
+        FacesAtRest { faces: vec![face], leans }.loads()[0].face_load_factor
+    }
+
     /// ISO 6336-1, method C: `1 + F_β k̄/(2F)` up to 2 and `√(2 F_β k̄/F)` above.
     #[test]
     fn stiff_wheels_are_as_in_the_standard() {
-        for (closer_um, force_n) in [(1.0, 200.0), (5.0, 200.0), (-5.0, 200.0), (5.0, 2000.0), (30.0, 200.0)] {
+        for (closer_um, force_n) in [(1.0, 200.0), (5.0, 200.0), (-5.0, 200.0), (5.0, 2000.0), (30.0, 200.0)]
+        {
             let closes = f64::abs(closer_um) * 1e-6 * 2e8 / force_n;
             let expected = if closes < 2.0 { 1.0 + closes / 2.0 } else { (2.0 * closes).sqrt() };
-            let found = face_load_factors(&[face(closer_um, 0.0, force_n)], &[0.0], &[vec![0.0]])[0];
+            let found = factor(face(closer_um, 0.0, force_n), 0.0, 0.0);
             assert!((found / expected - 1.0).abs() < 5e-3, "{closer_um} {force_n}: {found} {expected}");
         }
-        assert!((face_load_factors(&[face(0.0, 0.0, 200.0)], &[0.0], &[vec![0.0]])[0] - 1.0).abs() < 1e-12);
+        assert!((factor(face(0.0, 0.0, 200.0), 0.0, 0.0) - 1.0).abs() < 1e-12);
     }
 
     /// While the whole face bears, `K = 1 + k̄ L/(2F(1 + χ))` with `χ = c k̄ b²/12`.
@@ -142,16 +214,13 @@ mod tests {
         let compliance = 3e-5;
         let yields = compliance * 2e8 * 0.015f64.powi(2) / 12.0;
         let expected = 1.0 + 2e8 * 1e-6 / (2.0 * 200.0 * (1.0 + yields));
-        let found =
-            face_load_factors(&[face(0.0, 0.0, 200.0)], &[1e-6 / 0.015], &[vec![compliance]])[0];
+        let found = factor(face(0.0, 0.0, 200.0), 1e-6 / 0.015, compliance);
         assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
     }
 
     #[test]
     fn crowning_helps_a_face_that_leans() {
-        let of = |crowning_um: f64| {
-            face_load_factors(&[face(20.0, crowning_um, 200.0)], &[0.0], &[vec![0.0]])[0]
-        };
+        let of = |crowning_um: f64| factor(face(20.0, crowning_um, 200.0), 0.0, 0.0);
         assert!(of(8.0) < of(0.0) && of(0.0) > 6.0);
     }
 }

@@ -171,7 +171,7 @@ impl Keys for ScenarioWheel {
                 .range(ALONG)
                 .rule("within half a face width of its mating wheels"),
             teeth_row("teeth", field!(teeth)),
-            face_width_row("the face width; a mesh has the narrower one", field!(face_width_mm))
+            face_width_row("the face width; a mesh has what both faces have in common", field!(face_width_mm))
                 .rule("on its shaft, clear of other wheels"),
             profile_shift_row("profile_shift", field!(profile_shift)),
             addendum_row("addendum", field!(addendum)),

@@ -5,13 +5,14 @@ use std::num::NonZeroUsize;
 use super::{AssembledMachine, MeshedPair};
 use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
+use crate::machine::Machine;
 use crate::mesh::{
-    Contact, FaceForm, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
-    UnevenFace, face_load_factors as uneven_factors, is_slanted, place_on_face,
+    Contact, FaceForm, FaceSlope, FacesAtRest, Mesh, MeshParameters, PairSequence, PairTable, Pairs,
+    TipShape, Turning, UnevenFace, is_slanted, place_on_face,
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
-use crate::wheel::NamedGears;
+use crate::wheel::{Gears, NamedGears};
 
 /// The meshes of a scenario.
 ///
@@ -52,31 +53,39 @@ pub(super) fn meshes(
         let of_time = || points_of(time, scenario.operation.is_steady(), &turning, pair);
         mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))
     };
-    pairs.iter().enumerate().map(mesh).collect()
+    let mut meshes: Vec<Mesh> = pairs.iter().enumerate().map(mesh).collect::<Result<_, _>>()?;
+    let faces = faces_at_rest(scenario, layout, &machine.machine, pairs, &meshes);
+    let loads = faces.iter().flat_map(FacesAtRest::loads);
+    meshes.iter_mut().zip(loads).for_each(|(mesh, load)| mesh.along_face = load);
+    Ok(meshes)
 }
 
-/// (-) The face load factor of each mesh: by the lean of the shafts under the nominal load, misalignment, slopes of the flanks, crowning and end
-/// relief, of the machine at rest; 1 without a load.
-pub(super) fn face_load_factors(
-    scenario: &ScenarioForm,
-    layout: &GearboxLayout,
-    machine: &AssembledMachine,
+/// How each mesh bears along its face at rest: by the lean of the shafts under the nominal load, misalignment, slopes of the flanks, crowning and
+/// end relief. None without a load, or where flanks may pull.
+///
+/// # Arguments
+/// * `scenario`, `layout` - what is simulated, and its wheels
+/// * `machine` - around the meshes
+/// * `pairs`, `meshes` - the wheels of each mesh, and their stiffness
+pub(super) fn faces_at_rest(
+    scenario: &Scenario,
+    layout: &Layout,
+    machine: &Machine,
     pairs: &[MeshedPair],
     meshes: &[Mesh],
-) -> Vec<f64> {
-    if pairs.iter().any(|pair| pair.static_force_n <= 0.0) {
-        return vec![1.0; meshes.len()];
+) -> Option<FacesAtRest> {
+    if !scenario.model.teeth_part() || pairs.iter().any(|pair| pair.static_force_n <= 0.0) {
+        return None;
     }
-    let widths_m: Vec<f64> = layout.gears.iter().map(|gears| gears.face_width_mm * 1e-3).collect();
-    let (leans, compliance) = machine.modal(scenario, &widths_m).tilts();
-    let face = |(((mesh, pair), width_m), number): (((&Mesh, &MeshedPair), &f64), usize)| {
-        let gears = scenario.named_gears(layout, number);
+    let stiffness: Vec<f64> = meshes.iter().map(|mesh| mesh.even_stiffness_n_per_m).collect();
+    let leans = machine.leans(&stiffness, scenario.operation.brake_torque_nm);
+    let face = |((pair, gears), stiffness): ((&MeshedPair, &Gears), &f64)| {
+        let width_m = gears.face_width_mm * 1e-3;
         let slope = pair.closer_um() * 1e-6 / width_m;
-        let numbers = [*width_m, mesh.even_stiffness_n_per_m, pair.static_force_n, slope];
+        let numbers = [width_m, *stiffness, pair.static_force_n, slope];
         UnevenFace::new(numbers, |part| gears.mean_gap_mm(part) * 1e-3)
     };
-    let faces: Vec<UnevenFace> = meshes.iter().zip(pairs).zip(&widths_m).zip(0..).map(face).collect();
-    uneven_factors(&faces, &leans, &compliance)
+    Some(FacesAtRest { faces: pairs.iter().zip(&layout.gears).zip(&stiffness).map(face).collect(), leans })
 }
 
 /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of

@@ -292,20 +292,6 @@ impl ModalMachine {
             .collect();
     }
 
-    /// At rest under the constant loads, with the forces of the meshes midway along their faces: (rad) how far the wheels of each mesh tilt against
-    /// one another in its plane of action, and (rad/(N m)) by how much less per moment of each mesh's force about the middle of its face. Of a
-    /// machine whose lines of action have both columns.
-    pub(crate) fn tilts(&self) -> (Vec<f64>, Vec<Vec<f64>>) {
-        let columns: Vec<&Vec<f64>> = self.lines.iter().filter_map(|line| line.columns.get(1)).collect();
-        let yields = |a: &[f64], b: &[f64]| -> f64 {
-            let held = (0..self.modes()).filter(|&n| self.stiffness[n] > 0.0);
-            held.map(|n| a[n] * b[n] / self.stiffness[n]).sum()
-        };
-        let leans = columns.iter().map(|column| dot(column, &self.static_displacement)).collect();
-        let row = |a: &&Vec<f64>| columns.iter().map(|b| yields(a, b)).collect();
-        (leans, columns.iter().map(row).collect())
-    }
-
     /// (N) The static forces of the meshes that hold the shafts that turn freely.
     ///
     /// # Arguments

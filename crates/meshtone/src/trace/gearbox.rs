@@ -1,6 +1,6 @@
 //! Every stage's output of a gearbox.
 
-use super::stages::helix;
+use super::stages::{along_face, helix};
 use crate::scenario::Scenario;
 use crate::simulate::Simulation;
 use crate::trace_fields::Trace;
@@ -38,6 +38,7 @@ pub(super) fn gearbox_trace(gearbox: &Scenario, simulation: &Simulation) -> Trac
         );
         trace.scalar(&named("mean_stiffness_n_per_m"), mesh.mean_stiffness_n_per_m);
         trace.scalar(&named("damping_time_s"), mesh.damping_time_s);
+        along_face(&mut trace, &named, mesh);
         trace.vector(
             &named("mesh_stiffness_n_per_mm"),
             mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth()),

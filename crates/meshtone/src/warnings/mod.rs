@@ -4,6 +4,7 @@ mod mesh_resonance;
 mod observer;
 mod of_signals;
 mod step_error;
+mod uneven_face;
 
 pub use observer::Observer;
 pub use step_error::StepJudgement;
@@ -54,7 +55,7 @@ pub fn stages_and_warnings(
 impl Stages {
     /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, slices that the faces
     /// are not cut into, wheels of a rig whose accelerations, or whose supports', cancel in the channels, a settling too short for the
-    /// slowest mode, a load that would break teeth, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
+    /// slowest mode, a load that would break teeth or is at one end of a face, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
     /// frequency of shafts of beams.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
         let unused = self.meshes.iter().enumerate().filter_map(|(number, mesh)| {
@@ -66,6 +67,7 @@ impl Stages {
             .chain(self.equal_wheels())
             .chain(self.unsettled())
             .chain(self.overloads())
+            .chain(self.uneven_faces())
             .chain(self.without_contact())
             .chain(self.mesh_resonances())
             .collect()

@@ -84,6 +84,7 @@ impl TwoStages {
         let alpha = (20f64.to_radians().tan() / self.helix_angle_rad.cos()).atan();
         let thrust = self.helix_angle_rad.tan() * alpha.cos();
         let line = |stage: usize| MeshLine {
+            offsets_m: [0.0; 2],
             wheels: [2 * stage, 2 * stage + 1],
             base_radii_m: [0, 1].map(|wheel| self.radius_m(2 * stage + wheel) * alpha.cos()),
             working_pressure_angle_rad: alpha,

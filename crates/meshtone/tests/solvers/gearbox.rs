@@ -16,6 +16,13 @@ fn gearbox(rig: Option<GearboxRig>) -> Scenario {
     Scenario::from_toml(&gearbox_template(rig)).unwrap()
 }
 
+/// Makes shafts and teeth those of references: thin, and with the rotation of the wheels' bodies in the teeth.
+fn slender(gearbox: &mut Scenario) {
+    let shafts = &mut gearbox.structure.shafts_mut().unwrap().shafts;
+    shafts.iter_mut().for_each(|shaft| shaft.radius_mm = Some(7.9375));
+    gearbox.meshes.iter_mut().for_each(|mesh| mesh.foundation.rotation = BodyRotation::Tooth);
+}
+
 /// Two stages with teeth that have pitch deviations and run-out and no chamfer, of the references' steel.
 fn two_stages() -> Scenario {
     let mut gearbox = gearbox(None);
@@ -25,6 +32,7 @@ fn two_stages() -> Scenario {
         density_kg_per_m3: 7850.0,
     });
     gearbox.sensors.clear();
+    slender(&mut gearbox);
     for (number, wheel) in gearbox.wheels.iter_mut().enumerate() {
         (wheel.iso_class, wheel.tip_chamfer_mm) = (0, Some(0.0));
         wheel.active_profile_shortening = 0.0;

@@ -92,6 +92,8 @@ impl<'a> SeatedBearing<'a> {
 pub struct MeshLine {
     /// Number of the driving and of the driven wheel.
     pub wheels: [usize; 2],
+    /// (m) How far from their middle planes the middle of what their faces have in common is, along z.
+    pub offsets_m: [f64; 2],
     /// (m) Their base radii.
     pub base_radii_m: [f64; 2],
     /// (rad) Working pressure angle in the transverse section.
@@ -497,10 +499,7 @@ impl GearboxMachine {
                 force[*coordinate] += torque_share * torque_nm;
             }
         }
-        // The coupling of the motor and the supports hold everything but a shaft that may slide, which a billionth of its own stiffness holds.
-        let held = DMatrix::from_diagonal(&(stiffness.diagonal() * 1e-9));
-        let displacement =
-            (stiffness + held).cholesky().map_or_else(|| force.clone() * 0.0, |factor| factor.solve(&force));
+        let displacement = machine.displaced_by(stiffness, &[force]).column(0).into_owned();
         let rolling = parts.bearings.iter().filter(|of| of.bearing.element().is_some());
         let load = |(of, stretch): (&SeatedBearing, &[DVector<f64>; 2])| {
             let [x_m, y_m] = stretch.each_ref().map(|stretch| stretch.dot(&displacement));
@@ -511,7 +510,8 @@ impl GearboxMachine {
 
     /// The line of action of a mesh: the driving wheel, which turns in the sense s about z, pushes the other one along
     /// `n = s cos α t + sin α c − s h tan β_b z`, c the direction from centre to centre, `t = z × c`, and h the hand of the driving wheel's
-    /// helix. With the arm r from each centre to the pitch point it is `[n; r × n]` of the driving wheel, less the same of the driven one.
+    /// helix. With the arm r from each wheel's own centre to the pitch point midway along what the faces have in common it is `[n; r × n]` of the
+    /// driving wheel, less the same of the driven one.
     /// Deflections and forces along it are those of the transverse section, in which `F r_b` is the torque.
     fn line_of_action(&self, parts: &GearboxParts, mesh: &MeshLine, coordinates: usize) -> LineOfAction {
         let [driving, driven] = mesh.wheels;
@@ -526,11 +526,9 @@ impl GearboxMachine {
         let n = along.cross(&c) * (sense * cos) + c * sin - along * (sense * mesh.thrust);
         let mut line =
             LineOfAction { at_middle: DVector::zeros(coordinates), per_m: DVector::zeros(coordinates) };
-        for (disc, base_radius_m, side) in
-            [(driving, mesh.base_radii_m[0], 1.0), (driven, mesh.base_radii_m[1], -1.0)]
-        {
+        for (disc, of, side) in [(driving, 0, 1.0), (driven, 1, -1.0)] {
             let node = self.node_of_disc(parts, disc);
-            let arm = c * (side * base_radius_m / cos);
+            let arm = c * (side * mesh.base_radii_m[of] / cos) + along * mesh.offsets_m[of];
             let (moment, per_m) = (arm.cross(&n), along.cross(&n));
             for axis in 0..3 {
                 line.at_middle[node + axis] = side * n[axis];
