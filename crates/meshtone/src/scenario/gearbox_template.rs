@@ -41,8 +41,6 @@ impl GearboxRig {
                 module_mm: 1.5875,
                 helix_angle_deg: 0.0,
                 face_width_mm: 19.05,
-                shaft_radius_mm: 20.0,
-                first_at: 0.25,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 66_666.67,
                 fault: CHALLENGE_FAULT,
@@ -60,8 +58,6 @@ impl GearboxRig {
                 module_mm: 2.983_524_070_995_259,
                 helix_angle_deg: 20.0,
                 face_width_mm: 25.4,
-                shaft_radius_mm: 18.0,
-                first_at: 0.4,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 66_666.67,
                 fault: CHALLENGE_FAULT,
@@ -77,8 +73,6 @@ impl GearboxRig {
                 module_mm: 1.5875,
                 helix_angle_deg: 0.0,
                 face_width_mm: 19.05,
-                shaft_radius_mm: 20.0,
-                first_at: 0.25,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 20_000.0,
                 fault: "\
@@ -100,8 +94,6 @@ impl GearboxRig {
                 module_mm: 1.5,
                 helix_angle_deg: 0.0,
                 face_width_mm: 15.0,
-                shaft_radius_mm: 18.0,
-                first_at: 0.25,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 20_480.0,
                 fault: "\
@@ -125,10 +117,6 @@ struct RigData {
     /// (°) 0 of spur wheels.
     helix_angle_deg: f64,
     face_width_mm: f64,
-    /// (mm) Of all shafts, so thick that the load spreads over the faces.
-    shaft_radius_mm: f64,
-    /// (-) Where the wheels of the first mesh sit along their shafts; those of the second as far from the other end.
-    first_at: f64,
     input_speed_hz: f64,
     sampling_rate_hz: f64,
     fault: &'static str,
@@ -179,8 +167,6 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         module_mm: 1.5875,
         helix_angle_deg: 0.0,
         face_width_mm: 19.05,
-        shaft_radius_mm: 20.0,
-        first_at: 0.25,
         input_speed_hz: 30.0,
         sampling_rate_hz: 100_000.0,
         fault: EXAMPLE_FAULT,
@@ -191,8 +177,6 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         module_mm,
         helix_angle_deg,
         face_width_mm,
-        shaft_radius_mm,
-        first_at,
         input_speed_hz,
         sampling_rate_hz,
         fault,
@@ -206,7 +190,7 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
     };
     let shaft = |name: &str, comment: &str, coupled: &str| {
         format!(
-            "# {comment}\n[[shaft]]\nname = \"{name}\"\nlength_mm = 240.0{assumed}\nradius_mm = {shaft_radius_mm:?}{assumed}\n{coupled}"
+            "# {comment}\n[[shaft]]\nname = \"{name}\"\nlength_mm = 240.0{assumed}\nradius_mm = 7.9375{assumed}\n{coupled}"
         )
     };
     let mesh = |wheels: [&str; 2], hand: &str| {
@@ -234,10 +218,10 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         ),
         shaft("middle", "The middle shaft, with the driven wheel of the first stage and the driving wheel of the second.", ""),
         shaft("output", "The output shaft, which the brake loads.", "couples_to = \"brake\"\n"),
-        format!("# at is the place along the shaft, as a part of its length.\n{}", wheel("z1", "input", first_at, z1)),
-        wheel("z2", "middle", first_at, z2),
-        wheel("z3", "middle", 1.0 - first_at, z3),
-        wheel("z4", "output", 1.0 - first_at, z4),
+        format!("# at is the place along the shaft, as a part of its length.\n{}", wheel("z1", "input", 0.25, z1)),
+        wheel("z2", "middle", 0.25, z2),
+        wheel("z3", "middle", 0.75, z3),
+        wheel("z4", "output", 0.75, z4),
         format!("# The first wheel of a mesh drives.\n{}", mesh(["z1", "z2"], "right")),
         mesh(["z3", "z4"], "left"),
         format!(

@@ -110,24 +110,12 @@ fn face_load_factors_are_those_of_the_static_solution() {
     }
 }
 
-/// The templates' shafts load at least half of each face, and leave a rim under the teeth; slender ones are warned of with what would help, and
-/// what is said is so.
+/// Slender shafts are warned of with what would help, and what is said is so; thick ones are not.
 #[test]
-fn the_templates_shafts_are_stiff_enough() {
-    let rigs = GearboxRig::ALL.into_iter().map(Some).chain([None]);
-    for rig in rigs {
-        let stages = stages(Scenario::from_toml(&gearbox_template(rig)).unwrap()).unwrap();
-        let found = factors(&stages);
-        println!("{}: {found:.3?}", rig.map_or("template", GearboxRig::name));
-        assert!(found.iter().all(|factor| (1.0..2.0).contains(factor)), "{found:?}");
-        assert!(stages.warnings().iter().all(|warning| warning.kind != WarningKind::UnevenFace));
-        for (pair, gears) in stages.pairs.iter().zip(&stages.layout.gears) {
-            for wheel in [&pair.teeth.pinion, &pair.teeth.gear] {
-                let rim_mm = wheel.root_radius_mm - wheel.bore_radius_mm;
-                assert!(rim_mm >= 1.2 * gears.module_mm, "{rim_mm}");
-            }
-        }
-    }
+fn slender_shafts_are_warned_of_with_what_would_help() {
+    let thick = stages(on_shafts(40.0, BodyRotation::Machine)).unwrap();
+    assert!(factors(&thick).iter().all(|factor| (1.0..2.0).contains(factor)));
+    assert!(thick.warnings().iter().all(|warning| warning.kind != WarningKind::UnevenFace));
     let slender = on_shafts(15.875, BodyRotation::Machine);
     let of_slender = stages(&slender).unwrap();
     let found = factors(&of_slender);
