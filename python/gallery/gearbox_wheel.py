@@ -16,7 +16,7 @@ from meshtone.plotting import BLUE, ORANGE
 HEALTHY = mt.gearbox_template() + "settle_fraction = 0.81\n"
 DAMAGED = HEALTHY + '\n[[fault]]\nwheel = "z4"\ntooth = 12\nkind = "tooth-breakage"\nseverity = 0.9\n'
 
-before, now = (mt.simulate_gearbox(mt.Gearbox.from_toml(text)).process("output_1_vertical_g") for text in (HEALTHY, DAMAGED))
+before, now = (mt.simulate(mt.Scenario.from_toml(text)).process_wheels("output_1_vertical_g") for text in (HEALTHY, DAMAGED))
 rise = {name: now[name].indicators["fm4"] / before[name].indicators["fm4"] for name in now.wheels}
 wheel = max(rise, key=rise.__getitem__)
 print(f"{wheel}, on the {now.shafts[wheel]} shaft, is damaged: its FM4 is {rise[wheel]:.1f} times that of the healthy gearbox")

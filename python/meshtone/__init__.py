@@ -1,4 +1,4 @@
-"""Vibration of spur gears, healthy or with damaged teeth.
+"""Vibration of gears, healthy or with damaged teeth.
 
 >>> from meshtone import Scenario, ToothBreakage, simulate
 >>> scenario = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40, brake_torque_nm=10,
@@ -8,7 +8,7 @@
 >>> round(simulation.process().indicators["difference_kurtosis"]) > 3
 True
 
-The parts: :class:`Scenario` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
+The parts: :class:`Scenario`, :func:`Gearbox` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
 takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
 :mod:`meshtone.datasets` makes and loads labelled data sets; :func:`diagnose` says what may be wrong with a gear; :func:`estimate_path` finds what lies between gears and sensor; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
@@ -21,7 +21,7 @@ from ._explore import Explorer, explore
 from ._path import PathEstimate, estimate_path
 from ._warnings import MeshtoneWarning
 from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
-from .gearbox import Gearbox, GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes
+from .gearbox import Gearbox, gearbox_template
 from .hybrid import enhance, tune
 from .memory import set_memory_limit
 from .recording import Recording, read_recording
@@ -37,7 +37,6 @@ __all__ = [
     "Diagnosis",
     "Explorer",
     "Gearbox",
-    "GearboxSimulation",
     "MeshtoneWarning",
     "PathEstimate",
     "Record",
@@ -65,8 +64,6 @@ __all__ = [
     "set_memory_limit",
     "signal",
     "simulate",
-    "simulate_gearbox",
-    "simulate_gearboxes",
     "simulate_many",
     "template",
     "trace",

@@ -59,8 +59,9 @@ class Base:
     """
 
     def __init__(self, text: str) -> None:
-        self.is_gearbox = _core.Scenario.is_of_gearbox(text)
-        self.sections: dict[str, Any] = _core.Scenario.from_toml(text, not self.is_gearbox).sections()
+        scenario = _core.Scenario.from_toml(text)
+        self.is_gearbox = not scenario.is_pair
+        self.sections: dict[str, Any] = scenario.sections()
         self.sensors: list[dict[str, Any]] = self.sections.get("sensor", [])
         if self.is_gearbox and not self.sensors:
             bearings = self.sections["bearing"]

@@ -75,8 +75,8 @@ class MissingTooth:
 
     Parameters
     ----------
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
@@ -86,7 +86,7 @@ class MissingTooth:
     """
 
     kind: ClassVar[str] = "missing-tooth"
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
 
@@ -106,8 +106,8 @@ class ToothBreakage:
     tip_loss_mm : float, optional
         (mm) The length of tip that is lost over the whole width. Allowed: ≥ 0; less than the tooth's height. Default:
         0.0.
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
@@ -120,7 +120,7 @@ class ToothBreakage:
     chip_height_mm: float | None = None
     chip_width_mm: float | None = None
     tip_loss_mm: float | None = None
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
 
@@ -139,8 +139,8 @@ class RootCrack:
     length_mm : float, optional
         (mm) The length of the crack along the face, deepest at one side and ending in a parabola. Allowed: > 0; at most
         the face width. Default: over the whole face, equally deep.
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
@@ -153,7 +153,7 @@ class RootCrack:
     depth_mm: float | None = None
     angle_deg: float | None = None
     length_mm: float | None = None
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
 
@@ -179,8 +179,8 @@ class PartialFace:
     circle : PitCircle, optional
         The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
         Default: none.
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
@@ -195,7 +195,7 @@ class PartialFace:
     end: float | None = None
     depth: float | None = None
     circle: PitCircle | None = None
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
 
@@ -218,8 +218,8 @@ class ThroughFace:
     circle : PitCircle, optional
         The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
         Default: none.
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
@@ -233,7 +233,7 @@ class ThroughFace:
     end: float | None = None
     depth: float | None = None
     circle: PitCircle | None = None
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
 
@@ -259,8 +259,8 @@ class Pits:
         ``random`` or ``severity`` is given.
     random : RandomPits, optional
         Pits that are drawn for each tooth from the seed, instead of a list. Default: none.
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
@@ -276,7 +276,7 @@ class Pits:
     face_radius_mm: Sequence[float] | None = None
     depth_mm: Sequence[float] | None = None
     random: RandomPits | None = None
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
 
@@ -301,8 +301,8 @@ class ToothDestruction:
         Default: 0.0.
     noise_mm : float, optional
         (mm) The amplitude of the uniform random roughness of the ground flank. Allowed: ≥ 0; likewise. Default: 0.0.
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: 1.
@@ -317,7 +317,7 @@ class ToothDestruction:
     slope_deg: float | None = None
     offset_mm: float | None = None
     noise_mm: float | None = None
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
 
@@ -331,8 +331,8 @@ class Wear:
     depth_um : float, optional
         (µm) The largest depth of wear, along the flank's normal. Allowed: 0…100. Required, unless ``severity`` is
         given.
-    wheel : {'pinion', 'gear'}, optional
-        The damaged wheel. Default: "gear".
+    wheel : str, optional
+        The damaged wheel. Allowed: "pinion", "gear", or the name of a wheel of a gearbox. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
         number > 0; at most the wheel's teeth, each once. Default: "all".
@@ -343,7 +343,7 @@ class Wear:
 
     kind: ClassVar[str] = "wear"
     depth_um: float | None = None
-    wheel: Literal["pinion", "gear"] = "gear"
+    wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = "all"
     severity: float | None = None
 

@@ -14,18 +14,17 @@ import numpy.typing as npt
 
 from . import _core, _progress
 from ._warnings import SignalWarning, typed, warn_of_signal
-from .gearbox import Gearbox, GearboxSimulation
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import finite_signal, read_only, whole
 from .signal.phase import ShaftPhase
-from .signal.train import TrainRecording, measured, native_machine
+from .signal.train import TrainRecording, measured
 from .simulation import Simulation, chosen_channel
 
 __all__ = ["Diagnosis", "diagnose"]
 
 Array = npt.NDArray[np.float64]
-Recorded = Union[Simulation, GearboxSimulation, Recording, TrainRecording, tuple[npt.ArrayLike, float, ShaftPhase], npt.NDArray[Any]]
+Recorded = Union[Simulation, Recording, TrainRecording, tuple[npt.ArrayLike, float, ShaftPhase], npt.NDArray[Any]]
 SignalKind = Literal["recording", "average", "difference"]
 
 SHOWN = 0.005
@@ -112,7 +111,7 @@ def _cells(said: dict[str, Any]) -> str:
 
 def diagnose(
     recordings: Recorded | Sequence[Recorded],
-    scenario: Scenario | Gearbox,
+    scenario: Scenario,
     healthy: Recorded | Sequence[Recorded] | None = None,
     *,
     signal: SignalKind = "recording",
@@ -129,11 +128,11 @@ def diagnose(
     Parameters
     ----------
     recordings : one or several, all of one state of the gear
-        A :class:`Simulation` or :class:`GearboxSimulation`, of which the first sensor counts; a :class:`Recording` of what ``meshtone
+        A :class:`Simulation`, of which the first sensor counts; a :class:`Recording` of what ``meshtone
         simulate`` wrote; or a measured signal with its rate and the phase of the pinion or of a gearbox's input,
         ``(signal_g, sampling_rate_hz, phase)``. Of a phase of another shaft a :class:`~meshtone.signal.TrainRecording` that names it, in g; its
         ``machine`` is not used, but the scenario. With another `signal` arrays: one revolution of the gear, in g.
-    scenario : Scenario or Gearbox
+    scenario : Scenario
         The rig; its faults are left out.
     healthy : the same, optional
         The same rig when it was healthy.
@@ -184,10 +183,10 @@ def diagnose(
     """
     if signal not in ("recording", "average", "difference"):
         raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
-    if isinstance(scenario, Gearbox) and (tuned is not None or signal != "recording"):
+    if not native_scenario(scenario).is_pair and (tuned is not None or signal != "recording"):
         given = f"tuned = {tuned!r}" if tuned is not None else f"signal = '{signal}'"
         raise ValueError(f"{given}: needs the scenario of a pair; leave it out with a gearbox, and give whole recordings")
-    rig = native_machine(scenario)
+    rig = native_scenario(scenario)
     if tuned is not None:
         rig = _core.tuned_rig(rig, tuned)
     now = _observations("recordings", recordings, scenario, signal)
@@ -226,7 +225,7 @@ def _records(records: int) -> int:
 def _observations(
     name: str,
     given: Recorded | Sequence[Recorded],
-    scenario: Scenario | Gearbox,
+    scenario: Scenario,
     signal: str,
 ) -> list[_core.Observation]:
     several: Sequence[Any] = given if isinstance(given, list) else [given]
@@ -235,22 +234,15 @@ def _observations(
     return [_observation(name, one, scenario, signal) for one in several]
 
 
-def _observation(name: str, one: Any, scenario: Scenario | Gearbox, signal: str) -> _core.Observation:
-    if signal != "recording" and isinstance(scenario, Scenario):
+def _observation(name: str, one: Any, scenario: Scenario, signal: str) -> _core.Observation:
+    if signal != "recording":
         return _core.Observation.of_revolution(finite_signal(one), scenario.gear_teeth, signal)
-    if isinstance(one, Simulation):
-        values = getattr(one, chosen_channel(one.scenario, None))
-        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
-    if isinstance(one, Recording) and one.scenario is not None:
+    if isinstance(one, (Simulation, Recording)) and one.scenario is not None:
         values = one[chosen_channel(one.scenario, None)]
         return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
-    gearbox = one.gearbox if isinstance(one, (GearboxSimulation, Recording)) else None
-    if gearbox is not None:
-        values = one[gearbox._native.leading_channel()]
-        return _core.Observation.of_simulated(gearbox._native, values, one.start_s)
     known = measured(one)
     if known is not None:
-        return _core.Observation.of_measured(*known, native_machine(scenario))
+        return _core.Observation.of_measured(*known, native_scenario(scenario))
     raise TypeError(
         f"{name}: must be simulations, recordings of them, (signal_g, sampling_rate_hz, phase), or a signal.TrainRecording"
     )

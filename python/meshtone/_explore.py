@@ -8,9 +8,7 @@ from html import escape
 from types import TracebackType
 
 from . import _core
-from .gearbox import Gearbox
-from .scenario import Scenario, template
-from .signal.train import native_machine
+from .scenario import Scenario, native_scenario, template
 
 __all__ = ["Explorer", "explore"]
 
@@ -21,8 +19,8 @@ class Explorer:
     It is a context manager, which closes it at the end.
     """
 
-    def __init__(self, scenario: Scenario | Gearbox, port: int, in_notebook: bool) -> None:
-        self._server = _core.ExploreServer(native_machine(scenario), port, in_notebook)
+    def __init__(self, scenario: Scenario, port: int, in_notebook: bool) -> None:
+        self._server = _core.ExploreServer(native_scenario(scenario), port, in_notebook)
 
     @property
     def url(self) -> str | None:
@@ -31,31 +29,8 @@ class Explorer:
 
     @property
     def scenario(self) -> Scenario:
-        """What is set on the page of a pair: the scenario that was last answered in full; of a closed page the last of all.
-
-        Raises
-        ------
-        TypeError
-            The page is of a gearbox.
-        """
-        native = self._server.scenario
-        if not native.is_pair:
-            raise TypeError("the page is of a gearbox: read .gearbox")
-        return Scenario._wrap(native)
-
-    @property
-    def gearbox(self) -> Gearbox:
-        """What is set on the page of a gearbox, likewise.
-
-        Raises
-        ------
-        TypeError
-            The page is of a pair.
-        """
-        native = self._server.scenario
-        if native.is_pair:
-            raise TypeError("the page is of a pair: read .scenario")
-        return Gearbox.from_toml(native.to_toml())
+        """What is set on the page: the scenario that was last answered in full; of a closed page the last of all."""
+        return Scenario._wrap(self._server.scenario)
 
     def close(self) -> None:
         """Serve the page no longer."""
@@ -77,7 +52,7 @@ class Explorer:
         return f'<iframe src="{escape(self.url)}" {frame} allow="clipboard-write"></iframe>'
 
 
-def explore(scenario: Scenario | Gearbox | None = None, *, port: int = 0, open_browser: bool | None = None) -> Explorer:
+def explore(scenario: Scenario | None = None, *, port: int = 0, open_browser: bool | None = None) -> Explorer:
     """Open a page on which a scenario is changed and seen at once: teeth, forces, signal, spectra, indicators.
 
     The page is served by this process on this machine alone, in a thread that leaves Python free. In a notebook it appears where the
@@ -85,7 +60,7 @@ def explore(scenario: Scenario | Gearbox | None = None, *, port: int = 0, open_b
 
     Parameters
     ----------
-    scenario : Scenario or Gearbox, optional
+    scenario : Scenario, optional
         What the page opens with; a healthy pair by default. A gearbox has a page of its own.
     port : int
         Port of 127.0.0.1; 0, the default, for any that is free.
@@ -95,7 +70,7 @@ def explore(scenario: Scenario | Gearbox | None = None, *, port: int = 0, open_b
     Returns
     -------
     Explorer
-        ``scenario`` of it, or ``gearbox``, is what is set on the page.
+        ``scenario`` of it is what is set on the page.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from . import _core
 from ._warnings import typed, warn_of_signal
 from .signal._arguments import Array, positive, signal_array
 from .signal.phase import ShaftPhase, native_phase
-from .signal.train import Machine, native_machine
+from .scenario import Scenario, native_scenario
 
 if TYPE_CHECKING:
     import pyarrow
@@ -28,7 +28,7 @@ def table_like(
     dataset: Dataset,
     recordings: Channels | Sequence[Channels],
     phase: ShaftPhase | Sequence[ShaftPhase],
-    machine: Machine,
+    machine: Scenario,
     sampling_rate_hz: float,
     shaft: str | None,
 ) -> pyarrow.Table:
@@ -52,7 +52,7 @@ def table_like(
         for name in _core.PLAN_FILES:
             if (text := dataset._beside(name)) is not None:
                 Path(folder, name).write_bytes(text)
-        rows, doubts = _core.rows_like(Path(folder, _core.PLAN_FILES[0]), named, native_machine(machine), rate_hz, shaft)
+        rows, doubts = _core.rows_like(Path(folder, _core.PLAN_FILES[0]), named, native_scenario(machine), rate_hz, shaft)
     warn_of_signal(typed(doubts))
     found = pyarrow.parquet.read_table(pyarrow.BufferReader(rows))
     schema, conditions = dataset.arrow.schema, set(dataset.condition_columns)

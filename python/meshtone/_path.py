@@ -12,18 +12,17 @@ import numpy.typing as npt
 
 from . import _core, _progress
 from ._files import written_whole
-from .gearbox import Gearbox, GearboxSimulation
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import read_only, whole
 from .signal.phase import ShaftPhase
-from .signal.train import TrainRecording, measured, native_machine
+from .signal.train import TrainRecording, measured
 from .simulation import Simulation, chosen_channel
 
 __all__ = ["PathEstimate", "estimate_path"]
 
 Array = npt.NDArray[np.float64]
-Recorded = Union[Simulation, GearboxSimulation, Recording, TrainRecording, tuple[npt.ArrayLike, float, ShaftPhase]]
+Recorded = Union[Simulation, Recording, TrainRecording, tuple[npt.ArrayLike, float, ShaftPhase]]
 FEWEST_DRAWS = 8
 
 
@@ -73,7 +72,7 @@ class PathEstimate:
 
 def estimate_path(
     recordings: Recorded | list[Recorded],
-    scenario: Scenario | Gearbox,
+    scenario: Scenario,
     *,
     draws: int = 24,
     seed: int = 1,
@@ -87,10 +86,10 @@ def estimate_path(
     Parameters
     ----------
     recordings : one, or a list of several, by one sensor
-        A :class:`Simulation` or :class:`GearboxSimulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal
+        A :class:`Simulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal
         with its rate and the phase of the pinion, or of the input of a gearbox, ``(signal_g, sampling_rate_hz, phase)``. Of a phase of another
         shaft a :class:`~meshtone.signal.TrainRecording` that names it, in g; its ``machine`` is not used, but the scenario.
-    scenario : Scenario or Gearbox
+    scenario : Scenario
         The healthy machine, with the recordings' load. The wall and the mounted resonance of its first sensor stay beside the path; a
         ``frequency_response`` that it has is left out.
     draws : int
@@ -123,7 +122,7 @@ def estimate_path(
     several: list[Any] = recordings if isinstance(recordings, list) else [recordings]
     report = _progress.shown("simulations") if progress is True else (progress or None)
     (frequency_hz, magnitude_db, low_db, high_db, phase_deg), compared_hz, csv = _core.estimate_path(
-        native_machine(scenario),
+        native_scenario(scenario),
         [_healthy(one) for one in several],
         whole("draws", draws, FEWEST_DRAWS),
         whole("seed", seed),
@@ -144,18 +143,10 @@ def _healthy(one: Any) -> tuple[Array, float, _core.ShaftPhase, str | None]:
     known = measured(one)
     if known is not None:
         return known
-    gearbox = one.gearbox if isinstance(one, (Recording, GearboxSimulation)) else None
-    if gearbox is not None:
-        values = one[gearbox._native.leading_channel()]
-        phase = _core.ShaftPhase.of_simulated_input(gearbox._native, one.start_s, values.size)
-        return values, one.sampling_rate_hz, phase, None
-    if isinstance(one, Recording) and one.scenario is not None:
-        values, rig = one[chosen_channel(one.scenario, None)], one.scenario
-    elif isinstance(one, Simulation):
-        values, rig = getattr(one, chosen_channel(one.scenario, None)), one.scenario
-    else:
+    if not isinstance(one, (Recording, Simulation)) or one.scenario is None:
         raise TypeError(
             "recordings: must be simulations, recordings of them, (signal_g, sampling_rate_hz, phase), or a signal.TrainRecording"
         )
-    phase = _core.ShaftPhase.of_simulated(native_scenario(rig), one.start_s, values.size)
+    values = one[chosen_channel(one.scenario, None)]
+    phase = _core.ShaftPhase.of_simulated(native_scenario(one.scenario), one.start_s, values.size)
     return values, one.sampling_rate_hz, phase, None

@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     from ._like import Channels
     from ._torch import TorchDataset
     from .signal.phase import ShaftPhase
-    from .signal.train import Machine
+    from .scenario import Scenario
 
 __all__ = ["Dataset", "dataset_template", "generate_dataset", "load", "load_dataset", "merge_datasets", "verify_dataset"]
 
@@ -1048,7 +1048,7 @@ class Dataset:
         self,
         recordings: Channels | Sequence[Channels],
         phase: ShaftPhase | Sequence[ShaftPhase],
-        machine: Machine,
+        machine: Scenario,
         sampling_rate_hz: float,
         *,
         shaft: str | None = None,
@@ -1064,7 +1064,7 @@ class Dataset:
             (g) The analysed channel, or several channels by the names of their columns. A channel that is not recorded is empty.
         phase : ShaftPhase, or a sequence of these
             Of one shaft; with a sequence of recordings one for each.
-        machine : Scenario or Gearbox
+        machine : Scenario
             What was recorded: its tooth counts are used, and :attr:`condition_columns` have its values.
         sampling_rate_hz : float
             (S/s) Of all recordings, at least that of the data set.

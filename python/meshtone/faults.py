@@ -84,25 +84,33 @@ def to_section(fault: Any, argument: str = "fault") -> dict[str, Any]:
     return {"kind": fault.kind, **_keys(fault)}
 
 
-def from_section(section: Mapping[str, Any]) -> Fault:
-    """The fault that a section of a scenario file describes."""
+def from_section(section: Mapping[str, Any]) -> Any:
+    """The fault that a section of a scenario file describes; of a rolling bearing the section itself."""
     keys = dict(section)
     name = keys.pop("kind")
-    kind = next(kind for kind in KINDS if kind.kind == name)
+    kind = next((kind for kind in KINDS if kind.kind == name), None)
+    if kind is None:
+        return dict(section)
     for table in TABLES.keys() & keys.keys():
         keys[table] = TABLES[table](**keys[table])
     fault: Fault = kind(**keys)
     return fault
 
 
-def in_words(faults: Sequence[Fault]) -> str:
+def in_words(faults: Sequence[Any]) -> str:
     """Kinds of the faults, and where they are if that is not the gear's first tooth; 'healthy' if there is none."""
     if not faults:
         return "healthy"
     first = faults[0]
-    if len(faults) == 1 and (first.wheel, first.tooth) == ("gear", type(first).tooth):
-        return first.kind
-    return ", ".join(f"{fault.kind} of {_teeth_in_words(fault)}" for fault in faults)
+    if len(faults) == 1 and not isinstance(first, Mapping) and (first.wheel, first.tooth) == ("gear", type(first).tooth):
+        return str(first.kind)
+    return ", ".join(map(_in_words, faults))
+
+
+def _in_words(fault: Any) -> str:
+    if isinstance(fault, Mapping):
+        return f"{fault['kind']} of bearing {fault['bearing']}"
+    return f"{fault.kind} of {_teeth_in_words(fault)}"
 
 
 def _teeth_in_words(fault: Fault) -> str:

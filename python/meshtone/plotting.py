@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ from ._extras import extra
 from .faults import in_words
 from .signal._arguments import whole
 from .signal.indicators import INDICATORS, SHOWN
-from .simulation import chosen_channel
+from .simulation import Wheel, chosen_channel, mesh_frequencies_hz, mesh_wheels, of_wheel, teeth_in_words, wheel_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,16 +90,16 @@ def _axes(ax: Axes | None, size: tuple[float, float] = (8.0, 3.2)) -> Axes:
 def plot_signal(
     simulation: Simulation, channel: str | None = None, *, revolutions: float = 2.0, ax: Axes | None = None
 ) -> Axes:
-    """A signal over some revolutions of the gear.
+    """A signal over some revolutions of the first driven wheel, the gear.
 
     Parameters
     ----------
     simulation : Simulation
         What is shown.
     channel : str, optional
-        One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` where none is listed.
+        One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` of a pair without one.
     revolutions : float
-        (rev) Of the gear, from the first kept sample on.
+        (rev) Of that wheel, from the first kept sample on.
     ax : matplotlib.axes.Axes, optional
         Where it is drawn; a new figure by default.
 
@@ -116,7 +116,7 @@ def plot_signal(
     if not revolutions > 0:
         raise ValueError(f"revolutions = {revolutions}: must be more than 0")
     ax = _axes(ax)
-    values = getattr(simulation, channel)[: _samples_of(simulation, revolutions)]
+    values = simulation[channel][: _samples_of(simulation, revolutions)]
     ax.plot(simulation.time_s[: values.size], values, color=BLUE, linewidth=0.8)
     ax.set(xlabel="Time (s)", ylabel=channel_label(channel))
     ax.margins(x=0)
@@ -125,17 +125,24 @@ def plot_signal(
 
 
 def _samples_of(simulation: Simulation, revolutions: float) -> int:
-    """How many samples some revolutions of the gear take, from the first one on."""
+    """How many samples some revolutions of the first driven wheel take, from the first one on."""
     scenario = simulation.scenario
-    if scenario.speed_profile_hz is None:
-        turns = simulation.sampling_rate_hz * scenario.gear_teeth / scenario.pinion_teeth / scenario.pinion_speed_hz
-        return max(2, int(round(revolutions * turns)))
-    turned_rev = np.cumsum(simulation.gear_shaft_speed_hz) / simulation.sampling_rate_hz
+    wheel = wheel_of(scenario, None)
+    if _speed_profile(simulation) is None:
+        return max(2, int(round(revolutions * simulation.sampling_rate_hz / wheel.speed_hz)))
+    phase = _core.ShaftPhase.of_simulated(scenario._native, simulation.start_s, simulation.time_s.size)
+    input_hz = wheel_of(scenario, mesh_wheels(scenario, 0)[0]).speed_hz
+    turned_rev = (phase.revolutions - phase.revolutions[0]) * wheel.speed_hz / input_hz
     return max(2, int(np.searchsorted(turned_rev, revolutions)))
 
 
+def _speed_profile(simulation: Simulation) -> dict[str, Any] | None:
+    profile: dict[str, Any] | None = simulation.scenario.sections["operation"].get("speed_profile_hz")
+    return profile
+
+
 def plot_mesh_stiffness(
-    simulation: Simulation, *, pitches: tuple[int, int] | None = None, ax: Axes | None = None
+    simulation: Simulation, mesh: str | None = None, *, pitches: tuple[int, int] | None = None, ax: Axes | None = None
 ) -> Axes:
     """Mesh stiffness over some tooth pitches, with the contact of all damaged teeth of either wheel tinted.
 
@@ -143,6 +150,8 @@ def plot_mesh_stiffness(
     ----------
     simulation : Simulation
         What is shown.
+    mesh : str, optional
+        One of ``simulation.meshes``; the first by default.
     pitches : tuple of int, optional
         (pitches) From and to, since tooth 1 of either wheel entered contact. By default 8 pitches: the first damaged tooth enters
         contact at the first or the second.
@@ -156,28 +165,37 @@ def plot_mesh_stiffness(
     Raises
     ------
     ValueError
-        Pitches before the first one, or none.
+        A mesh that there is not; pitches before the first one, or none.
     """
-    first, last = _whole_pitches(pitches) if pitches is not None else _around_damage(simulation)
+    number = simulation._mesh(mesh)
+    first, last = _whole_pitches(pitches) if pitches is not None else _around_damage(simulation, number)
     if not 0 <= first < last:
         raise ValueError(f"pitches = {pitches}: must be from 0 or more to more than that")
     ax = _axes(ax)
-    stiffness = 1e-3 * simulation._native.mesh_stiffness_n_per_mm(first, last - first)
+    stiffness = 1e-3 * simulation._native.mesh_stiffness_n_per_mm(number, first, last - first)
     ax.plot(first + np.arange(stiffness.size) / stiffness.size * (last - first), stiffness, color=BLUE, linewidth=1.2)
-    ax.set(xlabel="Angle of the gear (tooth pitches; tooth 1 enters contact at 0)", ylabel="Mesh stiffness (N/µm)")
+    wheels = mesh_wheels(simulation.scenario, number)
+    over = f"Angle of {of_wheel(simulation.scenario, wheels[1])} (tooth pitches; tooth 1 enters contact at 0)"
+    ax.set(xlabel=over, ylabel="Mesh stiffness (N/µm)")
+    if len(simulation.meshes) > 1:
+        ax.set_title(f"Mesh {simulation.meshes[number]}")
     ax.set_xlim(first, last)
     # Room for the legend above the curve.
     ax.set_ylim(0, 1.3 * stiffness.max())
-    _tint(ax, simulation, ("pinion", "gear"), (first, last))
+    _tint(ax, simulation, number, wheels, (first, last))
     ax.grid(alpha=0.3)
     return ax
 
 
-def _around_damage(simulation: Simulation) -> tuple[int, int]:
+def _around_damage(simulation: Simulation, mesh: int) -> tuple[int, int]:
     # Tooth j of either wheel enters contact first after j - 1 pitches; one more shows what was before.
-    numbers = [*_damaged_teeth(simulation, "pinion"), *_damaged_teeth(simulation, "gear")]
-    first = max(0, min((tooth - 2 for tooth in numbers), default=0))
+    first = max(0, min((tooth - 2 for tooth in _damaged_in(simulation, mesh)), default=0))
     return first, first + AROUND_DAMAGE
+
+
+def _damaged_in(simulation: Simulation, mesh: int) -> list[int]:
+    """The numbers of the damaged teeth of both wheels of a mesh."""
+    return [tooth for wheel in mesh_wheels(simulation.scenario, mesh) for tooth in _damaged_teeth(simulation, wheel)]
 
 
 def _damaged_teeth(simulation: Simulation, wheel: str) -> list[int]:
@@ -186,25 +204,25 @@ def _damaged_teeth(simulation: Simulation, wheel: str) -> list[int]:
     return sorted(tooth for of_wheel, tooth, _ in simulation._native.damaged_teeth_mm() if of_wheel == wheel)
 
 
-def _teeth(simulation: Simulation, wheel: str) -> int:
-    return simulation.scenario.pinion_teeth if wheel == "pinion" else simulation.scenario.gear_teeth
-
-
 def _whole_pitches(pitches: tuple[int, int]) -> tuple[int, int]:
     first, last = pitches
     return whole("pitches[0]", first), whole("pitches[1]", last)
 
 
-def _tint(ax: Axes, simulation: Simulation, wheels: Sequence[str], pitches: tuple[float, float]) -> None:
-    """Tints where damaged teeth of the wheels are in contact, or would be, and says in a legend which ones."""
-    scenario = simulation.scenario
-    teeth_of = {"pinion": scenario.pinion_teeth, "gear": scenario.gear_teeth}
+def _tint(
+    ax: Axes, simulation: Simulation, mesh: int, wheels: Sequence[str], pitches: tuple[float, float], start: float = 0.0
+) -> None:
+    """Tints where damaged teeth of the wheels of a mesh are in contact, or would be, and says in a legend which ones.
+
+    The axis begins ``start`` pitches after tooth 1 has entered contact."""
+    teeth_of = {wheel: wheel_of(simulation.scenario, wheel).teeth for wheel in wheels}
     damaged = {wheel: _damaged_teeth(simulation, wheel) for wheel in wheels}
     is_damaged = lambda pair: any(pair % teeth_of[wheel] + 1 in damaged[wheel] for wheel in wheels)
-    overlap = float(simulation.fields.get("overlap_ratio", 0.0))
-    contact = (-overlap / 2, float(simulation.contact_ratio) + overlap / 2)
-    for start, end in _turns(pitches, contact, is_damaged):
-        ax.axvspan(start, end, zorder=0, **TURN)
+    of_mesh = "" if simulation._is_pair else f".{simulation.meshes[mesh]}"
+    overlap = float(simulation.fields.get(f"overlap_ratio{of_mesh}", 0.0))
+    contact = (-overlap / 2 - start, float(simulation.fields[f"contact_ratio{of_mesh}"]) + overlap / 2 - start)
+    for begin, end in _turns(pitches, contact, is_damaged):
+        ax.axvspan(begin, end, zorder=0, **TURN)
     if any(damaged.values()):
         label = "in contact: " + " and ".join(f"{wheel} {_numbered(teeth)}" for wheel, teeth in damaged.items() if teeth)
         ax.legend(handles=[_patch(label)], fontsize="small", loc="upper right", framealpha=1.0)
@@ -241,14 +259,14 @@ def _numbered(teeth: Sequence[int]) -> str:
 
 
 def plot_spectrum(simulation: Simulation, channel: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Amplitude of a signal against frequency, with the harmonics of the mesh where the speed is constant.
+    """Amplitude of a signal against frequency, with the harmonics of the meshes where the speed is constant.
 
     Parameters
     ----------
     simulation : Simulation
         What is shown.
     channel : str, optional
-        One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` where none is listed.
+        One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` of a pair without one.
     ax : matplotlib.axes.Axes, optional
         Where it is drawn; a new figure by default.
 
@@ -258,17 +276,21 @@ def plot_spectrum(simulation: Simulation, channel: str | None = None, *, ax: Axe
     """
     channel = chosen_channel(simulation.scenario, channel)
     ax = _axes(ax)
-    values = getattr(simulation, channel)
+    values = simulation[channel]
     amplitude = 2 * np.abs(np.fft.rfft(values - values.mean())) / values.size
     frequency_hz = np.fft.rfftfreq(values.size, 1 / simulation.sampling_rate_hz)
-    mesh_hz = simulation.scenario.pinion_speed_hz * simulation.scenario.pinion_teeth
-    limit_hz = min(40 * mesh_hz, frequency_hz[-1])
+    meshes_hz = mesh_frequencies_hz(simulation.scenario)
+    limit_hz = min(40 * max(meshes_hz), frequency_hz[-1])
     shown = (frequency_hz > 0) & (frequency_hz <= limit_hz)
     ax.semilogy(frequency_hz[shown] / 1e3, np.maximum(amplitude[shown], 1e-12), color=GREY, linewidth=0.6, label="spectrum")
-    if simulation.scenario.speed_profile_hz is None:
+    steady = meshes_hz if _speed_profile(simulation) is None else []
+    for number, ((colour, marker), mesh_hz) in enumerate(zip(LINES, steady)):
+        of_mesh = "mesh harmonics" if len(steady) == 1 else f"harmonics of {simulation.meshes[number]}"
+        # Where harmonics of several meshes coincide, the larger markers of the first ones show around those of the last.
+        size = 3 + 2 * (len(steady) - 1 - number)
         harmonics = mesh_hz * np.arange(1, int(limit_hz / mesh_hz) + 1)
-        lines = np.searchsorted(frequency_hz, harmonics - frequency_hz[1] / 2)
-        ax.plot(harmonics / 1e3, amplitude[lines], "o", markersize=3, color=BLUE, label=f"mesh harmonics ({mesh_hz:g} Hz)")
+        lines = np.minimum(np.searchsorted(frequency_hz, harmonics - frequency_hz[1] / 2), amplitude.size - 1)
+        ax.plot(harmonics / 1e3, amplitude[lines], marker, markersize=size, color=colour, label=f"{of_mesh} ({mesh_hz:g} Hz)")
     top = amplitude[shown].max()
     ax.set_ylim(top * 1e-6, top * 3)
     ax.set_xlim(0, limit_hz / 1e3)
@@ -280,7 +302,7 @@ def plot_spectrum(simulation: Simulation, channel: str | None = None, *, ax: Axe
 
 
 def plot_tooth(
-    simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear", *, tooth: int | None = None, ax: Axes | None = None
+    simulation: Simulation, wheel: str | None = None, *, tooth: int | None = None, ax: Axes | None = None
 ) -> Axes:
     """A tooth at equal scales, with its damage; the title names the other damaged teeth of its wheel.
 
@@ -288,8 +310,8 @@ def plot_tooth(
     ----------
     simulation : Simulation
         What is shown.
-    wheel : {'gear', 'pinion'}
-        Whose tooth.
+    wheel : str, optional
+        Whose tooth, one of ``simulation.wheels``; by default the driven one's of the first mesh, the gear's.
     tooth : int, optional
         Its number, from 1. By default the wheel's first damaged tooth; of a sound wheel its first tooth.
     ax : matplotlib.axes.Axes, optional
@@ -299,31 +321,32 @@ def plot_tooth(
     -------
     matplotlib.axes.Axes
     """
-    x_mm, y_mm = simulation.tooth_profile(wheel)
-    damaged = _damaged_teeth(simulation, wheel)
+    of = wheel_of(simulation.scenario, wheel)
+    x_mm, y_mm = simulation.tooth_profile(of.name)
+    damaged = _damaged_teeth(simulation, of.name)
     if tooth is None:
         tooth = damaged[0] if damaged else 1
-    tooth, teeth = whole("tooth", tooth), _teeth(simulation, wheel)
-    if not 1 <= tooth <= teeth:
-        raise ValueError(f"tooth = {tooth}: must be from 1 to {teeth}, as many as the {wheel} has")
+    tooth = whole("tooth", tooth)
+    if not 1 <= tooth <= of.teeth:
+        raise ValueError(f"tooth = {tooth}: must be from 1 to {of.teeth}, as many as {of_wheel(simulation.scenario, of.name)} has")
     ax = _axes(ax, (4.0, 4.0))
     outline_y = np.concatenate([y_mm, -y_mm[::-1]])
     outline_x = np.concatenate([x_mm, x_mm[::-1]])
     ax.fill(outline_y, outline_x, facecolor="#e8e8e8", edgecolor="black", linewidth=1.0)
     flanks = {(name, number): flank for name, number, flank in simulation._native.damaged_teeth_mm()}
-    flank_y_mm = flanks.get((wheel, tooth), y_mm)
+    flank_y_mm = flanks.get((of.name, tooth), y_mm)
     for damage in simulation._native.damages():
-        if (damage["wheel"], damage["tooth"]) == (wheel, tooth):
-            _plot_damage(ax, damage, (x_mm, y_mm), flank_y_mm, simulation.scenario.face_width_mm)
+        if (damage["wheel"], damage["tooth"]) == (of.name, tooth):
+            _plot_damage(ax, damage, (x_mm, y_mm), flank_y_mm, of.face_width_mm)
     ax.set_aspect("equal")
-    ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=_title_of_tooth(wheel, tooth, damaged))
+    ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=_title_of_tooth(of_wheel(simulation.scenario, of.name), tooth, damaged))
     if ax.get_legend_handles_labels()[0]:
         ax.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.22))
     return ax
 
 
 def _title_of_tooth(wheel: str, tooth: int, damaged: Sequence[int]) -> str:
-    title = f"{'First tooth' if tooth == 1 else f'Tooth {tooth}'} of the {wheel}"
+    title = f"{'First tooth' if tooth == 1 else f'Tooth {tooth}'} of {wheel}"
     others = [number for number in damaged if number != tooth]
     return f"{title}\n(also damaged: {_numbered(others)})" if others else title
 
@@ -476,8 +499,8 @@ def plot_order_map(order_map: OrderMap, teeth: int | None = None, *, over: str =
 def plot_simulation(simulation: Simulation) -> Figure:
     """The panel: tooth, mesh stiffness, signal, spectrum, average and difference over a revolution of the gear.
 
-    Where the pinion is damaged, its tooth is shown too, and average and difference over its revolution. The contact of all damaged
-    teeth is tinted.
+    Of a gearbox the stiffness of every mesh. Where other wheels are damaged, a tooth of each is shown too, and average and difference over
+    its revolution. The contact of all damaged teeth is tinted.
 
     Parameters
     ----------
@@ -488,59 +511,69 @@ def plot_simulation(simulation: Simulation) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    scenario = simulation.scenario
-    wheels: tuple[Literal["gear", "pinion"], ...] = ("pinion", "gear") if _damaged_teeth(simulation, "pinion") else ("gear",)
-    if len(wheels) == 1:
-        top = [["tooth gear"] * 2 + ["stiffness"] * 4]
+    scenario, meshes = simulation.scenario, range(len(simulation.meshes))
+    shown = [wheel for wheel in simulation.wheels if _damaged_teeth(simulation, wheel)]
+    leading = wheel_of(scenario, None)
+    # The gear is always shown; of a gearbox with damage the damaged wheels alone.
+    if not shown or (simulation._is_pair and leading.name not in shown):
+        shown.append(leading.name)
+    wheels = [wheel_of(scenario, wheel) for wheel in shown]
+    teeth = [f"tooth {wheel.name}" for wheel in wheels]
+    # As few columns as have the teeth beside one another and the row divided into thirds and halves: more make the layout fail.
+    columns = math.lcm(6, len(teeth))
+    if len(wheels) == len(meshes) == 1:
+        top = [teeth * 2 + ["stiffness 0"] * 4]
     else:
-        top = [[f"tooth {wheel}" for wheel in wheels for _ in range(3)], ["stiffness"] * 6]
+        top = [[tooth for tooth in teeth for _ in range(columns // len(teeth))], *([f"stiffness {mesh}"] * columns for mesh in meshes)]
+    halves = columns // 2
     layout: list[Any] = [
         *top,
-        ["signal"] * 6,
-        ["spectrum"] * 6,
-        *([f"average {wheel}"] * 3 + [f"difference {wheel}"] * 3 for wheel in wheels),
+        ["signal"] * columns,
+        ["spectrum"] * columns,
+        *([f"average {wheel.name}"] * halves + [f"difference {wheel.name}"] * halves for wheel in wheels),
     ]
     figure = _new_figure((11.0, 2.5 * len(layout)))
     axes = figure.subplot_mosaic(layout, height_ratios=[1.5] + [1] * (len(layout) - 1))
     for wheel in wheels:
-        plot_tooth(simulation, wheel, ax=axes[f"tooth {wheel}"])
-        _plot_revolution(simulation, wheel, axes[f"average {wheel}"], axes[f"difference {wheel}"])
-    plot_mesh_stiffness(simulation, pitches=_all_damage(simulation), ax=axes["stiffness"])
+        plot_tooth(simulation, wheel.name, ax=axes[f"tooth {wheel.name}"])
+        _plot_revolution(simulation, wheel, axes[f"average {wheel.name}"], axes[f"difference {wheel.name}"])
+    for mesh in meshes:
+        plot_mesh_stiffness(simulation, simulation.meshes[mesh], pitches=_all_damage(simulation, mesh), ax=axes[f"stiffness {mesh}"])
     plot_signal(simulation, ax=axes["signal"])
     plot_spectrum(simulation, ax=axes["spectrum"])
     figure.suptitle(
-        f"{scenario.pinion_teeth}/{scenario.gear_teeth} teeth, {_speed(simulation)}, "
-        f"{scenario.brake_torque_nm:g} N m: {in_words(scenario.faults)}",
+        f"{teeth_in_words(scenario)}, {_speed(simulation)}, {scenario.brake_torque_nm:g} N m: {in_words(scenario.faults)}",
         wrap=True,
     )
     return figure
 
 
-def _all_damage(simulation: Simulation) -> tuple[int, int]:
+def _all_damage(simulation: Simulation, mesh: int) -> tuple[int, int]:
     """(pitches) Around the first damaged tooth; a revolution of the gear where other damaged teeth are not in contact there."""
-    around = _around_damage(simulation)
-    damaged = [*_damaged_teeth(simulation, "pinion"), *_damaged_teeth(simulation, "gear")]
-    if all(tooth < around[1] for tooth in damaged):
+    around = _around_damage(simulation, mesh)
+    if all(tooth < around[1] for tooth in _damaged_in(simulation, mesh)):
         return around
-    return 0, simulation.scenario.gear_teeth
+    return 0, wheel_of(simulation.scenario, mesh_wheels(simulation.scenario, mesh)[1]).teeth
 
 
-def _plot_revolution(simulation: Simulation, wheel: Literal["gear", "pinion"], average_ax: Axes, difference_ax: Axes) -> None:
+def _plot_revolution(simulation: Simulation, wheel: Wheel, average_ax: Axes, difference_ax: Axes) -> None:
     """Average and difference over a wheel's revolution, on one scale, with the contact of its damaged teeth tinted."""
-    record = simulation.process(None, wheel)
+    record = simulation.process(None, wheel.name)
     limit = max(np.abs(record.average).max(), np.abs(record.difference).max()) * 1.25
     ylabel = channel_label(record.name).replace(" acceleration", "")
+    mesh = next(n for n in range(len(simulation.meshes)) if wheel.name in mesh_wheels(simulation.scenario, n))
     parts = [(average_ax, "average", record.average), (difference_ax, "difference", record.difference)]
     for ax, name, values in parts:
         _plot_over_teeth(ax, values, record.teeth, BLUE, name)
-        _tint(ax, simulation, (wheel,), (0, record.teeth))
-        ax.set(title=f"{name.capitalize()}, {wheel} shaft", ylabel=ylabel, ylim=(-limit, limit))
+        # The average is over the shaft's revolution, which wheels on one shaft share.
+        _tint(ax, simulation, mesh, (wheel.name,), (0, record.teeth), wheel.start_rev * wheel.teeth)
+        ax.set(title=f"{name.capitalize()}, {wheel.name} shaft", ylabel=ylabel, ylim=(-limit, limit))
 
 
 def _speed(simulation: Simulation) -> str:
-    profile = simulation.scenario.speed_profile_hz
+    profile = _speed_profile(simulation)
     if profile is None:
-        return f"{simulation.scenario.pinion_speed_hz:g} rev/s"
+        return f"{wheel_of(simulation.scenario, mesh_wheels(simulation.scenario, 0)[0]).speed_hz:g} rev/s"
     return f"{min(profile['value']):g} to {max(profile['value']):g} rev/s"
 
 

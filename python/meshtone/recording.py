@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from . import _core
 from ._names import hint
-from .gearbox import Gearbox
 from .scenario import Scenario
 from .signal._arguments import positive, whole
 
@@ -37,9 +36,7 @@ class Recording:
     units : dict of str to str or None
         Unit of each channel, where the file says it.
     scenario : Scenario or None
-        What was simulated, where the file is one that Meshtone wrote of a pair.
-    gearbox : Gearbox or None
-        The same of a gearbox.
+        What was simulated, where the file is one that Meshtone wrote.
     """
 
     sampling_rate_hz: float
@@ -47,7 +44,6 @@ class Recording:
     channels: dict[str, Array] = field(repr=False)
     units: dict[str, str | None]
     scenario: Scenario | None = field(repr=False)
-    gearbox: Gearbox | None = field(repr=False, default=None)
 
     def __getitem__(self, name: str) -> Array:
         """The samples of a channel."""
@@ -139,14 +135,12 @@ def read_recording(
     time = None if time is None else _column("time", time)
     read = _core.read_recording(path, chosen, rate_hz, variable, time, calibrations)
     text = read["scenario_toml"]
-    is_gearbox = text is not None and _core.Scenario.is_of_gearbox(text)
     return Recording(
         sampling_rate_hz=read["sampling_rate_hz"],
         start_s=read["start_s"],
         channels={name: samples for name, _, samples in read["channels"]},
         units={name: unit for name, unit, _ in read["channels"]},
-        scenario=None if text is None or is_gearbox else Scenario.from_toml(text),
-        gearbox=Gearbox.from_toml(text) if is_gearbox else None,
+        scenario=None if text is None else Scenario.from_toml(text),
     )
 
 

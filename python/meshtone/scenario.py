@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Mapping, Sequence
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,6 @@ import numpy.typing as npt
 from . import _core, _display
 from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioChanges, ScenarioKeys, Shaft, WheelInertia
 from ._names import hint
-from ._scenario_text import ScenarioText
 from ._sections import OTHER_ARGUMENTS, check_key, with_whole_numbers
 from .faults import Fault, from_section, to_section
 from .sensors import Sensor, sections_of
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 __all__ = ["Scenario", "Shaft", "WheelInertia", "template"]
 
 
-class Scenario(ScenarioText, ScenarioKeys):
-    """Everything that one simulation depends on.
+class Scenario(ScenarioKeys):
+    """Everything that one simulation depends on: a pair in a rig, or, as :func:`~meshtone.Gearbox` makes it, any number of wheels on shafts.
 
-    The arguments are the keys of the scenario file, with its names, units and defaults: ``help(Scenario.__init__)`` lists them. A
+    The arguments are the keys of the scenario file of a pair, with its names, units and defaults: ``help(Scenario.__init__)`` lists them. A
     scenario does not change: :meth:`copy` gives another one.
 
     Examples
@@ -47,7 +47,6 @@ brake_torque_nm=10.0, din_grade=7)
 
     __slots__ = ("_flat", "_native")
 
-    _is_pair = True
     _flat: dict[str, Any]
     _native: _core.Scenario
 
@@ -62,6 +61,71 @@ brake_torque_nm=10.0, din_grade=7)
                 check_key(key, value)
             super().__init__(**arguments)
 
+    @classmethod
+    def _wrap(cls, native: _core.Scenario) -> Scenario:
+        scenario = cls.__new__(cls)
+        scenario._set(native)
+        return scenario
+
+    @classmethod
+    def from_toml(cls, text: str) -> Scenario:
+        """From the text of a scenario file, of a pair or of a gearbox.
+
+        Parameters
+        ----------
+        text : str
+            As ``meshtone init`` prints one.
+
+        Raises
+        ------
+        ValueError
+            Text that is not TOML, an unknown key, a value that is not allowed: with the line.
+
+        Examples
+        --------
+        >>> from meshtone import Scenario, gearbox_template, template
+        >>> Scenario.from_toml(template("missing-tooth")).fault
+        MissingTooth(wheel='gear', tooth=1, severity=None)
+        >>> Scenario.from_toml(gearbox_template("phm2009-spur"))
+        <Gearbox of 3 shafts and meshes z1-z2, z3-z4>
+        """
+        if "\n" not in text and text.endswith(".toml"):
+            raise ValueError(f"'{text}' is the name of a file, not its text: Scenario.from_file reads it")
+        return cls._wrap(_core.Scenario.from_toml(text))
+
+    @classmethod
+    def from_file(cls, path: str | PathLike[str]) -> Scenario:
+        """From a scenario file, and the files that it names.
+
+        Parameters
+        ----------
+        path : str or path
+            The file.
+
+        Raises
+        ------
+        FileNotFoundError
+            There is no such file.
+        ValueError
+            As :meth:`from_toml`.
+        """
+        return cls._wrap(_core.Scenario.from_file(path))
+
+    def to_toml(self) -> str:
+        """The text of a scenario file, with every key.
+
+        Returns
+        -------
+        str
+            What :meth:`from_toml` reads back exactly.
+        """
+        return self._native.to_toml()
+
+    @property
+    def sections(self) -> dict[str, Any]:
+        """The sections of the scenario file with all their keys, defaults included: a copy; of a pair without profile errors."""
+        return self._native.sections()
+
     def _from_keys(self, arguments: dict[str, Any], unknown: dict[str, Any]) -> None:
         self._set(_native_of({**arguments, **unknown}))
 
@@ -70,8 +134,9 @@ brake_torque_nm=10.0, din_grade=7)
         sections = native.sections()
         flat: dict[str, Any] = {}
         for key, section in SECTION_OF_KEY.items():
-            keys = sections.get(section, {}) if section else sections
-            flat[key] = keys.get(KEY_IN_FILE.get(key, key))
+            keys, name = sections.get(section, {}) if section else sections, KEY_IN_FILE.get(key, key)
+            if native.is_pair or name in keys:
+                flat[key] = keys.get(name)
         faults = sections.get("fault", [])
         flat["faults"] = tuple(map(from_section, faults if isinstance(faults, list) else [faults]))
         sensors = sections.get("sensor", [])
@@ -84,8 +149,9 @@ brake_torque_nm=10.0, din_grade=7)
         Parameters
         ----------
         **changes
-            As the arguments of :class:`Scenario`; ``fault=None`` for a healthy pair, any other key None for its default. ``fault``
-            and ``faults`` take the place of all faults that there are, ``sensors`` that of all sensors.
+            As the arguments of :class:`Scenario`, or of :func:`~meshtone.Gearbox` where one made it; ``fault=None`` for healthy wheels, any
+            other key None for its default. ``fault`` and ``faults`` take the place of all faults that there are, ``sensors`` that of all
+            sensors, and so do the other lists of a gearbox; of its ``operation``, ``housing`` and ``solver`` the given keys change.
 
         Raises
         ------
@@ -94,10 +160,15 @@ brake_torque_nm=10.0, din_grade=7)
 
         Examples
         --------
-        >>> from meshtone import examples
+        >>> from meshtone import MissingTooth, Scenario, examples, gearbox_template
         >>> examples.healthy().copy(pinion_speed_hz=25).pinion_speed_hz
         25.0
+        >>> gearbox = Scenario.from_toml(gearbox_template())
+        >>> gearbox.copy(fault=MissingTooth(wheel="z3"), solver={"duration_s": 0.5}).fault
+        MissingTooth(wheel='z3', tooth=1, severity=None)
         """
+        if not self._native.is_pair:
+            return Scenario._wrap(gearbox_of(dict(changes), self.sections))
         for key, value in changes.items():
             check_key(key, value)
         arguments = dict(self._flat)
@@ -110,7 +181,7 @@ brake_torque_nm=10.0, din_grade=7)
 
     @property
     def fault(self) -> Fault | None:
-        """The damage; None for a healthy pair.
+        """The damage; None for healthy wheels.
 
         Raises
         ------
@@ -123,7 +194,7 @@ brake_torque_nm=10.0, din_grade=7)
 
     @property
     def faults(self) -> tuple[Fault, ...]:
-        """All damage; empty for a healthy pair."""
+        """All damage; empty for healthy wheels. A fault of a rolling bearing is the dictionary of its keys."""
         faults: tuple[Fault, ...] = self._flat["faults"]
         return faults
 
@@ -163,20 +234,25 @@ brake_torque_nm=10.0, din_grade=7)
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Names of its simulation's channels: ``NAME_g`` of each sensor, then those of :data:`meshtone.CHANNELS`."""
+        """Names of its simulation's channels: ``NAME_g`` of each sensor, then those of :data:`meshtone.CHANNELS`, or of a gearbox
+        ``force_n.MESH`` and ``transmission_error_um.MESH`` of each mesh and ``speed_hz.SHAFT`` of each shaft."""
         return tuple(self._native.channels())
 
     @property
     def pinion_profile_errors_mm(self) -> npt.NDArray[np.float64] | None:
         """(mm) The pinion's profile errors, where they were given: 100 rows, a column a tooth."""
-        errors = self._native.profile_errors_mm()
-        return None if errors is None else errors[0]
+        return self._profile_errors(0, "pinion_profile_errors_mm")
 
     @property
     def gear_profile_errors_mm(self) -> npt.NDArray[np.float64] | None:
         """(mm) The gear's profile errors, where they were given: 100 rows, a column a tooth."""
+        return self._profile_errors(1, "gear_profile_errors_mm")
+
+    def _profile_errors(self, wheel: int, key: str) -> npt.NDArray[np.float64] | None:
+        if not self._native.is_pair:
+            raise AttributeError(key)
         errors = self._native.profile_errors_mm()
-        return None if errors is None else errors[1]
+        return None if errors is None else errors[wheel]
 
     @property
     def warnings(self) -> list[str]:
@@ -200,6 +276,8 @@ brake_torque_nm=10.0, din_grade=7)
                 return self._flat[name]
             except KeyError:
                 known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
+                if name in known and not self._native.is_pair:
+                    raise AttributeError(f"a gearbox has no key '{name}': scenario.sections has those of its shafts, wheels and meshes") from None
                 way = f"; {_OTHER_WAYS[name]}" if name in _OTHER_WAYS else hint(name, known)
                 raise AttributeError(f"a scenario has no key '{name}'{way}") from None
 
@@ -236,9 +314,15 @@ brake_torque_nm=10.0, din_grade=7)
         return shown
 
     def _repr_html_(self) -> str:
-        return _display.page("Scenario", _display.table(self._not_default()))
+        if self._native.is_pair:
+            return _display.page("Scenario", _display.table(self._not_default()))
+        rows = [(section, entry) for section, entries in self.sections.items() for entry in (entries if isinstance(entries, list) else [entries])]
+        return _display.page("Gearbox", _display.table(rows))
 
     def __repr__(self) -> str:
+        if not self._native.is_pair:
+            meshes = ", ".join(name for name, _ in self._native.meshes())
+            return f"<Gearbox of {len(self.sections['shaft'])} shafts and meshes {meshes}>"
         text = ", ".join(f"{key}={value!r}" for key, value in self._not_default().items())
         if self._native.profile_errors_mm() is not None:
             text += ", pinion_profile_errors_mm=..., gear_profile_errors_mm=..."
@@ -270,13 +354,13 @@ ScenarioKeys.__init__.__qualname__ = "Scenario"
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers and arrays as Python's own."""
+    """NumPy's numbers and arrays as Python's own; keys that are None are left out."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, Mapping):
-        return {key: _plain(entry) for key, entry in value.items()}
+        return {str(key): _plain(entry) for key, entry in value.items() if entry is not None}
     if isinstance(value, (list, tuple)):
         return [_plain(entry) for entry in value]
     return value
@@ -285,8 +369,6 @@ def _plain(value: Any) -> Any:
 def native_scenario(scenario: Scenario) -> _core.Scenario:
     """The compiled module's scenario."""
     if not isinstance(scenario, Scenario):
-        if type(scenario).__name__ == "Gearbox":
-            raise TypeError(f"a Scenario of one pair is needed, not {scenario!r}; simulate and simulate_gearboxes take gearboxes")
         several = "; simulate_many takes several" if isinstance(scenario, (list, tuple)) else ""
         raise TypeError(f"a Scenario is needed, not {scenario!r}; Scenario.from_file reads one from a file{several}")
     return scenario._native
@@ -301,13 +383,62 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
         keys[KEY_IN_FILE.get(key, key)] = value
         if isinstance(value, int) and abs(value) >= 2**63:
             raise ValueError(f"{key} = {value}: must be below 2**63 = {2**63}")
-    faults = [with_whole_numbers(_plain(to_section(fault, name)), type(fault).__annotations__) for name, fault in _faults_of(arguments)]
+    faults = [_fault_section(name, fault) for name, fault in _faults_of(arguments)]
     if faults:
         sections["fault"] = faults[0] if len(faults) == 1 else faults
     sensors = [with_whole_numbers(_plain(section), Sensor.__annotations__) for section in sections_of(arguments.get("sensors"))]
     if sensors:
         sections["sensor"] = sensors[0] if len(sensors) == 1 else sensors
     return sections
+
+
+GEARBOX_LISTS = {"shafts": "shaft", "wheels": "wheel", "meshes": "mesh", "bearings": "bearing"}
+"""The arguments that are the lists of a gearbox, with the names of their sections."""
+GEARBOX_TABLES = ("operation", "housing", "solver")
+"""The arguments that are its tables."""
+
+
+def gearbox_of(arguments: Mapping[str, Any], sections: dict[str, Any]) -> _core.Scenario:
+    """A gearbox of some sections and of arguments that change them.
+
+    Parameters
+    ----------
+    arguments : mapping
+        Those of ``Gearbox``; None is the default.
+    sections : dict
+        Where they stand; it is changed.
+    """
+    for name, value in arguments.items():
+        if name in GEARBOX_LISTS:
+            if isinstance(value, (str, Mapping)) or not isinstance(value, Sequence):
+                raise TypeError(f"{name}: {value!r} must be a sequence of dictionaries")
+            sections[GEARBOX_LISTS[name]] = [_plain(entry) for entry in value]
+        elif name in GEARBOX_TABLES:
+            changed = None if value is None else _plain({**sections.get(name, {}), **value})
+            sections.pop(name, None)
+            sections.update({} if changed is None else {name: changed})
+        elif name in ("material", "seed", "wheels_seed"):
+            sections.pop(name, None)
+            sections.update({} if value is None else {name: _plain(value)})
+        elif name not in ("fault", "faults", "sensors"):
+            known = [*GEARBOX_LISTS, *GEARBOX_TABLES, "faults", "sensors", "material", "seed", "wheels_seed"]
+            raise TypeError(f"a gearbox has no argument '{name}'{hint(name, known) or '; it has ' + ', '.join(known)}")
+    if "fault" in arguments or "faults" in arguments:
+        sections["fault"] = [_fault_section(name, fault) for name, fault in _faults_of(arguments)]
+    if "sensors" in arguments:
+        given = arguments["sensors"] or ()
+        sections["sensor"] = [_plain(one) if isinstance(one, Mapping) else _plain(sections_of([one])[0]) for one in given]
+    # What is left out is at its default: a file states no empty lists of these.
+    optional = {name: sections.pop(name) for name in ("fault", "sensor") if name in sections}
+    return _core.Scenario({**sections, **{name: entries for name, entries in optional.items() if entries}})
+
+
+def _fault_section(name: str, fault: Any) -> dict[str, Any]:
+    """The section of a fault: an object, or the dictionary of its keys."""
+    if isinstance(fault, Mapping):
+        section: dict[str, Any] = _plain(fault)
+        return section
+    return with_whole_numbers(_plain(to_section(fault, name)), type(fault).__annotations__)
 
 
 def _faults_of(arguments: Mapping[str, Any]) -> list[tuple[str, Any]]:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Literal, Union, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -15,11 +15,11 @@ from . import _core, _display, _progress
 from ._names import hint
 from ._warnings import typed, warn, warn_of_signal
 from .faults import in_words
-from .gearbox import Gearbox, GearboxSimulation, simulate_gearbox
 from .scenario import Scenario, native_scenario
 from .signal import Record, resample
 from .signal.indicators import INDICATORS
-from .signal._arguments import positive, read_only, separation_settings, whole
+from .signal._arguments import positive, read_only, regular_part, separation_settings, whole
+from .signal.train import TrainRecord, train_record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,10 +28,9 @@ if TYPE_CHECKING:
 __all__ = ["CHANNELS", "ContactFigures", "Signals", "Simulation", "StaticMesh", "simulate", "simulate_many", "trace"]
 
 Array = npt.NDArray[np.float64]
-Wheel = Literal["pinion", "gear"]
 
 CHANNELS = ("horizontal_g", "vertical_g", "axial_g", "pinion_shaft_speed_hz", "gear_shaft_speed_hz", "mesh_force_n")
-"""The signals of every simulation, with their units; those of listed sensors come before them in ``scenario.channels``."""
+"""The signals of every pair, with their units; those of listed sensors come before them in ``scenario.channels``."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ class StaticMesh:
     transmission_error_um : array, shape (points,)
         (µm) Deflection along the line of action, the static transmission error; NaN where no pair can touch.
     pairs : array of int, shape (pairs,)
-        Numbers of the pairs; pair n enters contact n pitches after the start, between the pinion's tooth n mod z_p and the gear's
+        Numbers of the pairs; pair n enters contact n pitches after the start, between the driving wheel's tooth n mod z_p and the driven one's
         n mod z_g, counted from 0.
     pair_force_n : array, shape (pairs, points)
         (N) Force of each pair.
@@ -85,13 +84,14 @@ class StaticMesh:
 
 
 class Simulation:
-    """A simulation: every stage's results and the signals. :func:`simulate` makes one.
+    """A simulation of any scenario: every stage's results and the signals. :func:`simulate` makes one.
 
     Beside the attributes below it has every field of a trace that belongs to the stages before the time loop, under the trace's names:
     ``natural_frequencies_hz``, ``mesh_stiffness_n_per_mm`` (every 4th point of a revolution of the gear),
     ``pair_stiffness_healthy_n_per_mm``, ``mass_diagonal``, ``damping_matrix``, ``stiffness_matrix_mean``, ``contact_ratio``, and so on:
     :attr:`fields` has them all. Type checkers know those of every pair; those of a fault are ``fields["fault_area_percent"]`` to them, and
-    the signals of named sensors ``sensors["casing"]``.
+    the signals of named sensors ``sensors["casing"]``. What a gearbox does not have, such as ``vertical_g``, is an AttributeError that says
+    what it has: its signals are ``simulation["force_n.z1-z2"]``.
 
     Examples
     --------
@@ -148,10 +148,29 @@ class Simulation:
         for signal in native.channels.values():
             read_only(signal)
 
+    def __getitem__(self, channel: str) -> Array:
+        """The signal of a name."""
+        if channel not in self._native.channels:
+            raise KeyError(f"there is no channel {channel!r}; there are {', '.join(self._native.channels)}")
+        return self._native.channels[channel]
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self._native.channels)
+
     @property
     def scenario(self) -> Scenario:
         """What was simulated."""
         return self._scenario
+
+    @property
+    def meshes(self) -> tuple[str, ...]:
+        """The names of the meshes, that of the driving wheel before that of the driven one: ``pinion-gear``, ``z1-z2``."""
+        return tuple(name for name, _ in self._scenario._native.meshes())
+
+    @property
+    def wheels(self) -> tuple[str, ...]:
+        """The names of the wheels."""
+        return tuple(name for name, *_ in self._scenario._native.wheels())
 
     @property
     def sampling_rate_hz(self) -> float:
@@ -167,7 +186,7 @@ class Simulation:
     @property
     def time_s(self) -> Array:
         """(s) Time of each sample since the start of the simulation."""
-        return self.start_s + np.arange(self.vertical_g.size) / self.sampling_rate_hz
+        return self.start_s + np.arange(_samples(self)) / self.sampling_rate_hz
 
     @property
     def channels(self) -> dict[str, Array]:
@@ -177,50 +196,75 @@ class Simulation:
     @property
     def horizontal_g(self) -> Array:
         """(g) Horizontal acceleration of the two supports, their mean; under ``linear`` and ``published`` the sum of both wheels'; shape (samples,)."""
-        return self._native.channels["horizontal_g"]
+        return self._channel("horizontal_g")
 
     @property
     def vertical_g(self) -> Array:
         """(g) Vertical acceleration of the two supports, their mean; under ``linear`` and ``published`` the sum of both wheels'; shape (samples,)."""
-        return self._native.channels["vertical_g"]
+        return self._channel("vertical_g")
 
     @property
     def axial_g(self) -> Array:
         """(g) Axial acceleration of the two wheels, summed; shape (samples,)."""
-        return self._native.channels["axial_g"]
+        return self._channel("axial_g")
 
     @property
     def pinion_shaft_speed_hz(self) -> Array:
         """(rev/s) Speed of the pinion; shape (samples,)."""
-        return self._native.channels["pinion_shaft_speed_hz"]
+        return self._channel("pinion_shaft_speed_hz")
 
     @property
     def gear_shaft_speed_hz(self) -> Array:
         """(rev/s) Speed of the gear; shape (samples,)."""
-        return self._native.channels["gear_shaft_speed_hz"]
+        return self._channel("gear_shaft_speed_hz")
 
     @property
     def mesh_force_n(self) -> Array:
         """(N) Force of the mesh along the line of action; shape (samples,). Under ``contact`` 0 while no teeth touch, negative while back
         flanks do."""
-        return self._native.channels["mesh_force_n"]
+        return self._channel("mesh_force_n")
+
+    def _channel(self, name: str) -> Array:
+        if name not in self._native.channels:
+            # As an AttributeError it goes on to __getattr__, which says what there is.
+            raise AttributeError(name)
+        return self._native.channels[name]
 
     @property
     def sensors(self) -> dict[str, Array]:
-        """(g) What the scenario's sensors show, by their names, in their order; each is an attribute too, ``NAME_g``; shape (samples,)."""
-        names = self.scenario.channels[: len(self.scenario.sensors)]
-        return {name.removesuffix("_g"): self._native.channels[name] for name in names}
+        """(g) What the scenario's sensors show, by their names, in their order; each is an attribute too, ``NAME_g``; shape (samples,). Of a
+        gearbox without listed sensors those on the seats of all bearings."""
+        return {name.removesuffix("_g"): self._native.channels[name] for name in self.scenario._native.sensor_channels()}
 
     @property
     def tension_fraction(self) -> float:
-        """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would separate."""
+        """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would separate. Of several meshes
+        that of the one which pulls most."""
         return self._native.tension_fraction
 
     @property
     def contact_figures(self) -> ContactFigures | None:
-        """How the teeth touched; None but under ``contact``."""
-        figures = self._native.contact_figures
-        return None if figures is None else ContactFigures(*figures)
+        """How the teeth touched, of several meshes those of the first: :meth:`contact_figures_of` has each; None but under ``contact``."""
+        return self.contact_figures_of(self.meshes[0])
+
+    def contact_figures_of(self, mesh: str) -> ContactFigures | None:
+        """How the teeth of a mesh touched; None but under ``contact``.
+
+        Parameters
+        ----------
+        mesh : str
+            One of :attr:`meshes`.
+        """
+        number, figures = self._mesh(mesh), self._native.contact_figures
+        return None if figures is None else ContactFigures(*figures[number])
+
+    def _mesh(self, mesh: str | None) -> int:
+        """The number of a mesh; of the first where none is named."""
+        if mesh is None:
+            return 0
+        if mesh not in self.meshes:
+            raise ValueError(f"mesh = {mesh!r}: must be one of {', '.join(self.meshes)}")
+        return self.meshes.index(mesh)
 
     @property
     def warnings(self) -> list[str]:
@@ -234,9 +278,36 @@ class Simulation:
 
     @property
     def mode_shapes(self) -> Array:
-        """Mode shapes in the columns, in the order of ``natural_frequencies_hz``, of unit modal mass; shape (13, 13), under ``contact``
-        (17, 17): x and y of the gear's and of the pinion's support come last."""
+        """Mode shapes in the columns, in the order of ``natural_frequencies_hz``, of unit modal mass; of a pair of the shape (13, 13), under
+        ``contact`` (17, 17): x and y of the gear's and of the pinion's support come last; of a gearbox a row for each of its coordinates."""
         return self._native.mode_shapes
+
+    def natural_frequencies_with_hz(self, mesh_stiffness_n_per_m: Sequence[float]) -> Array:
+        """(Hz) Natural frequencies, rising, with other stiffnesses of the meshes than their means, which ``natural_frequencies_hz`` has.
+
+        Parameters
+        ----------
+        mesh_stiffness_n_per_m : sequence of float
+            (N/m) Of each mesh.
+
+        Raises
+        ------
+        ValueError
+            Another number of meshes; the model ``published``, which has one of its own.
+        """
+        return np.asarray(self._native.natural_frequencies_with_hz([float(value) for value in mesh_stiffness_n_per_m]))
+
+    def summary(self) -> dict[str, Any]:
+        """What ``meshtone simulate`` writes to ``summary.json``.
+
+        Examples
+        --------
+        >>> from meshtone import Scenario, gearbox_template, simulate
+        >>> gearbox = Scenario.from_toml(gearbox_template("uconn"))
+        >>> [mesh["wheels"] for mesh in simulate(gearbox).summary()["meshes"]]
+        [['z1', 'z2'], ['z3', 'z4']]
+        """
+        return self._native.summary()
 
     def signals(self, target_rate_hz: float | None = None) -> Signals:
         """All channels in single precision, at another rate.
@@ -273,7 +344,8 @@ class Simulation:
         path : path-like
             The file, which appears whole or not at all. ``.parquet`` contains the scenario too; ``.csv``, ``.npz`` and ``.mat`` (MATLAB,
             version 5) have ``time_s``, one column or array for each signal and, but for CSV, the number ``sampling_rate_hz``; ``.wav`` has
-            floating point of 32 bits between -1 and 1, with the full scale of each channel in the file's comment.
+            floating point of 32 bits between -1 and 1, with the full scale of each channel in the file's comment. In a MAT-file the names
+            have an underscore in place of what MATLAB does not accept: ``force_n_z1_z2``.
 
         Raises
         ------
@@ -295,7 +367,7 @@ class Simulation:
         (True, 100640.0, 'g')
         """
         signals = list(self._native.channels.items())
-        _core.write_signals(path, native_scenario(self.scenario), (self.sampling_rate_hz, self.start_s), signals)
+        _core.write_signals(path, native_scenario(self.scenario), False, (self.sampling_rate_hz, self.start_s), signals)
 
     @property
     def computing_time_s(self) -> dict[str, float]:
@@ -325,27 +397,45 @@ class Simulation:
                 _refuse_indicator(name, "a simulation has", "its", "simulation")
                 if name in ("to_pandas", "to_csv"):
                     raise AttributeError(f"a simulation has no '{name}'; {_SAVED}") from None
+                if name in CHANNELS:
+                    raise AttributeError(f"a gearbox has no signal '{name}'; it has {', '.join(self.scenario.channels)}") from None
                 near = hint(name, [*self.fields, *self.scenario.channels]) or "; simulation.fields has all"
-                raise AttributeError(f"a simulation has no field '{name}'{near}") from None
+                raise AttributeError(f"{'a simulation' if self._is_pair else 'a gearbox'} has no field '{name}'{near}") from None
+
+    @property
+    def _is_pair(self) -> bool:
+        return self._scenario._native.is_pair
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *self.fields, *self.scenario.channels})
+        # The same of all simulations: what only some have is in fields and channels.
+        return sorted({*super().__dir__(), *Simulation.__annotations__})
 
-    def mesh_stiffness_curve(self) -> tuple[Array, Array]:
-        """Mesh stiffness over a revolution of the gear: the first one, where damage to the pinion makes the next different.
+    def mesh_stiffness_curve(self, mesh: str | None = None) -> tuple[Array, Array]:
+        """Mesh stiffness over a revolution of the driven wheel: the first one, where damage to the driving one makes the next different.
+
+        Parameters
+        ----------
+        mesh : str, optional
+            One of :attr:`meshes`; the first by default.
 
         Returns
         -------
         gear_rev : array, shape (points,)
-            (rev) Angle of the gear since its first tooth entered contact.
+            (rev) Angle of the driven wheel since its first tooth entered contact.
         stiffness_n_per_mm : array, shape (points,)
             (N/mm) Mesh stiffness.
         """
-        stiffness = self._native.mesh_stiffness_n_per_mm(0, self.scenario.gear_teeth)
+        number = self._mesh(mesh)
+        stiffness = self._native.mesh_stiffness_n_per_mm(number, 0, wheel_of(self.scenario, mesh_wheels(self.scenario, number)[1]).teeth)
         return np.arange(stiffness.size) / stiffness.size, stiffness
 
     def static_mesh(
-        self, force_n: float | None = None, *, pitches: tuple[int, int] = (0, 2), points_per_pitch: int = 500
+        self,
+        force_n: float | None = None,
+        *,
+        mesh: str | None = None,
+        pitches: tuple[int, int] = (0, 2),
+        points_per_pitch: int = 500,
     ) -> StaticMesh:
         """How the pairs share a force at rest, without deviations, with relief, chamfer and damage. Not under ``published``.
 
@@ -353,6 +443,8 @@ class Simulation:
         ----------
         force_n : float, optional
             (N) Along the line of action; that of the brake's torque by default.
+        mesh : str, optional
+            One of :attr:`meshes`; the first by default.
         pitches : tuple of two int
             First and last of the pitches shown, from the start of the simulation.
         points_per_pitch : int
@@ -378,7 +470,7 @@ class Simulation:
             raise ValueError(f"force_n = {force_n}: must be 0 or more")
         first, last = whole("pitches[0]", pitches[0], 0), whole("pitches[1]", pitches[1], 1)
         points = whole("points_per_pitch", points_per_pitch, 1)
-        deflection_m, first_pair, pair_force_n = self._native.static_mesh(force_n, (first, last), points)
+        deflection_m, first_pair, pair_force_n = self._native.static_mesh(self._mesh(mesh), force_n, (first, last), points)
         return StaticMesh(
             pitch=first + np.arange(deflection_m.size) / points,
             transmission_error_um=1e6 * deflection_m,
@@ -386,41 +478,45 @@ class Simulation:
             pair_force_n=pair_force_n,
         )
 
-    def tooth_profile(self, wheel: Wheel = "gear") -> tuple[Array, Array]:
+    def tooth_profile(self, wheel: str | None = None) -> tuple[Array, Array]:
         """Half of a healthy tooth.
 
         Parameters
         ----------
-        wheel : {'gear', 'pinion'}
-            Whose.
+        wheel : str, optional
+            Whose, one of :attr:`wheels`; by default the driven one's of the first mesh: the gear's.
 
         Returns
         -------
         x_mm, y_mm : array, shape (points,)
             (mm) From root to tip; x along the tooth's middle, y half its thickness.
         """
-        _check_wheel(wheel)
-        x_mm, y_mm = self._native.tooth_profile_mm(wheel)
+        x_mm, y_mm = self._native.tooth_profile_mm(wheel_of(self.scenario, wheel).name)
         return x_mm, y_mm
 
-    def profile_errors_mm(self) -> tuple[Array, Array] | None:
-        """Profile errors of both wheels.
+    def profile_errors_mm(self, mesh: str | None = None) -> tuple[Array, Array] | None:
+        """Profile errors of both wheels of a mesh.
+
+        Parameters
+        ----------
+        mesh : str, optional
+            One of :attr:`meshes`; the first by default.
 
         Returns
         -------
         tuple of arrays, shape (100, teeth), or None
-            (mm) Pinion's and gear's, root to tip in the rows, a column a tooth; None for ideal teeth.
+            (mm) The driving and the driven wheel's, root to tip in the rows, a column a tooth; None for ideal teeth.
         """
-        return self._native.profile_errors_mm()
+        return self._native.profile_errors_mm(self._mesh(mesh))
 
     def wheel_deviations(self) -> dict[str, float]:
-        """What both wheels have beside their profile errors, of which pitch deviations are a part.
+        """What the wheels have beside their profile errors, of which pitch deviations are a part.
 
         Returns
         -------
         dict
-            (µm, rad) Run-out with its phase and helix slope of pinion and gear, by the arguments of
-            :class:`~meshtone.Scenario`: with :meth:`profile_errors_mm` they are the same wheels. Empty under ``published``.
+            (µm, rad) Run-out with its phase and helix slope of each wheel, by its name and the key: ``z3_run_out_um``, of a pair the
+            arguments of :class:`~meshtone.Scenario`: with :meth:`profile_errors_mm` they are the same wheels. Empty under ``published``.
 
         Examples
         --------
@@ -430,17 +526,17 @@ class Simulation:
         >>> sorted(simulation.wheel_deviations())[:3]
         ['gear_helix_slope_um', 'gear_run_out_phase_rad', 'gear_run_out_um']
         """
-        return {key: number for key, (number,) in self._native.wheel_deviations()}
+        return {f"{wheel}_{key}": number for wheel, key, number in self._native.wheel_deviations()}
 
-    def process(self, channel: str | None = None, wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
+    def process(self, channel: str | None = None, wheel: str | None = None, *, sidebands: int | None = None) -> Record:
         """Take one of the signals to its average over a revolution, its parts and its indicators.
 
         Parameters
         ----------
         channel : str, optional
-            One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` where none is listed.
-        wheel : {'gear', 'pinion'}
-            On whose shaft.
+            One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` of a pair without one.
+        wheel : str, optional
+            On whose shaft, one of :attr:`wheels`; by default the driven one of the first mesh: the gear.
         sidebands : int, optional
             Sidebands on either side of each mesh harmonic that belong to the regular part.
 
@@ -461,7 +557,38 @@ class Simulation:
         (17, True)
         """
         channel = chosen_channel(self.scenario, channel)
-        return _process(self.scenario, getattr(self, channel), self.start_s, channel, wheel, sidebands)
+        return _process(self.scenario, self[channel], self.start_s, channel, wheel, sidebands)
+
+    def process_wheels(self, channel: str | None = None, *, sidebands: int | None = None) -> TrainRecord:
+        """Take one of the signals to the averages and indicators of every wheel.
+
+        Parameters
+        ----------
+        channel, sidebands
+            As of :meth:`process`.
+
+        Returns
+        -------
+        TrainRecord
+
+        Raises
+        ------
+        ValueError
+            As of :meth:`process`.
+
+        Examples
+        --------
+        >>> from meshtone import Scenario, gearbox_template, simulate
+        >>> record = simulate(Scenario.from_toml(gearbox_template())).process_wheels()
+        >>> record.shafts
+        {'z1': 'input', 'z2': 'middle', 'z3': 'middle', 'z4': 'output'}
+        >>> record["z3"].revolutions
+        9
+        """
+        channel = chosen_channel(self.scenario, channel)
+        bands, _ = regular_part(sidebands, None)
+        parts = _core.process_simulated_train(native_scenario(self.scenario), self[channel], self.start_s, bands)
+        return train_record(parts, channel)
 
     def plot(self) -> Figure:
         """The panel: teeth, mesh stiffness, signal, spectrum, average, difference; damage is marked. See :mod:`meshtone.plotting`."""
@@ -470,16 +597,18 @@ class Simulation:
         return plotting.plot_simulation(self)
 
     def plot_signal(self, channel: str | None = None, *, revolutions: float = 2.0, ax: Axes | None = None) -> Axes:
-        """A signal over some revolutions of the gear. See :func:`meshtone.plotting.plot_signal`."""
+        """A signal over some revolutions of the first driven wheel, the gear. See :func:`meshtone.plotting.plot_signal`."""
         from . import plotting
 
         return plotting.plot_signal(self, channel, revolutions=revolutions, ax=ax)
 
-    def plot_mesh_stiffness(self, *, pitches: tuple[int, int] | None = None, ax: Axes | None = None) -> Axes:
+    def plot_mesh_stiffness(
+        self, mesh: str | None = None, *, pitches: tuple[int, int] | None = None, ax: Axes | None = None
+    ) -> Axes:
         """Mesh stiffness over some tooth pitches. See :func:`meshtone.plotting.plot_mesh_stiffness`."""
         from . import plotting
 
-        return plotting.plot_mesh_stiffness(self, pitches=pitches, ax=ax)
+        return plotting.plot_mesh_stiffness(self, mesh, pitches=pitches, ax=ax)
 
     def plot_spectrum(self, channel: str | None = None, *, ax: Axes | None = None) -> Axes:
         """Amplitude against frequency. See :func:`meshtone.plotting.plot_spectrum`."""
@@ -487,14 +616,14 @@ class Simulation:
 
         return plotting.plot_spectrum(self, channel, ax=ax)
 
-    def plot_tooth(self, wheel: Wheel = "gear", *, tooth: int | None = None, ax: Axes | None = None) -> Axes:
+    def plot_tooth(self, wheel: str | None = None, *, tooth: int | None = None, ax: Axes | None = None) -> Axes:
         """A tooth of a wheel: its first damaged one, or another. See :func:`meshtone.plotting.plot_tooth`."""
         from . import plotting
 
         return plotting.plot_tooth(self, wheel, tooth=tooth, ax=ax)
 
     def _repr_html_(self) -> str:
-        rows = {**_facts(self.scenario), "Signal": _length(self.vertical_g.size, self.sampling_rate_hz)}
+        rows = {**_facts(self.scenario), "Signal": _length(_samples(self), self.sampling_rate_hz)}
         return _page(self, chosen_channel(self.scenario, None), rows, self.warnings)
 
     def __reduce__(self) -> tuple[Callable[[Scenario], Simulation], tuple[Scenario]]:
@@ -502,10 +631,8 @@ class Simulation:
         return (_again, (self.scenario,))
 
     def __repr__(self) -> str:
-        return (
-            f"<Simulation of {self.scenario.pinion_teeth}/{self.scenario.gear_teeth} teeth, {in_words(self.scenario.faults)}: "
-            f"{self.vertical_g.size} samples at {self.sampling_rate_hz:.0f} S/s>"
-        )
+        what, samples = teeth_in_words(self.scenario), _samples(self)
+        return f"<Simulation of {what}, {in_words(self.scenario.faults)}: {samples} samples at {self.sampling_rate_hz:.0f} S/s>"
 
 
 def chosen_channel(scenario: Scenario, channel: str | None) -> str:
@@ -524,15 +651,77 @@ def chosen_channel(scenario: Scenario, channel: str | None) -> str:
         A channel that there is not.
     """
     if channel is None:
-        return scenario.channels[0] if scenario.sensors else "vertical_g"
+        return scenario._native.leading_channel()
     if channel not in scenario.channels:
         raise ValueError(f"channel = '{channel}': must be one of {', '.join(scenario.channels)}")
     return channel
 
 
-def _check_wheel(wheel: str) -> None:
-    if wheel not in ("gear", "pinion"):
-        raise ValueError(f"wheel = {wheel!r}: must be 'gear' or 'pinion'")
+class Wheel(NamedTuple):
+    """What a scenario says of a wheel.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    teeth : int
+        Its tooth count.
+    face_width_mm : float
+        (mm) Its face width.
+    speed_hz : float
+        (Hz) Its nominal speed.
+    start_rev : float
+        (rev) Its angle where that of its shaft is 0, counted from where its first tooth enters contact.
+    """
+
+    name: str
+    teeth: int
+    face_width_mm: float
+    speed_hz: float
+    start_rev: float
+
+
+def wheel_of(scenario: Scenario, name: str | None) -> Wheel:
+    """The wheel of a name; by default the driven one of the first mesh.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is simulated.
+    name : str or None
+        A name.
+
+    Raises
+    ------
+    ValueError
+        A wheel that there is not.
+    """
+    wheels = {wheel.name: wheel for wheel in (Wheel(*each) for each in scenario._native.wheels())}
+    chosen = mesh_wheels(scenario, 0)[1] if name is None else name
+    if chosen not in wheels:
+        raise ValueError(f"wheel = {name!r}: must be one of {', '.join(wheels)}")
+    return wheels[chosen]
+
+
+def mesh_wheels(scenario: Scenario, mesh: int) -> list[str]:
+    """The names of the driving and of the driven wheel of a mesh, by its number."""
+    return scenario._native.meshes()[mesh][1]
+
+
+def mesh_frequencies_hz(scenario: Scenario) -> list[float]:
+    """(Hz) The nominal frequency of each mesh."""
+    driving = [wheel_of(scenario, wheels[0]) for _, wheels in scenario._native.meshes()]
+    return [wheel.teeth * wheel.speed_hz for wheel in driving]
+
+
+def teeth_in_words(scenario: Scenario) -> str:
+    """``17/38 teeth``; of several meshes each."""
+    meshes = ["/".join(str(wheel_of(scenario, wheel).teeth) for wheel in wheels) for _, wheels in scenario._native.meshes()]
+    return f"{', '.join(meshes)} teeth"
+
+
+def _samples(simulation: Simulation) -> int:
+    return int(next(iter(simulation._native.channels.values())).size)
 
 
 class _Channels:
@@ -623,9 +812,9 @@ class Signals(_Channels):
         ValueError, OSError
             As :meth:`Simulation.save`.
         """
-        scenario = None if self.is_resampled else native_scenario(self.scenario)
         signals = [(name, signal.astype(np.float64)) for name, signal in self.channels.items()]
-        _core.write_signals(path, scenario, (self.sampling_rate_hz, self.start_s), signals)
+        rate_and_start = (self.sampling_rate_hz, self.start_s)
+        _core.write_signals(path, native_scenario(self.scenario), self.is_resampled, rate_and_start, signals)
 
     def _resampled(self, rate_hz: float) -> Signals:
         channels = {name: resample(signal, self.sampling_rate_hz, rate_hz).astype(np.float32) for name, signal in self.channels.items()}
@@ -645,14 +834,14 @@ class Signals(_Channels):
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self.channels})
 
-    def process(self, channel: str | None = None, wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
+    def process(self, channel: str | None = None, wheel: str | None = None, *, sidebands: int | None = None) -> Record:
         """Take one of the channels to its average over a revolution, its parts and its indicators.
 
         Parameters
         ----------
         channel, wheel, sidebands
-            As of :meth:`Simulation.process`; the channel must have been kept. By default ``vertical_g`` also where the first sensor's
-            was not.
+            As of :meth:`Simulation.process`; the channel must have been kept. By default the first that was kept where the first sensor's
+            was not; of a pair ``vertical_g``.
 
         Returns
         -------
@@ -673,8 +862,8 @@ class Signals(_Channels):
         if self.is_resampled:
             raise ValueError(_not_at_own_rate(self.scenario, self.sampling_rate_hz, wheel))
         if channel is None:
-            leading = chosen_channel(self.scenario, None)
-            channel = leading if leading in self.channels else "vertical_g"
+            leading, other = chosen_channel(self.scenario, None), "vertical_g" if self.scenario._native.is_pair else next(iter(self.channels))
+            channel = leading if leading in self.channels else other
         if channel not in self.channels:
             raise ValueError(f"no channel '{channel}' was kept, but {', '.join(self.channels)}")
         return _process(self.scenario, self.channels[channel], self.start_s, channel, wheel, sidebands)
@@ -696,25 +885,29 @@ _SAVED = "simulation.save('signals.csv') writes the signals, `meshtone simulate`
 """How a simulation is kept."""
 
 
-def _not_at_own_rate(scenario: Scenario, rate_hz: float, wheel: Wheel) -> str:
+def _not_at_own_rate(scenario: Scenario, rate_hz: float, wheel: str | None) -> str:
     """Why signals that were brought to another rate are not processed, and what is."""
-    _check_wheel(wheel)
-    teeth = scenario.gear_teeth if wheel == "gear" else scenario.pinion_teeth
-    shaft_hz = scenario.pinion_speed_hz * scenario.pinion_teeth / teeth
+    of = wheel_of(scenario, wheel)
     return (
         f"process takes signals at the simulation's own rate, of which a revolution has a whole number of samples; at {rate_hz:g} S/s it "
         "has not. Process them before the rate is changed (simulate_many without target_rate_hz, then at_rate), or as a rig's: "
-        f"meshtone.process_channel(x, meshtone.ShaftPhase.constant({shaft_hz:.6g}, {rate_hz:g}, x.size), {teeth})"
+        f"meshtone.process_channel(x, meshtone.ShaftPhase.constant({of.speed_hz:.6g}, {rate_hz:g}, x.size), {of.teeth})"
     )
 
 
 def _facts(scenario: Scenario) -> dict[str, str]:
     """What a notebook says of a scenario."""
+    sections = scenario.sections
+    widths = "/".join(dict.fromkeys(f"{width_mm:g}" for _, _, width_mm, *_ in scenario._native.wheels()))
+    modules = [mesh["module_mm"] for mesh in sections["mesh"]] if "mesh" in sections else [scenario.module_mm]
+    module = "/".join(dict.fromkeys(f"{module_mm:g}" for module_mm in modules))
+    driving, hz = mesh_wheels(scenario, 0)[0], wheel_of(scenario, mesh_wheels(scenario, 0)[0]).speed_hz
     return {
-        "Teeth": f"{scenario.pinion_teeth}/{scenario.gear_teeth}, module {scenario.module_mm:g} mm, face {scenario.face_width_mm:g} mm",
-        "Operation": f"pinion {scenario.pinion_speed_hz:g} Hz, brake {scenario.brake_torque_nm:g} N m",
+        "Teeth": f"{teeth_in_words(scenario).removesuffix(' teeth')}, module {module} mm, face {widths} mm",
+        "Operation": f"{driving} {hz:g} Hz, brake {scenario.brake_torque_nm:g} N m",
         "Damage": in_words(scenario.faults),
-        "Model": scenario.model,
+        # A gearbox has one model.
+        **({"Model": scenario.model} if "model" in sections else {}),
     }
 
 
@@ -724,12 +917,11 @@ def _length(samples: int, rate_hz: float) -> str:
 
 def _page(of: Simulation | Signals, channel: str, rows: dict[str, str], remarks: Sequence[str]) -> str:
     """A simulation for a notebook: facts, a signal, and what it shows about the damaged wheel."""
-    faults = of.scenario.faults
-    wheel: Wheel = faults[0].wheel if faults else "gear"
-    signal = np.asarray(getattr(of, channel))
-    speed_hz = of.scenario.pinion_speed_hz
-    turn_s = 1 / speed_hz if wheel == "pinion" else of.scenario.gear_teeth / (of.scenario.pinion_teeth * speed_hz)
-    shown = signal[: round(2 * turn_s * of.sampling_rate_hz)]
+    # A fault of a rolling bearing is of no wheel.
+    damaged = next((fault.wheel for fault in of.scenario.faults if not isinstance(fault, Mapping)), None)
+    wheel = wheel_of(of.scenario, damaged)
+    signal = np.asarray(of.channels[channel])
+    shown = signal[: round(2 * of.sampling_rate_hz / wheel.speed_hz)]
     label = _display.channel_label(channel)
     span = (of.start_s, of.start_s + shown.size / of.sampling_rate_hz)
     pictures = [_display.curve(shown, span=span, over="Time (s)", label=label)]
@@ -737,45 +929,45 @@ def _page(of: Simulation | Signals, channel: str, rows: dict[str, str], remarks:
         with warnings.catch_warnings():
             # What is shown is not asked for anew: the page lists what is doubtful.
             warnings.simplefilter("ignore")
-            record = of.process(channel, wheel)
+            record = of.process(channel, wheel.name)
     except ValueError:
         # Too short for an average, or no vibration: the signal is all there is to see.
         pass
     else:
         names = ("difference_rms", "difference_kurtosis", "fm0")
         rows = rows | _display.indicators(record.indicators, names, channel)
-        over = f"Angle of the {wheel} (revolutions)"
+        over = f"Angle of {of_wheel(of.scenario, wheel.name)} (revolutions)"
         pictures.append(_display.curve(record.difference, span=(0.0, 1.0), over=over, label=_display.with_unit("Difference", _display.unit_of(channel))))
     return _display.page(type(of).__name__, _display.table(rows), *pictures, _display.remarks(remarks))
 
 
+def of_wheel(scenario: Scenario, wheel: str) -> str:
+    """What a wheel is called in a text: ``the gear``, ``wheel z3``."""
+    return f"the {wheel}" if scenario._native.is_pair else f"wheel {wheel}"
+
+
 def _process(
-    scenario: Scenario, signal: npt.ArrayLike, start_s: float, channel: str, wheel: Wheel, sidebands: int | None
+    scenario: Scenario, signal: npt.ArrayLike, start_s: float, channel: str, wheel: str | None, sidebands: int | None
 ) -> Record:
-    _check_wheel(wheel)
-    teeth = scenario.gear_teeth if wheel == "gear" else scenario.pinion_teeth
-    settings = separation_settings(teeth, sidebands, None)
+    of = wheel_of(scenario, wheel)
+    settings = separation_settings(of.teeth, sidebands, None)
     values = np.ascontiguousarray(signal, dtype=np.float64)
-    parts = _core.process_simulated(scenario._native, values, wheel, start_s, settings)
+    parts = _core.process_simulated(scenario._native, values, of.name, start_s, settings)
     warn_of_signal(typed(parts["warnings"]))
-    return Record(parts, teeth=teeth, name=channel)
+    return Record(parts, teeth=of.teeth, name=channel)
 
 
-@overload
-def simulate(scenario: Scenario) -> Simulation: ...
-@overload
-def simulate(scenario: Gearbox) -> GearboxSimulation: ...
-def simulate(scenario: Scenario | Gearbox) -> Simulation | GearboxSimulation:
+def simulate(scenario: Scenario) -> Simulation:
     """Simulate a scenario. Each doubt about it is a :class:`~meshtone.MeshtoneWarning`.
 
     Parameters
     ----------
-    scenario : Scenario or Gearbox
+    scenario : Scenario
         What is simulated.
 
     Returns
     -------
-    Simulation, or of a gearbox GearboxSimulation
+    Simulation
 
     Raises
     ------
@@ -789,9 +981,13 @@ def simulate(scenario: Scenario | Gearbox) -> Simulation | GearboxSimulation:
     ...                   brake_torque_nm=10, fault=ToothBreakage(chip_height_mm=5, chip_width_mm=12))
     >>> simulate(broken)
     <Simulation of 17/38 teeth, tooth-breakage: 95608 samples at 100640 S/s>
+    >>> from meshtone import gearbox_template
+    >>> simulation = simulate(Scenario.from_toml(gearbox_template("tecnalia")))
+    >>> simulation
+    <Simulation of 29/100, 36/90 teeth, healthy: 20490 samples at 20490 S/s>
+    >>> list(simulation.channels)[:3]
+    ['input_0_vertical_g', 'output_1_vertical_g', 'force_n.z1-z2']
     """
-    if isinstance(scenario, Gearbox):
-        return simulate_gearbox(scenario)
     native = _core.simulate(native_scenario(scenario))
     warn(native.warnings, native.warning_codes)
     return Simulation(scenario, native)
@@ -836,7 +1032,7 @@ def trace(scenario: Scenario, *, average_rate_hz: float | None = None) -> dict[s
 def simulate_many(
     scenarios: Iterable[Scenario],
     *,
-    channels: Sequence[str] = ("horizontal_g", "vertical_g"),
+    channels: Sequence[str] | None = None,
     target_rate_hz: float | None = None,
     on_error: Literal["raise"] = "raise",
     threads: int | None = None,
@@ -846,7 +1042,7 @@ def simulate_many(
 def simulate_many(
     scenarios: Iterable[Scenario],
     *,
-    channels: Sequence[str] = ("horizontal_g", "vertical_g"),
+    channels: Sequence[str] | None = None,
     target_rate_hz: float | None = None,
     on_error: Literal["return"],
     threads: int | None = None,
@@ -855,7 +1051,7 @@ def simulate_many(
 def simulate_many(
     scenarios: Iterable[Scenario],
     *,
-    channels: Sequence[str] = ("horizontal_g", "vertical_g"),
+    channels: Sequence[str] | None = None,
     target_rate_hz: float | None = None,
     on_error: Literal["raise", "return"] = "raise",
     threads: int | None = None,
@@ -867,9 +1063,9 @@ def simulate_many(
     ----------
     scenarios : iterable of Scenario
         What is simulated.
-    channels : sequence of str
-        What is kept of each, in single precision: some of ``scenario.channels``. A scenario without a sensor that is named cannot be
-        simulated so.
+    channels : sequence of str, optional
+        What is kept of each, in single precision: some of ``scenario.channels``; by default ``horizontal_g`` and ``vertical_g`` of a pair,
+        the sensors of a gearbox. A scenario without a sensor that is named cannot be simulated so.
     target_rate_hz : float, optional
         (S/s) The rate of the results, met exactly by resampling, as of :meth:`Signals.at_rate`; by default the simulations' own.
     on_error : {'raise', 'return'}
@@ -884,7 +1080,8 @@ def simulate_many(
     -------
     list of Signals, or with ``on_error="return"`` of Signals and ValueError
         In the order of the scenarios. Each kind of warning is given once, with how many scenarios it concerns; each result's
-        ``warnings`` have its own.
+        ``warnings`` have its own. Of a gearbox the step's error is estimated only: :func:`simulate` simulates it a second time with half the
+        step where that is doubtful.
 
     Raises
     ------
@@ -920,7 +1117,7 @@ def simulate_many(
     native = [native_scenario(scenario) for scenario in scenarios]
     most = None if threads is None else whole("threads", threads, 1)
     raises = on_error == "raise"
-    results = _core.simulate_many(native, list(channels), most, raises, ask)
+    results = _core.simulate_many(native, None if channels is None else list(channels), most, raises, ask)
     if raises:
         _raise_first(results)
     _warn_of_stepped_alone([result.pop("stepped_alone") for result in results if isinstance(result, dict)])
@@ -949,7 +1146,7 @@ def _warn_of_stepped_alone(reasons: list[str | None]) -> None:
 
 def _warn_of_rate(rate_hz: float, scenarios: Sequence[Scenario]) -> None:
     """One warning of all scenarios whose mesh frequency a rate does not show."""
-    mesh_hz = [scenario.pinion_teeth * scenario.pinion_speed_hz for scenario in scenarios]
+    mesh_hz = [min(mesh_frequencies_hz(scenario)) for scenario in scenarios]
     beyond_hz = [frequency_hz for frequency_hz in mesh_hz if rate_hz <= 2 * frequency_hz]
     if beyond_hz:
         of = f" of {len(beyond_hz)} of {len(scenarios)} scenarios, the first" if len(scenarios) > 1 else ""

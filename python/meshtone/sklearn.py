@@ -12,7 +12,7 @@ from ._extras import extra
 from ._names import hint
 from .datasets import Dataset
 from .signal import Record, ShaftPhase, process_channel
-from .signal.train import Machine
+from .scenario import Scenario
 
 with extra("sklearn"):
     from sklearn.base import BaseEstimator, TransformerMixin
@@ -141,7 +141,7 @@ class DatasetTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         Whose columns are computed.
     columns : sequence of str
         Columns of numbers.
-    machine : Scenario or Gearbox
+    machine : Scenario
         What was recorded.
     sampling_rate_hz : float
         (S/s) Of the records.
@@ -159,7 +159,7 @@ class DatasetTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     """
 
     def __init__(
-        self, dataset: Dataset, columns: Sequence[str], machine: Machine, *, sampling_rate_hz: float, shaft_hz: float
+        self, dataset: Dataset, columns: Sequence[str], machine: Scenario, *, sampling_rate_hz: float, shaft_hz: float
     ) -> None:
         self.dataset = dataset
         self.columns = columns

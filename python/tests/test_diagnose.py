@@ -111,8 +111,8 @@ def test_what_is_seen_is_warned_of_before_anything_is_simulated(reference: Path,
 
 def test_a_gearbox_is_asked_about_before_anything_is_simulated() -> None:
     """Its simulation is observed wheel by wheel; a pair's scenario and a pair's options are refused."""
-    gearbox = mt.Gearbox.from_toml(mt.gearbox_template())
-    recording = mt.simulate_gearbox(gearbox)
+    gearbox = mt.Scenario.from_toml(mt.gearbox_template())
+    recording = mt.simulate(gearbox)
     with warnings.catch_warnings():
         warnings.simplefilter("error", mt.MeshtoneWarning)
         with pytest.raises(mt.MeshtoneWarning, match="the recording is short"):

@@ -12,7 +12,7 @@ import meshtone as mt
 STEEL = {"youngs_modulus_gpa": 206.0, "poisson_ratio": 0.3, "density_kg_per_m3": 7850.0}
 
 
-def gearbox(**changes: Any) -> mt.Gearbox:
+def gearbox(**changes: Any) -> mt.Scenario:
     """One pair on two shafts."""
     arguments: dict[str, Any] = {
         "shafts": [
@@ -32,7 +32,7 @@ def gearbox(**changes: Any) -> mt.Gearbox:
 
 
 def test_one_pair_carries_its_torque() -> None:
-    simulation = mt.simulate_gearbox(gearbox(material=STEEL))
+    simulation = mt.simulate(gearbox(material=STEEL))
     force_n = 10 / (3e-3 * 38 / 2 * np.cos(np.radians(20)))
     mesh = simulation.summary()["meshes"][0]
     assert mesh["static_force_n"] == pytest.approx(force_n, rel=1e-9)
@@ -42,42 +42,69 @@ def test_one_pair_carries_its_torque() -> None:
 
 
 def test_frequencies_with_other_stiffnesses() -> None:
-    simulation = mt.simulate_gearbox(gearbox())
-    own = simulation.natural_frequencies_hz()
+    simulation = mt.simulate(gearbox())
+    own = simulation.natural_frequencies_hz
     assert own == pytest.approx(simulation.summary()["natural_frequencies_hz"])
-    assert np.all(simulation.natural_frequencies_hz([2 * own[0] * 1e7]) >= 0)
+    mean = simulation.fields["mean_stiffness_n_per_m.z1-z2"]
+    assert simulation.natural_frequencies_with_hz([mean]) == pytest.approx(own)
+    stiffer = simulation.natural_frequencies_with_hz([4 * mean])
+    assert np.all(stiffer >= own * (1 - 1e-9)) and np.any(stiffer > 1.05 * own)
     with pytest.raises(ValueError, match="must have 1, one a mesh"):
-        simulation.natural_frequencies_hz([1e8, 1e8])
+        simulation.natural_frequencies_with_hz([1e8, 1e8])
 
 
 def test_is_kept_and_read_back() -> None:
     box = gearbox(faults=[{"wheel": "z2", "tooth": 3, "kind": "missing-tooth"}], housing={})
-    assert mt.Gearbox.from_toml(box.to_toml()) == box
+    assert mt.Scenario.from_toml(box.to_toml()) == box
     assert pickle.loads(pickle.dumps(box)) == box
     assert box.sections["fault"][0]["wheel"] == "z2"
+    assert box.fault == mt.MissingTooth(wheel="z2", tooth=3)
+    assert gearbox(faults=[mt.MissingTooth(wheel="z2", tooth=3)], housing={}) == box
+    assert box.copy(fault=None, operation={"input_speed_hz": 20}) == gearbox(housing={}, operation={"input_speed_hz": 20, "brake_torque_nm": 10})
+    with pytest.raises(TypeError, match="a gearbox has no argument 'pinion_speed_hz'"):
+        box.copy(pinion_speed_hz=20)
 
 
 def test_batch_gives_the_same_as_alone() -> None:
-    boxes = [gearbox(seed=seed, wheels=[{**wheel, "iso_class": 6} for wheel in gearbox().sections["wheel"]]) for seed in (1, 2)]
-    alone = [mt.simulate(box) for box in boxes]
+    """A batch may have pairs and gearboxes; what is kept are the channels that are looked at first."""
+    wheels = [{**wheel, "iso_class": 6} for wheel in gearbox().sections["wheel"]]
+    pair = mt.examples.healthy().copy(sampling_rate_hz=2e4)
+    scenarios = [gearbox(seed=1, wheels=wheels), pair, gearbox(seed=2, wheels=wheels)]
+    alone = [mt.simulate(scenario) for scenario in scenarios]
     reported: list[tuple[int, int]] = []
-    together = mt.simulate_gearboxes(boxes, threads=2, progress=lambda done, of: reported.append((done, of)))
-    assert reported[-1] == (2, 2) and [of.scenario for of in together] == boxes
-    with pytest.raises(ValueError, match="threads"):
-        mt.simulate_gearboxes(boxes, threads=0)
+    together = mt.simulate_many(scenarios, threads=2, progress=lambda done, of: reported.append((done, of)))
+    assert reported[-1] == (3, 3) and [of.scenario for of in together] == scenarios
+    assert list(together[1].channels) == ["horizontal_g", "vertical_g"] and len(together[0].channels) == 4
     for one, other in zip(alone, together):
-        for name, values in one.channels.items():
-            assert np.array_equal(values, other[name])
-    assert not np.array_equal(alone[0]["input_0_vertical_g"], alone[1]["input_0_vertical_g"])
+        for name, values in other.channels.items():
+            assert np.array_equal(one[name].astype(np.float32), values)
+    assert not np.array_equal(alone[0]["input_0_vertical_g"], alone[2]["input_0_vertical_g"])
+    [forces, _] = mt.simulate_many([scenarios[0], scenarios[2]], channels=["force_n.z1-z2"])
+    assert np.array_equal(forces.channels["force_n.z1-z2"], alone[0]["force_n.z1-z2"].astype(np.float32))
+    with pytest.raises(ValueError, match="threads"):
+        mt.simulate_many(scenarios, threads=0)
+    with pytest.raises(ValueError, match="'force_n.z1-z3': must be one of input_0_vertical_g"):
+        mt.simulate_many(scenarios, channels=["force_n.z1-z3"])
+    with pytest.raises(ValueError, match=r"scenarios\[1\]: .*no channel `force_n.z1-z2`; there are horizontal_g"):
+        mt.simulate_many(scenarios, channels=["force_n.z1-z2"])
+
+
+def test_a_batch_of_gearboxes_has_a_target_rate() -> None:
+    [signals] = mt.simulate_many([gearbox()], target_rate_hz=8000)
+    assert signals.sampling_rate_hz == 8000 and signals.channels["input_0_vertical_g"].size == 1600
+    with pytest.warns(mt.MeshtoneWarning, match="leaves nothing of the mesh, whose frequency of 680 Hz"):
+        mt.simulate_many([gearbox()], target_rate_hz=1000)
 
 
 def test_judgement_does_not_depend_on_how_many_there_are() -> None:
-    doubtful = mt.Gearbox.from_toml(mt.gearbox_template("uconn").replace("duration_s = 1.0", "duration_s = 0.2"))
-    [alone] = mt.simulate_gearboxes([doubtful])
-    [one, other] = mt.simulate_gearboxes([doubtful, doubtful])
+    doubtful = mt.Scenario.from_toml(mt.gearbox_template("uconn").replace("duration_s = 1.0", "duration_s = 0.2"))
+    with pytest.warns(mt.MeshtoneWarning):
+        [alone] = mt.simulate_many([doubtful])
+    with pytest.warns(mt.MeshtoneWarning):
+        [one, other] = mt.simulate_many([doubtful, doubtful])
     assert alone.warnings == one.warnings == other.warnings
     with pytest.warns(mt.MeshtoneWarning, match="S/s the rms is"):
-        mt.simulate_gearbox(doubtful)
+        mt.simulate(doubtful)
 
 
 def test_no_more_memory_is_taken_than_is_free() -> None:
@@ -85,7 +112,7 @@ def test_no_more_memory_is_taken_than_is_free() -> None:
     large = gearbox(solver={"duration_s": 1e6})
     mt.set_memory_limit(None)
     with pytest.raises(ValueError, match="solver.duration_s.* free on this machine"):
-        mt.simulate_gearbox(large)
+        mt.simulate(large)
 
 
 def test_profile_errors_are_of_the_wheel() -> None:
@@ -104,10 +131,8 @@ def test_mistakes_are_named() -> None:
         gearbox(bearings=[{"shaft": "input", "at": 0.0, "stiffnes_n_per_m": 1e8}])
     with pytest.raises(TypeError, match="must be a sequence of dictionaries"):
         gearbox(shafts={"name": "input"})
-    with pytest.raises(TypeError, match="simulate and simulate_gearboxes take gearboxes"):
-        mt.trace(gearbox())  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="is of a gearbox"):
-        mt.Scenario.from_toml(mt.gearbox_template())
+    with pytest.raises(ValueError, match="shaft"):
+        gearbox(shafts=[], wheels=[], meshes=[], bearings=[])
     with pytest.raises(ValueError, match="must be one of phm2009-spur, phm2009-helical, uconn, tecnalia"):
         mt.gearbox_template("none")  # type: ignore[arg-type]
 
@@ -120,9 +145,9 @@ def test_material_of_a_pair_is_a_table_too() -> None:
     assert np.array_equal(mt.simulate(given).vertical_g, mt.simulate(named).vertical_g)
 
 
-def two_stages(**changes: Any) -> mt.Gearbox:
+def two_stages(**changes: Any) -> mt.Scenario:
     """Two stages at a low rate."""
-    sections = mt.Gearbox.from_toml(mt.gearbox_template()).sections
+    sections = mt.Scenario.from_toml(mt.gearbox_template()).sections
     lists = {"shaft": "shafts", "wheel": "wheels", "mesh": "meshes", "bearing": "bearings", "sensor": "sensors"}
     arguments: dict[str, Any] = {name: sections[section] for section, name in lists.items()}
     arguments["operation"], arguments["housing"] = sections["operation"], sections["housing"]
@@ -132,8 +157,8 @@ def two_stages(**changes: Any) -> mt.Gearbox:
 
 def test_a_recording_shows_every_shaft() -> None:
     damaged = two_stages(faults=[{"wheel": "z4", "tooth": 5, "kind": "missing-tooth"}])
-    simulation = mt.simulate_gearbox(damaged)
-    own = simulation.process()
+    simulation = mt.simulate(damaged)
+    own = simulation.process_wheels()
     assert own.mean_speeds_hz == pytest.approx({"input": 30, "middle": 10, "output": 6})
     assert own["z2"].indicators["difference_rms"] == own["z3"].indicators["difference_rms"]
     assert own.foreign_lines == []
@@ -168,7 +193,7 @@ def test_a_path_of_a_gearbox_is_found() -> None:
     triple = {"frequency_hz": [0.0, 1e5], "magnitude": [3.0, 3.0], "phase_deg": [0.0, 0.0]}
     rig = two_stages()
     sensor = {**rig.sections["sensor"][0], "frequency_response": triple}
-    healthy = mt.simulate_gearbox(two_stages(sensors=[sensor], seed=7))
+    healthy = mt.simulate(two_stages(sensors=[sensor], seed=7))
     path = mt.estimate_path(healthy, rig, draws=8)
     inside = (path.frequency_hz > path.compared_hz[0]) & (path.frequency_hz < path.compared_hz[1])
     assert np.sqrt(np.mean((path.magnitude_db[inside] - 20 * np.log10(3)) ** 2)) < 3

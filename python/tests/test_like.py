@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow.dataset
 import pytest
-from meshtone import Dataset, Gearbox, MeshtoneWarning, Scenario, gearbox_template, generate_dataset, simulate_gearbox
+from meshtone import Dataset, MeshtoneWarning, Scenario, gearbox_template, generate_dataset, simulate
 from meshtone.signal import ShaftPhase, process_channel
 
 MACHINE = """
@@ -74,8 +74,6 @@ def test_a_record_that_is_recorded_has_its_own_columns(gears: Dataset) -> None:
 
 
 def test_a_longer_recording_at_another_rate_has_several_windows(gears: Dataset) -> None:
-    from meshtone import simulate
-
     simulation = simulate(RIG.copy(sampling_rate_hz=50e3, duration_s=3.0, settle_tolerance=1e-3))
     signal, rate_hz = simulation.vertical_g, simulation.sampling_rate_hz
     phase = ShaftPhase.constant(40.0, rate_hz, signal.size)
@@ -113,7 +111,7 @@ def test_what_does_not_fit_is_refused_in_words(gears: Dataset) -> None:
             gears.like(*arguments)
     with pytest.raises(ValueError, match="no shaft \"output\", but pinion, gear"):
         gears.like(signal, phase, RIG, 50e3, shaft="output")
-    gearbox = Gearbox.from_toml(gearbox_template())
+    gearbox = Scenario.from_toml(gearbox_template())
     with pytest.raises(ValueError, match="no wheel \"gear\", which the data set averages"):
         gears.like(signal, phase, gearbox, 50e3)
     with pytest.raises(ValueError, match="no step"):
@@ -145,15 +143,15 @@ def test_over_the_angle_and_by_a_transformer(tmp_path: Path) -> None:
 def test_a_recording_of_a_gearbox(tmp_path: Path) -> None:
     from meshtone import _core
 
-    gearbox = Gearbox.from_toml(gearbox_template())
+    gearbox = Scenario.from_toml(gearbox_template())
     (tmp_path / "machine.toml").write_text(gearbox_template(), "utf-8")
     text = 'scenario = "machine.toml"\n[[class]]\nlabel = "healthy"\n[keep]\nchannels = []\nduration_s = 0.6\n[split]\ntrain = 1.0\n'
     gears = made(tmp_path, text, records=2)
     with pytest.warns(MeshtoneWarning, match="start-up transient"):
-        simulation = simulate_gearbox(gearbox)
+        simulation = simulate(gearbox)
     channel = next(name for name in simulation.channels if name.endswith("vertical_g"))
     signal, rate_hz = simulation[channel], simulation.sampling_rate_hz
-    phase = ShaftPhase._wrap(_core.ShaftPhase.of_simulated_input(gearbox._native, simulation.start_s, signal.size))
+    phase = ShaftPhase._wrap(_core.ShaftPhase.of_simulated(gearbox._native, simulation.start_s, signal.size))
     like = gears.like(signal, phase, gearbox, rate_hz)
     assert len(like) == 1
     assert like.column("z3_speed_hz")[0] == pytest.approx(gears.column("z3_speed_hz")[0], rel=1e-3)

@@ -86,10 +86,16 @@ def test_signals_of_every_format(tmp_path: Path) -> None:
 
 
 def test_signals_of_a_gearbox(tmp_path: Path) -> None:
-    simulation = meshtone.simulate_gearbox(meshtone.Gearbox.from_toml(meshtone.gearbox_template()))
+    simulation = meshtone.simulate(meshtone.Scenario.from_toml(meshtone.gearbox_template()))
     simulation.save(tmp_path / "signals.mat")
     loaded = io.loadmat(tmp_path / "signals.mat")
     assert np.array_equal(loaded["force_n_z1_z2"].ravel(), simulation["force_n.z1-z2"])
+    simulation.save(tmp_path / "signals.parquet")
+    assert read_recording(tmp_path / "signals.parquet").scenario == simulation.scenario
+    # At another rate they are no longer what the scenario gives.
+    simulation.signals(8000).save(tmp_path / "resampled.parquet")
+    resampled = read_recording(tmp_path / "resampled.parquet")
+    assert resampled.scenario is None and resampled.units["transmission_error_um.z3-z4"] == "µm"
 
 
 def test_arguments_that_are_refused(tmp_path: Path) -> None:

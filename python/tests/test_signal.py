@@ -332,7 +332,7 @@ def test_a_bearing_behind_a_mesh() -> None:
 
 
 def test_bearings_on_the_shafts_of_a_gearbox() -> None:
-    gearbox = meshtone.Gearbox.from_toml(meshtone.gearbox_template())
+    gearbox = meshtone.Scenario.from_toml(meshtone.gearbox_template())
     phase = ShaftPhase.constant(30.0, 20_000.0, 60_000)
     bearing = signal.Bearing.named("ER-10K")
     output = phase.revolutions / 5  # 32/96 and 48/80 teeth
@@ -359,7 +359,7 @@ def test_bearings_on_the_shafts_of_a_gearbox() -> None:
     with pytest.raises(ValueError, match="bearings: missing, and the machine has no rolling bearing"):
         recording.bearings()
     place = 'shaft = "output"\nat = 1.0\n'
-    machine = meshtone.Gearbox.from_toml(meshtone.gearbox_template().replace(place, f'{place}kind = "ball"\nname = "ER-10K"\n'))
+    machine = meshtone.Scenario.from_toml(meshtone.gearbox_template().replace(place, f'{place}kind = "ball"\nname = "ER-10K"\n'))
     assert machine != gearbox
     found = signal.TrainRecording(ringing + tone, phase, 20_000.0, machine).bearings(separation="none", band_hz=(3000, 5000))
     assert found.bearings == [(bearing, "output")]

@@ -54,7 +54,7 @@ def test_curves(broken: meshtone.Simulation) -> None:
     assert errors is not None
     pinion, gear = errors
     assert pinion.shape == (100, 17) and gear.shape == (100, 38)
-    with pytest.raises(ValueError, match="wheel = 'wheel': must be 'gear' or 'pinion'"):
+    with pytest.raises(ValueError, match="wheel = 'wheel': must be one of pinion, gear"):
         broken.tooth_profile("wheel")  # type: ignore[arg-type]
     with pytest.raises(AttributeError, match="no field 'stiffness'"):
         _ = broken.stiffness  # type: ignore[attr-defined]

@@ -13,7 +13,6 @@ mod dataset;
 mod diagnose;
 mod error;
 mod explore;
-mod gearbox;
 mod hybrid;
 mod interrupt;
 mod memory;
@@ -44,20 +43,19 @@ mod _core {
         },
         diagnose::{Observation, check_diagnosis, diagnose, tuned_rig},
         explore::ExploreServer,
-        gearbox::{GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes},
         hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune},
         memory::set_memory_limit,
         phase::{ShaftPhase, repair_pulses, tachometer_pulses},
         process::{check_recording, find_mismatch, process_channel, process_series, process_train},
         recording::read_recording,
-        scenario::{Scenario, template},
+        scenario::{Scenario, gearbox_template, template},
         sensor_path::estimate_path,
         signal::{
             angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4, order_map,
             order_spectrum, resample, separate, sideband_level_factor, statistics, synchronous_average,
         },
         signals_file::write_signals,
-        simulation::{Simulation, process_simulated, simulate, trace},
+        simulation::{Simulation, process_simulated, process_simulated_train, simulate, trace},
     };
 
     use pyo3::prelude::*;

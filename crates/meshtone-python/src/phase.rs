@@ -1,6 +1,6 @@
 //! The angle of a shaft.
 
-use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, SimulatedShafts, Tachometer};
+use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, Tachometer, TrainTurning};
 use meshtone::wheel::WheelName;
 use pyo3::prelude::*;
 
@@ -26,17 +26,15 @@ impl ShaftPhase {
         Ok(Self(phase.with_zero(zero)))
     }
 
-    /// Returns the phase of the pinion in a simulation.
+    /// Returns the phase of the input in a simulation: of the pinion, or of the shaft at the motor.
     #[staticmethod]
     fn of_simulated(scenario: &Scenario, start_s: f64, samples: usize) -> PyResult<Self> {
-        let shafts = SimulatedShafts::new(&scenario.0, start_s, samples);
-        shafts.phase(WheelName::Pinion).map(Self).map_err(value_error)
-    }
-
-    /// Returns the phase of the input in a simulation of a gearbox.
-    #[staticmethod]
-    fn of_simulated_input(gearbox: &Scenario, start_s: f64, samples: usize) -> PyResult<Self> {
-        signal::ShaftPhase::of_simulated_input(&gearbox.0, start_s, samples).map(Self).map_err(value_error)
+        let turning = TrainTurning::of_simulated(&scenario.0, start_s, samples);
+        let phase = turning.and_then(|turning| match turning {
+            TrainTurning::SimulatedPair(shafts) => shafts.phase(WheelName::Pinion),
+            TrainTurning::Shaft { phase, .. } => Ok(phase),
+        });
+        phase.map(Self).map_err(value_error)
     }
 
     /// Of a constant speed.

@@ -147,11 +147,19 @@ pub fn process_train<'py>(
     let signal = samples(&signal)?;
     let train = train(&machine)?;
     let turning = turning(&train, phase, shaft)?;
-    let separation = separation(1, sidebands, shaft_orders);
+    let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+    train_parts(py, &recording, separation(1, sidebands, shaft_orders))
+}
+
+/// The results of one channel for all wheels, by the names of Python's properties.
+pub fn train_parts<'py>(
+    py: Python<'py>,
+    recording: &TrainRecording<'_>,
+    separation: SeparationSettings,
+) -> PyResult<Bound<'py, PyDict>> {
     let settings = TrainSettings { separation, ..TrainSettings::default() };
-    let processed = py.detach(|| {
-        TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning }.process(&settings)
-    });
+    let processed = py.detach(|| recording.process(&settings));
+    let train = recording.train;
     let TrainRecords { wheels, foreign, warnings, .. } = processed.map_err(value_error)?;
     let wheels = wheels.into_iter().map(|of| {
         let wheel = &train.wheels[of.wheel];

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use meshtone::scenario::{self, ProfileErrors, ScenarioError};
+use meshtone::scenario::{self, GearboxRig, ProfileErrors, ScenarioError, ScenarioWarning, ScenarioWheel};
+use meshtone::sensor::{Channel, Sensor};
+use meshtone::signal::TrainWheel;
 use meshtone::wheel::ErrorTable;
 use meshtone_io::memory;
 use meshtone_io::scenario_file::ScenarioFile;
@@ -12,7 +14,11 @@ use pyo3::types::PyDict;
 
 use crate::array::matrix;
 use crate::error::{read_error, scenario_error, value_error};
+use crate::process::train;
 use crate::value::table;
+
+/// Name, tooth count, (mm) face width, (Hz) nominal speed, (rev) angle where that of its shaft is 0.
+type StatedWheel = (String, u32, f64, f64, f64);
 
 /// A scenario as the library has it.
 #[pyclass(frozen, eq, module = "meshtone._core")]
@@ -48,48 +54,48 @@ impl Scenario {
         Ok(Self(scenario))
     }
 
-    /// From the text of a scenario file, of one pair or of a gearbox.
+    /// From the text of a scenario file, of either form.
     #[staticmethod]
-    fn from_toml(text: &str, of_pair: bool) -> PyResult<Self> {
-        let read = if of_pair {
-            scenario::Scenario::pair_from_toml(text)
-        } else {
-            scenario::Scenario::from_toml(text)
-        };
-        let this = read.map(Self).map_err(|error| scenario_error(&error))?;
-        match this.other_form(of_pair, "from_toml") {
-            Some(problem) => Err(value_error(problem)),
-            None => Ok(this),
-        }
+    fn from_toml(text: &str) -> PyResult<Self> {
+        scenario::Scenario::from_toml(text).map(Self).map_err(|error| scenario_error(&error))
     }
 
-    /// From a scenario file, and the files that it names, of one pair or of a gearbox.
+    /// From a scenario file, of either form, and the files that it names.
     #[staticmethod]
-    fn from_file(path: PathBuf, of_pair: bool) -> PyResult<Self> {
-        let read = if of_pair { ScenarioFile::read_pair(&path) } else { ScenarioFile::read(&path) };
-        let file = read.map_err(|error| read_error(&path, &error))?;
-        let this = Self(file.scenario);
-        match this.other_form(of_pair, "from_file") {
-            Some(problem) => Err(value_error(format!("{}: {problem}", path.display()))),
-            None => Ok(this),
-        }
+    fn from_file(path: PathBuf) -> PyResult<Self> {
+        let file = ScenarioFile::read(&path).map_err(|error| read_error(&path, &error))?;
+        Ok(Self(file.scenario))
     }
 
-    /// Whether a scenario file's text is of a gearbox.
-    #[staticmethod]
-    fn is_of_gearbox(text: &str) -> PyResult<bool> {
-        scenario::Scenario::is_long_form(text).map_err(|error| scenario_error(&error))
-    }
-
-    /// Whether it is of one pair.
+    /// Whether it is of one pair in a rig.
     #[getter]
     fn is_pair(&self) -> bool {
         self.0.rig().is_some()
     }
 
-    /// The name of the channel of its first sensor.
+    /// The name of the channel that is looked at first.
     fn leading_channel(&self) -> String {
-        self.0.leading_channel()
+        Channel::leading(&self.0.all_sensors()).name().into_owned()
+    }
+
+    /// The names of the channels of its sensors: of the listed ones, or of shafts of beams without any those on the bearings' seats.
+    fn sensor_channels(&self) -> Vec<String> {
+        self.0.all_sensors().iter().map(Sensor::channel).collect()
+    }
+
+    /// What is stated of each wheel.
+    fn wheels(&self) -> PyResult<Vec<StatedWheel>> {
+        let train = train(self)?;
+        let wheel = |(of, stated): (TrainWheel, &ScenarioWheel)| {
+            let speed_hz = train.shafts[of.shaft].speed_ratio.value() * self.0.operation.pinion_speed_hz;
+            (of.name, of.teeth, stated.face_width_mm, speed_hz, of.start_rev)
+        };
+        Ok(train.wheels.iter().cloned().zip(&self.0.wheels).map(wheel).collect())
+    }
+
+    /// Of each mesh its name and the names of its driving and its driven wheel.
+    fn meshes(&self) -> Vec<(String, Vec<String>)> {
+        self.0.meshes.iter().map(|mesh| (mesh.name(), mesh.wheels.to_vec())).collect()
     }
 
     /// The text of a scenario file.
@@ -136,12 +142,20 @@ impl Scenario {
     }
 }
 
-impl Scenario {
-    /// The scenario, where it has the form that is asked for.
-    fn other_form(&self, of_pair: bool, constructor: &str) -> Option<String> {
-        let is_other = self.is_pair() != of_pair;
-        is_other.then(|| format!("is of one pair of gears; Scenario.{constructor} reads it"))
-    }
+/// Warnings as sentences, and the subject of each.
+pub fn in_words(warnings: &[ScenarioWarning]) -> (Vec<String>, Vec<&'static str>) {
+    warnings.iter().map(|warning| (warning.to_string(), warning.kind.code())).unzip()
+}
+
+/// A commented gearbox, or what is published of a rig.
+#[pyfunction]
+#[pyo3(signature = (rig=None))]
+pub fn gearbox_template(rig: Option<&str>) -> PyResult<String> {
+    let Some(name) = rig else { return Ok(scenario::gearbox_template(None)) };
+    let known = GearboxRig::ALL.into_iter().find(|rig| rig.name() == name);
+    let names = GearboxRig::ALL.map(GearboxRig::name).join(", ");
+    let known = known.ok_or_else(|| value_error(format!("rig = {name}: must be one of {names}")))?;
+    Ok(scenario::gearbox_template(Some(known)))
 }
 
 /// A scenario file of a kind of fault, or `healthy`, with the keys that matter or with all.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::sensor::{Channel, Channels, NamedSignal, SignalSource};
+use meshtone::sensor::Channels;
 use meshtone_io::atomic_file::write_atomically;
 use meshtone_io::signals::{SignalFormat, SignalTable};
 use pyo3::prelude::*;
@@ -11,36 +11,45 @@ use crate::array::{Signal, samples};
 use crate::error::{os_error, value_error};
 use crate::scenario::Scenario;
 
-/// Writes signals of a pair in the format that the file's ending says; the scenario only where they are what it gives.
+/// Writes some of a simulation's signals in the format that the file's ending says; the scenario only where they are what it gives.
 #[pyfunction]
 pub fn write_signals(
     py: Python<'_>,
     path: PathBuf,
-    scenario: Option<&Scenario>,
+    scenario: &Scenario,
+    is_resampled: bool,
     rate_and_start: [f64; 2],
     signals: Vec<(String, Signal<'_>)>,
 ) -> PyResult<()> {
-    let named = signals.iter().enumerate().map(|(number, (name, signal))| {
-        let mut named = match Channel::named(name) {
-            Some(Channel::Fixed(kind)) => NamedSignal::from(kind),
-            Some(_) => NamedSignal::new(name.clone(), SignalSource::Sensor(number)),
-            None => return Err(value_error(format!("there is no channel {name}"))),
-        };
-        named.values = samples(signal)?.to_vec();
-        Ok(named)
-    });
-    let [sampling_rate_hz, start_s] = rate_and_start;
-    let channels = Channels::new(sampling_rate_hz, start_s, named.collect::<PyResult<Vec<_>>>()?);
-    let table = match scenario {
-        Some(scenario) => SignalTable::of_scenario(&scenario.0, &channels),
-        None => SignalTable::without_scenario(&channels),
+    let channels = named_channels(&scenario.0, rate_and_start, &signals)?;
+    let table = if is_resampled {
+        SignalTable::without_scenario(&channels)
+    } else {
+        SignalTable::of_scenario(&scenario.0, &channels)
     };
     table.check_lengths().map_err(|error| value_error(error.to_string()))?;
     py.detach(|| write(&path, &table))
 }
 
+/// Signals that Python has by their names, as the library has them.
+pub fn named_channels(
+    scenario: &meshtone::scenario::Scenario,
+    [sampling_rate_hz, start_s]: [f64; 2],
+    signals: &[(String, Signal<'_>)],
+) -> PyResult<Channels> {
+    let known = scenario.signals();
+    let named = signals.iter().map(|(name, values)| {
+        let named = known.iter().find(|signal| signal.name == *name);
+        let named = named.ok_or_else(|| value_error(format!("there is no channel {name}")))?;
+        let mut named = named.clone();
+        named.values = samples(values)?.to_vec();
+        Ok(named)
+    });
+    Ok(Channels::new(sampling_rate_hz, start_s, named.collect::<PyResult<Vec<_>>>()?))
+}
+
 /// Writes a file whole or not at all.
-pub fn write(path: &Path, table: &SignalTable) -> PyResult<()> {
+fn write(path: &Path, table: &SignalTable) -> PyResult<()> {
     let format = SignalFormat::of_path(path).ok_or_else(|| {
         let endings = SignalFormat::ALL.map(|format| format!(".{}", format.name())).join(", ");
         value_error(format!("{}: the file's name must end in one of {endings}", path.display()))

@@ -95,5 +95,5 @@ pub use simd::InstructionSet;
 #[cfg(feature = "internals")]
 pub use simulate::{AssembledMachine, Equations};
 pub use simulate::{MeshedPair, Simulation, StageTime, Stages, simulate, stages, stages_within};
-pub use trace::{Trace, TraceField, simulation_trace, stage_trace, trace, trace_at, trace_of};
+pub use trace::{Trace, TraceField, stage_trace, trace, trace_at, trace_of};
 pub use warnings::{Observer, StepJudgement, stages_and_warnings};

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, Union
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _core
 from .._warnings import SignalWarning, typed, warn_of_signal
-from ..gearbox import Gearbox
 from ..scenario import Scenario, native_scenario
 from ._arguments import finite_signal, positive, regular_part, signal_array
 from .bearings import Bearing, DefectLine, SquaredEnvelopeSpectrum
 from .kurtosis import Kurtogram
 from .phase import ShaftPhase, native_phase
 from .record import Record
-
-Machine = Union[Scenario, Gearbox]
 
 
 @dataclass(frozen=True)
@@ -203,7 +200,7 @@ class TrainRecording:
         Of one shaft.
     sampling_rate_hz : float
         (S/s) Of the signal.
-    machine : Scenario or Gearbox, optional
+    machine : Scenario, optional
         Its tooth counts and its rolling bearings are used; without it there is one shaft, and no wheel.
     shaft : str, optional
         Name of the shaft that the phase is of; by default the pinion's, or the input of a gearbox.
@@ -212,7 +209,7 @@ class TrainRecording:
     signal: npt.ArrayLike = field(repr=False)
     phase: ShaftPhase = field(repr=False)
     sampling_rate_hz: float
-    machine: Machine | None = field(default=None, repr=False)
+    machine: Scenario | None = field(default=None, repr=False)
     shaft: str | None = None
 
     def bearings(
@@ -270,7 +267,7 @@ class TrainRecording:
         parts = _core.bearings_of_train(
             signal_array(self.signal),
             native_phase(self.phase),
-            None if self.machine is None else native_machine(self.machine),
+            None if self.machine is None else native_scenario(self.machine),
             rate_hz,
             self.shaft,
             None if placed is None else [(of._native, shaft) for of, shaft in placed],
@@ -310,15 +307,10 @@ def measured(one: Any) -> tuple[npt.NDArray[np.float64], float, _core.ShaftPhase
     return finite_signal(values), positive("sampling_rate_hz", rate_hz), native_phase(phase), shaft
 
 
-def native_machine(machine: Machine) -> _core.Scenario:
-    """A pair or a gearbox as the compiled module has it."""
-    return machine._native if isinstance(machine, Gearbox) else native_scenario(machine)
-
-
 def process_train(
     signal: npt.ArrayLike,
     phase: ShaftPhase,
-    machine: Machine,
+    machine: Scenario,
     sampling_rate_hz: float,
     *,
     shaft: str | None = None,
@@ -337,7 +329,7 @@ def process_train(
         (any unit) The channel.
     phase : ShaftPhase
         Of one shaft.
-    machine : Scenario or Gearbox
+    machine : Scenario
         Its tooth counts are used.
     sampling_rate_hz : float
         (S/s) Of the signal.
@@ -362,9 +354,9 @@ def process_train(
     A tachometer on the input shows all shafts of a gearbox:
 
     >>> import numpy as np
-    >>> from meshtone import Gearbox, gearbox_template, signal, simulate_gearbox
-    >>> gearbox = Gearbox.from_toml(gearbox_template())
-    >>> simulation = simulate_gearbox(gearbox)
+    >>> from meshtone import Scenario, gearbox_template, signal, simulate
+    >>> gearbox = Scenario.from_toml(gearbox_template())
+    >>> simulation = simulate(gearbox)
     >>> vibration, rate_hz = simulation["output_1_vertical_g"], simulation.sampling_rate_hz
     >>> pulses_s = np.arange(0.0, 1.0, 1 / 30)
     >>> phase = signal.ShaftPhase.from_pulses(pulses_s, 1, rate_hz, vibration.size)
@@ -376,7 +368,7 @@ def process_train(
     """
     bands, orders = regular_part(sidebands, shaft_orders)
     rate_hz = positive("sampling_rate_hz", sampling_rate_hz)
-    parts = _core.process_train(signal_array(signal), native_phase(phase), native_machine(machine), rate_hz, shaft, bands, orders)
+    parts = _core.process_train(signal_array(signal), native_phase(phase), native_scenario(machine), rate_hz, shaft, bands, orders)
     return train_record(parts, name)
 
 

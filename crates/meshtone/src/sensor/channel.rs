@@ -4,8 +4,6 @@ use std::borrow::Cow;
 
 use super::parameters::{channel_of, is_name};
 use super::{ChannelKind, NamedSignal, Sensor, SignalSource};
-use crate::error::ScenarioError;
-use crate::solver::Output;
 
 /// A signal of a simulation, by its name.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -129,27 +127,6 @@ impl Channel {
         match self {
             Self::Fixed(kind) => ChannelKind::ACCELERATIONS.contains(kind),
             Self::Sensor(_) => true,
-        }
-    }
-
-    /// Output of the solution for it; of a sensor, before [`measure`](super::measure()).
-    ///
-    /// # Arguments
-    /// * `sensors` - the scenario's
-    ///
-    /// # Errors
-    /// A sensor that the scenario does not have.
-    pub fn output(&self, sensors: &[Sensor]) -> Result<Output, ScenarioError> {
-        match self {
-            Self::Fixed(kind) => Ok(kind.output()),
-            Self::Sensor(name) => match sensors.iter().find(|sensor| sensor.name() == *name) {
-                Some(sensor) => Ok(sensor.output()),
-                None => {
-                    let unknown = UnknownChannel::among(&self.name(), &Self::all(sensors));
-                    Err(ScenarioError::new("sensor", "", unknown.to_string())
-                        .with_help("list the sensor, or name a channel that is there"))
-                }
-            },
         }
     }
 }

@@ -6,14 +6,15 @@ mod run;
 mod stages;
 
 pub(crate) use average::wheel_record;
-pub use run::{simulation_trace, trace, trace_at, trace_of};
+use gearbox::gearbox_stages;
+pub use run::{trace, trace_at, trace_of};
 use stages::static_stages;
 
 pub use crate::trace_fields::{Trace, TraceField};
 
 use crate::simulate::Stages;
 
-/// The fields of a trace that belong to the stages before the time loop: of a pair, or of the first mesh of a gearbox.
+/// The fields of a trace that belong to the stages before the time loop.
 ///
 /// # Arguments
 /// * `stages` - of a simulation
@@ -28,6 +29,10 @@ use crate::simulate::Stages;
 /// ```
 pub fn stage_trace(stages: &Stages) -> Trace {
     let mut trace = Trace::default();
-    static_stages(&mut trace, stages);
+    if stages.scenario.rig().is_some() {
+        static_stages(&mut trace, stages);
+    } else {
+        gearbox_stages(&mut trace, stages);
+    }
     trace
 }

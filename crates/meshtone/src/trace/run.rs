@@ -6,7 +6,7 @@ use web_time::{Duration, Instant};
 
 use super::average::average;
 use super::gearbox::gearbox_trace;
-use super::{Trace, stage_trace, static_stages};
+use super::{Trace, static_stages};
 use crate::error::Error;
 use crate::scenario::Scenario;
 use crate::sensor::{ChannelKind, Channels};
@@ -59,23 +59,10 @@ pub fn trace_of(stages: Stages) -> Result<(Simulation, Trace), Error> {
     traced(stages, AVERAGE_RATE_HZ)
 }
 
-/// The fields of a simulation's trace that its stages and its signals show: of a pair those before the time loop.
-///
-/// # Arguments
-/// * `simulation` - what was simulated
-pub fn simulation_trace(simulation: &Simulation) -> Trace {
-    let scenario = &simulation.stages.scenario;
-    if scenario.rig().is_some() {
-        stage_trace(&simulation.stages)
-    } else {
-        gearbox_trace(scenario, simulation)
-    }
-}
-
 fn traced(stages: Stages, average_rate_hz: f64) -> Result<(Simulation, Trace), Error> {
     if stages.scenario.rig().is_none() {
         let simulation = stages.simulate()?;
-        let trace = simulation_trace(&simulation);
+        let trace = gearbox_trace(&simulation);
         return Ok((simulation, trace));
     }
     let start = Instant::now();

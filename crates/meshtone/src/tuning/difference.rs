@@ -121,7 +121,7 @@ impl Keep for KeepDifference<'_> {
     type Kept = Result<Vec<f64>, HybridError>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        let channel = self.0.channel.output(&scenario.sensors)?;
+        let channel = self.0.channel.output_of(scenario)?;
         Ok(vec![channel, ChannelKind::PinionShaftSpeed.output()])
     }
 

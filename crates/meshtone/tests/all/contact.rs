@@ -65,8 +65,6 @@ fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
     let mut linear = pair(200.0);
     with_own_structure(&mut linear);
     linear.model = Model::Linear;
-    // Softer teeth ring later.
-    linear.meshes[0].foundation.rotation = BodyRotation::Tooth;
     // Undamped, the mesh's own variation makes it ring ever more; so slow that it takes a while.
     linear.operation.pinion_speed_hz = 5.0;
     linear.solver.sampling_rate_hz = 2e5;

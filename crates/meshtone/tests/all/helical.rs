@@ -9,10 +9,7 @@ use meshtone::scenario::*;
 use meshtone::wheel::{Root, Wheel, tooth_profile};
 use meshtone::{Stages, simulate, stages, stages_and_warnings};
 
-use crate::physics::body_in_the_tooth;
-
-/// A pair of solid steel wheels without chamfers, whose bores are as large a part of the root circle as asked, and whose teeth have the rotation of the
-/// wheels' bodies, as those of the independent program have.
+/// A pair of solid steel wheels without chamfers, whose bores are as large a part of the root circle as asked.
 fn pair(teeth: [u32; 2], module_mm: f64, face_width_mm: f64, helix_angle_deg: f64) -> Scenario {
     let mut scenario = Scenario::new(GearPair {
         module_mm,
@@ -31,7 +28,6 @@ fn pair(teeth: [u32; 2], module_mm: f64, face_width_mm: f64, helix_angle_deg: f6
         poisson_ratio: 0.3,
         density_kg_per_m3: 7850.0,
     });
-    gears.foundation = body_in_the_tooth(&gears.foundation);
     scenario.set_gears(&gears);
     let module_mm = gears.transverse_module_mm();
     let bore_mm = |teeth: u32| (module_mm * f64::from(teeth) / 2.0 - 1.25 * gears.module_mm) / 1.4;

@@ -7,12 +7,11 @@ use crate::physics::*;
 use meshtone::scenario::{GearPair, Model, Scenario};
 use meshtone::{simulate, stages};
 
-/// The example's pair on thin shafts, with the rotation of the wheels' bodies in the teeth, as the trial's have it.
+/// The example's pair on thin shafts.
 fn pair() -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = Some(0.0));
-    scenario.meshes[0].foundation = body_in_the_tooth(&scenario.meshes[0].foundation);
     scenario.rig_mut().unwrap().pinion_shaft.radius_mm = 10.0;
     scenario.rig_mut().unwrap().gear_shaft.radius_mm = 10.0;
     scenario

@@ -115,11 +115,6 @@ pub fn stiffness_n_per_m(pairs: &PairTable) -> Vec<f64> {
     pairs.states.iter().map(|state| state.stiffness_n_per_m).collect()
 }
 
-/// A foundation with which a tooth has the rotation of its wheel's whole body too, as in other programs and in the published model.
-pub fn body_in_the_tooth(coefficients: &FoundationCoefficients) -> FoundationCoefficients {
-    FoundationCoefficients { rotation: BodyRotation::Tooth, ..*coefficients }
-}
-
 /// A wheel's body that does not give way.
 pub fn rigid_foundation() -> FoundationCoefficients {
     FoundationCoefficients {

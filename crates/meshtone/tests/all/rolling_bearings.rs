@@ -15,8 +15,6 @@ fn rig(rig: GearboxRig, bearing: &str) -> Scenario {
     let text = gearbox_template(Some(rig)).replace("iso_class = 6", "iso_class = 0");
     let first = format!("[[bearing]]\nkind = \"ball\"\nname = \"ER-10K\"\n{bearing}\n");
     let mut gearbox = Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap();
-    // As the independent solution's.
-    gearbox.meshes.iter_mut().for_each(|mesh| mesh.foundation.rotation = BodyRotation::Tooth);
     gearbox.solver.sampling_rate_hz = 100_000.0;
     gearbox.solver.duration_s = Some(1.0);
     gearbox.sensors.clear();

@@ -15,10 +15,9 @@ fn crack(depth_mm: f64, length_mm: Option<f64>) -> RootCrack {
     RootCrack { depth_mm, angle_deg: 45.0, length_mm }
 }
 
-/// The example's wheels, with bores of 10 mm radius, and with the rotation of the wheels' bodies in the teeth, as the other program has it.
+/// The example's wheels, with bores of 10 mm radius.
 fn wheels() -> (Gears, Teeth) {
-    let mut gears = example_gears();
-    gears.foundation = body_in_the_tooth(&gears.foundation);
+    let gears = example_gears();
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{
-    BodyRotation, Fault, FrequencyResponse, GearPair, GearboxRig, MissingTooth, Profile, Scenario, Sensor,
-    ToothBreakage, gearbox_template,
+    Fault, FrequencyResponse, GearPair, GearboxRig, MissingTooth, Profile, Scenario, Sensor, ToothBreakage,
+    gearbox_template,
 };
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, SimulatedShafts, StatedTurning, resample_to};
 use meshtone::tuning::{
@@ -25,8 +25,6 @@ const MOST_HZ: f64 = 10_000.0;
 /// The machine as its user knows it; its own wheels are another draw.
 fn rig() -> Scenario {
     let mut rig = Scenario::new(GearPair { brake_torque_nm: 20.0, ..GearPair::example() });
-    // The teeth of the book's tables.
-    rig.meshes[0].foundation.rotation = BodyRotation::Tooth;
     rig.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     rig.with_sensors(vec![Sensor::default()])
 }
@@ -180,7 +178,6 @@ fn gearbox() -> Scenario {
     gearbox.faults.clear();
     gearbox.sensors.truncate(1);
     gearbox.wheels.iter_mut().for_each(|wheel| (wheel.iso_class, wheel.din_grade) = (6, 0));
-    gearbox.meshes.iter_mut().for_each(|mesh| mesh.foundation.rotation = BodyRotation::Tooth);
     gearbox.solver.sampling_rate_hz = 1e5;
     gearbox.operation.brake_torque_nm = 100.0;
     gearbox

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use meshtone::scenario::{BodyRotation, Fault, GearPair, MissingTooth, Profile, Scenario};
+use meshtone::scenario::{Fault, GearPair, MissingTooth, Profile, Scenario};
 use meshtone::sensor::Channels;
 use meshtone::signal::{
     AngularSettings, ChainSettings, OrderMapSettings, ShaftPhase, SignalError, SimulatedShafts, StatedFacts,
@@ -19,8 +19,6 @@ fn faulty() -> Scenario {
         ..GearPair::example()
     });
     scenario.solver.sampling_rate_hz = 4e4;
-    // Stiffer teeth show fewer of the signs of a wrong mate.
-    scenario.meshes[0].foundation.rotation = BodyRotation::Tooth;
     scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
     scenario

@@ -211,7 +211,7 @@ fn stiffness_falls_a_little_with_the_depth() {
     }
     let loss = largest(all[4].iter().zip(&all[0]).map(|(worn, sound)| deviation(*worn, *sound)));
     println!("100 µm on both wheels: {:.2} % of a pair's stiffness at most", 100.0 * loss);
-    assert!(loss < 0.006, "{loss}");
+    assert!(loss < 0.005, "{loss}");
 }
 
 /// Rms of the mesh harmonics in the gear's average, kurtosis of its difference signal, and FM4.
@@ -232,12 +232,12 @@ fn indicators(scenario: &Scenario) -> [f64; 3] {
 #[test]
 fn mesh_harmonics_rise_and_local_indicators_do_not() {
     for (model, speed_hz, mesh_g, shape) in [
-        (Model::Linear, 15.0, [1.43, 3.79, 6.46, 14.6], [97.2, 101.5, 103.4, 91.8]),
-        (Model::Linear, 25.0, [6.09, 12.1, 20.0, 39.2], [47.5, 49.3, 50.1, 45.7]),
-        (Model::Linear, 40.0, [7.62, 18.3, 32.9, 78.6], [30.6, 32.1, 32.9, 29.2]),
-        (Model::Contact, 15.0, [0.232, 0.577, 0.845, 1.81], [4.27, 3.31, 3.62, 3.85]),
-        (Model::Contact, 40.0, [0.572, 1.98, 3.41, 8.45], [2.84, 3.38, 3.35, 3.23]),
-        (Model::Contact, 47.0, [1.51, 2.78, 4.88, 16.8], [2.72, 2.64, 2.66, 2.73]),
+        (Model::Linear, 15.0, [2.08, 3.62, 6.22, 14.5], [89.6, 92.5, 93.8, 85.9]),
+        (Model::Linear, 25.0, [6.44, 11.2, 19.2, 39.1], [42.0, 43.4, 44.1, 40.7]),
+        (Model::Linear, 40.0, [14.3, 19.1, 35.5, 92.6], [26.5, 27.5, 27.9, 25.6]),
+        (Model::Contact, 15.0, [0.33, 0.60, 0.85, 1.77], [4.56, 3.75, 3.93, 3.53]),
+        (Model::Contact, 40.0, [0.74, 1.83, 3.22, 8.23], [2.81, 3.28, 3.58, 3.24]),
+        (Model::Contact, 47.0, [1.61, 2.62, 4.77, 16.9], [2.77, 2.62, 2.66, 2.73]),
     ] {
         let all =
             [[0.0, 0.0], [30.0, 15.0], [60.0, 25.0], [100.0, 100.0]].map(|um| graded(model, speed_hz, um));
@@ -268,9 +268,11 @@ fn graded(model: Model, speed_hz: f64, [pinion_um, gear_um]: [f64; 2]) -> [f64; 
 fn a_little_wear_may_lower_the_mesh_harmonics() {
     let (little, some) = ([10.0, 5.0], [60.0, 25.0]);
     for (model, speed_hz, worn_um, sound_g, worn_g) in [
-        (Model::Linear, 55.0, little, 23.3, 22.4),
-        (Model::Contact, 25.0, little, 1.16, 1.13),
-        (Model::Contact, 55.0, some, 5.71, 4.74),
+        (Model::Linear, 25.0, little, 6.45, 6.14),
+        (Model::Linear, 55.0, little, 29.7, 27.6),
+        (Model::Contact, 15.0, little, 0.33, 0.30),
+        (Model::Contact, 25.0, little, 1.10, 1.07),
+        (Model::Contact, 55.0, some, 5.29, 5.07),
     ] {
         let [sound, worn] = [[0.0; 2], worn_um].map(|um| graded(model, speed_hz, um)[0]);
         println!("{} at {speed_hz} Hz, {worn_um:?}: {sound:.3} g, {worn:.3} g", model.name());
@@ -286,7 +288,7 @@ fn one_worn_tooth_is_a_local_fault() {
     let (sound, one) = (of(Vec::new()), of(vec![worn(WheelName::Gear, 5, 60.0)]));
     println!("mesh, kurtosis, FM4: {sound:.2?}, with one worn tooth {one:.2?}");
     for (value, stated) in
-        [(sound[0], 0.572), (one[0], 0.707), (sound[1], 2.84), (one[1], 15.8), (one[2], 15.8)]
+        [(sound[0], 0.74), (one[0], 0.89), (sound[1], 2.81), (one[1], 16.0), (one[2], 16.0)]
     {
         assert!((value / stated - 1.0).abs() < 0.03, "{one:?} after {sound:?}");
     }

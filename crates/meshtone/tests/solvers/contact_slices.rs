@@ -172,7 +172,7 @@ fn the_middle_of_what_bears_acts_as_its_slices_do() {
         ("pit over 5 of 15 mm", 10.0, 0.01, PartialFace { width_mm: 5.0, pit }.into()),
         ("pit over 10 of 15 mm", 10.0, 0.01, PartialFace { width_mm: 10.0, pit }.into()),
         ("pit over 10 of 15 mm, light", 1.0, 0.01, PartialFace { width_mm: 10.0, pit }.into()),
-        ("pit over 10 of 15 mm, heavy", 100.0, 0.025, PartialFace { width_mm: 10.0, pit }.into()),
+        ("pit over 10 of 15 mm, heavy", 100.0, 0.02, PartialFace { width_mm: 10.0, pit }.into()),
         (
             "corner of 5 x 12 mm",
             10.0,

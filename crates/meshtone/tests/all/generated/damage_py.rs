@@ -60,19 +60,28 @@ fn table_class(table: &KeyDescription, keys: &[KeyDescription]) -> String {
     text
 }
 
+/// The key of a wheel names any wheel: a gearbox has others than a pair.
+fn of_any_wheel(mut key: KeyDescription) -> KeyDescription {
+    if key.key == "wheel" {
+        key.kind = KeyKind::Text;
+        key.allowed = "\"pinion\", \"gear\", or the name of a wheel of a gearbox".to_owned();
+    }
+    key
+}
+
 fn damage_class(kind: &DamageKind) -> String {
-    let place = &kind.place;
+    let place: Vec<KeyDescription> = kind.place.iter().cloned().map(of_any_wheel).collect();
     let mut own: Vec<&KeyDescription> = kind.keys.iter().filter(|key| !key.key.contains('.')).collect();
     // A field without a default cannot follow one that has one.
     own.sort_by_key(|key| !key.required);
     let mut text = format!("\n\n@dataclass(frozen=True)\nclass {}:\n", kind.type_name);
-    text.push_str(&docstring(kind.summary, own.iter().copied().chain(place)));
+    text.push_str(&docstring(kind.summary, own.iter().copied().chain(&place)));
     writeln!(text, "    kind: ClassVar[str] = \"{}\"", kind.name).unwrap();
     for key in own {
         let none = if key.required { "" } else { " | None = None" };
         writeln!(text, "    {}: {}{none}", key.key, argument_type(key)).unwrap();
     }
-    for key in place {
+    for key in &place {
         let default =
             if has_default_value(key) { format!(" = {}", key.default) } else { " | None = None".to_owned() };
         writeln!(text, "    {}: {}{default}", key.key, argument_type(key)).unwrap();

@@ -62,7 +62,8 @@ fn tables() -> String {
 /// The keys that another scenario is made with: which there are, so that a misspelt one is found where types are checked.
 fn changes(arguments: &[Argument]) -> String {
     let mut text = "class ScenarioChanges(TypedDict, total=False):\n    \"\"\"What ``Scenario.copy`` changes.\"\"\"\n\n    \
-                    fault: Any\n    faults: Any\n    sensors: Any\n"
+                    fault: Any\n    faults: Any\n    sensors: Any\n    shafts: Any\n    wheels: Any\n    meshes: Any\n    \
+                    bearings: Any\n    operation: Any\n    housing: Any\n    solver: Any\n"
         .to_owned();
     for argument in arguments {
         writeln!(text, "    {}: Any", argument.name).unwrap();
@@ -76,11 +77,12 @@ pub fn text() -> String {
     let mut text = format!(
         "\"\"\"The keys of a scenario.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
          from collections.abc import Mapping, Sequence\nfrom typing import Any, Literal, NoReturn, TypedDict, Union\n\n\
-         import numpy as np\nimport numpy.typing as npt\n\nfrom ._sensor import Sensor\nfrom .faults import Fault\n\n\
+         import numpy as np\nimport numpy.typing as npt\n\nfrom ._sensor import Sensor, SensorPath\nfrom .faults import Fault\n\n\
          Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]\n\
          \"\"\"``time_s`` and ``value``: speed or torque against time.\"\"\"\n"
     );
     text.push_str(&tables());
+    text.push_str(&super::gearbox_keys::classes());
     let in_section = |argument: &&Argument| argument.key.kind != KeyKind::Matrix;
     text.push_str("\n\nSECTION_OF_KEY: dict[str, str] = {\n");
     for argument in arguments.iter().filter(in_section) {

@@ -5,7 +5,7 @@
 
 mod both_wheels;
 mod damage_py;
-mod gearbox_py;
+mod gearbox_keys;
 mod guide;
 mod keys_py;
 mod python;
@@ -40,11 +40,6 @@ fn python_arguments_of_a_scenario() {
 #[test]
 fn python_classes_of_damage() {
     check("python/meshtone/_damage.py", &damage_py::text());
-}
-
-#[test]
-fn python_dictionaries_of_a_gearbox() {
-    check("python/meshtone/_gearbox_keys.py", &gearbox_py::text());
 }
 
 #[test]
