@@ -131,6 +131,9 @@ class Simulation:
     working_pressure_angle_rad: float
     centre_distance_mm: float
     normal_backlash_mm: float
+    face_load_factor: float
+    lean_um: float
+    tilt_product: float
     fine_step_rev: float
     coarse_step_rev: float
     pinion_revolutions: float
