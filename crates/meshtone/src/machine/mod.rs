@@ -17,15 +17,15 @@ pub use body::WheelBody;
 pub(crate) use body::body_stiffness_nm_per_rad;
 pub use gearbox::{
     Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft,
-    Housing, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
+    Housing, HousingModes, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
 };
 pub(crate) use modes::KnownModes;
 pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
+#[cfg(feature = "internals")]
+pub use parts::{AcrossLine, LineOfAction, Spring};
 pub use parts::{Axis, Drive, Machine, Place};
 pub(crate) use parts::{Leans, weights};
-#[cfg(feature = "internals")]
-pub use parts::{LineOfAction, Spring};
 pub use rig::{DampingRatio, Rig, RigParts, Shaft, WheelInertia};
 pub(crate) use rig_machine::turn_planes;
 pub use rig_machine::{
