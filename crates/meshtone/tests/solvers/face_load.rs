@@ -9,11 +9,12 @@ use nalgebra::{DMatrix, DVector};
 /// Springs along each face.
 const SPRINGS: usize = 400;
 
-/// The template's gearbox on shafts of one diameter.
+/// The template's gearbox on shafts of one diameter, in a rigid housing as the independent program's.
 fn on_shafts(diameter_mm: f64, rotation: BodyRotation) -> Scenario {
     let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
-    let shafts = &mut gearbox.structure.shafts_mut().unwrap().shafts;
-    shafts.iter_mut().for_each(|shaft| shaft.radius_mm = Some(diameter_mm / 2.0));
+    let of = gearbox.structure.shafts_mut().unwrap();
+    of.housing.as_mut().unwrap().modes.per_khz = 0.0;
+    of.shafts.iter_mut().for_each(|shaft| shaft.radius_mm = Some(diameter_mm / 2.0));
     gearbox.meshes.iter_mut().for_each(|mesh| mesh.foundation.rotation = rotation);
     gearbox
 }
