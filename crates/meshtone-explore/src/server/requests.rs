@@ -113,12 +113,12 @@ async fn compute<T: Send + 'static>(
 ///
 /// # Arguments
 /// * `read` - reads the scenario of a request
-async fn compute_of<S: 'static, T: Send + 'static>(
+async fn compute_of<T: Send + 'static>(
     shared: &Arc<Shared>,
     purpose: &str,
     body: &[u8],
-    read: impl FnOnce(&Value) -> Result<S, Refusal> + Send + 'static,
-    work: impl FnOnce(&AskedRequest, &S, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
+    read: impl FnOnce(&Value) -> Result<Scenario, Refusal> + Send + 'static,
+    work: impl FnOnce(&AskedRequest, &Scenario, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
     let asked = AskedRequest::of(body)?;
     let turn = shared.latest.note(&format!("{purpose} {}", asked.page), asked.number);

@@ -142,6 +142,15 @@ impl Keys for Operation {
                 .otherwise("none")
                 .rule("likewise, values ≥ 0")
                 .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }"),
+            row(
+                "torque_ripple",
+                "",
+                "harmonics of the brake's torque over the rotation θ of its shaft, T (1 + Σ a cos(hθ + ψ))",
+                field!(torque_ripple),
+            )
+            .otherwise("none")
+            .rule("amplitudes add up to less than 1")
+            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
         ]
     }
 }
@@ -165,19 +174,9 @@ impl Operation {
         )
         .required()
         .range(Range::not_negative().implausible_above(1e9));
-        let own = [
-            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
-                .range(Range::positive().implausible_above(1e9)),
-            row(
-                "torque_ripple",
-                "",
-                "harmonics of the brake's torque over the rotation θ of its shaft, T (1 + Σ a cos(hθ + ψ))",
-                field!(torque_ripple),
-            )
-            .otherwise("none")
-            .rule("amplitudes add up to less than 1")
-            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
-        ];
+        let own =
+            [row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
+                .range(Range::positive().implausible_above(1e9))];
         let varying = rows_but(&["pinion_speed_hz", "brake_torque_nm"]);
         [input, torque].into_iter().chain(varying).chain(own).collect()
     }

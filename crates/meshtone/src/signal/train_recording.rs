@@ -50,6 +50,22 @@ impl TrainTurning {
         })
     }
 
+    /// The shaft whose phase is known with that phase, and what is stated about it: of what was simulated the input's.
+    ///
+    /// # Arguments
+    /// * `train` - the machine
+    ///
+    /// # Errors
+    /// Fewer than two samples.
+    pub fn known_phase(&self, train: &GearTrain) -> Result<(usize, ShaftPhase, StatedTurning), SignalError> {
+        match self {
+            Self::Shaft { shaft, phase, stated } => Ok((*shaft, phase.clone(), *stated)),
+            Self::SimulatedPair(shafts) => {
+                Ok((train.input(), shafts.phase(WheelName::Pinion)?, StatedTurning::Other))
+            }
+        }
+    }
+
     /// Number of the shaft whose phase is known: of what was simulated the input.
     pub fn known_shaft(&self, train: &GearTrain) -> usize {
         match self {
