@@ -298,6 +298,19 @@ impl TrainRecording<'_> {
         }
     }
 
+    /// Processes the channel for one wheel, and looks for nothing else.
+    ///
+    /// # Arguments
+    /// * `wheel` - its number
+    /// * `settings` - how
+    ///
+    /// # Errors
+    /// Those of [`Self::process`], of this wheel.
+    pub fn process_one(&self, wheel: usize, settings: &TrainSettings) -> Result<WheelRecords, SignalError> {
+        check_channel(self.signal)?;
+        self.process_wheel(wheel, &self.angular(wheel, &settings.angular)?, settings)
+    }
+
     /// The records of a wheel.
     fn process_wheel(
         &self,
