@@ -275,6 +275,9 @@ class GearboxWheel(TypedDict, total=False):
         (-) Its largest single pitch deviation over its tolerance f_p. Allowed: 0…1.
     run_out_share : float
         (-) Its run-out over its tolerance F_r. Allowed: 0…1.
+    slope_wobble : float
+        (-) The profile slope that varies once a revolution, over the rms deviation of the wheel's profiles. Allowed:
+        0…3.
     helix_share : float
         (-) Its largest helix slope deviation, of either sign, over its tolerance f_Hβ. Allowed: 0…1.
     profile_errors_mm : array of float64, shape (100, teeth)
@@ -313,6 +316,7 @@ class GearboxWheel(TypedDict, total=False):
     tooth_share: float
     pitch_share: float
     run_out_share: float
+    slope_wobble: float
     helix_share: float
     profile_errors_mm: npt.ArrayLike
     cumulative_pitch_um: Sequence[float]
@@ -365,6 +369,10 @@ class GearboxMesh(TypedDict, total=False):
     damping_ratio : float
         (-) The damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh
         stiffness. Allowed: ≥ 0, < 1.
+    friction : float
+        (-) The coefficient of friction of the flanks; 0 for frictionless ones. Allowed: 0…0.5.
+    random_force : float
+        (-) The size of the random force across the line of action, modulated by the load; 0 for none. Allowed: 0…10.
     """
 
     wheels: Sequence[str]
@@ -382,6 +390,8 @@ class GearboxMesh(TypedDict, total=False):
     foundation: Foundation
     phase: float
     damping_ratio: float
+    friction: float
+    random_force: float
 
 
 class BearingDefect(TypedDict, total=False):
@@ -511,6 +521,27 @@ class Foot(TypedDict, total=False):
     stiffness_n_per_m: float
 
 
+class Modes(TypedDict, total=False):
+    """The table ``modes`` of the section ``[housing]`` of a gearbox.
+
+    Attributes
+    ----------
+    per_khz : float
+        (1/kHz) How many modes it has in a kHz, up to 9 kHz; 0 for a rigid housing. Allowed: 0…20.
+    first_hz : float
+        (Hz) The frequency from which on it has modes. Allowed: > 0, ≤ 9000.
+    damping_ratio : float
+        (-) The damping ratio of its modes. Allowed: ≥ 0, < 1.
+    seed : int
+        The seed of their frequencies and shapes: which housing it is. Allowed: whole number.
+    """
+
+    per_khz: float
+    first_hz: float
+    damping_ratio: float
+    seed: int
+
+
 class GearboxHousing(TypedDict, total=False):
     """The section ``[housing]`` of a gearbox.
 
@@ -524,12 +555,15 @@ class GearboxHousing(TypedDict, total=False):
         The feet on which it stands, one by one.
     damping_ratio : float
         (-) The damping ratio of the feet. Allowed: ≥ 0, < 1.
+    modes : Modes
+        The modes in which it vibrates between its feet and the seats.
     """
 
     mass_kg: float
     inertia_kgm2: float
     feet: Sequence[Foot]
     damping_ratio: float
+    modes: Modes
 
 
 class Ripple(TypedDict, total=False):
@@ -537,14 +571,17 @@ class Ripple(TypedDict, total=False):
 
     Attributes
     ----------
+    shaft : str
+        The name of the shaft with whose rotation it comes.
     order : float
-        (-) The number of its periods per revolution of the brake's shaft. Allowed: > 0, ≤ 10000.
+        (-) The number of its periods per revolution of that shaft. Allowed: > 0, ≤ 10000.
     amplitude : float
-        (-) Its amplitude as a part of the torque. Allowed: ≥ 0, < 1.
+        (-) Its amplitude as a part of the torque. Allowed: 0…1.2.
     phase_deg : float
         (°) Its phase at the start.
     """
 
+    shaft: str
     order: float
     amplitude: float
     phase_deg: float
@@ -575,8 +612,8 @@ class GearboxOperation(TypedDict, total=False):
     brake_inertia_kgm2 : float
         (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9.
     torque_ripple : sequence of Ripple
-        Harmonics of the brake's torque over the rotation θ of its shaft, T (1 + Σ a cos(hθ + ψ)). Allowed: amplitudes
-        add up to less than 1.
+        Harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ)). Allowed: amplitudes add
+        up to 1.2 at most.
     """
 
     input_speed_hz: float

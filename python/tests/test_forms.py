@@ -189,21 +189,3 @@ def test_misaligned_shafts_of_a_gearbox_load_the_face_as_those_of_a_pair() -> No
     # The wheels tilt a little differently under the uneven load: on beams in bearings, and in a rig.
     assert at_rest[0] == pytest.approx(at_rest[1], rel=0.01)
     assert np.mean(at_rest[0] - at_rest[2]) > 5.0
-
-
-@pytest.mark.filterwarnings("ignore::meshtone.MeshtoneWarning")
-def test_a_ripple_of_the_torque_of_a_pair() -> None:
-    """Slow beside the torsional vibration: the mesh's force follows the brake's torque."""
-    pair = mt.Scenario(
-        **SLOW, pinion_speed_hz=4, torque_ripple=[{"order": 2.0, "amplitude": 0.2}], sampling_rate_hz=1e4, pinion_revolutions=38
-    )
-    force_n = mt.simulate(pair).mesh_force_n
-    static_n = 10 / (3e-3 * 38 / 2 * np.cos(np.radians(20)))
-    # 38 revolutions of the pinion are 17 of the brake.
-    assert line(force_n, 2 * 17) / static_n == pytest.approx(0.2, rel=0.03)
-    assert line(force_n, 2 * 38) / static_n < 0.01
-    [batched] = mt.simulate_many([pair], channels=["mesh_force_n"])
-    assert np.array_equal(batched.mesh_force_n, force_n.astype(np.float32))
-    assert mt.Scenario.from_toml(pair.to_toml()) == pair
-    with pytest.raises(ValueError, match="operation.torque_ripple.*add up to less than 1"):
-        pair.copy(torque_ripple=[{"order": 1.0, "amplitude": 0.6}, {"order": 2.0, "amplitude": 0.6}])

@@ -61,6 +61,8 @@ fn of_mesh(mesh: &MeshSummary) -> Vec<(String, String)> {
         mesh.transmission_error_um
             .map(|error| ("transmission error, µm".to_owned(), range([error.min, error.mean, error.max]))),
     );
+    let efficiency = mesh.efficiency.map(|part| format!("{:.2} %", 100.0 * part));
+    rows.extend(efficiency.map(|percent| ("efficiency".to_owned(), percent)));
     rows
 }
 

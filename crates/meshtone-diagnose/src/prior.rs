@@ -257,6 +257,9 @@ impl Prior {
         (operation.pinion_speed_hz, operation.brake_torque_nm) = (speed_hz, load_nm);
         // Other wheels than those of the rig's own, and the sensor anywhere where no place is stated.
         (scenario.seed, scenario.wheels_seed) = (seed, None);
+        if let Some(housing) = scenario.housing_mut() {
+            housing.modes.seed = seed;
+        }
         if self.has_any_sensor {
             let places = scenario.sensor_places();
             let at = ((place * places.len() as f64) as usize).min(places.len().saturating_sub(1));

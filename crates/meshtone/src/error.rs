@@ -280,6 +280,7 @@ warning_kinds! {
     Resonance "resonance" "the mesh force is far beyond what a machine survives";
     MeshResonance "mesh-resonance" "a mesh frequency, or twice or three times it, is within 1 % of a natural frequency";
     BrakedRotation "braked-rotation" "the published model's damping brakes the whole machine, and the mean mesh force differs from the load's";
+    TorqueReverses "torque-reverses" "the brake's torque reverses at times, so that teeth part and meet again";
     OtherSpeed "other-speed" "a shaft does not turn at the speed that it is driven at";
     StepError "step-error" "the step changes the rms by more than 2 %";
 }

@@ -75,7 +75,6 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
             "gears.tip_chamfer_mm",
             "gears.foundation",
             "operation.speed_profile_hz",
-            "operation.torque_ripple",
             "quality.iso_class",
             "quality.tooth_share",
             "quality.pitch_share",

@@ -82,6 +82,16 @@ pub enum Purpose {
     BearingSlip = 34,
     /// Speed and load of a record of a reference set; index: record.
     DiagnosisOperation = 35,
+    /// Natural frequencies of a gearbox's housing; index: mode.
+    HousingFrequency = 36,
+    /// Shapes of a housing's modes at a bearing's seat, mode by mode along x, y and z; index: bearing.
+    HousingShapeAtSeat = 37,
+    /// The same at a sensor on the housing; index: what stands for its place.
+    HousingShapeAtSensor = 38,
+    /// Random part of the force across a mesh, sample by sample; index: mesh.
+    RandomForce = 39,
+    /// Wander of the motor's speed, sample by sample; index: 0.
+    SpeedWander = 40,
 }
 
 /// A sequence of random numbers.

@@ -5,6 +5,7 @@ mod equations;
 mod machine;
 mod measured;
 mod meshes;
+pub(crate) mod random_force;
 mod severities;
 mod wheels;
 
@@ -19,6 +20,7 @@ use web_time::Instant;
 pub use equations::Equations;
 pub use machine::AssembledMachine;
 use measured::WantedChannels;
+use random_force::RandomForces;
 pub use wheels::MeshedPair;
 use wheels::{healthy_teeth, sound_pair};
 
@@ -29,7 +31,7 @@ use crate::machine::{DecayingMode, Drive, KnownModes};
 use crate::mesh::{Contact, Mesh, Pairs};
 use crate::operation::{Motion, TimeGrid, TorqueHarmonic};
 use crate::published::Published;
-use crate::scenario::{Layout, MemoryLimit, Ripple, Scenario};
+use crate::scenario::{GearboxShaft, Layout, MemoryLimit, Ripple, Scenario};
 use crate::sensor::{Channels, ContactFigures, Sensor, SignalSource};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, ModalMachine, Output, Recorder, StepCounts};
@@ -69,6 +71,8 @@ pub struct Stages {
     pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
     /// Most memory that the simulation may need, and one that repeats it.
     pub(crate) memory_limit: MemoryLimit,
+    /// The random forces of the run, once the meshes' forces are known; none where there are none.
+    pub(crate) random_forces: Option<RandomForces>,
 }
 
 /// Time that a stage took.
@@ -206,6 +210,7 @@ pub(crate) fn stages_with(
         timings: clock.laps,
         warnings_of_scenario,
         memory_limit,
+        random_forces: None,
     })
 }
 
@@ -309,6 +314,23 @@ fn start_of_settling(time: &TimeGrid, settle_tolerance: f64, slowest: &DecayingM
 }
 
 impl Simulation {
+    /// (-) Part of the mean power of a mesh's driving wheel that the friction of the flanks leaves; none of frictionless flanks, and where no power
+    /// passes.
+    ///
+    /// # Arguments
+    /// * `mesh` - its number
+    pub fn efficiency(&self, mesh: usize) -> Option<f64> {
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let loss_w = self.channels.of(SignalSource::FrictionLoss(mesh));
+        let driving_rad_per_s = TAU
+            * self.stages.scenario.operation.pinion_speed_hz
+            * self.stages.layout.driving_ratio(mesh).abs();
+        let base_radius_m = self.stages.pairs.get(mesh)?.teeth.pinion.base_radius_mm * 1e-3;
+        let power_w =
+            mean(self.channels.of(SignalSource::MeshForce(mesh))) * base_radius_m * driving_rad_per_s;
+        (!loss_w.is_empty() && power_w > 0.0).then(|| 1.0 - mean(loss_w) / power_w)
+    }
+
     /// How the teeth of the first mesh touched; none where the flanks may pull.
     pub fn contact_figures(&self) -> Option<ContactFigures> {
         let force_n = self.channels.of(SignalSource::MeshForce(0));
@@ -404,8 +426,13 @@ impl Stages {
             });
             of_brake.unwrap_or(1.0)
         });
+        let ratio = |ripple: &Ripple| {
+            let is_named = |shaft: &&GearboxShaft| Some(&shaft.name) == ripple.shaft.as_ref();
+            let shaft = self.scenario.shafts().iter().position(|shaft| is_named(&shaft));
+            shaft.map_or(brake, |shaft| self.layout.ratios[shaft].value().abs())
+        };
         let harmonic = |ripple: &Ripple| TorqueHarmonic {
-            order: ripple.order * brake,
+            order: ripple.order * ratio(ripple),
             amplitude: ripple.amplitude,
             phase_rad: ripple.phase_deg.to_radians(),
         };
@@ -479,14 +506,15 @@ impl Stages {
     /// What the sensors show, and everything together.
     fn simulated(self, (channels, counts): (Channels, StepCounts), mut clock: Clock) -> Simulation {
         clock.lap("time integration");
-        let channels = self.measured(channels);
-        if !self.sensors.is_empty() {
+        let stages = self.with_random_forces_of(&channels);
+        let channels = stages.measured(channels);
+        if !stages.sensors.is_empty() {
             clock.lap("sensors");
         }
-        let timings = self.timings.iter().copied().chain(clock.laps).collect();
+        let timings = stages.timings.iter().copied().chain(clock.laps).collect();
         let StepCounts { steps, iterations, most_iterations, searched } = counts;
         let step_counts = [steps, iterations, most_iterations, searched];
-        Simulation { stages: self, channels, step_counts, timings }
+        Simulation { stages, channels, step_counts, timings }
     }
 
     /// (rev) Simulated revolutions of the motor at the nominal speed, settling included.

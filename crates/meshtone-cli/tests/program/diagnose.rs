@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::fs;
 use std::process::Stdio;
 
+use crate::plain::plain;
 use meshtone::scenario::{Scenario, gearbox_template};
 use meshtone_io::signals::read_signals;
 use serde_json::Value;
@@ -214,7 +215,7 @@ fn what_is_refused() {
 
 /// A gearbox of two stages that is quick to simulate.
 fn small_gearbox() -> Scenario {
-    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    let mut gearbox = plain(Scenario::from_toml(&gearbox_template(None)).unwrap());
     for (wheel, teeth) in gearbox.wheels.iter_mut().zip([20, 50, 20, 60]) {
         wheel.teeth = teeth;
     }

@@ -14,6 +14,8 @@ mod indicators_refused;
 mod init;
 mod killed;
 mod path;
+#[path = "../../../meshtone/tests/plain.rs"]
+mod plain;
 mod sensors;
 mod simulate;
 mod support;

@@ -21,6 +21,8 @@ pub struct MeshSummary {
     pub helix: Option<HelixSummary>,
     /// (-) Face load factor K_Hβ of sound teeth under the nominal load; only under `contact`.
     pub face_load_factor: Option<f64>,
+    /// (-) Part of the driving wheel's mean power that the friction of the flanks leaves; only with friction.
+    pub efficiency: Option<f64>,
     /// (N) Force that holds the nominal torque.
     pub static_force_n: f64,
     /// Over a revolution of the driven wheel.
@@ -57,6 +59,7 @@ impl MeshSummary {
             contact_ratio: pair.teeth.contact.contact_ratio,
             helix: HelixSummary::of(gears, pair.static_force_n),
             face_load_factor: curve.face_load_factor,
+            efficiency: simulation.efficiency(number),
             static_force_n: pair.static_force_n,
             mesh_stiffness: MeshStiffness::of(&curve.stiffness_n_per_mm),
             mesh_force: MeshForce::of(force_n, stages.scenario.model.teeth_part()),

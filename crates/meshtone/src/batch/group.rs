@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::machine::KnownModes;
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::simd::InstructionSet;
+use crate::simulate::random_force::WithMeshForces;
 use crate::simulate::{Stages, stages_with};
 use crate::solver::{LANES, Output, Problem, Recorder, integrate_side_by_side};
 
@@ -18,8 +19,9 @@ pub(super) type NumberedResult<T> = (usize, Result<T, Error>);
 struct Ready<R> {
     index: usize,
     stages: Stages,
+    /// Those that are asked for, and behind them those of the random forces.
     outputs: Vec<Output>,
-    recorder: R,
+    recorder: WithMeshForces<R>,
 }
 
 /// Simulates at most [`LANES`] scenarios that go together.
@@ -38,16 +40,19 @@ pub(super) fn simulate_group<K: Keep>(
         });
         match prepared {
             Ok((stages, outputs)) => {
-                let recorder = keep.recorder(&stages);
-                ready.push(Ready { index, stages, outputs, recorder });
+                let forces = stages.outputs_of_random_forces();
+                let recorder = WithMeshForces::new(keep.recorder(&stages), outputs.len(), forces.len());
+                ready.push(Ready { index, stages, outputs: [outputs, forces].concat(), recorder });
             }
             Err(error) => results.push((index, Err(error.into()))),
         }
     }
     let divergences = integrate_ready(&mut ready, instructions);
     for (ready, divergence) in ready.into_iter().zip(divergences) {
-        let kept = divergence.map(|()| keep.keep(ready.index, ready.stages, ready.recorder));
-        results.push((ready.index, kept));
+        let Ready { index, stages, recorder: WithMeshForces { inner, mesh_force_n, .. }, .. } = ready;
+        let forces: Vec<&[f64]> = mesh_force_n.iter().map(Vec::as_slice).collect();
+        let kept = divergence.map(|()| keep.keep(index, stages.with_random_forces(&forces), inner));
+        results.push((index, kept));
     }
     results
 }

@@ -16,15 +16,15 @@ mod turning_force;
 pub use body::WheelBody;
 pub use gearbox::{
     Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft,
-    Housing, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
+    Housing, HousingModes, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
 };
 pub(crate) use modes::KnownModes;
 pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
 pub(crate) use parts::weights;
-pub use parts::{Axis, Drive, Machine, Place};
 #[cfg(feature = "internals")]
-pub use parts::{LineOfAction, Spring};
+pub use parts::{AcrossLine, LineOfAction, Spring};
+pub use parts::{Axis, Drive, Machine, Place};
 pub use rig::{DampingRatio, Rig, RigParts, Shaft, WheelInertia};
 pub(crate) use rig_machine::turn_planes;
 pub use rig_machine::{

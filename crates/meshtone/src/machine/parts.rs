@@ -51,6 +51,18 @@ pub struct LineOfAction {
     pub at_middle: DVector<f64>,
     /// (1/m) What is added per m along the face.
     pub per_m: DVector<f64>,
+    /// How a force that slides across the line of action acts; none of a mesh without friction.
+    pub across: Option<AcrossLine>,
+}
+
+/// How a force across a line of action acts on the two wheels in turned coordinates: that of friction, which pushes the driving wheel along q, n turned
+/// by a quarter in the transverse section, and the driven one against it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AcrossLine {
+    /// Generalised force per N that acts at the pitch point.
+    pub at_pitch_point: DVector<f64>,
+    /// (m) What is added per N and m by which the contact point lies beyond the pitch point, along n.
+    pub per_m: DVector<f64>,
 }
 
 /// What drives a shaft or brakes it.

@@ -274,7 +274,7 @@ fn line_of_action(gears: &Gears, teeth: &Teeth, coordinates: usize) -> LineOfAct
         at_middle[psi] = about_y * cos;
         per_m[phi] = side;
     }
-    LineOfAction { at_middle, per_m }
+    LineOfAction { at_middle, per_m, across: None }
 }
 
 /// Where a sensor can sit; the sensor that every simulation has is on the pinion's support. Where the supports are held, every sensor

@@ -61,6 +61,9 @@ pub struct PairsBlock {
     pub(crate) corners: Vec<[CornerBlock; 2]>,
     /// Of each place, the classes of its pairs, each from a sample on; none of spur teeth.
     pub(crate) classes: Vec<Vec<(usize, usize)>>,
+    /// (-, m) Of each spring, friction across the line of action per force along it and its moment about the pitch point, of any value where
+    /// there is no pair; none without friction.
+    pub(crate) sliding: Vec<[Vec<f64>; 2]>,
 }
 
 /// One corner of a spring at successive samples: as [`CornerAt`](super::law::CornerAt).
@@ -85,6 +88,8 @@ impl PairsBlock {
         for values in self.stiffness.iter_mut().chain(&mut self.offset).chain(of_corners) {
             values.resize(samples, 0.0);
         }
+        self.sliding.resize_with(if mesh.has_friction() { springs } else { 0 }, Default::default);
+        self.sliding.iter_mut().flatten().for_each(|values| values.resize(samples, 0.0));
         self.classes.iter_mut().for_each(Vec::clear);
         self.face_centre.resize(if tilts { samples } else { 0 }, 0.0);
     }
@@ -110,7 +115,10 @@ impl PairsBlock {
 /// Forcing of one simulation, block by block.
 pub struct Forcing<'a> {
     motion: Motion<'a>,
+    /// Whether motor and brake are steady.
     is_steady: bool,
+    /// Whether the motor is, so that all wheels turn evenly but for their vibration.
+    turns_evenly: bool,
     /// Number of the next sample.
     sample: usize,
     samples_per_revolution: f64,
@@ -131,7 +139,7 @@ impl<'a> Forcing<'a> {
     /// * `motion` - motor and brake from the start
     /// * `time` - division of time
     /// * `nominal` - (Hz, N m) nominal speed and torque
-    /// * `first_sample` - beyond 0 only while motor and brake are steady
+    /// * `first_sample` - beyond 0 only while the motor is steady
     /// * `meshes` - each mesh, with the deviations of its flanks
     pub fn new(
         motion: Motion<'a>,
@@ -140,7 +148,8 @@ impl<'a> Forcing<'a> {
         first_sample: usize,
         meshes: impl IntoIterator<Item = (&'a Mesh, PairDeviations<'a>)>,
     ) -> Self {
-        let is_steady = motion.is_steady() && motion.has_constant_torque();
+        let turns_evenly = motion.is_steady();
+        let is_steady = turns_evenly && motion.has_constant_torque();
         let meshes = meshes.into_iter().map(|(mesh, deviations)| {
             let turning = mesh.turning;
             let per_revolution = mesh.points_per_pitch as f64 * turning.pitches_per_revolution;
@@ -148,7 +157,7 @@ impl<'a> Forcing<'a> {
             let points_per_sample = per_revolution / time.samples_per_pinion_revolution as f64;
             let every_sample_is_a_point =
                 turning.first_pitch == 0.0 && (points_per_sample - 1.0).abs() < ROUNDING;
-            let reading = match (is_steady, every_sample_is_a_point) {
+            let reading = match (turns_evenly, every_sample_is_a_point) {
                 (true, true) => Reading::EveryPoint,
                 (true, false) => Reading::BetweenPoints { points_per_sample },
                 (false, _) => Reading::AnyMotion,
@@ -156,8 +165,9 @@ impl<'a> Forcing<'a> {
             MeshForcing::new(mesh, &deviations, time.step_s(), (reading, points_per_sample))
         });
         Self {
-            motion,
+            motion: motion.starting_at(first_sample),
             is_steady,
+            turns_evenly,
             sample: first_sample,
             samples_per_revolution: time.samples_per_pinion_revolution as f64,
             step_s: time.step_s(),
@@ -230,7 +240,7 @@ impl<'a> Forcing<'a> {
         for ([cos, sin], shaft) in block.turning.iter_mut().zip(&mut self.turning_forces) {
             cos.clear();
             sin.clear();
-            if self.is_steady {
+            if self.turns_evenly {
                 shaft.turn_evenly(samples, 1.0 / self.samples_per_revolution);
                 let factor = shaft.factor(TAU * self.nominal_speed_hz);
                 let first = shaft.direction(self.sample as f64 / self.samples_per_revolution);
@@ -664,6 +674,11 @@ impl<'a> MeshForcing<'a> {
                 block.offset[spring][set[place]..from].fill(0.0);
                 block.stiffness[spring][from..until]
                     .copy_from_slice(&part.stiffness[point..point + until - from]);
+                if let Some(sliding) = block.sliding.get_mut(spring) {
+                    for (values, table) in sliding.iter_mut().zip(&self.mesh.sliding[slice]) {
+                        values[from..until].copy_from_slice(&table[point..point + until - from]);
+                    }
+                }
                 let offsets = &mut block.offset[spring][from..until];
                 let mut terms =
                     part.offsets.iter().chain(&alike).map(|(table, begin)| &table[begin + point..]);
@@ -831,6 +846,11 @@ impl<'a> MeshForcing<'a> {
                         offsets[k] = corner.offset_m(point) + parts.alike_between(index, part);
                     }
                 }
+                for (sliding, tables) in block.sliding.iter_mut().skip(first_spring).zip(&mesh.sliding) {
+                    for (values, table) in sliding.iter_mut().zip(tables) {
+                        values[k] = between(table, index, part);
+                    }
+                }
                 for (spring, [stiffness, offset]) in (first_spring..).zip(parts.between_points(index, part)) {
                     block.stiffness[spring][k] = stiffness;
                     block.offset[spring][k] =
@@ -896,6 +916,11 @@ impl<'a> MeshForcing<'a> {
                     + self.gear.at_position_m(gear_tooth, position)
                     + eccentric
                     - between(here.separation_m, next.separation_m);
+                for (sliding, tables) in block.sliding.iter_mut().skip(place).zip(&mesh.sliding) {
+                    for (values, table) in sliding.iter_mut().zip(tables) {
+                        values[k] = between(table[index], table[index + 1]);
+                    }
+                }
                 block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
                 block.offset[place][k] = self.leading(offset, pair, &mut before);
                 self.before[place] = before;

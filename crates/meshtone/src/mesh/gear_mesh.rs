@@ -10,6 +10,7 @@ use super::law::{Contact, CornerLaw, MeshLaw, Springs, deflection_at_rest};
 use super::pair::Pairs;
 use super::path_table::{AlongPath, CornerTable, PairState, PairTables, TipShape, share_on_path};
 use super::sequence::{PairKind, PairSequence};
+use super::sliding::Friction;
 use super::window::{Window, place_on_face};
 use crate::machine::ClosedMesh;
 
@@ -122,6 +123,11 @@ pub struct Mesh {
     pressed_m: Vec<f64>,
     /// Sound pairs of helical teeth along their path; none of spur wheels.
     along_path: Option<AlongPath>,
+    /// Friction of the flanks; none of frictionless ones.
+    friction: Option<Friction>,
+    /// (-, m) Of each slice, friction across the line of action per force along it and its moment about the pitch point, at every point of a
+    /// pair; empty without friction.
+    pub(super) sliding: Vec<[Vec<f64>; 2]>,
 }
 
 /// A class of pairs, point by point.
@@ -165,6 +171,8 @@ pub(crate) struct MeshParameters {
     pub(crate) face: FaceForm,
     /// (m) Face width.
     pub(crate) face_width_m: f64,
+    /// Friction of the flanks; none of frictionless ones.
+    pub(crate) friction: Option<Friction>,
 }
 
 impl Mesh {
@@ -199,6 +207,7 @@ impl Mesh {
             slope,
             face,
             face_width_m,
+            friction,
         } = parameters;
         let points_per_pitch = points_per_pitch.get();
         let per_pitch = points_per_pitch as f64;
@@ -257,6 +266,12 @@ impl Mesh {
             states.map(|(state, at)| share(*at) * state.stiffness_n_per_m).sum::<f64>() / per_pitch
         };
         let mean_stiffness_n_per_m = mean_stiffness(&classes);
+        let sliding = (friction.iter())
+            .flat_map(|friction| {
+                let of_slice = |slice| friction.tabulate([begins, ends], &positions, face.window(slice));
+                (0..face.slices()).map(of_slice).collect::<Vec<_>>()
+            })
+            .collect();
         let mut mesh = Self {
             points_per_pitch,
             sequence,
@@ -274,6 +289,8 @@ impl Mesh {
             turning,
             pressed_m: Vec::new(),
             along_path,
+            friction,
+            sliding,
         };
         match slope {
             Some(slope) if mesh.slices() == 1 => {
@@ -381,6 +398,22 @@ impl Mesh {
             if class.corners.is_empty() { none } else { laws.collect() }
         };
         if self.has_corners() { self.classes.iter().flat_map(of_class).collect() } else { Vec::new() }
+    }
+
+    /// Whether its flanks rub.
+    pub(crate) fn has_friction(&self) -> bool {
+        self.friction.is_some()
+    }
+
+    /// (-, m) Of each of [`Self::corner_laws`], friction across the line of action per force along it, and its moment about the pitch point.
+    pub(crate) fn sliding_of_corner_laws(&self) -> Vec<[f64; 2]> {
+        let Some(friction) = self.friction.filter(|_| self.has_corners()) else { return Vec::new() };
+        let of_class = |class: &PairTable| -> Vec<[f64; 2]> {
+            let none = vec![[0.0; 2]; 2 * self.slices()];
+            let places = class.corners.iter().flatten().map(|corner| friction.at(corner.place));
+            if class.corners.is_empty() { none } else { places.collect() }
+        };
+        self.classes.iter().flat_map(of_class).collect()
     }
 
     /// (N) The part of the nominal load that a slice of a pair bears: its weight where the place of the load along the face is found.
@@ -567,7 +600,7 @@ fn deflection_of_springs<'a>(
     let can_touch = |state: &&PairState| state.stiffness_n_per_m > 0.0;
     let (stiffness, offset): (Vec<f64>, Vec<f64>) =
         states.filter(can_touch).map(|state| (state.stiffness_n_per_m, -state.separation_m)).unzip();
-    let springs = Springs { stiffness: &stiffness, offset: &offset, corners: &[], laws: &[] };
+    let springs = Springs::frictionless(&stiffness, &offset, &[], &[]);
     deflection_at_rest(contact, springs, force_n)
 }
 

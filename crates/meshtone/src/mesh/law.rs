@@ -19,6 +19,7 @@
 
 use super::corner::TERMS;
 use super::forcing::{CornerBlock, PairsBlock};
+use super::gear_mesh::Mesh;
 use crate::simd::{Instructions, Lanes};
 
 /// How two flanks touch.
@@ -286,10 +287,27 @@ pub(crate) struct Springs<'a> {
     pub(crate) stiffness: &'a [f64],
     /// (m) What deviations, damage and separation add to the deflection, with the damping's lead.
     pub(crate) offset: &'a [f64],
+    /// Friction across the line of action per force of each, with the sense of its sliding, and (m) its arm beyond the pitch point times that;
+    /// none without friction.
+    pub(crate) sliding: [&'a [f64]; 2],
     /// What helical teeth have outside their path.
     pub(crate) corners: &'a [CornerAt],
     /// The laws of these.
     pub(crate) laws: &'a [CornerLaw],
+    /// Of each law what `sliding` is of springs.
+    pub(crate) sliding_of_laws: &'a [[f64; 2]],
+}
+
+impl<'a> Springs<'a> {
+    /// Those of frictionless flanks; arguments as the fields.
+    pub(crate) fn frictionless(
+        stiffness: &'a [f64],
+        offset: &'a [f64],
+        corners: &'a [CornerAt],
+        laws: &'a [CornerLaw],
+    ) -> Self {
+        Self { stiffness, offset, sliding: [&[]; 2], corners, laws, sliding_of_laws: &[] }
+    }
 }
 
 /// Springs that are summed at once.
@@ -298,14 +316,18 @@ const AT_ONCE: usize = 4;
 /// The springs of a mesh at successive samples, sample by sample.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SpringSamples {
-    /// Numbers of a sample: stiffnesses, then offsets, with zeros up to whole sums.
+    /// Numbers of a sample: stiffnesses, then offsets, and with friction both numbers of sliding, with zeros up to whole sums.
     values: Vec<f64>,
     springs: usize,
+    /// How many numbers a spring has.
+    per_spring: usize,
     /// The corners that can touch, sample by sample, and where those of each sample end.
     corners: Vec<CornerAt>,
     corners_until: Vec<usize>,
     /// The laws of all corners of the mesh.
     laws: Vec<CornerLaw>,
+    /// Of each law the friction of what it carries, as of [`Springs::sliding_of_laws`].
+    sliding_of_laws: Vec<[f64; 2]>,
     /// (m) Where along the face the load acts at each sample; empty where that is the middle throughout.
     face_centre: Vec<f64>,
 }
@@ -314,9 +336,15 @@ impl SpringSamples {
     /// No samples of a mesh.
     ///
     /// # Arguments
-    /// * `laws` - of its corners
-    pub(crate) fn new(laws: Vec<CornerLaw>) -> Self {
-        Self { laws, ..Self::default() }
+    /// * `mesh` - the mesh
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let per_spring = if mesh.has_friction() { 4 } else { 2 };
+        Self {
+            laws: mesh.corner_laws(),
+            sliding_of_laws: mesh.sliding_of_corner_laws(),
+            per_spring,
+            ..Self::default()
+        }
     }
 
     /// Whether the mesh has corners, so that its force is smooth.
@@ -329,8 +357,14 @@ impl SpringSamples {
     pub(crate) fn line_up(&mut self, block: &PairsBlock) {
         let samples = block.stiffness.first().map_or(0, Vec::len);
         self.springs = block.stiffness.len().next_multiple_of(AT_ONCE);
-        let stride = 2 * self.springs;
+        let stride = self.per_spring * self.springs;
         self.values.resize(samples * stride, 0.0);
+        for (n, sliding) in block.sliding.iter().enumerate() {
+            for (k, values) in self.values.chunks_exact_mut(stride).enumerate() {
+                values[2 * self.springs + n] = sliding[0][k];
+                values[3 * self.springs + n] = sliding[1][k];
+            }
+        }
         for (n, (stiffness, offset)) in block.stiffness.iter().zip(&block.offset).enumerate() {
             let at = self.values.chunks_exact_mut(stride).zip(stiffness.iter().zip(offset));
             for (values, (stiffness, offset)) in at {
@@ -373,11 +407,20 @@ impl SpringSamples {
     /// The springs at a sample.
     #[inline(always)]
     pub(crate) fn at(&self, sample: usize) -> Springs<'_> {
-        let stride = 2 * self.springs;
-        let (stiffness, offset) = self.values[sample * stride..(sample + 1) * stride].split_at(self.springs);
+        let stride = self.per_spring * self.springs;
+        let numbers = &self.values[sample * stride..(sample + 1) * stride];
+        let part = |number: usize| &numbers[number * self.springs..(number + 1) * self.springs];
+        let sliding = if self.per_spring > 2 { [part(2), part(3)] } else { [&[][..]; 2] };
         let until = |sample: usize| self.corners_until.get(sample).copied().unwrap_or(0);
         let from = sample.checked_sub(1).map_or(0, until);
-        Springs { stiffness, offset, corners: &self.corners[from..until(sample)], laws: &self.laws }
+        Springs {
+            stiffness: part(0),
+            offset: part(1),
+            sliding,
+            corners: &self.corners[from..until(sample)],
+            laws: &self.laws,
+            sliding_of_laws: &self.sliding_of_laws,
+        }
     }
 
     /// (m) Where along the face the load acts at a sample.
@@ -453,6 +496,38 @@ impl MeshLaw {
         let back_m = self.back_touches_at_m() - deflection_m;
         let back = if back_m > 0.0 { self.back_stiffness_n_per_m } else { 0.0 };
         [force - back * back_m.max(0.0), slope + back]
+    }
+
+    /// The friction of the drive flanks at a deflection: (N, N/m) across the line of action with its slope, and (N m, N) its moment about the pitch
+    /// point with its slope. Coast flanks slide without friction.
+    ///
+    /// # Arguments
+    /// * `springs` - of a mesh with friction
+    /// * `deflection_m` - (m) D
+    #[inline(always)]
+    pub(crate) fn friction(&self, springs: Springs, deflection_m: f64) -> [[f64; 2]; 2] {
+        let lets_go_m = self.contact.lets_go_at_m();
+        let mut sums = [[0.0; 2]; 2];
+        let each = springs
+            .stiffness
+            .iter()
+            .zip(springs.offset)
+            .zip(springs.sliding[0].iter().zip(springs.sliding[1]));
+        for ((stiffness, offset), (across, moment)) in each {
+            let penetration_m = deflection_m + offset;
+            let touching = if penetration_m > lets_go_m { *stiffness } else { 0.0 };
+            for (sum, part) in sums.iter_mut().zip([across, moment]) {
+                sum[0] += touching * penetration_m * part;
+                sum[1] += touching * part;
+            }
+        }
+        for corner in springs.corners {
+            let of_corner = corner.force_and_slope(springs.laws, deflection_m);
+            for (sum, part) in sums.iter_mut().zip(springs.sliding_of_laws[corner.law as usize]) {
+                sum.iter_mut().zip(of_corner).for_each(|(sum, of_corner)| *sum += of_corner * part);
+            }
+        }
+        sums
     }
 }
 
@@ -900,7 +975,7 @@ mod tests {
     #[test]
     fn two_pairs_share_a_load_as_in_closed_form() {
         let (stiffness, offset) = ([2e8, 1e8, 0.0], [1e-6, -2e-6, 0.0]);
-        let two = Springs { stiffness: &stiffness, offset: &offset, corners: &[], laws: &[] };
+        let two = Springs::frictionless(&stiffness, &offset, &[], &[]);
         // Light: the first alone. Heavy: both, δ = (F − Σ k o)/Σ k.
         let at_rest = |contact, load| deflection_at_rest(contact, two, load);
         assert!((at_rest(Contact::Unilateral, 100.0) - (100.0 / 2e8 - 1e-6)).abs() < 1e-15);
@@ -952,7 +1027,7 @@ mod tests {
             let pairs = sample(stiffness, offset);
             let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
             let force = 300.0 - InstructionSet::fastest().run(solve);
-            let springs = Springs { stiffness: &stiffness, offset: &offset, corners: &[], laws: &[] };
+            let springs = Springs::frictionless(&stiffness, &offset, &[], &[]);
             let of = |d: f64| law.force_and_slope(springs, d)[0];
             let relative = |d: f64| 300.0 - of(d);
             let (mut low, mut high) = (-1e-3, 1e-3);

@@ -11,6 +11,7 @@ mod law;
 mod pair;
 mod path_table;
 mod sequence;
+mod sliding;
 mod static_mesh;
 mod window;
 
@@ -35,5 +36,6 @@ pub use pair::{LoadedPair, Pairs};
 pub(crate) use path_table::TipShape;
 pub use path_table::{CornerTable, PairState};
 pub use sequence::{PairKind, PairSequence};
+pub(crate) use sliding::Friction;
 pub use static_mesh::StaticMesh;
 pub(crate) use window::{is_slanted, place_on_face};

@@ -68,7 +68,7 @@ impl Mesh {
                 deflection_m.push(f64::NAN);
                 continue;
             }
-            let springs = Springs { stiffness: &stiffness, offset: &offset, corners: &corners, laws: &laws };
+            let springs = Springs::frictionless(&stiffness, &offset, &corners, &laws);
             let deflection = deflection_at_rest(self.contact, springs, force_n);
             deflection_m.push(deflection);
             for (pair, _, state) in touching {

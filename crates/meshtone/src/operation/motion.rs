@@ -72,6 +72,17 @@ impl<'a> Motion<'a> {
         Self { ripple, ..self }
     }
 
+    /// The motion from a later sample on, which is known only where the speed is constant.
+    ///
+    /// # Arguments
+    /// * `sample` - number of the sample
+    pub(crate) fn starting_at(mut self, sample: usize) -> Self {
+        if self.is_steady() {
+            (self.sample, self.revolutions) = (sample, sample as f64 / self.samples_per_revolution);
+        }
+        self
+    }
+
     fn draw_speed(&mut self) -> f64 {
         let operation = self.operation;
         let nominal = self.at_sample(operation.speed_profile_hz.as_ref(), operation.pinion_speed_hz);
@@ -95,7 +106,7 @@ impl<'a> Motion<'a> {
 
     /// Returns whether the motor's speed is constant.
     pub(crate) fn is_steady(&self) -> bool {
-        self.speed_draws.is_none() && self.operation.speed_profile_hz.is_none()
+        self.operation.turns_evenly()
     }
 
     /// Returns whether the brake's torque is constant.

@@ -27,7 +27,7 @@ pub struct Operation {
     pub torque_profile_nm: Option<Profile>,
     /// (kg m²) Inertia of the brake. Default 0.02.
     pub brake_inertia_kgm2: f64,
-    /// Harmonics of the brake's torque over the rotation of its shaft. Default none.
+    /// Harmonics of the brake's torque over the rotation of any shaft. Default none.
     pub torque_ripple: Vec<Ripple>,
 }
 
@@ -49,17 +49,22 @@ impl Operation {
         }
     }
 
-    /// Whether speed and torque are constant: neither follows a profile, fluctuates nor has harmonics.
+    /// Whether speed and torque are constant, or the torque varies with whole harmonics of shafts alone, so that the motion repeats itself with the
+    /// wheels': neither follows a profile or fluctuates.
     ///
     /// ```
     /// assert!(meshtone::operation::Operation::new(40.0, 10.0).is_steady());
     /// ```
     pub fn is_steady(&self) -> bool {
-        self.speed_profile_hz.is_none()
+        self.turns_evenly()
             && self.torque_profile_nm.is_none()
-            && self.speed_fluctuation_hz == 0.0
             && self.torque_fluctuation_nm == 0.0
-            && self.torque_ripple.is_empty()
+            && self.torque_ripple.iter().all(|ripple| ripple.order.fract() == 0.0)
+    }
+
+    /// Whether the speed is constant.
+    pub(crate) fn turns_evenly(&self) -> bool {
+        self.speed_profile_hz.is_none() && self.speed_fluctuation_hz == 0.0
     }
 
     /// Warnings of profiles that end before the kept signal starts: nothing of them is kept but their last value.
@@ -76,6 +81,16 @@ impl Operation {
             ScenarioWarning::new(WarningKind::ProfileEnded, key, message)
         };
         self.profiles_ended_at(kept_from_s).map(warning).collect()
+    }
+
+    /// The warning of harmonics that make the brake drive at times.
+    pub(crate) fn reversed_torque(&self) -> Option<ScenarioWarning> {
+        let sum: f64 = self.torque_ripple.iter().map(|ripple| ripple.amplitude).sum();
+        let message = format!(
+            "amplitudes add up to {sum}: where they come together the brake's torque reverses, and teeth part and meet again"
+        );
+        let warning = ScenarioWarning::new(WarningKind::TorqueReverses, "operation.torque_ripple", message);
+        Some(warning).filter(|_| sum > 1.0)
     }
 
     /// The keys of the profiles that end before a time, and (s) where they end.
@@ -142,15 +157,6 @@ impl Keys for Operation {
                 .otherwise("none")
                 .rule("likewise, values ≥ 0")
                 .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }"),
-            row(
-                "torque_ripple",
-                "",
-                "harmonics of the brake's torque over the rotation θ of its shaft, T (1 + Σ a cos(hθ + ψ))",
-                field!(torque_ripple),
-            )
-            .otherwise("none")
-            .rule("amplitudes add up to less than 1")
-            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
         ]
     }
 }
@@ -174,18 +180,33 @@ impl Operation {
         )
         .required()
         .range(Range::not_negative().implausible_above(1e9));
-        let own =
-            [row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
-                .range(Range::positive().implausible_above(1e9))];
+        let own = [
+            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
+                .range(Range::positive().implausible_above(1e9)),
+            row(
+                "torque_ripple",
+                "",
+                "harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ))",
+                field!(torque_ripple),
+            )
+            .otherwise("none")
+            .rule("amplitudes add up to 1.2 at most")
+            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
+        ];
         let varying = rows_but(&["pinion_speed_hz", "brake_torque_nm"]);
         [input, torque].into_iter().chain(varying).chain(own).collect()
     }
 }
 
+/// (-) Largest sum of the amplitudes of the torque's harmonics. Beyond it the motion flips between two states.
+pub(super) const MOST_RIPPLE: f64 = 1.2;
+
 /// A harmonic of the brake's torque.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Ripple {
-    /// (-) h: the number of its periods per revolution of the brake's shaft.
+    /// Name of the shaft with whose rotation it comes; none for the brake's.
+    pub shaft: Option<String>,
+    /// (-) h: the number of its periods per revolution of that shaft.
     pub order: f64,
     /// (-) a: its amplitude as a part of the torque.
     pub amplitude: f64,
@@ -195,17 +216,20 @@ pub struct Ripple {
 
 impl Keys for Ripple {
     fn start() -> Self {
-        Self { order: f64::NAN, amplitude: f64::NAN, phase_deg: 0.0 }
+        Self { shaft: None, order: f64::NAN, amplitude: f64::NAN, phase_deg: 0.0 }
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
-            row("order", "-", "the number of its periods per revolution of the brake's shaft", field!(order))
+            row("shaft", "", "the name of the shaft with whose rotation it comes", field!(shaft))
+                .otherwise("that of the brake")
+                .alternative("\"input\""),
+            row("order", "-", "the number of its periods per revolution of that shaft", field!(order))
                 .required()
                 .range(Range::positive().implausible_above(1e4)),
             row("amplitude", "-", "its amplitude as a part of the torque", field!(amplitude))
                 .required()
-                .range(Range::below_one()),
+                .range(Range::from_to(0.0, MOST_RIPPLE)),
             row("phase_deg", "°", "its phase at the start", field!(phase_deg)),
         ]
     }

@@ -573,6 +573,7 @@ impl Layout {
             tooth_share: of.tooth_share,
             pitch_share: of.pitch_share,
             run_out_share: of.run_out_share,
+            slope_wobble: of.slope_wobble,
             helix_share: of.helix_share,
             pinion_deviations: pinion.deviations.clone(),
             gear_deviations: gear.deviations.clone(),

@@ -41,6 +41,10 @@ pub struct ScenarioMesh {
     /// (-) Damping of the contact over the critical one of the wheels' rotation on the mean mesh. Default 0.08, in a rig
     /// 0.15.
     pub damping_ratio: f64,
+    /// (-) Coefficient of friction of the flanks. Default 0.05, in a rig 0.
+    pub friction: f64,
+    /// (-) Size of the random force across the line of action, `c` of [its density](crate::simulate). Default 0.055, in a rig 0.
+    pub random_force: f64,
 }
 
 impl ScenarioMesh {
@@ -129,6 +133,8 @@ impl Keys for ScenarioMesh {
             foundation: FoundationCoefficients::default(),
             phase: None,
             damping_ratio: 0.08,
+            friction: 0.05,
+            random_force: 0.055,
         }
     }
 
@@ -162,6 +168,15 @@ impl Keys for ScenarioMesh {
                 field!(damping_ratio),
             )
             .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
+            row("friction", "-", "the coefficient of friction of the flanks; 0 for frictionless ones", field!(friction))
+                .range(Range::from_to(0.0, 0.5).help("lubricated flanks have 0.02 to 0.1")),
+            row(
+                "random_force",
+                "-",
+                "the size of the random force across the line of action, modulated by the load; 0 for none",
+                field!(random_force),
+            )
+            .range(Range::from_to(0.0, 10.0).help("0.02 to 0.2 sounds like recorded gearboxes")),
         ]
     }
 }

@@ -29,8 +29,8 @@ pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth,
 pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{
-    Bearing, BearingKind, Bow, Coupled, DampingRatio, Foot, GearboxShaft, Housing, Rig, Seat, Shaft, Support,
-    SupportSprings, Unbalance, WheelInertia,
+    Bearing, BearingKind, Bow, Coupled, DampingRatio, Foot, GearboxShaft, Housing, HousingModes, Rig, Seat,
+    Shaft, Support, SupportSprings, Unbalance, WheelInertia,
 };
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Ripple, Solver};
@@ -198,6 +198,7 @@ impl Scenario {
             tooth_share: pinion.tooth_share,
             pitch_share: pinion.pitch_share,
             run_out_share: pinion.run_out_share,
+            slope_wobble: pinion.slope_wobble,
             helix_share: pinion.helix_share,
             profile_errors: errors.map(|(pinion_profile_errors_mm, gear_profile_errors_mm)| ProfileErrors {
                 pinion_profile_errors_mm,
@@ -226,6 +227,7 @@ impl Scenario {
             (wheel.din_grade, wheel.iso_class) = (quality.din_grade, quality.iso_class);
             (wheel.tooth_share, wheel.pitch_share) = (quality.tooth_share, quality.pitch_share);
             (wheel.run_out_share, wheel.helix_share) = (quality.run_out_share, quality.helix_share);
+            wheel.slope_wobble = quality.slope_wobble;
             (wheel.profile_errors_mm, wheel.deviations) = (errors, deviations);
         }
     }

@@ -29,6 +29,8 @@ impl Scenario {
         let wheel = |name: &str| ScenarioWheel {
             tooth_share: quality.tooth_share,
             pitch_share: quality.pitch_share,
+            run_out_share: quality.run_out_share,
+            slope_wobble: quality.slope_wobble,
             ..ScenarioWheel::new(name, name, 0.5, 0, f64::NAN)
         };
         let names = WheelName::BOTH.map(WheelName::name);
@@ -40,6 +42,8 @@ impl Scenario {
             wheels: names.map(wheel).to_vec(),
             meshes: vec![ScenarioMesh {
                 damping_ratio: MESH_DAMPING_RATIO,
+                friction: 0.0,
+                random_force: 0.0,
                 ..ScenarioMesh::new(names, f64::NAN)
             }],
             structure: Structure::Rig(Rig::start()),

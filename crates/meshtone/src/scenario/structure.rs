@@ -74,6 +74,11 @@ impl Scenario {
         self.structure.shafts()?.housing.as_ref()
     }
 
+    /// The housing of shafts of beams, to be changed, if they have one.
+    pub fn housing_mut(&mut self) -> Option<&mut Housing> {
+        self.structure.shafts_mut()?.housing.as_mut()
+    }
+
     /// The bearings of shafts of beams, to be changed.
     pub fn bearings_mut(&mut self) -> &mut [Bearing] {
         self.structure.shafts_mut().map_or(&mut [], |of| &mut of.bearings)

@@ -54,13 +54,15 @@ pub struct ScenarioWheel {
     pub din_grade: u8,
     /// Class of ISO 1328-1:2013 instead, 1 (best) to 11; 0 for none. Default 0.
     pub iso_class: u8,
-    /// (-) Part of the tolerances of slope and form that a tooth has of its own; the rest all teeth of a wheel have in common. Default 0.4, in a
-    /// rig 0.5.
+    /// (-) Part of the tolerances of slope and form that a tooth has of its own; the rest all teeth of a wheel have in common. Default 0.75,
+    /// in a rig 0.5.
     pub tooth_share: f64,
-    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.15, in a rig 0.25.
+    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.5, in a rig 0.25.
     pub pitch_share: f64,
-    /// (-) Run-out as a part of its tolerance. Default 0.3.
+    /// (-) Run-out as a part of its tolerance. Default 0.6, in a rig 0.3.
     pub run_out_share: f64,
+    /// (-) Profile slope that varies once a revolution, as a part of the wheel's profile deviation. Default 1, in a rig 0.
+    pub slope_wobble: f64,
     /// (-) Largest helix slope deviation as a part of its tolerance. Default 0.
     pub helix_share: f64,
     /// (mm) Profile errors of its teeth that are given instead of drawn: 100 rows of one number a tooth, in the order in which a tooth
@@ -118,6 +120,7 @@ impl ScenarioWheel {
             ("tooth_share", self.tooth_share != default.tooth_share, false),
             ("pitch_share", self.pitch_share != default.pitch_share, given.cumulative_pitch_um.is_some()),
             ("run_out_share", self.run_out_share != default.run_out_share, given.run_out_um.is_some()),
+            ("slope_wobble", self.slope_wobble != default.slope_wobble, false),
             ("helix_share", self.helix_share != default.helix_share, given.helix_slope_um.is_some()),
         ];
         ignored_shares(section, self.profile_errors_mm.is_some(), &shares)
@@ -151,9 +154,10 @@ impl Keys for ScenarioWheel {
             eccentricity_mm: 0.0,
             din_grade: 0,
             iso_class: 0,
-            tooth_share: 0.4,
-            pitch_share: 0.15,
-            run_out_share: 0.3,
+            tooth_share: 0.75,
+            pitch_share: 0.5,
+            run_out_share: 0.6,
+            slope_wobble: 1.0,
             helix_share: 0.0,
             profile_errors_mm: None,
             deviations: WheelDeviations::default(),
@@ -207,6 +211,13 @@ impl Keys for ScenarioWheel {
             row("pitch_share", "-", "its largest single pitch deviation over its tolerance f_p", field!(pitch_share))
                 .range(SHARE),
             row("run_out_share", "-", "its run-out over its tolerance F_r", field!(run_out_share)).range(SHARE),
+            row(
+                "slope_wobble",
+                "-",
+                "the profile slope that varies once a revolution, over the rms deviation of the wheel's profiles",
+                field!(slope_wobble),
+            )
+            .range(Range::from_to(0.0, 3.0)),
             row("helix_share", "-", "its largest helix slope deviation, of either sign, over its tolerance f_Hβ", field!(helix_share))
                 .range(SHARE),
             documented(

@@ -19,6 +19,8 @@ pub enum SignalSource {
     MeshForce(usize),
     /// (µm) How far the wheels of a mesh have turned against one another, along the line of action.
     TransmissionError(usize),
+    /// (W) Power that the friction of a mesh's flanks takes.
+    FrictionLoss(usize),
     /// (Hz) Revolutions of a shaft per second; of a pair the pinion's is the first.
     ShaftSpeed(usize),
 }
@@ -30,6 +32,7 @@ impl SignalSource {
             Self::Sensor(_) | Self::Supports(_) => "g",
             Self::MeshForce(_) => "N",
             Self::TransmissionError(_) => "µm",
+            Self::FrictionLoss(_) => "W",
             Self::ShaftSpeed(_) => "Hz",
         }
     }
@@ -40,7 +43,7 @@ impl SignalSource {
 #[non_exhaustive]
 pub struct NamedSignal {
     /// Its name with the unit in it: of a sensor `NAME_g`, of a pair's parts as [`ChannelKind::name`], of a gearbox's `force_n.z1-z2`,
-    /// `transmission_error_um.z1-z2` and `speed_hz.input`.
+    /// `transmission_error_um.z1-z2`, `friction_loss_w.z1-z2` and `speed_hz.input`.
     pub name: Cow<'static, str>,
     /// Unit of its values.
     pub unit: &'static str,
@@ -70,6 +73,7 @@ impl NamedSignal {
             SignalSource::TransmissionError(_) => {
                 "how far the wheels of the mesh have turned against one another, along the line of action"
             }
+            SignalSource::FrictionLoss(_) => "power that the friction of the mesh's flanks takes",
             SignalSource::ShaftSpeed(_) => "revolutions of the shaft per second",
         };
         Self { name: name.into(), unit: source.unit(), meaning, source, values: Vec::new() }
@@ -84,8 +88,8 @@ impl From<ChannelKind> for NamedSignal {
 
 /// The kept signals of a simulation, all at the same rate and equally long.
 ///
-/// Those of a pair are its sensors' and then [`ChannelKind::ALL`]; those of a gearbox its sensors', then of each mesh force and transmission
-/// error, then the speed of each shaft.
+/// Those of a pair are its sensors' and then [`ChannelKind::ALL`]; those of a gearbox its sensors', then of each mesh force, transmission
+/// error and, with friction, the power that it takes, then the speed of each shaft.
 ///
 /// ```
 /// use meshtone::scenario::{GearPair, Scenario};

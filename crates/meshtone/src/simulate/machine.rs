@@ -114,6 +114,10 @@ fn shafts_of_beams(
             base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
             working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
             thrust: gears.thrust(),
+            has_forces_across: scenario
+                .meshes
+                .iter()
+                .any(|mesh| mesh.friction > 0.0 || mesh.random_force > 0.0),
         })
         .collect();
     let mass_kg = lines.iter().map(|line| {

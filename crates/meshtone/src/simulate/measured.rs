@@ -32,20 +32,26 @@ impl Scenario {
             let fixed = ChannelKind::ALL.map(|kind| (NamedSignal::from(kind), kind.output()));
             return sensors.chain(fixed).collect();
         }
-        let meshes = self.meshes.iter().enumerate().flat_map(of_mesh);
+        let meshes = self.meshes.iter().enumerate().flat_map(|(number, mesh)| self.of_mesh(number, mesh));
         sensors.chain(meshes).chain(self.shafts().iter().enumerate().map(of_shaft)).collect()
     }
-}
 
-/// Force and transmission error of a mesh.
-fn of_mesh((mesh, of): (usize, &ScenarioMesh)) -> [(NamedSignal, Output); 2] {
-    let (name, axis) = (transmission_error_name(&of.name()), Axis::Rotation);
-    let error = Output::Displacement { place: name.clone().into(), axis, factor: 1e6 };
-    let force = NamedSignal::new(format!("force_n.{}", of.name()), SignalSource::MeshForce(mesh));
-    [
-        (force, Output::MeshForce { mesh }),
-        (NamedSignal::new(name, SignalSource::TransmissionError(mesh)), error),
-    ]
+    /// Force and transmission error of a mesh, and the power that its friction takes.
+    fn of_mesh(&self, mesh: usize, of: &ScenarioMesh) -> Vec<(NamedSignal, Output)> {
+        let (name, axis) = (transmission_error_name(&of.name()), Axis::Rotation);
+        let error = Output::Displacement { place: name.clone().into(), axis, factor: 1e6 };
+        let force = NamedSignal::new(format!("force_n.{}", of.name()), SignalSource::MeshForce(mesh));
+        let loss =
+            NamedSignal::new(format!("friction_loss_w.{}", of.name()), SignalSource::FrictionLoss(mesh));
+        let friction = (of.friction > 0.0).then_some((loss, Output::FrictionLoss { mesh }));
+        [
+            (force, Output::MeshForce { mesh }),
+            (NamedSignal::new(name, SignalSource::TransmissionError(mesh)), error),
+        ]
+        .into_iter()
+        .chain(friction)
+        .collect()
+    }
 }
 
 /// Speed of a shaft.
@@ -94,6 +100,9 @@ impl Stages {
 
     /// The channels whose sensors recorded the motion of their places, with what they show of it.
     pub(crate) fn measured(&self, mut channels: Channels) -> Channels {
+        for (sensor, signal) in (0..self.sensors.len()).zip(&mut channels.signals) {
+            self.add_random_part(sensor, &mut signal.values);
+        }
         channels.measure(self.sensors.iter(), &self.measurement(0));
         channels
     }
@@ -103,12 +112,10 @@ impl Stages {
     /// # Arguments
     /// * `channel` - which
     /// * `motion` - (g, or N where the sensor's response is to the mesh force) all kept samples
-    pub fn shown(&self, channel: &Channel, motion: Vec<f64>) -> Vec<f64> {
-        let is_meant = |sensor: &Sensor| matches!(channel, Channel::Sensor(name) if sensor.name() == *name);
-        match self.sensors.iter().enumerate().find(|(_, sensor)| is_meant(sensor)) {
-            Some((index, sensor)) => measure(motion, sensor, &self.measurement(index)),
-            None => motion,
-        }
+    pub fn shown(&self, channel: &Channel, mut motion: Vec<f64>) -> Vec<f64> {
+        let Some(index) = self.sensor_number(channel) else { return motion };
+        self.add_random_part(index, &mut motion);
+        measure(motion, &self.sensors[index], &self.measurement(index))
     }
 
     /// On what the signal of a sensor depends besides.

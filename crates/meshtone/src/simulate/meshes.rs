@@ -6,12 +6,12 @@ use super::{AssembledMachine, MeshedPair};
 use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
 use crate::mesh::{
-    Contact, FaceForm, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
-    is_slanted, place_on_face,
+    Contact, FaceForm, FaceSlope, Friction, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape,
+    Turning, is_slanted, place_on_face,
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
-use crate::wheel::NamedGears;
+use crate::wheel::{NamedGears, WheelName};
 
 /// The meshes of a scenario.
 ///
@@ -47,9 +47,10 @@ pub(super) fn meshes(
             },
             contact,
             turning,
+            friction: scenario.meshes[number].friction,
             sense: layout.driving_ratio(number).signum(),
         };
-        let of_time = || points_of(time, scenario.operation.is_steady(), &turning, pair);
+        let of_time = || points_of(time, scenario.operation.turns_evenly(), &turning, pair);
         mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))
     };
     pairs.iter().enumerate().map(mesh).collect()
@@ -57,10 +58,10 @@ pub(super) fn meshes(
 
 /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of
 /// the cycle, between which the tables are read.
-fn points_of(time: &TimeGrid, is_steady: bool, turning: &Turning, pair: &MeshedPair) -> NonZeroUsize {
+fn points_of(time: &TimeGrid, turns_evenly: bool, turning: &Turning, pair: &MeshedPair) -> NonZeroUsize {
     let samples = time.samples_per_pinion_revolution as f64 / turning.pitches_per_revolution;
     let is_whole = (samples.round() / samples - 1.0).abs() < 1e-12;
-    let is_each = is_whole && turning.first_pitch == 0.0 && is_steady;
+    let is_each = is_whole && turning.first_pitch == 0.0 && turns_evenly;
     let points = if is_each { samples.round() as usize } else { pair.cycle.points_per_pitch };
     NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN)
 }
@@ -95,6 +96,8 @@ struct MeshOf<'a> {
     closer_um: f64,
     contact: Contact,
     turning: Turning,
+    /// (-) Coefficient of friction of the flanks.
+    friction: f64,
     /// 1 where the driving wheel turns about positive z, −1 where it turns the other way.
     sense: f64,
 }
@@ -142,6 +145,7 @@ impl MeshOf<'_> {
             slope: (closer_um != 0.0).then(slope),
             face,
             face_width_m: width_m,
+            friction: self.friction(),
         };
         let shape = TipShape {
             chamfer_mm: gears.chamfer_mm(),
@@ -164,6 +168,21 @@ impl MeshOf<'_> {
             .collect();
         let sound = Pairs::new(&of_slice, &[], gears.material, &gears.foundation);
         tabulated(&damaged.iter().map(|damaged| sound.with_damaged(damaged)).collect::<Vec<_>>())
+    }
+
+    /// Friction of the flanks; none of frictionless ones.
+    fn friction(&self) -> Option<Friction> {
+        let MeshedPair { teeth, .. } = self.pair;
+        let gear = &teeth.gear;
+        let friction = |&coefficient: &f64| Friction {
+            // The force across the teeth is larger than that in the transverse section.
+            coefficient: coefficient / self.gears.base_helix_angle_rad().cos(),
+            pitch_point: teeth
+                .path
+                .position(WheelName::Gear, gear.curvature_mm(gear.working_pitch_radius_mm)),
+            base_pitch_m: teeth.path.base_pitch_mm * 1e-3,
+        };
+        Some(&self.friction).filter(|coefficient| **coefficient > 0.0).map(friction)
     }
 
     /// Whether the gap between two flanks differs along the face, so that its slices touch one after the other. A slope of spur wheels'

@@ -5,6 +5,11 @@
 //! bearing are its stretch along x and y, and their forces depend on both: what the load of its elements differs from that of the linear
 //! spring that the machine has in its place. Their slopes may be negative, but `1 + G K` is as regular as if the machine had no such spring.
 //!
+//! Friction of mesh b pushes across its line of action by `Q_b = Σ μ_n f_n` and turns the wheels by the moment `R_b = Σ μ_n d_n f_n`, where μ_n with
+//! its sign and the arm d_n of each pair follow from where it is on its path. Both are functions of the same `D_b`, piecewise linear with
+//! the same places, so that they join the equations: `D + G f(D) − G_Q Q(D) − G_R R(D) = D₀`. What a step makes of Q along a line of action is
+//! at most μ times a part of what it makes of f, so that the slopes of the sum have the sign of those of `G f`, and the solution stays unique.
+//!
 //! Newton's method takes the slopes at the last iterate, that is the springs that touch, and solves the linear equations that these make.
 //! It ends when the same pairs touch at the new iterate, which is exact, the deflections of meshes with corners have moved by no more than a
 //! ten-millionth, and the bearings by no more than [`BEARING_MOVES_M`]. In
@@ -173,8 +178,7 @@ pub(super) fn integrate(
     let (start, end) = (problem.time.first_simulated_sample, problem.time.samples);
     let mut block = ForcingBlock::default();
     problem.forcing.next_block(1, &mut block);
-    let mut springs: Vec<SpringSamples> =
-        problem.forcing.meshes().map(|mesh| SpringSamples::new(mesh.corner_laws())).collect();
+    let mut springs: Vec<SpringSamples> = problem.forcing.meshes().map(SpringSamples::new).collect();
     let first_external = external(&block, 0);
     springs.iter_mut().zip(&block.meshes).for_each(|(springs, block)| springs.line_up(block));
     let first = prepared.first_state(&problem.machine, &block, &springs, first_external);
@@ -425,7 +429,9 @@ impl State {
         }
         self.external = external.unwrap_or_default();
         let prepared = constants.prepared;
-        for ((free, column), lots) in self.free.iter_mut().zip(&prepared.columns).zip(&constants.columns) {
+        // Nothing is deflected along the columns of friction.
+        let deflected = self.free.iter_mut().zip(&prepared.columns).zip(&constants.columns);
+        for ((free, column), lots) in deflected.take(prepared.first_across) {
             let [mut of_displacement, mut of_velocity] = [Lanes::splat(0.0); 2];
             for (LotState([displacement, velocity, _]), lot) in self.lots.iter().zip(lots) {
                 of_displacement = lot.of_displacement.mul_add(simd, *displacement, of_displacement);
@@ -482,7 +488,7 @@ impl Constants<'_> {
             let [_, last] = state.pressed[unknown];
             state.pressed[unknown] = [last, free[unknown] - state.deflection[unknown]];
         }
-        let forces = &state.search.loads[loads].forces;
+        let Loads { forces, friction, .. } = &state.search.loads[loads];
         state.counts.steps += 1;
         state.counts.iterations += iterations;
         state.counts.most_iterations = state.counts.most_iterations.max(iterations);
@@ -499,10 +505,30 @@ impl Constants<'_> {
             }
             columns.for_each(|column| state.force[column] = -face_centres[unknown] * force);
         }
+        for (across, friction) in state.force[prepared.first_across..].chunks_exact_mut(2).zip(friction) {
+            across.iter_mut().zip(friction).for_each(|(force, [friction, _])| *force = *friction);
+        }
     }
 }
 
 impl Prepared {
+    /// Deflection of each unknown per friction of each mesh, and per its moment; none where no flanks rub. Loads that act beside the middle of
+    /// the face do so by a small part of what they deflect, of which friction makes a small part again: that is left out.
+    fn across(&self) -> Option<Box<[[OfUnknowns; 2]; MOST_MESHES]>> {
+        let of_friction = |unknown: usize, mesh: usize, number: usize| {
+            let row = &self.compliance[self.columns_of_unknown[unknown].start];
+            row.get(self.first_across + 2 * mesh + number).copied().unwrap_or(0.0)
+        };
+        let of_unknowns = |mesh: usize, number: usize| {
+            from_fn(|unknown| {
+                let is_one = unknown < self.columns_of_unknown.len();
+                if is_one { of_friction(unknown, mesh, number) } else { 0.0 }
+            })
+        };
+        let rubs = self.first_across < self.columns.len();
+        rubs.then(|| Box::new(from_fn(|mesh| [of_unknowns(mesh, 0), of_unknowns(mesh, 1)])))
+    }
+
     /// Sets the equations of a step without the free deflections.
     ///
     /// # Arguments
@@ -544,6 +570,9 @@ trait Law {
     /// Whether the force of a mesh is smooth, so that between iterates that are near to one another its tangent is the force.
     fn is_smooth(&self, mesh: usize) -> bool;
 
+    /// Friction of a mesh with its moment, each with its slope, as of [`MeshLaw::friction`]; asked for only where flanks rub.
+    fn friction(&self, mesh: usize, deflection_m: f64) -> [[f64; 2]; 2];
+
     /// Of a bearing at (m) a stretch.
     fn of_bearing(&self, bearing: usize, stretch_m: [f64; 2]) -> BearingLoad;
 }
@@ -577,6 +606,11 @@ impl Law for ContactLaw<'_> {
     }
 
     #[inline(always)]
+    fn friction(&self, mesh: usize, deflection_m: f64) -> [[f64; 2]; 2] {
+        self.laws[mesh].friction(self.sample.springs[mesh].at(self.sample.k), deflection_m)
+    }
+
+    #[inline(always)]
     fn of_bearing(&self, bearing: usize, stretch_m: [f64; 2]) -> BearingLoad {
         self.bearings[bearing]
             .beside_spring(stretch_m, &self.sample.block.bearings[bearing].places(self.sample.k))
@@ -592,6 +626,8 @@ struct Loads {
     slopes: OfUnknowns,
     /// (N/m) Of a bearing's unknown by the other one of the same bearing.
     cross_slopes: OfUnknowns,
+    /// Of each mesh, friction across its line of action and its moment, each with its slope; 0 without friction.
+    friction: [[[f64; 2]; 2]; MOST_MESHES],
 }
 
 impl Loads {
@@ -599,6 +635,7 @@ impl Loads {
         forces: [0.0; MOST_UNKNOWNS],
         slopes: [0.0; MOST_UNKNOWNS],
         cross_slopes: [0.0; MOST_UNKNOWNS],
+        friction: [[[0.0; 2]; 2]; MOST_MESHES],
     };
 }
 
@@ -634,6 +671,8 @@ struct Equations {
     compliance: Matrix,
     /// (m) What the static forces, which the forces on the modes are relative to, add to D₀.
     of_static: OfUnknowns,
+    /// (m/N, 1/N) G_Q and G_R: of each mesh, the deflection of each unknown per friction and per its moment; none where no flanks rub.
+    across: Option<Box<[[OfUnknowns; 2]; MOST_MESHES]>>,
 }
 
 impl Equations {
@@ -644,6 +683,7 @@ impl Equations {
             meshes: prepared.laws.len(),
             compliance: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
             of_static: [0.0; MOST_UNKNOWNS],
+            across: prepared.across(),
         };
         prepared.set_equations(&[], 0..this.count, &mut this);
         this
@@ -711,6 +751,7 @@ impl Equations {
             } else {
                 law.of_mesh(a, to[a])
             };
+            self.set_friction(law, a, [from, to], loads, next);
         }
         for (bearing, a) in (self.meshes..self.count).step_by(2).enumerate() {
             if moves(from, to, a) || moves(from, to, a + 1) {
@@ -738,7 +779,30 @@ impl Equations {
     fn set_mesh_loads(&self, law: &impl Law, deflection: &OfUnknowns, loads: &mut Loads) {
         for a in 0..self.meshes {
             [loads.forces[a], loads.slopes[a]] = law.of_mesh(a, deflection[a]);
+            if self.across.is_some() {
+                loads.friction[a] = law.friction(a, deflection[a]);
+            }
         }
+    }
+
+    /// Sets the friction of mesh `a` at the next iterate, on its tangent where its force is.
+    #[inline(always)]
+    fn set_friction(
+        &self,
+        law: &impl Law,
+        a: usize,
+        [from, to]: [&OfUnknowns; 2],
+        loads: &Loads,
+        next: &mut Loads,
+    ) {
+        if self.across.is_none() {
+            return;
+        }
+        next.friction[a] = if law.is_smooth(a) && !moves_beyond_tangent(from, to, a) {
+            loads.friction[a].map(|[force, slope]| [force + slope * (to[a] - from[a]), slope])
+        } else {
+            law.friction(a, to[a])
+        };
     }
 
     #[inline(always)]
@@ -797,6 +861,16 @@ impl Equations {
             let pressed = (0..count).map(|b| self.compliance[a][b] * constant[b]).sum::<f64>();
             right[a] = free[a] - pressed;
         }
+        if let Some(across) = &self.across {
+            for (b, (of_mesh, loads)) in across.iter().zip(&loads.friction).enumerate().take(self.meshes) {
+                for (of_unknown, [force, slope]) in of_mesh.iter().zip(loads) {
+                    for a in 0..count {
+                        matrix[a][b] -= of_unknown[a] * slope;
+                        right[a] += of_unknown[a] * (force - slope * deflection[b]);
+                    }
+                }
+            }
+        }
         eliminate(count, &mut matrix, &mut right);
         right
     }
@@ -810,7 +884,10 @@ impl Equations {
             let forces = loads.forces;
             let of_unknown = |a: usize| {
                 let pressed = (0..self.count).map(|b| self.compliance[a][b] * forces[b]);
-                (deflection[a] + pressed.sum::<f64>() - free[a]).powi(2)
+                let rubbed = self.across.iter().flat_map(|across| across.iter().zip(&loads.friction));
+                let rubbed = rubbed.flat_map(|(of_mesh, friction)| of_mesh.iter().zip(friction));
+                let rubbed: f64 = rubbed.map(|(of_unknown, [force, _])| of_unknown[a] * force).sum();
+                (deflection[a] + pressed.sum::<f64>() - rubbed - free[a]).powi(2)
             };
             (0..self.count).map(of_unknown).sum::<f64>()
         };
@@ -898,6 +975,10 @@ mod tests {
             false
         }
 
+        fn friction(&self, _: usize, _: f64) -> [[f64; 2]; 2] {
+            [[0.0; 2]; 2]
+        }
+
         fn of_bearing(&self, _: usize, _: [f64; 2]) -> BearingLoad {
             BearingLoad { force_n: [0.0; 2], slope_n_per_m: [0.0; 3] }
         }
@@ -928,6 +1009,7 @@ mod tests {
                 meshes: count,
                 compliance: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
                 of_static: [0.0; MOST_UNKNOWNS],
+                across: None,
             };
             let free: OfUnknowns = from_fn(|_| draws.uniform(0.0, 3.0));
             for row in 0..count {
@@ -965,6 +1047,10 @@ mod tests {
             false
         }
 
+        fn friction(&self, _: usize, _: f64) -> [[f64; 2]; 2] {
+            [[0.0; 2]; 2]
+        }
+
         fn of_bearing(&self, _: usize, [x_m, y_m]: [f64; 2]) -> BearingLoad {
             const HERTZ: f64 = 1e10;
             let r_m = x_m.hypot(y_m).max(1e-12);
@@ -990,7 +1076,8 @@ mod tests {
         compliance[0][0] = 2e-10;
         (compliance[1][1], compliance[2][2]) = (of_bearing(3e-9), of_bearing(1e-9));
         (compliance[0][1], compliance[1][0]) = (1e-11, 1e-11);
-        let equations = Equations { count: 3, meshes: 1, compliance, of_static: [0.0; MOST_UNKNOWNS] };
+        let equations =
+            Equations { count: 3, meshes: 1, compliance, of_static: [0.0; MOST_UNKNOWNS], across: None };
         for free_m in [[1e-6, 5e-6, -3e-6], [-1e-6, 2e-7, 1e-7], [0.0, 1e-9, 0.0], [2e-6, -4e-5, 6e-5]] {
             let mut free = [0.0; MOST_UNKNOWNS];
             free[..3].copy_from_slice(&free_m);
@@ -1018,7 +1105,8 @@ mod tests {
         compliance[1][..2].copy_from_slice(&[0.9, 1.0]);
         let mut free = [0.0; MOST_UNKNOWNS];
         free[..2].copy_from_slice(&[1.0, -0.2]);
-        let equations = Equations { count: 2, meshes: 2, compliance, of_static: [0.0; MOST_UNKNOWNS] };
+        let equations =
+            Equations { count: 2, meshes: 2, compliance, of_static: [0.0; MOST_UNKNOWNS], across: None };
         let law = Function(law);
         let mut exact = [0.0; MOST_UNKNOWNS];
         equations.solve(&law, &free, &mut exact, &mut Search::new());

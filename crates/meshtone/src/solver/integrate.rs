@@ -128,6 +128,8 @@ pub enum SteppedAlone {
     RollingBearings,
     /// The face is cut into slices, each of which is a spring.
     SlicedFace,
+    /// The flanks rub.
+    Friction,
     /// More pairs of helical teeth overlap than a step side by side looks at.
     ManyPairs,
     /// The machine has more modes than a step side by side, or such that follow as at rest.
@@ -146,6 +148,8 @@ impl SteppedAlone {
             Some(Self::RollingBearings)
         } else if meshes.clone().any(|mesh| mesh.slices() > 1) {
             Some(Self::SlicedFace)
+        } else if meshes.clone().any(Mesh::has_friction) {
+            Some(Self::Friction)
         } else if meshes.any(|mesh| mesh.springs() > MOST_PAIRS) {
             Some(Self::ManyPairs)
         } else if machine.modes() > MOST_MODES || !machine.residual.is_empty() {
@@ -163,6 +167,7 @@ impl fmt::Display for SteppedAlone {
             Self::SeveralMeshes => formatter.write_str("it has several meshes"),
             Self::RollingBearings => formatter.write_str("it has rolling bearings"),
             Self::SlicedFace => formatter.write_str("its face is cut into slices"),
+            Self::Friction => formatter.write_str("its flanks rub"),
             Self::ManyPairs => write!(formatter, "more than {MOST_PAIRS} pairs of its teeth overlap"),
             Self::ManyModes => {
                 write!(formatter, "it has more than {MOST_MODES} modes, or such that follow as at rest")
@@ -175,6 +180,11 @@ impl Problem<'_> {
     /// Whether its teeth have corners of their own, so that the law is smooth: such go side by side with one another only.
     pub(super) fn has_corners(&self) -> bool {
         self.forcing.meshes().any(Mesh::has_corners)
+    }
+
+    /// Whether flanks rub.
+    pub(super) fn has_friction(&self) -> bool {
+        self.forcing.meshes().any(Mesh::has_friction)
     }
 
     /// Why the steps that are compiled for simulations side by side do not hold it; none where they do.
@@ -292,9 +302,9 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
     forcing.fill(&mut problems, 1);
     let first = from_fn(|l| {
         let external = forcing.external[0].map(|external| external.0[l]);
-        let mut springs = SpringSamples::new(forcing.laws[l].clone());
-        springs.line_up(&forcing.blocks[l].meshes[0]);
-        prepared[l].first_state(&problems[l].machine, &forcing.blocks[l], &[springs], external)
+        let mut springs: Vec<SpringSamples> = problems[l].forcing.meshes().map(SpringSamples::new).collect();
+        springs.iter_mut().zip(&forcing.blocks[l].meshes).for_each(|(springs, block)| springs.line_up(block));
+        prepared[l].first_state(&problems[l].machine, &forcing.blocks[l], &springs, external)
     });
     let mut state: State<L, N, R> = coefficients.first_state(&first);
     let mut history = History::<L, N, R>::new();

@@ -11,6 +11,7 @@ mod coupled;
 mod history;
 mod integrate;
 mod lane_outputs;
+mod lateral_response;
 mod modal;
 mod mode_step;
 mod outputs;
@@ -22,6 +23,7 @@ mod step;
 pub(crate) use coupled::{MOST_MESHES, MOST_ROLLING_BEARINGS};
 pub use integrate::{Block, Diverged, Problem, Recorder, StepCounts, SteppedAlone, integrate};
 pub(crate) use integrate::{LANES, integrate_side_by_side};
+pub(crate) use lateral_response::LateralResponse;
 #[cfg(feature = "internals")]
 pub use modal::ModalLine;
 #[cfg(feature = "internals")]

@@ -49,7 +49,7 @@ pub struct Residual {
     stiffness: Vec<f64>,
     /// Their mass-normalised shapes.
     shapes: Vec<DVector<f64>>,
-    /// Their entries in the columns of all lines of action, mesh by mesh, and then of the bearings.
+    /// Their entries in the columns of all lines of action, mesh by mesh, then of the bearings, and then across the lines.
     columns: Vec<Vec<f64>>,
     /// Their force per rad of motor angle.
     motor: Vec<f64>,
@@ -126,6 +126,11 @@ pub struct ModalTurningForce {
 pub struct ModalLine {
     /// At the middle of the face, and where the load moves along the face, what is added per m.
     pub columns: Vec<Vec<f64>>,
+    /// Modal force of friction across it: per N at the pitch point, and per N and m beyond it; none of a mesh without friction or a random part.
+    pub across: Option<[Vec<f64>; 2]>,
+    /// (-) Sum of the wheels' speeds, at which their flanks slide with the distance from the pitch point, over that of the motor; 0 without
+    /// [`Self::across`].
+    pub sliding_speed_ratio: f64,
     /// (m) Farthest from the middle of the face that the load acts.
     pub face_reach_m: f64,
     /// (N) The mesh's force under the constant loads, which the displacements do not bring about: they are relative to it.
@@ -200,13 +205,16 @@ impl ModalMachine {
                 columns.into_iter().flatten().map(modal).collect()
             })
             .collect();
+        let across: Vec<Option<[DVector<f64>; 2]>> = (machine.lines.iter())
+            .map(|line| line.across.as_ref().map(|across| [&across.at_pitch_point, &across.per_m].map(modal)))
+            .collect();
         let bearings: Vec<[DVector<f64>; 2]> =
             machine.bearings.iter().map(|stretch| stretch.each_ref().map(modal)).collect();
         let turning: Vec<[DVector<f64>; 2]> =
             machine.turning_forces.iter().map(|force| force.at.each_ref().map(modal)).collect();
         let moved = |n: usize| {
-            let columns =
-                lines.iter().flatten().chain(bearings.iter().flatten()).chain(turning.iter().flatten());
+            let columns = lines.iter().flatten().chain(bearings.iter().flatten());
+            let columns = columns.chain(turning.iter().flatten()).chain(across.iter().flatten().flatten());
             [&motor, &brake, &rigid, &velocity].into_iter().chain(columns).any(|v| v[n] != 0.0)
         };
         // Modes that no mesh moves come last.
@@ -219,9 +227,12 @@ impl ModalMachine {
             shapes: turned_back(&machine.turn, &modes.shapes, &active),
             stiffness: active.iter().map(|&n| modes.angular_frequencies[n].powi(2)).collect(),
             damping: active.iter().map(|&n| modes.damping_per_s(n)).collect(),
-            lines: (lines.iter().zip(face_reach_m))
-                .map(|(columns, &face_reach_m)| ModalLine {
+            lines: (lines.iter().zip(&across).zip(&machine.lines).zip(face_reach_m))
+                .map(|(((columns, across), line), &face_reach_m)| ModalLine {
                     columns: columns.iter().map(pick).collect(),
+                    sliding_speed_ratio: (line.across.as_ref())
+                        .map_or(0.0, |across| across.per_m.dot(&machine.rigid_rotation).abs()),
+                    across: across.as_ref().map(|across| across.each_ref().map(pick)),
                     face_reach_m,
                     static_force_n: 0.0,
                 })
@@ -258,10 +269,13 @@ impl ModalMachine {
         let split = |values: &mut Vec<f64>| take_out(values, &is_stepped);
         self.residual = Residual {
             shapes: take_out(&mut self.shapes, &is_stepped),
-            columns: (self.lines.iter_mut().flat_map(|line| &mut line.columns))
-                .chain(self.bearings.iter_mut().flatten())
-                .map(split)
-                .collect(),
+            columns: {
+                let (lines, across): (Vec<_>, Vec<_>) =
+                    self.lines.iter_mut().map(|line| (&mut line.columns, &mut line.across)).unzip();
+                let bearings = self.bearings.iter_mut().flatten();
+                let across = across.into_iter().flatten().flatten();
+                lines.into_iter().flatten().chain(bearings).chain(across).map(split).collect()
+            },
             motor: split(&mut self.motor),
             brake: split(&mut self.brake),
             static_displacement: split(&mut self.static_displacement),

@@ -51,6 +51,11 @@ pub enum Output {
         /// The mesh's number.
         mesh: usize,
     },
+    /// (W) Power that the friction of a mesh's flanks takes, at the nominal speed; only of a mesh with friction.
+    FrictionLoss {
+        /// The mesh's number.
+        mesh: usize,
+    },
 }
 
 /// A linear combination of what a step has of a sample ([`State`](super::step::State)): `constant + sample·per_sample + Σ weights`. An
@@ -98,6 +103,7 @@ impl Output {
                 (DVector::from_fn(model.rigid_rotation.len(), unit), derivative)
             }
             Self::MeshForce { mesh } => return mesh_force(model, *mesh),
+            Self::FrictionLoss { mesh } => return friction_loss(model, *mesh),
         };
         let AtRest { constant, of_force, of_drives: [of_motor, of_brake] } =
             model.residual.of_coordinates(&weights);
@@ -142,6 +148,16 @@ fn mesh_force(model: &ModalMachine, mesh: usize) -> OutputWeights {
         constant: model.lines.get(mesh).map_or(0.0, |line| line.static_force_n),
         ..OutputWeights::default()
     }
+}
+
+/// The moment of a mesh's friction, which both wheels turn against, times the sum of their speeds.
+fn friction_loss(model: &ModalMachine, mesh: usize) -> OutputWeights {
+    let of_lines: usize = model.lines.iter().map(|line| line.columns.len()).sum();
+    let first_across = of_lines + 2 * model.bearings.len();
+    let mut force = vec![0.0; first_across + 2 * model.lines.len()];
+    let sliding_rad_per_s = model.lines[mesh].sliding_speed_ratio * model.rotation_rad_per_s.abs();
+    force[first_across + 2 * mesh + 1] = sliding_rad_per_s;
+    OutputWeights { force, ..OutputWeights::default() }
 }
 
 /// `Σ a_n b_n`.

@@ -9,8 +9,8 @@ use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
 use crate::bearing::RollingBearing;
 use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples, deflection_at_rest};
 
-/// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh, and then those of the
-/// bearings, along x and y of each.
+/// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh, then those of the
+/// bearings, along x and y of each, and then those across the lines in which friction acts, two of each mesh.
 pub(super) struct Prepared {
     /// (s) Δt.
     step_s: f64,
@@ -28,6 +28,8 @@ pub(super) struct Prepared {
     pub(super) columns: Vec<Column>,
     /// Numbers of the columns of each unknown: the deflection of each mesh, and the stretch of each bearing along x and along y.
     pub(super) columns_of_unknown: Vec<Range<usize>>,
+    /// Number of the first column in which friction acts; as many as there are columns without friction.
+    pub(super) first_across: usize,
     /// (m/N) G: deflection, with its damping's lead, in each column per force of the step in each.
     pub(super) compliance: Vec<Vec<f64>>,
     /// The outputs.
@@ -101,6 +103,11 @@ impl Prepared {
             })
             .chain(of_bearings)
             .collect();
+        let first_across = lines.len();
+        let of_friction =
+            model.lines.iter().filter(|_| problem.has_friction()).filter_map(|line| line.across.as_ref());
+        let lines: Vec<(&[f64], f64)> =
+            lines.into_iter().chain(of_friction.flatten().map(|column| (column.as_slice(), 0.0))).collect();
         let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| pushed(line)).collect();
         let column = |((line, lead), push): (&(&[f64], f64), &Vec<f64>)| {
             let of_modes =
@@ -159,8 +166,16 @@ impl Prepared {
             step_s,
             columns,
             columns_of_unknown,
+            first_across,
             compliance,
-            outputs: problem.outputs.iter().map(|output| output.weights(model, &steps, step_s)).collect(),
+            outputs: (problem.outputs.iter())
+                .map(|output| {
+                    let mut weights = output.weights(model, &steps, step_s);
+                    // Without friction nothing acts across the lines.
+                    weights.force.truncate(lines.len());
+                    weights
+                })
+                .collect(),
             restore,
             damp,
             external_push,
@@ -210,6 +225,7 @@ impl Prepared {
             .flat_map(|line| &line.columns)
             .chain(model.bearings.iter().flatten())
             .collect();
+        let has_friction = self.first_across < self.columns.len();
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
                 let force_n = self.static_force_n[mesh].max(0.0);
@@ -221,13 +237,17 @@ impl Prepared {
             .collect();
         let displacement: Vec<f64> =
             model.turned_by(&missing).iter().zip(&turned).map(|(closing, turned)| closing + turned).collect();
-        let mut force = Vec::with_capacity(lines.len());
+        let (mut force, mut of_friction) = (Vec::with_capacity(self.columns.len()), Vec::new());
         for (mesh, law) in self.laws.iter().enumerate() {
             let (deflection, tilted) = at_face_centre(mesh, &|column| {
                 self.columns[column].static_deflection + dot(lines[column], &displacement)
             });
             let lead = law.damping_time_s * dot(lines[columns[mesh].start], &model.initial_velocity);
             let [carried, _] = law.force_and_slope(springs[mesh].at(0), deflection + tilted + lead);
+            if has_friction {
+                let [friction, moment] = law.friction(springs[mesh].at(0), deflection + tilted + lead);
+                of_friction.extend([friction[0], moment[0]]);
+            }
             let whole = self.static_force_n[mesh] - carried;
             force.push(whole);
             let z = blocks[mesh].face_centre_m(0);
@@ -240,6 +260,7 @@ impl Prepared {
                 .map(|column| self.columns[column].static_deflection + dot(lines[column], &displacement));
             force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
         }
+        force.extend(of_friction);
         let acceleration: Vec<f64> = (self.steps.iter().enumerate())
             .map(|(n, step)| {
                 let meshes: f64 =

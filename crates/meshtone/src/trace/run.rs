@@ -72,7 +72,9 @@ fn traced(stages: Stages, average_rate_hz: f64) -> Result<(Simulation, Trace), E
     let state = state_outputs(recorder.coordinates);
     let outputs: Vec<Output> = stages.scenario.outputs().into_iter().chain(state).collect();
     stages.integrate(&outputs, stages.time.first_kept_sample, &mut recorder)?;
-    let channels = stages.measured(recorder.finish(&mut trace));
+    let channels = recorder.finish(&mut trace);
+    let stages = stages.with_random_forces_of(&channels);
+    let channels = stages.measured(channels);
     average(&mut trace, &stages, &channels, average_rate_hz);
     let of_stages: Duration = stages.timings.iter().map(|time| time.elapsed).sum();
     trace.scalar("elapsed_s", (of_stages + start.elapsed()).as_secs_f64());

@@ -113,9 +113,8 @@ fn motor_and_brake_put_in_what_damping_takes() {
     let mesh = &mut stages.meshes[0];
     let stiffness = mesh.mean_stiffness_n_per_m;
     mesh.points_before = 0;
-    // One more than a pitch has, for the interpolation.
     let closed = PairState { stiffness_n_per_m: stiffness, separation_m: 0.0, face_centre_m: 0.0 };
-    mesh.classes[0].states = vec![closed; mesh.points_per_pitch + 1];
+    mesh.classes[0].states = vec![closed; mesh.points_per_pitch];
     let (machine, modes) = machine_of(&stages);
     let n = machine.coordinates();
     let force = [Output::MeshForce { mesh: 0 }];

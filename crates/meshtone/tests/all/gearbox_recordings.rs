@@ -11,7 +11,7 @@ use meshtone::signal::{
 };
 
 fn healthy(rig: Option<GearboxRig>) -> Scenario {
-    let mut gearbox = Scenario::from_toml(&gearbox_template(rig)).unwrap();
+    let mut gearbox = crate::plain::plain(Scenario::from_toml(&gearbox_template(rig)).unwrap());
     gearbox.faults.clear();
     for wheel in &mut gearbox.wheels {
         if wheel.din_grade == 0 {

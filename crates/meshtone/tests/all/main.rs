@@ -1,5 +1,8 @@
 //! The library, used as its users use it. One test program, because each is linked with all libraries.
 
+#[path = "../plain.rs"]
+mod plain;
+
 mod batch;
 mod bearing_verdict;
 mod compliances;
@@ -57,6 +60,7 @@ mod signal_recordings;
 mod signal_refused;
 mod signal_scipy;
 mod signal_simulated;
+mod sounding;
 mod support;
 mod tooth_shape;
 mod train_mismatch;

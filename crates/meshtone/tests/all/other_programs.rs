@@ -493,7 +493,7 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
         ])),
         turn: DMatrix::identity(8, 8),
         springs: vec![spring],
-        lines: vec![LineOfAction { at_middle: at_middle.into(), per_m: DVector::zeros(8) }],
+        lines: vec![LineOfAction { at_middle: at_middle.into(), per_m: DVector::zeros(8), across: None }],
         bearings: Vec::new(),
         turning_forces: Vec::new(),
         drives: Vec::new(),

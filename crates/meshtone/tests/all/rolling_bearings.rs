@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::plain::plain;
 use meshtone::machine::Axis;
 use meshtone::scenario::*;
 use meshtone::sensor::GRAVITY_M_PER_S2;
@@ -14,7 +15,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 fn rig(rig: GearboxRig, bearing: &str) -> Scenario {
     let text = gearbox_template(Some(rig)).replace("iso_class = 6", "iso_class = 0");
     let first = format!("[[bearing]]\nkind = \"ball\"\nname = \"ER-10K\"\n{bearing}\n");
-    let mut gearbox = Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap();
+    let mut gearbox = plain(Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap());
     gearbox.solver.sampling_rate_hz = 100_000.0;
     gearbox.solver.duration_s = Some(1.0);
     gearbox.sensors.clear();
@@ -254,7 +255,7 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
     let gearbox = |change: fn(&mut Scenario)| {
         let text =
             gearbox_template(Some(GearboxRig::Phm2009Helical)).replace("iso_class = 6", "iso_class = 0");
-        let mut gearbox = Scenario::from_toml(&text).unwrap();
+        let mut gearbox = plain(Scenario::from_toml(&text).unwrap());
         gearbox.sensors = vec![Sensor::at_place("shaft:input:0.5")];
         change(&mut gearbox);
         gearbox

@@ -174,7 +174,8 @@ fn hidden_paths_of_several_machines() {
 
 /// Two stages of 29/100 and 36/90 teeth, as their user knows them, loaded so that teeth hardly part; the sensor sits on the input's bearing.
 fn gearbox() -> Scenario {
-    let mut gearbox = Scenario::from_toml(&gearbox_template(Some(GearboxRig::Tecnalia))).unwrap();
+    let mut gearbox =
+        crate::plain::plain(Scenario::from_toml(&gearbox_template(Some(GearboxRig::Tecnalia))).unwrap());
     gearbox.faults.clear();
     gearbox.sensors.truncate(1);
     gearbox.wheels.iter_mut().for_each(|wheel| (wheel.iso_class, wheel.din_grade) = (6, 0));

@@ -23,7 +23,7 @@ struct Recording {
 
 fn recording(seed: u64) -> Option<Recording> {
     let draws = &mut Draws::new(seed);
-    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    let mut gearbox = crate::plain::plain(Scenario::from_toml(&gearbox_template(None)).unwrap());
     for wheel in &mut gearbox.wheels {
         wheel.teeth = draws.count(20, 90);
         wheel.iso_class = draws.count(5, 8) as u8;

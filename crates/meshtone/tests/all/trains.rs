@@ -142,12 +142,11 @@ fn side_by_side(machines: [&Machine; 2]) -> Machine {
         whole.springs.extend(
             machine.springs.iter().map(|spring| Spring { stiffness: matrix(&spring.stiffness), ..*spring }),
         );
-        whole.lines.extend(
-            machine
-                .lines
-                .iter()
-                .map(|line| LineOfAction { at_middle: vector(&line.at_middle), per_m: vector(&line.per_m) }),
-        );
+        whole.lines.extend(machine.lines.iter().map(|line| LineOfAction {
+            at_middle: vector(&line.at_middle),
+            per_m: vector(&line.per_m),
+            across: None,
+        }));
         whole.drives.extend(machine.drives.iter().map(|drive| match *drive {
             Drive::Motor { coordinate, stiffness_nm_per_rad, speed_ratio } => Drive::Motor {
                 coordinate: coordinate + from,
@@ -292,7 +291,7 @@ fn torsional_train(
     let line = |&[(driving, driving_m), (driven, driven_m)]: &[(usize, f64); 2]| {
         let mut at_middle = DVector::zeros(n);
         (at_middle[driving], at_middle[driven]) = (driving_m, -driven_m);
-        LineOfAction { at_middle, per_m: DVector::zeros(n) }
+        LineOfAction { at_middle, per_m: DVector::zeros(n), across: None }
     };
     Machine {
         names: vec!["rotation".into(); n],

@@ -5,6 +5,7 @@ use meshtone::sensor::NamedSignal;
 use std::f64::consts::TAU;
 
 use crate::dense::{Dense, DenseMesh};
+use crate::plain::plain;
 use meshtone::batch::{Control, KeepOf, simulate_many};
 use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
@@ -13,7 +14,7 @@ use meshtone::wheel::ErrorTable;
 use meshtone::{MeshedPair, Simulation, Stages, StepJudgement, stages, stages_within};
 
 fn gearbox(rig: Option<GearboxRig>) -> Scenario {
-    Scenario::from_toml(&gearbox_template(rig)).unwrap()
+    plain(Scenario::from_toml(&gearbox_template(rig)).unwrap())
 }
 
 /// Two stages with teeth that have pitch deviations and run-out and no chamfer, of the references' steel.
@@ -59,7 +60,8 @@ fn rms(values: &[f64]) -> f64 {
 fn files_are_read_back() {
     let mut broken = gearbox(None);
     broken.faults = vec![Fault::new("z3", 7, MissingTooth)];
-    broken.operation.torque_ripple = vec![Ripple { order: 2.0, amplitude: 0.1, phase_deg: 30.0 }];
+    broken.operation.torque_ripple =
+        vec![Ripple { shaft: None, order: 2.0, amplitude: 0.1, phase_deg: 30.0 }];
     let feet = vec![Foot { at_mm: [0.0, -100.0, 0.0], stiffness_n_per_m: 5e7 }];
     let parts = broken.structure.shafts_mut().unwrap();
     parts.housing.as_mut().unwrap().feet = feet;
@@ -395,7 +397,8 @@ fn one_pair_has_the_forces_and_stiffness_of_the_short_form() {
 #[test]
 fn a_ripple_of_the_torque_comes_with_the_brakes_shaft() {
     let mut gearbox = one_pair();
-    gearbox.operation.torque_ripple = vec![Ripple { order: 1.0, amplitude: 0.2, phase_deg: 0.0 }];
+    gearbox.operation.torque_ripple =
+        vec![Ripple { shaft: None, order: 1.0, amplitude: 0.2, phase_deg: 0.0 }];
     gearbox.solver.discard_and_keep(1.0, 0.95);
     let simulation = simulate(&gearbox);
     let force = simulation.channels.signal("force_n.z1-z2").unwrap();
@@ -604,6 +607,8 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
         first.iso_class = 0;
         first.profile_errors_mm = Some(ErrorTable::filled(ERROR_POINTS, 32, 1e-3));
         (first.tooth_share, first.run_out_share) = (0.1, 0.1);
+        // At their defaults.
+        (first.pitch_share, first.slope_wobble) = (0.5, 1.0);
         second.deviations.run_out_um = Some(5.0);
         (second.tooth_share, second.run_out_share) = (0.1, 0.1);
     });

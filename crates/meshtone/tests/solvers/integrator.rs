@@ -51,13 +51,11 @@ fn of_constant_stiffness(scenario: &Scenario, seconds: f64) -> Stages {
     let limit = MemoryLimit::Given { bytes: 16 << 30 };
     let mut stages = stages_within(scenario, limit).unwrap();
     stages.time.samples = (seconds / stages.time.step_s()).round() as usize + 1;
-    // Between points the last one of a pitch needs the next.
-    let beyond = usize::from(!stages.is_steady());
     let mesh = &mut stages.meshes[0];
     let level =
         PairState { stiffness_n_per_m: mesh.mean_stiffness_n_per_m, separation_m: 0.0, face_centre_m: 0.0 };
     mesh.points_before = 0;
-    mesh.classes[0].states = vec![level; mesh.points_per_pitch + beyond];
+    mesh.classes[0].states = vec![level; mesh.points_per_pitch];
     stages
 }
 

@@ -12,3 +12,5 @@ mod integrator;
 #[allow(dead_code)]
 #[path = "../all/physics.rs"]
 mod physics;
+#[path = "../plain.rs"]
+mod plain;

@@ -4,6 +4,7 @@
 //! about them. No coordinate is turned: with several meshes there is no common line of action.
 
 mod beam;
+mod housing_modes;
 mod parts;
 
 use std::borrow::Cow;
@@ -11,10 +12,12 @@ use std::borrow::Cow;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::body::WheelBody;
-use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
+use super::parts::{AcrossLine, Axis, Drive, LineOfAction, Machine, Place, Spring};
 use super::{TurningForce, Unbalance};
 use crate::wheel::Material;
 use beam::{Beam, PER_NODE};
+pub use housing_modes::HousingModes;
+use housing_modes::HousingPoint;
 pub use parts::{Bearing, BearingKind, Coupled, Foot, GearboxShaft, Housing, Seat};
 
 /// What the machine is made of.
@@ -96,6 +99,8 @@ pub struct MeshLine {
     pub working_pressure_angle_rad: f64,
     /// (-) Force along the shafts per transverse force, `h tan β_b`: positive of a driving wheel with a right-hand helix, 0 of spur wheels.
     pub thrust: f64,
+    /// Whether forces across its line of action act too: friction, and a random part.
+    pub has_forces_across: bool,
 }
 
 /// A place at which the motion can be measured.
@@ -118,6 +123,8 @@ pub struct GearboxMachine {
     nodes: Vec<Vec<(f64, usize)>>,
     /// First coordinate of the housing and (m) its centre; none without one.
     housing: Option<(usize, Vector3<f64>)>,
+    /// The housing's modes, and the coordinate of the first; none of a rigid housing.
+    housing_modes: Option<(usize, HousingModes)>,
     /// First coordinate of each bearing's seat.
     seats: Vec<usize>,
     /// Rotation of each shaft over that of the input.
@@ -275,6 +282,9 @@ impl GearboxMachine {
             .collect();
         let brake = next;
         names.push("phi_z_brake".into());
+        let housing_modes = parts.housing.map(|housing| (names.len(), housing.modes));
+        let modes = housing_modes.map_or(0, |(_, modes)| modes.count());
+        names.extend((1..=modes).map(|mode| Cow::from(format!("housing_mode_{mode}"))));
         let coordinates = names.len();
         let mut assembly =
             Assembly { names, mass: DMatrix::zeros(coordinates, coordinates), springs: Vec::new() };
@@ -294,6 +304,7 @@ impl GearboxMachine {
             },
             nodes,
             housing,
+            housing_modes,
             seats,
             speed_ratios: parts.speed_ratios.to_vec(),
         };
@@ -359,9 +370,16 @@ impl GearboxMachine {
     fn add_supports(&self, parts: &GearboxParts, assembly: &mut Assembly) {
         if let (Some(housing), Some((body, _))) = (parts.housing, self.housing) {
             assembly.add_body(body, housing.mass_kg, [housing.moment_of_inertia_kgm2(); 3]);
+            if let Some((first, modes)) = self.housing_modes {
+                for (mode, rad_per_s) in modes.angular_frequencies().into_iter().enumerate() {
+                    assembly.mass[(first + mode, first + mode)] = housing.mass_kg;
+                    let stiffness_n_per_m = housing.mass_kg * rad_per_s * rad_per_s;
+                    assembly.spring(modes.damping_ratio).resist(&[(first + mode, 1.0)], stiffness_n_per_m);
+                }
+            }
         }
-        for (&SeatedBearing { shaft, bearing, radial_n_per_m }, &seat) in
-            parts.bearings.iter().zip(&self.seats)
+        for (number, (&SeatedBearing { shaft, bearing, radial_n_per_m }, &seat)) in
+            parts.bearings.iter().zip(&self.seats).enumerate()
         {
             let (of_shaft, [x_m, y_m]) = parts.shafts[shaft];
             let z_m = bearing.at * of_shaft.length_mm * 1e-3;
@@ -384,7 +402,9 @@ impl GearboxMachine {
             };
             for (axis, held) in held.into_iter().enumerate() {
                 let mut stretch = vec![(seat + axis, 1.0)];
-                stretch.extend(held.into_iter().map(|(coordinate, weight)| (coordinate, -weight)));
+                let shapes = self.housing_shapes(HousingPoint::Seat(number), axis);
+                let held = held.into_iter().chain(shapes);
+                stretch.extend(held.map(|(coordinate, weight)| (coordinate, -weight)));
                 assembly.hold(&stretch, stiffness_n_per_m, bearing.damping_ratio);
                 let mut twist = vec![(seat + 3 + axis, 1.0)];
                 twist.extend(self.housing.map(|(housing, _)| (housing + 3 + axis, -1.0)));
@@ -488,6 +508,9 @@ impl GearboxMachine {
     /// `n = s cos α t + sin α c − s h tan β_b z`, c the direction from centre to centre, `t = z × c`, and h the hand of the driving wheel's
     /// helix. With the arm r from each centre to the pitch point it is `[n; r × n]` of the driving wheel, less the same of the driven one.
     /// Deflections and forces along it are those of the transverse section, in which `F r_b` is the torque.
+    ///
+    /// Friction acts along `q = −s z × n`, against the sliding of the driving wheel's flank beyond the pitch point. At the distance d from
+    /// there its arm is longer by `d n`, which adds the moment `d n × q = −s d z`.
     fn line_of_action(&self, parts: &GearboxParts, mesh: &MeshLine, coordinates: usize) -> LineOfAction {
         let [driving, driven] = mesh.wheels;
         let centre = |disc: usize| {
@@ -499,21 +522,35 @@ impl GearboxMachine {
         let sense = parts.speed_ratios[parts.discs[driving].shaft].signum();
         let (sin, cos) = mesh.working_pressure_angle_rad.sin_cos();
         let n = along.cross(&c) * (sense * cos) + c * sin - along * (sense * mesh.thrust);
-        let mut line =
-            LineOfAction { at_middle: DVector::zeros(coordinates), per_m: DVector::zeros(coordinates) };
+        let zeros = || DVector::zeros(coordinates);
+        let mut line = LineOfAction { at_middle: zeros(), per_m: zeros(), across: None };
+        let mut across = AcrossLine { at_pitch_point: zeros(), per_m: zeros() };
+        let q = along.cross(&n) * -sense;
         for (disc, base_radius_m, side) in
             [(driving, mesh.base_radii_m[0], 1.0), (driven, mesh.base_radii_m[1], -1.0)]
         {
             let node = self.node_of_disc(parts, disc);
             let arm = c * (side * base_radius_m / cos);
             let (moment, per_m) = (arm.cross(&n), along.cross(&n));
+            let moment_across = arm.cross(&q);
             for axis in 0..3 {
                 line.at_middle[node + axis] = side * n[axis];
                 line.at_middle[node + 3 + axis] = side * moment[axis];
                 line.per_m[node + 3 + axis] = side * per_m[axis];
+                across.at_pitch_point[node + axis] = side * q[axis];
+                across.at_pitch_point[node + 3 + axis] = side * moment_across[axis];
             }
+            across.per_m[node + ABOUT_Z] = -side * sense;
         }
+        line.across = mesh.has_forces_across.then_some(across);
         line
+    }
+
+    /// The coordinates of the housing's modes, each with its shape at a point along an axis.
+    fn housing_shapes(&self, point: HousingPoint, axis: usize) -> Vec<(usize, f64)> {
+        let shapes =
+            |(first, modes): (usize, HousingModes)| (first..).zip(modes.shapes(point, axis)).collect();
+        self.housing_modes.map_or_else(Vec::new, shapes)
     }
 
     /// The motor turns its shaft at z = 0; the brake's torque acts against its rotation.
@@ -553,7 +590,13 @@ impl GearboxMachine {
             GearboxPlace::Seat(bearing) => along(self.seats[bearing]),
             GearboxPlace::Shaft(shaft, at) => self.between_nodes(shaft, at),
             GearboxPlace::Housing(at_m) => match self.housing {
-                Some((housing, centre)) => point_of_body(housing, Vector3::from(at_m) - centre),
+                Some((housing, centre)) => {
+                    let mut motion = point_of_body(housing, Vector3::from(at_m) - centre);
+                    for (axis, motion) in motion.iter_mut().enumerate() {
+                        motion.extend(self.housing_shapes(HousingPoint::At(at_m), axis));
+                    }
+                    motion
+                }
                 None => [Vec::new(), Vec::new(), Vec::new()],
             },
         };

@@ -3,6 +3,7 @@
 use std::ops::Bound::{Excluded, Included};
 
 use super::super::{Bow, Unbalance};
+use super::housing_modes::HousingModes;
 use crate::bearing::{
     BearingDefect, BearingGeometry, ElementContact, NAMED_BEARINGS, NamedBearing, RollingElement,
     RollingParts, Spall,
@@ -32,7 +33,7 @@ pub struct GearboxShaft {
     pub couples_to: Coupled,
     /// (N m/rad) Torsional stiffness of that coupling. Default 2e3 of a motor's, 4e3 of a brake's.
     pub coupling_stiffness_nm_per_rad: Option<f64>,
-    /// (-) Damping ratio of the shaft and its coupling. Default 0.02.
+    /// (-) Damping ratio of the shaft and its coupling. Default 0.05.
     pub damping_ratio: f64,
     /// Unbalance midway along the shaft. Default none.
     pub unbalance: Unbalance,
@@ -114,7 +115,7 @@ impl Keys for GearboxShaft {
             elements: 12,
             couples_to: Coupled::Nothing,
             coupling_stiffness_nm_per_rad: None,
-            damping_ratio: 0.02,
+            damping_ratio: 0.05,
             unbalance: Unbalance::default(),
             bow: Bow::default(),
         }
@@ -227,7 +228,7 @@ pub struct Bearing {
     pub tilt_stiffness_nm_per_rad: f64,
     /// What it sits in.
     pub seat: Seat,
-    /// (-) Damping ratio of the bearing and its seat. Default 0.02.
+    /// (-) Damping ratio of the bearing and its seat. Default 0.05.
     pub damping_ratio: f64,
 }
 
@@ -426,7 +427,7 @@ impl Keys for Bearing {
             axial_stiffness_n_per_m: 3e7,
             tilt_stiffness_nm_per_rad: 100.0,
             seat: Seat::default(),
-            damping_ratio: 0.02,
+            damping_ratio: 0.05,
         }
     }
 
@@ -543,7 +544,7 @@ impl Keys for Seat {
     }
 }
 
-/// The housing: one rigid body on feet, to which all seats are fixed.
+/// The housing: a body on feet, to which all seats are fixed. It is rigid but for its [modes](HousingModes).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Housing {
@@ -553,15 +554,23 @@ pub struct Housing {
     pub inertia_kgm2: Option<f64>,
     /// What it stands on; none for four feet of 6e7 N/m at its corners.
     pub feet: Vec<Foot>,
-    /// (-) Damping ratio of the feet. Default 0.02.
+    /// (-) Damping ratio of the feet. Default 0.05.
     pub damping_ratio: f64,
+    /// Its modes. Default 4 per kHz from 350 Hz.
+    pub modes: HousingModes,
 }
 
 impl Keys for Housing {
     const SECTION: &str = "housing";
 
     fn start() -> Self {
-        Self { mass_kg: 30.0, inertia_kgm2: None, feet: Vec::new(), damping_ratio: 0.02 }
+        Self {
+            mass_kg: 30.0,
+            inertia_kgm2: None,
+            feet: Vec::new(),
+            damping_ratio: 0.05,
+            modes: HousingModes::default(),
+        }
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
@@ -578,6 +587,7 @@ impl Keys for Housing {
                 )
                 .alternative("[{ at_mm = [-100.0, -100.0, 0.0], stiffness_n_per_m = 6e7 }]"),
             row("damping_ratio", "-", "the damping ratio of the feet", field!(damping_ratio)).range(DAMPING),
+            row("modes", "", "the modes in which it vibrates between its feet and the seats", field!(modes)),
         ]
     }
 }

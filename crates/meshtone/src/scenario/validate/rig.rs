@@ -92,6 +92,7 @@ fn check_values(scenario: &Scenario, rig: &Rig) -> Check {
 /// What the file of a pair cannot state would be lost in it.
 fn check_is_written(scenario: &Scenario) -> Check {
     let lost = [
+        ("operation.torque_ripple", !scenario.operation.torque_ripple.is_empty()),
         ("mesh.phase", scenario.meshes.iter().any(|mesh| mesh.phase.is_some())),
         ("wheel.material", scenario.wheels.iter().any(|wheel| wheel.material.is_some())),
     ];

@@ -42,6 +42,7 @@ impl Scenario {
         check_rows(&long::operation().rows, self, "operation")?;
         check_rows(&long::solver().rows, self, "solver")?;
         self.check_counts()?;
+        self.check_ripple()?;
         self.check_pieces()?;
         self.rolling_bearings()?;
         self.operation.check()?;
@@ -69,6 +70,20 @@ impl Scenario {
             let problem = format!("there are {} meshes; must be at most {most}", self.meshes.len());
             let error = ScenarioError::new("mesh", "", problem);
             return Err(error.with_help("leave out meshes that carry no load"));
+        }
+        Ok(())
+    }
+
+    /// The shafts of the torque's harmonics must be there.
+    fn check_ripple(&self) -> Result<(), ScenarioError> {
+        let names: Vec<&str> = self.shafts().iter().map(|shaft| shaft.name.as_str()).collect();
+        let ripple = &self.operation.torque_ripple;
+        let named = ripple.iter().enumerate().filter_map(|(index, of)| Some((index, of.shaft.as_ref()?)));
+        for (index, shaft) in named {
+            find(&names, shaft, "shaft").map_err(|error| {
+                let key = entry_key("torque_ripple", index, ripple.len(), "shaft");
+                ScenarioError { key: format!("operation.{key}"), ..error }
+            })?;
         }
         Ok(())
     }
@@ -231,7 +246,11 @@ impl Scenario {
         let wheels = self.wheels.len();
         let of_wheel = |number: usize| self.wheels[number].ignored_shares(&section("wheel", number, wheels));
         let of_shares = (0..wheels).flat_map(of_wheel);
-        let ended = self.operation.ended_profiles(time.kept_from_s());
+        let ended = self
+            .operation
+            .ended_profiles(time.kept_from_s())
+            .into_iter()
+            .chain(self.operation.reversed_torque());
         let of_speed = self.driven_speed(layout).warnings();
         let of_teeth = of_teeth.into_iter().chain(layout.added_thrusts(self));
         of_teeth.chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()

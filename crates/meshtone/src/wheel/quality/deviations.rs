@@ -108,6 +108,7 @@ const PITCH: u64 = 2;
 const FIRST_TOOTH: u64 = 3;
 /// Beyond any tooth's.
 const HELIX: u64 = u64::MAX;
+const WOBBLE: u64 = u64::MAX - 1;
 
 impl Draw<'_> {
     fn draws(&self, index: u64) -> Draws {
@@ -183,6 +184,33 @@ impl Draw<'_> {
                     + form_mm * (common_form * wave(phase) + own_form * wave(own_phase));
             }
         }
+        self.wobble(&mut errors, &pitches, along);
         errors
+    }
+
+    /// Adds the profile slope of a wheel whose hob or grinding wheel ran out: it varies once a revolution, `b s √3 x cos(2πk/z + φ)` of tooth k, with x
+    /// from −1 to 1 along the profile and s the rms deviation of the profiles without the pitches. All profiles are then made smaller, so that
+    /// their rms deviation stays as the class has it.
+    fn wobble(&self, errors: &mut ErrorTable, pitches: &[f64], along: impl Fn(usize) -> f64) {
+        let share = self.quality.slope_wobble;
+        if share == 0.0 {
+            return;
+        }
+        let row = |k: usize| self.name.choose(k, ERROR_POINTS - 1 - k);
+        let squares = (0..pitches.len()).flat_map(|tooth| (0..ERROR_POINTS).map(move |k| (k, tooth)));
+        let square = |(k, tooth): (usize, usize)| (errors[(row(k), tooth)] - pitches[tooth]).powi(2);
+        let count = (pitches.len() * ERROR_POINTS) as f64;
+        let rms_mm = (squares.map(square).sum::<f64>() / count).sqrt();
+        let phase = self.draws(WOBBLE).uniform(PI, PI);
+        // x² has the mean 1/3 and cos² 1/2, so that b adds b²/2 of the square of s.
+        let smaller = 1.0 / (1.0 + share * share / 2.0).sqrt();
+        for (tooth, pitch_mm) in pitches.iter().enumerate() {
+            let angle = TAU * tooth as f64 / pitches.len() as f64 + phase;
+            let slope_mm = share * rms_mm * 3f64.sqrt() * angle.cos();
+            for k in 0..ERROR_POINTS {
+                let profile_mm = errors[(row(k), tooth)] - pitch_mm + slope_mm * (2.0 * along(k) - 1.0);
+                errors[(row(k), tooth)] = pitch_mm + smaller * profile_mm;
+            }
+        }
     }
 }

@@ -27,6 +27,8 @@ pub struct Quality {
     pub pitch_share: f64,
     /// (-) Run-out as a part of its tolerance. Default 0.3.
     pub run_out_share: f64,
+    /// (-) Profile slope that varies once a revolution, over the rms deviation of the wheel's profiles. Default 0.
+    pub slope_wobble: f64,
     /// (-) Largest helix slope deviation as a part of its tolerance. Default 0.
     pub helix_share: f64,
     /// The errors themselves, instead of a draw by `din_grade`: several simulations that are
@@ -47,6 +49,7 @@ impl Default for Quality {
             tooth_share: 0.5,
             pitch_share: 0.25,
             run_out_share: 0.3,
+            slope_wobble: 0.0,
             helix_share: 0.0,
             profile_errors: None,
             pinion_deviations: WheelDeviations::default(),
