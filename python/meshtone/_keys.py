@@ -268,8 +268,7 @@ class GearboxWheel(TypedDict, total=False):
     unbalance : Unbalance
         Its unbalance.
     eccentricity_mm : float
-        (mm) The eccentricity of its seat. Allowed: ≥ 0; less than the module; the same of both wheels of a mesh; of a
-        wheel in one mesh.
+        (mm) The eccentricity of its seat. Allowed: ≥ 0; less than the module; of a wheel in one mesh.
     din_grade : int
         The grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
     iso_class : int

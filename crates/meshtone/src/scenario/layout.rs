@@ -397,7 +397,6 @@ impl Layout {
                 "uniform_flank_reduction_mm",
                 pinion.uniform_flank_reduction_mm == gear.uniform_flank_reduction_mm,
             ),
-            ("eccentricity_mm", pinion.eccentricity_mm == gear.eccentricity_mm),
             ("material", material(pinion) == material(gear)),
         ];
         if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {

@@ -145,7 +145,7 @@ fn gearbox_moves_as_with_dense_matrices() {
     let deviations = |mesh: usize| PairDeviations {
         teeth: &stages.pairs[mesh].teeth,
         errors: stages.pairs[mesh].profile_errors.as_ref(),
-        eccentricity_m: 0.0,
+        eccentricity_m: [0.0; 2],
         run_out: stages.pairs[mesh].run_out,
     };
     let dense = Dense {
