@@ -58,7 +58,6 @@ __all__ = [
     "process_channel",
     "process_series",
     "process_simulated",
-    "process_simulated_train",
     "process_train",
     "read_recording",
     "repair_pulses",
@@ -170,10 +169,7 @@ def write_signals(
     signals: Sequence[tuple[str, _Array]],
 ) -> None: ...
 def process_simulated(
-    scenario: Scenario, signal: _Array, wheel: str, start_s: float, settings: Mapping[str, object] | None = None
-) -> dict[str, Any]: ...
-def process_simulated_train(
-    scenario: Scenario, signal: _Array, start_s: float, sidebands: int | None = None
+    scenario: Scenario, signal: _Array, wheel: str | None, start_s: float, sidebands: int | None = None
 ) -> dict[str, Any]: ...
 def gearbox_template(rig: str | None = None) -> str: ...
 def simulate(scenario: Scenario) -> Simulation: ...

@@ -64,12 +64,16 @@ class Foundation(TypedDict, total=False):
         A to F of P, the constant term.
     Q : sequence of 6 floats
         A to F of Q, the factor of tan²α.
+    rotation : {'machine', 'tooth'}
+        Where the rotation of the wheel's whole body is, which P has too: "machine" takes it out of P and makes it a
+        torsional spring between bore and wheel, "tooth" leaves it in each pair of teeth.
     """
 
     L: Sequence[float]
     M: Sequence[float]
     P: Sequence[float]
     Q: Sequence[float]
+    rotation: Literal["machine", "tooth"]
 
 
 class Shaft(TypedDict, total=False):
@@ -241,7 +245,8 @@ class GearboxWheel(TypedDict, total=False):
         The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is not
         simulated, with a warning.
     face_width_mm : float
-        (mm) The face width; a mesh has the narrower one. Allowed: > 0, ≤ 10000; on its shaft, clear of other wheels.
+        (mm) The face width; a mesh has what both faces have in common. Allowed: > 0, ≤ 10000; on its shaft, clear of
+        other wheels.
     profile_shift : float
         (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip.
     addendum : float
@@ -266,8 +271,7 @@ class GearboxWheel(TypedDict, total=False):
     unbalance : Unbalance
         Its unbalance.
     eccentricity_mm : float
-        (mm) The eccentricity of its seat. Allowed: ≥ 0; less than the module; the same of both wheels of a mesh; of a
-        wheel in one mesh.
+        (mm) The eccentricity of its seat. Allowed: ≥ 0; less than the module; of a wheel in one mesh.
     din_grade : int
         The grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
     iso_class : int

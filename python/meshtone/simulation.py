@@ -18,7 +18,7 @@ from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal import Record, resample
 from .signal.indicators import INDICATORS
-from .signal._arguments import positive, read_only, regular_part, separation_settings, whole
+from .signal._arguments import positive, read_only, regular_part, whole
 from .signal.train import TrainRecord, train_record
 
 if TYPE_CHECKING:
@@ -131,6 +131,9 @@ class Simulation:
     working_pressure_angle_rad: float
     centre_distance_mm: float
     normal_backlash_mm: float
+    face_load_factor: float
+    lean_um: float
+    tilt_product: float
     fine_step_rev: float
     coarse_step_rev: float
     pinion_revolutions: float
@@ -587,7 +590,7 @@ class Simulation:
         """
         channel = chosen_channel(self.scenario, channel)
         bands, _ = regular_part(sidebands, None)
-        parts = _core.process_simulated_train(native_scenario(self.scenario), self[channel], self.start_s, bands)
+        parts = _core.process_simulated(native_scenario(self.scenario), self[channel], None, self.start_s, bands)
         return train_record(parts, channel)
 
     def plot(self) -> Figure:
@@ -950,9 +953,9 @@ def _process(
     scenario: Scenario, signal: npt.ArrayLike, start_s: float, channel: str, wheel: str | None, sidebands: int | None
 ) -> Record:
     of = wheel_of(scenario, wheel)
-    settings = separation_settings(of.teeth, sidebands, None)
+    bands, _ = regular_part(sidebands, None)
     values = np.ascontiguousarray(signal, dtype=np.float64)
-    parts = _core.process_simulated(scenario._native, values, of.name, start_s, settings)
+    parts = _core.process_simulated(scenario._native, values, of.name, start_s, bands)
     warn_of_signal(typed(parts["warnings"]))
     return Record(parts, teeth=of.teeth, name=channel)
 

@@ -574,6 +574,36 @@ def test_every_line_of_a_gearboxs_spectrum_has_a_name(train_page: Page) -> None:
     assert any("mesh z1-z2" in name for name, *_ in rows)
 
 
+def test_a_gearbox_is_held_exported_and_linked(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+    rows = "return [...document.querySelectorAll('#indicators tbody tr')].map((row) => [...row.children].map((cell) => cell.textContent))"
+    before = {name: value for name, value in page.run(rows)}
+    assert float(before["difference rms, g"]) > 0
+    page.run("document.getElementById('hold').click()")
+    assert page.enter("operation.input_speed_hz", "33") == ""
+    after = {name: (value, held) for name, value, held in page.run(rows)}
+    assert {name: held for name, (_, held) in after.items()} == before
+    assert after["difference rms, g"][0] != before["difference rms, g"]
+    page.run("document.getElementById('link').click()")
+    page.wait(lambda: page.run("return location.hash.length > 100"), "the link")
+    linked = train.scenario
+    assert page.enter("operation.input_speed_hz", "20") == ""
+    Page(page.browser, page.run("return location.href"))
+    assert train.scenario == linked
+    text = ask(train, "export/python", {"page": "gearbox", "number": 1, "toml": linked.to_toml()}).decode()
+    made: dict[str, Any] = {}
+    exec(text.split("\nsimulation")[0], made)
+    assert made["scenario"] == linked
+    assert b"<svg" in ask(train, "export/svg", {"page": "gearbox", "number": 2, "toml": linked.to_toml()})[:400]
+
+
+def test_a_gearbox_begins_with_a_rig(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+    choose = "const box = document.getElementById('preset'); box.value = 'tecnalia'; box.dispatchEvent(new Event('change'))"
+    assert page.settled(lambda: page.run(choose), "a rig") == ""
+    assert train.scenario == mt.Scenario.from_toml(mt.gearbox_template("tecnalia"))
+
+
 def test_damage_is_added_to_a_wheel_and_a_file_opened(train_page: Page, train: mt.Explorer) -> None:
     page = train_page
     start = train.scenario

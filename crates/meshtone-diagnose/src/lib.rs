@@ -16,6 +16,9 @@ mod json;
 mod learn;
 mod level;
 mod observation;
+#[cfg(test)]
+#[path = "../../meshtone/tests/plain.rs"]
+mod plain;
 mod prior;
 mod recorded;
 mod reference;

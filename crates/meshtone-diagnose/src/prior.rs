@@ -339,7 +339,8 @@ fn own_name(key: &str) -> &str {
 const FEWEST_TURNS: f64 = 8.0;
 
 /// Changes how long a steady gearbox is simulated: until the same teeth meet again on all shafts, since what follows repeats it; where that
-/// takes longer than the scenario's own time, that time, but [`FEWEST_TURNS`] of the slowest shaft at least. It settles as long as before.
+/// takes longer than the scenario's own time, that time, but [`FEWEST_TURNS`] of the slowest shaft at least. It settles as long as before, and
+/// has no random forces.
 fn once(gearbox: &mut Scenario) -> Result<(), ScenarioError> {
     let layout = gearbox.layout()?;
     let cycle = layout.cycle_revolutions() as f64;
@@ -348,6 +349,8 @@ fn once(gearbox: &mut Scenario) -> Result<(), ScenarioError> {
     let revolutions = |samples: usize| samples as f64 / time.samples_per_pinion_revolution as f64;
     let kept = revolutions(time.kept_samples());
     let needed = cycle.min(kept.max(FEWEST_TURNS / slowest));
+    // One cycle stands for a long recording, whose averages have little of what is random; noise is added to the averages.
+    gearbox.meshes.iter_mut().for_each(|mesh| mesh.random_force = 0.0);
     if gearbox.operation.is_steady() && needed != kept {
         let settled = revolutions(time.first_kept_sample);
         let solver = &mut gearbox.solver;

@@ -3,11 +3,12 @@
 use meshtone::bearing::{NAMED_BEARINGS, NamedBearing};
 use meshtone::damage::{DamageKind, damage_kinds};
 use meshtone::scenario::{
-    Bearing, BearingKind, Fault, KeyDescription, KeyKind, Scenario, SectionDescription, gearbox_sections,
-    sections,
+    Bearing, BearingKind, Fault, GearboxRig, KeyDescription, KeyKind, Scenario, SectionDescription,
+    gearbox_sections, gearbox_template, sections,
 };
 use serde_json::{Value, json};
 
+use crate::answer::gearbox_sections_json;
 use crate::export::without_defaults;
 use crate::presets::{Preset, presets};
 
@@ -19,12 +20,21 @@ fn section_json(SectionDescription { name, keys, .. }: &SectionDescription) -> V
 pub fn gearbox_controls() -> Value {
     let mut listed: Vec<Value> = gearbox_sections().iter().map(section_json).collect();
     listed.extend(sections().iter().filter(|section| section.name == "fault").map(section_json));
+    let rigs = [None].into_iter().chain(GearboxRig::ALL.map(Some));
     json!({
         "sections": listed,
         "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
         "bearings": NAMED_BEARINGS.iter().filter_map(bearing_json).collect::<Vec<_>>(),
+        "presets": rigs.filter_map(gearbox_preset).collect::<Vec<_>>(),
         "version": env!("CARGO_PKG_VERSION"),
     })
+}
+
+/// A gearbox to start from: what is published of a rig, or the example.
+fn gearbox_preset(rig: Option<GearboxRig>) -> Option<Value> {
+    let name = rig.map_or("example", GearboxRig::name);
+    let scenario = gearbox_sections_json(&Scenario::from_toml(&gearbox_template(rig)).ok()?);
+    Some(json!({ "name": name, "title": rig.map_or("Two stages", GearboxRig::name), "scenario": scenario }))
 }
 
 /// A named bearing with the kind and the sizes that a scenario gives it; none of one that a scenario cannot have.

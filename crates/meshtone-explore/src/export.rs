@@ -110,8 +110,8 @@ fn sections(scenario: &Scenario) -> Map<String, Value> {
 fn python(scenario: &Scenario) -> String {
     let head = "import meshtone as mt\n\n";
     let tail = "\nsimulation = mt.simulate(scenario)\n";
-    if scenario.quality().profile_errors.is_some() {
-        // Thousands of numbers read better in a file.
+    if scenario.rig().is_none() || scenario.quality().profile_errors.is_some() {
+        // Thousands of numbers read better in a file, and so do the lists of a gearbox.
         let toml = scenario.to_toml();
         return format!("{head}scenario = mt.Scenario.from_toml(\n    \"\"\"\n{toml}\"\"\"\n)\n{tail}");
     }

@@ -40,6 +40,7 @@ presets! {
     "wear" "Wear of all teeth";
     "several_faults" "Several faults";
     "profile_shift" "Shifted profiles";
+    "helical" "Helical teeth";
     "sensors" "Three sensors";
 }
 

@@ -19,19 +19,19 @@ pub fn memory_limit() -> MemoryLimit {
     }
 }
 
+/// Reads and checks the scenario of a pair, as [`scenario`] does any.
+///
+/// # Arguments
+/// * `question` - as of [`scenario`]
+pub fn pair(question: &Value) -> Result<Scenario, Refusal> {
+    read_with(question, |text| Scenario::pair_from_toml_within(text, &NoFiles, memory_limit()))
+}
+
 /// Reads and checks a scenario, with the errors of a scenario file.
 ///
 /// # Arguments
 /// * `question` - with `toml`, a scenario file's text, or `scenario`, its sections and keys
 pub fn scenario(question: &Value) -> Result<Scenario, Refusal> {
-    read_with(question, |text| Scenario::pair_from_toml_within(text, &NoFiles, memory_limit()))
-}
-
-/// Reads and checks a gearbox, as [`scenario`] does a pair.
-///
-/// # Arguments
-/// * `question` - with `toml`, a scenario file's text, or `scenario`, its sections and keys
-pub fn gearbox(question: &Value) -> Result<Scenario, Refusal> {
     read_with(question, |text| Scenario::from_toml_within(text, &NoFiles, memory_limit()))
 }
 

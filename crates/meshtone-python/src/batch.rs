@@ -99,14 +99,14 @@ impl KeepNamed {
 
 /// A simulation on its way to its kept channels: of a pair these alone, of a gearbox all.
 enum KeptRecorder {
-    OfPair(Box<ObservedRecorder>),
+    Some(Box<ObservedRecorder>),
     All(Channels),
 }
 
 impl Recorder for KeptRecorder {
     fn record(&mut self, block: &Block) {
         match self {
-            Self::OfPair(recorder) => recorder.record(block),
+            Self::Some(recorder) => recorder.record(block),
             Self::All(channels) => channels.record(block),
         }
     }
@@ -147,7 +147,7 @@ impl Keep for KeepNamed {
 
     fn recorder(&self, stages: &Stages) -> KeptRecorder {
         match stages.scenario.rig() {
-            Some(_) => KeptRecorder::OfPair(Box::new(self.of_pair(&stages.scenario).recorder(stages))),
+            Some(_) => KeptRecorder::Some(Box::new(self.of_pair(&stages.scenario).recorder(stages))),
             None => KeptRecorder::All(KeepSimulation.recorder(stages)),
         }
     }
@@ -155,7 +155,7 @@ impl Keep for KeepNamed {
     fn keep(&self, index: usize, stages: Stages, recorder: KeptRecorder) -> Kept {
         let names = self.names(&stages.scenario);
         match recorder {
-            KeptRecorder::OfPair(recorder) => {
+            KeptRecorder::Some(recorder) => {
                 let observed = self.of_pair(&stages.scenario).keep(index, stages, *recorder);
                 let (signals, observation) = (observed.signals, observed.observation);
                 Kept {

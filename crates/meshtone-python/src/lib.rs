@@ -55,7 +55,7 @@ mod _core {
             order_spectrum, resample, separate, sideband_level_factor, statistics, synchronous_average,
         },
         signals_file::write_signals,
-        simulation::{Simulation, process_simulated, process_simulated_train, simulate, trace},
+        simulation::{Simulation, process_simulated, simulate, trace},
     };
 
     use pyo3::prelude::*;

@@ -1,12 +1,11 @@
 //! The angle of a shaft.
 
 use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, Tachometer, TrainTurning};
-use meshtone::wheel::WheelName;
 use pyo3::prelude::*;
 
 use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
-use crate::process::{TypedWarning, typed};
+use crate::process::{TypedWarning, train, typed};
 use crate::scenario::Scenario;
 
 /// Angle of a shaft at each sample.
@@ -29,12 +28,10 @@ impl ShaftPhase {
     /// Returns the phase of the input in a simulation: of the pinion, or of the shaft at the motor.
     #[staticmethod]
     fn of_simulated(scenario: &Scenario, start_s: f64, samples: usize) -> PyResult<Self> {
+        let train = train(scenario)?;
         let turning = TrainTurning::of_simulated(&scenario.0, start_s, samples);
-        let phase = turning.and_then(|turning| match turning {
-            TrainTurning::SimulatedPair(shafts) => shafts.phase(WheelName::Pinion),
-            TrainTurning::Shaft { phase, .. } => Ok(phase),
-        });
-        phase.map(Self).map_err(value_error)
+        let known = turning.and_then(|turning| turning.known_phase(&train));
+        known.map(|(_, phase, _)| Self(phase)).map_err(value_error)
     }
 
     /// Of a constant speed.

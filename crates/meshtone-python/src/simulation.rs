@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use meshtone::damage::{DamageDescription, DamagedTooth, ToothPart};
 use meshtone::scenario::{self, ScenarioWarning, ScenarioWheel};
 use meshtone::sensor::{ContactFigures, SignalSource};
-use meshtone::signal::{SeparationSettings, TrainRecording, TrainSettings, TrainTurning};
+use meshtone::signal::{TrainRecording, TrainSettings, TrainTurning};
 use meshtone::wheel::{WheelDeviations, WheelName};
 use meshtone::{StageTime, Stages, StepJudgement, Trace};
 use meshtone_io::memory;
@@ -17,7 +17,7 @@ use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::array::{Array, Signal, array, field, matrix, named_arrays, samples};
 use crate::error::{scenario_error, simulation_error, value_error};
-use crate::process::{Settings, record_parts, separation, train, train_parts};
+use crate::process::{record_parts, separation, train, train_parts};
 use crate::scenario::{BothWheels, Scenario, both_wheels, in_words};
 use crate::signals_file::named_channels;
 
@@ -316,45 +316,15 @@ fn no_meshes() -> PyErr {
     value_error("the published model has no pairs that share a force: set model = 'contact'")
 }
 
-/// A simulated signal, taken to the average over a revolution of a wheel's shaft and to indicators.
+/// A simulated signal, taken to the average over a revolution of a wheel's shaft and to indicators; or, without the name of a wheel, to those
+/// of all.
 #[pyfunction]
-#[pyo3(signature = (scenario, signal, wheel, start_s, settings=None))]
+#[pyo3(signature = (scenario, signal, wheel, start_s, sidebands=None))]
 pub fn process_simulated<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     signal: Signal<'py>,
-    wheel: &str,
-    start_s: f64,
-    settings: Option<Settings>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let number = scenario.0.wheels.iter().position(|known| known.name == wheel);
-    let number = number.ok_or_else(|| no_wheel(&scenario.0, wheel))?;
-    let signal = samples(&signal)?;
-    let settings = Settings::chain(settings);
-    let turning = TrainTurning::of_simulated(&scenario.0, start_s, signal.len()).map_err(value_error)?;
-    if let TrainTurning::SimulatedPair(shafts) = &turning {
-        let record = py.detach(|| shafts.process(signal, WheelName::BOTH[number], &settings));
-        return record_parts(py, record.map_err(value_error)?);
-    }
-    let train = train(scenario)?;
-    let sampling_rate_hz = scenario.0.time_grid().sampling_rate_hz;
-    let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
-    let separation = settings.separation.unwrap_or_else(|| SeparationSettings::new(1));
-    let records = py.detach(|| recording.process(&TrainSettings { separation, ..TrainSettings::default() }));
-    let of_wheel = records.map_err(value_error)?.wheels.into_iter().find(|of| of.wheel == number);
-    let record = of_wheel.and_then(|of| of.records.into_iter().next()).ok_or_else(|| {
-        value_error(format!("wheel = '{wheel}': turns too seldom in this signal for an average"))
-    })?;
-    record_parts(py, record)
-}
-
-/// A simulated signal, taken to the averages and indicators of all wheels.
-#[pyfunction]
-#[pyo3(signature = (scenario, signal, start_s, sidebands=None))]
-pub fn process_simulated_train<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    signal: Signal<'py>,
+    wheel: Option<&str>,
     start_s: f64,
     sidebands: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -362,7 +332,14 @@ pub fn process_simulated_train<'py>(
     let turning = TrainTurning::of_simulated(&scenario.0, start_s, signal.len()).map_err(value_error)?;
     let sampling_rate_hz = scenario.0.time_grid().sampling_rate_hz;
     let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
-    train_parts(py, &recording, separation(1, sidebands, None))
+    let separation = separation(1, sidebands, None);
+    let Some(wheel) = wheel else { return train_parts(py, &recording, separation) };
+    let number = train.wheels.iter().position(|known| known.name == wheel);
+    let number = number.ok_or_else(|| no_wheel(&scenario.0, wheel))?;
+    let settings = TrainSettings { separation, ..TrainSettings::default() };
+    let processed = py.detach(|| recording.process_one(number, &settings)).map_err(value_error)?;
+    let record = processed.records.into_iter().next().ok_or_else(|| value_error("there is no record"))?;
+    record_parts(py, record)
 }
 
 fn no_wheel(scenario: &scenario::Scenario, wheel: &str) -> PyErr {

@@ -288,6 +288,7 @@ warning_kinds! {
     BeyondBand "beyond-band" "a sensor or a mesh lies above the highest mode that is simulated";
     LargeRunOut "large-run-out" "a wheel runs out by more than a tenth of the module";
     Overload "overload" "the load would break the teeth";
+    UnevenFace "uneven-face" "the shafts lean so much that the load is at one end of the face";
     NoContact "no-contact" "no pair of teeth is in mesh for a part of a revolution, and the linear mesh has no stiffness there";
     MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would separate";
     Resonance "resonance" "the mesh force is far beyond what a machine survives";

@@ -29,7 +29,7 @@ use crate::bearing::RollingBearing;
 use crate::damage::{DamagedTooth, ToothPart};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::{DecayingMode, Drive, KnownModes};
-use crate::mesh::{Contact, Mesh, Pairs};
+use crate::mesh::{Contact, FacesAtRest, Mesh, Pairs};
 use crate::operation::{Motion, TimeGrid, TorqueHarmonic};
 use crate::published::Published;
 use crate::scenario::{GearboxShaft, Layout, MemoryLimit, Ripple, Scenario};
@@ -344,6 +344,17 @@ impl Stages {
     /// Whether flanks that are pulled part, as real ones do.
     pub(crate) fn teeth_part(&self) -> bool {
         self.meshes.iter().any(|mesh| mesh.contact == Contact::Unilateral)
+    }
+
+    /// How the meshes would bear along their faces at rest on other shafts; none where they always bear evenly.
+    ///
+    /// # Arguments
+    /// * `changed` - a scenario that differs from this one in its shafts, or in where wheels sit on them
+    pub(crate) fn faces_at_rest_of(&self, changed: &Scenario) -> Option<FacesAtRest> {
+        let layout = changed.layout().ok()?;
+        let teeth: Vec<Teeth> = self.pairs.iter().map(|pair| pair.teeth.clone()).collect();
+        let machine = machine::bare(changed, &layout, &teeth).ok()?;
+        meshes::faces_at_rest(changed, &layout, &machine, &self.pairs, &self.meshes)
     }
 
     /// The tooth pairs of the first mesh, at any position of their path; not under the published model, whose flanks are not conjugate.

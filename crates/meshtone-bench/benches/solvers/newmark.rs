@@ -124,7 +124,7 @@ fn mesh_samples(
     let deviations = PairDeviations {
         teeth: &stages.pairs[0].teeth,
         errors: stages.pairs[0].profile_errors.as_ref(),
-        eccentricity_m: stages.pairs[0].eccentricity_mm * 1e-3,
+        eccentricity_m: stages.pairs[0].eccentricity_mm.map(|of_wheel_mm| of_wheel_mm * 1e-3),
         run_out: stages.pairs[0].run_out,
     };
     let nominal = [operation.pinion_speed_hz, operation.brake_torque_nm];

@@ -6,14 +6,11 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use meshtone::Error;
 use meshtone::scenario::Scenario;
-use meshtone::signal::{
-    SignalWarning, StatedFacts, StatedTurning, TrainBearing, TrainRecording, TrainTurning,
-};
+use meshtone::signal::{SignalWarning, StatedFacts, TrainBearing, TrainRecording};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
     estimate_path,
 };
-use meshtone::wheel::WheelName;
 use meshtone_diagnose::other_tone;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
@@ -141,13 +138,7 @@ impl Path {
             )
         });
         let unsound: Vec<WarningEntry> = unsound.collect();
-        let (shaft, phase, stated) = match turning {
-            TrainTurning::Shaft { shaft, phase, stated } => (shaft, phase, stated),
-            TrainTurning::SimulatedPair(shafts) => {
-                let phase = shafts.phase(WheelName::Pinion).map_err(refused)?;
-                (train.input(), phase, StatedTurning::Other)
-            }
-        };
+        let (shaft, phase, stated) = turning.known_phase(&train).map_err(refused)?;
         if train.meshes.len() == 1
             && let Some(stated) = StatedFacts::of_shaft(&train, shaft, stated)
             && let Some(mismatch) =

@@ -104,12 +104,11 @@ impl<'a> Observer<'a> {
         let turned = Turned::new(&input, self.phase, self.shafts, Some(self.scenario))?;
         let Turned { train, turning, warnings, .. } = turned;
         let rate_hz = input.sampling_rate_hz;
-        let (subject, doubtful) = match &turning {
-            TrainTurning::SimulatedPair(_) => (RefusedInput::Simulated { in_segments: false }, &[][..]),
-            TrainTurning::Shaft { phase, .. } => {
-                let (speed_hz, by) = (phase.mean_speed_hz(rate_hz), self.phase.source());
-                (RefusedInput::Measured { speed_hz, by }, &phase.warnings[..])
-            }
+        let (subject, doubtful) = if let TrainTurning::Shaft { phase, .. } = &turning {
+            let (speed_hz, by) = (phase.mean_speed_hz(rate_hz), self.phase.source());
+            (RefusedInput::Measured { speed_hz, by }, &phase.warnings[..])
+        } else {
+            (RefusedInput::Simulated { in_segments: false }, &[][..])
         };
         let recording = TrainRecording {
             signal: &input.channel.samples,

@@ -3,13 +3,15 @@
 use meshtone::scenario::{Scenario, ScenarioWarning};
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
-    AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainTurning, revolution_average,
+    AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainSettings, TrainTurning,
+    revolution_average,
 };
 use meshtone::{Simulation, StepJudgement};
 use serde_json::{Map, Value, json};
 
 use super::bearing::LookedAtBearing;
 use super::lines::{Spectrum, SpectrumLine, Tones};
+use super::wheel_signals::indicators_json;
 use super::{AnswerOptions, Detail, wanted};
 use crate::packet::Packet;
 use crate::question::memory_limit;
@@ -144,6 +146,7 @@ impl GearboxState {
             })
         };
         let average = recording().ok().and_then(|recording| self.average(&recording));
+        let indicators = self.indicators(recording().ok().as_ref(), signal.unit);
         // What is kept while a control moves is too short for averages.
         let bearing = self.bearing.as_ref().filter(|_| self.options.detail == Detail::Full);
         let bearing = bearing.map(|bearing| bearing.json(recording(), &mut packet));
@@ -171,7 +174,7 @@ impl GearboxState {
                 "values": packet.array(spectrum.amplitudes.iter().copied().take(sent.max(2))),
             },
             "lines": lines.iter().map(line).collect::<Vec<_>>(),
-            "wheel": { "name": wheel.name, "teeth": wheel.teeth, "average": average },
+            "wheel": { "name": wheel.name, "teeth": wheel.teeth, "average": average, "indicators": indicators },
             "bearing": bearing,
             "mesh": { "name": self.gearbox.meshes[self.mesh].name(), "force": packet.array(force.iter().copied()) },
         });
@@ -188,6 +191,15 @@ impl GearboxState {
         let revolutions = angular.revolutions();
         let average = revolution_average(&angular.values, angular.points_per_revolution);
         (revolutions > 0).then_some((average, revolutions))
+    }
+
+    /// Indicators of the wheel that is looked at; none while a control moves, when too little is simulated, and of too few revolutions.
+    fn indicators(&self, recording: Option<&TrainRecording<'_>>, unit: &str) -> Value {
+        let recording = recording.filter(|_| self.options.detail == Detail::Full);
+        let records = recording.and_then(|recording| recording.process(&TrainSettings::default()).ok());
+        let of_wheel = records.and_then(|all| all.wheels.into_iter().find(|of| of.wheel == self.wheel));
+        let record = of_wheel.and_then(|of| of.records.into_iter().next());
+        record.map_or(Value::Null, |record| indicators_json(&record.indicators.table(unit)))
     }
 
     /// Key figures of the train and of the mesh that is looked at: what, value, unit.

@@ -3,6 +3,7 @@
 import { Answers, Newest, Refusal, start, unpacked } from "./ask.js";
 import { Control, at, element, keyOf, words } from "./controls.js";
 import { Plot, forgetColours, line, shown } from "./plots.js";
+import { held, linked, offer, ofAddress, saved } from "./taking.js";
 import { Train } from "./train.js";
 
 const byId = (id) => document.getElementById(id);
@@ -23,6 +24,8 @@ window.meshtone = { drawn: 0, coarse: 0, last: null };
 
 let chosen = { channel: null, wheel: null, mesh: null, bearing: null };
 let now = null;
+let shownInFull = null;
+let kept = null;
 
 class GearboxControls {
   #form;
@@ -281,13 +284,28 @@ function drawSpectrum({ signal, spectrum, lines, train: { meshes }, mesh }) {
   const { frequency_hz: hz } = meshes.find(({ name }) => name === mesh.name);
   const most = spectrum.step_hz * (spectrum.values.length - 1);
   const marks = Array.from({ length: Math.floor(most / hz) }, (_, index) => (index + 1) * hz);
-  plots.spectrum.set([line(signal.name, spectrum.values, 0, spectrum.step_hz)], { y: `amplitude (${signal.unit})`, marks, isLog: byId("logarithmic").checked });
+  plots.spectrum.set([...heldLine(signal, kept?.spectrum.values, 0, kept?.spectrum.step_hz), line(signal.name, spectrum.values, 0, spectrum.step_hz)], { y: `amplitude (${signal.unit})`, marks, isLog: byId("logarithmic").checked });
   const head = element("thead", {}, element("tr", {}, ...["line", "frequency, Hz", `amplitude, ${signal.unit}`].map((title) => element("th", { scope: "col" }, title))));
   const rows = lines.map(([frequency, amplitude, name]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, shown(frequency, 5)), element("td", {}, shown(amplitude, 3))));
   rows.forEach((row, index) => row.addEventListener("click", () => plots.spectrum.zoom([Math.max(lines[index][0] - 0.3 * hz, 0), lines[index][0] + 0.3 * hz])));
   byId("lines").replaceChildren(...(rows.length ? [head, element("tbody", {}, ...rows)] : []));
   byId("lines-note").textContent = rows.length ? `The strongest ${rows.length} lines, each within ${shown(spectrum.step_hz, 3)} Hz of what it is named after. Choose one to see it.`
     : "Lines have names where speed and load are steady.";
+}
+
+/** The held line of a signal, where one of its unit is held. */
+function heldLine(signal, values, from, step) {
+  return values && kept.signal.unit === signal.unit ? [line("held", values, from, step, "held")] : [];
+}
+
+/** The indicators of the wheel that is looked at, beside those that are held. */
+function drawIndicators({ wheel: { indicators } }) {
+  const held = kept && new Map((kept.wheel.indicators ?? []).map(([name, , value]) => [name, value]));
+  const heads = ["indicator", "now", ...(held ? ["held"] : [])];
+  const row = ([name, unit, value]) => element("tr", {}, element("th", { scope: "row" }, `${name.replaceAll("_", " ")}${unit === "-" ? "" : `, ${unit}`}`),
+    element("td", {}, shown(value)), ...(held ? [element("td", {}, shown(held.get(name)))] : []));
+  byId("indicators").replaceChildren(element("thead", {}, element("tr", {}, ...heads.map((title) => element("th", { scope: "col" }, title)))),
+    element("tbody", {}, ...(indicators ?? []).map(row)));
 }
 
 /** The envelope of a rolling bearing; none where the gearbox has none of these. */
@@ -320,18 +338,24 @@ function show(answer, asked) {
   byId("warnings").replaceChildren(...answer.warnings.map(({ key, message }) => element("li", {}, `${key}: ${message}`)));
   const isFull = answer.detail === "full";
   // While a control moves, too little is simulated for it.
-  if (isFull) drawBearing(answer);
+  if (isFull) {
+    drawBearing(answer);
+    shownInFull = answer;
+  }
   train.show(parts, { wheel: wheel.name, mesh: mesh.name, bearing: byId("bearing").value });
   const step = 1 / signal.sampling_rate_hz;
   const seen = [signal.start_s, signal.start_s + Math.min(SEEN_REVOLUTIONS / parts.shafts[0].speed_hz, signal.values.length * step)];
-  plots.waveform.set([line(signal.name, signal.values, signal.start_s, step)], { y: `signal (${signal.unit})`, range: seen });
+  plots.waveform.set([...heldLine(signal, kept?.signal.values, kept?.signal.start_s, 1 / kept?.signal.sampling_rate_hz), line(signal.name, signal.values, signal.start_s, step)], { y: `signal (${signal.unit})`, range: seen });
   drawSpectrum(answer);
   const { average } = wheel;
   byId("wheel-title").textContent = `Over a revolution of ${wheel.name}, ${wheel.teeth} teeth`;
-  plots.average.set(average ? [line(signal.name, average.values, 0, 360 / average.values.length)] : [],
+  const before = kept?.wheel.average;
+  plots.average.set(average ? [...heldLine(signal, before?.values, 0, 360 / before?.values.length), line(signal.name, average.values, 0, 360 / average.values.length)] : [],
     { y: `signal (${signal.unit})`, title: average ? `Average over ${average.revolutions} revolutions` : "Average", empty: "needs a steady speed and a whole revolution" });
   byId("mesh-title").textContent = `Force of mesh ${mesh.name}`;
-  plots.force.set([line(mesh.name, mesh.force, signal.start_s, step, "second")], { range: seen });
+  const force = kept ? [line("held", kept.mesh.force, kept.signal.start_s, 1 / kept.signal.sampling_rate_hz, "held")] : [];
+  plots.force.set([...force, line(mesh.name, mesh.force, signal.start_s, step, "second")], { range: seen });
+  if (isFull) drawIndicators(answer);
   if (document.activeElement !== byId("toml")) byId("toml").value = answer.toml;
   status(`${shown(performance.now() - asked, 3)} ms${isFull ? "" : ", a quarter of a second"}`);
   showProblem(null);
@@ -363,6 +387,26 @@ async function openText(toml) {
   }
 }
 
+function open(tree) {
+  controls.open(tree);
+  chosen = { channel: null, wheel: null, mesh: null, bearing: null };
+  change("full");
+}
+
+/** Does something whose outcome is said; a refusal is shown. */
+async function said(outcome) {
+  try {
+    status(await outcome);
+  } catch (error) {
+    showProblem(error);
+  }
+}
+
+function hold() {
+  kept = held(byId("hold"), Boolean(shownInFull)) ? shownInFull : null;
+  if (shownInFull === now) show(now, performance.now());
+}
+
 async function take(file) {
   if (!file) return;
   const refused = await openText(await file.text());
@@ -381,10 +425,17 @@ function listen() {
   byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
   byId("file").addEventListener("change", ({ target }) => take(target.files[0]));
   byId("file").parentElement.addEventListener("keydown", ({ key }) => ["Enter", " "].includes(key) && byId("file").click());
-  byId("toml-export").addEventListener("click", () => {
-    const url = URL.createObjectURL(new Blob([now?.toml ?? ""], { type: "application/toml" }));
-    Object.assign(document.createElement("a"), { href: url, download: "gearbox.toml" }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+  offer(byId("preset"), catalogue.presets, open);
+  byId("hold").addEventListener("click", hold);
+  byId("link").addEventListener("click", () => said(linked(controls.scenario)));
+  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => said(saved(button.dataset.export, controls.scenario))));
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea, button, summary, label")) return;
+    if (event.key === "h") hold();
+  });
+  addEventListener("hashchange", () => {
+    const tree = ofAddress(showProblem);
+    if (tree) open(tree);
   });
   byId("apply").addEventListener("click", async () => {
     const refused = await openText(byId("toml").value);
@@ -404,5 +455,4 @@ const catalogue = await start();
 const controls = new GearboxControls(byId("controls"), catalogue, change);
 const answers = new Answers(show, showProblem, "gearbox");
 listen();
-controls.open(catalogue.scenario);
-change("full");
+open(ofAddress(showProblem) ?? catalogue.scenario);

@@ -1,9 +1,10 @@
 // The page: controls ask, the program answers, views show.
 
-import { Answers, Newest, Refusal, exported, start, unpacked } from "./ask.js";
+import { Answers, Newest, Refusal, start, unpacked } from "./ask.js";
 import { Controls } from "./controls.js";
 import { Diagnosis } from "./diagnosis.js";
 import { shown } from "./plots.js";
+import { held, linked, offer, ofAddress, saved } from "./taking.js";
 import { Views } from "./views.js";
 
 const byId = (id) => document.getElementById(id);
@@ -111,37 +112,10 @@ function open(tree) {
   change("full");
 }
 
-const encoded = (tree) => btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify(tree)))).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
-
-/** The scenario that the address names; null where it names none. */
-function ofAddress() {
-  if (location.hash.length < 2) return null;
+/** Does something whose outcome is said; a refusal is shown. */
+async function said(outcome) {
   try {
-    const bytes = Uint8Array.from(atob(location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
-    return JSON.parse(new TextDecoder().decode(bytes));
-  } catch {
-    showProblem(new Refusal({ kind: "unfit", text: "what follows # in the address is no scenario of this page: was it cut off?" }));
-    return null;
-  }
-}
-
-async function copyLink() {
-  history.replaceState(null, "", `#${encoded(views.now?.brief ?? controls.scenario)}`);
-  try {
-    await navigator.clipboard.writeText(location.href);
-    status("link copied");
-  } catch {
-    status("the link is in the address line");
-  }
-}
-
-async function save(form) {
-  try {
-    const { blob, name } = await exported(form, controls.scenario);
-    const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-    status(`${name} saved`);
+    status(await outcome);
   } catch (error) {
     showProblem(error);
   }
@@ -212,11 +186,7 @@ function showRecording(processed) {
 }
 
 function hold() {
-  const button = byId("hold");
-  const isHeld = button.getAttribute("aria-pressed") !== "true" && Boolean(views.now);
-  button.setAttribute("aria-pressed", String(isHeld));
-  button.textContent = isHeld ? "Held" : "Hold";
-  views.hold(isHeld ? views.now : null);
+  views.hold(held(byId("hold"), Boolean(views.now)) ? views.now : null);
 }
 
 function setTheme(theme) {
@@ -225,15 +195,11 @@ function setTheme(theme) {
 }
 
 function listen(catalogue) {
-  byId("preset").append(new Option("begin with…", ""), ...catalogue.presets.map(({ name, title }) => new Option(title, name)));
-  byId("preset").addEventListener("change", ({ target }) => {
-    const preset = catalogue.presets.find(({ name }) => name === target.value);
-    if (preset) open(preset.scenario);
-  });
+  offer(byId("preset"), catalogue.presets, open);
   byId("hold").addEventListener("click", hold);
-  byId("link").addEventListener("click", copyLink);
+  byId("link").addEventListener("click", () => said(linked(views.now?.brief ?? controls.scenario)));
   byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
-  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => save(button.dataset.export)));
+  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => said(saved(button.dataset.export, controls.scenario))));
   byId("file").addEventListener("change", ({ target }) => {
     take(target.files[0]);
     target.value = "";
@@ -265,7 +231,7 @@ function listen(catalogue) {
   }
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", ({ matches }) => setTheme(matches ? "dark" : "light"));
   addEventListener("hashchange", () => {
-    const tree = ofAddress();
+    const tree = ofAddress(showProblem);
     if (tree) open(tree);
   });
 }
@@ -286,7 +252,7 @@ try {
   answers = new Answers(show, showProblem);
   diagnosis = new Diagnosis(() => question("full"), catalogue.records);
   listen(catalogue);
-  open(ofAddress() ?? catalogue.scenario);
+  open(ofAddress(showProblem) ?? catalogue.scenario);
 } catch (error) {
   byId("problem").hidden = false;
   byId("problem").textContent = error.message;

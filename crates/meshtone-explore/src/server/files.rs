@@ -30,6 +30,7 @@ files! {
     "/train.js" "text/javascript; charset=utf-8" "train.js";
     "/icon.svg" "image/svg+xml" "icon.svg";
     "/main.js" "text/javascript; charset=utf-8" "main.js";
+    "/taking.js" "text/javascript; charset=utf-8" "taking.js";
     "/ask.js" "text/javascript; charset=utf-8" "ask.js";
     "/diagnosis.js" "text/javascript; charset=utf-8" "diagnosis.js";
     "/controls.js" "text/javascript; charset=utf-8" "controls.js";

@@ -94,7 +94,7 @@ impl AskedRequest {
     }
 }
 
-/// Computes an answer beside the server's own thread, while somebody waits for it.
+/// Computes an answer about a pair beside the server's own thread, while somebody waits for it.
 ///
 /// # Arguments
 /// * `purpose` - what is asked for: a later request of the same page for it takes the place of this one
@@ -106,19 +106,19 @@ async fn compute<T: Send + 'static>(
     body: &[u8],
     work: impl FnOnce(&AskedRequest, &Scenario, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
-    compute_of(shared, purpose, body, question::scenario, work).await
+    compute_of(shared, purpose, body, question::pair, work).await
 }
 
 /// Does what [`compute`] does, of a scenario of any form.
 ///
 /// # Arguments
 /// * `read` - reads the scenario of a request
-async fn compute_of<S: 'static, T: Send + 'static>(
+async fn compute_of<T: Send + 'static>(
     shared: &Arc<Shared>,
     purpose: &str,
     body: &[u8],
-    read: impl FnOnce(&Value) -> Result<S, Refusal> + Send + 'static,
-    work: impl FnOnce(&AskedRequest, &S, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
+    read: impl FnOnce(&Value) -> Result<Scenario, Refusal> + Send + 'static,
+    work: impl FnOnce(&AskedRequest, &Scenario, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
     let asked = AskedRequest::of(body)?;
     let turn = shared.latest.note(&format!("{purpose} {}", asked.page), asked.number);
@@ -183,7 +183,7 @@ async fn of_answer(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<R
 /// Everything that is drawn of a gearbox.
 async fn of_gearbox(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
     let sharing = Arc::clone(&shared);
-    let bytes = compute_of(&shared, "answer", &body, question::gearbox, move |asked, gearbox, turn| {
+    let bytes = compute_of(&shared, "answer", &body, question::scenario, move |asked, gearbox, turn| {
         let state = gearbox_answer(gearbox, &asked.options, &|| turn.is_wanted())?;
         if asked.options.detail == Detail::Full {
             *sharing.current.lock().unwrap_or_else(PoisonError::into_inner) = gearbox.clone();
@@ -257,7 +257,7 @@ async fn of_export(
     Path(form): Path<String>,
     body: Bytes,
 ) -> Result<Response, Refusal> {
-    let file = compute(&shared, "export", &body, move |_, scenario, turn| {
+    let file = compute_of(&shared, "export", &body, question::scenario, move |_, scenario, turn| {
         export(&form, scenario, &|| turn.is_wanted())
     });
     let file = file.await?;

@@ -78,11 +78,12 @@ impl Serialize for BearingEntry {
             })
         };
         let unexplained = |comb: &UnexplainedComb| {
-            let ratio = |(race, _, ratio): &(DefectKind, usize, f64)| (race.name().to_owned(), json!(ratio));
+            // Several bearings have races of one name.
+            let ratio = |(race, bearing, ratio): &(DefectKind, usize, f64)| json!({ "race": race.name(), "bearing": bearing, "ratio": ratio });
             json!({
                 "order": comb.order,
                 "band_hz": [comb.band.from_hz, comb.band.to_hz],
-                "ratios": comb.ratios.iter().map(ratio).collect::<Map<_, _>>(),
+                "ratios": comb.ratios.iter().map(ratio).collect::<Vec<_>>(),
                 "in_words": comb.to_string(),
             })
         };

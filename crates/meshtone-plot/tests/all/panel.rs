@@ -335,6 +335,8 @@ fn with_damaged_wheels(damaged: usize) -> Simulation {
     let bearings = (0..4).flat_map(|n| [0.0, 1.0].map(|at| Bearing::new(&name("shaft", n), at)));
     gearbox.structure.shafts_mut().unwrap().bearings = bearings.collect();
     gearbox.structure.shafts_mut().unwrap().housing = None;
+    // It names the former shafts.
+    gearbox.operation.torque_ripple.clear();
     gearbox.sensors.clear();
     let fault = |n: usize| Fault::new(name("z", n + 1), 3, MissingTooth);
     gearbox.faults = (0..damaged).map(fault).collect();

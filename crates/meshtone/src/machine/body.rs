@@ -3,8 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::machine::WheelInertia;
-use crate::wheel::Material;
-use crate::wheel::Wheel;
+use crate::wheel::{BodyRotation, Gears, Material, Wheel};
 
 /// Mass and inertias of one wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,4 +37,18 @@ impl WheelBody {
                 .unwrap_or(mass_kg * (3.0 * radius * radius + width * width) / 12.0),
         }
     }
+}
+
+/// (N m/rad) Torsional stiffness of a wheel's body between bore and root circle, `4π G W/(1/r_i² − 1/r_f²)`: of a plane ring that is clamped
+/// at its bore. None where the rotation is left in the teeth.
+///
+/// # Arguments
+/// * `wheel` - geometry
+/// * `gears` - for the shear modulus, and where the rotation is
+pub(crate) fn body_stiffness_nm_per_rad(wheel: &Wheel, gears: &Gears) -> Option<f64> {
+    let of_radius = |radius_mm: f64| (radius_mm * 1e-3).powi(-2);
+    let width_m = wheel.face_width_mm * 1e-3;
+    let stiffness = 4.0 * PI * gears.material.shear_modulus_mpa() * 1e6 * width_m
+        / (of_radius(wheel.bore_radius_mm) - of_radius(wheel.root_radius_mm));
+    (gears.foundation.rotation == BodyRotation::Machine).then_some(stiffness)
 }

@@ -14,6 +14,7 @@ mod support;
 mod turning_force;
 
 pub use body::WheelBody;
+pub(crate) use body::body_stiffness_nm_per_rad;
 pub use gearbox::{
     Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft,
     Housing, HousingModes, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
@@ -21,10 +22,10 @@ pub use gearbox::{
 pub(crate) use modes::KnownModes;
 pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
-pub(crate) use parts::weights;
 #[cfg(feature = "internals")]
 pub use parts::{AcrossLine, LineOfAction, Spring};
 pub use parts::{Axis, Drive, Machine, Place};
+pub(crate) use parts::{Leans, weights};
 pub use rig::{DampingRatio, Rig, RigParts, Shaft, WheelInertia};
 pub(crate) use rig_machine::turn_planes;
 pub use rig_machine::{

@@ -65,6 +65,15 @@ pub struct AcrossLine {
     pub per_m: DVector<f64>,
 }
 
+/// How the wheels of meshes lean at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Leans {
+    /// (-) By how much closer together the flanks of each mesh come per length of its face, towards positive z.
+    pub(crate) slopes: Vec<f64>,
+    /// (rad/(N m)) By how much less per moment of each mesh's force about the middle of its face.
+    pub(crate) rad_per_nm: Vec<Vec<f64>>,
+}
+
 /// What drives a shaft or brakes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Drive {
@@ -180,6 +189,43 @@ impl Machine {
         meshes.fold(self.stiffness(), |sum, (line, stiffness)| {
             sum + &line.at_middle * line.at_middle.transpose() * *stiffness
         })
+    }
+
+    /// How the wheels of each mesh lean against one another at rest under the torque of the brake, with closed meshes whose forces act midway
+    /// along their faces, and how much less by moments of these forces.
+    ///
+    /// # Arguments
+    /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
+    /// * `torque_nm` - (N m) of the brake
+    pub(crate) fn leans(&self, mesh_stiffness_n_per_m: &[f64], torque_nm: f64) -> Leans {
+        let mut torque = DVector::zeros(self.coordinates());
+        for drive in &self.drives {
+            if let Drive::Brake { coordinate, torque_share } = drive {
+                torque[*coordinate] += torque_share * torque_nm;
+            }
+        }
+        let moments = self.lines.iter().map(|line| line.per_m.clone());
+        let loads: Vec<DVector<f64>> = std::iter::once(torque).chain(moments).collect();
+        let displaced = self.displaced_by(self.closed_stiffness(mesh_stiffness_n_per_m), &loads);
+        let slope = |line: &LineOfAction, load: usize| line.per_m.dot(&displaced.column(load));
+        Leans {
+            slopes: self.lines.iter().map(|line| slope(line, 0)).collect(),
+            rad_per_nm: (self.lines.iter())
+                .map(|line| (1..loads.len()).map(|load| slope(line, load)).collect())
+                .collect(),
+        }
+    }
+
+    /// Displacements at rest under loads, a column each. The coupling of the motor and the supports hold everything but a shaft that may slide,
+    /// which a billionth of its own stiffness holds.
+    ///
+    /// # Arguments
+    /// * `stiffness` - of the machine with its meshes closed
+    /// * `loads` - (N, N m) on each coordinate
+    pub(super) fn displaced_by(&self, stiffness: DMatrix<f64>, loads: &[DVector<f64>]) -> DMatrix<f64> {
+        let (loads, held) =
+            (DMatrix::from_columns(loads), DMatrix::from_diagonal(&(stiffness.diagonal() * 1e-9)));
+        (stiffness + held).cholesky().map_or_else(|| loads.clone() * 0.0, |factor| factor.solve(&loads))
     }
 
     /// A matrix in turned coordinates, in the coordinates themselves.

@@ -9,7 +9,7 @@ use std::ops::IndexMut;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::body::WheelBody;
+use super::body::{WheelBody, body_stiffness_nm_per_rad};
 use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
 use super::shaft_bending::wheel_flexibility;
 use super::{Rig, RigParts, Shaft, TurningForce, Unbalance};
@@ -71,7 +71,7 @@ pub struct RigMachine {
     pub machine: Machine,
     /// Mass and inertias of the pinion and of the gear.
     pub wheels: [WheelBody; 2],
-    /// (N m/rad) Torsional stiffness of the pinion's and of the gear's shaft.
+    /// (N m/rad) Torsional stiffness of the pinion's and of the gear's shaft, each with its wheel's body.
     pub shaft_stiffness_nm_per_rad: [f64; 2],
     /// (kg) Mass that the wheels' rotation has along the line of action, `1/(Rb_g²/J_g + Rb_p²/J_p)`.
     pub mesh_mass_kg: f64,
@@ -133,7 +133,11 @@ impl RigMachine {
             Supports::Held => WITHOUT_SUPPORTS,
         };
         let torsion =
-            [torsional_stiffness(&rig.pinion_shaft, gears), torsional_stiffness(&rig.gear_shaft, gears)];
+            [(&rig.pinion_shaft, &teeth.pinion), (&rig.gear_shaft, &teeth.gear)].map(|(shaft, wheel)| {
+                let of_shaft = torsional_stiffness(shaft, gears);
+                let with_body = |body: f64| 1.0 / (1.0 / of_shaft + 1.0 / body);
+                body_stiffness_nm_per_rad(wheel, gears).map_or(of_shaft, with_body)
+            });
         let turn = turn(teeth.gear.working_pressure_angle_rad, coordinates);
         let ratio = f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth);
         let mut rigid_rotation = DVector::zeros(coordinates);
@@ -323,7 +327,7 @@ pub fn torsional_stiffness(shaft: &Shaft, gears: &Gears) -> f64 {
 /// All springs: shafts and bearings, the shafts' torsion, and the supports where they move.
 ///
 /// # Arguments
-/// * `torsion` - (N m/rad) stiffness of the pinion's and of the gear's shaft
+/// * `torsion` - (N m/rad) stiffness of the pinion's and of the gear's shaft with the wheel's body
 fn springs(
     gears: &Gears,
     rig: &Rig,

@@ -38,7 +38,7 @@ impl Mesh {
             stiffness_n_per_mm: self.stiffness_n_per_mm(window),
             healthy_stiffness_n_per_mm: self.healthy_stiffness_n_per_mm(),
             mean_stiffness_n_per_mm: self.mean_stiffness_n_per_m * 1e-3,
-            face_load_factor: (self.backlash_m.is_some()).then_some(self.face_load_factor),
+            face_load_factor: (self.backlash_m.is_some()).then_some(self.along_face.face_load_factor),
         }
     }
 

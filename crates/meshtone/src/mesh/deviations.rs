@@ -13,8 +13,8 @@ pub struct PairDeviations<'a> {
     pub teeth: &'a Teeth,
     /// Profile errors of both wheels; none for ideal teeth.
     pub errors: Option<&'a ProfileErrors>,
-    /// (m) Eccentricity of both wheels.
-    pub eccentricity_m: f64,
+    /// (m) Eccentricity of the pinion and of the gear.
+    pub eccentricity_m: [f64; 2],
     /// Run-out of the pinion and of the gear.
     pub run_out: [RunOut; 2],
 }
@@ -85,7 +85,8 @@ impl Eccentricity {
         let runs_out = run_out.iter().any(|run_out| run_out.run_out_um != 0.0);
         let (axis_sine, axis_cosine) = teeth.gear.working_pressure_angle_rad.sin_cos();
         let sine_and_cosine_m = WheelName::BOTH.map(|wheel| {
-            let axis_m = if wheel == WheelName::Gear { eccentricity_m } else { -eccentricity_m };
+            let of_wheel_m = eccentricity_m[wheel as usize];
+            let axis_m = if wheel == WheelName::Gear { of_wheel_m } else { -of_wheel_m };
             let amplitude_mm = run_out[wheel as usize].amplitude_mm();
             let (sine, cosine) = run_out[wheel as usize].phase_rad.sin_cos();
             [
@@ -93,7 +94,7 @@ impl Eccentricity {
                 axis_m * axis_sine + amplitude_mm * 1e-3 * sine,
             ]
         });
-        (eccentricity_m != 0.0 || runs_out).then_some(Self { sine_and_cosine_m })
+        (eccentricity_m != [0.0; 2] || runs_out).then_some(Self { sine_and_cosine_m })
     }
 
     /// (m) A deviation of all teeth of a wheel alike.

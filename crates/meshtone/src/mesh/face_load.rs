@@ -99,12 +99,6 @@ impl FaceLoad {
         self.whole().middle_m()
     }
 
-    /// (-) Largest load per length of face over its mean, of sound teeth: the face load factor K_Hβ of ISO 6336-1, method C.
-    pub(crate) fn factor(&self) -> f64 {
-        let closes = self.loaded_slope.abs() * self.face.width_m / self.deflection_m;
-        if closes <= 2.0 { 1.0 + closes / 2.0 } else { (2.0 * closes).sqrt() }
-    }
-
     /// Makes a pair whose flanks close alike along the face one whose flanks close as these.
     ///
     /// # Arguments
@@ -183,26 +177,12 @@ mod tests {
         }
     }
 
-    /// ISO 6336-1, method C: `1 + F_βy c/(2 F/b)` up to 2 and `√(2 F_βy c/(F/b))` above, with c the stiffness per width.
-    #[test]
-    fn largest_load_is_that_of_the_springs() {
-        for (closer_um, force_n) in [(1.0, 200.0), (5.0, 200.0), (5.0, 2000.0)] {
-            let face = face(closer_um, force_n, 0.0);
-            let [deflection, ..] = springs(&face, force_n);
-            let largest = STIFFNESS / WIDTH_M * deflection;
-            assert!((face.factor() / (largest / (force_n / WIDTH_M)) - 1.0).abs() < 1e-4);
-        }
-    }
-
     #[test]
     fn wheels_that_tilt_yield_to_the_load() {
         let [stiff, soft] = [0.0, 1.6e-5].map(|tilt| face(5.0, 200.0, tilt));
         let centre = leaned(&soft).face_centre_m;
         assert!((soft.loaded_slope + soft.face.tilt_rad_per_m * centre - soft.face.slope).abs() < 1e-12);
-        assert!(
-            soft.factor() < stiff.factor()
-                && leaned(&soft).stiffness_n_per_m > leaned(&stiff).stiffness_n_per_m
-        );
+        assert!(leaned(&soft).stiffness_n_per_m > leaned(&stiff).stiffness_n_per_m);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::pair::Pairs;
 use super::path_table::{AlongPath, CornerTable, PairState, PairTables, TipShape, share_on_path};
 use super::sequence::{PairKind, PairSequence};
 use super::sliding::Friction;
+use super::uneven_face::LoadAlongFace;
 use super::window::{Window, place_on_face};
 use crate::machine::ClosedMesh;
 
@@ -101,6 +102,8 @@ pub struct Mesh {
     /// (N/m) The same if the whole face of all pairs touched: of coast flanks that hit, and a bound of what the drive flanks reach. It differs
     /// where slices of the face are apart under the nominal load.
     pub closed_stiffness_n_per_m: f64,
+    /// (N/m) The same if the flanks lay alike along the face.
+    pub(crate) even_stiffness_n_per_m: f64,
     /// (s) Damping of a contact over its stiffness, `2 ζ √(m/k̄)`.
     pub damping_time_s: f64,
     /// (m) Normal backlash; none where the mesh may pull, so that coast flanks never touch.
@@ -111,9 +114,8 @@ pub struct Mesh {
     pub face: FaceForm,
     /// (m) How far the nominal load presses the mean mesh together.
     pub nominal_deflection_m: f64,
-    /// (-) Largest load per length of face over its mean, of sound teeth under the nominal load: the face load factor K_Hβ of
-    /// ISO 6336-1. 1 where the flanks lie alike along the face.
-    pub face_load_factor: f64,
+    /// How it bears along its face at rest under the nominal load; evenly where flanks may pull, or without a load.
+    pub along_face: LoadAlongFace,
     /// How its flanks touch.
     pub contact: Contact,
     /// How it turns with the motor.
@@ -279,12 +281,13 @@ impl Mesh {
             points_before,
             mean_stiffness_n_per_m,
             closed_stiffness_n_per_m: mean_stiffness_n_per_m,
+            even_stiffness_n_per_m: mean_stiffness_n_per_m,
             damping_time_s: 0.0,
             backlash_m: (contact == Contact::Unilateral).then_some(backlash_m),
             contact_ratio: ends - begins,
             face,
             nominal_deflection_m: 0.0,
-            face_load_factor: 1.0,
+            along_face: LoadAlongFace::EVEN,
             contact,
             turning,
             pressed_m: Vec::new(),
@@ -298,7 +301,6 @@ impl Mesh {
                 mesh.lean(slope, &of_mean, static_force_n);
                 mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
                 mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
-                mesh.face_load_factor = of_mean.factor();
             }
             slope => {
                 if let Some(slope) = slope {
@@ -347,31 +349,33 @@ impl Mesh {
     }
 
     /// Finds how far the nominal load presses sound pairs together at each point of a pitch, and by what of them touches then the mean
-    /// stiffness, and how unevenly the slices share the load.
+    /// stiffness.
     fn press(&mut self, static_force_n: f64) {
         let (per_pitch, points) = (self.points_per_pitch, self.points());
         let states = &self.classes[0].states;
         let mut stiffness_n_per_m = 0.0;
-        let mut load_n = vec![0.0; self.slices()];
         let mut pressed_m = Vec::with_capacity(per_pitch);
         for from in 0..per_pitch {
-            let together = || {
-                states.chunks(points).enumerate().flat_map(move |(slice, states)| {
-                    states.iter().skip(from).step_by(per_pitch).map(move |state| (slice, state))
-                })
-            };
-            let springs = together().map(|(_, state)| state);
-            let deflection_m = deflection_of_springs(self.contact, springs, static_force_n);
-            for (slice, state) in together().filter(|(_, state)| state.separation_m < deflection_m) {
-                stiffness_n_per_m += state.stiffness_n_per_m;
-                load_n[slice] += state.stiffness_n_per_m * (deflection_m - state.separation_m);
-            }
+            let together =
+                || states.chunks(points).flat_map(move |states| states.iter().skip(from).step_by(per_pitch));
+            let deflection_m = deflection_of_springs(self.contact, together(), static_force_n);
+            let touching = together().filter(|state| state.separation_m < deflection_m);
+            stiffness_n_per_m += touching.map(|state| state.stiffness_n_per_m).sum::<f64>();
             pressed_m.push(deflection_m);
         }
-        let mean_n = load_n.iter().sum::<f64>() / self.slices() as f64;
-        self.face_load_factor = load_n.iter().copied().fold(0.0, f64::max) / mean_n;
         self.mean_stiffness_n_per_m = stiffness_n_per_m / per_pitch as f64;
         self.pressed_m = pressed_m;
+    }
+
+    /// (-) λ, half of what closes the flanks by more at one end of the face over the mean deflection, less what the wheels yield: while the whole face bears,
+    /// 1 + λ is the face load factor.
+    ///
+    /// # Arguments
+    /// * `closer_m` - (m) what closes them
+    /// * `static_force_n` - (N) nominal load
+    pub(crate) fn unevenness_of(&self, closer_m: f64, static_force_n: f64) -> f64 {
+        let deflection_m = static_force_n / self.even_stiffness_n_per_m;
+        closer_m.abs() / (2.0 * deflection_m * (1.0 + self.along_face.tilt_product))
     }
 
     /// Number of slices of the face; 1 where it is taken as a whole.

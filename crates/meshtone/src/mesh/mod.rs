@@ -13,6 +13,7 @@ mod path_table;
 mod sequence;
 mod sliding;
 mod static_mesh;
+mod uneven_face;
 mod window;
 
 pub use corner::CornerReach;
@@ -38,4 +39,6 @@ pub use path_table::{CornerTable, PairState};
 pub use sequence::{PairKind, PairSequence};
 pub(crate) use sliding::Friction;
 pub use static_mesh::StaticMesh;
+pub use uneven_face::LoadAlongFace;
+pub(crate) use uneven_face::{FacesAtRest, UnevenFace};
 pub(crate) use window::{is_slanted, place_on_face};

@@ -397,7 +397,6 @@ impl Layout {
                 "uniform_flank_reduction_mm",
                 pinion.uniform_flank_reduction_mm == gear.uniform_flank_reduction_mm,
             ),
-            ("eccentricity_mm", pinion.eccentricity_mm == gear.eccentricity_mm),
             ("material", material(pinion) == material(gear)),
         ];
         if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {
@@ -406,7 +405,7 @@ impl Layout {
                 "give both wheels the same",
             );
         }
-        let gears = mesh.gears(pinion, gear, scenario.material);
+        let mut gears = mesh.gears(pinion, gear, scenario.material);
         let apart_mm = numbers.map(|wheel| self.z_mm(scenario, wheel));
         let apart_mm = (apart_mm[0] - apart_mm[1]).abs();
         if apart_mm > gears.face_width_mm / 2.0 {
@@ -416,7 +415,32 @@ impl Layout {
             );
             return refuse(problem, "change at of one of the wheels");
         }
+        let [from_mm, until_mm] = self.common_face_mm(scenario, numbers[0], numbers[1]);
+        gears.face_width_mm = until_mm - from_mm;
         Ok(gears)
+    }
+
+    /// (mm) From a wheel's middle plane both ends of what its face has in common with that of another one.
+    ///
+    /// # Arguments
+    /// * `wheel`, `other` - their numbers
+    fn common_face_mm(&self, scenario: &Scenario, wheel: usize, other: usize) -> [f64; 2] {
+        let apart_mm = self.z_mm(scenario, other) - self.z_mm(scenario, wheel);
+        let [half_mm, other_mm] = [wheel, other].map(|wheel| scenario.wheels[wheel].face_width_mm / 2.0);
+        [(-half_mm).max(apart_mm - other_mm), half_mm.min(apart_mm + other_mm)]
+    }
+
+    /// (m) How far from the middle plane of each wheel of a mesh the middle of what their faces have in common is, along z.
+    ///
+    /// # Arguments
+    /// * `scenario` - whose layout this is, of shafts of beams
+    /// * `mesh` - number of the mesh
+    pub(crate) fn offsets_of_face_m(&self, scenario: &Scenario, mesh: usize) -> [f64; 2] {
+        let [driving, driven] = self.wheels_of_mesh[mesh];
+        [(driving, driven), (driven, driving)].map(|(wheel, other)| {
+            let [from_mm, until_mm] = self.common_face_mm(scenario, wheel, other);
+            (from_mm + until_mm) / 2.0 * 1e-3
+        })
     }
 
     /// (mm) z of a wheel's middle plane.

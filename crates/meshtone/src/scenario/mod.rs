@@ -36,8 +36,8 @@ pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Ripple, Solver};
 pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPath, SensorPlace};
 pub use crate::wheel::{
-    ERROR_POINTS, EndRelief, FlankRelief, FoundationCoefficients, Gears, Hand, Material, MaterialConstants,
-    ProfileErrors, Quality, ReliefShape, WheelDeviations, WheelName,
+    BodyRotation, ERROR_POINTS, EndRelief, FlankRelief, FoundationCoefficients, Gears, Hand, Material,
+    MaterialConstants, ProfileErrors, Quality, ReliefShape, WheelDeviations, WheelName,
 };
 pub use edit::{ScenarioNumber, names_or_numbers, split_key};
 pub use from_toml::{ScenarioFiles, line_of_key};

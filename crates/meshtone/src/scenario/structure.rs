@@ -267,6 +267,35 @@ impl Scenario {
         }
     }
 
+    /// Makes a shaft thicker by a factor, all of it.
+    ///
+    /// # Arguments
+    /// * `shaft` - its number
+    /// * `times` - (-) by how much
+    ///
+    /// # Returns
+    /// The key of its radius.
+    pub(crate) fn scale_shaft_radius(&mut self, shaft: usize, times: f64) -> String {
+        match &mut self.structure {
+            Structure::Rig(rig) => {
+                let (of, name) = match shaft {
+                    0 => (&mut rig.pinion_shaft, "pinion"),
+                    _ => (&mut rig.gear_shaft, "gear"),
+                };
+                of.radius_mm *= times;
+                format!("rig.{name}_shaft.radius_mm")
+            }
+            Structure::Shafts(of) => {
+                let count = of.shafts.len();
+                let of = &mut of.shafts[shaft];
+                of.radius_mm = of.radius_mm.map(|radius_mm| radius_mm * times);
+                of.segments.iter_mut().for_each(|[_, radius_mm]| *radius_mm *= times);
+                let key = if of.segments.is_empty() { "radius_mm" } else { "segments" };
+                super::layout::entry_key("shaft", shaft, count, key)
+            }
+        }
+    }
+
     /// Sensors at the places where one may sit whose place is not known: the supports of a rig, the bearings' seats of shafts of beams.
     pub fn sensor_places(&self) -> Vec<Sensor> {
         let at_support = |at| Sensor { at, ..Sensor::default() };

@@ -175,7 +175,7 @@ impl Keys for ScenarioWheel {
                 .range(ALONG)
                 .rule("within half a face width of its mating wheels"),
             teeth_row("teeth", field!(teeth)),
-            face_width_row("the face width; a mesh has the narrower one", field!(face_width_mm))
+            face_width_row("the face width; a mesh has what both faces have in common", field!(face_width_mm))
                 .rule("on its shaft, clear of other wheels"),
             profile_shift_row("profile_shift", field!(profile_shift)),
             addendum_row("addendum", field!(addendum)),
@@ -195,7 +195,7 @@ impl Keys for ScenarioWheel {
             row("unbalance", "", "its unbalance", field!(unbalance)).otherwise("none").alternative("{ g_mm = 50.0 }"),
             row("eccentricity_mm", "mm", "the eccentricity of its seat", field!(eccentricity_mm))
                 .range(Range::not_negative())
-                .rule("less than the module; the same of both wheels of a mesh; of a wheel in one mesh"),
+                .rule("less than the module; of a wheel in one mesh"),
             row("din_grade", "", "the grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade))
                 .range(Range::from_to(0.0, 12.0)),
             row("iso_class", "", "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none", field!(iso_class))
@@ -259,7 +259,7 @@ impl Keys for ScenarioWheel {
                 "the helix slope deviation over the face width, positive where metal is added towards positive z",
                 field!(deviations.helix_slope_um),
             )
-            .otherwise("none")
+            .otherwise("drawn by `helix_share`, or none")
             .range(Range::from_to(-1e3, 1e3))
             .alternative("0.0"),
         ]

@@ -50,6 +50,22 @@ impl TrainTurning {
         })
     }
 
+    /// The shaft whose phase is known with that phase, and what is stated about it: of what was simulated the input's.
+    ///
+    /// # Arguments
+    /// * `train` - the machine
+    ///
+    /// # Errors
+    /// Fewer than two samples.
+    pub fn known_phase(&self, train: &GearTrain) -> Result<(usize, ShaftPhase, StatedTurning), SignalError> {
+        match self {
+            Self::Shaft { shaft, phase, stated } => Ok((*shaft, phase.clone(), *stated)),
+            Self::SimulatedPair(shafts) => {
+                Ok((train.input(), shafts.phase(WheelName::Pinion)?, StatedTurning::Other))
+            }
+        }
+    }
+
     /// Number of the shaft whose phase is known: of what was simulated the input.
     pub fn known_shaft(&self, train: &GearTrain) -> usize {
         match self {
@@ -280,6 +296,19 @@ impl TrainRecording<'_> {
             Some(error) if found.wheels.is_empty() => Err(error),
             _ => Ok(found),
         }
+    }
+
+    /// Processes the channel for one wheel, and looks for nothing else.
+    ///
+    /// # Arguments
+    /// * `wheel` - its number
+    /// * `settings` - how
+    ///
+    /// # Errors
+    /// Those of [`Self::process`], of this wheel.
+    pub fn process_one(&self, wheel: usize, settings: &TrainSettings) -> Result<WheelRecords, SignalError> {
+        check_channel(self.signal)?;
+        self.process_wheel(wheel, &self.angular(wheel, &settings.angular)?, settings)
     }
 
     /// The records of a wheel.

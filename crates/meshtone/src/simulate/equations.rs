@@ -291,7 +291,7 @@ impl Stages {
         let deviations = |pair: &'a MeshedPair| PairDeviations {
             teeth: &pair.teeth,
             errors: pair.profile_errors.as_ref(),
-            eccentricity_m: pair.eccentricity_mm * 1e-3,
+            eccentricity_m: pair.eccentricity_mm.map(|of_wheel_mm| of_wheel_mm * 1e-3),
             run_out: pair.run_out,
         };
         let turning = |(number, bearing): &(usize, RollingBearing)| {

@@ -7,7 +7,7 @@ use crate::bearing::{RollingBearing, RollingParts};
 use crate::error::ScenarioError;
 use crate::machine::{
     Disc, GearboxMachine, GearboxParts, GearboxShaft, KnownModes, Machine, MeshLine, Modes, PlacedUnbalance,
-    RigMachine, RigParts, SeatedBearing, Supports, WheelBody,
+    RigMachine, RigParts, SeatedBearing, Supports, WheelBody, body_stiffness_nm_per_rad,
 };
 use crate::scenario::{Layout, Scenario};
 use crate::solver::{InitialMotion, ModalMachine};
@@ -24,7 +24,7 @@ pub struct AssembledMachine {
     pub modes: Arc<Modes>,
     /// Mass and inertias of each wheel.
     pub wheels: Vec<WheelBody>,
-    /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to.
+    /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to, of a pair between wheel and coupling.
     pub shaft_stiffness_nm_per_rad: Vec<f64>,
     /// (kg m²) What turns with the nodes of shafts of beams: [`GearboxMachine::spinning`]; nothing of a rig.
     pub spinning: Vec<(usize, f64)>,
@@ -89,17 +89,30 @@ fn rig(scenario: &Scenario, parts: RigParts, teeth: &Teeth) -> AssembledMachine 
     }
 }
 
+/// The machine alone, without places of sensors or modes.
+///
+/// # Errors
+/// Rolling bearings that do not fit.
+pub(super) fn bare(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Machine, ScenarioError> {
+    match scenario.rig_parts(&layout.gears[0]) {
+        Some(parts) => Ok(RigMachine::new(parts, &teeth[0], Supports::Moving).machine),
+        None => Ok(beams(scenario, layout, teeth)?.machine.machine),
+    }
+}
+
+/// Shafts of beams in bearings, with what is known of them beside the machine.
+struct Beams {
+    machine: GearboxMachine,
+    discs: Vec<Disc>,
+    mesh_mass_kg: Vec<f64>,
+    bearings: Bearings,
+}
+
 /// Shafts of beams in bearings: wheels become discs, meshes lines of action, and all unbalances are placed on their shafts.
 ///
 /// Rolling bearings have the stiffness of linear ones first, which gives their static loads, and these the linear springs in their
-/// places. Places that outputs read are added at the end, since they need the nodes of the finished machine.
-fn shafts_of_beams(
-    scenario: &Scenario,
-    layout: &Layout,
-    teeth: &[Teeth],
-    known: &KnownModes,
-) -> Result<(AssembledMachine, Bearings), ScenarioError> {
-    let sensors = scenario.all_sensors();
+/// places.
+fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams, ScenarioError> {
     let shafts: Vec<_> = scenario.shafts().iter().zip(layout.positions_m.iter().copied()).collect();
     let discs: Vec<Disc> = (scenario.wheels.iter().enumerate())
         .map(|(number, wheel)| {
@@ -107,13 +120,19 @@ fn shafts_of_beams(
             let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
             let mut tooth = *teeth[mesh].wheel(side);
             tooth.face_width_mm = wheel.face_width_mm;
-            let body = WheelBody::new(&tooth, layout.gears[mesh].material, &wheel.inertia);
-            Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
+            let gears = &layout.gears[mesh];
+            Disc {
+                shaft: layout.shaft_of_wheel[number],
+                at: wheel.at,
+                body: WheelBody::new(&tooth, gears.material, &wheel.inertia),
+                body_stiffness_nm_per_rad: body_stiffness_nm_per_rad(&tooth, gears),
+            }
         })
         .collect();
-    let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears))
-        .map(|((teeth, &wheels), gears)| MeshLine {
+    let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears).enumerate())
+        .map(|(mesh, ((teeth, &wheels), gears))| MeshLine {
             wheels,
+            offsets_m: layout.offsets_of_face_m(scenario, mesh),
             base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
             working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
             thrust: gears.thrust(),
@@ -163,6 +182,19 @@ fn shafts_of_beams(
         parts.bearings = &seated;
         machine = GearboxMachine::new(&parts);
     }
+    let mesh_mass_kg = mass_kg.collect();
+    Ok(Beams { machine, discs, mesh_mass_kg, bearings })
+}
+
+/// The machine of [`beams`] with its modes. Places that outputs read are added to the finished machine, as they need its nodes.
+fn shafts_of_beams(
+    scenario: &Scenario,
+    layout: &Layout,
+    teeth: &[Teeth],
+    known: &KnownModes,
+) -> Result<(AssembledMachine, Bearings), ScenarioError> {
+    let Beams { mut machine, discs, mesh_mass_kg, bearings } = beams(scenario, layout, teeth)?;
+    let sensors = scenario.all_sensors();
     for (sensor, place) in sensors.iter().zip(scenario.places(layout)?) {
         machine.add_place(sensor.name(), place);
     }
@@ -177,7 +209,7 @@ fn shafts_of_beams(
         shaft_stiffness_nm_per_rad: scenario.shafts().iter().map(GearboxShaft::coupling_nm_per_rad).collect(),
         mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
         spinning: machine.spinning(&parts),
-        mesh_mass_kg: mass_kg.collect(),
+        mesh_mass_kg,
         highest_of_slow_hz: HIGHEST_OF_SLOW_HZ,
         stepped_up_to_hz: scenario.solver.highest_mode_hz(scenario.time_grid().sampling_rate_hz),
         modes: known.damped_by_springs(&machine.machine),

@@ -5,13 +5,14 @@ use std::num::NonZeroUsize;
 use super::{AssembledMachine, MeshedPair};
 use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
+use crate::machine::Machine;
 use crate::mesh::{
-    Contact, FaceForm, FaceSlope, Friction, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape,
-    Turning, is_slanted, place_on_face,
+    Contact, FaceForm, FaceSlope, FacesAtRest, Friction, Mesh, MeshParameters, PairSequence, PairTable,
+    Pairs, TipShape, Turning, UnevenFace, is_slanted, place_on_face,
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
-use crate::wheel::{NamedGears, WheelName};
+use crate::wheel::{Gears, NamedGears, WheelName};
 
 /// The meshes of a scenario.
 ///
@@ -42,7 +43,7 @@ pub(super) fn meshes(
             number,
             // Flanks that may pull bear on the whole face.
             closer_um: match contact {
-                Contact::Unilateral => pair.misalignment_um + pair.helix_slope_um.iter().sum::<f64>(),
+                Contact::Unilateral => pair.closer_um(),
                 Contact::Bilateral => 0.0,
             },
             contact,
@@ -53,7 +54,39 @@ pub(super) fn meshes(
         let of_time = || points_of(time, scenario.operation.turns_evenly(), &turning, pair);
         mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))
     };
-    pairs.iter().enumerate().map(mesh).collect()
+    let mut meshes: Vec<Mesh> = pairs.iter().enumerate().map(mesh).collect::<Result<_, _>>()?;
+    let faces = faces_at_rest(scenario, layout, &machine.machine, pairs, &meshes);
+    let loads = faces.iter().flat_map(FacesAtRest::loads);
+    meshes.iter_mut().zip(loads).for_each(|(mesh, load)| mesh.along_face = load);
+    Ok(meshes)
+}
+
+/// How each mesh bears along its face at rest: by the lean of the shafts under the nominal load, misalignment, slopes of the flanks, crowning and
+/// end relief. None without a load, or where flanks may pull.
+///
+/// # Arguments
+/// * `scenario`, `layout` - what is simulated, and its wheels
+/// * `machine` - around the meshes
+/// * `pairs`, `meshes` - the wheels of each mesh, and their stiffness
+pub(super) fn faces_at_rest(
+    scenario: &Scenario,
+    layout: &Layout,
+    machine: &Machine,
+    pairs: &[MeshedPair],
+    meshes: &[Mesh],
+) -> Option<FacesAtRest> {
+    if !scenario.model.teeth_part() || pairs.iter().any(|pair| pair.static_force_n <= 0.0) {
+        return None;
+    }
+    let stiffness: Vec<f64> = meshes.iter().map(|mesh| mesh.even_stiffness_n_per_m).collect();
+    let leans = machine.leans(&stiffness, scenario.operation.brake_torque_nm);
+    let face = |((pair, gears), stiffness): ((&MeshedPair, &Gears), &f64)| {
+        let width_m = gears.face_width_mm * 1e-3;
+        let slope = pair.closer_um() * 1e-6 / width_m;
+        let numbers = [width_m, *stiffness, pair.static_force_n, slope];
+        UnevenFace::new(numbers, |part| gears.mean_gap_mm(part) * 1e-3)
+    };
+    Some(FacesAtRest { faces: pairs.iter().zip(&layout.gears).zip(&stiffness).map(face).collect(), leans })
 }
 
 /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of

@@ -27,7 +27,7 @@ pub struct MeshedPair {
     /// (µm) Misalignment of the shafts over the face width.
     pub misalignment_um: f64,
     /// (mm) Eccentricity of the seats of both wheels, beside their run-out.
-    pub eccentricity_mm: f64,
+    pub eccentricity_mm: [f64; 2],
     /// The damaged teeth.
     pub damaged: Vec<DamagedTooth>,
     /// The faults on both wheels with their sizes, each with its number in the scenario.
@@ -78,8 +78,7 @@ pub(super) fn sound_pair(
         run_out,
         helix_slope_um,
         misalignment_um: scenario.meshes[mesh].misalignment_um,
-        // Mates have the same.
-        eccentricity_mm: scenario.wheels[numbers[0]].eccentricity_mm,
+        eccentricity_mm: numbers.map(|wheel| scenario.wheels[wheel].eccentricity_mm),
         damaged: Vec::new(),
         faults: faults.map(|(number, fault)| (number, fault.with_sizes(&teeth))).collect(),
         static_force_n,
@@ -88,6 +87,11 @@ pub(super) fn sound_pair(
 }
 
 impl MeshedPair {
+    /// (µm) By how much more the unloaded flanks close at one end of the face than at the other, positive towards positive z.
+    pub(super) fn closer_um(&self) -> f64 {
+        self.misalignment_um + self.helix_slope_um.iter().sum::<f64>()
+    }
+
     /// The pair with its damaged teeth.
     ///
     /// # Arguments

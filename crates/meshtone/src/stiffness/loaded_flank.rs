@@ -93,14 +93,15 @@ impl<'a> LoadedFlank<'a> {
             }
         };
         Self {
-            foundation: Foundation::new(flank.wheel, profile, foundation),
+            foundation: Foundation::local(flank.wheel, profile, foundation, material.poisson_ratio()),
             youngs_modulus_mpa: material.youngs_modulus_mpa(),
             flank,
             integrals,
         }
     }
 
-    /// (mm/N) Displacement along the load under a unit of it: bending, shear, compression and the wheel's body.
+    /// (mm/N) Displacement along the load under a unit of it: bending, shear, compression and the wheel's body near the tooth. The
+    /// rotation of the body as a whole is the machine's.
     ///
     /// # Arguments
     /// * `load` - where and how it acts

@@ -1,6 +1,6 @@
 //! Every stage's output of a gearbox.
 
-use super::stages::helix;
+use super::stages::{along_face, helix};
 use crate::simulate::{Simulation, Stages};
 use crate::trace_fields::Trace;
 use crate::wheel::WheelName;
@@ -51,6 +51,7 @@ pub(super) fn gearbox_stages(trace: &mut Trace, stages: &Stages) {
         trace.scalar(&named("contact_ratio"), pair.teeth.contact.contact_ratio);
         trace.scalar(&named("mean_stiffness_n_per_m"), mesh.mean_stiffness_n_per_m);
         trace.scalar(&named("damping_time_s"), mesh.damping_time_s);
+        along_face(trace, &named, mesh);
         trace.vector(
             &named("mesh_stiffness_n_per_mm"),
             mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth()),

@@ -2,7 +2,7 @@
 
 use super::Trace;
 use crate::damage::QuantityValue;
-use crate::mesh::MeshCurve;
+use crate::mesh::{LoadAlongFace, Mesh, MeshCurve};
 use crate::simulate::{MeshedPair, Stages};
 use crate::trace_fields::FAULT_STRIDE;
 use crate::wheel::{Gears, Mounting, WheelName};
@@ -32,6 +32,9 @@ pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
     trace.scalar("centre_distance_mm", mounting.centre_distance_mm);
     trace.scalar("normal_backlash_mm", gears.normal_backlash_mm());
     helix(trace, "", gears, *static_force_n);
+    if let Some(mesh) = stages.meshes.first() {
+        along_face(trace, &str::to_owned, mesh);
+    }
     bodies(trace, stages);
     stiffness(trace, stages);
     trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
@@ -54,6 +57,18 @@ pub(super) fn helix(trace: &mut Trace, suffix: &str, gears: &Gears, static_force
         trace.scalar(&named("overlap_ratio"), gears.overlap_ratio());
         trace.scalar(&named("axial_force_n"), static_force_n * gears.thrust());
     }
+}
+
+/// How a mesh bears along its face.
+///
+/// # Arguments
+/// * `named` - what a quantity of this mesh is called
+/// * `mesh` - with its tables
+pub(super) fn along_face(trace: &mut Trace, named: &dyn Fn(&str) -> String, mesh: &Mesh) {
+    let LoadAlongFace { lean_m, tilt_product, face_load_factor } = mesh.along_face;
+    trace.scalar(&named("face_load_factor"), face_load_factor);
+    trace.scalar(&named("lean_um"), lean_m * 1e6);
+    trace.scalar(&named("tilt_product"), tilt_product);
 }
 
 fn wheels(trace: &mut Trace, stages: &Stages) {

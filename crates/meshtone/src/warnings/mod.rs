@@ -5,6 +5,7 @@ mod mesh_resonance;
 mod observer;
 mod of_signals;
 mod step_error;
+mod uneven_face;
 
 pub use gyroscopic::GyroscopicShift;
 pub use observer::Observer;
@@ -57,7 +58,7 @@ pub fn stages_and_warnings(
 impl Stages {
     /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, slices that the faces
     /// are not cut into, wheels of a rig whose accelerations, or whose supports', cancel in the channels, meshes and sensors above the highest
-    /// mode that is simulated, a load that would break teeth, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
+    /// mode that is simulated, a load that would break teeth or is at one end of a face, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
     /// frequency of shafts of beams.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
         let unused = self.meshes.iter().enumerate().filter_map(|(number, mesh)| {
@@ -72,6 +73,7 @@ impl Stages {
             .chain(self.undamped())
             .chain(self.gyroscopic())
             .chain(self.overloads())
+            .chain(self.uneven_faces())
             .chain(self.without_contact())
             .chain(self.mesh_resonances())
             .collect()

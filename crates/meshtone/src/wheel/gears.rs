@@ -167,7 +167,20 @@ pub struct FoundationCoefficients {
     pub p: [f64; 6],
     /// (-) `A…F` of `Q`, the factor of `tan²α`.
     pub q: [f64; 6],
+    /// Where the rotation of the wheel's whole body is, which `P` has too. Default: in the teeth.
+    pub rotation: BodyRotation,
 }
+
+/// Where the rotation of a wheel's whole body about its bore is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BodyRotation {
+    /// It is a torsional spring between bore and wheel, once for all pairs of teeth, and is taken out of `P`, which is read within 7 bores.
+    Machine,
+    /// It is in the compliance of each pair of teeth, as it is published, and the body does not turn otherwise.
+    Tooth,
+}
+
+by_name!(BodyRotation, ["machine" => BodyRotation::Machine, "tooth" => BodyRotation::Tooth]);
 
 impl Default for FoundationCoefficients {
     fn default() -> Self {
@@ -176,6 +189,7 @@ impl Default for FoundationCoefficients {
             m: [60.111e-5, 28.100e-3, -83.431e-4, -9.9256e-3, 0.1624, 0.9086],
             p: [-50.952e-5, 185.50e-3, 0.0538e-4, 53.300e-3, 0.2895, 0.9236],
             q: [-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904],
+            rotation: BodyRotation::Tooth,
         }
     }
 }
@@ -193,6 +207,13 @@ impl Keys for FoundationCoefficients {
             row("M", "", "A to F of M, the factor of u", field!(m)),
             row("P", "", "A to F of P, the constant term", field!(p)),
             row("Q", "", "A to F of Q, the factor of tan²α", field!(q)),
+            row(
+                "rotation",
+                "",
+                "where the rotation of the wheel's whole body is, which P has too: \"machine\" takes it out of P and makes it a \
+                 torsional spring between bore and wheel, \"tooth\" leaves it in each pair of teeth",
+                field!(rotation),
+            ),
         ]
     }
 }

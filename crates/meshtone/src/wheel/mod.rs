@@ -22,7 +22,7 @@ mod undercut;
 pub use contact::{ContactLine, contact_line, contact_ratio};
 pub use flank::{Flank, FlankPoint};
 pub use flank_relief::FlankRelief;
-pub use gears::{FoundationCoefficients, Gears, ReliefShape};
+pub use gears::{BodyRotation, FoundationCoefficients, Gears, ReliefShape};
 pub use lead::{EndRelief, Hand};
 pub use material::{Material, MaterialConstants};
 pub use mounting::Mounting;

@@ -298,11 +298,11 @@ fn given_pitches_have_the_run_out_in_them() {
 fn helix_slopes_and_misalignment_add_up() {
     let mut scenario = of_rig(6);
     let aligned = simulate(&scenario).unwrap();
-    assert_eq!(mesh(&aligned.stages).face_load_factor, 1.0);
+    assert_eq!(mesh(&aligned.stages).along_face.face_load_factor, 1.0);
     scenario.meshes[0].misalignment_um = 8.0;
     let misaligned = simulate(&scenario).unwrap();
     let [before, after] = [&aligned, &misaligned].map(|simulation| mesh(&simulation.stages));
-    assert!(after.face_load_factor > 2.0);
+    assert!(after.along_face.face_load_factor > 2.0);
     assert!(after.mean_stiffness_n_per_m < 0.9 * before.mean_stiffness_n_per_m);
     scenario.wheels[0].deviations.helix_slope_um = Some(-3.0);
     scenario.wheels[1].deviations.helix_slope_um = Some(-5.0);

@@ -50,7 +50,7 @@ pub fn deviations_of(stages: &Stages) -> PairDeviations<'_> {
     PairDeviations {
         teeth: &stages.pairs[0].teeth,
         errors: stages.pairs[0].profile_errors.as_ref(),
-        eccentricity_m: stages.pairs[0].eccentricity_mm * 1e-3,
+        eccentricity_m: stages.pairs[0].eccentricity_mm.map(|of_wheel_mm| of_wheel_mm * 1e-3),
         run_out: stages.pairs[0].run_out,
     }
 }
@@ -158,7 +158,8 @@ impl<'a> DenseMesh<'a> {
         };
         let tooth = pair.rem_euclid(i64::from(of_wheel.teeth));
         let angle = TAU * (tooth as f64 + position) / f64::from(of_wheel.teeth);
-        let axis_m = sign * eccentricity_m * (teeth.gear.working_pressure_angle_rad + angle).sin();
+        let axis_m =
+            sign * eccentricity_m[wheel as usize] * (teeth.gear.working_pressure_angle_rad + angle).sin();
         let circle_m = run_out.run_out_um * 0.5e-6 * (angle + run_out.phase_rad).sin();
         let flank_m = errors.map_or(0.0, |errors| {
             // Rows are uniform in radius, from where a flank's contact begins to where it ends: the gear's begins at its tip.

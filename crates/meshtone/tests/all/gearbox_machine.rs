@@ -79,11 +79,12 @@ impl TwoStages {
             let mass_kg = PI * r * r * b * 7850.0;
             let transverse_kgm2 = mass_kg * (3.0 * r * r + b * b) / 12.0;
             let body = WheelBody { mass_kg, polar_kgm2: mass_kg * r * r / 2.0, transverse_kgm2 };
-            Disc { shaft: [0, 1, 1, 2][wheel], at: self.at[wheel / 2], body }
+            Disc { shaft: [0, 1, 1, 2][wheel], at: self.at[wheel / 2], body, body_stiffness_nm_per_rad: None }
         };
         let alpha = (20f64.to_radians().tan() / self.helix_angle_rad.cos()).atan();
         let thrust = self.helix_angle_rad.tan() * alpha.cos();
         let line = |stage: usize| MeshLine {
+            offsets_m: [0.0; 2],
             wheels: [2 * stage, 2 * stage + 1],
             base_radii_m: [0, 1].map(|wheel| self.radius_m(2 * stage + wheel) * alpha.cos()),
             working_pressure_angle_rad: alpha,

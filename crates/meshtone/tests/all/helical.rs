@@ -471,7 +471,7 @@ fn short_end_relief_is_felt() {
         let mut scenario = pair([20, 60], 3.0, 30.0, 20.0);
         scenario.meshes[0].lead_crowning_um = 0.1;
         scenario.meshes[0].end_relief = EndRelief { length_mm: 1.0, amount_um };
-        mesh(&scenario, 200).face_load_factor
+        mesh(&scenario, 200).along_face.face_load_factor
     };
     assert!(factor(20.0) > factor(0.0) + 0.01, "{} {}", factor(20.0), factor(0.0));
 }

@@ -6,7 +6,7 @@ use meshtone::sensor::SignalSource;
 use meshtone::{Error, Simulation, StepJudgement, simulate};
 
 fn stock(change: impl Fn(&mut Scenario)) -> Scenario {
-    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    let mut gearbox = crate::plain::plain(Scenario::from_toml(&gearbox_template(None)).unwrap());
     gearbox.solver.duration_s = Some(0.4);
     gearbox.solver.sampling_rate_hz = 5e4;
     change(&mut gearbox);

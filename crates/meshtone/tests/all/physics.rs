@@ -4,8 +4,8 @@
 use meshtone::Stages;
 use meshtone::mesh::{Mesh, PairKind, PairTable, Pairs};
 use meshtone::scenario::{
-    FoundationCoefficients, GearPair, Gears, Scenario, Sensor, SensorPath, SensorPlace, Support,
-    SupportSprings,
+    BodyRotation, FoundationCoefficients, GearPair, Gears, Scenario, Sensor, SensorPath, SensorPlace,
+    Support, SupportSprings,
 };
 use meshtone::wheel::{Teeth, teeth};
 
@@ -117,7 +117,13 @@ pub fn stiffness_n_per_m(pairs: &PairTable) -> Vec<f64> {
 
 /// A wheel's body that does not give way.
 pub fn rigid_foundation() -> FoundationCoefficients {
-    FoundationCoefficients { l: [0.0; 6], m: [0.0; 6], p: [0.0; 6], q: [0.0; 6] }
+    FoundationCoefficients {
+        l: [0.0; 6],
+        m: [0.0; 6],
+        p: [0.0; 6],
+        q: [0.0; 6],
+        rotation: BodyRotation::Tooth,
+    }
 }
 
 /// Abscissae and weights of Gauss and Legendre's rule with 5 points on \[−1, 1\]: exact up to degree 9.

@@ -1,10 +1,11 @@
 //! Whatever scenario is valid is written as a scenario file that is read back exactly.
 
 use meshtone::scenario::{
-    Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
-    Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Pits, Profile, ProfileErrors,
-    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Structure, Support, SupportSprings,
-    ThroughFace, ToothBreakage, ToothDestruction, Wear, WheelInertia, WheelName,
+    BodyRotation, Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief,
+    FoundationCoefficients, GearPair, Gears, Material, MissingTooth, Model, Operation, PartialFace,
+    PitCircle, Pits, Profile, ProfileErrors, Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver,
+    Structure, Support, SupportSprings, ThroughFace, ToothBreakage, ToothDestruction, Wear, WheelInertia,
+    WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -12,8 +13,10 @@ use proptest::option;
 use proptest::prelude::*;
 
 fn gears() -> impl Strategy<Value = Gears> {
-    let foundation =
-        uniform4(uniform6(-1e3..1e3)).prop_map(|[l, m, p, q]| FoundationCoefficients { l, m, p, q });
+    let foundation = (uniform4(uniform6(-1e3..1e3)), any::<bool>()).prop_map(|([l, m, p, q], in_machine)| {
+        let rotation = if in_machine { BodyRotation::Machine } else { BodyRotation::Tooth };
+        FoundationCoefficients { l, m, p, q, rotation }
+    });
     let wheels = (1.0..10.0, 17u32..80, 17u32..80, 1.0..100.0, 15.0..30.0);
     let rest = (0usize..6, 0.0..0.05, 500usize..100_000, foundation);
     let contact = (any::<bool>(), 0.01..1.9, 0.0..50.0, option::of(0.0..0.3), option::of(0.0..0.5));

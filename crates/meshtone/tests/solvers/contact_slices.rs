@@ -251,7 +251,7 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
             "{misalignment_um} um, {brake_torque_nm} N m, {}: K_Hb {:.2}; log10 of rms and kurtosis {:.3} {:.3}, aligned \
              {:.3} {:.3}, by slices {:.3} {:.3}",
             damage.map_or("sound", |_| "broken"),
-            mesh.face_load_factor,
+            mesh.along_face.face_load_factor,
             found[0],
             found[1],
             before[0],

@@ -146,7 +146,7 @@ fn gearbox_moves_as_with_dense_matrices() {
     let deviations = |mesh: usize| PairDeviations {
         teeth: &stages.pairs[mesh].teeth,
         errors: stages.pairs[mesh].profile_errors.as_ref(),
-        eccentricity_m: 0.0,
+        eccentricity_m: [0.0; 2],
         run_out: stages.pairs[mesh].run_out,
     };
     let dense = Dense {
@@ -571,7 +571,9 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
     let warnings = |change: &dyn Fn(&mut Scenario)| {
         let mut gearbox = settled.clone();
         change(&mut gearbox);
-        stages(&gearbox).unwrap().warnings()
+        // The template's shafts lean.
+        let warnings = stages(&gearbox).unwrap().warnings();
+        warnings.into_iter().filter(|warning| warning.kind != WarningKind::UnevenFace).collect::<Vec<_>>()
     };
     assert!(warnings(&|_| ()).is_empty());
     let overload = warnings(&|gearbox| gearbox.operation.brake_torque_nm = 4000.0);
@@ -710,11 +712,11 @@ fn a_mesh_frequency_at_a_natural_frequency_is_reported() {
     gearbox.solver.discard_and_keep(5.0, 0.1);
     let mut reported = |speed_hz: f64| {
         gearbox.operation.pinion_speed_hz = speed_hz;
-        stages(&gearbox).unwrap().warnings().pop()
+        let warnings = stages(&gearbox).unwrap().warnings();
+        warnings.into_iter().find(|warning| warning.kind == WarningKind::MeshResonance)
     };
     assert_eq!(reported(30.0), None);
     let warning = reported(1479.2 / 32.0 * 1.009).unwrap();
-    assert_eq!(warning.kind, WarningKind::MeshResonance);
     assert!(warning.message.contains("1479.2 Hz by 1492.5 Hz, 1 times that of mesh z1-z2"), "{warning}");
     assert_eq!(reported(1479.2 / 32.0 * 1.02), None);
 }
@@ -825,7 +827,9 @@ fn power_split(apart_mm: f64) -> String {
         )
     };
     let mesh = |a: &str, b: &str| {
-        format!("[[mesh]]\nwheels = [\"{a}\", \"{b}\"]\nmodule_mm = 2.0\npressure_angle_deg = 20.0\nfriction = 0.0\n")
+        format!(
+            "[[mesh]]\nwheels = [\"{a}\", \"{b}\"]\nmodule_mm = 2.0\npressure_angle_deg = 20.0\nfriction = 0.0\n"
+        )
     };
     let at = |z_mm: f64| z_mm / (240.0 + apart_mm);
     [

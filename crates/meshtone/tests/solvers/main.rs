@@ -7,6 +7,7 @@ mod contact_slices;
 #[path = "../all/dense.rs"]
 mod dense;
 mod dense_oracle;
+mod face_load;
 mod gearbox;
 mod integrator;
 #[allow(dead_code)]

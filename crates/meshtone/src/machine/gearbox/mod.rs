@@ -53,6 +53,8 @@ pub struct Disc {
     pub at: f64,
     /// Mass and inertias.
     pub body: WheelBody,
+    /// (N m/rad) Torsional stiffness of its body between the bore and the rim with its inertia; none of a rigid disc.
+    pub body_stiffness_nm_per_rad: Option<f64>,
 }
 
 /// An unbalance on its shaft.
@@ -95,6 +97,8 @@ impl<'a> SeatedBearing<'a> {
 pub struct MeshLine {
     /// Number of the driving and of the driven wheel.
     pub wheels: [usize; 2],
+    /// (m) How far from their middle planes the middle of what their faces have in common is, along z.
+    pub offsets_m: [f64; 2],
     /// (m) Their base radii.
     pub base_radii_m: [f64; 2],
     /// (rad) Working pressure angle in the transverse section.
@@ -129,6 +133,8 @@ pub struct GearboxMachine {
     housing_modes: Option<(usize, HousingModes)>,
     /// First coordinate of each bearing's seat.
     seats: Vec<usize>,
+    /// The coordinate of each wheel's rotation: that of its node where the disc is rigid.
+    rotations: Vec<usize>,
     /// Rotation of each shaft over that of the input.
     pub speed_ratios: Vec<f64>,
 }
@@ -254,7 +260,7 @@ impl GearboxMachine {
     /// Puts the machine together.
     ///
     /// Coordinates are counted shaft by shaft, node by node from its beginning on; then come the housing, the seats in the order of the bearings,
-    /// and the brake's rotation. The parts are then added one after the other.
+    /// the brake's rotation, the modes of the housing, and the rotations of wheels on elastic bodies. The parts are then added one after the other.
     ///
     /// # Arguments
     /// * `parts` - what it is made of
@@ -287,6 +293,18 @@ impl GearboxMachine {
         let housing_modes = parts.housing.map(|housing| (names.len(), housing.modes));
         let modes = housing_modes.map_or(0, |(_, modes)| modes.count());
         names.extend((1..=modes).map(|mode| Cow::from(format!("housing_mode_{mode}"))));
+        let node_of = |disc: &Disc| {
+            let z_m = disc.at * parts.shafts[disc.shaft].0.length_mm * 1e-3;
+            nearest_node(&nodes[disc.shaft], z_m)
+        };
+        let rotation = |(number, disc): (usize, &Disc)| match disc.body_stiffness_nm_per_rad {
+            Some(_) => {
+                names.push(format!("phi_z_wheel_{number}").into());
+                names.len() - 1
+            }
+            None => node_of(disc) + ABOUT_Z,
+        };
+        let rotations: Vec<usize> = parts.discs.iter().enumerate().map(rotation).collect();
         let coordinates = names.len();
         let mut assembly =
             Assembly { names, mass: DMatrix::zeros(coordinates, coordinates), springs: Vec::new() };
@@ -308,6 +326,7 @@ impl GearboxMachine {
             housing,
             housing_modes,
             seats,
+            rotations,
             speed_ratios: parts.speed_ratios.to_vec(),
         };
         this.add_shafts(parts, brake, &mut assembly);
@@ -326,6 +345,9 @@ impl GearboxMachine {
         for (nodes, ratio) in this.nodes.iter().zip(parts.speed_ratios) {
             nodes.iter().for_each(|(_, node)| machine.rigid_rotation[node + ABOUT_Z] = *ratio);
         }
+        for (rotation, disc) in this.rotations.iter().zip(parts.discs) {
+            machine.rigid_rotation[*rotation] = parts.speed_ratios[disc.shaft];
+        }
         let brakes = parts.shafts.iter().zip(parts.speed_ratios);
         let ratio_of_brake =
             brakes.filter(|((shaft, _), _)| shaft.couples_to == Coupled::Brake).map(|(_, ratio)| *ratio);
@@ -335,8 +357,7 @@ impl GearboxMachine {
 
     /// First coordinate of the node of a shaft nearest to a place.
     fn node(&self, shaft: usize, z_m: f64) -> usize {
-        let nodes = self.nodes[shaft].iter();
-        nodes.min_by(|a, b| (a.0 - z_m).abs().total_cmp(&(b.0 - z_m).abs())).map_or(0, |(_, node)| *node)
+        nearest_node(&self.nodes[shaft], z_m)
     }
 
     /// First coordinate of a wheel's node.
@@ -356,7 +377,13 @@ impl GearboxMachine {
         for (number, disc) in parts.discs.iter().enumerate() {
             let WheelBody { mass_kg, polar_kgm2, transverse_kgm2 } = disc.body;
             let node = self.node_of_disc(parts, number);
-            assembly.add_body(node, mass_kg, [transverse_kgm2, transverse_kgm2, polar_kgm2]);
+            assembly.add_body(node, mass_kg, [transverse_kgm2, transverse_kgm2, 0.0]);
+            let rotation = self.rotations[number];
+            assembly.mass[(rotation, rotation)] += polar_kgm2;
+            if let Some(stiffness) = disc.body_stiffness_nm_per_rad {
+                let (shaft, _) = parts.shafts[disc.shaft];
+                assembly.hold(&[(rotation, 1.0), (node + ABOUT_Z, -1.0)], stiffness, shaft.damping_ratio);
+            }
         }
         for (nodes, (shaft, _)) in self.nodes.iter().zip(parts.shafts) {
             let stretch = match shaft.couples_to {
@@ -520,10 +547,7 @@ impl GearboxMachine {
                 force[*coordinate] += torque_share * torque_nm;
             }
         }
-        // The coupling of the motor and the supports hold everything but a shaft that may slide, which a billionth of its own stiffness holds.
-        let held = DMatrix::from_diagonal(&(stiffness.diagonal() * 1e-9));
-        let displacement =
-            (stiffness + held).cholesky().map_or_else(|| force.clone() * 0.0, |factor| factor.solve(&force));
+        let displacement = machine.displaced_by(stiffness, &[force]).column(0).into_owned();
         let rolling = parts.bearings.iter().filter(|of| of.bearing.element().is_some());
         let load = |(of, stretch): (&SeatedBearing, &[DVector<f64>; 2])| {
             let [x_m, y_m] = stretch.each_ref().map(|stretch| stretch.dot(&displacement));
@@ -534,7 +558,8 @@ impl GearboxMachine {
 
     /// The line of action of a mesh: the driving wheel, which turns in the sense s about z, pushes the other one along
     /// `n = s cos α t + sin α c − s h tan β_b z`, c the direction from centre to centre, `t = z × c`, and h the hand of the driving wheel's
-    /// helix. With the arm r from each centre to the pitch point it is `[n; r × n]` of the driving wheel, less the same of the driven one.
+    /// helix. With the arm r from each wheel's own centre to the pitch point midway along what the faces have in common it is `[n; r × n]` of the
+    /// driving wheel, less the same of the driven one.
     /// Deflections and forces along it are those of the transverse section, in which `F r_b` is the torque.
     ///
     /// Friction acts along `q = −s z × n`, against the sliding of the driving wheel's flank beyond the pitch point. At the distance d from
@@ -554,11 +579,9 @@ impl GearboxMachine {
         let mut line = LineOfAction { at_middle: zeros(), per_m: zeros(), across: None };
         let mut across = AcrossLine { at_pitch_point: zeros(), per_m: zeros() };
         let q = along.cross(&n) * -sense;
-        for (disc, base_radius_m, side) in
-            [(driving, mesh.base_radii_m[0], 1.0), (driven, mesh.base_radii_m[1], -1.0)]
-        {
+        for (disc, of, side) in [(driving, 0, 1.0), (driven, 1, -1.0)] {
             let node = self.node_of_disc(parts, disc);
-            let arm = c * (side * base_radius_m / cos);
+            let arm = c * (side * mesh.base_radii_m[of] / cos) + along * mesh.offsets_m[of];
             let (moment, per_m) = (arm.cross(&n), along.cross(&n));
             let moment_across = arm.cross(&q);
             for axis in 0..3 {
@@ -568,7 +591,10 @@ impl GearboxMachine {
                 across.at_pitch_point[node + axis] = side * q[axis];
                 across.at_pitch_point[node + 3 + axis] = side * moment_across[axis];
             }
-            across.per_m[node + ABOUT_Z] = -side * sense;
+            let rotation = self.rotations[disc];
+            line.at_middle.swap_rows(node + ABOUT_Z, rotation);
+            across.at_pitch_point.swap_rows(node + ABOUT_Z, rotation);
+            across.per_m[rotation] = -side * sense;
         }
         line.across = mesh.has_forces_across.then_some(across);
         line
@@ -660,8 +686,7 @@ impl GearboxMachine {
     /// * `mesh` - its number
     pub fn add_transmission_error(&mut self, name: String, mesh: usize) {
         let line = &self.machine.lines[mesh].at_middle;
-        let nodes = self.nodes.iter().flatten();
-        let turned = nodes.map(|(_, node)| (node + ABOUT_Z, line[node + ABOUT_Z]));
+        let turned = self.rotations.iter().map(|&rotation| (rotation, line[rotation]));
         let motion = turned.filter(|(_, weight)| *weight != 0.0).collect();
         self.machine.places.push(Place { name: name.into(), motion: vec![(Axis::Rotation, motion)] });
     }
@@ -680,6 +705,12 @@ fn along_axes(stiffness: f64, vertical: Option<f64>) -> [f64; 3] {
 /// The coordinate that the motor turns: the rotation of a shaft's first node.
 fn first_rotation(nodes: &[(f64, usize)]) -> usize {
     nodes[0].1 + ABOUT_Z
+}
+
+/// First coordinate of the one of a shaft's nodes that is nearest to a place.
+fn nearest_node(nodes: &[(f64, usize)], z_m: f64) -> usize {
+    let nearest = nodes.iter().min_by(|a, b| (a.0 - z_m).abs().total_cmp(&(b.0 - z_m).abs()));
+    nearest.map_or(0, |(_, node)| *node)
 }
 
 /// The beam of a shaft between two nodes.

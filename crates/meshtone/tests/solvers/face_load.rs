@@ -1,0 +1,202 @@
+//! Load along the face at rest, against a solution of the whole machine with faces of springs that only push.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use meshtone::machine::{Drive, Machine};
+use meshtone::scenario::*;
+use meshtone::{Stages, stages};
+use nalgebra::{DMatrix, DVector};
+
+/// Springs along each face.
+const SPRINGS: usize = 400;
+
+/// The template's gearbox on shafts of one diameter, in a rigid housing as the independent program's.
+fn on_shafts(diameter_mm: f64, rotation: BodyRotation) -> Scenario {
+    let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    let of = gearbox.structure.shafts_mut().unwrap();
+    of.housing.as_mut().unwrap().modes.per_khz = 0.0;
+    of.shafts.iter_mut().for_each(|shaft| shaft.radius_mm = Some(diameter_mm / 2.0));
+    gearbox.meshes.iter_mut().for_each(|mesh| mesh.foundation.rotation = rotation);
+    gearbox
+}
+
+/// (-) Largest over mean force of the springs of each mesh: those that push are sought until they stay the same.
+///
+/// # Arguments
+/// * `machine`, `torque_nm` - without its meshes, and what its brake takes
+/// * `stiffness_n_per_m`, `width_m` - of each mesh
+fn solved(machine: &Machine, torque_nm: f64, stiffness_n_per_m: &[f64], width_m: f64) -> Vec<f64> {
+    let mut load = DVector::zeros(machine.coordinates());
+    for drive in &machine.drives {
+        if let Drive::Brake { coordinate, torque_share } = drive {
+            load[*coordinate] += torque_share * torque_nm;
+        }
+    }
+    let open = machine
+        .springs
+        .iter()
+        .fold(DMatrix::zeros(machine.coordinates(), machine.coordinates()), |sum, spring| {
+            sum + &spring.stiffness
+        });
+    let places: Vec<f64> = (0..=SPRINGS).map(|n| width_m * (n as f64 / SPRINGS as f64 - 0.5)).collect();
+    // The springs at both ends stand for half the length.
+    let share = |n: usize| if n == 0 || n == SPRINGS { 0.5 } else { 1.0 } / SPRINGS as f64;
+    let mut pushes = vec![vec![true; places.len()]; stiffness_n_per_m.len()];
+    loop {
+        let mut closed = open.clone();
+        for ((line, stiffness), pushes) in machine.lines.iter().zip(stiffness_n_per_m).zip(&pushes) {
+            let [mut k, mut of_z, mut of_zz] = [0.0; 3];
+            for (n, z) in places.iter().enumerate().filter(|(n, _)| pushes[*n]) {
+                k += stiffness * share(n);
+                of_z += stiffness * share(n) * z;
+                of_zz += stiffness * share(n) * z * z;
+            }
+            let cross = &line.at_middle * line.per_m.transpose();
+            closed += &line.at_middle * line.at_middle.transpose() * k
+                + (&cross + cross.transpose()) * of_z
+                + &line.per_m * line.per_m.transpose() * of_zz;
+        }
+        let rest = closed.lu().solve(&load).unwrap();
+        let pressed: Vec<Vec<f64>> = (machine.lines.iter())
+            .map(|line| {
+                let [middle, slope] = [&line.at_middle, &line.per_m].map(|column| column.dot(&rest));
+                places.iter().map(|z| middle + z * slope).collect()
+            })
+            .collect();
+        let next: Vec<Vec<bool>> =
+            pressed.iter().map(|of| of.iter().map(|pressed| *pressed > 0.0).collect()).collect();
+        if next == pushes {
+            let factor = |pressed: &Vec<f64>| {
+                let mean: f64 = pressed.iter().enumerate().map(|(n, of)| share(n) * of.max(0.0)).sum();
+                pressed.iter().copied().fold(0.0, f64::max) / mean
+            };
+            return pressed.iter().map(factor).collect();
+        }
+        pushes = next;
+    }
+}
+
+fn factors(stages: &Stages) -> Vec<f64> {
+    stages.meshes.iter().map(|mesh| mesh.along_face.face_load_factor).collect()
+}
+
+fn solved_of(stages: &Stages, stiffness_n_per_m: &[f64]) -> Vec<f64> {
+    let torque_nm = stages.scenario.operation.brake_torque_nm;
+    solved(stages.machine_and_modes().unwrap().0, torque_nm, stiffness_n_per_m, 0.01905)
+}
+
+/// The face load factors are those of the static solution, within 3 %. With the stiffness of an independent program, which has the rotation of the
+/// wheels' bodies in the teeth, the solution is that program's, on another machine of the same parts.
+#[test]
+fn face_load_factors_are_those_of_the_static_solution() {
+    for (diameter_mm, published) in [
+        (15.875, [7.17, 6.15]),
+        (20.0, [4.58, 3.92]),
+        (25.0, [2.98, 2.54]),
+        (30.0, [2.10, 1.78]),
+        (40.0, [1.35, 1.22]),
+    ] {
+        let stages = stages(on_shafts(diameter_mm, BodyRotation::Machine)).unwrap();
+        let found = factors(&stages);
+        let own = solved_of(&stages, &stages.mean_stiffness_n_per_m());
+        let of_program = solved_of(&stages, &[159.4e6, 176.4e6]);
+        println!(
+            "{diameter_mm} mm: {found:.3?}, solved {own:.3?}; softer teeth {of_program:.3?}, {published:?}"
+        );
+        for ((found, own), (of_program, published)) in
+            found.iter().zip(own).zip(of_program.iter().zip(published))
+        {
+            assert!((found / own - 1.0).abs() < 0.03, "{diameter_mm}: {found} {own}");
+            assert!((of_program / published - 1.0).abs() < 0.03, "{diameter_mm}: {of_program} {published}");
+        }
+    }
+}
+
+/// Slender shafts are warned of with what would help, and what is said is so; thick ones are not.
+#[test]
+fn slender_shafts_are_warned_of_with_what_would_help() {
+    let thick = stages(on_shafts(40.0, BodyRotation::Machine)).unwrap();
+    assert!(factors(&thick).iter().all(|factor| (1.0..2.0).contains(factor)));
+    assert!(thick.warnings().iter().all(|warning| warning.kind != WarningKind::UnevenFace));
+    let slender = on_shafts(15.875, BodyRotation::Machine);
+    let of_slender = stages(&slender).unwrap();
+    let found = factors(&of_slender);
+    assert!((found[0] - 10.5).abs() < 0.1 && (found[1] - 8.54).abs() < 0.1, "{found:?}");
+    let warnings = of_slender.warnings();
+    let uneven: Vec<_> = warnings.iter().filter(|of| of.kind == WarningKind::UnevenFace).collect();
+    assert_eq!(uneven.len(), 2);
+    assert_eq!(uneven[0].key, "shaft[1].radius_mm");
+    let said = |number: usize, after: &str| -> f64 {
+        let rest = uneven[number].message.split(after).nth(1).unwrap();
+        rest.split([',', ' ', ';']).next().unwrap().parse().unwrap()
+    };
+    let mut thicker = slender.clone();
+    thicker.structure.shafts_mut().unwrap().shafts[1].radius_mm = Some(1.5 * 7.9375);
+    let mut centred = slender.clone();
+    centred.wheels[..2].iter_mut().for_each(|wheel| wheel.at = 0.5);
+    let mut crowned = slender.clone();
+    crowned.meshes[0].lead_crowning_um = said(0, "a crowning of ");
+    for (changed, after) in [
+        (thicker, "50 % thicker would make it "),
+        (centred, "midway between their bearings would make it "),
+        (crowned, "µm would make it "),
+    ] {
+        // The teeth are a little stiffer on a thicker shaft.
+        let (said, found) = (said(0, after), factors(&stages(&changed).unwrap())[0]);
+        println!("{after}{said}: {found:.3}");
+        assert!((said / found - 1.0).abs() < 0.06, "{after}{said}: {found}");
+    }
+}
+
+/// Two equal wheels on equal shafts whose middle planes are so far apart, each at half of that from the middle of its shaft.
+fn offset_by(apart_mm: f64) -> Scenario {
+    let shafts = ["input", "output"].map(|name| GearboxShaft::new(name, 240.0, 15.0)).to_vec();
+    let wheel = |name: &str, shaft: &str, side: f64| {
+        ScenarioWheel::new(name, shaft, 0.5 + side * apart_mm / 480.0, 40, 20.0)
+    };
+    let wheels = vec![wheel("z1", "input", 1.0), wheel("z2", "output", -1.0)];
+    let bearings =
+        ["input", "output"].into_iter().flat_map(|shaft| [0.0, 1.0].map(|at| Bearing::new(shaft, at)));
+    let meshes = vec![ScenarioMesh::new(["z1", "z2"], 2.0)];
+    let mut gearbox =
+        Scenario::of_shafts(shafts, wheels, meshes, bearings.collect(), Operation::new(30.0, 20.0));
+    let shafts = &mut gearbox.structure.shafts_mut().unwrap().shafts;
+    (shafts[0].couples_to, shafts[1].couples_to) = (Coupled::Motor, Coupled::Brake);
+    gearbox
+}
+
+/// Faces bear where both are: 10.4 of 20 mm of wheels that are 9.6 mm apart. Their load is not midway along either face and tilts both wheels alike, so
+/// that it stays even.
+#[test]
+fn offset_faces_bear_where_they_overlap() {
+    let aligned = stages(offset_by(0.0)).unwrap();
+    let offset = stages(offset_by(9.6)).unwrap();
+    let ratio = offset.meshes[0].mean_stiffness_n_per_m / aligned.meshes[0].mean_stiffness_n_per_m;
+    println!("stiffness x {ratio:.6}, {:?}", offset.meshes[0].along_face);
+    assert!((ratio - 0.52).abs() < 1e-9);
+    assert!((factors(&offset)[0] - 1.0).abs() < 1e-3);
+    // A narrower wheel in the middle of a wide one has its own face and tilts neither.
+    let mut narrow = offset_by(0.0);
+    narrow.wheels[1].face_width_mm = 10.4;
+    let narrow = stages(&narrow).unwrap();
+    assert!(
+        (narrow.meshes[0].mean_stiffness_n_per_m / offset.meshes[0].mean_stiffness_n_per_m - 1.0).abs()
+            < 1e-9
+    );
+    for (stages, is_tilted) in [(&aligned, false), (&offset, true), (&narrow, false)] {
+        let machine = stages.machine_and_modes().unwrap().0;
+        let line = &machine.lines[0];
+        // The force's moments about the axis across it that tilts each wheel.
+        let moments: Vec<f64> = line
+            .per_m
+            .iter()
+            .zip(line.at_middle.iter())
+            .map(|(of_tilt, of_force)| of_tilt * of_force)
+            .collect();
+        let [one, other] = [0, 1].map(|wheel| {
+            let half = moments.len() / 2;
+            moments[wheel * half..(wheel + 1) * half].iter().sum::<f64>()
+        });
+        println!("{one:.3e} {other:.3e}");
+        assert!((one + other).abs() < 1e-12 && (one.abs() > 4e-3) == is_tilted, "{one} {other}");
+    }
+}
