@@ -67,7 +67,7 @@ fn a_step_that_falsifies_a_run_up_is_told() {
         codes(&simulate(gearbox).unwrap())
     };
     assert!(run_up(8e3).contains(&"step-error"));
-    assert_eq!(run_up(2e5), [""; 0]);
+    assert!(!run_up(2e5).contains(&"step-error"));
 }
 
 #[test]
