@@ -17,7 +17,7 @@ mod learn;
 mod level;
 mod observation;
 #[cfg(test)]
-#[path = "../../meshtone/tests/plain.rs"]
+#[path = "../../meshtone/tests/all/plain.rs"]
 mod plain;
 mod prior;
 mod recorded;

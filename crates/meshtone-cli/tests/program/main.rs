@@ -14,7 +14,7 @@ mod indicators_refused;
 mod init;
 mod killed;
 mod path;
-#[path = "../../../meshtone/tests/plain.rs"]
+#[path = "../../../meshtone/tests/all/plain.rs"]
 mod plain;
 mod sensors;
 mod simulate;

@@ -1,8 +1,5 @@
 //! The library, used as its users use it. One test program, because each is linked with all libraries.
 
-#[path = "../plain.rs"]
-mod plain;
-
 mod batch;
 mod bearing_verdict;
 mod compliances;
@@ -29,6 +26,7 @@ mod paper_original;
 mod paper_rigs;
 mod physics;
 mod pits;
+mod plain;
 mod plausibility;
 mod power_balance;
 mod profile_shift;

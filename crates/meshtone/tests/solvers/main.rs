@@ -13,5 +13,5 @@ mod integrator;
 #[allow(dead_code)]
 #[path = "../all/physics.rs"]
 mod physics;
-#[path = "../plain.rs"]
+#[path = "../all/plain.rs"]
 mod plain;
