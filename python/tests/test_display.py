@@ -112,7 +112,6 @@ def test_names_and_keys_are_completed() -> None:
         "scenario.copy(din": "din_grade=",
         "simulation.": "vertical_g",
         "simulation.gear_rad": "gear_radii_mm",
-        "simulation.cas": "casing_g",
         "signals.cas": "casing_g",
         'indicators["': "fm4",
         'record.indicators["difference_k': "difference_kurtosis",
