@@ -6,9 +6,11 @@ machine. Without friction, the random force and the modes of the housing its ene
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 
 import meshtone as mt
 from meshtone.plotting import BLUE, ORANGE
@@ -40,18 +42,19 @@ SEATS = ("input:0", "middle:0", "middle:1", "output:1")
 QUIET = {"friction": 0.0, "random_force": 0.0}
 
 
-def gearbox(**of_mesh):
+def gearbox(**of_mesh: float) -> mt.Scenario:
     """Two stages of 32/80 and 48/64 teeth at 60 N m; the torque varies three times a revolution of the input."""
     ends = [(shaft, at) for shaft in ("input", "middle", "output") for at in (0.0, 1.0)]
     wheels = (("z1", "input", 0.25, 32), ("z2", "middle", 0.25, 80), ("z3", "middle", 0.75, 48), ("z4", "output", 0.75, 64))
-    coupled = {"input": "motor", "middle": "nothing", "output": "brake"}
+    coupled: dict[str, Any] = {"input": "motor", "middle": "nothing", "output": "brake"}
+    meshes: Any = [{"wheels": pair, "module_mm": 1.5875, **of_mesh} for pair in (["z1", "z2"], ["z3", "z4"])]
     return mt.Gearbox(
         shafts=[{"name": name, "length_mm": 240.0, "radius_mm": 20.0, "couples_to": to} for name, to in coupled.items()],
         wheels=[
             {"name": name, "shaft": shaft, "at": at, "teeth": teeth, "face_width_mm": 19.05, "iso_class": 4}
             for name, shaft, at, teeth in wheels
         ],
-        meshes=[{"wheels": pair, "module_mm": 1.5875, **of_mesh} for pair in (["z1", "z2"], ["z3", "z4"])],
+        meshes=meshes,
         bearings=[{"shaft": shaft, "at": at} for shaft, at in ends],
         housing={"modes": {"per_khz": 0.0 if of_mesh else 4.0}},
         operation={
@@ -64,16 +67,17 @@ def gearbox(**of_mesh):
     )
 
 
-def levels_db(signal_g, rate_hz):
+def levels_db(signal_g: npt.NDArray[np.float64], rate_hz: float) -> npt.NDArray[np.float64]:
     """Third-octave levels over the energy below 6.4 kHz, which is what a recorder at 12.8 kS/s hears."""
     power = np.abs(np.fft.rfft(signal_g * np.hanning(len(signal_g)))) ** 2
     hz = np.fft.rfftfreq(len(signal_g), 1 / rate_hz)
     edge = 2 ** (1 / 6)
     bands = [power[(hz >= centre / edge) & (hz < centre * edge)].sum() for centre in CENTRE_HZ]
-    return 10 * np.log10(np.array(bands) / power[(hz > 20) & (hz < 6.4e3)].sum())
+    levels: npt.NDArray[np.float64] = 10 * np.log10(np.array(bands) / power[(hz > 20) & (hz < 6.4e3)].sum())
+    return levels
 
 
-def of_seats(scenario):
+def of_seats(scenario: mt.Scenario) -> npt.NDArray[np.float64]:
     """The levels of all seats of a simulation, a column each."""
     simulation = mt.simulate(scenario)
     signals = [simulation[seat.replace(":", "_") + "_vertical_g"] for seat in SEATS]

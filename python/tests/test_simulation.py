@@ -55,7 +55,7 @@ def test_curves(broken: meshtone.Simulation) -> None:
     pinion, gear = errors
     assert pinion.shape == (100, 17) and gear.shape == (100, 38)
     with pytest.raises(ValueError, match="wheel = 'wheel': must be one of pinion, gear"):
-        broken.tooth_profile("wheel")  # type: ignore[arg-type]
+        broken.tooth_profile("wheel")
     with pytest.raises(AttributeError, match="no field 'stiffness'"):
         _ = broken.stiffness  # type: ignore[attr-defined]
 
@@ -80,7 +80,7 @@ def test_process(broken: meshtone.Simulation) -> None:
     with pytest.raises(ValueError, match="channel = 'sideways_g'"):
         broken.process("sideways_g")
     with pytest.raises(ValueError, match="wheel = 'axle'"):
-        broken.process(wheel="axle")  # type: ignore[arg-type]
+        broken.process(wheel="axle")
 
 
 def test_many_are_the_same_as_one(broken: meshtone.Simulation) -> None:
@@ -135,7 +135,7 @@ def test_what_is_not_a_scenario() -> None:
         with pytest.raises(TypeError, match="a Scenario is needed, not 'healthy.toml'; Scenario.from_file"):
             call(name)
     with pytest.raises(TypeError, match="; simulate_many takes several"):
-        simulate([examples.healthy()])  # type: ignore[call-overload]
+        simulate([examples.healthy()])  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="average_rate_hz = -1: must be more than 0"):
         meshtone.trace(examples.healthy(), average_rate_hz=-1)
 
