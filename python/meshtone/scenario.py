@@ -35,8 +35,8 @@ class Scenario(ScenarioKeys):
     >>> scenario = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15,
     ...                     pinion_speed_hz=40, brake_torque_nm=10, din_grade=7)
     >>> scenario
-    Scenario(module_mm=3.0, pinion_teeth=17, gear_teeth=38, face_width_mm=15.0, pinion_speed_hz=40.0, \
-brake_torque_nm=10.0, din_grade=7)
+    Scenario(module_mm=3.0, pinion_teeth=17, gear_teeth=38, face_width_mm=15.0, brake_torque_nm=10.0, \
+pinion_speed_hz=40.0, din_grade=7)
     >>> scenario.pressure_angle_deg
     20.0
     >>> scenario.copy(module_mm=-1)
