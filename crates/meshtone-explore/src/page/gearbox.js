@@ -3,7 +3,7 @@
 import { Answers, Newest, Refusal, start, unpacked } from "./ask.js";
 import { Control, at, element, keyOf, words } from "./controls.js";
 import { Plot, forgetColours, line, shown } from "./plots.js";
-import { held, linked, offer, ofAddress, saved } from "./taking.js";
+import { held, linked, offer, ofAddress, said, saved } from "./taking.js";
 import { Train } from "./train.js";
 
 const byId = (id) => document.getElementById(id);
@@ -393,15 +393,6 @@ function open(tree) {
   change("full");
 }
 
-/** Does something whose outcome is said; a refusal is shown. */
-async function said(outcome) {
-  try {
-    status(await outcome);
-  } catch (error) {
-    showProblem(error);
-  }
-}
-
 function hold() {
   kept = held(byId("hold"), Boolean(shownInFull)) ? shownInFull : null;
   if (shownInFull === now) show(now, performance.now());
@@ -427,8 +418,8 @@ function listen() {
   byId("file").parentElement.addEventListener("keydown", ({ key }) => ["Enter", " "].includes(key) && byId("file").click());
   offer(byId("preset"), catalogue.presets, open);
   byId("hold").addEventListener("click", hold);
-  byId("link").addEventListener("click", () => said(linked(controls.scenario)));
-  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => said(saved(button.dataset.export, controls.scenario))));
+  byId("link").addEventListener("click", () => said(status, showProblem, linked(controls.scenario)));
+  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => said(status, showProblem, saved(button.dataset.export, controls.scenario))));
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea, button, summary, label")) return;
     if (event.key === "h") hold();

@@ -4,7 +4,7 @@ import { Answers, Newest, Refusal, start, unpacked } from "./ask.js";
 import { Controls } from "./controls.js";
 import { Diagnosis } from "./diagnosis.js";
 import { shown } from "./plots.js";
-import { held, linked, offer, ofAddress, saved } from "./taking.js";
+import { held, linked, offer, ofAddress, said, saved } from "./taking.js";
 import { Views } from "./views.js";
 
 const byId = (id) => document.getElementById(id);
@@ -112,15 +112,6 @@ function open(tree) {
   change("full");
 }
 
-/** Does something whose outcome is said; a refusal is shown. */
-async function said(outcome) {
-  try {
-    status(await outcome);
-  } catch (error) {
-    showProblem(error);
-  }
-}
-
 /** A file: a scenario is opened, all else is a recording. */
 async function take(file) {
   if (!file) return;
@@ -197,9 +188,9 @@ function setTheme(theme) {
 function listen(catalogue) {
   offer(byId("preset"), catalogue.presets, open);
   byId("hold").addEventListener("click", hold);
-  byId("link").addEventListener("click", () => said(linked(views.now?.brief ?? controls.scenario)));
+  byId("link").addEventListener("click", () => said(status, showProblem, linked(views.now?.brief ?? controls.scenario)));
   byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
-  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => said(saved(button.dataset.export, controls.scenario))));
+  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => said(status, showProblem, saved(button.dataset.export, controls.scenario))));
   byId("file").addEventListener("change", ({ target }) => {
     take(target.files[0]);
     target.value = "";

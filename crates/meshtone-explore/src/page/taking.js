@@ -27,6 +27,15 @@ export async function linked(tree) {
   }
 }
 
+/** Does something whose outcome is said. @param refuse is told where it is refused */
+export async function said(say, refuse, outcome) {
+  try {
+    say(await outcome);
+  } catch (error) {
+    refuse(error);
+  }
+}
+
 /** Saves a file of a scenario. @returns what is said about it */
 export async function saved(form, scenario) {
   const { blob, name } = await exported(form, scenario);

@@ -34,9 +34,7 @@ impl Cost {
                 || gears.is_helical() && (gears.flank_relief.amount_um > 0.0 || !scenario.faults.is_empty()),
             has_corners: scenario.model.teeth_part() && is_slanted(gears.overlap_ratio()),
             has_more_modes: gears.is_helical() || unbalanced,
-            varies: !scenario.operation.is_steady()
-                || !scenario.operation.torque_ripple.is_empty()
-                || scenario.solver.initial_velocity.is_some(),
+            varies: !scenario.operation.is_constant() || scenario.solver.initial_velocity.is_some(),
             moves_forces: scenario.faults.iter().any(|fault| fault.damage.moves_forces()),
         }
     }

@@ -100,6 +100,25 @@ impl PairsBlock {
         self.resize(mesh, samples, tilts);
     }
 
+    /// Sets friction of the springs of a pair at a sample, between two points of its tables.
+    ///
+    /// # Arguments
+    /// * `mesh` - whose tables
+    /// * `at` - number of the pair's first spring, and of the sample
+    /// * `point` - index of the point before, and (-) part of the way to the next one
+    fn set_sliding(
+        &mut self,
+        mesh: &Mesh,
+        (first_spring, sample): (usize, usize),
+        (index, part): (usize, f64),
+    ) {
+        for (sliding, tables) in self.sliding.iter_mut().skip(first_spring).zip(&mesh.sliding) {
+            for (values, table) in sliding.iter_mut().zip(tables) {
+                values[sample] = between(table, index, part);
+            }
+        }
+    }
+
     /// The class of the pair in a place at a sample; that of sound pairs before the first one.
     pub(crate) fn class_at(&self, place: usize, sample: usize) -> usize {
         let before = self.classes[place].iter().rev().find(|(from, _)| *from <= sample);
@@ -846,11 +865,7 @@ impl<'a> MeshForcing<'a> {
                         offsets[k] = corner.offset_m(point) + parts.alike_between(index, part);
                     }
                 }
-                for (sliding, tables) in block.sliding.iter_mut().skip(first_spring).zip(&mesh.sliding) {
-                    for (values, table) in sliding.iter_mut().zip(tables) {
-                        values[k] = between(table, index, part);
-                    }
-                }
+                block.set_sliding(mesh, (first_spring, k), (index, part));
                 for (spring, [stiffness, offset]) in (first_spring..).zip(parts.between_points(index, part)) {
                     block.stiffness[spring][k] = stiffness;
                     block.offset[spring][k] =
@@ -916,11 +931,7 @@ impl<'a> MeshForcing<'a> {
                     + self.gear.at_position_m(gear_tooth, position)
                     + eccentric
                     - between(here.separation_m, next.separation_m);
-                for (sliding, tables) in block.sliding.iter_mut().skip(place).zip(&mesh.sliding) {
-                    for (values, table) in sliding.iter_mut().zip(tables) {
-                        values[k] = between(table[index], table[index + 1]);
-                    }
-                }
+                block.set_sliding(mesh, (place, k), (index, part));
                 block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
                 block.offset[place][k] = self.leading(offset, pair, &mut before);
                 self.before[place] = before;

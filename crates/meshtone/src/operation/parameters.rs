@@ -63,6 +63,11 @@ impl Operation {
             && self.torque_ripple.iter().all(|ripple| ripple.order.fract() == 0.0)
     }
 
+    /// Whether speed and torque are constant.
+    pub(crate) fn is_constant(&self) -> bool {
+        self.is_steady() && self.torque_ripple.is_empty()
+    }
+
     /// Whether the speed is constant.
     pub(crate) fn turns_evenly(&self) -> bool {
         self.speed_profile_hz.is_none() && self.speed_fluctuation_hz == 0.0

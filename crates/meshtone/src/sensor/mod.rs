@@ -163,6 +163,12 @@ impl Sensor {
         if self.response_input == ResponseInput::Force {
             return Output::MeshForce { mesh: 0 };
         }
+        let (place, axis) = self.place();
+        acceleration_g(place, axis)
+    }
+
+    /// The name of the machine's place that it sits on, and the axis that it measures along.
+    pub(crate) fn place(&self) -> (Cow<'static, str>, Axis) {
         let place = match self.at {
             SensorPlace::Support => Cow::from(SUPPORTS),
             SensorPlace::PinionSupport => PINION_SUPPORT.into(),
@@ -171,6 +177,6 @@ impl Sensor {
             // The machine of shafts of beams has a place for each sensor.
             SensorPlace::Of(_) => self.name().into(),
         };
-        acceleration_g(place, self.direction.axis())
+        (place, self.direction.axis())
     }
 }

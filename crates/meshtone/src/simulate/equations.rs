@@ -312,7 +312,7 @@ impl Stages {
             )
             .with_bearings(self.bearings.iter().map(turning).collect())
             .with_turning_forces(&machine.machine.turning_forces),
-            is_steady: self.is_steady() && operation.torque_ripple.is_empty(),
+            is_steady: operation.is_constant(),
             hunting_period_samples: self.cycle_samples(),
             outputs,
             first_sample,

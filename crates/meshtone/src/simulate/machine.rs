@@ -131,6 +131,7 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
             }
         })
         .collect();
+    let has_forces_across = scenario.meshes.iter().any(|mesh| mesh.friction > 0.0 || mesh.random_force > 0.0);
     let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears).enumerate())
         .map(|(mesh, ((teeth, &wheels), gears))| MeshLine {
             wheels,
@@ -138,10 +139,7 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
             base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
             working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
             thrust: gears.thrust(),
-            has_forces_across: scenario
-                .meshes
-                .iter()
-                .any(|mesh| mesh.friction > 0.0 || mesh.random_force > 0.0),
+            has_forces_across,
         })
         .collect();
     let mass_kg = lines.iter().map(|line| {

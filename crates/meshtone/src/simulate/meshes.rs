@@ -12,7 +12,7 @@ use crate::mesh::{
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
-use crate::wheel::{Gears, NamedGears, WheelName};
+use crate::wheel::{Gears, NamedGears};
 
 /// The meshes of a scenario.
 ///
@@ -205,17 +205,13 @@ impl MeshOf<'_> {
 
     /// Friction of the flanks; none of frictionless ones.
     fn friction(&self) -> Option<Friction> {
-        let MeshedPair { teeth, .. } = self.pair;
-        let gear = &teeth.gear;
-        let friction = |&coefficient: &f64| Friction {
+        let teeth = &self.pair.teeth;
+        (self.friction > 0.0).then(|| Friction {
             // The force across the teeth is larger than that in the transverse section.
-            coefficient: coefficient / self.gears.base_helix_angle_rad().cos(),
-            pitch_point: teeth
-                .path
-                .position(WheelName::Gear, gear.curvature_mm(gear.working_pitch_radius_mm)),
+            coefficient: self.friction / self.gears.base_helix_angle_rad().cos(),
+            pitch_point: teeth.pitch_point(),
             base_pitch_m: teeth.path.base_pitch_mm * 1e-3,
-        };
-        Some(&self.friction).filter(|coefficient| **coefficient > 0.0).map(friction)
+        })
     }
 
     /// Whether the gap between two flanks differs along the face, so that its slices touch one after the other. A slope of spur wheels'

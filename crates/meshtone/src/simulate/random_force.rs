@@ -18,9 +18,8 @@ use meshtone_fourier::{Complex64, convenient_length, from_real_spectrum, real_sp
 
 use super::Stages;
 use crate::random::{Draws, Purpose};
-use crate::sensor::{Channel, Channels, SignalSource};
-use crate::solver::{Block, LateralResponse, Output, Recorder, StepCounts};
-use crate::wheel::WheelName;
+use crate::sensor::{Channel, Channels, Sensor, SignalSource};
+use crate::solver::{Block, LateralResponse, ModalMachine, Output, Recorder, StepCounts};
 
 /// (-) How the density grows with the mean force, with the speed of sliding, and with the force while it varies.
 const BY_MEAN_FORCE: f64 = 0.4;
@@ -38,6 +37,8 @@ pub(crate) struct RandomForces {
     spectra: Vec<Vec<Complex64>>,
     /// Number of values of the spectra's signals, as many as are kept or a few more: they repeat themselves after that.
     length: usize,
+    /// The transfer functions to all sensors.
+    response: LateralResponse,
 }
 
 impl Stages {
@@ -57,7 +58,8 @@ impl Stages {
     /// # Arguments
     /// * `mesh_force_n` - (N) force of each mesh, of the kept samples
     pub(crate) fn with_random_forces(mut self, mesh_force_n: &[&[f64]]) -> Self {
-        self.random_forces = self.has_random_forces().then(|| self.random_forces_of(mesh_force_n));
+        let modal = self.machine().map(|(_, modal)| modal).filter(|_| self.has_random_forces());
+        self.random_forces = modal.map(|modal| self.random_forces_of(modal, mesh_force_n));
         self
     }
 
@@ -68,7 +70,7 @@ impl Stages {
         self.with_random_forces(&forces)
     }
 
-    fn random_forces_of(&self, mesh_force_n: &[&[f64]]) -> RandomForces {
+    fn random_forces_of(&self, modal: &ModalMachine, mesh_force_n: &[&[f64]]) -> RandomForces {
         let samples = self.time.kept_samples();
         let length = convenient_length(samples);
         let rate_hz = self.time.sampling_rate_hz;
@@ -91,7 +93,9 @@ impl Stages {
             }
             spectrum
         };
-        RandomForces { spectra: mesh_force_n.iter().enumerate().map(spectrum).collect(), length }
+        let places: Vec<_> = self.sensors.iter().map(Sensor::place).collect();
+        let response = LateralResponse::new(modal, &self.closed_meshes(), &places, rate_hz / 2.0);
+        RandomForces { spectra: mesh_force_n.iter().enumerate().map(spectrum).collect(), length, response }
     }
 
     /// (N/√Hz) The density of a mesh's random force at each kept sample.
@@ -121,17 +125,17 @@ impl Stages {
     /// (-) The motor's speed over the nominal one at each kept sample; none where it is constant.
     fn sliding_over_nominal(&self, samples: usize) -> Option<Vec<f64>> {
         let operation = &self.scenario.operation;
-        let kept = || self.motion().skip(self.time.first_kept_sample).take(samples);
-        let relative = || kept().map(|motion| motion.speed_hz / operation.pinion_speed_hz).collect();
+        let relative = || {
+            let kept = self.motion().skip(self.time.first_kept_sample).take(samples);
+            kept.map(|motion| motion.speed_hz / operation.pinion_speed_hz).collect()
+        };
         operation.speed_profile_hz.is_some().then(relative)
     }
 
     /// (m/s) Mean over the path of the speed at which the flanks of a mesh slide, at the nominal speed.
     fn mean_sliding_m_per_s(&self, mesh: usize) -> f64 {
         let teeth = &self.pairs[mesh].teeth;
-        let path = &teeth.path;
-        let gear = &teeth.gear;
-        let pitch_point = path.position(WheelName::Gear, gear.curvature_mm(gear.working_pitch_radius_mm));
+        let (path, pitch_point) = (&teeth.path, teeth.pitch_point());
         let [before, after] = [pitch_point, path.contact_ratio - pitch_point].map(f64::abs);
         let mean = (before * before + after * after) / (2.0 * (before + after));
         let driving_rad_per_s =
@@ -146,18 +150,13 @@ impl Stages {
     /// * `sensor` - its number
     /// * `motion` - is added to
     pub(super) fn add_random_part(&self, sensor: usize, motion: &mut [f64]) {
-        let (Some(RandomForces { spectra, length }), Some((_, modal))) =
-            (&self.random_forces, self.machine())
-        else {
-            return;
-        };
-        let Output::Acceleration { place, axis, factor } = self.sensors[sensor].output() else { return };
+        let Some(RandomForces { spectra, length, response }) = &self.random_forces else { return };
+        let Output::Acceleration { factor, .. } = self.sensors[sensor].output() else { return };
         let rate_hz = self.time.sampling_rate_hz;
-        let response = LateralResponse::new(modal, &self.closed_meshes(), &[(place, axis)], rate_hz / 2.0);
         let lines = length / 2 + 1;
         let mut sum = vec![Complex64::ZERO; lines];
         for (mesh, spectrum) in spectra.iter().enumerate() {
-            let gains = response.at(0, mesh, rate_hz / *length as f64, lines);
+            let gains = response.at(sensor, mesh, rate_hz / *length as f64, lines);
             for ((sum, gain), line) in sum.iter_mut().zip(gains).zip(spectrum) {
                 *sum += gain * line * factor;
             }

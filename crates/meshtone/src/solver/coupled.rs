@@ -778,12 +778,18 @@ impl Equations {
     #[inline(always)]
     fn set_next_loads(&self, law: &impl Law, [from, to]: [&OfUnknowns; 2], loads: &Loads, next: &mut Loads) {
         for a in 0..self.meshes {
-            [next.forces[a], next.slopes[a]] = if law.is_smooth(a) && !moves_beyond_tangent(from, to, a) {
-                [loads.forces[a] + loads.slopes[a] * (to[a] - from[a]), loads.slopes[a]]
+            let is_on_tangent = law.is_smooth(a) && !moves_beyond_tangent(from, to, a);
+            let further = |[force, slope]: [f64; 2]| [force + slope * (to[a] - from[a]), slope];
+            [next.forces[a], next.slopes[a]] = if is_on_tangent {
+                further([loads.forces[a], loads.slopes[a]])
             } else {
                 law.of_mesh(a, to[a])
             };
-            self.set_friction(law, a, [from, to], loads, next);
+            if self.across.is_some() {
+                let [across, moment] = loads.friction[a];
+                next.friction[a] =
+                    if is_on_tangent { [further(across), further(moment)] } else { law.friction(a, to[a]) };
+            }
         }
         for (bearing, a) in (self.meshes..self.count).step_by(2).enumerate() {
             if moves(from, to, a) || moves(from, to, a + 1) {
@@ -815,26 +821,6 @@ impl Equations {
                 loads.friction[a] = law.friction(a, deflection[a]);
             }
         }
-    }
-
-    /// Sets the friction of mesh `a` at the next iterate, on its tangent where its force is.
-    #[inline(always)]
-    fn set_friction(
-        &self,
-        law: &impl Law,
-        a: usize,
-        [from, to]: [&OfUnknowns; 2],
-        loads: &Loads,
-        next: &mut Loads,
-    ) {
-        if self.across.is_none() {
-            return;
-        }
-        next.friction[a] = if law.is_smooth(a) && !moves_beyond_tangent(from, to, a) {
-            loads.friction[a].map(|[force, slope]| [force + slope * (to[a] - from[a]), slope])
-        } else {
-            law.friction(a, to[a])
-        };
     }
 
     #[inline(always)]

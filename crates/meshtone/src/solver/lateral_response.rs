@@ -15,6 +15,7 @@ const STEPS: [f64; 2] = [0.002, 0.02];
 const LOWEST_HZ: f64 = 1.0;
 
 /// Transfer functions from a force across the line of action of each mesh, at its pitch point, to accelerations.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LateralResponse {
     /// (Hz) Frequencies, rising.
     frequency_hz: Vec<f64>,

@@ -131,6 +131,12 @@ impl Teeth {
         [x_mm - self.outwards_mm(wheel), y_mm / self.wheel(wheel).helix_angle_rad.cos()]
     }
 
+    /// (base pitches) Where on the path the flanks roll without sliding: the pitch point.
+    pub(crate) fn pitch_point(&self) -> f64 {
+        let on_flank_mm = self.gear.curvature_mm(self.gear.working_pitch_radius_mm);
+        self.path.position(WheelName::Gear, on_flank_mm)
+    }
+
     /// (pitches) The same as [`Gears::contact_span_pitches`].
     pub fn contact_span_pitches(&self) -> [f64; 2] {
         let overlap =
