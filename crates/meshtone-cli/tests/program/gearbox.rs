@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::indicators::{csv, tacho};
-use crate::support::{Workplace, stdout};
+use crate::support::{Workplace, stderr, stdout};
 use meshtone_io::signals::read_signals;
 use serde_json::Value;
 
@@ -29,7 +29,7 @@ fn every_mesh_is_in_every_result() {
     let meshes = summary["meshes"].as_array().unwrap();
     assert_eq!(meshes.len(), 2);
     assert_eq!(meshes[1]["wheels"], serde_json::json!(["z3", "z4"]));
-    for (mesh, expected_n) in meshes.iter().zip([167.587_050_78, 335.174_101_56]) {
+    for (mesh, expected_n) in meshes.iter().zip([502.761_152_35, 1_005.522_304_70]) {
         let mean_n = mesh["mesh_force"]["mean_n"].as_f64().unwrap();
         assert!((mean_n / expected_n - 1.0).abs() < 0.02, "{mean_n} N");
         let static_n = mesh["static_force_n"].as_f64().unwrap();
@@ -72,7 +72,7 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
     workplace.succeeds(&["init", "gearbox", "-o", "gearbox.toml"]);
     let text = String::from_utf8(workplace.read("gearbox.toml")).unwrap();
     let text = text.replace("duration_s = 1.0", "duration_s = 0.1");
-    let with_file = text.replacen("iso_class = 6", "errors_file = \"wheels.npz\"", 2);
+    let with_file = text.replacen("iso_class = 5", "errors_file = \"wheels.npz\"", 2);
     workplace.write("file.toml", &with_file);
     workplace.succeeds(&["simulate", "file.toml", "-o", "out", "--no-panel", "--trace", "trace.npz"]);
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
@@ -86,12 +86,12 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
     assert_eq!(stages.pairs[0].profile_errors.as_ref(), Some(&errors));
     assert_eq!(stages.pairs[0].run_out, of_pair.pairs[0].run_out);
     workplace
-        .write("both.toml", text.replacen("iso_class = 6", "iso_class = 6\nerrors_file = \"wheels.npz\"", 1));
+        .write("both.toml", text.replacen("iso_class = 5", "iso_class = 5\nerrors_file = \"wheels.npz\"", 1));
     workplace.fails(2, &["simulate", "both.toml"], &["wheel[0].iso_class", "given beside profile errors"]);
     workplace.write("run_out.toml", with_file.replacen("errors_file", "run_out_um = 5.0\nerrors_file", 1));
     workplace.fails(2, &["simulate", "run_out.toml"], &["wheel[0].run_out_um", "given beside errors_file"]);
     workplace.write("other.toml", with_file.replace("teeth = 32", "teeth = 33"));
-    let line = text.lines().position(|line| line == "iso_class = 6").unwrap() + 1;
+    let line = text.lines().position(|line| line == "iso_class = 5").unwrap() + 1;
     let words = [
         &format!("line {line}: wheel[0].errors_file = \"wheels.npz\" (the 1st wheel)"),
         "profile_errors_mm: is 100 × 32; must be 100 × 33",
@@ -110,6 +110,31 @@ fn published_rigs_are_printed_and_simulate() {
         workplace.succeeds(&["simulate", "rig.toml", "-o", rig, "--no-panel"]);
     }
     workplace.fails(2, &["init", "healthy", "--rig", "uconn"], &["only a gearbox has published rigs"]);
+}
+
+/// Uncommented, the fault of a template stands out on the sensor that comes first, and a template has nothing to warn of. The broken tooth of
+/// Tecnalia's rig is on a wheel of the slower mesh, behind the vibration of the faster one: there it hardly shows.
+#[test]
+fn faults_of_templates_show() {
+    let workplace = Workplace::new();
+    for rig in [&[][..], &["--rig", "phm2009-spur"], &["--rig", "phm2009-helical"], &["--rig", "uconn"]] {
+        let sound = stdout(&workplace.succeeds(&[&["init", "gearbox"], rig].concat()));
+        let (head, rest) = sound.split_once("# [[fault]]").unwrap();
+        let (fault, rest) = rest.split_once("\n\n").unwrap();
+        let broken = format!("{head}[[fault]]{}\n\n{rest}", fault.replace("\n# ", "\n"));
+        let [sound, broken] = [("sound", sound), ("broken", broken)].map(|(name, text)| {
+            let file = format!("{name}.toml");
+            workplace.write(&file, text);
+            let output = workplace.succeeds(&["simulate", &file, "-o", name, "--no-panel", "-q"]);
+            assert_eq!(stderr(&output), "");
+            let of = ["indicators", name, "-c", "input_0_vertical_g", "-o", "shown", "--no-figure", "-q"];
+            workplace.succeeds(&of);
+            let shown: Value = serde_json::from_slice(&workplace.read("shown/indicators.json")).unwrap();
+            shown["records"][0]["indicators"]["fm4"].as_f64().unwrap()
+        });
+        println!("{rig:?}: FM4 {sound:.2}, with the fault {broken:.2}");
+        assert!(broken > 3.0 * sound);
+    }
 }
 
 /// Every shaft of a simulation, and of a recording with a tachometer on one shaft and a bearing's tone.
@@ -147,7 +172,7 @@ fn indicators_of_every_shaft() {
 
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     let rate_hz = recorded.channels.sampling_rate_hz;
-    let tone = |(i, value): (usize, &f64)| value + 0.3 * (TAU * 91.57 * i as f64 / rate_hz).cos();
+    let tone = |(i, value): (usize, &f64)| value + 2.0 * (TAU * 91.57 * i as f64 / rate_hz).cos();
     let values: Vec<f64> = recorded.channels.signals[0].values.iter().enumerate().map(tone).collect();
     workplace.write("run.csv", csv(rate_hz, &values, tacho(6.0, rate_hz)));
     let run = [

@@ -31,7 +31,7 @@ fn fast() -> String {
         ("#sampling_rate_hz = 25e3", "records_per_shard = 20\nsampling_rate_hz = 1e4"),
         ("duration_s = 1.0     ", "duration_s = 0.6     "),
         ("settle_fraction = 0.81", "settle_fraction = 0.5"),
-        ("radius_mm = 7.9375\n", "radius_mm = 7.9375\nelements = 4\n"),
+        ("radius_mm = 20.0\n", "radius_mm = 20.0\nelements = 4\n"),
     ] {
         assert!(text.contains(written), "{written}");
         text = text.replace(written, other);

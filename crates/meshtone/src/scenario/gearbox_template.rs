@@ -44,6 +44,8 @@ impl GearboxRig {
                 module_mm: 1.5875,
                 helix_angle_deg: 0.0,
                 face_width_mm: 19.05,
+                shaft_radii_mm: [20.0; 3],
+                journal_radius_mm: Some(7.9375),
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 66_666.67,
                 fault: CHALLENGE_FAULT,
@@ -61,6 +63,8 @@ impl GearboxRig {
                 module_mm: 2.983_524_070_995_259,
                 helix_angle_deg: 20.0,
                 face_width_mm: 25.4,
+                shaft_radii_mm: [18.0, 22.0, 22.0],
+                journal_radius_mm: Some(7.9375),
                 // At 30 rev/s three times the first mesh frequency meets a natural frequency of the assumed structure.
                 input_speed_hz: 35.0,
                 sampling_rate_hz: 66_666.67,
@@ -77,6 +81,8 @@ impl GearboxRig {
                 module_mm: 1.5875,
                 helix_angle_deg: 0.0,
                 face_width_mm: 19.05,
+                shaft_radii_mm: [20.0; 3],
+                journal_radius_mm: None,
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 100_000.0,
                 fault: "\
@@ -98,6 +104,8 @@ impl GearboxRig {
                 module_mm: 1.5,
                 helix_angle_deg: 0.0,
                 face_width_mm: 15.0,
+                shaft_radii_mm: [18.0; 3],
+                journal_radius_mm: Some(12.7),
                 input_speed_hz: 30.0,
                 sampling_rate_hz: 100_000.0,
                 fault: "\
@@ -121,18 +129,22 @@ struct RigData {
     /// (°) 0 of spur wheels.
     helix_angle_deg: f64,
     face_width_mm: f64,
+    /// Of the input, the middle and the output shaft.
+    shaft_radii_mm: [f64; 3],
+    /// Of both ends of each shaft, where a published bearing fits; none for one radius.
+    journal_radius_mm: Option<f64>,
     input_speed_hz: f64,
     sampling_rate_hz: f64,
     fault: &'static str,
 }
 
 const CHALLENGE_FAULT: &str = "\
-# Faults of the challenge are listed by label only. A chipped tooth of the first stage:
+# Faults of the challenge are listed by label only. A broken tooth of the first stage:
 #
 # [[fault]]
 # wheel = \"z1\"
 # kind = \"tooth-breakage\"
-# severity = 0.4
+# severity = 1.0
 ";
 
 const EXAMPLE_HEAD: &str = "\
@@ -145,10 +157,10 @@ const EXAMPLE_FAULT: &str = "\
 # Damage is listed as in a scenario of one pair; wheel is the wheel's name.
 #
 # [[fault]]
-# wheel = \"z3\"
+# wheel = \"z1\"
 # tooth = 1
 # kind = \"tooth-breakage\"
-# severity = 0.5
+# severity = 0.8
 ";
 
 /// A commented two-stage gearbox, or what is published of a rig.
@@ -171,6 +183,8 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         module_mm: 1.5875,
         helix_angle_deg: 0.0,
         face_width_mm: 19.05,
+        shaft_radii_mm: [20.0; 3],
+        journal_radius_mm: None,
         input_speed_hz: 30.0,
         sampling_rate_hz: 100_000.0,
         fault: EXAMPLE_FAULT,
@@ -181,6 +195,8 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         module_mm,
         helix_angle_deg,
         face_width_mm,
+        shaft_radii_mm,
+        journal_radius_mm,
         input_speed_hz,
         sampling_rate_hz,
         fault,
@@ -189,12 +205,20 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
     let wheel = |name: &str, shaft: &str, at: f64, teeth: u32| {
         format!(
             "[[wheel]]\nname = \"{name}\"\nshaft = \"{shaft}\"\nat = {at:?}{assumed}\nteeth = {teeth}\n\
-             face_width_mm = {face_width_mm:?}{assumed}\niso_class = 6{assumed}\n"
+             face_width_mm = {face_width_mm:?}{assumed}\niso_class = 5{assumed}\n"
         )
     };
-    let shaft = |name: &str, comment: &str, coupled: &str| {
+    let shaft = |name: &str, radius_mm: f64, comment: &str, coupled: &str| {
+        let outline = match journal_radius_mm {
+            Some(journal_mm) => {
+                format!(
+                    "# The length and the radius of its pieces.\nsegments = [[15.0, {journal_mm:?}], [210.0, {radius_mm:?}], [15.0, {journal_mm:?}]]"
+                )
+            }
+            None => format!("radius_mm = {radius_mm:?}"),
+        };
         format!(
-            "# {comment}\n[[shaft]]\nname = \"{name}\"\nlength_mm = 240.0{assumed}\nradius_mm = 7.9375{assumed}\n{coupled}"
+            "# {comment}\n[[shaft]]\nname = \"{name}\"\nlength_mm = 240.0{assumed}\n{outline}{assumed}\n{coupled}"
         )
     };
     let mesh = |wheels: [&str; 2], hand: &str| {
@@ -218,10 +242,10 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         "seed = 1\nmaterial = \"steel\"\n".to_owned(),
         format!(
             "# Shafts run along z, from 0 to their length. Without position_mm they stand side by side.\n{}",
-            shaft("input", "The input shaft, which the motor drives.", "couples_to = \"motor\"\n")
+            shaft("input", shaft_radii_mm[0], "The input shaft, which the motor drives.", "couples_to = \"motor\"\n")
         ),
-        shaft("middle", "The middle shaft, with the driven wheel of the first stage and the driving wheel of the second.", ""),
-        shaft("output", "The output shaft, which the brake loads.", "couples_to = \"brake\"\n"),
+        shaft("middle", shaft_radii_mm[1], "The middle shaft, with the driven wheel of the first stage and the driving wheel of the second.", ""),
+        shaft("output", shaft_radii_mm[2], "The output shaft, which the brake loads.", "couples_to = \"brake\"\n"),
         format!("# at is the place along the shaft, as a part of its length.\n{}", wheel("z1", "input", 0.25, z1)),
         wheel("z2", "middle", 0.25, z2),
         wheel("z3", "middle", 0.75, z3),
@@ -234,7 +258,7 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         ),
         "[housing]\nmass_kg = 30.0\n".to_owned(),
         format!(
-            "[operation]\ninput_speed_hz = {input_speed_hz:?}{}\nbrake_torque_nm = 20.0{assumed}\n\
+            "[operation]\ninput_speed_hz = {input_speed_hz:?}{}\nbrake_torque_nm = 60.0{assumed}\n\
              # The torque varies as a coupling of three jaws makes it at the input, and with the middle shaft.\n\
              torque_ripple = [{{ shaft = \"input\", order = 3.0, amplitude = 0.3 }}, {{ shaft = \"middle\", order = 1.0, amplitude = 0.2 }}]{assumed}\n",
             if matches!(rig, Some(GearboxRig::Uconn | GearboxRig::Tecnalia)) { assumed } else { "" }

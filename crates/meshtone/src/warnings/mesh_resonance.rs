@@ -9,8 +9,9 @@ use crate::simulate::Stages;
 const NEAR: f64 = 0.01;
 /// Multiples of a mesh frequency that are looked at: the strongest.
 const MULTIPLES: u32 = 3;
-/// (-) Part of its strain energy that a mode must have in a mesh to be set in motion there: most bending modes have less.
-const LEAST_ENERGY: f64 = 1e-3;
+/// (-) Deflection of a mesh in a resonating mode over its deflection by the same force at rest, from which on the mode is named. Most
+/// modes of a gearbox, of which some is always near, do not move the mesh that much.
+const LEAST_AMPLIFICATION: f64 = 1.0;
 
 impl Stages {
     /// Modes of shafts of beams that the meshes deform and whose frequency is nearly a multiple of a mesh frequency.
@@ -26,9 +27,13 @@ impl Stages {
         for mode in modal.closed_modes(&self.closed_meshes(), TAU * highest_hz) {
             let natural_hz = mode.decay.frequency_hz;
             for (mesh, (mesh_hz, energy)) in mesh_hz.iter().zip(&mode.mesh_energies).enumerate() {
+                // At resonance a mode answers a force in the mesh with φ²/(2ζω²), where at rest all modes together answer with 1/k; the
+                // part of the mode's strain energy that is in the mesh is kφ²/ω².
+                let damping_ratio = mode.decay.decay_per_s / (TAU * natural_hz);
+                let amplification = energy / (2.0 * damping_ratio);
                 let multiple = (1..=MULTIPLES)
                     .find(|&multiple| (natural_hz / (f64::from(multiple) * mesh_hz) - 1.0).abs() < NEAR);
-                if let Some(multiple) = multiple.filter(|_| *energy > LEAST_ENERGY) {
+                if let Some(multiple) = multiple.filter(|_| amplification > LEAST_AMPLIFICATION) {
                     let name = self.layout.mesh_names[mesh].as_deref().unwrap_or_default();
                     let order = f64::from(multiple) * mesh_hz;
                     found.push(format!(

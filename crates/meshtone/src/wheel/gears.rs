@@ -167,7 +167,8 @@ pub struct FoundationCoefficients {
     pub p: [f64; 6],
     /// (-) `A…F` of `Q`, the factor of `tan²α`.
     pub q: [f64; 6],
-    /// Where the rotation of the wheel's whole body is, which `P` has too. Default: in the teeth.
+    /// Where the rotation of the wheel's whole body is, which `P` has too. Default: in the teeth, of wheels on shafts of beams in the
+    /// machine.
     pub rotation: BodyRotation,
 }
 

@@ -273,7 +273,7 @@ fn crowned_and_sloped_faces_are_those_of_an_independent_program() {
 fn thrust_is_the_transverse_force_times_the_tangent_of_the_base_helix_angle() {
     let gearbox = Scenario::from_toml(&gearbox_template(Some(GearboxRig::Phm2009Helical))).unwrap();
     let stages = stages(&gearbox).unwrap();
-    let expected = [20.0 * 16.0 / 48.0 * 24.0 / 40.0 / (3.175e-3 * 8.0), 20.0 / (3.175e-3 * 20.0)];
+    let expected = [60.0 * 16.0 / 48.0 * 24.0 / 40.0 / (3.175e-3 * 8.0), 60.0 / (3.175e-3 * 20.0)];
     let transverse_rad = (20f64.to_radians().tan() / 20f64.to_radians().cos()).atan();
     let thrust: Vec<f64> = (stages.pairs.iter().zip(expected).zip(&stages.layout.gears))
         .map(|((pair, expected), gears)| {
@@ -283,7 +283,7 @@ fn thrust_is_the_transverse_force_times_the_tangent_of_the_base_helix_angle() {
         })
         .collect();
     println!("thrust {thrust:.2?} N");
-    assert!((thrust[0].abs() - 57.32).abs() < 0.01 && (thrust[1].abs() - 114.64).abs() < 0.01);
+    assert!((thrust[0].abs() - 171.95).abs() < 0.01 && (thrust[1].abs() - 343.91).abs() < 0.01);
     // What the machine's lines of action push the middle shaft along its axis with.
     let on_middle_n = |gearbox: &Scenario| {
         let stages = meshtone::stages(gearbox).unwrap();
@@ -298,11 +298,11 @@ fn thrust_is_the_transverse_force_times_the_tangent_of_the_base_helix_angle() {
         });
         pushed.sum::<f64>().abs()
     };
-    assert!((on_middle_n(&gearbox) - 57.32).abs() < 0.01, "{}", on_middle_n(&gearbox));
+    assert!((on_middle_n(&gearbox) - 171.96).abs() < 0.01, "{}", on_middle_n(&gearbox));
     assert!(gearbox.validate().unwrap().iter().all(|warning| warning.kind != WarningKind::AddedThrust));
     let mut opposite = gearbox.clone();
     opposite.meshes[1].hand = Hand::Right;
-    assert!((on_middle_n(&opposite) - 171.95).abs() < 0.01, "{}", on_middle_n(&opposite));
+    assert!((on_middle_n(&opposite) - 515.86).abs() < 0.01, "{}", on_middle_n(&opposite));
     let warnings = opposite.validate().unwrap();
     let added = warnings.iter().find(|warning| warning.kind == WarningKind::AddedThrust).unwrap();
     assert_eq!(added.key, "mesh[1].hand");

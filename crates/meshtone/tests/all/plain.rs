@@ -1,22 +1,30 @@
 //! Gearboxes without what makes them sound like one.
 
-use meshtone::scenario::{HousingModes, Scenario};
+use meshtone::scenario::{BodyRotation, HousingModes, Scenario};
 
-/// A gearbox as other programs and references have it: without friction and random forces, in a rigid housing, lightly damped, and with wheels
-/// whose teeth are mostly alike.
+/// A template as other programs and references have it: without friction and random forces, in a rigid housing, lightly damped, with wheels
+/// whose teeth are mostly alike and whose bodies turn with each pair of teeth, on shafts so slender that the load is at one end of the faces.
 ///
 /// # Arguments
-/// * `gearbox` - with its defaults
+/// * `gearbox` - a template
 pub fn plain(mut gearbox: Scenario) -> Scenario {
     const DAMPING_RATIO: f64 = 0.02;
-    gearbox.meshes.iter_mut().for_each(|mesh| (mesh.friction, mesh.random_force) = (0.0, 0.0));
+    for mesh in &mut gearbox.meshes {
+        (mesh.friction, mesh.random_force) = (0.0, 0.0);
+        mesh.foundation.rotation = BodyRotation::Tooth;
+    }
+    gearbox.operation.brake_torque_nm = 20.0;
     for wheel in &mut gearbox.wheels {
         (wheel.tooth_share, wheel.pitch_share) = (0.4, 0.15);
         (wheel.run_out_share, wheel.slope_wobble) = (0.3, 0.0);
+        wheel.iso_class = if wheel.iso_class == 0 { 0 } else { 6 };
     }
     gearbox.operation.torque_ripple.clear();
     if let Some(shafts) = gearbox.structure.shafts_mut() {
-        shafts.shafts.iter_mut().for_each(|shaft| shaft.damping_ratio = DAMPING_RATIO);
+        for shaft in &mut shafts.shafts {
+            (shaft.radius_mm, shaft.damping_ratio) = (Some(7.9375), DAMPING_RATIO);
+            shaft.segments.clear();
+        }
         shafts.bearings.iter_mut().for_each(|bearing| bearing.damping_ratio = DAMPING_RATIO);
         if let Some(housing) = &mut shafts.housing {
             (housing.modes, housing.damping_ratio) = (HousingModes::RIGID, DAMPING_RATIO);

@@ -13,7 +13,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 /// A rig with teeth without deviations, whose first bearing, at the input, is a ball bearing.
 fn rig(rig: GearboxRig, bearing: &str) -> Scenario {
-    let text = gearbox_template(Some(rig)).replace("iso_class = 6", "iso_class = 0");
+    let text = gearbox_template(Some(rig)).replace("iso_class = 5", "iso_class = 0");
     let first = format!("[[bearing]]\nkind = \"ball\"\nname = \"ER-10K\"\n{bearing}\n");
     let mut gearbox = plain(Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap());
     gearbox.solver.sampling_rate_hz = 100_000.0;
@@ -255,7 +255,7 @@ fn first_order(simulation: &Simulation, speed_hz: f64) -> f64 {
 fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
     let gearbox = |change: fn(&mut Scenario)| {
         let text =
-            gearbox_template(Some(GearboxRig::Phm2009Helical)).replace("iso_class = 6", "iso_class = 0");
+            gearbox_template(Some(GearboxRig::Phm2009Helical)).replace("iso_class = 5", "iso_class = 0");
         let mut gearbox = plain(Scenario::from_toml(&text).unwrap());
         gearbox.sensors = vec![Sensor::at_place("shaft:input:0.5")];
         change(&mut gearbox);
