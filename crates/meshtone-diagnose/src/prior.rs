@@ -349,7 +349,8 @@ fn once(gearbox: &mut Scenario) -> Result<(), ScenarioError> {
     let revolutions = |samples: usize| samples as f64 / time.samples_per_pinion_revolution as f64;
     let kept = revolutions(time.kept_samples());
     let needed = cycle.min(kept.max(FEWEST_TURNS / slowest));
-    // One cycle stands for a long recording, whose averages have little of what is random; noise is added to the averages.
+    // One cycle stands for a long recording over angle, whose averages have little of what is random; noise is added to the averages.
+    gearbox.operation.speed_wander_percent = 0.0;
     gearbox.meshes.iter_mut().for_each(|mesh| mesh.random_force = 0.0);
     if gearbox.operation.is_steady() && needed != kept {
         let settled = revolutions(time.first_kept_sample);

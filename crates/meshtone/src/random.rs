@@ -90,7 +90,7 @@ pub enum Purpose {
     HousingShapeAtSensor = 38,
     /// Random part of the force across a mesh, sample by sample; index: mesh.
     RandomForce = 39,
-    /// Wander of the motor's speed, sample by sample; index: 0.
+    /// Wander of the motor's speed, from the start of the kept signal on; index: 0.
     SpeedWander = 40,
 }
 

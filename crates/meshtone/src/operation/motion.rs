@@ -17,6 +17,8 @@ pub struct Motion<'a> {
     speed_hz: f64,
     speed_draws: Option<Draws>,
     torque_draws: Option<Draws>,
+    /// (-) What the speed's wander adds to it, as a part of it; none where it does not wander.
+    wander: Option<Profile>,
     ripple: Vec<TorqueHarmonic>,
 }
 
@@ -61,13 +63,14 @@ impl<'a> Motion<'a> {
             speed_hz: 0.0,
             speed_draws: draws(operation.speed_fluctuation_hz, Purpose::SpeedFluctuation),
             torque_draws: draws(operation.torque_fluctuation_nm, Purpose::TorqueFluctuation),
+            wander: wander(1e-2 * operation.speed_wander_percent, seed, time),
             ripple: Vec::new(),
         };
         motion.speed_hz = motion.draw_speed();
         motion
     }
 
-    /// The motion from a later sample on; nothing fluctuates.
+    /// The motion from a later sample on; nothing fluctuates from sample to sample.
     ///
     /// # Arguments
     /// * `sample` - its number
@@ -100,7 +103,9 @@ impl<'a> Motion<'a> {
     fn draw_speed(&mut self) -> f64 {
         let operation = self.operation;
         let nominal = self.at_sample(operation.speed_profile_hz.as_ref(), operation.pinion_speed_hz);
-        nominal + fluctuation(&mut self.speed_draws, operation.speed_fluctuation_hz)
+        // A factor of exactly 1 without wander.
+        let wandering = nominal * (1.0 + self.at_sample(self.wander.as_ref(), 0.0));
+        wandering + fluctuation(&mut self.speed_draws, operation.speed_fluctuation_hz)
     }
 
     fn draw_torque(&mut self) -> f64 {
@@ -149,6 +154,30 @@ impl Iterator for Motion<'_> {
         };
         Some(here)
     }
+}
+
+/// (1/s) Points of the wander, between which it is straight: it has next to nothing above half as many hertz.
+const WANDER_POINTS_PER_S: f64 = 16.0;
+/// (Hz) Corner of the wander's spectrum.
+const WANDER_CORNER_HZ: f64 = 1.0;
+
+/// (-) The wander of the speed over the kept time: a Gaussian process of first order, which a longer simulation goes on with.
+///
+/// # Arguments
+/// * `deviation` - (-) its standard deviation
+/// * `seed` - of its draws
+/// * `time` - division of time
+fn wander(deviation: f64, seed: u64, time: &TimeGrid) -> Option<Profile> {
+    let mut draws = (deviation > 0.0).then(|| Draws::new(seed, Purpose::SpeedWander, 0))?;
+    let kept = (time.kept_samples() as f64 * time.step_s() * WANDER_POINTS_PER_S).ceil() as usize + 2;
+    let kept_part = (-TAU * WANDER_CORNER_HZ / WANDER_POINTS_PER_S).exp();
+    let new_part = (1.0 - kept_part * kept_part).sqrt();
+    // Between points the straight line varies less than they do: by (2 + a)/3 on average over a cell, where neighbours have the correlation a.
+    let scale = deviation / ((2.0 + kept_part) / 3.0).sqrt();
+    let first = draws.normal();
+    let value = std::iter::successors(Some(first), |last| Some(kept_part * last + new_part * draws.normal()));
+    let value: Vec<f64> = value.take(kept).map(|value| scale * value).collect();
+    Some(Profile { time_s: (0..kept).map(|n| n as f64 / WANDER_POINTS_PER_S).collect(), value })
 }
 
 /// The next draw, evenly from within ± `half_width`; 0 where nothing fluctuates.

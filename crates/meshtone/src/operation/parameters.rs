@@ -19,6 +19,11 @@ pub struct Operation {
     pub brake_torque_nm: f64,
     /// (Hz) Half width of a uniform error of the motor's speed, drawn for every sample. Default 0.
     pub speed_fluctuation_hz: f64,
+    /// (%) Standard deviation of a slow random wander of the motor's speed, of the speed. Default 0.
+    ///
+    /// A Gaussian process of first order with a corner at 1 Hz and next to nothing above 8 Hz, from the start of the kept signal on. A recorded
+    /// two-stage gearbox has 0.03 to 0.045 %: in a spectrum over time its lines of the orders above some 60 smear.
+    pub speed_wander_percent: f64,
     /// (N m) Half width of a uniform error of the brake's torque, drawn for every sample. Default 0.
     pub torque_fluctuation_nm: f64,
     /// Speed of the motor against time, instead of the constant `pinion_speed_hz`, which stays
@@ -42,6 +47,7 @@ impl Operation {
             pinion_speed_hz,
             brake_torque_nm,
             speed_fluctuation_hz: 0.0,
+            speed_wander_percent: 0.0,
             torque_fluctuation_nm: 0.0,
             speed_profile_hz: None,
             torque_profile_nm: None,
@@ -70,7 +76,12 @@ impl Operation {
 
     /// Whether the speed is constant.
     pub(crate) fn turns_evenly(&self) -> bool {
-        self.speed_profile_hz.is_none() && self.speed_fluctuation_hz == 0.0
+        self.keeps_speed() && self.speed_fluctuation_hz == 0.0
+    }
+
+    /// Whether the speed neither follows a profile nor wanders; errors of single samples may be.
+    pub(crate) fn keeps_speed(&self) -> bool {
+        self.speed_profile_hz.is_none() && self.speed_wander_percent == 0.0
     }
 
     /// Takes the highest speed of the profile as the nominal one, where none was given.
@@ -145,6 +156,9 @@ impl Operation {
 /// The key that states the speed in place of the nominal one.
 const SPEED_PROFILE: &[&str] = &["speed_profile_hz"];
 
+/// (%) Largest standard deviation of the speed's wander: five of them are half the speed.
+const MOST_WANDER: f64 = 10.0;
+
 /// (-) Part of a length by which a profile may differ from it.
 const SAME_LENGTH: f64 = 1e-6;
 
@@ -176,6 +190,13 @@ impl Keys for Operation {
             )
             .range(Range::not_negative())
             .rule("less than the lowest speed"),
+            row(
+                "speed_wander_percent",
+                "%",
+                "the standard deviation of a slow random wander of the speed, below about 8 Hz; a recorded machine has 0.03 %",
+                field!(speed_wander_percent),
+            )
+            .range(Range::from_to(0.0, MOST_WANDER)),
             row(
                 "torque_fluctuation_nm",
                 "N m",

@@ -63,7 +63,7 @@ pub(crate) fn wheel_record(
     let (signal, phase) = match whole_revolutions(stages, wheel) {
         Some(revolutions) => rates.periodic(signal, revolutions)?,
         None => {
-            let pinion = if stages.scenario.operation.speed_profile_hz.is_some() {
+            let pinion = if !stages.scenario.operation.keeps_speed() {
                 ShaftPhase::from_speed_samples(pinion_speed_hz, sampling_rate_hz)?
             } else {
                 let speed_hz = stages.scenario.operation.pinion_speed_hz;
@@ -83,7 +83,7 @@ fn whole_revolutions(stages: &Stages, wheel: WheelName) -> Option<usize> {
     let per_revolution =
         samples_per_pinion_revolution / gears.pinion_teeth as usize * gears.teeth(wheel) as usize;
     let kept = stages.time.kept_samples();
-    let steady = stages.scenario.operation.speed_profile_hz.is_none();
+    let steady = stages.scenario.operation.keeps_speed();
     (steady && kept > 0 && kept.is_multiple_of(per_revolution)).then(|| kept / per_revolution)
 }
 

@@ -17,7 +17,8 @@ impl Stages {
     /// Modes of shafts of beams that the meshes deform and whose frequency is nearly a multiple of a mesh frequency.
     pub(super) fn mesh_resonances(&self) -> Option<ScenarioWarning> {
         // A pair on a rig is not looked at: this would be a warning that its scenarios have never had.
-        let (_, modal) = self.machine().filter(|_| self.is_steady() && self.scenario.rig().is_none())?;
+        let has_one_speed = self.scenario.operation.speed_profile_hz.is_none();
+        let (_, modal) = self.machine().filter(|_| has_one_speed && self.scenario.rig().is_none())?;
         let speed_hz = self.scenario.operation.pinion_speed_hz;
         let mesh_hz: Vec<f64> =
             self.meshes.iter().map(|mesh| mesh.turning.pitches_per_revolution * speed_hz).collect();

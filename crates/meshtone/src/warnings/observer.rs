@@ -74,7 +74,7 @@ impl Observer {
 fn lasts(stages: &Stages) -> bool {
     let operation = &stages.scenario.operation;
     stages.scenario.model.has_meshes()
-        && operation.speed_profile_hz.is_none()
+        && operation.keeps_speed()
         && operation.speed_fluctuation_hz == 0.0
         && operation.torque_fluctuation_nm == 0.0
 }
