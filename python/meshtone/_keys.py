@@ -617,6 +617,9 @@ class GearboxOperation(TypedDict, total=False):
     speed_fluctuation_hz : float
         (Hz) The amplitude of the uniform random error of every sample's speed. Allowed: ≥ 0; less than the lowest
         speed.
+    speed_wander_percent : float
+        (%) The standard deviation of a slow random wander of the speed, below about 8 Hz; a recorded machine has 0.03
+        %. Allowed: 0…10.
     torque_fluctuation_nm : float
         (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
         torque.
@@ -636,6 +639,7 @@ class GearboxOperation(TypedDict, total=False):
     input_speed_hz: float
     brake_torque_nm: float
     speed_fluctuation_hz: float
+    speed_wander_percent: float
     torque_fluctuation_nm: float
     speed_profile_hz: Profile
     torque_profile_nm: Profile
@@ -754,6 +758,7 @@ SECTION_OF_KEY: dict[str, str] = {
     "foundation": "gears",
     "pinion_speed_hz": "operation",
     "speed_fluctuation_hz": "operation",
+    "speed_wander_percent": "operation",
     "torque_fluctuation_nm": "operation",
     "speed_profile_hz": "operation",
     "torque_profile_nm": "operation",
@@ -852,6 +857,7 @@ class ScenarioChanges(TypedDict, total=False):
     foundation: Any
     pinion_speed_hz: Any
     speed_fluctuation_hz: Any
+    speed_wander_percent: Any
     torque_fluctuation_nm: Any
     speed_profile_hz: Any
     torque_profile_nm: Any
@@ -930,6 +936,7 @@ class ScenarioKeys:
     foundation: Foundation
     pinion_speed_hz: float
     speed_fluctuation_hz: float
+    speed_wander_percent: float
     torque_fluctuation_nm: float
     speed_profile_hz: dict[str, list[float]] | None
     torque_profile_nm: dict[str, list[float]] | None
@@ -1006,6 +1013,7 @@ class ScenarioKeys:
         foundation: Foundation | None = None,
         pinion_speed_hz: float | None = None,
         speed_fluctuation_hz: float | None = None,
+        speed_wander_percent: float | None = None,
         torque_fluctuation_nm: float | None = None,
         speed_profile_hz: Profile | None = None,
         torque_profile_nm: Profile | None = None,
@@ -1131,6 +1139,9 @@ class ScenarioKeys:
         speed_fluctuation_hz : float, optional
             (Hz) The amplitude of the uniform random error of every sample's speed. Allowed: ≥ 0; less than the lowest
             speed. Default: 0.0.
+        speed_wander_percent : float, optional
+            (%) The standard deviation of a slow random wander of the speed, below about 8 Hz; a recorded machine has
+            0.03 %. Allowed: 0…10. Default: 0.0.
         torque_fluctuation_nm : float, optional
             (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
             torque. Default: 0.0.

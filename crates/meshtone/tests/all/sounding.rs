@@ -400,3 +400,70 @@ fn gearboxes_sound_like_a_recorded_one() {
         assert!((1.0..1.3).contains(&(more.remainder_rms / one.remainder_rms)));
     }
 }
+
+/// The speed wanders by what is stated, slowly, as a longer simulation with the same seed does from its start on; before the kept signal it does not.
+#[test]
+fn speed_wanders_slowly_by_what_is_stated() {
+    let relative = |duration_s: f64, seed: u64| -> Vec<f64> {
+        let mut gearbox = bare().unwrap();
+        gearbox.solver.sampling_rate_hz = 12_800.0;
+        gearbox.solver.duration_s = Some(duration_s);
+        gearbox.seed = seed;
+        gearbox.operation.speed_wander_percent = 0.03;
+        let stages = meshtone::stages(gearbox).unwrap();
+        let first = stages.time.first_kept_sample;
+        let all: Vec<f64> =
+            stages.motion().map(|sample| sample.speed_hz / 30.0 - 1.0).take(stages.time.samples).collect();
+        assert!(all[..=first].iter().all(|value| *value == all[0]));
+        all[first..].to_vec()
+    };
+    let long = relative(120.0, 7);
+    let deviation = (long.iter().map(|value| value * value).sum::<f64>() / long.len() as f64).sqrt();
+    println!("standard deviation {:.4} %", 100.0 * deviation);
+    // 120 s are some 380 times the correlation's 0.32 s.
+    assert!((deviation / 3e-4 - 1.0).abs() < 0.12, "{deviation}");
+    // Differences over a sixteenth of a second: 2 (1 − a) of the variance between points, a = exp(−2π/16).
+    let step = (12_800.0f64 / 16.0) as usize;
+    let changes: Vec<f64> =
+        long.iter().step_by(step).zip(long.iter().step_by(step).skip(1)).map(|(a, b)| b - a).collect();
+    let change = (changes.iter().map(|value| value * value).sum::<f64>() / changes.len() as f64).sqrt();
+    assert!((0.7..0.95).contains(&(change / deviation)), "{}", change / deviation);
+    let short = relative(2.0, 7);
+    assert_eq!(short[..], long[..short.len()]);
+    assert_ne!(relative(2.0, 8)[..], short[..]);
+}
+
+/// In a spectrum over time lines of high orders lose their energy to the wander of the speed; over angle they keep it.
+#[test]
+fn high_orders_smear_over_time_and_not_over_angle() {
+    let mut gearbox = bare().unwrap();
+    gearbox.solver.duration_s = Some(4.0);
+    gearbox.sensors = vec![Sensor::at_place("input:0")];
+    let mut kept = |wander_percent: f64| {
+        gearbox.operation.speed_wander_percent = wander_percent;
+        let simulation = simulate(&gearbox).unwrap();
+        let stages = &simulation.stages;
+        let motion: Vec<f64> = stages
+            .motion()
+            .skip(stages.time.first_kept_sample)
+            .map(|of| of.revolutions)
+            .take(simulation.channels.len())
+            .collect();
+        let signal = &simulation.channels.signals[0].values;
+        let rate_hz = simulation.channels.sampling_rate_hz;
+        // The fifth harmonic of the first mesh, with the phase of a constant speed and with that of the motor.
+        let line = |revolutions: &dyn Fn(usize) -> f64| {
+            let sum: Complex<f64> = signal
+                .iter()
+                .enumerate()
+                .map(|(n, value)| Complex::from_polar(*value, -TAU * 160.0 * revolutions(n)))
+                .sum();
+            2.0 * sum.norm() / signal.len() as f64
+        };
+        [line(&|n| n as f64 * 30.0 / rate_hz), line(&|n| motion[n])]
+    };
+    let [[steady, same], [over_time, over_angle]] = [kept(0.0), kept(0.06)];
+    println!("{steady:.4} {same:.4} g; wandering {over_time:.4}, {over_angle:.4} g");
+    assert!((same / steady - 1.0).abs() < 1e-6);
+    assert!(over_time < 0.7 * steady && (over_angle / steady - 1.0).abs() < 0.1);
+}
