@@ -15,7 +15,7 @@ import numpy as np
 import meshtone as mt
 from meshtone.plotting import BLUE, ORANGE
 
-scenario = mt.examples.healthy().copy(din_grade=0, speed_profile_hz={"time_s": [0, 1, 4], "value": [20, 20, 60]}, settle_fraction=0.25)
+scenario = mt.examples.healthy().copy(din_grade=0, speed_profile_hz={"time_s": [0, 3], "value": [20, 60]}, settle_fraction=0.25)
 run_up = mt.simulate(scenario)
 rate_hz, teeth = run_up.sampling_rate_hz, scenario.pinion_teeth
 

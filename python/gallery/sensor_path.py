@@ -22,7 +22,7 @@ for resonance_hz, damping_ratio, share in [(1300, 0.04, 0.3), (3400, 0.03, 0.3),
 rig = mt.examples.healthy().copy(brake_torque_nm=20, din_grade=7, sensors=[mt.Sensor()])
 path = {"frequency_hz": hz, "magnitude": np.abs(hidden), "phase_deg": np.degrees(np.angle(hidden))}
 machine = rig.copy(seed=501, sensors=[mt.Sensor(frequency_response=path)])
-run_up = machine.copy(speed_profile_hz={"time_s": [1, 11], "value": [20, 60]}, duration_s=10, settle_fraction=1 / 11)
+run_up = machine.copy(speed_profile_hz={"time_s": [0, 10], "value": [20, 60]}, settle_fraction=1 / 11)
 one_speed = machine.copy(duration_s=5)
 
 figure, axes = plt.subplots(2, 1, figsize=(9, 7), sharex=True, sharey=True, layout="constrained")

@@ -187,12 +187,14 @@ class GearboxShaft(TypedDict, total=False):
     name : str
         The shaft's name. Allowed: no other shaft's.
     length_mm : float
-        (mm) The shaft's length, from z = 0 on. Allowed: > 0, ≤ 100000.
+        (mm) The shaft's length. Allowed: > 0, ≤ 100000.
+    start_mm : float
+        (mm) Z of its beginning: shafts of one axis stand behind one another. Allowed: > −100000, < 100000.
     radius_mm : float
         (mm) Its radius, also of the bores of the wheels on it. Allowed: > 0; less than the wheels' root radii.
     segments : sequence of pairs of floats
-        (mm) The length and the radius of each piece, from z = 0 on, in place of one radius. Allowed: > 0; lengths add
-        up to length_mm.
+        (mm) The length and the radius of each piece, from its beginning on, in place of one radius. Allowed: > 0;
+        lengths add up to length_mm.
     bore_radius_mm : float
         (mm) The radius of the shaft's own bore. Allowed: ≥ 0; less than its radius.
     position_mm : sequence of 2 floats
@@ -201,7 +203,7 @@ class GearboxShaft(TypedDict, total=False):
     elements : int
         The number of its beam elements. Allowed: whole number 2…60.
     couples_to : {'nothing', 'motor', 'brake'}
-        What it is coupled to: the motor at z = 0, or the brake at the other end.
+        What it is coupled to: the motor at its beginning, or the brake at the other end.
     coupling_stiffness_nm_per_rad : float
         (N m/rad) The torsional stiffness of that coupling. Allowed: > 0, ≤ 1e15.
     damping_ratio : float
@@ -214,6 +216,7 @@ class GearboxShaft(TypedDict, total=False):
 
     name: str
     length_mm: float
+    start_mm: float
     radius_mm: float
     segments: npt.ArrayLike
     bore_radius_mm: float
@@ -236,8 +239,8 @@ class GearboxWheel(TypedDict, total=False):
     shaft : str
         The name of its shaft.
     at : float
-        (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1; within half a face width
-        of its mating wheels.
+        (-) The position along the shaft, as a fraction of its length from its beginning. Allowed: 0…1; within half a
+        face width of its mating wheels.
     teeth : int
         The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is not
         simulated, with a warning.
@@ -435,6 +438,8 @@ class Seat(TypedDict, total=False):
         (kg m²) Its moment of inertia about every axis. Allowed: > 0, ≤ 1e9.
     stiffness_n_per_m : float
         (N/m) Its stiffness to the housing or to the ground, in every direction. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) Its stiffness along y, where it differs. Allowed: > 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
         (N m/rad) Its rotational stiffness about every axis. Allowed: > 0, ≤ 1e15.
     """
@@ -442,6 +447,7 @@ class Seat(TypedDict, total=False):
     mass_kg: float
     inertia_kgm2: float
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float
 
 
@@ -453,7 +459,7 @@ class GearboxBearing(TypedDict, total=False):
     shaft : str
         The name of its shaft.
     at : float
-        (-) The position along the shaft, as a fraction of its length from z = 0. Allowed: 0…1.
+        (-) The position along the shaft, as a fraction of its length from its beginning. Allowed: 0…1.
     kind : {'linear', 'ball', 'roller'}
         The kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact.
     name : str
@@ -480,6 +486,9 @@ class GearboxBearing(TypedDict, total=False):
         The spalls of a rolling bearing, one by one.
     stiffness_n_per_m : float
         (N/m) The radial stiffness of a linear bearing. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) The radial stiffness of a linear bearing along y, where it differs from that along x. Allowed: > 0, ≤
+        1e15.
     axial_stiffness_n_per_m : float
         (N/m) The axial stiffness; 0 where the shaft may slide. Allowed: ≥ 0, ≤ 1e15.
     tilt_stiffness_nm_per_rad : float
@@ -504,6 +513,7 @@ class GearboxBearing(TypedDict, total=False):
     slip_percent: float
     defect: Sequence[BearingDefect]
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
     axial_stiffness_n_per_m: float
     tilt_stiffness_nm_per_rad: float
     seat: Seat
@@ -519,10 +529,13 @@ class Foot(TypedDict, total=False):
         (mm) Where it is: x, y, z. Allowed: > −100000, < 100000.
     stiffness_n_per_m : float
         (N/m) Its stiffness in every direction. Allowed: > 0, ≤ 1e15.
+    vertical_stiffness_n_per_m : float
+        (N/m) Its stiffness along y, where it differs. Allowed: > 0, ≤ 1e15.
     """
 
     at_mm: Sequence[float]
     stiffness_n_per_m: float
+    vertical_stiffness_n_per_m: float
 
 
 class Modes(TypedDict, total=False):
@@ -608,9 +621,9 @@ class GearboxOperation(TypedDict, total=False):
         (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
         torque.
     speed_profile_hz : dict of time_s and value
-        (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between the
-        points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at least 2
-        points, times increasing, values > 0. Ignored by published.
+        (s, Hz) The speed against time from the start of the kept signal, which ends with it, { time_s = […], value =
+        […] }, straight between the points, constant outside them; or { file = "….csv" } with the columns time_s and
+        value. Allowed: at least 2 points, times increasing, values > 0. Ignored by published.
     torque_profile_nm : dict of time_s and value
         (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0.
     brake_inertia_kgm2 : float
@@ -715,7 +728,6 @@ SECTION_OF_KEY: dict[str, str] = {
     "pinion_teeth": "gears",
     "gear_teeth": "gears",
     "face_width_mm": "gears",
-    "pinion_speed_hz": "operation",
     "brake_torque_nm": "operation",
     "model": "",
     "seed": "",
@@ -740,6 +752,7 @@ SECTION_OF_KEY: dict[str, str] = {
     "uniform_flank_reduction_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
+    "pinion_speed_hz": "operation",
     "speed_fluctuation_hz": "operation",
     "torque_fluctuation_nm": "operation",
     "speed_profile_hz": "operation",
@@ -791,7 +804,6 @@ REQUIRED_KEYS = (
     "pinion_teeth",
     "gear_teeth",
     "face_width_mm",
-    "pinion_speed_hz",
     "brake_torque_nm",
 )
 """Keys without a default."""
@@ -814,7 +826,6 @@ class ScenarioChanges(TypedDict, total=False):
     pinion_teeth: Any
     gear_teeth: Any
     face_width_mm: Any
-    pinion_speed_hz: Any
     brake_torque_nm: Any
     model: Any
     seed: Any
@@ -839,6 +850,7 @@ class ScenarioChanges(TypedDict, total=False):
     uniform_flank_reduction_mm: Any
     points_per_tooth: Any
     foundation: Any
+    pinion_speed_hz: Any
     speed_fluctuation_hz: Any
     torque_fluctuation_nm: Any
     speed_profile_hz: Any
@@ -892,7 +904,6 @@ class ScenarioKeys:
     pinion_teeth: int
     gear_teeth: int
     face_width_mm: float
-    pinion_speed_hz: float
     brake_torque_nm: float
     model: Literal["contact", "linear", "published"]
     seed: int
@@ -917,6 +928,7 @@ class ScenarioKeys:
     uniform_flank_reduction_mm: float
     points_per_tooth: int
     foundation: Foundation
+    pinion_speed_hz: float
     speed_fluctuation_hz: float
     torque_fluctuation_nm: float
     speed_profile_hz: dict[str, list[float]] | None
@@ -965,7 +977,6 @@ class ScenarioKeys:
         pinion_teeth: int,
         gear_teeth: int,
         face_width_mm: float,
-        pinion_speed_hz: float,
         brake_torque_nm: float,
         fault: Fault | None = None,
         faults: Sequence[Fault] | None = None,
@@ -993,6 +1004,7 @@ class ScenarioKeys:
         uniform_flank_reduction_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
+        pinion_speed_hz: float | None = None,
         speed_fluctuation_hz: float | None = None,
         torque_fluctuation_nm: float | None = None,
         speed_profile_hz: Profile | None = None,
@@ -1048,9 +1060,6 @@ class ScenarioKeys:
             not simulated, with a warning.
         face_width_mm : float
             (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
-        pinion_speed_hz : float
-            (rev/s) The nominal speed of the motor and the pinion; the sampling rate is chosen for it. Allowed: > 0, ≤
-            100000.
         brake_torque_nm : float
             (N m) The nominal torque of the brake on the gear's shaft. Allowed: ≥ 0, ≤ 1e9.
         fault : a fault, optional
@@ -1116,6 +1125,9 @@ class ScenarioKeys:
         foundation : Foundation, optional
             The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
             Duverger (2004). Ignored by published.
+        pinion_speed_hz : float, optional
+            (rev/s) The nominal speed of the motor and the pinion; the sampling rate is chosen for it. Allowed: > 0, ≤
+            100000. Required, unless ``speed_profile_hz`` is given.
         speed_fluctuation_hz : float, optional
             (Hz) The amplitude of the uniform random error of every sample's speed. Allowed: ≥ 0; less than the lowest
             speed. Default: 0.0.
@@ -1123,9 +1135,9 @@ class ScenarioKeys:
             (N m) The amplitude of the uniform random error of every sample's torque. Allowed: ≥ 0; less than the lowest
             torque. Default: 0.0.
         speed_profile_hz : dict of time_s and value, optional
-            (s, Hz) The speed against time from the simulation's start, { time_s = […], value = […] }, straight between
-            the points, constant outside them; or { file = "….csv" } with the columns time_s and value. Allowed: at
-            least 2 points, times increasing, values > 0. Default: none. Ignored by published.
+            (s, Hz) The speed against time from the start of the kept signal, which ends with it, { time_s = […], value
+            = […] }, straight between the points, constant outside them; or { file = "….csv" } with the columns time_s
+            and value. Allowed: at least 2 points, times increasing, values > 0. Default: none. Ignored by published.
         torque_profile_nm : dict of time_s and value, optional
             (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
         din_grade : int, optional
@@ -1206,8 +1218,7 @@ class ScenarioKeys:
             Default: see pinion_revolutions.
         pinion_revolutions : float, optional
             (-) The same as a number of revolutions of the pinion; settling comes before them. Allowed: > 0; not beside
-            duration_s, not with a speed profile. Default: 2 z_g revolutions, or the time of a speed profile, less
-            settling.
+            duration_s, not with a speed profile. Default: 2 z_g revolutions less settling, or as long as a profile.
         settle_fraction : float, optional
             (-) The part of the simulated time that is discarded from the start, while the vibration settles. Allowed: ≥
             0, < 1. Default: 0.5.

@@ -35,8 +35,8 @@ class Scenario(ScenarioKeys):
     >>> scenario = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15,
     ...                     pinion_speed_hz=40, brake_torque_nm=10, din_grade=7)
     >>> scenario
-    Scenario(module_mm=3.0, pinion_teeth=17, gear_teeth=38, face_width_mm=15.0, pinion_speed_hz=40.0, \
-brake_torque_nm=10.0, din_grade=7)
+    Scenario(module_mm=3.0, pinion_teeth=17, gear_teeth=38, face_width_mm=15.0, brake_torque_nm=10.0, \
+pinion_speed_hz=40.0, din_grade=7)
     >>> scenario.pressure_angle_deg
     20.0
     >>> scenario.copy(module_mm=-1)
@@ -298,7 +298,7 @@ brake_torque_nm=10.0, din_grade=7)
 
     def _not_default(self) -> dict[str, Any]:
         """The arguments that make this scenario, without those that are at their defaults."""
-        required = {key: self._flat[key] for key in REQUIRED_KEYS}
+        required = {key: self._flat[key] for key in (*REQUIRED_KEYS, "pinion_speed_hz")}
         default = _core.Scenario(_sections_of(required)).sections()
         shown = dict(required)
         for key, section in SECTION_OF_KEY.items():

@@ -987,7 +987,7 @@ def simulate(scenario: Scenario) -> Simulation:
     >>> from meshtone import gearbox_template
     >>> simulation = simulate(Scenario.from_toml(gearbox_template("tecnalia")))
     >>> simulation
-    <Simulation of 29/100, 36/90 teeth, healthy: 20490 samples at 20490 S/s>
+    <Simulation of 29/100, 36/90 teeth, healthy: 100020 samples at 100020 S/s>
     >>> list(simulation.channels)[:3]
     ['input_0_vertical_g', 'output_1_vertical_g', 'force_n.z1-z2']
     """

@@ -16,7 +16,7 @@ def test_figures_are_those_of_the_mesh_force() -> None:
     assert figures.back_flank_hits == np.sum((force_n[1:] < 0) & (force_n[:-1] >= 0)) + (force_n[0] < 0)
     assert figures.largest_force_n == np.abs(force_n).max()
     assert figures.back_flank_hits > 0
-    assert simulation.warnings == []
+    assert all("the step shifts a resonance" in warning for warning in simulation.warnings)
     assert simulate(CONTACT.copy(model="linear")).contact_figures is None
 
 

@@ -69,7 +69,7 @@ SHORTER = {
     "classifier": [("records = 400\n", "records = 100\n")],
     "root_crack": [("np.linspace(0, 4.25, 18)", "np.linspace(0, 4.25, 6)")],
     "sensor_path": [
-        ('"time_s": [1, 11], "value": [20, 60]}, duration_s=10, settle_fraction=1 / 11', '"time_s": [1, 3], "value": [20, 60]}, duration_s=2, settle_fraction=1 / 3'),
+        ('"time_s": [0, 10], "value": [20, 60]}, settle_fraction=1 / 11', '"time_s": [0, 2], "value": [20, 60]}, settle_fraction=1 / 3'),
         ("duration_s=5)", "duration_s=1)"),
         ("mt.simulate(recorded), rig)", "mt.simulate(recorded), rig, draws=8)"),
     ],

@@ -72,7 +72,7 @@ def test_indicators() -> None:
 
 
 def test_a_run_up_is_not_drawn_as_a_constant_speed() -> None:
-    scenario = meshtone.examples.healthy().copy(speed_profile_hz={"time_s": [0, 1, 2], "value": [20, 20, 60]})
+    scenario = meshtone.examples.healthy().copy(speed_profile_hz={"time_s": [0, 1], "value": [20, 60]})
     run_up = meshtone.simulate(scenario)
     assert legend(run_up.plot_spectrum()) == ["spectrum"]
     [line] = run_up.plot_signal(revolutions=1).lines

@@ -269,7 +269,8 @@ def test_many_simulations_warn_once_a_code() -> None:
     codes = [result.warning_codes for result in made]
     assert ["undercut" in of_one for of_one in codes] == [False, True, True, True]
     alone = meshtone.simulate(healthy.copy(pinion_teeth=14, seed=0))
-    assert made[1].warnings == alone.warnings
+    # A batch estimates what the step changes; a simulation alone repeats it at half the step.
+    assert made[1].warnings == [warning for warning in alone.warnings if "the step" not in warning]
 
 
 def test_signals_cannot_be_written_to(broken: meshtone.Simulation) -> None:

@@ -21,7 +21,7 @@ const FLOORS: &[&[&str]] = &[
     &["solver"],
     &["sensor"],
     &["scenario"],
-    &["published"],
+    &["published", "checks"],
     &["simulate"],
     &["warnings", "signal"],
     &["batch", "trace"],

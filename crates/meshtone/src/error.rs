@@ -204,6 +204,14 @@ pub enum Error {
         /// (-) The damping ratio of each mode, in the order of rising natural frequency.
         damping_ratios: Vec<f64>,
     },
+    /// A result that no machine can have, or that breaks a law that every machine obeys.
+    #[error("{problem}")]
+    Impossible {
+        /// Which law, and by how much.
+        problem: String,
+        /// What the user can do.
+        help: String,
+    },
 }
 
 impl Error {
@@ -212,6 +220,7 @@ impl Error {
         match self {
             Self::Scenario(error) => error.help.as_deref(),
             Self::Diverged { help, .. } => Some(help),
+            Self::Impossible { help, .. } => Some(help),
         }
     }
 }
@@ -267,13 +276,17 @@ warning_kinds! {
     IgnoredKey "ignored-key" "a key has no effect";
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than gears usually run";
-    Gyroscopic "gyroscopic" "a shaft is so fast that gyroscopic moments, which are neglected, shift natural frequencies";
+    Gyroscopic "gyroscopic" "gyroscopic moments, which are neglected, shift a natural frequency by more than 2 %";
     AddedThrust "added-thrust" "the axial forces of two helical wheels add up on their shaft";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
-    ProfileEnded "profile-ended" "a speed or torque profile ends before the kept signal starts";
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
-    Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";
+    Unsettled "unsettled" "a start-up transient changes the rms of the kept signal by more than 1 %";
+    TorqueImbalance "torque-imbalance" "the mean forces of the meshes differ from those that the load asks for by more than 1 %";
+    Rattle "rattle" "the teeth of a mesh are apart for more than half of the time and bounce";
+    SilentSensor "silent-sensor" "a sensor shows exactly 0 throughout";
+    BeyondBand "beyond-band" "a sensor or a mesh lies above the highest mode that is simulated";
+    LargeRunOut "large-run-out" "a wheel runs out by more than a tenth of the module";
     Overload "overload" "the load would break the teeth";
     UnevenFace "uneven-face" "the shafts lean so much that the load is at one end of the face";
     NoContact "no-contact" "no pair of teeth is in mesh for a part of a revolution, and the linear mesh has no stiffness there";

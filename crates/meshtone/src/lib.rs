@@ -27,6 +27,7 @@
 
 pub mod batch;
 pub mod bearing;
+mod checks;
 pub mod damage;
 mod error;
 mod error_table;
@@ -96,4 +97,4 @@ pub use simd::InstructionSet;
 pub use simulate::{AssembledMachine, Equations};
 pub use simulate::{MeshedPair, Simulation, StageTime, Stages, simulate, stages, stages_within};
 pub use trace::{Trace, TraceField, stage_trace, trace, trace_at, trace_of};
-pub use warnings::{Observer, StepJudgement, stages_and_warnings};
+pub use warnings::{GyroscopicShift, Observer, StepJudgement, stages_and_warnings};

@@ -2,6 +2,7 @@
 
 mod curves;
 mod equations;
+mod laws;
 mod machine;
 mod measured;
 mod meshes;
@@ -34,7 +35,7 @@ use crate::published::Published;
 use crate::scenario::{GearboxShaft, Layout, MemoryLimit, Ripple, Scenario};
 use crate::sensor::{Channels, ContactFigures, Sensor, SignalSource};
 use crate::simd::InstructionSet;
-use crate::solver::{Diverged, ModalMachine, Output, Recorder, StepCounts};
+use crate::solver::{Diverged, ModalMachine, MotionState, Output, Recorder, StepCounts};
 use crate::wheel::{Teeth, TipRelief, WheelDeviations, WheelName};
 
 /// Results of every stage before the time loop, of any form of scenario: a pair is a train with one mesh.
@@ -97,6 +98,8 @@ pub struct Simulation {
     pub step_counts: [u64; 4],
     /// Time that each stage took, the time loop included.
     pub timings: Vec<StageTime>,
+    /// The motion at the first block of each tenth of the kept time; none of signals that were read.
+    pub(crate) states: Vec<MotionState>,
 }
 
 /// Simulates a scenario, of one pair or of a gearbox.
@@ -184,11 +187,10 @@ pub(crate) fn stages_with(
     };
     let Parts { pairs, meshes, bearings, equations, slowest_mode } = parts;
     let settle_tolerance = scenario.solver.settle_tolerance;
-    // Only a steady motion that starts in equilibrium: what is left out is then a motion like the one that follows.
-    if scenario.model.has_meshes()
-        && scenario.solver.initial_velocity.is_none()
-        && scenario.operation.is_steady()
-    {
+    // Only a motion that starts in equilibrium, and not one that is drawn anew for every sample: before the kept signal all else is steady.
+    let operation = &scenario.operation;
+    let is_drawn = operation.speed_fluctuation_hz > 0.0 || operation.torque_fluctuation_nm > 0.0;
+    if scenario.model.has_meshes() && scenario.solver.initial_velocity.is_none() && !is_drawn {
         time.first_simulated_sample = start_of_settling(&time, settle_tolerance, &slowest_mode);
     }
     let severities = pairs
@@ -430,6 +432,11 @@ impl Stages {
 
     /// Motion of motor and brake, sample by sample from the start of the simulation.
     pub fn motion(&self) -> Motion<'_> {
+        self.motion_in(&self.time)
+    }
+
+    /// The same in another division of time.
+    fn motion_in(&self, time: &TimeGrid) -> Motion<'_> {
         let brake = self.machine().map_or(1.0, |(AssembledMachine { machine, .. }, _)| {
             let of_brake = machine.drives.iter().find_map(|drive| match drive {
                 Drive::Brake { coordinate, .. } => Some(machine.rigid_rotation[*coordinate].abs()),
@@ -448,7 +455,7 @@ impl Stages {
             phase_rad: ripple.phase_deg.to_radians(),
         };
         let ripple = self.scenario.operation.torque_ripple.iter().map(harmonic).collect();
-        Motion::new(&self.scenario.operation, self.scenario.seed, &self.time).with_ripple(ripple)
+        Motion::new(&self.scenario.operation, self.scenario.seed, time).with_ripple(ripple)
     }
 
     /// The simulation that signals are of, such as those read from its file.
@@ -456,13 +463,19 @@ impl Stages {
     /// # Arguments
     /// * `channels` - those of [`Scenario::signals`] with their samples
     pub fn with_channels(self, channels: Channels) -> Simulation {
-        Simulation { channels, step_counts: [0; 4], timings: self.timings.clone(), stages: self }
+        Simulation {
+            channels,
+            step_counts: [0; 4],
+            timings: self.timings.clone(),
+            states: Vec::new(),
+            stages: self,
+        }
     }
 
     /// The time loop and the sensors: the rest of the simulation, for those who have looked at the stages before.
     ///
     /// # Errors
-    /// Those of [`Self::integrate`].
+    /// Those of [`Self::integrate`]; a result that no machine can have.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -477,7 +490,7 @@ impl Stages {
     pub fn simulate(self) -> Result<Simulation, Error> {
         let clock = Clock::default();
         let wanted = self.integrated_while(&|| true)?;
-        Ok(self.simulated(wanted, clock))
+        self.simulated(wanted, clock).lawful()
     }
 
     /// Does what [`Self::simulate`] does, for those who may change their mind meanwhile.
@@ -489,7 +502,7 @@ impl Stages {
     /// None where it is no longer wanted.
     ///
     /// # Errors
-    /// Those of [`Self::integrate`].
+    /// Those of [`Self::simulate`].
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -503,20 +516,20 @@ impl Stages {
     pub fn simulate_while(self, is_wanted: &dyn Fn() -> bool) -> Result<Option<Simulation>, Error> {
         let clock = Clock::default();
         let wanted = self.integrated_while(is_wanted)?;
-        Ok(is_wanted().then(|| self.simulated(wanted, clock)))
+        if is_wanted() { self.simulated(wanted, clock).lawful().map(Some) } else { Ok(None) }
     }
 
     /// The time loop, with what the channels take of it.
-    fn integrated_while(&self, is_wanted: &dyn Fn() -> bool) -> Result<(Channels, StepCounts), Error> {
-        let counts = StepCounts::default();
-        let mut wanted = WantedChannels { channels: self.channels(), counts, is_wanted };
+    fn integrated_while<'w>(&self, is_wanted: &'w dyn Fn() -> bool) -> Result<WantedChannels<'w>, Error> {
+        let mut wanted = WantedChannels::new(self, is_wanted);
         self.integrate(&self.scenario.outputs(), self.time.first_kept_sample, &mut wanted)?;
-        Ok((wanted.channels, wanted.counts))
+        Ok(wanted)
     }
 
     /// What the sensors show, and everything together.
-    fn simulated(self, (channels, counts): (Channels, StepCounts), mut clock: Clock) -> Simulation {
+    fn simulated(self, wanted: WantedChannels, mut clock: Clock) -> Simulation {
         clock.lap("time integration");
+        let WantedChannels { channels, counts, states, .. } = wanted;
         let stages = self.with_random_forces_of(&channels);
         let channels = stages.measured(channels);
         if !stages.sensors.is_empty() {
@@ -525,7 +538,7 @@ impl Stages {
         let timings = stages.timings.iter().copied().chain(clock.laps).collect();
         let StepCounts { steps, iterations, most_iterations, searched } = counts;
         let step_counts = [steps, iterations, most_iterations, searched];
-        Simulation { stages, channels, step_counts, timings }
+        Simulation { stages, channels, step_counts, timings, states }
     }
 
     /// (rev) Simulated revolutions of the motor at the nominal speed, settling included.

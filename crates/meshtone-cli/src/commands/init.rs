@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use meshtone::scenario::{GearboxRig, gearbox_template, template, template_kinds, template_of_all_keys};
+use meshtone::scenario::{
+    GearboxRig, gearbox_template, gearbox_template_of_all_keys, template, template_kinds,
+    template_of_all_keys,
+};
 use meshtone_dataset::plan;
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::experiment;
@@ -29,7 +32,7 @@ pub struct Init {
     /// A healthy pair, or a kind of damage, on the gear's first tooth; a gearbox; the plan of a data set; or an experiment
     #[arg(default_value = "healthy", value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT])))]
     kind: String,
-    /// Print every key of a scenario of one pair with its meaning, unit and default, instead of those that matter
+    /// Print every key of a scenario with its meaning, unit and default, instead of those that matter
     #[arg(long)]
     all: bool,
     /// Print the published data of a rig with a gearbox; assumptions are marked
@@ -56,6 +59,7 @@ Examples:
   meshtone init tooth-breakage -o broken.toml
   meshtone init gearbox -o gearbox.toml
   meshtone init gearbox --rig phm2009-spur
+  meshtone init gearbox --all
   meshtone init dataset -o plan.toml
   meshtone init dataset --gearbox -o plan.toml
   meshtone init experiment --files -o experiment.toml   with recordings, for `meshtone tune experiment.toml`";
@@ -79,9 +83,8 @@ impl Init {
                 format!("--gearbox: given with {}; only a data set is of a pair or of a gearbox", self.kind);
             return Failure::refuse(problem, "write `meshtone init dataset --gearbox`");
         }
-        if self.all && [GEARBOX, DATASET, EXPERIMENT].contains(&self.kind.as_str()) {
-            let problem =
-                format!("--all: given with {}; only a scenario of one pair has a longer form", self.kind);
+        if self.all && [DATASET, EXPERIMENT].contains(&self.kind.as_str()) {
+            let problem = format!("--all: given with {}; only a scenario has a longer form", self.kind);
             return Failure::refuse(
                 problem,
                 format!(
@@ -92,6 +95,9 @@ impl Init {
         }
         let rig = GearboxRig::ALL.into_iter().find(|rig| self.rig.as_deref() == Some(rig.name()));
         let text = match self.kind.as_str() {
+            GEARBOX if self.all => {
+                gearbox_template_of_all_keys(rig).map_err(|error| Failure::bad_input(error.to_string()))?
+            }
             GEARBOX => gearbox_template(rig),
             DATASET if self.gearbox => plan::gearbox_template(),
             DATASET => plan::template().to_owned(),

@@ -18,8 +18,26 @@ fn every_kind_is_printed_and_can_be_read() {
         read_scenario(&workplace.path(&file)).unwrap();
     }
     assert_eq!(stdout(&workplace.succeeds(&["init"])), template("healthy").unwrap());
-    for kind in ["gearbox", "dataset", "experiment"] {
-        workplace.fails(2, &["init", kind, "--all"], &["--all: given with", "only a scenario of one pair"]);
+    for rig in [&[][..], &["--rig", "uconn"]] {
+        let gearbox = |more: &[&str], file: &str| {
+            workplace.succeeds(&[&["init", "gearbox"], rig, more, &["-o", file]].concat());
+            read_scenario(&workplace.path(file)).unwrap()
+        };
+        let [all, usual] =
+            [(&["--all"][..], "all.toml"), (&[], "usual.toml")].map(|(more, file)| gearbox(more, file));
+        assert_eq!(all, usual);
+        assert!(
+            std::fs::read_to_string(workplace.path("all.toml")).unwrap().contains("\n# highest_mode_hz = ")
+        );
+        std::fs::remove_file(workplace.path("all.toml")).unwrap();
+        std::fs::remove_file(workplace.path("usual.toml")).unwrap();
+    }
+    for kind in ["dataset", "experiment"] {
+        workplace.fails(
+            2,
+            &["init", kind, "--all"],
+            &["--all: given with", "only a scenario has a longer form"],
+        );
     }
 }
 

@@ -363,7 +363,7 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
         && operation.speed_profile_hz.is_some()
         && duration_s > simulated_s + time.step_s()
     {
-        let problem = format!("is longer than what settling leaves of the speed profile, {simulated_s:.4} s");
+        let problem = format!("is longer than the speed profile, {simulated_s:.4} s");
         let error = TomlError::new("keep.duration_s", duration_s.to_string(), problem);
         return Err(error.with_help("shorten it, or leave it out: a record is then as long as that"));
     }

@@ -150,6 +150,10 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
         KeepObserved::new(self.content.keep.simulated()).recorder(stages)
     }
 
+    fn check(&self, stages: &Stages, recorder: &ObservedRecorder) -> Result<(), meshtone::Error> {
+        recorder.check(stages)
+    }
+
     fn keep(&self, index: usize, stages: Stages, recorder: ObservedRecorder) -> Self::Kept {
         let record = match (self.role)(index).ok_or("it was not asked for")? {
             Role::Record(drawn, window) => {

@@ -62,6 +62,8 @@ pub(crate) fn simulated_scenario(
     let kept = kept_samples(keep, &turning, is_steady, &time);
     let seconds = |samples: usize| samples as f64 * time.step_s();
     scenario.solver.discard_and_keep(seconds(first), seconds(kept + 2 * margin));
+    // A record keeps the beginning of a profile.
+    scenario.operation.end_profiles_at(seconds(kept + 2 * margin));
     Ok((scenario, Window { turning, counted_from, margin }))
 }
 

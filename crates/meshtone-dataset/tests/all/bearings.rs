@@ -46,6 +46,7 @@ fn plan(bearing: &str, classes: &str) -> Result<Plan, String> {
     let first = format!("[[bearing]]\n{bearing}\n");
     let mut scenario = Scenario::from_toml(&scenario.replacen("[[bearing]]\n", &first, 1)).unwrap();
     scenario.solver.sampling_rate_hz = 50_000.0;
+    scenario.operation.pinion_speed_hz = 30.0;
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("gearbox.toml"), scenario.to_toml()).unwrap();
     let text = format!(

@@ -258,9 +258,8 @@ fn more_than_is_simulated() {
     let run_up =
         run_up.replace("[[vary]]\nkey = \"operation.pinion_speed_hz\"\nuniform = [30.0, 60.0]\n", "");
     let run_up = run_up.replace("when = \"operation.pinion_speed_hz > 50\"", "when = \"noise.snr_db > 20\"");
-    let words =
-        ["keep.duration_s = 0.6", "what settling leaves of the speed profile, 0.5000 s", "shorten it"];
-    refused(&run_up.replacen("[keep]", &keep(0.6), 1), &words);
+    let words = ["keep.duration_s = 1.2", "is longer than the speed profile, 1.0000 s", "shorten it"];
+    refused(&run_up.replacen("[keep]", &keep(1.2), 1), &words);
     // Chips that are higher than the tooth.
     let some = plan(&FAST.replace("uniform = [1.0, 5.0]", "uniform = [5.0, 7.5]")).foreseen_failures();
     assert!(!some.is_empty() && some.len() < 20, "{}", some.len());

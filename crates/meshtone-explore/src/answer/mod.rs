@@ -70,6 +70,7 @@ fn shortened(scenario: &Scenario) -> Scenario {
     let time = scenario.time_grid();
     if scenario.model.has_meshes()
         && scenario.operation.speed_profile_hz.is_none()
+        && scenario.operation.torque_profile_nm.is_none()
         && kept_s < time.kept_samples() as f64 * time.step_s()
     {
         short.solver.discard_and_keep(time.kept_from_s(), kept_s);

@@ -44,10 +44,12 @@ export function keyOf(path) {
 function rangeOf(description, value) {
   let [least, most] = description.bounds;
   const whole = description.kind === "whole";
+  // A key with two near bounds has them: an angle goes all the way round.
+  const isNear = least !== null && most !== null && most - least <= 1e3;
   const size = Math.abs(value) || Math.abs(Number(description.default)) || 0;
   const isLog = !whole && size >= LARGE && (least ?? 0) >= 0;
   if (isLog) return { isLog, least: Math.max(least ?? 0, size / 20), most: Math.min(most ?? Infinity, size * 20) };
-  const around = whole ? Math.max(4 * size, 12) : size ? 3 * size : { mm: 1, "µm": 50, "": 1, "-": 1, deg: 10 }[description.unit] ?? 10;
+  const around = isNear ? Math.max(-least, most) : whole ? Math.max(4 * size, 12) : size ? 3 * size : { mm: 1, "µm": 50, "": 1, "-": 1, deg: 10 }[description.unit] ?? 10;
   // Where the key may have either sign, as far to the one side as to the other.
   if (least === null || (least < 0 && -least > 4 * around)) least = -around;
   if (most === null || most > 4 * around) most = around;
@@ -329,6 +331,8 @@ export class Controls {
 
   /** (s) About where the signal ends. */
   get end_s() {
+    const given = this.tree.solver?.duration_s;
+    if (given) return given;
     if (!this.#answer) return 1;
     const { start_s: start, values, sampling_rate_hz: rate } = this.#answer.signal;
     return Number((start + values.length / rate).toPrecision(2));

@@ -51,7 +51,8 @@ pub(super) fn simulate_group<K: Keep>(
     for (ready, divergence) in ready.into_iter().zip(divergences) {
         let Ready { index, stages, recorder: WithMeshForces { inner, mesh_force_n, .. }, .. } = ready;
         let forces: Vec<&[f64]> = mesh_force_n.iter().map(Vec::as_slice).collect();
-        let kept = divergence.map(|()| keep.keep(index, stages.with_random_forces(&forces), inner));
+        let sound = divergence.and_then(|()| keep.check(&stages, &inner));
+        let kept = sound.map(|()| keep.keep(index, stages.with_random_forces(&forces), inner));
         results.push((index, kept));
     }
     results

@@ -1,6 +1,6 @@
 //! What is kept of each simulation.
 
-use crate::error::ScenarioError;
+use crate::error::{Error, ScenarioError};
 use crate::scenario::Scenario;
 use crate::sensor::{Channel, ChannelKind, Channels};
 use crate::simulate::{Simulation, Stages};
@@ -38,6 +38,20 @@ pub trait Keep: Sync {
     /// * `stages` - the simulation's stages before the time loop
     fn recorder(&self, stages: &Stages) -> Self::Recorder;
 
+    /// Refuses a simulation that no machine can have, or that breaks a law, as [`crate::simulate`] does. By default that is not looked at:
+    /// a recorder may have seen neither forces nor speeds.
+    ///
+    /// # Arguments
+    /// * `stages` - the simulation's stages before the time loop
+    /// * `recorder` - with all its samples
+    ///
+    /// # Errors
+    /// Those of [`Stages::simulate`] about its result.
+    fn check(&self, stages: &Stages, recorder: &Self::Recorder) -> Result<(), Error> {
+        let _ = (stages, recorder);
+        Ok(())
+    }
+
     /// What is kept, in the thread that simulated.
     ///
     /// # Arguments
@@ -61,6 +75,10 @@ impl Keep for KeepSimulation {
 
     fn recorder(&self, stages: &Stages) -> Channels {
         stages.channels()
+    }
+
+    fn check(&self, stages: &Stages, channels: &Channels) -> Result<(), Error> {
+        stages.check_laws(&stages.figures(channels))
     }
 
     fn keep(&self, _: usize, stages: Stages, channels: Channels) -> Simulation {
@@ -90,6 +108,10 @@ impl<T: Send, F: Fn(usize, Simulation) -> T + Sync> Keep for KeepOf<F> {
 
     fn recorder(&self, stages: &Stages) -> Channels {
         KeepSimulation.recorder(stages)
+    }
+
+    fn check(&self, stages: &Stages, channels: &Channels) -> Result<(), Error> {
+        KeepSimulation.check(stages, channels)
     }
 
     fn keep(&self, index: usize, stages: Stages, channels: Channels) -> T {
@@ -165,7 +187,7 @@ impl SignalRecorder {
         let time = &stages.time;
         Signals {
             sampling_rate_hz: time.sampling_rate_hz,
-            start_s: time.kept_from_s(),
+            start_s: 0.0,
             channels: self.channels_by(|channel, motion| stages.shown(channel, motion)),
         }
     }

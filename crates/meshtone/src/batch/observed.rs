@@ -1,7 +1,7 @@
 //! Channels that are kept, with what is doubtful about them.
 
 use super::keep::{Keep, KeepChannels, SignalRecorder, Signals};
-use crate::error::{ScenarioError, ScenarioWarning};
+use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::scenario::Scenario;
 use crate::sensor::Channel;
 use crate::simulate::Stages;
@@ -72,6 +72,17 @@ impl ObservedRecorder {
         self.signals
     }
 
+    /// Refuses what no machine can have, once all samples are recorded.
+    ///
+    /// # Arguments
+    /// * `stages` - as of [`Keep::recorder`]
+    ///
+    /// # Errors
+    /// As of [`Keep::check`].
+    pub fn check(&self, stages: &Stages) -> Result<(), Error> {
+        stages.check_laws(&self.observer.figures)
+    }
+
     /// What is doubtful, once all samples are recorded.
     ///
     /// # Arguments
@@ -117,6 +128,10 @@ impl Keep for KeepObserved {
             observer: Observer::new(stages),
             places: self.places,
         }
+    }
+
+    fn check(&self, stages: &Stages, recorder: &ObservedRecorder) -> Result<(), Error> {
+        recorder.check(stages)
     }
 
     fn keep(&self, _: usize, stages: Stages, recorder: ObservedRecorder) -> ObservedSignals {

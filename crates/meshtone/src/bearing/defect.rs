@@ -185,24 +185,27 @@ impl Spall {
     }
 }
 
-/// By how much an element drops into a spall on its way: by a raised cosine over each edge, and flat between them.
+/// By how much an element drops into a spall on its way: over each edge on a circle around that, and flat between them.
 ///
-/// An element of radius r leaves an edge on a circle around it, so that it has dropped by e at the distance `√(r² − (r − e)²)`. The raised
-/// cosine of that length replaces the circle. Where the element touches both edges before it touches the bottom, the two meet in the
-/// middle: the shape of N. Sawalhi, R. B. Randall, Mech. Syst. Signal Process. 22 (2008) 1924–1951.
+/// At a distance x from the nearer edge an element of radius r, whose middle stands on a circle around the edge, has dropped by
+/// `r − √(r² − x²)`, and at most by the depth. Where it touches both edges before it touches the bottom the two circles meet in the middle, and
+/// their kink there is the stroke: an element that bridges the gap strikes half a width after it has entered.
+///
+/// Source: N. Sawalhi, R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, on the events of entry and impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drop {
     half_width_m: f64,
-    edge_m: f64,
+    radius_m: f64,
     deepest_m: f64,
 }
 
 impl Drop {
     pub(super) fn new(spall: &Spall, geometry: &BearingGeometry) -> Self {
-        let (radius_m, deepest_m) = (geometry.element_mm * 0.5e-3, spall.drop_um * 1e-6);
-        let half_width_m = spall.width_mm * 0.5e-3;
-        let of_circle_m = (radius_m * radius_m - (radius_m - deepest_m).powi(2)).max(0.0).sqrt();
-        Self { half_width_m, edge_m: of_circle_m.min(half_width_m), deepest_m }
+        Self {
+            half_width_m: spall.width_mm * 0.5e-3,
+            radius_m: geometry.element_mm * 0.5e-3,
+            deepest_m: spall.drop_um * 1e-6,
+        }
     }
 
     /// (m) How deep an element has dropped.
@@ -210,14 +213,9 @@ impl Drop {
     /// # Arguments
     /// * `from_middle_m` - (m) its way from the middle of the spall
     pub(super) fn at_m(&self, from_middle_m: f64) -> f64 {
-        let from_edge_m = self.half_width_m - from_middle_m.abs();
-        if from_edge_m <= 0.0 {
-            0.0
-        } else if from_edge_m >= self.edge_m {
-            self.deepest_m
-        } else {
-            self.deepest_m * 0.5 * (1.0 - (std::f64::consts::PI * from_edge_m / self.edge_m).cos())
-        }
+        let from_edge_m = (self.half_width_m - from_middle_m.abs()).max(0.0);
+        let on_circle_m = self.radius_m - (self.radius_m.powi(2) - from_edge_m.powi(2)).max(0.0).sqrt();
+        on_circle_m.min(self.deepest_m)
     }
 }
 
@@ -245,13 +243,16 @@ mod tests {
         let wide = Drop::new(&spall(4.0, 50.0), &geometry);
         assert_eq!([wide.at_m(2e-3), wide.at_m(-3e-3)], [0.0, 0.0]);
         assert!((wide.at_m(0.0) - 50e-6).abs() < 1e-15);
-        // √(r² − (r − e)²), half-way over the edge.
+        // On a circle around the edge: 1 mm behind it r − √(r² − 1), and at √(r² − (r − e)²) as deep as the spall.
+        let on_circle_m = 1e-3 * (3.97 - f64::sqrt(3.97f64.powi(2) - 0.5f64.powi(2)));
+        assert!((wide.at_m(1.5e-3) - on_circle_m).abs() < 1e-15);
         let edge_m = f64::sqrt(3.97e-3f64.powi(2) - (3.97e-3f64 - 50e-6).powi(2));
-        assert!((wide.at_m(2e-3 - edge_m / 2.0) - 25e-6).abs() < 1e-12);
-        assert!((wide.at_m(2e-3 - 1.001 * edge_m) - 50e-6).abs() < 1e-15);
-        // Of a narrow one e/2 (1 + cos 2πφ/w).
+        assert!((wide.at_m(2e-3 - edge_m) - 50e-6).abs() < 1e-12);
+        // A narrow one has its kink in the middle, where both edges are touched.
         let narrow = spall(1.0, 100.0);
         let drop = Drop::new(&narrow, &geometry);
-        assert!((drop.at_m(0.25e-3) - narrow.drop_um * 0.5e-6).abs() < 1e-12);
+        assert!((drop.at_m(0.0) - narrow.drop_um * 1e-6).abs() < 1e-12);
+        let slope = (drop.at_m(0.0) - drop.at_m(1e-6)) / 1e-6;
+        assert!((slope - 0.5 / (3.97f64.powi(2) - 0.25).sqrt()).abs() < 1e-3, "{slope}");
     }
 }

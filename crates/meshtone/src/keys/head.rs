@@ -73,7 +73,11 @@ impl KeyHead {
         required: bool,
         read: &mut dyn FnMut(&TomlValue<'_>) -> ReadResult<()>,
     ) -> ReadResult<()> {
-        let value = if required {
+        let is_replaced = match &self.absent {
+            Absent::RefusedUnless(others) => others.iter().any(|other| table.optional(other).is_some()),
+            _ => false,
+        };
+        let value = if required && !is_replaced {
             if let (Absent::RefusedUnless(others), None) = (&self.absent, table.optional(self.name)) {
                 others.iter().try_for_each(|other| table.refuse_misspelling_of(other))?;
             }

@@ -155,10 +155,10 @@ impl<'a> Forcing<'a> {
     /// Forcing from sample `first_sample` on.
     ///
     /// # Arguments
-    /// * `motion` - motor and brake from the start
+    /// * `motion` - motor and brake, unless they are steady from `first_sample` on
     /// * `time` - division of time
     /// * `nominal` - (Hz, N m) nominal speed and torque
-    /// * `first_sample` - beyond 0 only while the motor is steady
+    /// * `first_sample` - number of the first sample
     /// * `meshes` - each mesh, with the deviations of its flanks
     pub fn new(
         motion: Motion<'a>,

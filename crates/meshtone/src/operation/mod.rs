@@ -34,8 +34,8 @@ pub struct TimeGrid {
 impl TimeGrid {
     /// The division of time for a pair in operation; all values are valid.
     ///
-    /// Where the length of the kept signal is not given, `2 z_g` pinion revolutions are simulated; with a speed profile, the time
-    /// that it spans.
+    /// Where the length of the kept signal is not given, `2 z_g` pinion revolutions are simulated, settling included; a profile is kept
+    /// from its start to its last value, and settling comes before it.
     ///
     /// # Arguments
     /// * `teeth` - tooth counts of the pinion and of the gear
@@ -51,19 +51,15 @@ impl TimeGrid {
         let speed = operation.pinion_speed_hz;
         let samples_per_pinion_revolution = samples_per_pitch.saturating_mul(pinion_teeth as usize);
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed;
-        let asked = (solver.duration_s.map(|duration_s| duration_s * sampling_rate_hz)).or(solver
-            .pinion_revolutions
-            .map(|revolutions| revolutions * samples_per_pinion_revolution as f64));
+        let asked = kept_s(operation, solver, speed).map(|kept_s| kept_s * sampling_rate_hz);
         // As floats, and saturating: a scenario may ask for more than any machine holds, and is then refused.
         let (settling, kept) = match asked {
             Some(kept) => {
                 (kept.round() * solver.settle_fraction / (1.0 - solver.settle_fraction), kept.round())
             }
             None => {
-                let samples = match &operation.speed_profile_hz {
-                    Some(profile) => profile.time_s.last().copied().unwrap_or(0.0) * sampling_rate_hz,
-                    None => f64::from(nominal_revolutions(gear_teeth)) * samples_per_pinion_revolution as f64,
-                };
+                let revolutions = f64::from(nominal_revolutions(gear_teeth));
+                let samples = revolutions * samples_per_pinion_revolution as f64;
                 let settling = (solver.settle_fraction * samples).round();
                 (settling, samples.round() - settling)
             }
@@ -88,16 +84,8 @@ impl TimeGrid {
         let speed_hz = operation.pinion_speed_hz;
         let samples_per_pinion_revolution = samples_per_pitch(solver.sampling_rate_hz, 1, speed_hz);
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed_hz;
-        let profile_s =
-            operation.speed_profile_hz.as_ref().and_then(|profile| profile.time_s.last().copied());
         let usual = (USUAL_S * speed_hz).ceil() * samples_per_pinion_revolution as f64;
-        let kept = match (solver.duration_s, solver.pinion_revolutions, profile_s) {
-            (Some(duration_s), ..) => duration_s * sampling_rate_hz,
-            (None, Some(revolutions), _) => revolutions * samples_per_pinion_revolution as f64,
-            // What settling leaves of the profile.
-            (None, None, Some(profile_s)) => profile_s * sampling_rate_hz * (1.0 - solver.settle_fraction),
-            (None, None, None) => usual,
-        };
+        let kept = kept_s(operation, solver, speed_hz).map_or(usual, |kept_s| kept_s * sampling_rate_hz);
         let first_kept_sample =
             (kept * solver.settle_fraction / (1.0 - solver.settle_fraction)).round() as usize;
         Self {
@@ -109,7 +97,7 @@ impl TimeGrid {
         }
     }
 
-    /// (s) Time of the first kept sample since the start of the simulation.
+    /// (s) How long the motion settles before the kept signal, whose time starts at 0.
     pub fn kept_from_s(&self) -> f64 {
         self.first_kept_sample as f64 * self.step_s()
     }
@@ -148,6 +136,12 @@ impl TimeGrid {
     pub fn step_s(&self) -> f64 {
         1.0 / self.sampling_rate_hz
     }
+}
+
+/// (s) Length of the kept signal: as it is given, or as long as the longer of the profiles; none where neither says.
+fn kept_s(operation: &Operation, solver: &Solver, speed_hz: f64) -> Option<f64> {
+    let given_s = solver.duration_s.or(solver.pinion_revolutions.map(|revolutions| revolutions / speed_hz));
+    given_s.or(operation.profiles_end_s())
 }
 
 /// Number of samples from one pair of teeth to the next with which a nominal rate is met or just exceeded.

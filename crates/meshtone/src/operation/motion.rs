@@ -10,6 +10,8 @@ pub struct Motion<'a> {
     operation: &'a Operation,
     step_s: f64,
     samples_per_revolution: f64,
+    /// At which the profiles start.
+    first_kept_sample: f64,
     sample: usize,
     revolutions: f64,
     speed_hz: f64,
@@ -53,6 +55,7 @@ impl<'a> Motion<'a> {
             operation,
             step_s: time.step_s(),
             samples_per_revolution: time.samples_per_pinion_revolution as f64,
+            first_kept_sample: time.first_kept_sample as f64,
             sample: 0,
             revolutions: 0.0,
             speed_hz: 0.0,
@@ -62,6 +65,17 @@ impl<'a> Motion<'a> {
         };
         motion.speed_hz = motion.draw_speed();
         motion
+    }
+
+    /// The motion from a later sample on; nothing fluctuates.
+    ///
+    /// # Arguments
+    /// * `sample` - its number
+    /// * `revolutions` - (rev) revolutions of the motor up to it
+    pub(crate) fn resumed_at(mut self, sample: usize, revolutions: f64) -> Self {
+        (self.sample, self.revolutions) = (sample, revolutions);
+        self.speed_hz = self.draw_speed();
+        self
     }
 
     /// The motion with harmonics of the torque.
@@ -99,9 +113,11 @@ impl<'a> Motion<'a> {
         torque_nm * (1.0 + self.ripple.iter().map(wave).sum::<f64>())
     }
 
-    /// The profile at the present sample, or the constant where there is none.
+    /// The profile at the present sample, or the constant where there is none. Its time 0 is where the kept signal starts.
     fn at_sample(&self, profile: Option<&Profile>, constant: f64) -> f64 {
-        profile.map_or(constant, |profile| profile.at(self.sample as f64 * self.step_s))
+        profile.map_or(constant, |profile| {
+            profile.at((self.sample as f64 - self.first_kept_sample) * self.step_s)
+        })
     }
 
     /// Returns whether the motor's speed is constant.

@@ -2,7 +2,7 @@
 
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use crate::error::{ScenarioWarning, WarningKind};
+use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::interpolation::straight_between;
 use crate::keys::{
     Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, field, load, row, rows_but,
@@ -12,7 +12,8 @@ use crate::keys::{
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Operation {
-    /// (rev/s) Nominal speed of the motor and of the shaft that is coupled to it, which a pair's pinion is on.
+    /// (rev/s) Nominal speed of the motor and of the shaft that is coupled to it, which a pair's pinion is on. A file with a speed profile may
+    /// leave it out: the highest speed of that.
     pub pinion_speed_hz: f64,
     /// (N m) Nominal torque of the brake on the shaft that is coupled to it, which a pair's gear is on.
     pub brake_torque_nm: f64,
@@ -72,20 +73,11 @@ impl Operation {
         self.speed_profile_hz.is_none() && self.speed_fluctuation_hz == 0.0
     }
 
-    /// Warnings of profiles that end before the kept signal starts: nothing of them is kept but their last value.
-    ///
-    /// # Arguments
-    /// * `kept_from_s` - (s) where the kept signal starts
-    pub(crate) fn ended_profiles(&self, kept_from_s: f64) -> Vec<ScenarioWarning> {
-        let warning = |(key, ends_s): (&'static str, f64)| {
-            let message = format!(
-                "ends at {ends_s} s, and the kept signal starts at {kept_from_s:.3} s: only its last value \
-                 has an effect; add {kept_from_s:.3} s to its times, so that it starts where the kept signal \
-                 does"
-            );
-            ScenarioWarning::new(WarningKind::ProfileEnded, key, message)
-        };
-        self.profiles_ended_at(kept_from_s).map(warning).collect()
+    /// Takes the highest speed of the profile as the nominal one, where none was given.
+    pub(crate) fn complete(&mut self) {
+        if let (true, Some(profile)) = (self.pinion_speed_hz.is_nan(), &self.speed_profile_hz) {
+            self.pinion_speed_hz = profile.value.iter().copied().fold(f64::NAN, f64::max);
+        }
     }
 
     /// The warning of harmonics that make the brake drive at times.
@@ -98,19 +90,63 @@ impl Operation {
         Some(warning).filter(|_| sum > 1.0)
     }
 
-    /// The keys of the profiles that end before a time, and (s) where they end.
+    /// (s) Where the last of the profiles ends; none without a profile.
+    pub(crate) fn profiles_end_s(&self) -> Option<f64> {
+        let profiles = [&self.speed_profile_hz, &self.torque_profile_nm].into_iter().flatten();
+        profiles.filter_map(|profile| profile.time_s.last().copied()).reduce(f64::max)
+    }
+
+    /// Lets all profiles end at a time: longer ones are cut there, and shorter ones go on with their last value.
     ///
     /// # Arguments
-    /// * `time_s` - since the simulation's start
-    pub(crate) fn profiles_ended_at(&self, time_s: f64) -> impl Iterator<Item = (&'static str, f64)> {
-        let profiles = [
-            ("operation.speed_profile_hz", &self.speed_profile_hz),
-            ("operation.torque_profile_nm", &self.torque_profile_nm),
-        ];
-        let end = |(key, profile): (_, &Option<Profile>)| Some((key, *profile.as_ref()?.time_s.last()?));
-        profiles.into_iter().filter_map(end).filter(move |(_, ends_s)| *ends_s <= time_s && time_s > 0.0)
+    /// * `end_s` - (s) after 0
+    ///
+    /// ```
+    /// use meshtone::operation::{Operation, Profile};
+    ///
+    /// let mut operation = Operation::new(40.0, 10.0);
+    /// operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 2.0], value: vec![20.0, 40.0] });
+    /// operation.end_profiles_at(1.0);
+    /// assert_eq!(operation.speed_profile_hz.unwrap().value, [20.0, 30.0]);
+    /// ```
+    pub fn end_profiles_at(&mut self, end_s: f64) {
+        for profile in [&mut self.speed_profile_hz, &mut self.torque_profile_nm].into_iter().flatten() {
+            let end = profile.at(end_s);
+            let kept = profile.time_s.iter().take_while(|time_s| **time_s < end_s).count();
+            profile.time_s.truncate(kept);
+            profile.value.truncate(kept);
+            if kept == 0 {
+                // It began later: until then its first value holds.
+                (profile.time_s, profile.value) = (vec![0.0], vec![end]);
+            }
+            profile.time_s.push(end_s);
+            profile.value.push(end);
+        }
+    }
+
+    /// Refuses a length of the kept signal that is not that of the profiles: these are kept whole.
+    ///
+    /// # Arguments
+    /// * `key`, `value` - of the length
+    /// * `kept_s` - (s) the length
+    pub(crate) fn check_length(&self, key: &str, value: f64, kept_s: f64) -> Check {
+        let Some(end_s) = self.profiles_end_s().filter(|end_s| (kept_s / end_s - 1.0).abs() > SAME_LENGTH)
+        else {
+            return Ok(());
+        };
+        let problem = format!(
+            "given beside a profile that ends at {end_s} s; the kept signal is as long as the profile"
+        );
+        Err(ScenarioError::new(key, value, problem)
+            .with_help(format!("remove it, or let the profile end at {kept_s} s")))
     }
 }
+
+/// The key that states the speed in place of the nominal one.
+const SPEED_PROFILE: &[&str] = &["speed_profile_hz"];
+
+/// (-) Part of a length by which a profile may differ from it.
+const SAME_LENGTH: f64 = 1e-6;
 
 impl Keys for Operation {
     const SECTION: &str = "operation";
@@ -127,7 +163,7 @@ impl Keys for Operation {
                 "the nominal speed of the motor and the pinion; the sampling rate is chosen for it",
                 field!(pinion_speed_hz),
             )
-            .required()
+            .required_unless(SPEED_PROFILE)
             .range(Range::positive().implausible_above(1e5)),
             row("brake_torque_nm", "N m", "the nominal torque of the brake on the gear's shaft", field!(brake_torque_nm))
                 .required()
@@ -151,7 +187,7 @@ impl Keys for Operation {
             row(
                 "speed_profile_hz",
                 "s, Hz",
-                "the speed against time from the simulation's start, { time_s = […], value = […] }, straight between the points, constant outside \
+                "the speed against time from the start of the kept signal, which ends with it, { time_s = […], value = […] }, straight between the points, constant outside \
                  them; or { file = \"….csv\" } with the columns time_s and value",
                 field!(speed_profile_hz),
             )
@@ -175,7 +211,7 @@ impl Operation {
             "the nominal speed of the motor and of the shaft that is coupled to it; the sampling rate is chosen for it",
             field!(pinion_speed_hz),
         )
-        .required()
+        .required_unless(SPEED_PROFILE)
         .range(Range::positive().implausible_above(1e5));
         let torque = row(
             "brake_torque_nm",
@@ -243,7 +279,7 @@ impl Keys for Ripple {
 /// A quantity against time: straight lines between the points, constant outside them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// (s) Strictly increasing times; 0 is the start of the simulation, before settling.
+    /// (s) Strictly increasing times from 0 on, where the kept signal starts; before it, the first value holds.
     pub time_s: Vec<f64>,
     /// (Hz or N m) The quantity at those times.
     pub value: Vec<f64>,

@@ -64,6 +64,13 @@ impl Profile {
                 return Err(refuse(&format!("{key}.{name}[{index}]"), number, "must be a finite number"));
             }
         }
+        if self.time_s[0] < 0.0 {
+            return Err(refuse(
+                &format!("{key}.time_s[0]"),
+                self.time_s[0],
+                "must be 0 s or more: the kept signal starts at 0 s, and the motion settles before it",
+            ));
+        }
         for (index, pair) in self.time_s.windows(2).enumerate() {
             if pair[1] <= pair[0] {
                 let problem =

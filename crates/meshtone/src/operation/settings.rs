@@ -15,7 +15,7 @@ pub struct Solver {
     /// (s) How long the kept signal is. Default as long as [`Self::pinion_revolutions`] says.
     pub duration_s: Option<f64>,
     /// (-) Revolutions of the pinion, at its nominal speed, that are kept. Without this and [`Self::duration_s`], `2 z_g` revolutions
-    /// are simulated, or the time that a speed profile spans, and what settling leaves of them is kept.
+    /// are simulated, and what settling leaves of them is kept; of a profile all is kept.
     pub pinion_revolutions: Option<f64>,
     /// (-) Part of the simulated time that is discarded: the vibration settles before the kept signal starts. Default 0.5.
     pub settle_fraction: f64,
@@ -124,7 +124,7 @@ impl Keys for Solver {
                 "the same as a number of revolutions of the pinion; settling comes before them",
                 field!(pinion_revolutions),
             )
-            .otherwise("2 z_g revolutions, or the time of a speed profile, less settling")
+            .otherwise("2 z_g revolutions less settling, or as long as a profile")
             .range(Range::positive())
             .rule("not beside duration_s, not with a speed profile")
             .alternative("20.0"),
@@ -188,7 +188,7 @@ impl Solver {
             "the number of kept revolutions of the input; settling comes before them",
             field!(pinion_revolutions),
         )
-        .otherwise("those of 1 s, or of the time of a speed profile less settling")
+        .otherwise("those of 1 s, or as long as a profile")
         .range(Range::positive())
         .rule("not beside duration_s, not with a speed profile")
         .example("30.0");

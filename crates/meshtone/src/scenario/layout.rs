@@ -445,7 +445,7 @@ impl Layout {
 
     /// (mm) z of a wheel's middle plane.
     pub(super) fn z_mm(&self, scenario: &Scenario, wheel: usize) -> f64 {
-        scenario.wheels[wheel].at * scenario.shafts()[self.shaft_of_wheel[wheel]].length_mm
+        scenario.shafts()[self.shaft_of_wheel[wheel]].z_mm(scenario.wheels[wheel].at)
     }
 
     /// What is doubtful about the teeth of each mesh.

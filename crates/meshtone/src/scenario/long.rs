@@ -3,14 +3,12 @@
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
 use super::short::Section;
+use super::to_toml::Style;
 use super::{
     Fault, Material, Model, Operation, Scenario, ScenarioMesh, ScenarioWheel, SectionDescription, Sensor,
     Shafts, Solver, Structure,
 };
-use crate::keys::{
-    KeyRow, Keys, NumberFiles, describe, describe_rows, field, read_keys, read_rows, row, write_keys,
-    write_rows,
-};
+use crate::keys::{KeyRow, Keys, NumberFiles, describe, describe_rows, field, read_keys, read_rows, row};
 use crate::machine::{Bearing, GearboxShaft, Housing};
 
 /// Names of the sections that only shafts of beams have.
@@ -91,6 +89,7 @@ pub(super) fn read(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<
     }
     scenario.structure = Structure::Shafts(Shafts { shafts, bearings, housing });
     operation().read(&mut scenario, root, files)?;
+    scenario.operation.complete();
     let faults = root.tables("fault")?.into_iter().map(|table| table.read(Fault::on_named_wheel));
     scenario.faults = faults.collect::<ReadResult<_>>()?;
     let sensor = |table: &TomlTable<'_>| {
@@ -121,23 +120,38 @@ impl Scenario {
         }
     }
 
-    /// The text of a file, every key with its value.
-    pub(super) fn to_long_form(&self, Shafts { shafts, bearings, housing }: &Shafts) -> String {
-        fn entries<S>(name: &str, entries: &[S], write: impl Fn(&S) -> String) -> Vec<String> {
-            entries.iter().map(|entry| format!("[[{name}]]\n{}", write(entry))).collect()
+    /// The text of a file, each section in its own style.
+    pub(super) fn in_long_sections(
+        &self,
+        Shafts { shafts, bearings, housing }: &Shafts,
+        style: &impl Style,
+    ) -> String {
+        fn entries<S: Keys>(entries: &[S], style: &impl Style) -> Vec<String> {
+            let keys = |entry| style.keys(&S::rows(), entry, &S::start(), S::SECTION);
+            entries.iter().map(|entry| format!("[[{}]]\n{}", S::SECTION, keys(entry))).collect()
         }
-        let section = |Section { name, rows }: Section| format!("[{name}]\n{}", write_rows(&rows, self));
-        let sensor = Sensor::rows_of_shafts();
+        let start = Self::start_of_shafts();
+        let keys = |Section { name, rows }: Section| style.keys(&rows, self, &start, name);
+        let section = |of: Section| {
+            let name = of.name;
+            format!("[{name}]\n{}", keys(of))
+        };
+        let (rows, start_of_sensor) = (Sensor::rows_of_shafts(), Sensor::at_place(""));
+        let sensor =
+            |of: &Sensor| format!("[[sensor]]\n{}", style.keys(&rows, of, &start_of_sensor, "sensor"));
+        let housing = housing.iter().map(|of| {
+            format!("[housing]\n{}", style.keys(&Housing::rows(), of, &Housing::start(), "housing"))
+        });
         [
-            vec![write_rows(&top().rows, self)],
-            entries("shaft", shafts, write_keys),
-            entries("wheel", &self.wheels, write_keys),
-            entries("mesh", &self.meshes, write_keys),
-            entries("bearing", bearings, write_keys),
-            housing.iter().map(|housing| format!("[housing]\n{}", write_keys(housing))).collect(),
+            vec![keys(top())],
+            entries(shafts, style),
+            entries(&self.wheels, style),
+            entries(&self.meshes, style),
+            entries(bearings, style),
+            housing.collect(),
             vec![section(operation())],
-            entries("fault", &self.faults, Fault::write),
-            entries("sensor", &self.sensors, |of| write_rows(&sensor, of)),
+            self.faults.iter().map(|fault| format!("[[fault]]\n{}", fault.write())).collect(),
+            self.sensors.iter().map(sensor).collect(),
             vec![section(solver())],
         ]
         .concat()

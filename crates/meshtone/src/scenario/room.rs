@@ -60,6 +60,31 @@ impl Layout {
             self.check_clear_of_shafts(scenario, index)?;
             self.check_clear_of_wheels(scenario, index)?;
         }
+        (1..entries).try_for_each(|number| self.check_clear_of_other_shafts(scenario, number))
+    }
+
+    /// A shaft must not reach into an earlier one.
+    fn check_clear_of_other_shafts(&self, scenario: &Scenario, number: usize) -> Result<(), ScenarioError> {
+        let shafts = scenario.shafts();
+        for other in 0..number {
+            let both = [number, other].map(|number| &shafts[number]);
+            let from_mm = both.map(|shaft| shaft.z_mm(0.0)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let until_mm = both.map(|shaft| shaft.z_mm(1.0)).into_iter().fold(f64::INFINITY, f64::min);
+            let [a, b] = [number, other].map(|number| self.positions_m[number]);
+            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
+            let radii_mm = both.map(|shaft| shaft.largest_radius_mm([from_mm, until_mm]));
+            if until_mm > from_mm + ROUNDING_MM && apart_mm < radii_mm[0] + radii_mm[1] {
+                let problem = format!(
+                    "runs into shaft {:?} from z = {from_mm:.3} to {until_mm:.3} mm: their axes are {apart_mm:.3} mm apart, and their radii \
+                     reach {:.3} and {:.3} mm there",
+                    both[1].name, radii_mm[0], radii_mm[1]
+                );
+                let key = entry_key("shaft", number, shafts.len(), "start_mm");
+                return Err(ScenarioError::new(key, both[0].start_mm, problem).with_help(
+                    "let one begin where the other ends, make them shorter, or give them another position_mm",
+                ));
+            }
+        }
         Ok(())
     }
 
@@ -67,7 +92,7 @@ impl Layout {
     fn check_axial_support(&self, scenario: &Scenario, index: usize) -> Result<(), ScenarioError> {
         let own = self.shaft_of_wheel[index];
         let mut bearings = scenario.bearings().iter().zip(&self.shaft_of_bearing);
-        let is_held = bearings.any(|(bearing, of)| *of == own && bearing.axial_stiffness_n_per_m > 0.0);
+        let is_held = bearings.any(|(bearing, of)| *of == own && bearing.axial_n_per_m() > 0.0);
         if is_held || self.meshes_of(index).all(|(mesh, _)| !self.gears[mesh].is_helical()) {
             return Ok(());
         }
@@ -114,13 +139,14 @@ impl Layout {
         let (wheel, shaft) = (&scenario.wheels[index], &scenario.shafts()[self.shaft_of_wheel[index]]);
         let half_mm = wheel.face_width_mm / 2.0;
         let [start_mm, end_mm] = self.face_mm(scenario, index);
-        if start_mm >= -ROUNDING_MM && end_mm <= shaft.length_mm + ROUNDING_MM {
+        let ends_mm = [shaft.z_mm(0.0), shaft.z_mm(1.0)];
+        if start_mm >= ends_mm[0] - ROUNDING_MM && end_mm <= ends_mm[1] + ROUNDING_MM {
             return Ok(());
         }
         let key = entry_key("wheel", index, scenario.wheels.len(), "at");
         let problem = format!(
-            "the face of {:?} would reach from z = {start_mm:.3} to {end_mm:.3} mm; must stay on its shaft, from 0 to {:?} mm",
-            wheel.name, shaft.length_mm
+            "the face of {:?} would reach from z = {start_mm:.3} to {end_mm:.3} mm; must stay on its shaft, from {} to {:?} mm",
+            wheel.name, ends_mm[0], ends_mm[1]
         );
         let help = if wheel.face_width_mm <= shaft.length_mm {
             let least = half_mm / shaft.length_mm;
@@ -193,10 +219,11 @@ impl Layout {
         let tip_mm = self.tip_mm(scenario, index);
         let z_mm = self.z_mm(scenario, index);
         for (number, other) in scenario.shafts().iter().enumerate().filter(|(number, _)| *number != own) {
-            let passes = z_mm <= other.length_mm;
+            let at = (z_mm - other.start_mm) / other.length_mm;
+            let passes = (0.0..=1.0).contains(&at);
             let [a, b] = [self.positions_m[own], self.positions_m[number]];
             let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
-            let radius_mm = other.radius_at_mm((z_mm / other.length_mm).min(1.0));
+            let radius_mm = other.radius_at_mm(at.clamp(0.0, 1.0));
             if passes && apart_mm < tip_mm + radius_mm {
                 let key = entry_key("wheel", index, scenario.wheels.len(), "shaft");
                 let problem = format!(

@@ -361,6 +361,7 @@ pub(super) fn read(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<
     top().read(&mut scenario, root, files)?;
     gears().read(&mut scenario, root, files)?;
     operation().read(&mut scenario, root, files)?;
+    scenario.operation.complete();
     root.table_or_empty("quality")?.read(|table| {
         read_errors_file(&mut scenario.wheels, table, files)?;
         read_rows(&quality().rows, &mut scenario, table, files)

@@ -1,5 +1,6 @@
 //! How the machine around the wheels is made, and what depends on it.
 
+use super::to_toml::Plain;
 use super::{Layout, MemoryLimit, Scenario, ScenarioError, ScenarioWheel};
 use crate::damage::Fault;
 use crate::machine::{Bearing, Coupled, GearboxShaft, Housing, Rig, RigParts};
@@ -171,8 +172,8 @@ impl Scenario {
     /// ```
     pub fn to_toml(&self) -> String {
         match &self.structure {
-            Structure::Rig(_) => self.to_short_form(),
-            Structure::Shafts(shafts) => self.to_long_form(shafts),
+            Structure::Rig(_) => self.in_sections(&Plain),
+            Structure::Shafts(shafts) => self.in_long_sections(shafts, &Plain),
         }
     }
 
@@ -398,7 +399,7 @@ impl Scenario {
 }
 
 impl Structure {
-    fn shafts(&self) -> Option<&Shafts> {
+    pub(crate) fn shafts(&self) -> Option<&Shafts> {
         match self {
             Self::Rig(_) => None,
             Self::Shafts(shafts) => Some(shafts),

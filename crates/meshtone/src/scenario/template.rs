@@ -12,7 +12,7 @@ const HEAD: &str = "\
 # The pinion, on the motor's shaft, drives the gear, on the brake's shaft.
 ";
 
-const HEAD_OF_ALL_KEYS: &str = "\
+pub(super) const HEAD_OF_ALL_KEYS: &str = "\
 # Text after \"# \" is a comment. A key directly after \"#\" is optional: remove the \"#\" to set it.
 ";
 
@@ -116,7 +116,7 @@ impl Style for Essential {
 }
 
 /// Every key with a comment; those at their default are commented out.
-struct Commented;
+pub(super) struct Commented;
 
 impl Style for Commented {
     fn keys<S>(&self, rows: &[KeyRow<S>], section: &S, start: &S, name: &str) -> String {

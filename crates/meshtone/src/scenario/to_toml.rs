@@ -5,11 +5,6 @@ use super::{Fault, Scenario, Sensor};
 use crate::keys::{KeyRow, Keys, write_rows};
 
 impl Scenario {
-    /// The text of a file, every key with its value.
-    pub(super) fn to_short_form(&self) -> String {
-        self.in_sections(&Plain)
-    }
-
     /// The file's text, each section in its own style.
     pub(super) fn in_sections(&self, style: &impl Style) -> String {
         let start = Self::start_of_rig();
@@ -67,7 +62,7 @@ pub(super) trait Style {
 }
 
 /// Every key with its value.
-struct Plain;
+pub(super) struct Plain;
 
 impl Style for Plain {
     fn keys<S>(&self, rows: &[KeyRow<S>], section: &S, _: &S, _: &str) -> String {

@@ -129,7 +129,7 @@ impl ScenarioWheel {
 
 /// (-) A place along a shaft.
 const ALONG: Range = Range::between(Included(0.0), Included(1.0))
-    .message("must be from 0 to 1, the part of the shaft's length from the end at z = 0");
+    .message("must be from 0 to 1, the part of the shaft's length from its beginning");
 
 impl Keys for ScenarioWheel {
     const SECTION: &str = "wheel";
@@ -170,7 +170,7 @@ impl Keys for ScenarioWheel {
         vec![
             row("name", "", "the wheel's name", field!(name)).required().rule("no other wheel's"),
             row("shaft", "", "the name of its shaft", field!(shaft)).required(),
-            row("at", "-", "the position along the shaft, as a fraction of its length from z = 0", field!(at))
+            row("at", "-", "the position along the shaft, as a fraction of its length from its beginning", field!(at))
                 .required()
                 .range(ALONG)
                 .rule("within half a face width of its mating wheels"),

@@ -127,7 +127,7 @@ impl Channels {
     /// Signals without samples, with room for those that are kept.
     pub(crate) fn with_room(time: &TimeGrid, mut signals: Vec<NamedSignal>) -> Self {
         signals.iter_mut().for_each(|signal| signal.values.reserve_exact(time.kept_samples()));
-        Self::new(time.sampling_rate_hz, time.kept_from_s(), signals)
+        Self::new(time.sampling_rate_hz, 0.0, signals)
     }
 
     /// The samples of the signal of a name.

@@ -53,7 +53,7 @@ impl SimulatedShafts {
 
     /// The shafts of a pair that turn as a motion says, from a time on for some samples.
     fn moving(gears: &Gears, time: &TimeGrid, motion: Motion, (start_s, samples): (f64, usize)) -> Self {
-        let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
+        let start = sample_at(time, start_s);
         let turning = if motion.is_steady() {
             let samples_per_pinion_revolution = time.samples_per_pinion_revolution;
             SimulatedAngle::Steady { start, samples_per_pinion_revolution }
@@ -289,7 +289,7 @@ impl ShaftPhase {
     ///
     /// # Arguments
     /// * `scenario` - what was simulated; a valid one
-    /// * `start_s` - (s) time of the first kept sample since the start of the simulation
+    /// * `start_s` - (s) time of the first sample; that of the first kept one is 0
     /// * `samples` - how many were kept
     ///
     /// # Errors
@@ -300,11 +300,17 @@ impl ShaftPhase {
         samples: usize,
     ) -> Result<Self, SignalError> {
         let time = scenario.time_grid();
-        let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
+        let start = sample_at(&time, start_s);
         let motion = scenario.motion(&time);
         let revolutions = motion.skip(start).take(samples).map(|sample| sample.revolutions).collect();
         Ok(Self::new(0, revolutions)?.with_zero(AngleZero::Simulated))
     }
+}
+
+/// Number of the sample at a time since the first kept one.
+fn sample_at(time: &TimeGrid, start_s: f64) -> usize {
+    let since_kept = (start_s * time.sampling_rate_hz).round().max(0.0) as usize;
+    time.first_kept_sample.saturating_add(since_kept).min(time.samples)
 }
 
 /// The samples over whole revolutions, from the first whole one on.

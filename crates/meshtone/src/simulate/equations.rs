@@ -8,10 +8,11 @@ use crate::bearing::{BearingTurning, RollingBearing};
 use crate::error::Error;
 use crate::machine::{ClosedMesh, SupportMode, WheelBody, support_modes};
 use crate::mesh::{Forcing, Mesh, MeshCurve, PairDeviations};
+use crate::operation::{Motion, TimeGrid};
 use crate::published::{self, Published};
 use crate::scenario::Rig;
 use crate::simd::InstructionSet;
-use crate::solver::{ModalMachine, Output, Problem, Recorder, SteppedAlone, integrate};
+use crate::solver::{ModalMachine, MotionState, Output, Problem, Recorder, SteppedAlone, integrate, resume};
 use crate::trace_fields::Trace;
 
 /// The equations of motion.
@@ -204,7 +205,8 @@ impl Stages {
     ) -> Result<(), Error> {
         let result = match &self.equations {
             Equations::Machine(machine, modal) => {
-                integrate(self.problem(machine, modal, outputs, first_sample), instructions, recorder)
+                let problem = self.problem(machine, modal, &self.time, outputs, first_sample);
+                integrate(problem, instructions, recorder)
             }
             Equations::Published(published) => {
                 published::integrate(published, outputs, first_sample, recorder)
@@ -222,7 +224,7 @@ impl Stages {
     /// It is solved alone, with the reason.
     pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Result<Problem<'a>, SteppedAlone> {
         let (machine, modal) = self.machine().ok_or(SteppedAlone::PublishedModel)?;
-        let problem = self.problem(machine, modal, outputs, self.time.first_kept_sample);
+        let problem = self.problem(machine, modal, &self.time, outputs, self.time.first_kept_sample);
         problem.stepped_alone().map_or(Ok(problem), Err)
     }
 
@@ -234,11 +236,54 @@ impl Stages {
         }
     }
 
-    /// The simulation as the solver sees it.
+    /// Simulates a part again, with half of the step, from a motion that was kept.
+    ///
+    /// # Arguments
+    /// * `state` - the motion at the part's first sample
+    /// * `samples` - of the part, at the simulation's own step
+    /// * `outputs`, `recorder` - as of [`Self::integrate`]
+    ///
+    /// # Errors
+    /// Those of [`Self::integrate`].
+    pub(crate) fn integrate_part_finer(
+        &self,
+        state: &MotionState,
+        samples: usize,
+        outputs: &[Output],
+        recorder: &mut dyn Recorder,
+    ) -> Result<(), Error> {
+        let Some((machine, modal)) = self.machine() else { return Ok(()) };
+        let time = TimeGrid {
+            sampling_rate_hz: 2.0 * self.time.sampling_rate_hz,
+            samples: 2 * (state.sample + samples),
+            first_simulated_sample: 2 * state.sample,
+            first_kept_sample: 2 * self.time.first_kept_sample,
+            samples_per_pinion_revolution: 2 * self.time.samples_per_pinion_revolution,
+        };
+        let mut problem = self.problem(machine, modal, &time, outputs, time.first_simulated_sample);
+        problem.hunting_period_samples = None;
+        let finer = resume(problem, state, InstructionSet::fastest(), recorder);
+        finer.map_err(|diverged| self.divergence(diverged))
+    }
+
+    /// Motion of motor and brake from a sample of a division of time on.
+    fn motion_from(&self, sample: usize, time: &TimeGrid) -> Motion<'_> {
+        let motion = self.motion_in(time);
+        if self.is_steady() || sample == 0 {
+            return motion;
+        }
+        let before = self
+            .motion()
+            .nth(sample * self.time.samples_per_pinion_revolution / time.samples_per_pinion_revolution);
+        motion.resumed_at(sample, before.map_or(0.0, |before| before.revolutions))
+    }
+
+    /// The simulation as the solver sees it, in its own division of time or a finer one.
     fn problem<'a>(
         &'a self,
         machine: &AssembledMachine,
         modal: &ModalMachine,
+        time: &'a TimeGrid,
         outputs: &'a [Output],
         first_sample: usize,
     ) -> Problem<'a> {
@@ -254,15 +299,15 @@ impl Stages {
             BearingTurning::new(bearing, self.layout.ratios[shaft].value(), self.scenario.seed, *number)
         };
         Problem {
-            time: &self.time,
+            time,
             machine: modal.clone(),
             laws: self.meshes.iter().map(Mesh::law).collect(),
             bearings: self.bearings.iter().map(|(_, bearing)| bearing.clone()).collect(),
             forcing: Forcing::new(
-                self.motion(),
-                &self.time,
+                self.motion_from(time.first_simulated_sample, time),
+                time,
                 [operation.pinion_speed_hz, operation.brake_torque_nm],
-                self.time.first_simulated_sample,
+                time.first_simulated_sample,
                 self.meshes.iter().zip(self.pairs.iter().map(deviations)),
             )
             .with_bearings(self.bearings.iter().map(turning).collect())

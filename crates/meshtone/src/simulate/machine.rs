@@ -26,6 +26,8 @@ pub struct AssembledMachine {
     pub wheels: Vec<WheelBody>,
     /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to, of a pair between wheel and coupling.
     pub shaft_stiffness_nm_per_rad: Vec<f64>,
+    /// (kg m²) What turns with the nodes of shafts of beams: [`GearboxMachine::spinning`]; nothing of a rig.
+    pub spinning: Vec<(usize, f64)>,
     /// (kg) The mass that the wheels' rotation has along each line of action.
     pub mesh_mass_kg: Vec<f64>,
     /// (-) Damping ratio of each mesh.
@@ -78,6 +80,7 @@ fn rig(scenario: &Scenario, parts: RigParts, teeth: &Teeth) -> AssembledMachine 
         modes: Arc::new(modes),
         wheels: wheels.to_vec(),
         shaft_stiffness_nm_per_rad: shaft_stiffness_nm_per_rad.to_vec(),
+        spinning: Vec::new(),
         mesh_mass_kg: vec![mesh_mass_kg],
         mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
         highest_of_slow_hz: f64::INFINITY,
@@ -100,6 +103,8 @@ pub(super) fn bare(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Res
 /// Shafts of beams in bearings, with what is known of them beside the machine.
 struct Beams {
     machine: GearboxMachine,
+    /// (kg m²) What turns with the nodes.
+    spinning: Vec<(usize, f64)>,
     discs: Vec<Disc>,
     mesh_mass_kg: Vec<f64>,
     bearings: Bearings,
@@ -178,7 +183,8 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         machine = GearboxMachine::new(&parts);
     }
     let mesh_mass_kg = mass_kg.collect();
-    Ok(Beams { machine, discs, mesh_mass_kg, bearings })
+    let spinning = machine.spinning(&parts);
+    Ok(Beams { machine, discs, spinning, mesh_mass_kg, bearings })
 }
 
 /// The machine of [`beams`] with its modes. Places that outputs read are added to the finished machine, as they need its nodes.
@@ -188,7 +194,7 @@ fn shafts_of_beams(
     teeth: &[Teeth],
     known: &KnownModes,
 ) -> Result<(AssembledMachine, Bearings), ScenarioError> {
-    let Beams { mut machine, discs, mesh_mass_kg, bearings } = beams(scenario, layout, teeth)?;
+    let Beams { mut machine, discs, spinning, mesh_mass_kg, bearings } = beams(scenario, layout, teeth)?;
     let sensors = scenario.all_sensors();
     for (sensor, place) in sensors.iter().zip(scenario.places(layout)?) {
         machine.add_place(sensor.name(), place);
@@ -203,6 +209,7 @@ fn shafts_of_beams(
         wheels: discs.iter().map(|disc| disc.body).collect(),
         shaft_stiffness_nm_per_rad: scenario.shafts().iter().map(GearboxShaft::coupling_nm_per_rad).collect(),
         mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
+        spinning,
         mesh_mass_kg,
         highest_of_slow_hz: HIGHEST_OF_SLOW_HZ,
         stepped_up_to_hz: scenario.solver.highest_mode_hz(scenario.time_grid().sampling_rate_hz),

@@ -7,7 +7,7 @@ use crate::scenario::{GearboxShaft, Scenario, ScenarioMesh};
 use crate::sensor::{
     Channel, ChannelKind, Channels, Measurement, NamedSignal, Sensor, SignalSource, measure,
 };
-use crate::solver::{Block, Output, Recorder, StepCounts};
+use crate::solver::{Block, MotionState, Output, Recorder, StepCounts};
 use std::f64::consts::TAU;
 
 impl Scenario {
@@ -131,16 +131,37 @@ impl Stages {
     }
 }
 
-/// Channels that somebody waits for, as long as they do, and what the steps took.
+/// Channels that somebody waits for, as long as they do, the motion at each tenth of them, and what the steps took.
 pub(super) struct WantedChannels<'a> {
     pub channels: Channels,
+    pub states: Vec<MotionState>,
     pub counts: StepCounts,
-    pub is_wanted: &'a dyn Fn() -> bool,
+    is_wanted: &'a dyn Fn() -> bool,
+    /// Number of the first kept sample, and how many there are in a tenth.
+    tenths: [usize; 2],
+}
+
+impl<'a> WantedChannels<'a> {
+    /// None yet.
+    pub fn new(stages: &Stages, is_wanted: &'a dyn Fn() -> bool) -> Self {
+        let tenths = [stages.time.first_kept_sample, stages.time.kept_samples() / 10];
+        let (states, counts) = (Vec::new(), StepCounts::default());
+        Self { channels: stages.channels(), states, counts, is_wanted, tenths }
+    }
 }
 
 impl Recorder for WantedChannels<'_> {
     fn record(&mut self, block: &Block) {
         self.channels.record(block);
+    }
+
+    fn wants_state(&self, sample: usize) -> bool {
+        let [first, samples] = self.tenths;
+        samples > 0 && sample >= first + self.states.len() * samples
+    }
+
+    fn keep_state(&mut self, state: MotionState) {
+        self.states.push(state);
     }
 
     fn count(&mut self, counts: StepCounts) {

@@ -19,7 +19,7 @@
 use std::array::from_fn;
 use std::ops::Range;
 
-use super::integrate::{Block, Diverged, Problem, Recorder, StepCounts, is_bounded};
+use super::integrate::{Block, Diverged, MotionState, Problem, Recorder, StepCounts, is_bounded};
 use super::outputs::{EXTERNALS, OutputWeights, dot};
 use super::prepare::{FirstState, Prepared};
 use crate::bearing::{BearingLoad, RollingBearing};
@@ -100,6 +100,19 @@ impl Order {
         self.0.chunks(SIDE_BY_SIDE).map(of_lot).collect()
     }
 
+    /// A number of each mode, in the modes' own order.
+    ///
+    /// # Arguments
+    /// * `lots` - the states
+    /// * `number` - which number of a [`LotState`]
+    fn modes(&self, lots: &[LotState], number: usize) -> Vec<f64> {
+        let mut values = vec![0.0; self.0.len()];
+        for (place, &mode) in self.0.iter().enumerate() {
+            values[mode] = lots[place / SIDE_BY_SIDE].0[number].0[place % SIDE_BY_SIDE];
+        }
+        values
+    }
+
     /// The same from the first lot that is not 0 to the last; an empty list stands for zeros.
     fn weights(&self, values: &[f64]) -> Weights {
         if values.is_empty() {
@@ -165,10 +178,17 @@ impl History {
 
 /// Integrates a simulation of any number of meshes and rolling bearings, up to [`MOST_MESHES`] and [`MOST_ROLLING_BEARINGS`].
 ///
+/// # Arguments
+/// * `problem` - the simulation
+/// * `from` - the motion that it goes on from; none where it starts at rest
+/// * `instructions` - vector instructions
+/// * `recorder` - takes the outputs
+///
 /// # Errors
 /// Those of [`super::integrate()`].
 pub(super) fn integrate(
     mut problem: Problem,
+    from: Option<&MotionState>,
     instructions: InstructionSet,
     recorder: &mut dyn Recorder,
 ) -> Result<(), Diverged> {
@@ -181,13 +201,21 @@ pub(super) fn integrate(
     let mut springs: Vec<SpringSamples> = problem.forcing.meshes().map(SpringSamples::new).collect();
     let first_external = external(&block, 0);
     springs.iter_mut().zip(&block.meshes).for_each(|(springs, block)| springs.line_up(block));
-    let first = prepared.first_state(&problem.machine, &block, &springs, first_external);
+    let first = match from {
+        Some(state) => prepared.resumed_state(state, &block, first_external),
+        None => prepared.first_state(&problem.machine, &block, &springs, first_external),
+    };
     let mut state = State::new(first, first_external, &prepared, &order);
+    let largest = order.lots(&prepared.largest_displacement);
     let mut history = History::new(&constants.outputs);
     let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
     let mut sample = start;
     while sample < end && recorder.goes_on() {
         let steps = BLOCK.min(end - sample);
+        if recorder.wants_state(sample) {
+            let numbers = [0, 1, 2].map(|number| order.modes(&state.lots, number));
+            recorder.keep_state(prepared.motion_state(sample, numbers, state.force.clone()));
+        }
         problem.forcing.next_block(steps, &mut block);
         springs.iter_mut().zip(&block.meshes).for_each(|(springs, block)| springs.line_up(block));
         outputs.iter_mut().for_each(Vec::clear);
@@ -211,8 +239,12 @@ pub(super) fn integrate(
                 outputs: &mut outputs,
             });
         }
-        let moved = state.lots.iter().flat_map(|lot| &lot.0[..2]).flat_map(|lanes| &lanes.0);
-        if !moved.into_iter().all(|mode| is_bounded(*mode)) {
+        let within = |(lot, largest): (&LotState, &Lot)| {
+            let lanes = lot.0[..2].iter().flat_map(|lanes| lanes.0.iter().zip(&largest.0.0));
+            // Lanes behind the last mode are 0, and so is their bound.
+            lanes.into_iter().all(|(mode, largest)| *largest == 0.0 || is_bounded(*mode, *largest))
+        };
+        if !state.lots.iter().zip(&largest).all(within) {
             return Err(Diverged { sample: sample + steps });
         }
         sample += steps;

@@ -58,6 +58,19 @@ impl<'a> Block<'a> {
     }
 }
 
+/// The motion at one sample, from which it can go on with another step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionState {
+    /// Number of the sample, 0 at the start of the simulation.
+    pub sample: usize,
+    /// (m √kg) Displacement of each stepped mode.
+    pub(super) displacement: Vec<f64>,
+    /// (m √kg/s) Velocity of each.
+    pub(super) velocity: Vec<f64>,
+    /// (N) Force in each column of the lines of action, and then of the bearings.
+    pub(super) force: Vec<f64>,
+}
+
 /// Takes the outputs of a solution as they are computed.
 pub trait Recorder {
     /// Called for successive blocks of samples, in order.
@@ -65,6 +78,23 @@ pub trait Recorder {
     /// # Arguments
     /// * `block` - the outputs
     fn record(&mut self, block: &Block);
+
+    /// Whether the motion at a sample is wanted beside the outputs: asked before every block. By default it never is.
+    ///
+    /// # Arguments
+    /// * `sample` - the first one of the block
+    fn wants_state(&self, sample: usize) -> bool {
+        let _ = sample;
+        false
+    }
+
+    /// Called with the motion at the samples at which it is wanted. By default that is not kept.
+    ///
+    /// # Arguments
+    /// * `state` - the motion
+    fn keep_state(&mut self, state: MotionState) {
+        let _ = state;
+    }
 
     /// Called once at the end of a machine of several meshes, with what its steps took. By default that is not kept.
     ///
@@ -193,15 +223,13 @@ impl Problem<'_> {
     }
 }
 
-/// (m √kg) Displacement of a mode, with a modal mass of 1 kg, that no machine has: a motion that reaches it grows without bound.
-const LARGEST_DISPLACEMENT: f64 = 1e12;
-
 /// Whether a mode moves as a machine can.
 ///
 /// # Arguments
-/// * `displacement` - (m √kg) its displacement, or its velocity times half of the time step
-pub(super) fn is_bounded(displacement: f64) -> bool {
-    displacement.abs() < LARGEST_DISPLACEMENT
+/// * `displacement` - (m √kg) its displacement, or its velocity times the time step
+/// * `largest` - (m √kg) as of [`ModalMachine::largest_displacements`]
+pub(super) fn is_bounded(displacement: f64, largest: f64) -> bool {
+    displacement.abs() < largest
 }
 
 /// A solution that has grown without bound.
@@ -222,9 +250,32 @@ pub fn integrate(
 ) -> Result<(), Diverged> {
     let recorder = &mut Repeating::new(&problem, recorder);
     if problem.stepped_alone().is_some() {
-        return coupled::integrate(problem, instructions, recorder);
+        return coupled::integrate(problem, None, instructions, recorder);
     }
-    let [result] = of_size([problem], instructions, vec![recorder]);
+    let [result] = of_size([problem], [None], instructions, vec![recorder]);
+    result
+}
+
+/// Goes on with a simulation from a motion that was kept, of the same machine at any step.
+///
+/// # Arguments
+/// * `problem` - its first simulated sample is that of the motion
+/// * `state` - the motion
+/// * `instructions` - vector instructions
+/// * `recorder` - takes the outputs
+///
+/// # Errors
+/// As [`integrate`].
+pub(crate) fn resume(
+    problem: Problem,
+    state: &MotionState,
+    instructions: InstructionSet,
+    recorder: &mut dyn Recorder,
+) -> Result<(), Diverged> {
+    if problem.stepped_alone().is_some() {
+        return coupled::integrate(problem, Some(state), instructions, recorder);
+    }
+    let [result] = of_size([problem], [Some(state)], instructions, vec![recorder]);
     result
 }
 
@@ -244,38 +295,39 @@ pub fn integrate_side_by_side(
     let mut repeating: Vec<Repeating> =
         problems.iter().zip(recorders).map(|(problem, recorder)| Repeating::new(problem, recorder)).collect();
     let recorders = repeating.iter_mut().map(|recorder| recorder as &mut dyn Recorder).collect();
-    of_size(problems, instructions, recorders)
+    of_size(problems, [None; LANES], instructions, recorders)
 }
 
 fn of_size<const L: usize>(
     problems: [Problem; L],
+    from: [Option<&MotionState>; L],
     instructions: InstructionSet,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
     match Size::of(&problems) {
-        Size::Flat => run::<L, 8, 8, 1, PAIRS, 0>(problems, instructions, recorders),
+        Size::Flat => run::<L, 8, 8, 1, PAIRS, 0>(problems, from, instructions, recorders),
         Size::Tilting => {
             const N: usize = MOST_UNDRIVEN_MODES;
-            run::<L, N, N, 2, PAIRS, 0>(problems, instructions, recorders)
+            run::<L, N, N, 2, PAIRS, 0>(problems, from, instructions, recorders)
         }
         Size::Turning => {
-            run::<L, MOST_TURNING_MODES, MOVED_IN_PLANE, 1, PAIRS, 0>(problems, instructions, recorders)
+            run::<L, MOST_TURNING_MODES, MOVED_IN_PLANE, 1, PAIRS, 0>(problems, from, instructions, recorders)
         }
         Size::Steady => {
             const N: usize = MOST_STEADY_MODES;
-            run::<L, N, N, 2, PAIRS, 0>(problems, instructions, recorders)
+            run::<L, N, N, 2, PAIRS, 0>(problems, from, instructions, recorders)
         }
         Size::General => {
             const N: usize = MOST_MODES;
-            run::<L, N, N, 2, MOST_PAIRS, 0>(problems, instructions, recorders)
+            run::<L, N, N, 2, MOST_PAIRS, 0>(problems, from, instructions, recorders)
         }
         Size::Helical => {
             const N: usize = MOST_STEADY_MODES;
-            run::<L, N, N, 1, USUAL_PAIRS, USUAL_PAIRS>(problems, instructions, recorders)
+            run::<L, N, N, 1, USUAL_PAIRS, USUAL_PAIRS>(problems, from, instructions, recorders)
         }
         Size::GeneralHelical => {
             const N: usize = MOST_MODES;
-            run::<L, N, N, 1, MOST_PAIRS, MOST_PAIRS>(problems, instructions, recorders)
+            run::<L, N, N, 1, MOST_PAIRS, MOST_PAIRS>(problems, from, instructions, recorders)
         }
     }
 }
@@ -283,9 +335,11 @@ fn of_size<const L: usize>(
 /// Steps `L` simulations from their first sample to their last.
 ///
 /// Time is divided into blocks of samples. For each block the forcing is tabulated first, then all steps are made, and then the outputs
-/// are computed from the states of the block, so that each of the three loops is short and its numbers stay in the cache.
+/// are computed from the states of the block, so that each of the three loops is short and its numbers stay in the cache. A simulation
+/// goes on from a motion that was kept where there is one.
 fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize, const C: usize>(
     mut problems: [Problem; L],
+    from: [Option<&MotionState>; L],
     instructions: InstructionSet,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
@@ -304,13 +358,22 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
         let external = forcing.external[0].map(|external| external.0[l]);
         let mut springs: Vec<SpringSamples> = problems[l].forcing.meshes().map(SpringSamples::new).collect();
         springs.iter_mut().zip(&forcing.blocks[l].meshes).for_each(|(springs, block)| springs.line_up(block));
-        prepared[l].first_state(&problems[l].machine, &forcing.blocks[l], &springs, external)
+        match from[l] {
+            Some(state) => prepared[l].resumed_state(state, &forcing.blocks[l], external),
+            None => prepared[l].first_state(&problems[l].machine, &forcing.blocks[l], &springs, external),
+        }
     });
     let mut state: State<L, N, R> = coefficients.first_state(&first);
     let mut history = History::<L, N, R>::new();
     let mut done = 0;
     while done < out.most_steps {
         let steps = BLOCK.min(out.most_steps - done);
+        out.keep_states(done, |l, sample| {
+            let of = |of: &[Lanes<L>]| of.iter().map(|lanes| lanes.0[l]).collect::<Vec<f64>>();
+            let numbers =
+                [&state.displacement, &state.velocity, &state.acceleration].map(|of_modes| of(of_modes));
+            prepared[l].motion_state(sample, numbers, of(&state.force))
+        });
         forcing.fill(&mut problems, steps);
         let recorded = out.is_recorded(done + steps);
         instructions.run(StepBlock {
@@ -328,7 +391,7 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
                 terms.evaluate(instructions, &history, done, &mut values[..steps]);
             }
         }
-        out.record(done, steps, |l| coefficients.is_sound(&state, l));
+        out.record(done, steps, |l| coefficients.is_sound(&state, &prepared[l].largest_displacement, l));
         if !out.goes_on() {
             break;
         }
@@ -454,9 +517,9 @@ mod tests {
         assert_eq!(Size::of(&[problem()]), expected, "{name}");
         let instructions = InstructionSet::fastest();
         let [mut side_by_side, mut alone] = [All::default(), All::default()];
-        let [result] = of_size([problem()], instructions, vec![&mut side_by_side]);
+        let [result] = of_size([problem()], [None], instructions, vec![&mut side_by_side]);
         result.unwrap();
-        coupled::integrate(problem(), instructions, &mut alone).unwrap();
+        coupled::integrate(problem(), None, instructions, &mut alone).unwrap();
         assert_eq!((side_by_side.0.len(), alone.0.len()), (outputs.len(), outputs.len()), "{name}");
         for (number, (side_by_side, alone)) in side_by_side.0.iter().zip(&alone.0).enumerate() {
             let largest =

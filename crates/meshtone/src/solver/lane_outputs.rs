@@ -1,6 +1,6 @@
 //! Gives the outputs of simulations side by side to the recorder of each.
 
-use super::integrate::{Block, Diverged, Problem, Recorder};
+use super::integrate::{Block, Diverged, MotionState, Problem, Recorder};
 use crate::simd::Lanes;
 
 /// Outputs of one block of samples, and who takes them.
@@ -60,6 +60,20 @@ impl<'r, const L: usize> LaneOutputs<'r, L> {
     /// Whether any of the recorders still wants samples.
     pub(super) fn goes_on(&self) -> bool {
         self.recorders.iter().any(|recorder| recorder.goes_on())
+    }
+
+    /// Gives each recorder the motion before the next block, where it wants that.
+    ///
+    /// # Arguments
+    /// * `done` - number of steps so far
+    /// * `state` - the motion of a lane, at a sample
+    pub(super) fn keep_states(&mut self, done: usize, state: impl Fn(usize, usize) -> MotionState) {
+        for (l, recorder) in self.recorders.iter_mut().enumerate() {
+            let sample = self.spans[l].start + done;
+            if sample < self.spans[l].end && recorder.wants_state(sample) {
+                recorder.keep_state(state(l, sample));
+            }
+        }
     }
 
     /// Gives each recorder the samples after the first `done` steps.

@@ -21,8 +21,8 @@ mod steady_sine;
 mod step;
 
 pub(crate) use coupled::{MOST_MESHES, MOST_ROLLING_BEARINGS};
-pub use integrate::{Block, Diverged, Problem, Recorder, StepCounts, SteppedAlone, integrate};
-pub(crate) use integrate::{LANES, integrate_side_by_side};
+pub use integrate::{Block, Diverged, MotionState, Problem, Recorder, StepCounts, SteppedAlone, integrate};
+pub(crate) use integrate::{LANES, integrate_side_by_side, resume};
 pub(crate) use lateral_response::LateralResponse;
 #[cfg(feature = "internals")]
 pub use modal::ModalLine;

@@ -174,6 +174,13 @@ pub struct InitialMotion<'a> {
     pub velocity: Option<&'a [f64]>,
 }
 
+/// (m) Deflection of a mesh or a bearing that no machine survives.
+const LARGEST_DEFLECTION_M: f64 = 0.1;
+/// (m √kg) Displacement of a mode that no machine reaches, whatever it deflects.
+const LARGEST_DISPLACEMENT: f64 = 1e12;
+/// (-) Part of the largest modal entry of the rigid rotation above which a mode turns with the motor.
+const TURNING: f64 = 1e-9;
+
 /// Below this part of the largest entry a modal entry is rounding.
 const ROUNDING: f64 = 1e-13;
 
@@ -289,6 +296,24 @@ impl ModalMachine {
         self
     }
 
+    /// (m √kg) How far each mode may move in a machine that exists: until a mesh or a bearing deflects by [`LARGEST_DEFLECTION_M`]. A mode that
+    /// turns with the motor has no such bound, since its displacement is relative to the rotation at the nominal speed.
+    pub(super) fn largest_displacements(&self) -> Vec<f64> {
+        let columns =
+            || self.lines.iter().flat_map(|line| &line.columns[..1]).chain(self.bearings.iter().flatten());
+        let turns_most = self.rigid_velocity.iter().fold(0.0, |most: f64, rigid| most.max(rigid.abs()));
+        let of_mode = |n: usize| {
+            let deflected = columns().map(|column| column[n].abs()).fold(0.0, f64::max);
+            let is_turning = self.rigid_velocity[n].abs() > TURNING * turns_most;
+            if is_turning {
+                LARGEST_DISPLACEMENT
+            } else {
+                (LARGEST_DEFLECTION_M / deflected).min(LARGEST_DISPLACEMENT)
+            }
+        };
+        (0..self.modes()).map(of_mode).collect()
+    }
+
     /// Finds the static forces of the meshes that hold the shafts that turn freely, and the displacement under these and the torque.
     fn balance(&mut self, torque_nm: f64) {
         let forces_n = self.balancing_forces_n(torque_nm);
@@ -400,7 +425,7 @@ impl ModalMachine {
     }
 
     /// Weights of the machine's coordinates in the motion of a place, as [`Machine::weights`].
-    pub(super) fn weights(&self, place: &str, axis: Axis) -> DVector<f64> {
+    pub(crate) fn weights(&self, place: &str, axis: Axis) -> DVector<f64> {
         weights(&self.places, self.rigid_rotation.len(), place, axis)
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::integrate::Problem;
+use super::integrate::{MotionState, Problem};
 use super::modal::ModalMachine;
 use super::mode_step::StepOfMode;
 use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
@@ -40,6 +40,8 @@ pub(super) struct Prepared {
     pub(super) bearings: Vec<RollingBearing>,
     /// (N) Force of each mesh under the constant loads.
     pub(super) static_force_n: Vec<f64>,
+    /// (m √kg) How far each mode may move.
+    pub(super) largest_displacement: Vec<f64>,
 }
 
 /// One column of a line of action, and what the deflection in it at the end of a step, with its damping's lead, is without the step's
@@ -183,6 +185,7 @@ impl Prepared {
             laws: problem.laws.clone(),
             bearings: problem.bearings.clone(),
             static_force_n: model.lines.iter().map(|line| line.static_force_n).collect(),
+            largest_displacement: model.largest_displacements(),
             steps,
         }
     }
@@ -235,8 +238,11 @@ impl Prepared {
                 closed - at_rest - tilted - dot(lines[columns[mesh].start], &turned)
             })
             .collect();
+        // All has turned by the motor's lead, as in a run-up that is not simulated from its start.
         let displacement: Vec<f64> =
-            model.turned_by(&missing).iter().zip(&turned).map(|(closing, turned)| closing + turned).collect();
+            (model.turned_by(&missing).iter().zip(&turned).zip(&model.rigid_velocity))
+                .map(|((closing, turned), rigid)| closing + turned + rigid * external[0])
+                .collect();
         let (mut force, mut of_friction) = (Vec::with_capacity(self.columns.len()), Vec::new());
         for (mesh, law) in self.laws.iter().enumerate() {
             let (deflection, tilted) = at_face_centre(mesh, &|column| {
@@ -261,6 +267,56 @@ impl Prepared {
             force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
         }
         force.extend(of_friction);
+        self.state_of([&displacement, &model.initial_velocity], force, block, external)
+    }
+
+    /// The state of a motion that was kept, perhaps at another step.
+    ///
+    /// # Arguments
+    /// * `state` - the motion at the first sample
+    /// * `block`, `external` - as of [`Self::first_state`]
+    pub(super) fn resumed_state(
+        &self,
+        state: &MotionState,
+        block: &ForcingBlock,
+        external: [f64; EXTERNALS],
+    ) -> FirstState {
+        self.state_of([&state.displacement, &state.velocity], state.force.clone(), block, external)
+    }
+
+    /// The motion of a state.
+    ///
+    /// # Arguments
+    /// * `sample` - at which it is
+    /// * `numbers` - predicted displacements, predicted `Δt q̇` and `Δt² q̈` of the modes
+    /// * `force` - (N) in each column, and in columns that the machine has not got
+    pub(super) fn motion_state(
+        &self,
+        sample: usize,
+        [displacement, velocity, acceleration]: [Vec<f64>; 3],
+        mut force: Vec<f64>,
+    ) -> MotionState {
+        force.truncate(self.columns.len());
+        MotionState {
+            sample,
+            displacement: (self.steps.iter().enumerate())
+                .map(|(n, step)| displacement[n] + step.beta * acceleration[n])
+                .collect(),
+            velocity: (0..self.steps.len())
+                .map(|n| (velocity[n] + acceleration[n] / 2.0) / self.step_s)
+                .collect(),
+            force,
+        }
+    }
+
+    /// What a step has of a motion and its forces.
+    fn state_of(
+        &self,
+        [displacement, velocity]: [&[f64]; 2],
+        force: Vec<f64>,
+        block: &ForcingBlock,
+        external: [f64; EXTERNALS],
+    ) -> FirstState {
         let acceleration: Vec<f64> = (self.steps.iter().enumerate())
             .map(|(n, step)| {
                 let meshes: f64 =
@@ -271,7 +327,7 @@ impl Prepared {
                     .map(|(push, [cos, sin])| push[0][n] * cos[0] + push[1][n] * sin[0])
                     .sum();
                 let scaled_force = (meshes + driven + turned) / step.yielding();
-                step.acceleration(displacement[n], model.initial_velocity[n] * self.step_s, scaled_force)
+                step.acceleration(displacement[n], velocity[n] * self.step_s, scaled_force)
             })
             .collect();
         FirstState {
@@ -279,7 +335,7 @@ impl Prepared {
                 .map(|n| displacement[n] - self.steps[n].beta * acceleration[n])
                 .collect(),
             velocity: (0..displacement.len())
-                .map(|n| model.initial_velocity[n] * self.step_s - acceleration[n] / 2.0)
+                .map(|n| velocity[n] * self.step_s - acceleration[n] / 2.0)
                 .collect(),
             acceleration,
             force,

@@ -1,6 +1,6 @@
 //! A steady motion that repeats itself is not simulated to its end.
 
-use super::integrate::{Block, Problem, Recorder, StepCounts};
+use super::integrate::{Block, MotionState, Problem, Recorder, StepCounts};
 
 /// (-) Rms of the difference of two hunting-tooth periods, relative to the rms, up to which they are the same.
 const SAME: f64 = 1e-6;
@@ -110,6 +110,14 @@ impl Recorder for Repeating<'_> {
         {
             self.repeat(block.first_sample + block.len(), period);
         }
+    }
+
+    fn wants_state(&self, sample: usize) -> bool {
+        self.recorder.wants_state(sample)
+    }
+
+    fn keep_state(&mut self, state: MotionState) {
+        self.recorder.keep_state(state);
     }
 
     fn count(&mut self, counts: StepCounts) {

@@ -168,8 +168,18 @@ impl<const L: usize, const N: usize, const M: usize, const R: usize> Coefficient
     }
 
     /// Whether the motion of lane `l` is bounded.
-    pub(super) fn is_sound(&self, state: &State<L, N, R>, l: usize) -> bool {
-        state.displacement.iter().chain(&state.velocity).all(|mode| is_bounded(mode.0[l]))
+    ///
+    /// # Arguments
+    /// * `state` - of all lanes
+    /// * `largest` - (m √kg) how far each of the lane's modes may move
+    /// * `l` - number of the lane
+    pub(super) fn is_sound(&self, state: &State<L, N, R>, largest: &[f64], l: usize) -> bool {
+        let of_modes = state.displacement.iter().zip(&state.velocity).zip(largest);
+        of_modes
+            .flat_map(|((displacement, velocity), largest)| {
+                [displacement, velocity].map(|mode| (mode, largest))
+            })
+            .all(|(mode, largest)| is_bounded(mode.0[l], *largest))
     }
 
     /// Makes a step of a mesh of which `P` pairs are looked at together.

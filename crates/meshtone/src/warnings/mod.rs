@@ -1,25 +1,28 @@
 //! Warnings about a simulation: before the time loop, and by its signals.
 
+mod gyroscopic;
 mod mesh_resonance;
 mod observer;
 mod of_signals;
 mod step_error;
 mod uneven_face;
 
+pub use gyroscopic::GyroscopicShift;
 pub use observer::Observer;
 pub use step_error::StepJudgement;
 
-use std::f64::consts::TAU;
-
+use crate::checks::{WindowSums, transient_part};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
-use crate::machine::{DecayingMode, Shaft, WheelBody};
-use crate::operation::{Operation, Solver, TimeGrid};
+use crate::machine::{Shaft, WheelBody};
+use crate::operation::{Operation, TimeGrid};
 use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
 use crate::simulate::{Stages, stages_within};
 use crate::wheel::{Gears, unused_slices};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
+/// (-) Part of the module by which a wheel may run out without a warning.
+const TOLERATED_RUN_OUT: f64 = 0.1;
 /// (-) Part of the module by which the nominal load may press the teeth together without a warning.
 const TOLERATED_DEFLECTION: f64 = 0.1;
 
@@ -54,8 +57,8 @@ pub fn stages_and_warnings(
 
 impl Stages {
     /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, slices that the faces
-    /// are not cut into, wheels of a rig whose accelerations, or whose supports', cancel in the channels, a settling too short for the
-    /// slowest mode, a load that would break teeth or is at one end of a face, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
+    /// are not cut into, wheels of a rig whose accelerations, or whose supports', cancel in the channels, meshes and sensors above the highest
+    /// mode that is simulated, a load that would break teeth or is at one end of a face, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
     /// frequency of shafts of beams.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
         let unused = self.meshes.iter().enumerate().filter_map(|(number, mesh)| {
@@ -65,7 +68,10 @@ impl Stages {
         of_scenario
             .chain(unused)
             .chain(self.equal_wheels())
-            .chain(self.unsettled())
+            .chain(self.beyond_band())
+            .chain(self.large_run_outs())
+            .chain(self.undamped())
+            .chain(self.gyroscopic())
             .chain(self.overloads())
             .chain(self.uneven_faces())
             .chain(self.without_contact())
@@ -83,6 +89,51 @@ impl Stages {
             let teeth = format!("the teeth{of_mesh}");
             overload(&teeth, key.clone(), torque_nm, force_n, stiffness_n_per_m, gears)
         })
+    }
+
+    /// Wheels that run out so far that their teeth hardly mesh: tolerances allow some hundredths of a module.
+    fn large_run_outs(&self) -> Vec<ScenarioWarning> {
+        let of_wheel = |mesh: usize, side: usize| {
+            let (run_out_um, module_mm) =
+                (self.pairs[mesh].run_out[side].run_out_um, self.layout.gears[mesh].module_mm);
+            let wheel = self.layout.wheels_of_mesh[mesh][side];
+            let key = match self.scenario.rig() {
+                None => format!("wheel[{wheel}].run_out_um"),
+                Some(_) => ["quality.pinion_run_out_um", "quality.gear_run_out_um"][side].to_owned(),
+            };
+            (run_out_um * 1e-3 > TOLERATED_RUN_OUT * module_mm).then(|| {
+                let message = format!(
+                    "a run-out of {run_out_um:.0} µm is {:.2} modules: the teeth go that far in and out of mesh in every turn, and tolerances allow \
+                     some hundredths",
+                    run_out_um * 1e-3 / module_mm
+                );
+                ScenarioWarning::new(WarningKind::LargeRunOut, key, message)
+            })
+        };
+        let meshes = 0..if self.scenario.model.has_meshes() { self.pairs.len() } else { 0 };
+        meshes.flat_map(|mesh| [of_wheel(mesh, 0), of_wheel(mesh, 1)]).flatten().collect()
+    }
+
+    /// Meshes and mounted resonances above the highest mode of shafts of beams: their vibration is missing in the signals.
+    fn beyond_band(&self) -> Option<ScenarioWarning> {
+        self.scenario.structure.shafts()?;
+        let highest_hz = self.scenario.solver.highest_mode_hz(self.time.sampling_rate_hz);
+        let speed_hz = self.scenario.operation.pinion_speed_hz;
+        let meshes = self.meshes.iter().zip(&self.scenario.meshes).map(|(mesh, of)| {
+            (
+                format!("the teeth of mesh {} meet", of.name()),
+                mesh.turning.pitches_per_revolution.abs() * speed_hz,
+            )
+        });
+        let resonances = self
+            .sensors
+            .iter()
+            .filter_map(|sensor| Some((format!("sensor {} resounds", sensor.name()), sensor.resonance_hz?)));
+        let (what, hz) = meshes.chain(resonances).find(|(_, hz)| *hz > highest_hz)?;
+        let message = format!(
+            "{what} at {hz:.0} Hz, and the highest mode that is simulated lies below {highest_hz:.0} Hz: the signals lack what moves there; raise it"
+        );
+        Some(ScenarioWarning::new(WarningKind::BeyondBand, "solver.highest_mode_hz", message))
     }
 
     /// Places at which no pair of teeth meets: nothing holds the wheels there, where real teeth would touch with their tips'
@@ -141,43 +192,58 @@ impl Stages {
         Some(ScenarioWarning::new(WarningKind::EqualWheels, "gears.gear_teeth", message))
     }
 
-    fn unsettled(&self) -> Option<ScenarioWarning> {
-        let named = if self.teeth_part() { words_of } else { |_: &DecayingMode| String::new() };
-        unsettled(&self.slowest_mode, &self.time, &self.scenario.operation, &self.scenario.solver, named)
+    /// A mode that nothing damps: what sets it in motion at the start lasts.
+    fn undamped(&self) -> Option<ScenarioWarning> {
+        (self.slowest_mode.decay_per_s <= 0.0).then(|| {
+            let message = "a start-up transient lasts, and it never decays: a mode has no damping";
+            ScenarioWarning::new(WarningKind::Unsettled, "solver.settle_fraction", message)
+        })
+    }
+
+    /// Signals in which a mode has not settled, or none where they are steady.
+    ///
+    /// # Arguments
+    /// * `windows` - sums over each of some signals, all divided alike
+    pub(super) fn unsettled(&self, windows: &[WindowSums]) -> Option<ScenarioWarning> {
+        // What has decayed to 1 % of the start, which is a motion in equilibrium, is a part of no signal.
+        let is_undamped = self.slowest_mode.decay_per_s <= 0.0;
+        if is_undamped || !self.is_steady() || self.transient_remainder() < TOLERATED_TRANSIENT {
+            return None;
+        }
+        let (slowest, time) = (&self.slowest_mode, &self.time);
+        let parts = windows.iter().map(|of| {
+            let window_s = of.window_samples() as f64 * time.step_s();
+            transient_part(&of.variances(), slowest.decay_per_s * window_s)
+        });
+        let part = parts.fold(0.0, f64::max);
+        (part > TOLERATED_TRANSIENT).then(|| {
+            let frequency_hz = slowest.frequency_hz;
+            let remedy = remedy(time, slowest.decay_per_s);
+            let message = format!(
+                "a start-up transient changes the rms of the kept signal by {:.1} %: the mode at {frequency_hz:.0} Hz has decayed for {:.3} s \
+                 only; {remedy}",
+                100.0 * part,
+                time.kept_from_s(),
+            );
+            ScenarioWarning::new(WarningKind::Unsettled, "solver.settle_fraction", message)
+        })
     }
 }
 
-/// A start-up transient that the discarded time does not outlast.
-///
-/// # Arguments
-/// * `slowest` - the mode that is the slowest to decay
-/// * `time`, `operation`, `solver` - the time that is discarded, profiles that it may pass, and the settings that say so
-/// * `named` - what is said of the mode
-fn unsettled(
-    slowest: &DecayingMode,
-    time: &TimeGrid,
-    operation: &Operation,
-    solver: &Solver,
-    named: fn(&DecayingMode) -> String,
-) -> Option<ScenarioWarning> {
-    let decay = slowest.decay_per_s;
-    let settling_s = time.kept_from_s();
-    let remainder = (-decay * settling_s).exp();
-    (remainder > TOLERATED_TRANSIENT).then(|| {
-        let advice = if decay > 0.0 {
-            let needed_s = -TOLERATED_TRANSIENT.ln() / decay;
-            let raise = raised_fraction(time, operation, solver, needed_s);
-            format!("it takes {needed_s:.3} s to fall to 1 %{raise}{}", named(slowest))
-        } else {
-            "it never decays: a mode has no damping".to_string()
-        };
-        let percent = 100.0 * remainder;
-        let message = format!(
-            "up to {percent:.0} % of the start-up transient is left when the kept signal starts, after {settling_s:.3} s; \
-             {advice}"
-        );
-        ScenarioWarning::new(WarningKind::Unsettled, "solver.settle_fraction", message)
-    })
+/// What lets a mode settle, and what that costs.
+fn remedy(time: &TimeGrid, decay_per_s: f64) -> String {
+    const MOST: f64 = 0.99;
+    let [kept_s, whole_s] = [time.kept_samples(), time.samples].map(|samples| samples as f64 * time.step_s());
+    let needed_s = -TOLERATED_TRANSIENT.ln() / decay_per_s;
+    let fraction = (100.0 * needed_s / (needed_s + kept_s)).ceil() / 100.0;
+    if fraction <= MOST {
+        let cost = kept_s / (1.0 - fraction) / whole_s;
+        format!(
+            "solver.settle_fraction = {fraction:.2} beside solver.duration_s = {kept_s:.3} lets it decay, and takes {cost:.1} times as long"
+        )
+    } else {
+        "raise the damping_ratio of shafts and supports".to_owned()
+    }
 }
 
 /// Teeth that a load would bend off.
@@ -210,33 +276,6 @@ fn overload(
     })
 }
 
-/// The advice to raise the settling fraction, in hundredths, as the end of a sentence; empty where no fraction is enough.
-///
-/// A profile that would then end before the kept signal is moved along with it: lowering the fraction again would not settle.
-fn raised_fraction(time: &TimeGrid, operation: &Operation, solver: &Solver, needed_s: f64) -> String {
-    const MOST: f64 = 0.99;
-    let [kept_s, whole_s] = [time.kept_samples(), time.samples].map(|samples| samples as f64 * time.step_s());
-    let part_of = |whole_s: f64| (100.0 * needed_s / whole_s).ceil() / 100.0;
-    let is_length_given = solver.duration_s.or(solver.pinion_revolutions).is_some();
-    // Settling takes its part of the whole, if that is long enough, or comes before a stated length.
-    let (length, fraction, from_s) = if is_length_given || part_of(whole_s) > MOST {
-        let length =
-            if is_length_given { String::new() } else { format!("; give solver.duration_s = {kept_s:.3}") };
-        let fraction = part_of(needed_s + kept_s);
-        (length, fraction, kept_s * fraction / (1.0 - fraction))
-    } else {
-        (String::new(), part_of(whole_s), part_of(whole_s) * whole_s)
-    };
-    if fraction > MOST {
-        return String::new();
-    }
-    let later = |(key, _): (&str, f64)| {
-        format!(", and add {from_s:.3} s to the times of {key}, which would end before")
-    };
-    let later: String = operation.profiles_ended_at(from_s).map(later).collect();
-    format!("{length}; raise solver.settle_fraction to {fraction:.2}{later}")
-}
-
 /// The key of the largest torque, and the torque in N m.
 fn largest_torque(operation: &Operation) -> (String, f64) {
     let values = operation.torque_profile_nm.iter().flat_map(|profile| &profile.value).enumerate();
@@ -245,14 +284,4 @@ fn largest_torque(operation: &Operation) -> (String, f64) {
     let constant = ("operation.brake_torque_nm".to_owned(), operation.brake_torque_nm);
     let of_profile = values.reduce(|largest, other| if other.1 > largest.1 { other } else { largest });
     of_profile.unwrap_or(constant)
-}
-
-/// Which mode is slow, and what damps it.
-fn words_of(mode: &DecayingMode) -> String {
-    let ratio = mode.decay_per_s / (TAU * mode.frequency_hz);
-    format!(
-        "; slowest is the mode at {:.0} Hz, at {:.2} % of critical damping, which the damping_ratio of shafts and supports raises",
-        mode.frequency_hz,
-        100.0 * ratio
-    )
 }

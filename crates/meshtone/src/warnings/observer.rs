@@ -1,5 +1,6 @@
 //! Sums over a simulation's signals that show whether they can be right, gathered while they come.
 
+use crate::checks::{Figures, SignalFigures, WindowSums};
 use crate::sensor::ChannelKind;
 use crate::simulate::Stages;
 
@@ -7,8 +8,10 @@ use crate::simulate::Stages;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observer {
     pub(super) force: ForceFigures,
-    /// (Hz) Of the pinion's and of the gear's speed.
-    speeds_hz: [Sum; 2],
+    /// Of the mesh force, and of the speeds of pinion and gear.
+    pub(crate) figures: Figures,
+    /// The same two over windows of the kept time.
+    pub(super) windows: [WindowSums; 2],
     /// The vertical acceleration and the mesh force over turns of the wheels, where a motion lasts that repeats with them.
     pub(super) turns: Option<[WheelTurnSums; 2]>,
 }
@@ -28,7 +31,12 @@ impl Observer {
     /// * `stages` - of the simulation
     pub fn new(stages: &Stages) -> Self {
         let turns = lasts(stages).then(|| [WheelTurnSums::new(stages), WheelTurnSums::new(stages)]);
-        Self { force: ForceFigures::default(), speeds_hz: [Sum::default(); 2], turns }
+        let gears = &stages.layout.gears[0];
+        let of_gear = stages.time.samples_per_pitch(gears) * gears.gear_teeth as usize;
+        let windows = [(); 2].map(|()| WindowSums::new(stages.time.kept_samples(), of_gear));
+        let of_signals = |count: usize| vec![SignalFigures::new(stages.time.kept_samples()); count];
+        let figures = Figures { forces: of_signals(1), speeds: of_signals(2) };
+        Self { force: ForceFigures::default(), figures, windows, turns }
     }
 
     /// Sees some samples, the next ones of the kept time.
@@ -38,8 +46,12 @@ impl Observer {
     pub fn observe(&mut self, signals: [&[f64]; 4]) {
         let [vertical_g, force_n, pinion_hz, gear_hz] = signals;
         self.force.add(force_n);
-        for (sum, speeds) in self.speeds_hz.iter_mut().zip([pinion_hz, gear_hz]) {
-            sum.add(speeds, |speed| speed);
+        let figures = self.figures.forces.iter_mut().chain(&mut self.figures.speeds);
+        for (figures, signal) in figures.zip([force_n, pinion_hz, gear_hz]) {
+            signal.iter().for_each(|value| figures.add(*value));
+        }
+        for (windows, signal) in self.windows.iter_mut().zip([vertical_g, force_n]) {
+            windows.add(signal);
         }
         for (turns, signal) in self.turns.iter_mut().flatten().zip([vertical_g, force_n]) {
             turns.add(signal);
@@ -54,11 +66,6 @@ impl Observer {
     /// (-) Part of the time in which the mesh force is negative.
     pub fn tension_fraction(&self) -> f64 {
         self.force.part_of_time(self.force.pulling)
-    }
-
-    /// (Hz) Of the pinion and of the gear.
-    pub(super) fn mean_speeds_hz(&self) -> [f64; 2] {
-        self.speeds_hz.map(|sum| sum.total() / self.force.samples as f64)
     }
 }
 

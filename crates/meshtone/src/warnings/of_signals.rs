@@ -2,7 +2,8 @@
 
 use super::largest_torque;
 use super::observer::{ForceFigures, Observer};
-use super::step_error::{StepError, StepJudgement, step_error, step_error_of_signals};
+use super::step_error::{StepError, StepJudgement, step_error, step_error_of_part, step_error_of_signals};
+use crate::checks::{Figures, SignalFigures, WindowSums};
 use crate::error::{ScenarioWarning, WarningKind};
 use crate::sensor::SignalSource;
 use crate::simulate::{Simulation, Stages};
@@ -18,8 +19,14 @@ const TOLERATED_RESONANCE: f64 = 1000.0;
 const TOLERATED_MEAN_FORCE: f64 = 0.1;
 /// (-) How far a shaft's mean speed may be from what the motor drives it at without a warning.
 const TOLERATED_SPEED: f64 = 0.2;
+/// (-) Part of the time that teeth may be apart without a warning.
+const TOLERATED_APART: f64 = 0.5;
+/// (-) Part of the largest torque on a shaft by which its torques may be off balance without a warning.
+const TOLERATED_IMBALANCE: f64 = 0.01;
 /// (-) How far the step may falsify the rms of a signal without a warning.
 const TOLERATED_STEP: f64 = 0.02;
+/// (-) The same of a part of a motion that does not last: of a few hits more is chance.
+const TOLERATED_STEP_OF_PART: f64 = 0.03;
 
 impl Simulation {
     /// Warnings that the signals cause: a mesh that pulls (not under `contact`, whose teeth part:
@@ -30,12 +37,54 @@ impl Simulation {
     /// # Arguments
     /// * `judgement` - how the step is judged where a resonance is suspected
     pub fn warnings_of_signals(&self, judgement: StepJudgement) -> Vec<ScenarioWarning> {
-        if self.stages.scenario.rig().is_none() {
-            return self.warnings_of_train(judgement);
-        }
-        let mut observer = Observer::new(&self.stages);
-        observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
-        self.stages.warnings_of_signals(&observer, judgement)
+        let mut warnings = match self.stages.scenario.rig() {
+            None => self.warnings_of_train(judgement),
+            Some(_) => {
+                let mut observer = Observer::new(&self.stages);
+                observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
+                // Where a part is simulated again, there is no estimate to be judged.
+                let estimated =
+                    if self.is_judged_in_part(judgement) { StepJudgement::Estimated } else { judgement };
+                self.stages.warnings_of_signals(&observer, estimated)
+            }
+        };
+        let rate_hz = self.channels.sampling_rate_hz;
+        let step = self.is_judged_in_part(judgement).then(|| step_error_of_part(self)).flatten();
+        warnings.extend(step.and_then(|error| long_step(error, rate_hz, TOLERATED_STEP_OF_PART)));
+        warnings.extend(self.silent_sensors());
+        warnings
+    }
+
+    /// Whether the step is judged by a tenth of the time that is simulated again: where the motion does not last, where teeth part, and with rolling
+    /// bearings. What fluctuates from sample to sample is another motion with another step.
+    fn is_judged_in_part(&self, judgement: StepJudgement) -> bool {
+        let stages = &self.stages;
+        let operation = &stages.scenario.operation;
+        let is_drawn = operation.speed_fluctuation_hz > 0.0 || operation.torque_fluctuation_nm > 0.0;
+        let parts = |mesh: usize| self.channels.of(SignalSource::MeshForce(mesh)).contains(&0.0);
+        judgement == StepJudgement::Repeated
+            && stages.machine().is_some()
+            && !is_drawn
+            && (!stages.is_steady()
+                || !stages.bearings.is_empty()
+                || stages.teeth_part() && (0..stages.meshes.len()).any(parts))
+    }
+
+    /// Sensors that show nothing at all.
+    fn silent_sensors(&self) -> impl Iterator<Item = ScenarioWarning> {
+        let sensors = self.stages.sensors.iter().enumerate();
+        let is_silent = |number: usize| {
+            let values = self.channels.of(SignalSource::Sensor(number));
+            !values.is_empty() && values.iter().all(|value| *value == 0.0)
+        };
+        sensors.filter(move |(number, _)| is_silent(*number)).map(|(number, sensor)| {
+            let message = format!(
+                "sensor {} shows exactly 0 throughout: nothing that is simulated moves its place in its direction; give it another place or \
+                 direction, or raise solver.highest_mode_hz",
+                sensor.name()
+            );
+            ScenarioWarning::new(WarningKind::SilentSensor, format!("sensor[{number}]"), message)
+        })
     }
 
     /// The same of shafts of beams: of the force of each mesh and the speed of each shaft.
@@ -43,24 +92,34 @@ impl Simulation {
         let (stages, channels) = (&self.stages, &self.channels);
         let (_, torque_nm) = largest_torque(&stages.scenario.operation);
         let static_n = stages.forces_of_torque_n(torque_nm);
-        let meshes = stages.layout.mesh_names.iter().zip(static_n).enumerate();
-        let forces = meshes.filter_map(|(number, (mesh, static_n))| {
-            let force_n = channels.of(SignalSource::MeshForce(number));
-            let largest_n = force_n.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-            let name = mesh.as_ref().map_or_else(|| "the mesh".to_owned(), |mesh| format!("mesh {mesh}"));
-            resonance(&name, stages.scenario.speed_key(), largest_n, static_n)
+        let figures = stages.figures(channels);
+        let meshes = figures.forces.iter().zip(static_n).enumerate();
+        let forces = meshes.filter_map(|(mesh, (force_n, static_n))| {
+            resonance(&stages.mesh_in_words(mesh), stages.scenario.speed_key(), force_n.largest(), static_n)
         });
-        let driven = stages.motion().skip(stages.time.first_kept_sample).take(channels.len());
-        let driven_hz = driven.map(|motion| motion.speed_hz).sum::<f64>() / channels.len() as f64;
-        let shafts = stages.layout.shaft_names.iter().zip(&stages.layout.ratios).enumerate();
-        let speeds = shafts.filter_map(|(number, (shaft, ratio))| {
-            let speed_hz = channels.of(SignalSource::ShaftSpeed(number));
-            let mean_hz = speed_hz.iter().sum::<f64>() / speed_hz.len() as f64;
-            other_speed(&format!("shaft {shaft:?}"), driven_hz * ratio.value().abs(), mean_hz.abs())
+        let driven_hz = stages.mean_driven_hz();
+        let shafts = stages.layout.shaft_names.iter().zip(&stages.layout.ratios).zip(&figures.speeds);
+        let speeds = shafts.filter_map(|((shaft, ratio), speed_hz)| {
+            other_speed(&format!("shaft {shaft:?}"), driven_hz * ratio.value().abs(), speed_hz.mean().abs())
         });
         let rate_hz = channels.sampling_rate_hz;
-        let step = step_error_of_signals(self, judgement).and_then(|error| long_step(error, rate_hz));
-        forces.chain(speeds).chain(step).collect()
+        let step =
+            if self.is_judged_in_part(judgement) { None } else { step_error_of_signals(self, judgement) };
+        let step = step.and_then(|error| long_step(error, rate_hz, TOLERATED_STEP));
+        let slowest =
+            stages.layout.ratios.iter().map(|ratio| ratio.value().abs()).fold(f64::INFINITY, f64::min);
+        let samples_per_turn = (stages.time.samples_per_pinion_revolution as f64 / slowest).round() as usize;
+        let is_shown = |source| matches!(source, SignalSource::Sensor(_) | SignalSource::MeshForce(_));
+        let shown = channels.signals.iter().filter(|signal| is_shown(signal.source));
+        let windows: Vec<WindowSums> = shown
+            .map(|signal| {
+                let mut windows = WindowSums::new(channels.len(), samples_per_turn);
+                windows.add(&signal.values);
+                windows
+            })
+            .collect();
+        let broken = stages.imbalance(&figures).into_iter().chain(stages.rattle(&figures));
+        forces.chain(speeds).chain(step).chain(stages.unsettled(&windows)).chain(broken).collect()
     }
 }
 
@@ -74,13 +133,44 @@ impl Stages {
         let is_damaged = self.pairs.iter().any(|pair| !pair.damaged.is_empty());
         let pulling = (!self.teeth_part()).then(|| tension(&observer.force, is_damaged)).flatten();
         let rate_hz = self.time.sampling_rate_hz;
-        let step = step_error(self, observer, judgement).and_then(|error| long_step(error, rate_hz));
+        let step =
+            step_error(self, observer, judgement).and_then(|error| long_step(error, rate_hz, TOLERATED_STEP));
         let (_, torque_nm) = largest_torque(&self.scenario.operation);
         let static_n = self.forces_of_torque_n(torque_nm)[0];
         let resonance = resonance("the mesh", self.scenario.speed_key(), observer.force.largest_n, static_n);
         let braked = self.braked_rotation(observer.force.mean_n());
-        let doubtful = [pulling, resonance, braked, self.other_speed(observer), step];
+        let unsettled = self.unsettled(&observer.windows);
+        let (imbalance, rattle) = (self.imbalance(&observer.figures), self.rattle(&observer.figures));
+        let doubtful =
+            [pulling, resonance, braked, self.other_speed(observer), step, unsettled, imbalance, rattle];
         doubtful.into_iter().flatten().collect()
+    }
+
+    /// A shaft whose torques do not balance.
+    fn imbalance(&self, figures: &Figures) -> Option<ScenarioWarning> {
+        let worst = self
+            .imbalances(figures)
+            .into_iter()
+            .max_by(|a, b| a.part.max(a.lost).total_cmp(&b.part.max(b.lost)))?;
+        (worst.part.max(worst.lost) > TOLERATED_IMBALANCE).then(|| {
+            let message = format!("{}; {}", worst.words, self.help_of_imbalance());
+            ScenarioWarning::new(WarningKind::TorqueImbalance, "operation.brake_torque_nm", message)
+        })
+    }
+
+    /// A mesh whose teeth bounce: their motion is chaotic, and another step, seed or settling gives another.
+    fn rattle(&self, figures: &Figures) -> Option<ScenarioWarning> {
+        let meshes = figures.forces.iter().map(SignalFigures::part_of_zeros).enumerate();
+        let (mesh, part) = meshes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (self.teeth_part() && part > TOLERATED_APART).then(|| {
+            let message = format!(
+                "the teeth of {} are apart for {:.0} % of the time: they bounce, and when each strikes depends on the smallest change \
+                 of rate, seed or settling; compare statistics of long signals, or load the teeth",
+                self.mesh_in_words(mesh),
+                100.0 * part
+            );
+            ScenarioWarning::new(WarningKind::Rattle, "operation.brake_torque_nm", message)
+        })
     }
 
     /// A mean mesh force under the published model that is not the load's, because its damping acts on the rotation of the whole machine too.
@@ -99,16 +189,8 @@ impl Stages {
 
     /// A shaft whose mean speed is not what it is driven at.
     fn other_speed(&self, observer: &Observer) -> Option<ScenarioWarning> {
-        let [pinion_hz, gear_hz] = observer.mean_speeds_hz();
-        let operation = &self.scenario.operation;
-        let driven_hz = match operation.speed_profile_hz {
-            None => operation.pinion_speed_hz,
-            Some(_) => {
-                let kept = self.motion().skip(self.time.first_kept_sample);
-                let driven = kept.take(observer.force.samples).map(|motion| motion.speed_hz);
-                driven.sum::<f64>() / observer.force.samples as f64
-            }
-        };
+        let [pinion_hz, gear_hz] = [0, 1].map(|shaft| observer.figures.speeds[shaft].mean());
+        let driven_hz = self.mean_driven_hz();
         let Gears { pinion_teeth, gear_teeth, .. } = self.layout.gears[0];
         let ratio = f64::from(pinion_teeth) / f64::from(gear_teeth);
         let turning = [("pinion", driven_hz, pinion_hz), ("gear", driven_hz * ratio, gear_hz)];
@@ -156,7 +238,8 @@ fn resonance(mesh: &str, key: &str, largest_n: f64, static_n: f64) -> Option<Sce
 /// # Arguments
 /// * `error` - its estimate
 /// * `rate_hz` - (S/s) the simulation's sampling rate
-fn long_step(error: StepError, rate_hz: f64) -> Option<ScenarioWarning> {
+/// * `tolerated` - (-) error that is not worth a word
+fn long_step(error: StepError, rate_hz: f64, tolerated: f64) -> Option<ScenarioWarning> {
     let (error, shown) = match error {
         StepError::Suspected(error) => (error, format!("and the rms may be wrong by {:.1} %", 100.0 * error)),
         StepError::Shown { gain, finer_rate_hz } => {
@@ -166,8 +249,8 @@ fn long_step(error: StepError, rate_hz: f64) -> Option<ScenarioWarning> {
             (gain.abs() / (1.0 - (rate_hz / finer_rate_hz).powi(2)), shown)
         }
     };
-    (error > TOLERATED_STEP).then(|| {
-        let finer_hz = rate_hz * (error / TOLERATED_STEP).sqrt().clamp(1.2, 10.0);
+    (error > tolerated).then(|| {
+        let finer_hz = rate_hz * (error / tolerated).sqrt().clamp(1.2, 10.0);
         let message = format!(
             "at {rate_hz:.0} S/s the step shifts a resonance that the teeth excite, {shown}; set sampling_rate_hz = {finer_hz:.2e}, \
              and more until this goes"

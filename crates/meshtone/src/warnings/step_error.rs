@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use crate::error::Error;
 use crate::machine::{Axis, PINION_SUPPORT};
 use crate::operation::greatest_common_divisor;
-use crate::sensor::{ChannelKind, Sensor, SignalSource};
+use crate::sensor::{ChannelKind, NamedSignal, Sensor, SensorDirection, SignalSource};
 use crate::simulate::{Simulation, Stages, stages_within};
-use crate::solver::{Block, MeanMachine, Output, Recorder};
+use crate::solver::{Block, MeanMachine, MotionState, Output, Recorder};
 use crate::wheel::Gears;
 use meshtone_fourier::real_spectrum;
 
@@ -77,8 +77,7 @@ fn judged(
         return Some(StepError::Suspected(estimate));
     };
     let gains = coarse.iter().zip(squares.rms()).map(|(&coarse, finer)| gain(coarse, finer));
-    let gain = gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most });
-    Some(StepError::Shown { gain, finer_rate_hz })
+    Some(StepError::Shown { gain: largest(gains), finer_rate_hz })
 }
 
 /// The error of a pair's step: by its vertical acceleration and its mesh force, whose sums over turns have the lines.
@@ -103,16 +102,23 @@ pub(super) fn step_error(
 /// Sums of the squares of outputs, whose samples are kept nowhere.
 struct SquareSums {
     samples: usize,
-    sums: Vec<f64>,
+    /// Of the values and of their squares.
+    sums: Vec<[f64; 2]>,
 }
 
 impl SquareSums {
     fn of(outputs: usize) -> Self {
-        Self { samples: 0, sums: vec![0.0; outputs] }
+        Self { samples: 0, sums: vec![[0.0; 2]; outputs] }
     }
 
     fn rms(&self) -> impl Iterator<Item = f64> {
-        self.sums.iter().map(|sum| (sum / self.samples.max(1) as f64).sqrt())
+        self.sums.iter().map(|[_, squares]| (squares / self.samples.max(1) as f64).sqrt())
+    }
+
+    /// Standard deviation of each output.
+    fn deviations(&self) -> impl Iterator<Item = f64> {
+        let count = self.samples.max(1) as f64;
+        self.sums.iter().map(move |[sum, squares]| (squares / count - (sum / count).powi(2)).max(0.0).sqrt())
     }
 }
 
@@ -120,7 +126,10 @@ impl Recorder for SquareSums {
     fn record(&mut self, block: &Block) {
         self.samples += block.len();
         for (index, sum) in self.sums.iter_mut().enumerate() {
-            *sum = block.output(index).iter().fold(*sum, |sum, value| sum + value * value);
+            *sum = block
+                .output(index)
+                .iter()
+                .fold(*sum, |[sum, squares], value| [sum + value, squares + value * value]);
         }
     }
 }
@@ -208,6 +217,46 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
     })
 }
 
+/// The error of the step in the most violent of the tenths of the kept time: that is simulated again with half the step, from the motion with
+/// which it began. It needs no motion that lasts.
+pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
+    let Simulation { stages, channels, states, .. } = simulation;
+    let signals = channels.signals.iter().zip(stages.scenario.outputs());
+    // What a random force adds to a sensor is not in its motion, which alone is simulated again.
+    let is_motion = |source| !(stages.random_forces.is_some() && matches!(source, SignalSource::Sensor(_)));
+    let (signals, outputs): (Vec<_>, Vec<Output>) =
+        signals.filter(|(of, _)| is_judged(of.source, stages) && is_motion(of.source)).unzip();
+    let part = |state: &MotionState| {
+        let from = state.sample - stages.time.first_kept_sample;
+        from..(from + channels.len() / 10).min(channels.len())
+    };
+    let violence = |state: &MotionState| -> f64 {
+        let relative = |signal: &&NamedSignal| {
+            let whole = mean_square(&signal.values);
+            if whole < ROUNDING * ROUNDING { 0.0 } else { mean_square(&signal.values[part(state)]) / whole }
+        };
+        signals.iter().map(relative).sum()
+    };
+    let violent = states.iter().max_by(|a, b| violence(a).total_cmp(&violence(b)))?;
+    let samples = part(violent);
+    let mut squares = SquareSums::of(outputs.len());
+    if stages.integrate_part_finer(violent, samples.len(), &outputs, &mut squares).is_err() {
+        return Some(StepError::Suspected(1.0));
+    }
+    let deviation = |values: &[f64]| {
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        (mean_square(values) - mean * mean).max(0.0).sqrt()
+    };
+    let coarse = signals.iter().map(|signal| deviation(&signal.values[samples.clone()]));
+    let gain = largest(coarse.zip(squares.deviations()).map(|(coarse, finer)| gain(coarse, finer)));
+    Some(StepError::Shown { gain, finer_rate_hz: 2.0 * channels.sampling_rate_hz })
+}
+
+/// The number of some that is the farthest from 0.
+fn largest(gains: impl Iterator<Item = f64>) -> f64 {
+    gains.fold(0.0, |most: f64, gain| if gain.abs() > most.abs() { gain } else { most })
+}
+
 /// (-) Part of a gearbox's signal's power from which a line of its spectrum counts: there are many lines.
 const STRONG_PART: f64 = 1e-4;
 
@@ -215,7 +264,7 @@ const STRONG_PART: f64 = 1e-4;
 fn is_judged(source: SignalSource, stages: &Stages) -> bool {
     match source {
         SignalSource::Sensor(number) => stages.sensors.get(number).is_some_and(is_plain),
-        SignalSource::MeshForce(_) => true,
+        SignalSource::MeshForce(_) | SignalSource::Supports(SensorDirection::Vertical) => true,
         _ => false,
     }
 }

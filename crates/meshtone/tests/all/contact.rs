@@ -108,6 +108,7 @@ fn motor_and_brake_put_in_what_damping_takes() {
     let mut scenario = of_rig(0);
     scenario.operation.torque_profile_nm =
         Some(Profile { time_s: vec![0.0, 0.2, 0.3, 1.0, 3.0], value: vec![10.0, 10.0, 25.0, 8.0, 12.0] });
+    scenario.solver.settle_fraction = 0.0;
     let mut stages = stages(&scenario).unwrap();
     let torque: Vec<f64> = stages.motion().take(stages.time.samples).map(|now| now.torque_nm).collect();
     let mesh = &mut stages.meshes[0];

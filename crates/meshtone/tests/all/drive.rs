@@ -99,8 +99,12 @@ fn mesh_force_follows_a_torque_profile() {
     let base_radius_m = 0.060 * 20f64.to_radians().cos();
     let window = (channels.sampling_rate_hz / 15.0).round() as usize;
     let mut worst: f64 = 0.0;
-    for start in (0..channels.len() - window).step_by(window).skip(4) {
+    for start in (0..channels.len() - window).step_by(window) {
         let middle = channels.time_s(start) + 0.5 * window as f64 / channels.sampling_rate_hz;
+        // Behind the corner, where the train swings.
+        if middle < duration / 2.0 + 0.27 {
+            continue;
+        }
         let torque = 20.0 + 60.0 * (middle - duration / 2.0) / (duration / 2.0);
         worst = worst.max(
             deviation(mean(&channels["mesh_force_n"][start..start + window]), torque / base_radius_m).abs(),

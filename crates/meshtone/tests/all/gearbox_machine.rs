@@ -170,7 +170,7 @@ fn beams_and_meshes_have_the_frequencies_and_responses_of_ross() {
         helix_angle_rad: 0.0,
     };
     let mut bearing = Bearing::new("", 0.0);
-    bearing.axial_stiffness_n_per_m = 5e7;
+    bearing.axial_stiffness_n_per_m = Some(5e7);
     bearing.tilt_stiffness_nm_per_rad = 0.0;
     // The bearings sit on the ground.
     let machine = held(&stages.machine(&bearing, None).machine, 162);

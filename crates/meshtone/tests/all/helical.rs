@@ -500,7 +500,7 @@ fn impossible_helices_are_refused() {
     };
     let sliding = |gearbox: &mut Scenario| {
         let middle = gearbox.bearings_mut().iter_mut().filter(|bearing| bearing.shaft == "middle");
-        middle.for_each(|bearing| bearing.axial_stiffness_n_per_m = 0.0);
+        middle.for_each(|bearing| bearing.axial_stiffness_n_per_m = Some(0.0));
     };
     refused(&sliding, "wheel[1].shaft", "no bearing holds the shaft along its axis");
     // An idler between two wheels: driven in the first mesh it is left-handed, and has to drive in the second one as such.

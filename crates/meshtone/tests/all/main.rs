@@ -19,6 +19,7 @@ mod helical;
 mod hybrid;
 mod hybrid_experiment;
 mod hybrid_rig;
+mod laws;
 mod linear_mesh;
 mod other_programs;
 mod paper_original;

@@ -192,7 +192,9 @@ fn long_step(simulation: &Simulation) -> Option<(f64, f64)> {
 /// What is told is most of what a much finer step shows, and the rate that is named mends it.
 #[test]
 fn a_step_that_shifts_a_resonance_is_told_with_its_error() {
-    for (damping_ratio, harmonic) in [(0.005, 2.0), (0.01, 4.0), (0.02, 3.0), (0.02, 2.0)] {
+    // At 0.005 and the second harmonic the varying stiffness adds more than the damping takes: that is refused.
+    assert!(matches!(simulate(resonant(0.005, 2.0)), Err(meshtone::Error::Diverged { .. })));
+    for (damping_ratio, harmonic) in [(0.01, 4.0), (0.02, 3.0), (0.02, 2.0)] {
         let scenario = resonant(damping_ratio, harmonic);
         let coarse = at_rate(&scenario, 5e4);
         let fine = at_rate(&scenario, 2e6);
@@ -278,14 +280,14 @@ fn examples_at_their_own_rate_are_not_warned_of() {
 
 #[test]
 fn a_resonance_beyond_all_measure_is_told() {
-    let mut scenario = resonant(0.0, 1.0);
-    scenario.operation.brake_torque_nm = 0.05;
+    let mut scenario = resonant(0.02, 2.0);
+    scenario.operation.brake_torque_nm = 0.005;
     scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 7);
     let simulation = simulate(&scenario).unwrap();
     let warnings = simulation.warnings_of_signals(meshtone::StepJudgement::Repeated);
     let told = about(&warnings, "operation.pinion_speed_hz").unwrap();
     assert!(
-        told.contains("times the static 0.9853 N: a resonance that no machine survives, or a load too light"),
+        told.contains("times the static 0.0985 N: a resonance that no machine survives, or a load too light"),
         "{told}"
     );
 }

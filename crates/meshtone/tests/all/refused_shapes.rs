@@ -54,13 +54,13 @@ fn the_kept_signal_has_one_length() {
     is(kept_s(&|_| ()), 38.0 / 40.0);
     is(kept_s(&|scenario| scenario.solver.duration_s = Some(0.3)), 0.3);
     is(kept_s(&|scenario| scenario.solver.pinion_revolutions = Some(7.5)), 7.5 / 40.0);
-    is(kept_s(&|scenario| profile(scenario, 0.9)), 0.45);
-    let both = |scenario: &mut Scenario| {
+    is(kept_s(&|scenario| profile(scenario, 0.9)), 0.9);
+    let both = |scenario: &mut Scenario, duration_s: f64| {
         profile(scenario, 0.9);
-        scenario.solver.duration_s = Some(0.6);
+        scenario.solver.duration_s = Some(duration_s);
         scenario.solver.settle_fraction = 0.25;
     };
-    is(kept_s(&both), 0.6);
+    is(kept_s(&|scenario| both(scenario, 0.9)), 0.9);
 
     let refused = |change: &dyn Fn(&mut Scenario)| kept_s(change).unwrap_err();
     let with_profile = |scenario: &mut Scenario| {
@@ -68,6 +68,7 @@ fn the_kept_signal_has_one_length() {
         scenario.solver.pinion_revolutions = Some(7.5);
     };
     assert_eq!(refused(&with_profile), "solver.pinion_revolutions");
+    assert_eq!(refused(&|scenario| both(scenario, 0.6)), "solver.duration_s");
     let twice = |scenario: &mut Scenario| {
         (scenario.solver.duration_s, scenario.solver.pinion_revolutions) = (Some(0.3), Some(7.5));
     };

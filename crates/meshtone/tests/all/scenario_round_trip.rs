@@ -46,14 +46,12 @@ fn profile() -> impl Strategy<Value = Option<Profile>> {
     let points = prop::collection::vec((1e-3..2.0, 5.0..100.0), 2..20);
     option::of(points.prop_map(|points| {
         let (steps, value): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-        let mut time = -1.0;
+        let mut time = 0.0;
         let elapsed = |step| {
             time += step;
             time
         };
-        let mut time_s: Vec<f64> = steps.into_iter().map(elapsed).collect();
-        // A speed profile has to outlast the settling.
-        time_s[value.len() - 1] += 100.0;
+        let time_s = steps.into_iter().map(elapsed).collect();
         Profile { time_s, value }
     }))
 }
@@ -315,6 +313,11 @@ fn scenario() -> impl Strategy<Value = Scenario> {
                 scenario.operation = operation;
                 scenario.set_quality(quality);
                 scenario.solver = solver;
+                let profiles = [&scenario.operation.speed_profile_hz, &scenario.operation.torque_profile_nm];
+                if profiles.iter().any(|profile| profile.is_some()) {
+                    // A profile is kept whole.
+                    (scenario.solver.duration_s, scenario.solver.pinion_revolutions) = (None, None);
+                }
                 scenario
             },
         )
@@ -326,8 +329,8 @@ proptest! {
 
     #[test]
     fn scenarios_survive_being_written_and_read(scenario in scenario()) {
-        // A long speed profile may need more memory than is allowed, and a tooth that is small may not bear the default
-        // relief, which the published model always has.
+        // Two profiles may end at different times, and a tooth that is small may not bear the default relief, which the published model
+        // always has.
         prop_assume!(scenario.validate().is_ok());
         let text = scenario.to_toml();
         let read = Scenario::from_toml(&text);

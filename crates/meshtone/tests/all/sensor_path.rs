@@ -56,7 +56,7 @@ fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s
     machine.sensors[0].frequency_response = Some(hidden_response());
     machine.sensors[0].noise_density_g_per_rthz = 2e-6;
     machine.operation.pinion_speed_hz = (from_hz + to_hz) / 2.0;
-    let time_s = vec![0.5, 0.5 + length_s];
+    let time_s = vec![0.0, length_s];
     machine.operation.speed_profile_hz = Some(Profile { time_s, value: vec![from_hz, to_hz] });
     machine.solver.discard_and_keep(0.5, length_s);
     let channels = meshtone::simulate(&machine).unwrap().channels;
@@ -193,7 +193,7 @@ fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) ->
     sensor.noise_density_g_per_rthz = 2e-6;
     let drive = &mut machine.operation;
     drive.pinion_speed_hz = (from_hz + to_hz) / 2.0;
-    drive.speed_profile_hz = Some(Profile { time_s: vec![0.5, 0.5 + length_s], value: vec![from_hz, to_hz] });
+    drive.speed_profile_hz = Some(Profile { time_s: vec![0.0, length_s], value: vec![from_hz, to_hz] });
     machine.solver.discard_and_keep(0.5, length_s);
     let channels = meshtone::simulate(&machine).unwrap().channels;
     let input = ShaftPhase::of_simulated_input(&machine, channels.start_s, channels.len()).unwrap();

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use meshtone::scenario::*;
-use meshtone::{simulate, stages, stages_and_warnings};
+use meshtone::{Simulation, StepJudgement, simulate};
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|x| x * x).sum::<f64>().sqrt()
@@ -84,71 +84,68 @@ fn what_does_not_repeat_settles_for_long() {
     assert_eq!(start(&|scenario| scenario.rig_mut().unwrap().damping_ratio = DampingRatio::Uniform(0.0)), 0);
 }
 
-/// The number that follows some words of a warning.
-fn advised(warnings: &[ScenarioWarning], words: &str) -> Option<f64> {
-    let (_, rest) = warnings.iter().find_map(|warning| warning.message.split_once(words))?;
-    let number = rest.split(|sign: char| !sign.is_ascii_digit() && sign != '.').next()?;
-    number.trim_end_matches('.').parse().ok()
+fn unsettled(simulation: &Simulation) -> Option<ScenarioWarning> {
+    let warnings = simulation.warnings_of_signals(StepJudgement::Estimated);
+    warnings.into_iter().find(|warning| warning.kind == WarningKind::Unsettled)
 }
 
-/// Follows the advice of all warnings about settling and profiles at once.
-fn follow(warnings: &[ScenarioWarning], operation: &mut Operation, solver: &mut Solver) {
-    solver.duration_s = advised(warnings, "give solver.duration_s = ").or(solver.duration_s);
-    solver.settle_fraction =
-        advised(warnings, "raise solver.settle_fraction to ").unwrap_or(solver.settle_fraction);
-    // What settling needs stands first, and is at least what the profile itself asks for.
-    if let Some(later_s) = advised(warnings, ", and add ").or(advised(warnings, "; add ")) {
-        for profile in [&mut operation.speed_profile_hz, &mut operation.torque_profile_nm] {
-            profile.iter_mut().flat_map(|profile| &mut profile.time_s).for_each(|time_s| *time_s += later_s);
-        }
-    }
-}
-
-fn is_of_start(warning: &ScenarioWarning) -> bool {
-    matches!(warning.kind, WarningKind::Unsettled | WarningKind::ProfileEnded)
+// It starts from rest, and the motor pulls it up through its damped shaft.
+#[test]
+fn a_motion_that_has_not_settled_is_told_by_its_signal() {
+    let mut scenario = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
+    scenario.solver.sampling_rate_hz = 2e4;
+    (scenario.solver.duration_s, scenario.solver.settle_fraction) = (Some(1.0), 0.01);
+    // From equilibrium hardly anything has to settle, however little time it has.
+    assert_eq!(unsettled(&simulate(&scenario).unwrap()), None);
+    scenario.solver.initial_velocity = Some([0.0; 13]);
+    let told = unsettled(&simulate(&scenario).unwrap()).unwrap();
+    assert!(told.message.contains("changes the rms of the kept signal by"), "{told}");
+    assert!(told.message.contains("times as long"), "{told}");
+    scenario.solver.discard_and_keep(4.0, 1.0);
+    assert_eq!(unsettled(&simulate(&scenario).unwrap()), None);
 }
 
 #[test]
-fn advice_on_settling_and_profiles_can_be_followed_together() {
-    let run_up = |end_s: f64| Profile { time_s: vec![0.0, end_s], value: vec![30.0, 50.0] };
-    // Length given or not; a profile that ends before a start that settles, or lasts.
-    for (end_s, duration_s, settle_fraction) in [
-        (0.1, Some(1.0), 0.5),
-        (0.1, Some(0.1), 0.1),
-        (0.1, Some(0.2), 0.01),
-        (0.05, None, 0.3),
-        (3.0, None, 0.01),
-    ] {
-        let mut scenario = Scenario::new(GearPair::example());
-        scenario.operation.speed_profile_hz = Some(run_up(end_s));
-        (scenario.solver.duration_s, scenario.solver.settle_fraction) = (duration_s, settle_fraction);
-        let warnings = |scenario: &Scenario| {
-            let (_, warnings) = stages_and_warnings(scenario, MemoryLimit::default()).unwrap();
-            warnings.into_iter().filter(is_of_start).collect::<Vec<_>>()
-        };
-        let before = warnings(&scenario);
-        assert!(!before.is_empty(), "{end_s} {duration_s:?}");
-        follow(&before, &mut scenario.operation, &mut scenario.solver);
-        let after = warnings(&scenario);
-        assert!(after.is_empty(), "{before:?}\n{after:?}");
-        let profile = scenario.operation.speed_profile_hz.as_ref().unwrap();
-        assert!(*profile.time_s.last().unwrap() > scenario.time_grid().kept_from_s());
-    }
+fn the_stock_gearbox_has_settled() {
+    let gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
+    let simulation = simulate(&gearbox).unwrap();
+    assert_eq!(unsettled(&simulation), None);
+    assert_eq!(simulation.channels.start_s, 0.0);
 }
 
 #[test]
-fn a_gearbox_whose_profile_ends_says_how_it_can_last() {
+fn a_profile_is_kept_from_its_first_to_its_last_value() {
     let mut gearbox = Scenario::from_toml(&gearbox_template(None)).unwrap();
-    gearbox.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.3], value: vec![20.0, 30.0] });
-    (gearbox.solver.duration_s, gearbox.solver.settle_fraction) = (Some(0.5), 0.5);
-    let warnings = |gearbox: &Scenario| {
-        let warnings = stages(gearbox).unwrap().warnings();
-        warnings.into_iter().filter(is_of_start).collect::<Vec<_>>()
-    };
-    let before = warnings(&gearbox);
-    assert!(before.iter().any(|warning| warning.kind == WarningKind::ProfileEnded), "{before:?}");
-    assert!(before.iter().any(|warning| warning.kind == WarningKind::Unsettled), "{before:?}");
-    follow(&before, &mut gearbox.operation, &mut gearbox.solver);
-    let after = warnings(&gearbox);
-    assert!(after.is_empty(), "{before:?}\n{after:?}");
+    gearbox.solver.sampling_rate_hz = 2e4;
+    gearbox.solver.duration_s = None;
+    gearbox.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.6], value: vec![10.0, 50.0] });
+    let channels = simulate(&gearbox).unwrap().channels;
+    assert_eq!(channels.start_s, 0.0);
+    assert!((channels.len() as f64 / channels.sampling_rate_hz - 0.6).abs() < 1e-3, "{}", channels.len());
+    let speed = channels.signal("speed_hz.input").unwrap();
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    let window = speed.len() / 60;
+    // Over the first and the last hundredth of a second.
+    let [first, last] = [mean(&speed[..window]), mean(&speed[speed.len() - window..])];
+    println!("{first:.3} to {last:.3} rev/s");
+    assert!((first - 10.33).abs() < 0.3 && (last - 49.67).abs() < 0.5, "{first} {last}");
+    // Another length is refused, the same one is not.
+    for (duration_s, is_allowed) in [(0.6, true), (0.5, false)] {
+        gearbox.solver.duration_s = Some(duration_s);
+        assert_eq!(gearbox.validate().is_ok(), is_allowed, "{duration_s}");
+    }
+    let error = gearbox.validate().unwrap_err();
+    assert_eq!(error.key, "solver.duration_s");
+    assert!(error.problem.contains("a profile that ends at 0.6 s"), "{error}");
+}
+
+#[test]
+fn a_speed_profile_needs_no_speed_beside_it() {
+    let text = gearbox_template(None)
+        .replace("input_speed_hz = 30.0", "speed_profile_hz = { time_s = [0.0, 1.0], value = [30.0, 45.0] }");
+    let gearbox = Scenario::from_toml(&text).unwrap();
+    assert_eq!(gearbox.operation.pinion_speed_hz, 45.0);
+    assert_eq!(Scenario::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
+    let neither = gearbox_template(None).replace("input_speed_hz = 30.0\n", "");
+    assert_eq!(Scenario::from_toml(&neither).unwrap_err().key, "operation.input_speed_hz");
 }

@@ -43,7 +43,7 @@ fn the_average_is_that_of_the_samples() {
         let per_revolution = (channels.sampling_rate_hz / shafts.mean_speed_hz(shaft)).round() as usize;
         let record = shafts.process(&channels["vertical_g"], shaft, &ChainSettings::default()).unwrap();
         let mut expected = revolution_average(&channels["vertical_g"], per_revolution);
-        let start = (channels.start_s * channels.sampling_rate_hz).round() as usize;
+        let start = scenario.time_grid().first_kept_sample;
         expected.rotate_right(start % per_revolution);
         assert_eq!(record.average.revolutions * per_revolution, channels.len());
         let off = expected.iter().zip(&record.average.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -118,24 +118,29 @@ fn what_is_refused() {
 /// A right recording in which the speed rises by 1 % to five times: resonances ring between the orders of both shafts.
 #[test]
 fn a_rising_speed_with_its_own_facts_is_not_doubted() {
+    let mut seen = 0;
     for ratio in [1.01, 1.02, 1.05, 1.09, 1.15, 5.0] {
         let mut scenario = faulty();
         scenario.faults.clear();
         let (time_s, value) = (vec![0.0, 0.2, 4.0], vec![40.0 / ratio, 40.0 / ratio, 40.0]);
         scenario.operation.speed_profile_hz = Some(Profile { time_s, value });
         let channels = channels(&scenario);
-        let shafts = SimulatedShafts::of_channels(&scenario, &channels);
+        // The second half, long after the corner.
+        let signal = &channels["vertical_g"][channels.len() / 2..];
+        let start_s = channels.time_s(channels.len() / 2);
+        let shafts = SimulatedShafts::new(&scenario, start_s, signal.len());
         let phase = shafts.varying_phase(WheelName::Pinion).unwrap().unwrap();
-        let angular = angular_resample(&channels["vertical_g"], &phase, &AngularSettings::default()).unwrap();
+        let angular = angular_resample(signal, &phase, &AngularSettings::default()).unwrap();
         let turning = StatedTurning::Pulses { per_revolution: 1 };
         let said = |teeth: u32, mate_teeth: u32| {
             let stated = StatedFacts { teeth, mate_teeth: Some(mate_teeth), turning };
             check_recording(&angular, &stated, &phase, channels.sampling_rate_hz)
         };
         assert_eq!(said(20, 40), [], "{ratio}");
-        // Whose wrong mate is seen in most of them.
-        assert!(ratio < 1.02 || !said(20, 41).is_empty(), "{ratio}");
+        seen += usize::from(!said(20, 41).is_empty());
     }
+    // A wrong mate is seen in most of them.
+    assert!(seen >= 4, "{seen}");
 }
 
 #[test]
@@ -143,7 +148,7 @@ fn a_run_up_has_its_energy_at_mesh_orders_at_every_speed() {
     let mut scenario = faulty();
     scenario.faults.clear();
     scenario.wheels.iter_mut().for_each(|wheel| wheel.din_grade = 0);
-    let (time_s, value) = (vec![0.0, 0.2, 2.0], vec![8.0, 8.0, 40.0]);
+    let (time_s, value) = (vec![0.0, 1.8], vec![8.0, 40.0]);
     scenario.operation.speed_profile_hz = Some(Profile { time_s, value });
     scenario.solver.settle_fraction = 0.1;
     let channels = channels(&scenario);

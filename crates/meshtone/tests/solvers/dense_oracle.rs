@@ -29,6 +29,7 @@ fn difference(modal: &[Vec<f64>], dense: &[DVector<f64>]) -> f64 {
 }
 
 fn driven_unsteadily(scenario: &mut Scenario, random: &mut impl FnMut(f64, f64) -> f64) {
+    scenario.solver.settle_fraction = 0.0;
     let operation = &mut scenario.operation;
     let (speed, torque) = (operation.pinion_speed_hz, operation.brake_torque_nm);
     let seconds = 2.0 * f64::from(scenario.wheels[1].teeth) / speed;

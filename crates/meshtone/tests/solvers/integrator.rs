@@ -159,6 +159,8 @@ fn smoothly_forced(sampling_rate_hz: f64, seconds: f64, swing: f64, damping_rati
     let time_s: Vec<f64> = (0..(seconds / dt) as usize + 3).map(|i| i as f64 * dt).collect();
     let value = time_s.iter().map(|t| 10.0 * (1.0 + swing * (SWING_RAD_PER_S * t).cos())).collect();
     scenario.operation.torque_profile_nm = Some(Profile { time_s, value });
+    (scenario.solver.duration_s, scenario.solver.pinion_revolutions) = (None, None);
+    scenario.solver.settle_fraction = 0.0;
     of_constant_stiffness(&scenario, seconds)
 }
 

@@ -41,6 +41,11 @@ impl Beam {
         PI / 4.0 * (self.radius_m.powi(4) - self.bore_radius_m.powi(4))
     }
 
+    /// (kg m²) Moment of inertia about the shaft.
+    pub(super) fn polar_kgm2(&self) -> f64 {
+        self.material.density_kg_per_m3() * 2.0 * self.second_moment_m4() * self.length_m
+    }
+
     /// (-) Shear coefficient κ of a round cross-section, hollow or not.
     fn shear_coefficient(&self) -> f64 {
         let (nu, hollow) = (self.material.poisson_ratio(), (self.bore_radius_m / self.radius_m).powi(2));

@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::body::WheelBody;
 use super::parts::{AcrossLine, Axis, Drive, LineOfAction, Machine, Place, Spring};
 use super::{TurningForce, Unbalance};
+use crate::keys::Keys;
 use crate::wheel::Material;
 use beam::{Beam, PER_NODE};
 pub use housing_modes::HousingModes;
@@ -85,8 +86,9 @@ impl<'a> SeatedBearing<'a> {
     /// * `shaft` - number of the shaft
     /// * `bearing` - what the scenario says of it
     pub fn linear(shaft: usize, bearing: &'a Bearing) -> Self {
-        let stiffness = bearing.stiffness_n_per_m;
-        Self { shaft, bearing, radial_n_per_m: [[stiffness, 0.0], [0.0, stiffness]] }
+        let along_x = bearing.stiffness_n_per_m;
+        let along_y = bearing.vertical_stiffness_n_per_m.unwrap_or(along_x);
+        Self { shaft, bearing, radial_n_per_m: [[along_x, 0.0], [0.0, along_y]] }
     }
 }
 
@@ -123,7 +125,7 @@ pub enum GearboxPlace {
 pub struct GearboxMachine {
     /// Its parts.
     pub machine: Machine,
-    /// (m) For each shaft, z of its nodes, with the first coordinate of each.
+    /// (m) For each shaft, how far from its beginning its nodes lie, with the first coordinate of each.
     nodes: Vec<Vec<(f64, usize)>>,
     /// First coordinate of the housing and (m) its centre; none without one.
     housing: Option<(usize, Vector3<f64>)>,
@@ -257,7 +259,7 @@ fn point_of_body(body: usize, r: Vector3<f64>) -> [Vec<(usize, f64)>; 3] {
 impl GearboxMachine {
     /// Puts the machine together.
     ///
-    /// Coordinates are counted shaft by shaft, node by node from z = 0 on; then come the housing, the seats in the order of the bearings,
+    /// Coordinates are counted shaft by shaft, node by node from its beginning on; then come the housing, the seats in the order of the bearings,
     /// the brake's rotation, the modes of the housing, and the rotations of wheels on elastic bodies. The parts are then added one after the other.
     ///
     /// # Arguments
@@ -409,13 +411,14 @@ impl GearboxMachine {
             parts.bearings.iter().zip(&self.seats).enumerate()
         {
             let (of_shaft, [x_m, y_m]) = parts.shafts[shaft];
-            let z_m = bearing.at * of_shaft.length_mm * 1e-3;
-            let node = self.node(shaft, z_m);
-            let Seat { mass_kg, inertia_kgm2, stiffness_n_per_m, tilt_stiffness_nm_per_rad } = bearing.seat;
+            let z_m = of_shaft.z_mm(bearing.at) * 1e-3;
+            let node = self.node(shaft, bearing.at * of_shaft.length_mm * 1e-3);
+            let Seat { mass_kg, inertia_kgm2, tilt_stiffness_nm_per_rad, .. } = bearing.seat;
+            let of_seat = along_axes(bearing.seat.stiffness_n_per_m, bearing.seat.vertical_stiffness_n_per_m);
             assembly.add_body(seat, mass_kg, [inertia_kgm2; 3]);
             let tilt = bearing.tilt_stiffness_nm_per_rad;
             let [[xx, xy], [_, yy]] = radial_n_per_m;
-            let inner = [xx, yy, bearing.axial_stiffness_n_per_m, tilt, tilt];
+            let inner = [xx, yy, bearing.axial_n_per_m(), tilt, tilt];
             let stretch = |coordinate: usize| [(node + coordinate, 1.0), (seat + coordinate, -1.0)];
             for (coordinate, stiffness) in inner.into_iter().enumerate() {
                 assembly.hold(&stretch(coordinate), stiffness, bearing.damping_ratio);
@@ -432,7 +435,7 @@ impl GearboxMachine {
                 let shapes = self.housing_shapes(HousingPoint::Seat(number), axis);
                 let held = held.into_iter().chain(shapes);
                 stretch.extend(held.map(|(coordinate, weight)| (coordinate, -weight)));
-                assembly.hold(&stretch, stiffness_n_per_m, bearing.damping_ratio);
+                assembly.hold(&stretch, of_seat[axis], bearing.damping_ratio);
                 let mut twist = vec![(seat + 3 + axis, 1.0)];
                 twist.extend(self.housing.map(|(housing, _)| (housing + 3 + axis, -1.0)));
                 assembly.hold(&twist, tilt_stiffness_nm_per_rad, bearing.damping_ratio);
@@ -441,8 +444,9 @@ impl GearboxMachine {
         if let (Some(housing), Some((body, centre))) = (parts.housing, self.housing) {
             for foot in feet(housing, parts.shafts) {
                 let place = Vector3::from(foot.at_mm) * 1e-3;
-                for stretch in point_of_body(body, place - centre) {
-                    assembly.hold(&stretch, foot.stiffness_n_per_m, housing.damping_ratio);
+                let of_foot = along_axes(foot.stiffness_n_per_m, foot.vertical_stiffness_n_per_m);
+                for (stretch, stiffness) in point_of_body(body, place - centre).iter().zip(of_foot) {
+                    assembly.hold(stretch, stiffness, housing.damping_ratio);
                 }
             }
         }
@@ -502,6 +506,30 @@ impl GearboxMachine {
         };
         let rolling = parts.bearings.iter().zip(&self.seats).filter(|(of, _)| of.bearing.element().is_some());
         rolling.map(stretch).collect()
+    }
+
+    /// (kg m²) What turns with each node: the number of its rotation about x, behind which stands that about y, and its polar moment of inertia times the speed
+    /// of its shaft over that of the input. Beams count half at either end.
+    ///
+    /// # Arguments
+    /// * `parts` - what the machine is made of
+    pub fn spinning(&self, parts: &GearboxParts) -> Vec<(usize, f64)> {
+        let discs = parts.discs.iter().enumerate().map(|(number, disc)| {
+            (
+                self.node_of_disc(parts, number) + ABOUT_X,
+                disc.body.polar_kgm2 * parts.speed_ratios[disc.shaft],
+            )
+        });
+        let beams = self.nodes.iter().zip(parts.shafts).zip(parts.speed_ratios).flat_map(
+            |((nodes, (shaft, _)), ratio)| {
+                nodes.windows(2).flat_map(move |ends| {
+                    let half_kgm2 =
+                        beam_between(shaft, [ends[0].0, ends[1].0], parts.material).polar_kgm2() / 2.0;
+                    [ends[0].1, ends[1].1].map(|node| (node + ABOUT_X, half_kgm2 * ratio))
+                })
+            },
+        );
+        discs.chain(beams).collect()
     }
 
     /// (N) Static load of each rolling bearing along x and y, with closed meshes; all of a shaft's bearings share it by their springs.
@@ -579,7 +607,7 @@ impl GearboxMachine {
         self.housing_modes.map_or_else(Vec::new, shapes)
     }
 
-    /// The motor turns its shaft at z = 0; the brake's torque acts against its rotation.
+    /// The motor turns its shaft at its beginning; the brake's torque acts against its rotation.
     fn drives(&self, parts: &GearboxParts, brake: usize, mass: &DMatrix<f64>) -> Vec<Drive> {
         let mut drives = Vec::new();
         for ((nodes, (shaft, _)), ratio) in self.nodes.iter().zip(parts.shafts).zip(parts.speed_ratios) {
@@ -640,7 +668,7 @@ impl GearboxMachine {
         [0, 1, 2].map(|axis| vec![(before + axis, 1.0 - part), (after + axis, part)])
     }
 
-    /// Names the rotation of a shaft at z = 0, positive as it turns.
+    /// Names the rotation of a shaft at its beginning, positive as it turns.
     ///
     /// # Arguments
     /// * `name` - the name that an output has for it
@@ -669,6 +697,11 @@ const ABOUT_X: usize = 3;
 const ABOUT_Y: usize = 4;
 const ABOUT_Z: usize = 5;
 
+/// (N/m) Stiffness along x, y and z.
+fn along_axes(stiffness: f64, vertical: Option<f64>) -> [f64; 3] {
+    [stiffness, vertical.unwrap_or(stiffness), stiffness]
+}
+
 /// The coordinate that the motor turns: the rotation of a shaft's first node.
 fn first_rotation(nodes: &[(f64, usize)]) -> usize {
     nodes[0].1 + ABOUT_Z
@@ -696,12 +729,12 @@ fn beam_between(shaft: &GearboxShaft, [from_m, to_m]: [f64; 2], material: Materi
     }
 }
 
-/// (m) Centre of the housing: the mean of the shafts' axes, at half the length of the longest.
+/// (m) Centre of the housing: the mean of the shafts' axes, midway between the first beginning and the last end of a shaft.
 fn centre_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> Vector3<f64> {
     let mean = |axis: usize| {
         shafts.iter().map(|(_, position_m)| position_m[axis]).sum::<f64>() / shafts.len() as f64
     };
-    Vector3::new(mean(0), mean(1), longest_m(shafts) / 2.0)
+    Vector3::new(mean(0), mean(1), ends_mm(shafts).iter().sum::<f64>() * 0.5e-3)
 }
 
 /// (m) Least and largest coordinate of the shafts' axes.
@@ -710,8 +743,10 @@ fn extremes(shafts: &[(&GearboxShaft, [f64; 2])], axis: usize) -> [f64; 2] {
     [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-fn longest_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> f64 {
-    shafts.iter().map(|(shaft, _)| shaft.length_mm * 1e-3).fold(0.0, f64::max)
+/// (mm) z of the first beginning and of the last end of a shaft.
+fn ends_mm(shafts: &[(&GearboxShaft, [f64; 2])]) -> [f64; 2] {
+    let ends = |at: f64| shafts.iter().map(move |(shaft, _)| shaft.z_mm(at));
+    [ends(0.0).fold(f64::INFINITY, f64::min), ends(1.0).fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// The housing's feet, given or by default.
@@ -722,8 +757,7 @@ fn feet(housing: &Housing, shafts: &[(&GearboxShaft, [f64; 2])]) -> Vec<Foot> {
     const OUTSIDE_MM: f64 = 100.0;
     let [[left, right], [low, _]] = [0, 1].map(|axis| extremes(shafts, axis).map(|value| value * 1e3));
     let corners = [left - OUTSIDE_MM, right + OUTSIDE_MM].into_iter();
-    let ends = [0.0, longest_m(shafts) * 1e3];
     corners
-        .flat_map(|x| ends.map(|z| Foot { at_mm: [x, low - OUTSIDE_MM, z], stiffness_n_per_m: 6e7 }))
+        .flat_map(|x| ends_mm(shafts).map(|z| Foot { at_mm: [x, low - OUTSIDE_MM, z], ..Foot::start() }))
         .collect()
 }

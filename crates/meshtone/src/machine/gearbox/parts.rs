@@ -19,9 +19,11 @@ pub struct GearboxShaft {
     pub name: String,
     /// (mm) Length.
     pub length_mm: f64,
+    /// (mm) z of its beginning. Default 0.
+    pub start_mm: f64,
     /// (mm) Radius, also of the bores of the wheels on it; of a shaft of several radii see [`Self::segments`].
     pub radius_mm: Option<f64>,
-    /// (mm) Length and radius of each piece, from z = 0 on, instead of one radius. Empty: one radius.
+    /// (mm) Length and radius of each piece, from its beginning on, instead of one radius. Empty: one radius.
     pub segments: Vec<[f64; 2]>,
     /// (mm) Radius of the shaft's own bore. Default 0: solid.
     pub bore_radius_mm: f64,
@@ -29,7 +31,7 @@ pub struct GearboxShaft {
     pub position_mm: Option<[f64; 2]>,
     /// Number of beam elements, shared among its pieces by their length. Default 12.
     pub elements: u32,
-    /// What it is coupled to at an end: the motor at z = 0, the brake at the other. Default nothing.
+    /// What it is coupled to at an end: the motor at its beginning, the brake at the other. Default nothing.
     pub couples_to: Coupled,
     /// (N m/rad) Torsional stiffness of that coupling. Default 2e3 of a motor's, 4e3 of a brake's.
     pub coupling_stiffness_nm_per_rad: Option<f64>,
@@ -56,12 +58,34 @@ impl GearboxShaft {
         self.coupling_stiffness_nm_per_rad.unwrap_or(usual)
     }
 
+    /// (mm) z of a place.
+    ///
+    /// # Arguments
+    /// * `at` - (-) the place as a part of the length
+    pub fn z_mm(&self, at: f64) -> f64 {
+        self.start_mm + at * self.length_mm
+    }
+
     /// (mm) Length and radius of each piece.
     pub fn pieces_mm(&self) -> Vec<[f64; 2]> {
         match self.radius_mm {
             Some(radius_mm) if self.segments.is_empty() => vec![[self.length_mm, radius_mm]],
             _ => self.segments.clone(),
         }
+    }
+
+    /// (mm) The largest radius between two places.
+    ///
+    /// # Arguments
+    /// * `ends_mm` - (mm) z of the places
+    pub fn largest_radius_mm(&self, [from_mm, until_mm]: [f64; 2]) -> f64 {
+        let mut end_mm = self.start_mm;
+        let reaches = |[length_mm, radius_mm]: [f64; 2]| {
+            let begins_mm = end_mm;
+            end_mm += length_mm;
+            if begins_mm < until_mm && end_mm > from_mm { radius_mm } else { 0.0 }
+        };
+        self.pieces_mm().into_iter().map(reaches).fold(0.0, f64::max)
     }
 
     /// (mm) Radius at a place.
@@ -95,7 +119,7 @@ by_name!(Coupled, ["nothing" => Coupled::Nothing, "motor" => Coupled::Motor, "br
 
 /// (-) A place along a shaft.
 const ALONG: Range = Range::between(Included(0.0), Included(1.0))
-    .message("must be from 0 to 1, the part of the shaft's length from the end at z = 0");
+    .message("must be from 0 to 1, the part of the shaft's length from its beginning");
 const STIFFNESS: Range = Range::positive().implausible_above(1e15);
 const MAYBE_STIFF: Range = Range::not_negative().implausible_above(1e15);
 const MASS: Range = Range::positive().implausible_above(1e9);
@@ -108,6 +132,7 @@ impl Keys for GearboxShaft {
         Self {
             name: String::new(),
             length_mm: f64::NAN,
+            start_mm: 0.0,
             radius_mm: None,
             segments: Vec::new(),
             bore_radius_mm: 0.0,
@@ -124,9 +149,16 @@ impl Keys for GearboxShaft {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("name", "", "the shaft's name", field!(name)).required().rule("no other shaft's"),
-            row("length_mm", "mm", "the shaft's length, from z = 0 on", field!(length_mm))
+            row("length_mm", "mm", "the shaft's length", field!(length_mm))
                 .required()
                 .range(Range::positive().implausible_above(1e5)),
+            row(
+                "start_mm",
+                "mm",
+                "z of its beginning: shafts of one axis stand behind one another",
+                field!(start_mm),
+            )
+            .range(Range::between(Excluded(-1e5), Excluded(1e5))),
             row("radius_mm", "mm", "its radius, also of the bores of the wheels on it", field!(radius_mm))
                 .otherwise("required, unless segments is given")
                 .range(Range::positive())
@@ -134,7 +166,7 @@ impl Keys for GearboxShaft {
             row(
                 "segments",
                 "mm",
-                "the length and the radius of each piece, from z = 0 on, in place of one radius",
+                "the length and the radius of each piece, from its beginning on, in place of one radius",
                 field!(segments),
             )
             .otherwise("one piece of radius_mm")
@@ -155,7 +187,7 @@ impl Keys for GearboxShaft {
             row(
                 "couples_to",
                 "",
-                "what it is coupled to: the motor at z = 0, or the brake at the other end",
+                "what it is coupled to: the motor at its beginning, or the brake at the other end",
                 field!(couples_to),
             )
             .rule("one shaft to the motor, one to the brake"),
@@ -222,8 +254,10 @@ pub struct Bearing {
     pub defect: Vec<BearingDefect>,
     /// (N/m) Stiffness of a linear bearing across the shaft, in every direction. Default 1.5e8.
     pub stiffness_n_per_m: f64,
-    /// (N/m) Stiffness along the shaft. Default 3e7; 0 of a bearing that lets the shaft slide.
-    pub axial_stiffness_n_per_m: f64,
+    /// (N/m) That along y, where it differs.
+    pub vertical_stiffness_n_per_m: Option<f64>,
+    /// (N/m) Stiffness along the shaft. Default 3e7, and 0 of cylindrical rollers, on which the shaft slides.
+    pub axial_stiffness_n_per_m: Option<f64>,
     /// (N m/rad) Stiffness against tilting. Default 100.
     pub tilt_stiffness_nm_per_rad: f64,
     /// What it sits in.
@@ -261,6 +295,11 @@ impl Bearing {
         format!("{}:{}", self.shaft, self.at)
     }
 
+    /// (N/m) Stiffness along the shaft, given or by the kind of bearing: cylindrical rollers let their ring slide.
+    pub fn axial_n_per_m(&self) -> f64 {
+        self.axial_stiffness_n_per_m.unwrap_or(if self.kind == BearingKind::Roller { 0.0 } else { 3e7 })
+    }
+
     /// Kind of its elements; none of a linear bearing.
     pub fn element(&self) -> Option<RollingElement> {
         match self.kind {
@@ -280,6 +319,12 @@ impl Bearing {
             let problem = "given for a rolling bearing, whose stiffness follows from its elements";
             return Err(ScenarioError::new("stiffness_n_per_m", self.stiffness_n_per_m, problem)
                 .with_help("remove it"));
+        }
+        if let Some(stiffness) = self.vertical_stiffness_n_per_m {
+            let problem = "given for a rolling bearing, whose stiffness follows from its elements";
+            return Err(
+                ScenarioError::new("vertical_stiffness_n_per_m", stiffness, problem).with_help("remove it")
+            );
         }
         let geometry = match &self.name {
             Some(name) => self.named_geometry(name, element)?,
@@ -424,7 +469,8 @@ impl Keys for Bearing {
             slip_percent: 1.0,
             defect: Vec::new(),
             stiffness_n_per_m: 1.5e8,
-            axial_stiffness_n_per_m: 3e7,
+            vertical_stiffness_n_per_m: None,
+            axial_stiffness_n_per_m: None,
             tilt_stiffness_nm_per_rad: 100.0,
             seat: Seat::default(),
             damping_ratio: 0.05,
@@ -434,7 +480,7 @@ impl Keys for Bearing {
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("shaft", "", "the name of its shaft", field!(shaft)).required(),
-            row("at", "-", "the position along the shaft, as a fraction of its length from z = 0", field!(at))
+            row("at", "-", "the position along the shaft, as a fraction of its length from its beginning", field!(at))
                 .required()
                 .range(ALONG),
             row("kind", "", "the kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact", field!(kind)),
@@ -477,12 +523,23 @@ impl Keys for Bearing {
             row("stiffness_n_per_m", "N/m", "the radial stiffness of a linear bearing", field!(stiffness_n_per_m))
                 .range(STIFFNESS),
             row(
+                "vertical_stiffness_n_per_m",
+                "N/m",
+                "the radial stiffness of a linear bearing along y, where it differs from that along x",
+                field!(vertical_stiffness_n_per_m),
+            )
+            .otherwise("stiffness_n_per_m")
+            .range(STIFFNESS)
+            .alternative("1e8"),
+            row(
                 "axial_stiffness_n_per_m",
                 "N/m",
                 "the axial stiffness; 0 where the shaft may slide",
                 field!(axial_stiffness_n_per_m),
             )
-            .range(MAYBE_STIFF),
+            .otherwise("3e7; 0 of a roller bearing")
+            .range(MAYBE_STIFF)
+            .alternative("3e7"),
             row(
                 "tilt_stiffness_nm_per_rad",
                 "N m/rad",
@@ -506,13 +563,21 @@ pub struct Seat {
     pub inertia_kgm2: f64,
     /// (N/m) Stiffness in every direction. Default 4e8.
     pub stiffness_n_per_m: f64,
+    /// (N/m) That along y, where it differs.
+    pub vertical_stiffness_n_per_m: Option<f64>,
     /// (N m/rad) Stiffness against every rotation. Default 1e6.
     pub tilt_stiffness_nm_per_rad: f64,
 }
 
 impl Default for Seat {
     fn default() -> Self {
-        Self { mass_kg: 1.0, inertia_kgm2: 1e-3, stiffness_n_per_m: 4e8, tilt_stiffness_nm_per_rad: 1e6 }
+        Self {
+            mass_kg: 1.0,
+            inertia_kgm2: 1e-3,
+            stiffness_n_per_m: 4e8,
+            vertical_stiffness_n_per_m: None,
+            tilt_stiffness_nm_per_rad: 1e6,
+        }
     }
 }
 
@@ -533,6 +598,15 @@ impl Keys for Seat {
                 field!(stiffness_n_per_m),
             )
             .range(STIFFNESS),
+            row(
+                "vertical_stiffness_n_per_m",
+                "N/m",
+                "its stiffness along y, where it differs",
+                field!(vertical_stiffness_n_per_m),
+            )
+            .otherwise("stiffness_n_per_m")
+            .range(STIFFNESS)
+            .alternative("2e8"),
             row(
                 "tilt_stiffness_nm_per_rad",
                 "N m/rad",
@@ -612,11 +686,13 @@ pub struct Foot {
     pub at_mm: [f64; 3],
     /// (N/m) Its stiffness in every direction. Default 6e7.
     pub stiffness_n_per_m: f64,
+    /// (N/m) That along y, where it differs.
+    pub vertical_stiffness_n_per_m: Option<f64>,
 }
 
 impl Keys for Foot {
     fn start() -> Self {
-        Self { at_mm: [f64::NAN; 3], stiffness_n_per_m: 6e7 }
+        Self { at_mm: [f64::NAN; 3], stiffness_n_per_m: 6e7, vertical_stiffness_n_per_m: None }
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
@@ -626,6 +702,15 @@ impl Keys for Foot {
                 .range(Range::between(Excluded(-1e5), Excluded(1e5))),
             row("stiffness_n_per_m", "N/m", "its stiffness in every direction", field!(stiffness_n_per_m))
                 .range(STIFFNESS),
+            row(
+                "vertical_stiffness_n_per_m",
+                "N/m",
+                "its stiffness along y, where it differs",
+                field!(vertical_stiffness_n_per_m),
+            )
+            .otherwise("stiffness_n_per_m")
+            .range(STIFFNESS)
+            .alternative("3e7"),
         ]
     }
 }

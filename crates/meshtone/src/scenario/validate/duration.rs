@@ -20,9 +20,14 @@ pub(super) fn check(scenario: &Scenario) -> Check {
         if scenario.operation.speed_profile_hz.is_some() {
             return refuse(
                 "given with operation.speed_profile_hz, whose speeds vary",
-                "give solver.duration_s instead",
+                "remove it: the profile is kept from its start to its end",
             );
         }
+        let kept_s = revolutions / scenario.operation.pinion_speed_hz;
+        scenario.operation.check_length("solver.pinion_revolutions", *revolutions, kept_s)?;
+    }
+    if let Some(duration_s) = *duration_s {
+        scenario.operation.check_length("solver.duration_s", duration_s, duration_s)?;
     }
     if scenario.time_grid().kept_samples() > 0 {
         return Ok(());

@@ -38,7 +38,6 @@ impl Scenario {
         speed.check()?;
         let mut warnings = NamedGears::of_pair(&gears).warnings();
         warnings.extend(speed.warnings());
-        warnings.extend(honoured.operation.ended_profiles(honoured.time_grid().kept_from_s()));
         warnings.extend(honoured.quality().warnings());
         warnings.extend(honoured.rig().into_iter().flat_map(|rig| rig.support.former_defaults()));
         Ok(warnings)

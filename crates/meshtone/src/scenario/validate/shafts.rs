@@ -155,7 +155,15 @@ impl Scenario {
         {
             let problem = "given with operation.speed_profile_hz, whose speeds vary";
             return Err(ScenarioError::new("solver.input_revolutions", revolutions, problem)
-                .with_help("give solver.duration_s instead"));
+                .with_help("remove it: the profile is kept from its start to its end"));
+        }
+        let drive = &self.operation;
+        if let Some(revolutions) = settings.pinion_revolutions {
+            let kept_s = revolutions / drive.pinion_speed_hz;
+            drive.check_length("solver.input_revolutions", revolutions, kept_s)?;
+        }
+        if let Some(duration_s) = settings.duration_s {
+            drive.check_length("solver.duration_s", duration_s, duration_s)?;
         }
         let time = self.time_grid();
         // Time, force of each mesh, speed of each shaft and a sensor's signal, with what is made of them.
@@ -218,20 +226,7 @@ impl Scenario {
 
     /// What is doubtful about a gearbox that can be simulated.
     fn warnings(&self, layout: &Layout) -> Vec<ScenarioWarning> {
-        const FAST_HZ: f64 = 100.0;
         const LONG_CYCLE: i64 = 1000;
-        let (key, speed_hz) = self.driven_speed(layout).fastest();
-        let ratios = layout.ratios.iter().map(|ratio| ratio.value().abs());
-        let shafts = self.shafts().iter().zip(ratios.map(|ratio| ratio * speed_hz));
-        let fastest = shafts.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, hz)| *hz > FAST_HZ);
-        let fast = fastest.map(|(shaft, hz)| {
-            let message = format!(
-                "shaft {:?} turns at {hz:.1} rev/s: gyroscopic moments, which are neglected, shift natural \
-                 frequencies by up to 2 % at 100 rev/s and by more above",
-                shaft.name
-            );
-            ScenarioWarning::new(WarningKind::Gyroscopic, key, message)
-        });
         let cycle = layout.cycle_revolutions();
         let time = self.time_grid();
         let long = (cycle > LONG_CYCLE).then(|| {
@@ -246,14 +241,19 @@ impl Scenario {
         let wheels = self.wheels.len();
         let of_wheel = |number: usize| self.wheels[number].ignored_shares(&section("wheel", number, wheels));
         let of_shares = (0..wheels).flat_map(of_wheel);
-        let ended = self
-            .operation
-            .ended_profiles(time.kept_from_s())
-            .into_iter()
-            .chain(self.operation.reversed_torque());
         let of_speed = self.driven_speed(layout).warnings();
         let of_teeth = of_teeth.into_iter().chain(layout.added_thrusts(self));
-        of_teeth.chain(of_shares).chain(of_speed).chain(fast).chain(long).chain(ended).collect()
+        of_teeth
+            .chain(of_shares)
+            .chain(of_speed)
+            .chain(long)
+            .chain(self.operation.reversed_torque())
+            .collect()
+    }
+
+    /// The key of the input's highest speed, and (rev/s) the speed.
+    pub(crate) fn fastest_speed(&self, layout: &Layout) -> (String, f64) {
+        self.driven_speed(layout).fastest()
     }
 
     fn driven_speed(&self, layout: &Layout) -> DrivenSpeed<'_> {

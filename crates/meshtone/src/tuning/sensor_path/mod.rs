@@ -293,6 +293,11 @@ fn seeds(settings: &PathSettings) -> Vec<u64> {
     (0..settings.draws as u64).map(seed).collect()
 }
 
+/// What a simulation shows of its piece: before it the speed comes to that with which the piece begins.
+fn settled(shown: &[f64], rate_hz: f64) -> &[f64] {
+    shown.get((SETTLING_S * rate_hz).round() as usize..).unwrap_or(&[])
+}
+
 /// A sensor that shows the motion of its place, through its wall and its mounted resonance alone.
 fn without_path(sensor: Sensor) -> Sensor {
     Sensor {
@@ -346,7 +351,8 @@ fn at_speed_of(scenario: &Scenario, piece: &Piece) -> Scenario {
     healthy.operation.pinion_speed_hz = piece.mean_speed_hz();
     healthy.operation.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
     healthy.operation.torque_profile_nm = None;
-    healthy.solver.discard_and_keep(SETTLING_S, piece.length_s);
+    healthy.operation.end_profiles_at(SETTLING_S + piece.length_s);
+    healthy.solver.discard_and_keep(0.0, SETTLING_S + piece.length_s);
     healthy
 }
 
@@ -403,6 +409,7 @@ impl Keep for KeepPowers<'_> {
     fn keep(&self, index: usize, stages: Stages, motion: Motion) -> Vec<f64> {
         let shown = stages.shown(&Channel::leading(&stages.sensors), motion.0);
         let piece = index / self.draws;
-        self.cells.powers(piece, &self.cells.spectra(piece, &shown, stages.time.sampling_rate_hz))
+        let rate_hz = stages.time.sampling_rate_hz;
+        self.cells.powers(piece, &self.cells.spectra(piece, settled(&shown, rate_hz), rate_hz))
     }
 }

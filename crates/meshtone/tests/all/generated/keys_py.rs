@@ -102,7 +102,9 @@ pub fn text() -> String {
     text.push_str(&changes(&arguments));
     text.push_str("class ScenarioKeys:\n    \"\"\"The arguments and attributes of a scenario.\"\"\"\n\n    __slots__ = ()\n\n");
     for argument in arguments.iter().filter(in_section) {
-        let none = if argument.key.required || has_default_value(&argument.key) { "" } else { " | None" };
+        // What another key can stand in place of has a value all the same.
+        let is_given = argument.key.required || argument.key.default.starts_with("required");
+        let none = if is_given || has_default_value(&argument.key) { "" } else { " | None" };
         writeln!(text, "    {}: {}{none}", argument.name, attribute_type(&argument.key)).unwrap();
     }
     text.push_str("\n    def __init__(\n        self,\n        *,\n");

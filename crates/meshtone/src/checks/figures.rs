@@ -1,0 +1,128 @@
+//! What the laws look at in the signals, gathered while these come.
+
+/// Sums of the signals of all meshes and all shafts.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Figures {
+    /// (N) Of the force of each mesh.
+    pub(crate) forces: Vec<SignalFigures>,
+    /// (rev/s) Of the speed of each shaft.
+    pub(crate) speeds: Vec<SignalFigures>,
+}
+
+/// Sums of a signal whose length is known.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SignalFigures {
+    /// Samples that there will be.
+    samples: usize,
+    /// Samples that were added.
+    added: usize,
+    /// Samples that are exactly 0.
+    zeros: usize,
+    /// Sum with weights that rise evenly to the middle and fall again.
+    weighted: f64,
+    squares: f64,
+    /// Of the first half, of the sample midway where there is one, and of the second half.
+    parts: [f64; 3],
+    largest: f64,
+}
+
+impl SignalFigures {
+    /// No samples yet.
+    ///
+    /// # Arguments
+    /// * `samples` - that there will be
+    pub(crate) fn new(samples: usize) -> Self {
+        Self { samples, added: 0, zeros: 0, weighted: 0.0, squares: 0.0, parts: [0.0; 3], largest: 0.0 }
+    }
+
+    /// Those of a whole signal.
+    pub(crate) fn of(values: impl ExactSizeIterator<Item = f64>) -> Self {
+        let mut figures = Self::new(values.len());
+        values.for_each(|value| figures.add(value));
+        figures
+    }
+
+    /// Adds the next sample.
+    #[inline]
+    pub(crate) fn add(&mut self, value: f64) {
+        let before_end = self.samples.saturating_sub(self.added);
+        self.added += 1;
+        self.weighted += self.added.min(before_end) as f64 * value;
+        self.squares += value * value;
+        let part = match self.added.cmp(&before_end) {
+            std::cmp::Ordering::Less => 0,
+            std::cmp::Ordering::Equal => 1,
+            std::cmp::Ordering::Greater => 2,
+        };
+        self.parts[part] += value;
+        // A value that is no number stays.
+        let stays = self.largest.is_nan() || value.abs() <= self.largest;
+        self.largest = if stays { self.largest } else { value.abs() };
+        self.zeros += usize::from(value == 0.0);
+    }
+
+    /// The mean.
+    pub(crate) fn mean(&self) -> f64 {
+        self.parts.iter().sum::<f64>() / self.samples as f64
+    }
+
+    /// A mean that hardly counts the ends, so that of a vibration about as much is left as of a whole number of its periods.
+    pub(crate) fn mean_in_middle(&self) -> f64 {
+        self.weighted / weights(self.samples)
+    }
+
+    /// By how much the signal rises from sample to sample, in the same mean.
+    pub(crate) fn rise(&self) -> f64 {
+        // Σ w (s₁ − s₀) in other order: the weights of two differences beside a sample differ by 1.
+        if self.samples < 2 { 0.0 } else { (self.parts[2] - self.parts[0]) / weights(self.samples - 1) }
+    }
+
+    /// The root of the mean square.
+    pub(crate) fn rms(&self) -> f64 {
+        (self.squares / self.samples as f64).sqrt()
+    }
+
+    /// The largest absolute value; no number where a value is none.
+    pub(crate) fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    /// (-) The part of the samples that is exactly 0.
+    pub(crate) fn part_of_zeros(&self) -> f64 {
+        self.zeros as f64 / self.samples.max(1) as f64
+    }
+}
+
+/// Sum of the weights 1, 2, …, 2, 1 of some values.
+fn weights(count: usize) -> f64 {
+    ((count + 1) * (count + 1) / 4) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_those_of_their_definitions() {
+        for count in [1, 2, 3, 6, 7, 1000, 1001] {
+            let values: Vec<f64> =
+                (0..count).map(|n| 3.0 + (0.1 * n as f64).cos() + 0.001 * n as f64).collect();
+            let figures = SignalFigures::of(values.iter().copied());
+            let middle = |values: &[f64]| {
+                let weight = |n: usize| (n + 1).min(values.len() - n) as f64;
+                let sum: f64 = values.iter().enumerate().map(|(n, value)| weight(n) * value).sum();
+                sum / (0..values.len()).map(weight).sum::<f64>()
+            };
+            assert!((figures.mean_in_middle() - middle(&values)).abs() < 1e-12, "{count}");
+            let differences: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let rise = if count < 2 { 0.0 } else { middle(&differences) };
+            assert!((figures.rise() - rise).abs() < 1e-12, "{count}: {} {rise}", figures.rise());
+            assert!((figures.mean() - values.iter().sum::<f64>() / count as f64).abs() < 1e-12);
+        }
+        let vibration = SignalFigures::of((0..1000).map(|n| 3.0 + (0.1 * f64::from(n)).cos()));
+        assert!((vibration.mean_in_middle() - 3.0).abs() < 1e-3);
+        let some = SignalFigures::of([0.0, -3.0, 0.0, 4.0].into_iter());
+        assert_eq!((some.largest(), some.part_of_zeros(), some.rms()), (4.0, 0.5, 2.5));
+        assert!(SignalFigures::of([1.0, f64::NAN, 2.0].into_iter()).largest().is_nan());
+    }
+}
