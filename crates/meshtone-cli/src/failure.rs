@@ -24,8 +24,6 @@ pub struct Failure {
 /// A line of a file.
 #[derive(Debug)]
 pub struct Snippet {
-    /// The file's name.
-    pub file: String,
     /// Its whole text.
     pub text: String,
     /// 1-based.
@@ -119,7 +117,7 @@ impl Failure {
             ReadScenarioError::Invalid { path, text, error } => {
                 let file = path.display().to_string();
                 let message = format!("{file}: {error}");
-                let snippet = error.line.map(|line| Snippet { file, text, line });
+                let snippet = error.line.map(|line| Snippet { text, line });
                 Self { help: error.help, snippet, ..Self::bad_input(message) }
             }
         }
