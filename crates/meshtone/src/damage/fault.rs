@@ -9,7 +9,7 @@ use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
     Check, KeyDescription, KeyKind, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe,
-    describe_from, field, read_keys, read_rows, require, row, rows_but, write_keys, write_rows,
+    describe_from, read_keys, read_rows, require, rows, rows_but, write_keys, write_rows,
 };
 use crate::wheel::{NamedGears, Teeth, WheelName};
 
@@ -132,28 +132,15 @@ impl Keys for Fault {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("wheel", "", "the damaged wheel", field!(wheel))
-                .kind(KeyKind::Name(WheelName::BOTH.map(WheelName::name).to_vec())),
-            row(
-                "tooth",
-                "",
-                "the damaged tooth's number, in the order of entering contact; an array of several, or \"all\"",
-                field!(tooth),
-            )
-            .range(Range::positive().message("must be at least 1, the first tooth"))
-            .rule("at most the wheel's teeth, each once"),
-            row(
-                "severity",
-                "-",
-                "the severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows",
-                field!(severity),
-            )
-            .otherwise("that of the sizes")
-            .range(Range::from_to(0.0, 1.0))
-            .rule("1 for a missing tooth")
-            .alternative("0.4"),
-        ]
+        rows! {
+            wheel "" "the damaged wheel" .kind(KeyKind::Name(WheelName::BOTH.map(WheelName::name).to_vec()));
+            tooth "" "the damaged tooth's number, in the order of entering contact; an array of several, or \"all\""
+                .range(Range::positive().message("must be at least 1, the first tooth"))
+                .rule("at most the wheel's teeth, each once");
+            severity "-" "the severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows"
+                .otherwise("that of the sizes").range(Range::from_to(0.0, 1.0)).rule("1 for a missing tooth")
+                .alternative("0.4");
+        }
     }
 }
 

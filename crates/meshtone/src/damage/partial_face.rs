@@ -5,7 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::{DamageResult, Kind, PitCircle, ToothPart};
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, check_keys, field, flatten, require, row};
+use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, check_keys, field, flatten, require, rows};
 use crate::wheel::Gears;
 
 /// A pit over a part of the face width, from one side.
@@ -23,12 +23,11 @@ impl Keys for PartialFace {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        let width =
-            row("width_mm", "mm", "the width of the pit along the face, from one side", field!(width_mm))
-                .required_unless(&["severity"])
-                .range(Range::positive())
-                .rule("less than the face width");
-        std::iter::once(width).chain(flatten(field!(pit))).collect()
+        rows! {
+            width_mm "mm" "the width of the pit along the face, from one side"
+                .required_unless(&["severity"]).range(Range::positive()).rule("less than the face width");
+            .. { flatten(field!(pit)) };
+        }
     }
 
     fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {

@@ -11,7 +11,7 @@ use super::fault::end_after;
 use super::pit_circle::flank_index;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, PaperRig, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, below, check_keys, field, flatten, row};
+use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, below, check_keys, field, flatten, row, rows};
 use crate::random::{Draws, Purpose};
 use crate::wheel::ToothProfile;
 use crate::wheel::{Gears, HALF_THICKNESS};
@@ -45,31 +45,16 @@ impl Keys for ToothDestruction {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        let start = row(
-            "start",
-            "-",
-            "where the ground line begins, a fraction of the flank's contact part from its root; negative: below it",
-            field!(start),
-        )
-        .required_unless(&["severity"])
-        .range(
-            Range::between(Excluded(-1.0), Excluded(1.0))
-                .message("must be more than -1 and less than 1 (negative: below contact)"),
-        );
-        let rest = [
-            row("offset_mm", "mm", "how far inside the flank the line begins", field!(offset_mm))
-                .range(Range::not_negative())
-                .rule("less than π/4 modules, half the tooth's thickness"),
-            row(
-                "noise_mm",
-                "mm",
-                "the amplitude of the uniform random roughness of the ground flank",
-                field!(noise_mm),
-            )
-            .range(Range::not_negative())
-            .rule("likewise"),
-        ];
-        std::iter::once(start).chain(flatten(field!(line))).chain(rest).collect()
+        rows! {
+            start "-" "where the ground line begins, a fraction of the flank's contact part from its root; negative: below it"
+                .required_unless(&["severity"])
+                .range(Range::between(Excluded(-1.0), Excluded(1.0)).message("must be more than -1 and less than 1 (negative: below contact)"));
+            .. { flatten(field!(line)) };
+            offset_mm "mm" "how far inside the flank the line begins"
+                .range(Range::not_negative()).rule("less than π/4 modules, half the tooth's thickness");
+            noise_mm "mm" "the amplitude of the uniform random roughness of the ground flank"
+                .range(Range::not_negative()).rule("likewise");
+        }
     }
 
     fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {

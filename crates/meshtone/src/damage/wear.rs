@@ -5,7 +5,7 @@ use super::description::hundredths;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, FaultyTeeth, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, Range, check_keys, field, row};
+use crate::keys::{Check, KeyRow, Keys, Range, check_keys, rows};
 use crate::wheel::{Gears, Teeth, WheelName};
 
 /// Worn working flanks: the sliding wear of Archard's law, scaled to its largest depth.
@@ -29,14 +29,11 @@ impl Keys for Wear {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("depth_um", "µm", "the largest depth of wear, along the flank's normal", field!(depth_um))
+        rows! {
+            depth_um "µm" "the largest depth of wear, along the flank's normal"
                 .required_unless(&["severity"])
-                .range(Range::from_to(0.0, MOST_UM).help(
-                    "a flank that is worn deeper touches where it was not worn before; for a flank that is \
-                     destroyed, use kind = \"tooth-destruction\"",
-                )),
-        ]
+                .range(Range::from_to(0.0, MOST_UM).help("a flank that is worn deeper touches where it was not worn before; for a flank that is destroyed, use kind = \"tooth-destruction\""));
+        }
     }
 }
 

@@ -88,3 +88,21 @@ macro_rules! field {
     };
 }
 pub(crate) use field;
+
+/// The rows of a section, in the order of the documentation: the field, whose name is the key's, its unit and its meaning, then what
+/// else is known of it. Before a field of one form of the section stands that form in brackets; `=` begins a row that is made
+/// otherwise, and `..` several.
+macro_rules! rows {
+    ($($(.. $others:block)? $(= $other:block)? $($([$form:path])? $name:ident $unit:literal $meaning:literal $(. $known:ident ($($word:expr),*))*)?;)*) => {{
+        let mut rows = Vec::new();
+        $(
+            $(rows.extend($others);)?
+            $(rows.extend([$other]);)?
+            $(rows.extend([
+                $crate::keys::row(stringify!($name), $unit, $meaning, $crate::keys::field!($($form,)? $name))$(.$known($($word),*))*
+            ]);)?
+        )*
+        rows
+    }};
+}
+pub(crate) use rows;

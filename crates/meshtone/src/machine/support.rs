@@ -6,7 +6,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::rig::{MASS, STIFFNESS, STRUCTURAL_DAMPING};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
-use crate::keys::{Check, Field, KeyRow, Keys, NumberFiles, Range, field, flatten, row};
+use crate::keys::{Check, Field, KeyRow, Keys, NumberFiles, Range, field, flatten, rows};
 
 /// What the bearings of each of the two shafts sit in: a bracket or the wall of a housing, that moves across the shafts.
 ///
@@ -133,26 +133,11 @@ impl Keys for Support {
 
     fn rows() -> Vec<KeyRow<Self>> {
         let springs: Field<Self, SupportSprings> = field!(springs);
-        let mut rows = vec![
-            row(
-                "mass_kg",
-                "kg",
-                "the mass of each support; 1.6 by default where a stiffness is given",
-                field!(mass_kg),
-            )
-            .range(MASS),
-        ];
-        rows.extend(flatten(springs));
-        rows.push(
-            row(
-                "damping_ratio",
-                "-",
-                "the damping ratio of the supports on their stiffnesses",
-                field!(damping_ratio),
-            )
-            .range(STRUCTURAL_DAMPING),
-        );
-        rows
+        rows! {
+            mass_kg "kg" "the mass of each support; 1.6 by default where a stiffness is given" .range(MASS);
+            .. { flatten(springs) };
+            damping_ratio "-" "the damping ratio of the supports on their stiffnesses" .range(STRUCTURAL_DAMPING);
+        }
     }
 
     fn choose(&mut self, table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
@@ -188,42 +173,17 @@ impl Keys for SupportSprings {
 
     fn rows() -> Vec<KeyRow<Self>> {
         const HZ: Range = Range::positive().implausible_above(1e6);
-        vec![
-            row(
-                "base_hz",
-                "Hz",
-                "the natural frequency of the bare supports, moving in phase",
-                field!(Self::Frequencies, base_hz),
-            )
-            .range(HZ)
-            .alternative("450.0"),
-            row(
-                "differential_hz",
-                "Hz",
-                "the natural frequency of the bare supports, moving against each other",
-                field!(Self::Frequencies, differential_hz),
-            )
-            .range(HZ)
-            .rule("more than base_hz")
-            .alternative("2900.0"),
-            row(
-                "stiffness_n_per_m",
-                "N/m",
-                "instead of the frequencies, the stiffness between each support and the base",
-                field!(Self::Stiffnesses, stiffness_n_per_m),
-            )
-            .range(STIFFNESS)
-            .otherwise("1.6e8 where coupling_n_per_m is given")
-            .alternative("1.6e8"),
-            row(
-                "coupling_n_per_m",
-                "N/m",
-                "instead of the frequencies, the stiffness between the two supports",
-                field!(Self::Stiffnesses, coupling_n_per_m),
-            )
-            .range(Range::not_negative().implausible_above(1e15))
-            .otherwise("5e8 where stiffness_n_per_m is given")
-            .alternative("5e8"),
-        ]
+        rows! {
+            [Self::Frequencies] base_hz "Hz" "the natural frequency of the bare supports, moving in phase"
+                .range(HZ).alternative("450.0");
+            [Self::Frequencies] differential_hz "Hz" "the natural frequency of the bare supports, moving against each other"
+                .range(HZ).rule("more than base_hz").alternative("2900.0");
+            [Self::Stiffnesses] stiffness_n_per_m "N/m"
+                "instead of the frequencies, the stiffness between each support and the base"
+                .range(STIFFNESS).otherwise("1.6e8 where coupling_n_per_m is given").alternative("1.6e8");
+            [Self::Stiffnesses] coupling_n_per_m "N/m" "instead of the frequencies, the stiffness between the two supports"
+                .range(Range::not_negative().implausible_above(1e15))
+                .otherwise("5e8 where stiffness_n_per_m is given").alternative("5e8");
+        }
     }
 }

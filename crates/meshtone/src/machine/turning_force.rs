@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::keys::{KeyRow, Keys, Range, field, row};
+use crate::keys::{KeyRow, Keys, Range, rows};
 
 /// (°) Any angle once around, either way.
 const ANGLE: Range = Range::from_to(-360.0, 360.0);
@@ -28,17 +28,11 @@ impl Keys for Unbalance {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("g_mm", "g mm", "the mass times its distance from the axis", field!(g_mm))
-                .range(Range::not_negative().implausible_above(1e7)),
-            row(
-                "angle_deg",
-                "°",
-                "its direction at time 0, before settling, from x towards y",
-                field!(angle_deg),
-            )
-            .range(ANGLE),
-        ]
+        rows! {
+            g_mm "g mm" "the mass times its distance from the axis"
+                .range(Range::not_negative().implausible_above(1e7));
+            angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
+        }
     }
 }
 
@@ -63,22 +57,11 @@ impl Keys for Bow {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "middle_um",
-                "µm",
-                "the distance of its middle from the line through its ends, without a load",
-                field!(middle_um),
-            )
-            .range(Range::not_negative().implausible_above(1e4)),
-            row(
-                "angle_deg",
-                "°",
-                "its direction at time 0, before settling, from x towards y",
-                field!(angle_deg),
-            )
-            .range(ANGLE),
-        ]
+        rows! {
+            middle_um "µm" "the distance of its middle from the line through its ends, without a load"
+                .range(Range::not_negative().implausible_above(1e4));
+            angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
+        }
     }
 }
 

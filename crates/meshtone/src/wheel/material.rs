@@ -6,7 +6,7 @@ use meshtone_toml::{ReadResult, TomlValue};
 
 use crate::keys::{
     Check, KeyDescription, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, check_keys,
-    describe, field, row,
+    describe, rows,
 };
 
 /// An isotropic elastic material, by name or by its constants.
@@ -49,18 +49,14 @@ impl Keys for MaterialConstants {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("youngs_modulus_gpa", "GPa", "Young's modulus", field!(youngs_modulus_gpa))
+        rows! {
+            youngs_modulus_gpa "GPa" "Young's modulus"
+                .required().range(Range::positive().implausible_above(2e3));
+            poisson_ratio "-" "Poisson's ratio"
                 .required()
-                .range(Range::positive().implausible_above(2e3)),
-            row("poisson_ratio", "-", "Poisson's ratio", field!(poisson_ratio)).required().range(
-                Range::between(Excluded(-1.0), Excluded(0.5))
-                    .message("must be more than −1 and less than 0.5"),
-            ),
-            row("density_kg_per_m3", "kg/m³", "the density", field!(density_kg_per_m3))
-                .required()
-                .range(Range::positive().implausible_above(1e5)),
-        ]
+                .range(Range::between(Excluded(-1.0), Excluded(0.5)).message("must be more than −1 and less than 0.5"));
+            density_kg_per_m3 "kg/m³" "the density" .required().range(Range::positive().implausible_above(1e5));
+        }
     }
 }
 
