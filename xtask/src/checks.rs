@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use crate::step::{StepRunner, in_parallel};
 use crate::surroundings::unusual;
 use crate::{
-    budgets, compilations, dist, docs, environment, features, kernels, packages, python, rooms,
-    rustdoc, scipy, toolchain,
+    budgets, compilations, dist, docs, environment, features, kernels, packages, python, rooms, rustdoc,
+    scipy, toolchain,
 };
 
 /// The parts of Python that the tests of the Rust packages need.
