@@ -26,6 +26,7 @@ mod refine;
 mod speed;
 mod store;
 #[cfg(test)]
+#[path = "../tests/all/synthetic.rs"]
 mod synthetic;
 mod warnings;
 mod words;
