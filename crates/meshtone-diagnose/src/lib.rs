@@ -46,5 +46,5 @@ pub use recorded::other_tone;
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
 pub use store::{ReferenceStore, StoreError};
-pub use warnings::{DiagnosisWarning, DiagnosisWarningKind};
+pub use warnings::DiagnosisWarning;
 pub use words::AnswerInWords;
