@@ -10,7 +10,7 @@ use super::pit_circle::flank_index;
 use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, DamageResult, FacePatch, FlankPits, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, check_keys, require, rows, sub_table};
+use crate::keys::{Check, KeyRow, Range, check_keys, keys, require, rows, sub_table};
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Gears, ToothProfile};
 
@@ -71,36 +71,37 @@ const MOST_PITS: f64 = 1000.0;
 /// Draws of a pit's place of which one must lie on the flank.
 const MOST_DRAWS: usize = 100;
 
-impl Keys for Pits {
-    fn start() -> Self {
-        let none = Vec::new;
-        Self::Listed { at: none(), z_mm: none(), radius_mm: none(), face_radius_mm: None, depth_mm: none() }
-    }
+keys! {
+    Pits = Self::Listed {
+        at: Vec::new(),
+        z_mm: Vec::new(),
+        radius_mm: Vec::new(),
+        face_radius_mm: None,
+        depth_mm: Vec::new(),
+    }, chosen with given_form;
+    [Self::Listed] at "-" "the centre of each pit, a fraction of the flank's contact part from its root"
+        .required_unless(LISTED).range(Range::from_to(0.0, 1.0));
+    [Self::Listed] z_mm "mm"
+        "the centre of each along the face, from the face's middle; one number per pit, as for all keys here"
+        .required_unless(LISTED).rule("within half the face width and the radius");
+    [Self::Listed] radius_mm "mm" "the radius of each along the flank"
+        .required_unless(LISTED).range(Range::positive());
+    [Self::Listed] face_radius_mm "mm" "the radius of each along the face, for ellipses"
+        .otherwise("`radius_mm`: circles").range(Range::positive()).alternative("[0.8, 1.2]");
+    [Self::Listed] depth_mm "mm" "the depth of each, along the flank's normal"
+        .required_unless(LISTED).range(Range::not_negative()).rule("less than the tooth is thick");
+    = {
+        sub_table("random", "pits that are drawn for each tooth from the seed, instead of a list", Self::drawn_rows())
+            .otherwise("none")
+            .alternative(
+                "{ density_per_cm2 = 8.0, spread = 0.1, radius_mm = 0.4, radius_spread = 0.4, depth_mm = 0.1 }",
+            )
+    };
+}
 
-    fn rows() -> Vec<KeyRow<Self>> {
-        rows! {
-            [Self::Listed] at "-" "the centre of each pit, a fraction of the flank's contact part from its root"
-                .required_unless(LISTED).range(Range::from_to(0.0, 1.0));
-            [Self::Listed] z_mm "mm"
-                "the centre of each along the face, from the face's middle; one number per pit, as for all keys here"
-                .required_unless(LISTED).rule("within half the face width and the radius");
-            [Self::Listed] radius_mm "mm" "the radius of each along the flank"
-                .required_unless(LISTED).range(Range::positive());
-            [Self::Listed] face_radius_mm "mm" "the radius of each along the face, for ellipses"
-                .otherwise("`radius_mm`: circles").range(Range::positive()).alternative("[0.8, 1.2]");
-            [Self::Listed] depth_mm "mm" "the depth of each, along the flank's normal"
-                .required_unless(LISTED).range(Range::not_negative()).rule("less than the tooth is thick");
-            = {
-                sub_table("random", "pits that are drawn for each tooth from the seed, instead of a list", Self::drawn_rows())
-                    .otherwise("none")
-                    .alternative(
-                        "{ density_per_cm2 = 8.0, spread = 0.1, radius_mm = 0.4, radius_spread = 0.4, depth_mm = 0.1 }",
-                    )
-            };
-        }
-    }
-
-    fn choose(&mut self, table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+impl Pits {
+    /// Takes the form that is given.
+    fn given_form(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
         let listed = ["at", "z_mm", "radius_mm", "face_radius_mm", "depth_mm"];
         let given = listed.into_iter().find(|key| table.optional(key).is_some());
         match (table.optional("random").is_some(), given) {

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::keys::{KeyRow, Keys, Range, rows};
+use crate::keys::{Range, keys};
 
 /// (°) Any angle once around, either way.
 const ANGLE: Range = Range::from_to(-360.0, 360.0);
@@ -22,18 +22,11 @@ impl Default for Unbalance {
     }
 }
 
-impl Keys for Unbalance {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        rows! {
-            g_mm "g mm" "the mass times its distance from the axis"
-                .range(Range::not_negative().implausible_above(1e7));
-            angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
-        }
-    }
+keys! {
+    Unbalance = Self::default();
+    g_mm "g mm" "the mass times its distance from the axis"
+        .range(Range::not_negative().implausible_above(1e7));
+    angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
 }
 
 /// The bow of a shaft that is not straight: half a sine over its length, without a load.
@@ -51,18 +44,11 @@ impl Default for Bow {
     }
 }
 
-impl Keys for Bow {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        rows! {
-            middle_um "µm" "the distance of its middle from the line through its ends, without a load"
-                .range(Range::not_negative().implausible_above(1e4));
-            angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
-        }
-    }
+keys! {
+    Bow = Self::default();
+    middle_um "µm" "the distance of its middle from the line through its ends, without a load"
+        .range(Range::not_negative().implausible_above(1e4));
+    angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
 }
 
 /// Forces on a machine that turn with a shaft.

@@ -2,7 +2,7 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use crate::keys::{KeyRow, Keys, Range, field, row, rows, rows_but};
+use crate::keys::{KeyRow, Range, field, keys, row, rows_but};
 
 /// Settings of the solver of the equations of motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,37 +96,28 @@ pub struct LengthKey {
     pub change: &'static str,
 }
 
-impl Keys for Solver {
-    const SECTION: &str = "solver";
-
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        rows! {
-            sampling_rate_hz "S/s"
-                "the nominal sampling rate; the actual one is the next at which a whole number of samples passes from one pair of teeth to the next"
-                .range(Range::positive());
-            duration_s "s" "the length of the kept signal; settling comes before it"
-                .otherwise("see pinion_revolutions").range(Range::positive())
-                .rule("not beside pinion_revolutions").example("1.0");
-            pinion_revolutions "-" "the same as a number of revolutions of the pinion; settling comes before them"
-                .otherwise("2 z_g revolutions less settling, or as long as a profile").range(Range::positive())
-                .rule("not beside duration_s, not with a speed profile").alternative("20.0");
-            settle_fraction "-" "the part of the simulated time that is discarded from the start, while the vibration settles"
-                .range(Range::below_one().message("must be from 0 to less than 1, the part of the simulation that is discarded"));
-            settle_tolerance "-"
-                "the fraction of the slowest mode's transient that may remain where the kept signal starts: a steady simulation starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as always under published"
-                .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1"));
-            initial_displacement "m, rad"
-                "the displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both"
-                .otherwise("the loaded mesh's equilibrium; zeros under published")
-                .example("[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]");
-            initial_velocity "m/s, rad/s" "the velocity of the same at the start"
-                .otherwise("rigid rotation at the nominal speed").alternative("[ 13 numbers ]");
-        }
-    }
+keys! {
+    "solver": Solver = Self::default();
+    sampling_rate_hz "S/s"
+        "the nominal sampling rate; the actual one is the next at which a whole number of samples passes from one pair of teeth to the next"
+        .range(Range::positive());
+    duration_s "s" "the length of the kept signal; settling comes before it"
+        .otherwise("see pinion_revolutions").range(Range::positive())
+        .rule("not beside pinion_revolutions").example("1.0");
+    pinion_revolutions "-" "the same as a number of revolutions of the pinion; settling comes before them"
+        .otherwise("2 z_g revolutions less settling, or as long as a profile").range(Range::positive())
+        .rule("not beside duration_s, not with a speed profile").alternative("20.0");
+    settle_fraction "-" "the part of the simulated time that is discarded from the start, while the vibration settles"
+        .range(Range::below_one().message("must be from 0 to less than 1, the part of the simulation that is discarded"));
+    settle_tolerance "-"
+        "the fraction of the slowest mode's transient that may remain where the kept signal starts: a steady simulation starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as always under published"
+        .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1"));
+    initial_displacement "m, rad"
+        "the displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both"
+        .otherwise("the loaded mesh's equilibrium; zeros under published")
+        .example("[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]");
+    initial_velocity "m/s, rad/s" "the velocity of the same at the start"
+        .otherwise("rigid rotation at the nominal speed").alternative("[ 13 numbers ]");
 }
 
 impl Solver {

@@ -7,8 +7,8 @@ use super::frequency_response::FrequencyResponse;
 use super::path::SensorPath;
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, by_name, check_keys, field, require,
-    row, rows, rows_but,
+    Check, KeyKind, KeyRow, KeyValue, NumberFiles, Range, Written, by_name, check_keys, field, keys, require,
+    row, rows_but,
 };
 use crate::model::Model;
 
@@ -157,45 +157,36 @@ impl Default for Sensor {
     }
 }
 
-impl Keys for Sensor {
-    const SECTION: &str = "sensor";
-
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        rows! {
-            name "" "the sensor's name; its signal is the channel `NAME_g`"
-                .otherwise("place and direction, such as `gear_support_vertical`")
-                .rule("a letter, then letters, digits and `_`; no other channel's")
-                .example("\"accelerometer_1\"");
-            at ""
-                "where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the wheels under linear and published"
-                .kind(KeyKind::Name(vec!["support", "pinion-support", "gear-support", "wheels"]));
-            direction "" "the direction it measures in; under contact axial only at the wheels";
-            resonance_hz "Hz" "the natural frequency of the sensor on its mount"
-                .otherwise("none").range(Range::positive().implausible_above(1e7)).example("12000.0");
-            resonance_damping_ratio "-" "the damping ratio of that resonance"
-                .range(Range::positive().implausible_above(10.0));
-            noise_density_g_per_rthz "g/√Hz"
-                "the density of its white normal noise: the standard deviation over the root of half the sampling rate"
-                .range(Range::not_negative().implausible_above(1e3));
-            noise_seed "" "the seed of the noise alone" .otherwise("the scenario's `seed`").example("1");
-            range_g "g" "the largest acceleration, of either sign, that it measures"
-                .otherwise("none").range(Range::positive().implausible_above(1e9)).example("50.0");
-            bits "" "the resolution: the range from minus to plus has 2^bits steps"
-                .otherwise("none").range(Range::from_to(8.0, 32.0)).rule("with range_g").example("16");
-            path "" "the wall and the modes of a housing between its place and the sensor; rigid under linear and published";
-            frequency_response "Hz, -, °"
-                "the measured path to the sensor: magnitude and phase over frequency, straight between the points, the phase unwrapped; zero outside them. Or { file = \"….csv\" } with the columns frequency_hz, magnitude, phase_deg"
-                .otherwise("none").rule("at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0")
-                .example("{ frequency_hz = [0.0, 20000.0], magnitude = [1.0, 1.0], phase_deg = [0.0, 0.0] }");
-            response_input ""
-                "the input of the frequency response: the place's acceleration, magnitudes without unit; or, regardless of `at` and `direction`, the force along the line of action, magnitudes in (m/s²)/N"
-                .rule("\"force\" with frequency_response");
-        }
-    }
+keys! {
+    "sensor": Sensor = Self::default();
+    name "" "the sensor's name; its signal is the channel `NAME_g`"
+        .otherwise("place and direction, such as `gear_support_vertical`")
+        .rule("a letter, then letters, digits and `_`; no other channel's")
+        .example("\"accelerometer_1\"");
+    at ""
+        "where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the wheels under linear and published"
+        .kind(KeyKind::Name(vec!["support", "pinion-support", "gear-support", "wheels"]));
+    direction "" "the direction it measures in; under contact axial only at the wheels";
+    resonance_hz "Hz" "the natural frequency of the sensor on its mount"
+        .otherwise("none").range(Range::positive().implausible_above(1e7)).example("12000.0");
+    resonance_damping_ratio "-" "the damping ratio of that resonance"
+        .range(Range::positive().implausible_above(10.0));
+    noise_density_g_per_rthz "g/√Hz"
+        "the density of its white normal noise: the standard deviation over the root of half the sampling rate"
+        .range(Range::not_negative().implausible_above(1e3));
+    noise_seed "" "the seed of the noise alone" .otherwise("the scenario's `seed`").example("1");
+    range_g "g" "the largest acceleration, of either sign, that it measures"
+        .otherwise("none").range(Range::positive().implausible_above(1e9)).example("50.0");
+    bits "" "the resolution: the range from minus to plus has 2^bits steps"
+        .otherwise("none").range(Range::from_to(8.0, 32.0)).rule("with range_g").example("16");
+    path "" "the wall and the modes of a housing between its place and the sensor; rigid under linear and published";
+    frequency_response "Hz, -, °"
+        "the measured path to the sensor: magnitude and phase over frequency, straight between the points, the phase unwrapped; zero outside them. Or { file = \"….csv\" } with the columns frequency_hz, magnitude, phase_deg"
+        .otherwise("none").rule("at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0")
+        .example("{ frequency_hz = [0.0, 20000.0], magnitude = [1.0, 1.0], phase_deg = [0.0, 0.0] }");
+    response_input ""
+        "the input of the frequency response: the place's acceleration, magnitudes without unit; or, regardless of `at` and `direction`, the force along the line of action, magnitudes in (m/s²)/N"
+        .rule("\"force\" with frequency_response");
 }
 
 impl Sensor {

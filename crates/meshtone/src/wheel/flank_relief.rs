@@ -1,7 +1,7 @@
 //! Relief of the flank near the tip, as a gap of some micrometres.
 
 use super::{ReliefShape, Wheel};
-use crate::keys::{KeyRow, Keys, Range, rows};
+use crate::keys::{Range, keys};
 
 /// Material removed from the flank near the tip, so that loaded teeth enter and leave contact softly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,18 +37,11 @@ impl FlankRelief {
     }
 }
 
-impl Keys for FlankRelief {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        rows! {
-            shape "" "a parabola that leaves the flank smoothly, or a straight line";
-            length_mm "mm" "the length from the tip along the tooth's centre line"
-                .range(Range::positive()).rule("less than 2 modules");
-            amount_um "µm" "the depth of the relief at the tip, along the flank's normal; usually 10 to 40"
-                .range(Range::not_negative().implausible_above(1000.0));
-        }
-    }
+keys! {
+    FlankRelief = Self::default();
+    shape "" "a parabola that leaves the flank smoothly, or a straight line";
+    length_mm "mm" "the length from the tip along the tooth's centre line"
+        .range(Range::positive()).rule("less than 2 modules");
+    amount_um "µm" "the depth of the relief at the tip, along the flank's normal; usually 10 to 40"
+        .range(Range::not_negative().implausible_above(1000.0));
 }

@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::keys::{KeyRow, Keys, Range, rows};
+use crate::keys::{Range, keys};
 use crate::random::{Draws, Purpose};
 
 /// (Hz) Frequency above which a housing has no modes: what lies higher hardly passes to where sensors sit.
@@ -87,20 +87,12 @@ impl Default for HousingModes {
     }
 }
 
-impl Keys for HousingModes {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        rows! {
-            per_khz "1/kHz" "how many modes it has in a kHz, up to 9 kHz; 0 for a rigid housing"
-                .range(Range::from_to(0.0, 20.0));
-            first_hz "Hz" "the frequency from which on it has modes"
-                .range(Range::positive().implausible_above(9e3));
-            damping_ratio "-" "the damping ratio of its modes"
-                .range(Range::below_one().help("measured peaks of housings have 0.01 to 0.06"));
-            seed "" "the seed of their frequencies and shapes: which housing it is";
-        }
-    }
+keys! {
+    HousingModes = Self::default();
+    per_khz "1/kHz" "how many modes it has in a kHz, up to 9 kHz; 0 for a rigid housing"
+        .range(Range::from_to(0.0, 20.0));
+    first_hz "Hz" "the frequency from which on it has modes" .range(Range::positive().implausible_above(9e3));
+    damping_ratio "-" "the damping ratio of its modes"
+        .range(Range::below_one().help("measured peaks of housings have 0.01 to 0.06"));
+    seed "" "the seed of their frequencies and shapes: which housing it is";
 }
