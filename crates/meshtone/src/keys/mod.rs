@@ -104,9 +104,18 @@ macro_rules! rows {
 }
 pub(crate) use rows;
 
-/// The keys of a type: what they are before a file is read, then their [`rows`]; before it the section's name, if it has one. Which form
+/// The keys of a type: what they are before a file is read, which may also be the `default`, then their [`rows`]; before it the section's name, if it has one. Which form
 /// a table has is decided by a field (`chosen by`) or a method (`chosen with`).
 macro_rules! keys {
+    ($($section:literal:)? $type:ident = default $start:expr $(, chosen with $form:ident)?; $($rows:tt)*) => {
+        impl Default for $type {
+            fn default() -> Self {
+                $start
+            }
+        }
+
+        $crate::keys::keys! { $($section:)? $type = Self::default() $(, chosen with $form)?; $($rows)* }
+    };
     ($($section:literal:)? $type:ident = $start:expr $(, chosen by $part:ident)? $(, chosen with $form:ident)?; $($rows:tt)*) => {
         impl $crate::keys::Keys for $type {
             $(const SECTION: &str = $section;)?

@@ -48,12 +48,6 @@ pub enum SupportSprings {
     },
 }
 
-impl Default for Support {
-    fn default() -> Self {
-        Self { mass_kg: 2.3, springs: SupportSprings::start(), damping_ratio: 0.025 }
-    }
-}
-
 impl Support {
     /// What a support whose stiffnesses are given starts from: the defaults of the first files that gave them.
     const BY_STIFFNESSES: Self = Self {
@@ -127,7 +121,7 @@ const FREQUENCIES: [&str; 2] = ["base_hz", "differential_hz"];
 const STIFFNESSES: [&str; 2] = ["stiffness_n_per_m", "coupling_n_per_m"];
 
 keys! {
-    Support = Self::default(), chosen with given_form;
+    Support = default Self { mass_kg: 2.3, springs: SupportSprings::start(), damping_ratio: 0.025 }, chosen with given_form;
     mass_kg "kg" "the mass of each support; 1.6 by default where a stiffness is given" .range(MASS);
     .. { flatten(field!(springs)) };
     damping_ratio "-" "the damping ratio of the supports on their stiffnesses" .range(STRUCTURAL_DAMPING);

@@ -16,14 +16,8 @@ pub struct Unbalance {
     pub angle_deg: f64,
 }
 
-impl Default for Unbalance {
-    fn default() -> Self {
-        Self { g_mm: 0.0, angle_deg: 0.0 }
-    }
-}
-
 keys! {
-    Unbalance = Self::default();
+    Unbalance = default Self { g_mm: 0.0, angle_deg: 0.0 };
     g_mm "g mm" "the mass times its distance from the axis"
         .range(Range::not_negative().implausible_above(1e7));
     angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
@@ -38,14 +32,8 @@ pub struct Bow {
     pub angle_deg: f64,
 }
 
-impl Default for Bow {
-    fn default() -> Self {
-        Self { middle_um: 0.0, angle_deg: 0.0 }
-    }
-}
-
 keys! {
-    Bow = Self::default();
+    Bow = default Self { middle_um: 0.0, angle_deg: 0.0 };
     middle_um "µm" "the distance of its middle from the line through its ends, without a load"
         .range(Range::not_negative().implausible_above(1e4));
     angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);

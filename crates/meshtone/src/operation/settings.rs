@@ -33,21 +33,6 @@ pub struct Solver {
     pub initial_velocity: Option<[f64; 13]>,
 }
 
-impl Default for Solver {
-    fn default() -> Self {
-        Self {
-            sampling_rate_hz: 1e5,
-            duration_s: None,
-            pinion_revolutions: None,
-            settle_fraction: 0.5,
-            settle_tolerance: 1e-6,
-            highest_mode_hz: None,
-            initial_displacement: None,
-            initial_velocity: None,
-        }
-    }
-}
-
 impl Solver {
     /// (Hz) Natural frequency up to which modes of shafts of beams are stepped, given or by default.
     ///
@@ -97,7 +82,16 @@ pub struct LengthKey {
 }
 
 keys! {
-    "solver": Solver = Self::default();
+    "solver": Solver = default Self {
+        sampling_rate_hz: 1e5,
+        duration_s: None,
+        pinion_revolutions: None,
+        settle_fraction: 0.5,
+        settle_tolerance: 1e-6,
+        highest_mode_hz: None,
+        initial_displacement: None,
+        initial_velocity: None,
+    };
     sampling_rate_hz "S/s"
         "the nominal sampling rate; the actual one is the next at which a whole number of samples passes from one pair of teeth to the next"
         .range(Range::positive());

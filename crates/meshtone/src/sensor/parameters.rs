@@ -138,27 +138,21 @@ pub enum ResponseInput {
 
 by_name!(ResponseInput, ["acceleration" => ResponseInput::Acceleration, "force" => ResponseInput::Force]);
 
-impl Default for Sensor {
-    fn default() -> Self {
-        Self {
-            name: None,
-            at: SensorPlace::default(),
-            direction: SensorDirection::default(),
-            resonance_hz: None,
-            resonance_damping_ratio: 0.02,
-            noise_density_g_per_rthz: 0.0,
-            noise_seed: None,
-            range_g: None,
-            bits: None,
-            path: SensorPath::default(),
-            frequency_response: None,
-            response_input: ResponseInput::default(),
-        }
-    }
-}
-
 keys! {
-    "sensor": Sensor = Self::default();
+    "sensor": Sensor = default Self {
+        name: None,
+        at: SensorPlace::default(),
+        direction: SensorDirection::default(),
+        resonance_hz: None,
+        resonance_damping_ratio: 0.02,
+        noise_density_g_per_rthz: 0.0,
+        noise_seed: None,
+        range_g: None,
+        bits: None,
+        path: SensorPath::default(),
+        frequency_response: None,
+        response_input: ResponseInput::default(),
+    };
     name "" "the sensor's name; its signal is the channel `NAME_g`"
         .otherwise("place and direction, such as `gear_support_vertical`")
         .rule("a letter, then letters, digits and `_`; no other channel's")

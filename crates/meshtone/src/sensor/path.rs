@@ -33,12 +33,6 @@ pub struct SensorPath {
     pub seed: u64,
 }
 
-impl Default for SensorPath {
-    fn default() -> Self {
-        Self { plate_hz: 4000.0, ..Self::RIGID }
-    }
-}
-
 /// (-) Frequency at which the plate's response stops growing, over [`SensorPath::plate_hz`].
 const PLATE_ENDS: f64 = 10.0;
 /// Most modes of a housing.
@@ -47,7 +41,7 @@ const MOST_MODES: f64 = 1e4;
 const HZ: Range = Range::positive().implausible_above(1e7);
 
 keys! {
-    SensorPath = Self::default();
+    SensorPath = default Self { plate_hz: 4000.0, ..Self::RIGID };
     plate_hz "Hz" "the frequency at which the wall under the sensor bends as far as the support moves; 0: no wall"
         .range(Range::not_negative().implausible_above(1e7));
     strength "-" "the standard deviation of a housing mode's share; 0: no modes"

@@ -14,12 +14,6 @@ pub struct FlankRelief {
     pub amount_um: f64,
 }
 
-impl Default for FlankRelief {
-    fn default() -> Self {
-        Self { shape: ReliefShape::Parabolic, length_mm: 1.0, amount_um: 0.0 }
-    }
-}
-
 impl FlankRelief {
     /// (mm) How far the flank lies back where its radius of curvature is `curvature_mm`.
     ///
@@ -38,7 +32,7 @@ impl FlankRelief {
 }
 
 keys! {
-    FlankRelief = Self::default();
+    FlankRelief = default Self { shape: ReliefShape::Parabolic, length_mm: 1.0, amount_um: 0.0 };
     shape "" "a parabola that leaves the flank smoothly, or a straight line";
     length_mm "mm" "the length from the tip along the tooth's centre line"
         .range(Range::positive()).rule("less than 2 modules");

@@ -81,14 +81,8 @@ fn place_number(at_m: [f64; 3]) -> u64 {
         .fold(0, |number, along| number.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(along))
 }
 
-impl Default for HousingModes {
-    fn default() -> Self {
-        Self { per_khz: 4.0, ..Self::RIGID }
-    }
-}
-
 keys! {
-    HousingModes = Self::default();
+    HousingModes = default Self { per_khz: 4.0, ..Self::RIGID };
     per_khz "1/kHz" "how many modes it has in a kHz, up to 9 kHz; 0 for a rigid housing"
         .range(Range::from_to(0.0, 20.0));
     first_hz "Hz" "the frequency from which on it has modes" .range(Range::positive().implausible_above(9e3));

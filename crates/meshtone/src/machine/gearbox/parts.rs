@@ -474,20 +474,14 @@ pub struct Seat {
     pub tilt_stiffness_nm_per_rad: f64,
 }
 
-impl Default for Seat {
-    fn default() -> Self {
-        Self {
-            mass_kg: 1.0,
-            inertia_kgm2: 1e-3,
-            stiffness_n_per_m: 4e8,
-            vertical_stiffness_n_per_m: None,
-            tilt_stiffness_nm_per_rad: 1e6,
-        }
-    }
-}
-
 keys! {
-    Seat = Self::default();
+    Seat = default Self {
+        mass_kg: 1.0,
+        inertia_kgm2: 1e-3,
+        stiffness_n_per_m: 4e8,
+        vertical_stiffness_n_per_m: None,
+        tilt_stiffness_nm_per_rad: 1e6,
+    };
     mass_kg "kg" "the seat's mass" .range(MASS);
     inertia_kgm2 "kg m²" "its moment of inertia about every axis" .range(MASS);
     stiffness_n_per_m "N/m" "its stiffness to the housing or to the ground, in every direction"
@@ -514,7 +508,7 @@ pub struct Housing {
 }
 
 keys! {
-    "housing": Housing = Self {
+    "housing": Housing = default Self {
         mass_kg: 30.0,
         inertia_kgm2: None,
         feet: Vec::new(),
@@ -529,12 +523,6 @@ keys! {
         .alternative("[{ at_mm = [-100.0, -100.0, 0.0], stiffness_n_per_m = 6e7 }]");
     damping_ratio "-" "the damping ratio of the feet" .range(DAMPING);
     modes "" "the modes in which it vibrates between its feet and the seats";
-}
-
-impl Default for Housing {
-    fn default() -> Self {
-        Self::start()
-    }
 }
 
 impl Housing {
