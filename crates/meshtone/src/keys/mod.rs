@@ -82,23 +82,24 @@ pub(crate) use field;
 
 /// The rows of a section, in the order of the documentation: the field, whose name is the key's, its unit and its meaning, then what
 /// else is known of it. Before a field of one form of the section stands that form in brackets, with `0` where it is the form's only
-/// value, and before one further inside its place in parentheses; `=` begins a row that is made otherwise, and `..` several.
+/// value, and before one further inside its place in parentheses, before a field of another name than the key that name in angles; `=` begins a row that is made otherwise, and `..` several.
 macro_rules! rows {
     ($($(.. $others:block)? $(= $other:block)? $(
-        $([$form:path $(, $only:literal)?])? $(($place:ident))? $name:ident $unit:literal $meaning:literal $(. $known:ident ($($word:expr),*))*
+        $([$form:path $(, $only:literal)?])? $(<$field:ident>)? $(($place:ident))? $name:ident $unit:literal $meaning:literal $(. $known:ident ($($word:expr),*))*
     )?;)*) => {{
         let mut rows = Vec::new();
         $(
             $(rows.extend($others);)?
             $(rows.extend([$other]);)?
             $(rows.extend([
-                $crate::keys::row(stringify!($name), $unit, $meaning, $crate::keys::rows!(@ $([$form $(, $only)?])? $(($place))? $name))$(.$known($($word),*))*
+                $crate::keys::row(stringify!($name), $unit, $meaning, $crate::keys::rows!(@ $([$form $(, $only)?])? $(<$field>)? $(($place))? $name))$(.$known($($word),*))*
             ]);)?
         )*
         rows
     }};
     (@ [$form:path, $only:literal] $name:ident) => { $crate::keys::field!($form, 0) };
     (@ [$form:path] $name:ident) => { $crate::keys::field!($form, $name) };
+    (@ <$field:ident> $name:ident) => { $crate::keys::field!($field) };
     (@ ($place:ident) $name:ident) => { $crate::keys::field!($place.$name) };
     (@ $name:ident) => { $crate::keys::field!($name) };
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use crate::keys::{KeyRow, Range, field, keys, row, rows_but};
+use crate::keys::{KeyRow, Range, keys, rows, rows_but};
 
 /// Settings of the solver of the equations of motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,42 +117,6 @@ keys! {
 impl Solver {
     /// The rows where revolutions are those of the shaft that is coupled to the motor.
     pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
-        let rate = row(
-            "sampling_rate_hz",
-            "S/s",
-            "the nominal sampling rate; the actual one is the next with a whole number of samples per revolution of the input",
-            field!(sampling_rate_hz),
-        )
-        .range(Range::positive());
-        let duration = row(
-            "duration_s",
-            "s",
-            "the length of the kept signal; settling comes before it",
-            field!(duration_s),
-        )
-        .otherwise("that of input_revolutions")
-        .range(Range::positive())
-        .rule("not beside input_revolutions")
-        .example("1.0");
-        let revolutions = row(
-            "input_revolutions",
-            "rev",
-            "the number of kept revolutions of the input; settling comes before them",
-            field!(pinion_revolutions),
-        )
-        .otherwise("those of 1 s, or as long as a profile")
-        .range(Range::positive())
-        .rule("not beside duration_s, not with a speed profile")
-        .example("30.0");
-        let highest = row(
-            "highest_mode_hz",
-            "Hz",
-            "the natural frequency up to which modes are integrated; those above deform statically",
-            field!(highest_mode_hz),
-        )
-        .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
-        .range(Range::between(Excluded(0.0), Included(1e9)))
-        .alternative("20000.0");
         const OWN: [&str; 5] = [
             "sampling_rate_hz",
             "duration_s",
@@ -160,6 +124,21 @@ impl Solver {
             "initial_displacement",
             "initial_velocity",
         ];
-        [rate, duration, revolutions].into_iter().chain(rows_but(&OWN)).chain([highest]).collect()
+        rows! {
+            sampling_rate_hz "S/s"
+                "the nominal sampling rate; the actual one is the next with a whole number of samples per revolution of the input"
+                .range(Range::positive());
+            duration_s "s" "the length of the kept signal; settling comes before it"
+                .otherwise("that of input_revolutions").range(Range::positive())
+                .rule("not beside input_revolutions").example("1.0");
+            <pinion_revolutions> input_revolutions "rev"
+                "the number of kept revolutions of the input; settling comes before them"
+                .otherwise("those of 1 s, or as long as a profile").range(Range::positive())
+                .rule("not beside duration_s, not with a speed profile").example("30.0");
+            .. { rows_but(&OWN) };
+            highest_mode_hz "Hz" "the natural frequency up to which modes are integrated; those above deform statically"
+                .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
+                .range(Range::between(Excluded(0.0), Included(1e9))).alternative("20000.0");
+        }
     }
 }

@@ -7,8 +7,8 @@ use super::frequency_response::FrequencyResponse;
 use super::path::SensorPath;
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyKind, KeyRow, KeyValue, NumberFiles, Range, Written, by_name, check_keys, field, keys, require,
-    row, rows_but,
+    Check, KeyKind, KeyRow, KeyValue, NumberFiles, Range, Written, by_name, check_keys, keys, require, rows,
+    rows_but,
 };
 use crate::model::Model;
 
@@ -194,21 +194,16 @@ impl Sensor {
 
     /// The rows among shafts of beams.
     pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
-        let at = row(
-            "at",
-            "",
-            "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \
-             \"housing:[x, y, z]\" in mm on the housing",
-            field!(at),
-        )
-        .required();
-        let name = row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(name))
-            .otherwise("place and direction, such as `input_0_vertical`")
-            .rule("a letter, then letters, digits and `_`; no other channel's")
-            .alternative("\"output_bearing\"");
-        let direction = row("direction", "", "the direction it measures in", field!(direction));
-        let others = rows_but(&["at", "name", "direction", "response_input"]);
-        [at, name, direction].into_iter().chain(others).collect()
+        rows! {
+            at "" "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \"housing:[x, y, z]\" in mm on the housing"
+                .required();
+            name "" "the sensor's name; its signal is the channel `NAME_g`"
+                .otherwise("place and direction, such as `input_0_vertical`")
+                .rule("a letter, then letters, digits and `_`; no other channel's")
+                .alternative("\"output_bearing\"");
+            direction "" "the direction it measures in";
+            .. { rows_but(&["at", "name", "direction", "response_input"]) };
+        }
     }
 
     /// Its name, given or by place and direction.
