@@ -10,7 +10,6 @@ mod docs;
 mod environment;
 mod features;
 mod files;
-mod formatting;
 mod kernels;
 mod packages;
 mod python;

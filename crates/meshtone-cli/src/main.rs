@@ -71,7 +71,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let code = ExitCode::from(failure.exit_code);
-            report::print(failure);
+            report::print(&failure);
             code
         }
     }

@@ -71,7 +71,7 @@ pub fn replace(
         return Err(error);
     }
     fs::rename(&gathered, whole).map_err(failed)?;
-    finish(directory, names, earlier).map(drop)
+    finish(directory, names, earlier)
 }
 
 /// Gives results that are whole their names, where that was interrupted; interrupted itself, it can be done again. A directory without a
@@ -79,9 +79,7 @@ pub fn replace(
 ///
 /// # Arguments
 /// * `directory`, `names`, `earlier` - as of [`replace`]
-///
-/// Returns whether there was anything to do.
-pub fn finish(directory: &Path, names: &[&str], earlier: &[&str]) -> Result<bool, WriteFileError> {
+pub fn finish(directory: &Path, names: &[&str], earlier: &[&str]) -> Result<(), WriteFileError> {
     let [_, whole, naming] = STAGES.map(|stage| directory.join(stage));
     let failed = |source| WriteFileError { path: directory.to_path_buf(), source };
     if whole.exists() {
@@ -92,11 +90,10 @@ pub fn finish(directory: &Path, names: &[&str], earlier: &[&str]) -> Result<bool
         fs::rename(&whole, &naming).map_err(failed)?;
     }
     if !naming.exists() {
-        return Ok(false);
+        return Ok(());
     }
     let take = |name: &&str| unless_absent(fs::rename(naming.join(name), directory.join(name)));
-    names.iter().rev().try_for_each(take).and_then(|()| fs::remove_dir(&naming)).map_err(failed)?;
-    Ok(true)
+    names.iter().rev().try_for_each(take).and_then(|()| fs::remove_dir(&naming)).map_err(failed)
 }
 
 /// A result of which it is no error that a file does not exist.
@@ -131,7 +128,7 @@ mod tests {
                 &|| fs::rename(naming.join("summary"), path("summary")),
             ];
             steps[..done].iter().for_each(|step| step().unwrap());
-            assert_eq!(finish(directory.path(), &NAMES, &NAMES).unwrap(), done > 0);
+            finish(directory.path(), &NAMES, &NAMES).unwrap();
             let read = |name| fs::read_to_string(path(name)).unwrap();
             let expected = if done > 0 { "new" } else { "old" };
             assert_eq!(["signals", "summary", "notes"].map(read), [expected, expected, "old"], "{done}");

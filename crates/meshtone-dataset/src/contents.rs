@@ -6,7 +6,6 @@ use meshtone::scenario::WarningKind;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::digest::Hash;
 use crate::error::DatasetError;
 use crate::plan::Plan;
 use crate::shard::{BETWEEN_CODES, Column, FailedRecord, ReadShard, Shards, WARNINGS, Wanted};
@@ -24,12 +23,12 @@ pub(crate) type Counts = BTreeMap<String, BTreeMap<String, u64>>;
 pub(crate) type WarningCounts = BTreeMap<WarningKind, u64>;
 
 /// The file of a shard, as a manifest lists it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct ShardFile {
     /// (bytes) Size.
     pub bytes: u64,
     /// The seal in its footer.
-    pub seal: Hash,
+    pub seal: String,
     /// Number of the shard's records, without those that failed.
     pub rows: u64,
 }
@@ -89,7 +88,7 @@ impl<'c> SummaryColumns<'c> {
         let (labels, splits) = (read.texts("label"), read.texts("split"));
         let mut contents =
             Contents { counts: count(&read), warnings: warnings(&read), ..Contents::default() };
-        contents.files.insert(shard, ShardFile { bytes, seal: read.seal, rows: read.rows });
+        contents.files.insert(shard, ShardFile { bytes, seal: read.seal.clone(), rows: read.rows });
         for (row, label) in labels.iter().enumerate() {
             contents.first.entry(label.clone()).or_insert((shard, row));
         }

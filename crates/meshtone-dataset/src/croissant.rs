@@ -87,7 +87,7 @@ fn distribution(shards: &Shards, documents: &[Document]) -> Value {
             "contentUrl": name,
             "contentSize": format!("{} B", digest.bytes),
             "encodingFormat": media_type(name),
-            "sha256": digest.sha256.to_string(),
+            "sha256": digest.sha256,
         })
     }));
     Value::Array(files)

@@ -1,58 +1,28 @@
 //! The length and the SHA-256 of a file, which prove that its bytes are unchanged.
 
-use std::fmt;
 use std::io::{self, Write};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 /// Length and SHA-256 of some bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Digest {
     /// (bytes) Length.
     pub bytes: u64,
-    /// SHA-256.
-    pub sha256: Hash,
-}
-
-/// SHA-256. It is shown and stored as 64 hexadecimal digits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(into = "String", try_from = "String")]
-pub struct Hash([u8; 32]);
-
-impl From<Hash> for String {
-    fn from(hash: Hash) -> Self {
-        hash.to_string()
-    }
-}
-
-impl TryFrom<String> for Hash {
-    type Error = &'static str;
-
-    fn try_from(text: String) -> Result<Self, Self::Error> {
-        const PROBLEM: &str = "a SHA-256 has 64 hexadecimal digits";
-        let mut bytes = [0; 32];
-        if text.len() != 2 * bytes.len() || !text.bytes().all(|digit| digit.is_ascii_hexdigit()) {
-            return Err(PROBLEM);
-        }
-        for (byte, place) in bytes.iter_mut().zip((0..).step_by(2)) {
-            *byte = u8::from_str_radix(&text[place..place + 2], 16).map_err(|_| PROBLEM)?;
-        }
-        Ok(Self(bytes))
-    }
-}
-
-impl fmt::Display for Hash {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|byte| write!(formatter, "{byte:02x}"))
-    }
+    /// SHA-256, 64 hexadecimal digits.
+    pub sha256: String,
 }
 
 impl Digest {
     /// The digest of bytes in memory.
     pub(crate) fn of(bytes: &[u8]) -> Self {
-        Self { bytes: bytes.len() as u64, sha256: Hash(Sha256::digest(bytes).into()) }
+        Self { bytes: bytes.len() as u64, sha256: hexadecimal(Sha256::digest(bytes)) }
     }
+}
+
+fn hexadecimal(hash: impl IntoIterator<Item = u8>) -> String {
+    hash.into_iter().fold(String::new(), |text, byte| format!("{text}{byte:02x}"))
 }
 
 /// A writer that passes on what is written to it and computes its digest.
@@ -70,7 +40,7 @@ impl<W: Write> Hashing<W> {
 
     /// The digest of everything that has been written.
     pub fn digest(&self) -> Digest {
-        Digest { bytes: self.bytes, sha256: Hash(self.hash.clone().finalize().into()) }
+        Digest { bytes: self.bytes, sha256: hexadecimal(self.hash.clone().finalize()) }
     }
 }
 
@@ -103,8 +73,6 @@ mod tests {
         hashing.write_all(b"bc").unwrap();
         assert_eq!(hashing.digest(), Digest::of(b"abc"));
         assert_eq!((hashing.to.as_slice(), hashing.digest().bytes), (&b"abc"[..], 3));
-        assert_eq!(hashing.digest().sha256.to_string(), ABC);
-        assert_eq!(Hash::try_from(ABC.to_owned()), Ok(hashing.digest().sha256));
-        assert!(["ba78".to_owned(), "é".repeat(32)].into_iter().all(|text| Hash::try_from(text).is_err()));
+        assert_eq!(hashing.digest().sha256, ABC);
     }
 }

@@ -405,7 +405,7 @@ impl Run<'_> {
             let metadata = shard::write(&mut hashing, &self.plan.content, columns, metadata, next)?;
             let digest = hashing.digest();
             let read = shard::read(file.try_clone()?, Wanted::Columns(&[WARNINGS]))?;
-            shard::seal(file, digest.sha256)?;
+            shard::seal(file, &digest.sha256)?;
             Ok((metadata.failures, warnings(&read)))
         });
         written.map_err(|error| match error {

@@ -1,8 +1,7 @@
 //! The manifest: it says what a data set is and whether it is complete.
 
 use meshtone_io::scenario_file::ReadScenarioError;
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::contents::{Counts, ShardFile};
@@ -137,20 +136,11 @@ impl ReadManifest {
 }
 
 /// A shard that a manifest lists.
-#[derive(Debug)]
+#[derive(Debug, Deserialize)]
 pub(crate) struct NamedShard {
     pub name: String,
+    #[serde(flatten)]
     pub shard: ShardFile,
-}
-
-impl<'de> Deserialize<'de> for NamedShard {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let entry = Value::deserialize(deserializer)?;
-        let read = || Some((entry["name"].as_str()?.to_owned(), ShardFile::deserialize(&entry).ok()?));
-        let (name, shard) =
-            read().ok_or_else(|| D::Error::custom("a file lacks its name, bytes, seal or rows"))?;
-        Ok(Self { name, shard })
-    }
 }
 
 /// A file of a data set that is neither a shard nor the manifest.

@@ -58,7 +58,7 @@ pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetErro
     }
     let listed = if manifest.complete {
         verified.check_counts(&manifest);
-        manifest.files.iter().map(|file| (file.name.clone(), file.shard)).collect()
+        manifest.files.iter().map(|file| (file.name.clone(), file.shard.clone())).collect()
     } else {
         verified.read_footers(place, &files)
     };
@@ -132,7 +132,7 @@ impl Verified {
         files: &Files,
         listed: &'l ListedFiles,
         manifest: &ReadManifest,
-    ) -> Vec<(&'l String, ShardFile)> {
+    ) -> Vec<(&'l String, &'l ShardFile)> {
         for Document { name, digest } in &manifest.documents {
             match files.get(name) {
                 None => self.object(name, "it is missing"),
@@ -150,7 +150,7 @@ impl Verified {
             self.bytes += size;
             self.shards.push(name.clone());
             if size == file.bytes {
-                of_size.push((name, *file));
+                of_size.push((name, file));
             } else {
                 self.object(name, wrong_size(size, file.bytes));
             }
@@ -162,11 +162,11 @@ impl Verified {
     fn check_shards(
         &mut self,
         place: &Destination,
-        shards: &[(&String, ShardFile)],
+        shards: &[(&String, &ShardFile)],
         manifest: &ReadManifest,
     ) {
         // Of a damaged shard the columns may be others.
-        let read = |(name, _): &(&String, ShardFile)| place.proven_shard(name, Wanted::Columns(&[])).ok();
+        let read = |(name, _): &(&String, &ShardFile)| place.proven_shard(name, Wanted::Columns(&[])).ok();
         let schema = shards.iter().find_map(read).map(|read| read.schema).unwrap_or_default();
         let mut counts = Counts::new();
         for some in shards.chunks(SHARDS_AT_A_TIME as usize) {

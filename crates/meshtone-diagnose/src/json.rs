@@ -46,7 +46,7 @@ impl Answer {
 }
 
 fn warning(warning: &DiagnosisWarning) -> Value {
-    json!({ "code": warning.kind.code(), "message": warning.message })
+    json!({ "code": warning.code, "message": warning.message })
 }
 
 fn bearing(of: &BearingAnswer) -> Value {

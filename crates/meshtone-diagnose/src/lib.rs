@@ -26,6 +26,7 @@ mod refine;
 mod speed;
 mod store;
 #[cfg(test)]
+#[path = "../tests/all/synthetic.rs"]
 mod synthetic;
 mod warnings;
 mod words;
@@ -45,5 +46,5 @@ pub use recorded::other_tone;
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
 pub use store::{ReferenceStore, StoreError};
-pub use warnings::{DiagnosisWarning, DiagnosisWarningKind};
+pub use warnings::DiagnosisWarning;
 pub use words::AnswerInWords;

@@ -138,7 +138,7 @@ impl ReferenceStore {
 }
 
 fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
-    let mut archive = NpzWriter::stored(file);
+    let mut archive = NpzWriter::stored();
     let mut numbers = Vec::with_capacity(records.len() * (COLUMNS + SIZES));
     for record in records {
         let fault = record.fault.as_ref();
@@ -172,8 +172,7 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
         add(&format!("lines_{wheel}"), &[parts.len() / 2, 2], &parts)?;
     }
     archive.add(DIGEST, &[32], &digest(hash))?;
-    archive.finish()?;
-    Ok(())
+    archive.write(file)
 }
 
 /// Name of the array that holds the SHA-256 digest of all others.
@@ -291,7 +290,7 @@ mod tests {
             let mut original = NpzReader::new(File::open(&path).unwrap()).unwrap();
             let kept = original.floats(DIGEST, 32).unwrap().numbers;
             write_atomically(&path, |file| {
-                let mut archive = NpzWriter::stored(file);
+                let mut archive = NpzWriter::stored();
                 for (name, values) in &arrays {
                     let width = match *name {
                         "records" => COLUMNS + 1 + SIZES,
@@ -301,8 +300,7 @@ mod tests {
                     archive.add(name, &[values.len() / width, width], values)?;
                 }
                 archive.add(DIGEST, &[32], &kept)?;
-                archive.finish()?;
-                Ok(())
+                archive.write(file)
             })
             .unwrap();
             store.get(&prior, 1, &control).is_ok()

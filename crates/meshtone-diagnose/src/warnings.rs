@@ -1,7 +1,5 @@
 //! Warnings about an answer.
 
-use std::fmt::{self, Display, Formatter};
-
 use meshtone::damage::damage_kinds;
 
 use crate::answer::{Answer, p_in_words};
@@ -17,81 +15,13 @@ const NOTICED: f64 = 0.005;
 /// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
 const SURELY: f64 = 0.9;
 
-/// Subject of a [`DiagnosisWarning`], by which programs distinguish warnings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum DiagnosisWarningKind {
-    /// The reading of a recording, or the angle of its shaft.
-    Reading,
-    /// The wheels of the scenario have no deviations.
-    IdealWheels,
-    /// The recording is not what it is stated to be, or of something else than these wheels.
-    Mismatch,
-    /// Something else about a recording is doubtful.
-    Doubt,
-    /// Nothing is said about a bearing.
-    Bearing,
-    /// The speed is beside those of the simulations.
-    Speed,
-    /// The recording is unlike what was simulated.
-    Outside,
-    /// The healthy recording is unlike the healthy pairs that were simulated.
-    HealthyOutside,
-    /// There is no healthy recording.
-    NoHealthy,
-    /// A level is far from those of the simulations.
-    Level,
-    /// The levels of the recordings are those of different states.
-    SeveralStates,
-    /// The answers about the recordings contradict each other.
-    Contradiction,
-    /// Some kinds cannot be simulated with this scenario.
-    NotSimulated,
-}
-
-impl DiagnosisWarningKind {
-    /// The name by which programs distinguish it.
-    pub fn code(self) -> &'static str {
-        match self {
-            Self::Reading => "reading",
-            Self::IdealWheels => "ideal-wheels",
-            Self::Mismatch => "mismatch",
-            Self::Doubt => "doubt",
-            Self::Bearing => "bearing",
-            Self::Speed => "speed",
-            Self::Outside => "outside",
-            Self::HealthyOutside => "healthy-outside",
-            Self::NoHealthy => "no-healthy",
-            Self::Level => "level",
-            Self::SeveralStates => "several-states",
-            Self::Contradiction => "contradiction",
-            Self::NotSimulated => "not-simulated",
-        }
-    }
-}
-
 /// Something that deserves attention about a diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiagnosisWarning {
-    /// Its subject.
-    pub kind: DiagnosisWarningKind,
+    /// Its subject, by which programs distinguish warnings.
+    pub code: &'static str,
     /// In words.
     pub message: String,
-}
-
-impl Display for DiagnosisWarning {
-    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.message)
-    }
-}
-
-impl DiagnosisWarning {
-    /// # Arguments
-    /// * `kind` - what it is about
-    /// * `message` - in words
-    pub fn new(kind: DiagnosisWarningKind, message: impl Into<String>) -> Self {
-        Self { kind, message: message.into() }
-    }
 }
 
 impl Question<'_> {
@@ -100,31 +30,29 @@ impl Question<'_> {
     /// # Arguments
     /// * `prior` - what may be about the rig
     pub fn warnings(&self, prior: &Prior) -> Vec<DiagnosisWarning> {
-        use DiagnosisWarningKind::{Bearing, Doubt, IdealWheels, Mismatch, NoHealthy, SeveralStates, Speed};
-
         let mut warnings: Vec<DiagnosisWarning> = Vec::new();
-        let mut warn = |kind, message: String| {
-            let warning = DiagnosisWarning { kind, message };
+        let mut warn = |code, message: String| {
+            let warning = DiagnosisWarning { code, message };
             if !warnings.contains(&warning) {
                 warnings.push(warning);
             }
         };
         if prior.base.has_ideal_wheels() {
             warn(
-                IdealWheels,
+                "ideal-wheels",
                 "wheels of the scenario have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; \
                  write the grade of each wheel"
                     .to_owned(),
             );
         }
-        self.all().filter_map(|asked| asked.mismatch.clone()).for_each(|said| warn(Mismatch, said));
-        self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn(Doubt, said));
-        bearings::doubts(&prior.train, self).into_iter().for_each(|said| warn(Bearing, said));
-        speed::doubts(self, prior).into_iter().for_each(|said| warn(Speed, said));
-        consistency::levels_apart(self).into_iter().for_each(|said| warn(SeveralStates, said));
+        self.all().filter_map(|asked| asked.mismatch.clone()).for_each(|said| warn("mismatch", said));
+        self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn("doubt", said));
+        bearings::doubts(&prior.train, self).into_iter().for_each(|said| warn("bearing", said));
+        speed::doubts(self, prior).into_iter().for_each(|said| warn("speed", said));
+        consistency::levels_apart(self).into_iter().for_each(|said| warn("several-states", said));
         if self.healthy.is_empty() {
             warn(
-                NoHealthy,
+                "no-healthy",
                 "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own \
                  deviations and the sensor's path"
                     .to_owned(),
@@ -140,8 +68,6 @@ impl Question<'_> {
 /// * `answer` - all but its warnings
 /// * `learned`, `question` - what it was made of
 pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<DiagnosisWarning> {
-    use DiagnosisWarningKind::{Contradiction, HealthyOutside, Level, NotSimulated, Outside};
-
     let outside = answer.is_recording_outside().then(|| {
         let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
         let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
@@ -164,13 +90,13 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
     let healthy = healthy.map(|p| of_healthy(p, learned, question));
     let found = [
-        (Outside, outside),
-        (HealthyOutside, healthy),
-        (Level, level::doubt(learned, question)),
-        (Contradiction, consistency::contradicting_states(learned, question)),
-        (NotSimulated, not_simulated(answer)),
+        ("outside", outside),
+        ("healthy-outside", healthy),
+        ("level", level::doubt(learned, question)),
+        ("contradiction", consistency::contradicting_states(learned, question)),
+        ("not-simulated", not_simulated(answer)),
     ];
-    let found = found.into_iter().filter_map(|(kind, said)| Some(DiagnosisWarning::new(kind, said?)));
+    let found = found.into_iter().filter_map(|(code, said)| Some(DiagnosisWarning { code, message: said? }));
     question.warnings(&learned.reference.prior).into_iter().chain(found).collect()
 }
 

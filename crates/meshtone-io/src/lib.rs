@@ -11,7 +11,6 @@ pub mod memory;
 pub mod npz;
 pub mod own_file;
 pub mod path_csv;
-mod read_results;
 pub mod recording;
 pub mod run_identity;
 pub mod scenario_file;
@@ -20,5 +19,3 @@ pub mod summary;
 pub mod table;
 pub mod trace_npz;
 pub mod wheel_name;
-
-pub use read_results::ReadResultsError;

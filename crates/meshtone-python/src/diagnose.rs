@@ -105,7 +105,7 @@ pub fn check_diagnosis(
         Ok(question.warnings(&prior))
     };
     let warnings = py.detach(check).map_err(|error: DiagnoseError| value_error(error))?;
-    Ok(warnings.into_iter().map(|warning| (warning.kind.code(), warning.message)).collect())
+    Ok(warnings.into_iter().map(|warning| (warning.code, warning.message)).collect())
 }
 
 fn observed(all: Vec<PyRef<'_, Observation>>) -> Vec<Observed> {

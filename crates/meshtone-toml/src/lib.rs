@@ -18,6 +18,7 @@
 mod document;
 mod error;
 mod key_path;
+mod named;
 mod nearest;
 mod table;
 mod value;

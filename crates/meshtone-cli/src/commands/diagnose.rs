@@ -9,8 +9,8 @@ use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone::signal::TrainWheel;
 use meshtone_diagnose::{
-    Answer, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question, REFINED_RECORDS,
-    ReferenceSet, ReferenceStore, Refined, SignalKind, diagnose, refine,
+    Answer, DiagnosisWarning, Learned, Observation, Prior, Question, REFINED_RECORDS, ReferenceSet,
+    ReferenceStore, Refined, SignalKind, diagnose, refine,
 };
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
@@ -118,9 +118,9 @@ impl Diagnose {
         // Before minutes of simulations.
         let of_reading = of_now.iter().chain(&of_healthy).map(warnings::in_words);
         let of_reading: Vec<DiagnosisWarning> =
-            of_reading.map(|said| DiagnosisWarning::new(DiagnosisWarningKind::Reading, said)).collect();
+            of_reading.map(|said| DiagnosisWarning { code: "reading", message: said }).collect();
         let known = [of_reading.clone(), question.warnings(&prior)].concat();
-        known.iter().for_each(warn);
+        known.iter().map(|of| &of.message).for_each(warn);
         let store = ReferenceStore::new(self.folder()?);
         let reference = self.reference(&store, &prior)?;
         let learned = Learned::new(&reference, &question)?;
@@ -129,7 +129,8 @@ impl Diagnose {
         answer.warnings.splice(0..0, of_reading);
         let json = self.json(&answer, &store.folder_of(&prior));
         self.write(&output.path, &answer, &json, &prior.train.wheels)?;
-        answer.warnings.iter().filter(|warning| !known.contains(warning)).for_each(warn);
+        let unknown = answer.warnings.iter().filter(|warning| !known.contains(warning));
+        unknown.map(|of| &of.message).for_each(warn);
         print_unless(
             self.quiet,
             &format!("{} -> {}\n{}", self.title(), directory.display(), table::table(&answer)),

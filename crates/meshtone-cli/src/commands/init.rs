@@ -67,32 +67,7 @@ Examples:
 impl Init {
     pub fn run(&self) -> Result<(), Failure> {
         let unknown = || Failure::bad_input(format!("there is no template {}", self.kind));
-        if self.rig.is_some() && self.kind != GEARBOX {
-            let problem = format!("--rig: given with {}; only a gearbox has published rigs", self.kind);
-            return Failure::refuse(problem, "write `meshtone init gearbox --rig RIG`");
-        }
-        if self.files && self.kind != EXPERIMENT {
-            let problem = format!("--files: given with {}; only an experiment names files", self.kind);
-            return Failure::refuse(
-                problem,
-                "leave --files out, or write `meshtone init experiment --files`",
-            );
-        }
-        if self.gearbox && self.kind != DATASET {
-            let problem =
-                format!("--gearbox: given with {}; only a data set is of a pair or of a gearbox", self.kind);
-            return Failure::refuse(problem, "write `meshtone init dataset --gearbox`");
-        }
-        if self.all && [DATASET, EXPERIMENT].contains(&self.kind.as_str()) {
-            let problem = format!("--all: given with {}; only a scenario has a longer form", self.kind);
-            return Failure::refuse(
-                problem,
-                format!(
-                    "leave --all out; the guide lists every key of the file of `meshtone init {}`",
-                    self.kind
-                ),
-            );
-        }
+        self.refuse_needless()?;
         let rig = GearboxRig::ALL.into_iter().find(|rig| self.rig.as_deref() == Some(rig.name()));
         let text = match self.kind.as_str() {
             GEARBOX if self.all => {
@@ -108,6 +83,24 @@ impl Init {
         match &self.output {
             None => terminal::print(&text),
             Some(path) => self.write(path, &text),
+        }
+    }
+
+    /// Refuses options that belong to another kind.
+    fn refuse_needless(&self) -> Result<(), Failure> {
+        let is_scenario = ![DATASET, EXPERIMENT].contains(&self.kind.as_str());
+        let options = [
+            ("--rig", self.rig.is_some(), self.kind == GEARBOX, "only a gearbox has published rigs"),
+            ("--files", self.files, self.kind == EXPERIMENT, "only an experiment names files"),
+            ("--gearbox", self.gearbox, self.kind == DATASET, "only a data set is of a pair or of a gearbox"),
+            ("--all", self.all, is_scenario, "only a scenario has a longer form"),
+        ];
+        match options.into_iter().find(|(_, is_given, fits, _)| *is_given && !fits) {
+            None => Ok(()),
+            Some((option, .., why)) => {
+                let problem = format!("{option}: given with {}; {why}", self.kind);
+                Failure::refuse(problem, format!("leave {option} out, or name another kind"))
+            }
         }
     }
 

@@ -57,16 +57,13 @@ fn files_of_other_kinds_are_named() {
         }
     }
     // Nor are they recordings, results or data sets.
-    for command in [&["indicators"][..], &["panel"], &["dataset", "verify"]] {
+    for command in [&["indicators"][..], &["dataset", "verify"]] {
         let words = ["is a scenario", "is expected here", "`meshtone simulate healthy.toml` reads it"];
         workplace.fails(2, &[command, &["healthy.toml"]].concat(), &words);
     }
     workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel", "-q"]);
     for command in [&["simulate"][..], &["dataset"], &["dataset", "verify"]] {
-        let words = [
-            "is what `meshtone simulate` wrote",
-            "`meshtone indicators out` and `meshtone panel out` read it",
-        ];
+        let words = ["is what `meshtone simulate` wrote", "`meshtone indicators out` reads it"];
         workplace.fails(2, &[command, &["out"]].concat(), &words);
     }
 }
@@ -222,9 +219,9 @@ fn keys_that_are_commented_out_in_an_experiment_can_be_set() {
 }
 
 #[test]
-fn completions_and_the_manual_know_all_commands() {
+fn completions_know_all_commands() {
     let workplace = Workplace::new();
-    for kind in ["bash", "elvish", "fish", "powershell", "zsh", "man"] {
+    for kind in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let text = stdout(&workplace.succeeds(&["completions", kind]));
         for word in ["simulate", "indicators", "verify", "merge", "sampling"] {
             assert!(text.contains(word), "{kind}: {word}");
@@ -232,7 +229,7 @@ fn completions_and_the_manual_know_all_commands() {
         // An option that is only answered with a tip is offered nowhere.
         assert!(!text.contains("shaft-rpm"), "{kind}");
     }
-    workplace.fails(2, &["completions", "tcsh"], &["bash", "zsh", "man"]);
+    workplace.fails(2, &["completions", "tcsh"], &["bash", "zsh"]);
 }
 
 #[test]
@@ -257,7 +254,7 @@ fn version_and_help() {
     let workplace = Workplace::new();
     let version = format!("meshtone {}\n", env!("CARGO_PKG_VERSION"));
     workplace.succeeds(&["--version"]).stdout(version);
-    for command in ["simulate", "init", "wheels", "panel", "dataset"] {
+    for command in ["simulate", "init", "wheels", "dataset"] {
         let help = stdout(&workplace.succeeds(&[command, "--help"]));
         assert!(help.contains("Example") && help.contains("Usage: meshtone"), "{help}");
         assert!(stdout(&workplace.succeeds(&["--help"])).contains(command));

@@ -221,7 +221,7 @@ const PLAN_VERSION: u32 = 1;
 fn identity(files: &[PlanFile]) -> String {
     let versions = format!("{} {} {PLAN_VERSION}", env!("CARGO_PKG_VERSION"), meshtone::PHYSICS_VERSION);
     let files = files.iter().map(|file| format!("\n{}\n{}", file.name, file.canonical()));
-    Digest::of((versions + &files.collect::<String>()).as_bytes()).sha256.to_string()
+    Digest::of((versions + &files.collect::<String>()).as_bytes()).sha256
 }
 
 /// A commented plan: every key with its meaning.

@@ -15,20 +15,14 @@ pub enum Question {
     RemainingLife,
 }
 
+meshtone_toml::named!(Question {
+    Detection = "detection",
+    Diagnosis = "diagnosis",
+    Severity = "severity",
+    RemainingLife = "remaining-life",
+});
+
 impl Question {
-    /// All questions with their names in a plan.
-    pub const NAMES: [(&'static str, Self); 4] = [
-        ("detection", Self::Detection),
-        ("diagnosis", Self::Diagnosis),
-        ("severity", Self::Severity),
-        ("remaining-life", Self::RemainingLife),
-    ];
-
-    /// Its name in a plan.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize].0
-    }
-
     /// The columns that hold the answer, and how answers are scored.
     pub fn target_and_score(self) -> [&'static str; 2] {
         match self {

@@ -3,7 +3,7 @@
 use crate::expression::Expression;
 use crate::sampling::{normal_distribution, normal_quantile};
 
-/// The group that a value is drawn for: a unit, a mounting or a record.
+/// The group that a value is drawn for: a unit, a mounting or a record. The one that comprises most records comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Once for all records of a unit.
@@ -14,16 +14,7 @@ pub enum Level {
     Record,
 }
 
-impl Level {
-    /// All levels with their names. The level that comprises most records comes first.
-    pub const NAMES: [(&'static str, Self); 3] =
-        [("unit", Self::Unit), ("mounting", Self::Mounting), ("record", Self::Record)];
-
-    /// Its name in a plan.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize].0
-    }
-}
+meshtone_toml::named!(Level { Unit = "unit", Mounting = "mounting", Record = "record" });
 
 /// A rule by which one key, or several together, vary.
 #[derive(Debug, Clone, PartialEq)]

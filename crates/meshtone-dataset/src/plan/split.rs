@@ -15,15 +15,7 @@ pub enum SplitBy {
     Mounting,
 }
 
-impl SplitBy {
-    /// All values with their names in a plan.
-    pub const NAMES: [(&'static str, Self); 2] = [("unit", Self::Unit), ("mounting", Self::Mounting)];
-
-    /// Its name in a plan.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize].0
-    }
-}
+meshtone_toml::named!(SplitBy { Unit = "unit", Mounting = "mounting" });
 
 /// The division of units, or of their mountings. Each is in one split, with all its records.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,7 @@
 //! Ready-made rules: what is not known of a rig.
 
 use meshtone::scenario::{Scenario, ScenarioNumber, log_deviation, split_key};
+use meshtone_toml::named;
 
 use super::{Distribution, Level, Rule};
 use crate::draw::PATH_KEYS;
@@ -16,17 +17,16 @@ pub enum Variation {
     UnknownRig,
 }
 
+named!(Variation {
+    KnownRig = "known-rig",
+    KnownRigUnknownPath = "known-rig-unknown-path",
+    UnknownRig = "unknown-rig",
+});
+
 /// (-) Half of the range of a uniform number over its standard deviation.
 const HALF_RANGE: f64 = 1.732_050_807_568_877_2;
 
 impl Variation {
-    /// All of them with their names in a plan.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("known-rig", Self::KnownRig),
-        ("known-rig-unknown-path", Self::KnownRigUnknownPath),
-        ("unknown-rig", Self::UnknownRig),
-    ];
-
     /// The rules that it stands for, of keys that the base scenario has.
     ///
     /// Speed and torque scatter by record about those of the base scenario, the damping of the mesh, which the oil's temperature changes, too.

@@ -27,14 +27,11 @@ pub enum Design {
     Sobol,
 }
 
-impl Design {
-    /// All designs with their names in a plan.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("independent", Self::Independent),
-        ("latin-hypercube", Self::LatinHypercube),
-        ("sobol", Self::Sobol),
-    ];
-}
+meshtone_toml::named!(Design {
+    Independent = "independent",
+    LatinHypercube = "latin-hypercube",
+    Sobol = "sobol",
+});
 
 /// Number of points after which Sobol's sequence, as it is computed here, is exhausted.
 const SOBOL_BITS: u32 = 16;

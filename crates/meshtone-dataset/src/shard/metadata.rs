@@ -9,7 +9,6 @@ use parquet::file::reader::ChunkReader;
 use serde::{Deserialize, Serialize};
 
 use super::seal::{KEY, UNSEALED};
-use crate::digest::Hash;
 
 const PLAN: &str = "meshtone.plan_sha256";
 const VERSION: &str = "meshtone.version";
@@ -53,7 +52,7 @@ impl ShardMetadata {
     }
 
     /// The metadata and the seal.
-    fn from_key_values(values: &[KeyValue]) -> Option<(Self, Hash)> {
+    fn from_key_values(values: &[KeyValue]) -> Option<(Self, String)> {
         let text = |key: &str| values.iter().find(|value| value.key == key)?.value.as_deref();
         let metadata = Self {
             plan: text(PLAN)?.to_owned(),
@@ -61,7 +60,7 @@ impl ShardMetadata {
             records: text(RECORDS)?.parse().ok()?,
             failures: serde_json::from_str(text(FAILURES)?).ok()?,
         };
-        Some((metadata, text(KEY)?.to_owned().try_into().ok()?))
+        Some((metadata, text(KEY)?.to_owned()))
     }
 
     /// Returns whether a shard is the one that was to be made, whatever failed in it.
@@ -74,7 +73,7 @@ impl ShardMetadata {
 pub(crate) struct ReadShard {
     pub metadata: ShardMetadata,
     /// The seal that its footer states.
-    pub seal: Hash,
+    pub seal: String,
     pub rows: u64,
     /// Names and types of the shard's columns.
     pub schema: Vec<FoundColumn>,

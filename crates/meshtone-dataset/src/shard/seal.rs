@@ -6,7 +6,7 @@
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use crate::digest::{Digest, Hash, Hashing};
+use crate::digest::{Digest, Hashing};
 
 /// Key of the seal, the last one of the footer's.
 pub(super) const KEY: &str = "meshtone.seal";
@@ -24,14 +24,14 @@ const READ_BYTES: u64 = 1 << 20;
 /// # Arguments
 /// * `file` - the file, open for reading and writing
 /// * `hash` - of what has been written
-pub(crate) fn seal(file: &mut File, hash: Hash) -> io::Result<()> {
+pub(crate) fn seal(file: &mut File, hash: &str) -> io::Result<()> {
     let end = file.seek(SeekFrom::End(0))?;
     let from = file.seek(SeekFrom::Start(end.saturating_sub(TAIL as u64)))?;
     let mut tail = Vec::new();
     file.read_to_end(&mut tail)?;
     let place = place(&tail).ok_or_else(|| io::Error::other("the footer has no place for a seal"))?;
     file.seek(SeekFrom::Start(from + place as u64))?;
-    file.write_all(hash.to_string().as_bytes())?;
+    file.write_all(hash.as_bytes())?;
     file.seek(SeekFrom::End(0)).map(drop)
 }
 
@@ -49,7 +49,7 @@ pub(crate) fn proven(mut from: impl Read) -> io::Result<Option<Digest>> {
     let stated = String::from_utf8_lossy(digits).into_owned();
     digits.copy_from_slice(UNSEALED.as_bytes());
     hashing.write_all(&tail)?;
-    Ok(Some(hashing.digest()).filter(|found| found.sha256.to_string() == stated))
+    Ok(Some(hashing.digest()).filter(|found| found.sha256 == stated))
 }
 
 /// Where the digits of the seal lie.

@@ -6,8 +6,8 @@ use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone::signal::{GearTrain, MeshTone, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
 use meshtone_diagnose::{
-    Answer, AnswerInWords, DiagnosisWarning, DiagnosisWarningKind, Learned, Observation, Prior, Question,
-    REFINED_RECORDS, ReferenceStore, diagnose, refine,
+    Answer, AnswerInWords, DiagnosisWarning, Learned, Observation, Prior, Question, REFINED_RECORDS,
+    ReferenceStore, diagnose, refine,
 };
 use meshtone_io::recording::Recording;
 use serde_json::{Value, json};
@@ -123,7 +123,7 @@ fn observe(
     let name = &question.name;
     let (observation, doubts) = of_recording(&recording, question, rig).map_err(|error| error.about(name))?;
     let doubts = recording.warnings.iter().map(ToString::to_string).chain(doubts);
-    let about = |doubt| DiagnosisWarning::new(DiagnosisWarningKind::Reading, format!("{name}: {doubt}"));
+    let about = |doubt| DiagnosisWarning { code: "reading", message: format!("{name}: {doubt}") };
     Ok((observation, doubts.map(about).collect()))
 }
 

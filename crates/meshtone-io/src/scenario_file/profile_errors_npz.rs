@@ -1,6 +1,5 @@
 //! Profile errors of both wheels and their other deviations, in a NumPy archive.
 
-use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use meshtone::scenario::{FileProblem, ProfileErrors, WheelDeviations};
@@ -113,7 +112,7 @@ pub fn write_wheels_npz(
     deviations: &[WheelDeviations; 2],
 ) -> Result<(), WriteFileError> {
     write_atomically(path, |file| {
-        let mut archive = NpzWriter::compressed(BufWriter::new(file));
+        let mut archive = NpzWriter::compressed();
         for (name, errors) in
             [(PINION, &errors.pinion_profile_errors_mm), (GEAR, &errors.gear_profile_errors_mm)]
         {
@@ -124,6 +123,6 @@ pub fn write_wheels_npz(
         for (name, numbers) in WheelDeviations::entries(deviations) {
             archive.add(name, &[numbers.len()], &numbers)?;
         }
-        archive.finish()?.flush()
+        archive.write(file)
     })
 }

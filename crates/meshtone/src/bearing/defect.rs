@@ -4,7 +4,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::BearingGeometry;
 use crate::error::ScenarioError;
-use crate::keys::{KeyRow, Keys, NoFiles, Range, by_name, field, read_keys, row};
+use crate::keys::{Keys, NoFiles, Range, by_name, keys, read_keys};
 
 /// Part of a bearing that has a defect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -73,34 +73,20 @@ impl BearingDefect {
 /// (-) A severity that stands for nothing is no defect.
 const SEVERITY: Range = Range::between(std::ops::Bound::Excluded(0.0), std::ops::Bound::Included(1.0));
 
-impl Keys for BearingDefect {
-    fn start() -> Self {
-        Self { race: DefectPlace::Outer, severity: None, width_mm: None, depth_um: 100.0, angle_deg: 0.0 }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("race", "", "the part with the spall: a race, or one of the balls or rollers", field!(race)).required(),
-            row("severity", "-", "the width of the spall as a fraction of the diameter of an element", field!(severity))
-                .otherwise("required, unless width_mm is given")
-                .range(SEVERITY)
-                .alternative("0.25"),
-            row("width_mm", "mm", "the width of the spall along the path of the elements", field!(width_mm))
-                .otherwise("required, unless severity is given")
-                .range(Range::positive())
-                .rule("at most the diameter of an element, and on the inner race the spacing of the elements")
-                .alternative("1.0"),
-            row("depth_um", "µm", "the depth of the spall; an element drops at most until it touches both edges", field!(depth_um))
-                .range(Range::positive().implausible_above(1e5)),
-            row(
-                "angle_deg",
-                "°",
-                "the angle from the static load of the bearing to the middle of the spall, about z; on the inner race at time 0, before settling",
-                field!(angle_deg),
-            )
-            .range(Range::from_to(-360.0, 360.0)),
-        ]
-    }
+keys! {
+    BearingDefect = Self { race: DefectPlace::Outer, severity: None, width_mm: None, depth_um: 100.0, angle_deg: 0.0 };
+    race "" "the part with the spall: a race, or one of the balls or rollers" .required();
+    severity "-" "the width of the spall as a fraction of the diameter of an element"
+        .otherwise("required, unless width_mm is given").range(SEVERITY).alternative("0.25");
+    width_mm "mm" "the width of the spall along the path of the elements"
+        .otherwise("required, unless severity is given").range(Range::positive())
+        .rule("at most the diameter of an element, and on the inner race the spacing of the elements")
+        .alternative("1.0");
+    depth_um "µm" "the depth of the spall; an element drops at most until it touches both edges"
+        .range(Range::positive().implausible_above(1e5));
+    angle_deg "°"
+        "the angle from the static load of the bearing to the middle of the spall, about z; on the inner race at time 0, before settling"
+        .range(Range::from_to(-360.0, 360.0));
 }
 
 /// A spall with its sizes.

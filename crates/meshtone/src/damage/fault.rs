@@ -8,8 +8,8 @@ use super::severity::SoundTooth;
 use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyDescription, KeyKind, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe,
-    describe_from, field, read_keys, read_rows, require, row, rows_but, write_keys, write_rows,
+    Check, KeyDescription, KeyKind, Keys, NoFiles, Range, check_keys, commented_rows, describe,
+    describe_from, keys, read_keys, read_rows, require, rows_but, write_keys, write_rows,
 };
 use crate::wheel::{NamedGears, Teeth, WheelName};
 
@@ -125,36 +125,16 @@ impl Fault {
     }
 }
 
-/// The keys that every fault has beside `kind`, which say where a damage is; those of the damage itself are its kind's.
-impl Keys for Fault {
-    fn start() -> Self {
-        Self::on_first_gear_tooth(MissingTooth)
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("wheel", "", "the damaged wheel", field!(wheel))
-                .kind(KeyKind::Name(WheelName::BOTH.map(WheelName::name).to_vec())),
-            row(
-                "tooth",
-                "",
-                "the damaged tooth's number, in the order of entering contact; an array of several, or \"all\"",
-                field!(tooth),
-            )
-            .range(Range::positive().message("must be at least 1, the first tooth"))
-            .rule("at most the wheel's teeth, each once"),
-            row(
-                "severity",
-                "-",
-                "the severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows",
-                field!(severity),
-            )
-            .otherwise("that of the sizes")
-            .range(Range::from_to(0.0, 1.0))
-            .rule("1 for a missing tooth")
-            .alternative("0.4"),
-        ]
-    }
+// The keys that every fault has beside `kind`, which say where a damage is; those of the damage itself are its kind's.
+keys! {
+    Fault = Self::on_first_gear_tooth(MissingTooth);
+    wheel "" "the damaged wheel" .kind(KeyKind::Name(WheelName::BOTH.map(WheelName::name).to_vec()));
+    tooth "" "the damaged tooth's number, in the order of entering contact; an array of several, or \"all\""
+        .range(Range::positive().message("must be at least 1, the first tooth"))
+        .rule("at most the wheel's teeth, each once");
+    severity "-" "the severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows"
+        .otherwise("that of the sizes").range(Range::from_to(0.0, 1.0)).rule("1 for a missing tooth")
+        .alternative("0.4");
 }
 
 impl Fault {

@@ -1,11 +1,10 @@
 //! A pit over a part of the face width, from one side.
 
 use super::severity::{LARGEST, SoundTooth};
-use meshtone_toml::{ReadResult, TomlTable};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::{DamageResult, Kind, PitCircle, ToothPart};
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, check_keys, field, flatten, require, row};
+use crate::keys::{Check, Range, check_keys, field, flatten, keys, require};
 use crate::wheel::Gears;
 
 /// A pit over a part of the face width, from one side.
@@ -17,23 +16,11 @@ pub struct PartialFace {
     pub pit: PitCircle,
 }
 
-impl Keys for PartialFace {
-    fn start() -> Self {
-        Self { width_mm: f64::NAN, pit: PitCircle::start() }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        let width =
-            row("width_mm", "mm", "the width of the pit along the face, from one side", field!(width_mm))
-                .required_unless(&["severity"])
-                .range(Range::positive())
-                .rule("less than the face width");
-        std::iter::once(width).chain(flatten(field!(pit))).collect()
-    }
-
-    fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        self.pit.choose(table, files)
-    }
+keys! {
+    PartialFace = Self { width_mm: f64::NAN, pit: PitCircle::start() }, chosen by pit;
+    width_mm "mm" "the width of the pit along the face, from one side"
+        .required_unless(&["severity"]).range(Range::positive()).rule("less than the face width");
+    .. { flatten(field!(pit)) };
 }
 
 impl Kind for PartialFace {

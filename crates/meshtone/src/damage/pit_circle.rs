@@ -11,7 +11,7 @@ use super::severity::SoundTooth;
 use super::{DamageDescription, FacePatch, Kind, QuantityValue};
 use crate::error::ScenarioError;
 use crate::interpolation::UniformLinear;
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, field, row, sub_table};
+use crate::keys::{Check, Range, keys, rows, sub_table};
 use crate::wheel::{ToothProfile, first_minimum};
 use std::f64::consts::PI;
 
@@ -39,64 +39,36 @@ pub enum PitCircle {
     },
 }
 
-impl Keys for PitCircle {
-    fn start() -> Self {
-        Self::Fractions { start: f64::NAN, end: f64::NAN, depth: f64::NAN }
-    }
+keys! {
+    PitCircle = Self::Fractions { start: f64::NAN, end: f64::NAN, depth: f64::NAN }, chosen with given_form;
+    [Self::Fractions] start "-" "the pit's first edge, a fraction of the flank's contact part from its root"
+        .required_unless(&["circle", "severity"])
+        .range(Range::below_one().message("must be from 0 to less than 1; 0 is where contact starts at the root side, 1 the tip"));
+    [Self::Fractions] end "-" "the pit's second edge, likewise"
+        .required_unless(&["circle", "severity"]).rule("more than `start`, ≤ 1");
+    [Self::Fractions] depth "-" "the pit's depth over half its chord"
+        .required_unless(&["circle", "severity"])
+        .range(Range::between(Excluded(0.0), Included(1.0)).help("depth is relative: the depth of the pit over half its chord"))
+        .rule("the circle must not undercut the flank: about 0.7 in its middle, 0.4 at the tip");
+    = { sub_table(
+        "circle",
+        "the circle that is cut into the flank, instead of start, end and depth",
+        rows! {
+            [Self::Circle] x_mm "mm" "the centre's position along the tooth's centre line, from the wheel's centre"
+                .required().range(Range::positive());
+            [Self::Circle] y_mm "mm" "the centre's distance from the tooth's centre line, towards the working flank"
+                .required();
+            [Self::Circle] radius_mm "mm" "the circle's radius" .required().range(Range::positive());
+        },
+    )
+    .otherwise("none")
+    .rule("must cut the flank twice")
+    .alternative("{ x_mm = 57.5, y_mm = 3.66, radius_mm = 2.5 }") };
+}
 
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "start",
-                "-",
-                "the pit's first edge, a fraction of the flank's contact part from its root",
-                field!(Self::Fractions, start),
-            )
-            .required_unless(&["circle", "severity"])
-            .range(Range::below_one().message(
-                "must be from 0 to less than 1; 0 is where contact starts at the root side, 1 the tip",
-            )),
-            row("end", "-", "the pit's second edge, likewise", field!(Self::Fractions, end))
-                .required_unless(&["circle", "severity"])
-                .rule("more than `start`, ≤ 1"),
-            row("depth", "-", "the pit's depth over half its chord", field!(Self::Fractions, depth))
-                .required_unless(&["circle", "severity"])
-                .range(
-                    Range::between(Excluded(0.0), Included(1.0))
-                        .help("depth is relative: the depth of the pit over half its chord"),
-                )
-                .rule("the circle must not undercut the flank: about 0.7 in its middle, 0.4 at the tip"),
-            sub_table(
-                "circle",
-                "the circle that is cut into the flank, instead of start, end and depth",
-                vec![
-                    row(
-                        "x_mm",
-                        "mm",
-                        "the centre's position along the tooth's centre line, from the wheel's centre",
-                        field!(Self::Circle, x_mm),
-                    )
-                    .required()
-                    .range(Range::positive()),
-                    row(
-                        "y_mm",
-                        "mm",
-                        "the centre's distance from the tooth's centre line, towards the working flank",
-                        field!(Self::Circle, y_mm),
-                    )
-                    .required(),
-                    row("radius_mm", "mm", "the circle's radius", field!(Self::Circle, radius_mm))
-                        .required()
-                        .range(Range::positive()),
-                ],
-            )
-            .otherwise("none")
-            .rule("must cut the flank twice")
-            .alternative("{ x_mm = 57.5, y_mm = 3.66, radius_mm = 2.5 }"),
-        ]
-    }
-
-    fn choose(&mut self, table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+impl PitCircle {
+    /// Takes the form that is given.
+    fn given_form(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
         let circle = table.optional("circle");
         let any_fraction = ["start", "end", "depth"].map(|key| table.optional(key).is_some()).contains(&true);
         match (circle.is_some(), any_fraction) {

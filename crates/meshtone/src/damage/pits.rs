@@ -10,7 +10,7 @@ use super::pit_circle::flank_index;
 use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, DamageResult, FacePatch, FlankPits, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, check_keys, field, require, row, sub_table};
+use crate::keys::{Check, KeyRow, Range, check_keys, keys, require, rows, sub_table};
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Gears, ToothProfile};
 
@@ -71,101 +71,37 @@ const MOST_PITS: f64 = 1000.0;
 /// Draws of a pit's place of which one must lie on the flank.
 const MOST_DRAWS: usize = 100;
 
-impl Keys for Pits {
-    fn start() -> Self {
-        let none = Vec::new;
-        Self::Listed { at: none(), z_mm: none(), radius_mm: none(), face_radius_mm: None, depth_mm: none() }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        let listed = |row: KeyRow<Self>| row.required_unless(&["random", "severity"]);
-        let drawn =
-            |name, unit, meaning, field, range| row(name, unit, meaning, field).required().range(range);
-        vec![
-            listed(row(
-                "at",
-                "-",
-                "the centre of each pit, a fraction of the flank's contact part from its root",
-                field!(Self::Listed, at),
-            ))
-            .range(Range::from_to(0.0, 1.0)),
-            listed(row(
-                "z_mm",
-                "mm",
-                "the centre of each along the face, from the face's middle; one number per pit, as for all keys here",
-                field!(Self::Listed, z_mm),
-            ))
-            .rule("within half the face width and the radius"),
-            listed(row("radius_mm", "mm", "the radius of each along the flank", field!(Self::Listed, radius_mm)))
-                .range(Range::positive()),
-            row(
-                "face_radius_mm",
-                "mm",
-                "the radius of each along the face, for ellipses",
-                field!(Self::Listed, face_radius_mm),
-            )
-            .otherwise("`radius_mm`: circles")
-            .range(Range::positive())
-            .alternative("[0.8, 1.2]"),
-            listed(row(
-                "depth_mm",
-                "mm",
-                "the depth of each, along the flank's normal",
-                field!(Self::Listed, depth_mm),
-            ))
-            .range(Range::not_negative())
-            .rule("less than the tooth is thick"),
-            sub_table(
-                "random",
-                "pits that are drawn for each tooth from the seed, instead of a list",
-                vec![
-                    drawn(
-                        "density_per_cm2",
-                        "1/cm²",
-                        "the mean number of pits in a square centimetre of flank; Poisson",
-                        field!(Self::Drawn, density_per_cm2),
-                        Range::not_negative(),
-                    )
-                    .rule("at most 1000 a tooth"),
-                    drawn(
-                        "spread",
-                        "-",
-                        "the standard deviation of their centres about the working pitch circle, a fraction of the \
-                         contact part; normal",
-                        field!(Self::Drawn, spread),
-                        Range::from_to(0.0, 1.0),
-                    ),
-                    drawn(
-                        "radius_mm",
-                        "mm",
-                        "the median of their radii; lognormal",
-                        field!(Self::Drawn, radius_mm),
-                        Range::positive(),
-                    ),
-                    drawn(
-                        "radius_spread",
-                        "-",
-                        "the standard deviation of the radii's natural logarithm",
-                        field!(Self::Drawn, radius_spread),
-                        Range::from_to(0.0, 2.0),
-                    ),
-                    drawn(
-                        "depth_mm",
-                        "mm",
-                        "the depth of all, along the flank's normal",
-                        field!(Self::Drawn, depth_mm),
-                        Range::not_negative(),
-                    ),
-                ],
-            )
+keys! {
+    Pits = Self::Listed {
+        at: Vec::new(),
+        z_mm: Vec::new(),
+        radius_mm: Vec::new(),
+        face_radius_mm: None,
+        depth_mm: Vec::new(),
+    }, chosen with given_form;
+    [Self::Listed] at "-" "the centre of each pit, a fraction of the flank's contact part from its root"
+        .required_unless(LISTED).range(Range::from_to(0.0, 1.0));
+    [Self::Listed] z_mm "mm"
+        "the centre of each along the face, from the face's middle; one number per pit, as for all keys here"
+        .required_unless(LISTED).rule("within half the face width and the radius");
+    [Self::Listed] radius_mm "mm" "the radius of each along the flank"
+        .required_unless(LISTED).range(Range::positive());
+    [Self::Listed] face_radius_mm "mm" "the radius of each along the face, for ellipses"
+        .otherwise("`radius_mm`: circles").range(Range::positive()).alternative("[0.8, 1.2]");
+    [Self::Listed] depth_mm "mm" "the depth of each, along the flank's normal"
+        .required_unless(LISTED).range(Range::not_negative()).rule("less than the tooth is thick");
+    = {
+        sub_table("random", "pits that are drawn for each tooth from the seed, instead of a list", Self::drawn_rows())
             .otherwise("none")
             .alternative(
                 "{ density_per_cm2 = 8.0, spread = 0.1, radius_mm = 0.4, radius_spread = 0.4, depth_mm = 0.1 }",
-            ),
-        ]
-    }
+            )
+    };
+}
 
-    fn choose(&mut self, table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+impl Pits {
+    /// Takes the form that is given.
+    fn given_form(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
         let listed = ["at", "z_mm", "radius_mm", "face_radius_mm", "depth_mm"];
         let given = listed.into_iter().find(|key| table.optional(key).is_some());
         match (table.optional("random").is_some(), given) {
@@ -352,7 +288,24 @@ impl FlankPits {
 /// Part of the face that must be left at any height.
 const LEAST_LEFT: f64 = 0.02;
 
+/// What may be given in place of a list.
+const LISTED: &[&str] = &["random", "severity"];
+
 impl Pits {
+    fn drawn_rows() -> Vec<KeyRow<Self>> {
+        rows! {
+            [Self::Drawn] density_per_cm2 "1/cm²" "the mean number of pits in a square centimetre of flank; Poisson"
+                .required().range(Range::not_negative()).rule("at most 1000 a tooth");
+            [Self::Drawn] spread "-"
+                "the standard deviation of their centres about the working pitch circle, a fraction of the contact part; normal"
+                .required().range(Range::from_to(0.0, 1.0));
+            [Self::Drawn] radius_mm "mm" "the median of their radii; lognormal" .required().range(Range::positive());
+            [Self::Drawn] radius_spread "-" "the standard deviation of the radii's natural logarithm"
+                .required().range(Range::from_to(0.0, 2.0));
+            [Self::Drawn] depth_mm "mm" "the depth of all, along the flank's normal" .required().range(Range::not_negative());
+        }
+    }
+
     /// The pits of a tooth, listed or drawn.
     ///
     /// # Errors

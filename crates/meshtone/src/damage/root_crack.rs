@@ -8,7 +8,7 @@ use super::description::{hundredths, tenths};
 use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, Range, below, check_keys, field, require, row};
+use crate::keys::{Check, Keys, Range, below, check_keys, keys, require};
 use crate::wheel::{Gears, ToothProfile};
 
 /// A crack from the fillet of the working flank into the tooth.
@@ -23,36 +23,16 @@ pub struct RootCrack {
     pub length_mm: Option<f64>,
 }
 
-impl Keys for RootCrack {
-    fn start() -> Self {
-        Self { depth_mm: f64::NAN, angle_deg: 45.0, length_mm: None }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "depth_mm",
-                "mm",
-                "the depth of the crack from the fillet, where it is deepest",
-                field!(depth_mm),
-            )
-            .required_unless(&["severity"])
-            .range(Range::not_negative())
-            .rule("must not pass the tooth's centre line"),
-            row("angle_deg", "°", "the crack's angle to the tooth's centre line", field!(angle_deg))
-                .range(Range::between(Excluded(0.0), Included(90.0))),
-            row(
-                "length_mm",
-                "mm",
-                "the length of the crack along the face, deepest at one side and ending in a parabola",
-                field!(length_mm),
-            )
-            .otherwise("over the whole face, equally deep")
-            .range(Range::positive())
-            .rule("at most the face width")
-            .alternative("10.0"),
-        ]
-    }
+keys! {
+    RootCrack = Self { depth_mm: f64::NAN, angle_deg: 45.0, length_mm: None };
+    depth_mm "mm" "the depth of the crack from the fillet, where it is deepest"
+        .required_unless(&["severity"]).range(Range::not_negative())
+        .rule("must not pass the tooth's centre line");
+    angle_deg "°" "the crack's angle to the tooth's centre line"
+        .range(Range::between(Excluded(0.0), Included(90.0)));
+    length_mm "mm" "the length of the crack along the face, deepest at one side and ending in a parabola"
+        .otherwise("over the whole face, equally deep").range(Range::positive())
+        .rule("at most the face width").alternative("10.0");
 }
 
 impl Kind for RootCrack {

@@ -1,11 +1,10 @@
 //! A pit over the whole face width: while the mate passes it, it turns about the pit's two edges.
 
 use super::severity::{LARGEST, SoundTooth};
-use meshtone_toml::{ReadResult, TomlTable};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::{DamageResult, Kind, PitCircle, ToothPart};
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, check_keys, field, flatten};
+use crate::keys::{Check, check_keys, field, flatten, keys};
 use crate::wheel::Gears;
 
 /// A pit over the whole face width.
@@ -15,18 +14,9 @@ pub struct ThroughFace {
     pub pit: PitCircle,
 }
 
-impl Keys for ThroughFace {
-    fn start() -> Self {
-        Self { pit: PitCircle::start() }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        flatten(field!(pit)).collect()
-    }
-
-    fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        self.pit.choose(table, files)
-    }
+keys! {
+    ThroughFace = Self { pit: PitCircle::start() }, chosen by pit;
+    .. { flatten(field!(pit)) };
 }
 
 impl Kind for ThroughFace {

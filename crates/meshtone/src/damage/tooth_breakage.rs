@@ -5,7 +5,7 @@ use super::description::hundredths;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, Range, below, check_keys, field, require, row};
+use crate::keys::{Check, Range, below, check_keys, keys, require};
 use crate::wheel::Gears;
 use crate::wheel::ToothProfile;
 
@@ -20,36 +20,14 @@ pub struct ToothBreakage {
     pub tip_loss_mm: f64,
 }
 
-impl Keys for ToothBreakage {
-    fn start() -> Self {
-        Self { chip_height_mm: f64::NAN, chip_width_mm: f64::NAN, tip_loss_mm: 0.0 }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "chip_height_mm",
-                "mm",
-                "the extent of the chipped corner from the tip along the tooth",
-                field!(chip_height_mm),
-            )
-            .required_unless(&["severity"])
-            .range(Range::positive())
-            .rule("less than the tooth's height"),
-            row("chip_width_mm", "mm", "its extent along the face width, at the tip", field!(chip_width_mm))
-                .required_unless(&["severity"])
-                .range(Range::positive())
-                .rule("at most the face width"),
-            row(
-                "tip_loss_mm",
-                "mm",
-                "the length of tip that is lost over the whole width",
-                field!(tip_loss_mm),
-            )
-            .range(Range::not_negative())
-            .rule("less than the tooth's height"),
-        ]
-    }
+keys! {
+    ToothBreakage = Self { chip_height_mm: f64::NAN, chip_width_mm: f64::NAN, tip_loss_mm: 0.0 };
+    chip_height_mm "mm" "the extent of the chipped corner from the tip along the tooth"
+        .required_unless(&["severity"]).range(Range::positive()).rule("less than the tooth's height");
+    chip_width_mm "mm" "its extent along the face width, at the tip"
+        .required_unless(&["severity"]).range(Range::positive()).rule("at most the face width");
+    tip_loss_mm "mm" "the length of tip that is lost over the whole width"
+        .range(Range::not_negative()).rule("less than the tooth's height");
 }
 
 impl Kind for ToothBreakage {

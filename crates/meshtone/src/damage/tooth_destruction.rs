@@ -11,7 +11,7 @@ use super::fault::end_after;
 use super::pit_circle::flank_index;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, PaperRig, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, below, check_keys, field, flatten, row};
+use crate::keys::{Check, Range, below, check_keys, field, flatten, keys};
 use crate::random::{Draws, Purpose};
 use crate::wheel::ToothProfile;
 use crate::wheel::{Gears, HALF_THICKNESS};
@@ -39,72 +39,29 @@ pub enum DestructionLine {
     SlopeDeg(f64),
 }
 
-impl Keys for ToothDestruction {
-    fn start() -> Self {
-        Self { start: f64::NAN, line: DestructionLine::start(), offset_mm: 0.0, noise_mm: 0.0 }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        let start = row(
-            "start",
-            "-",
-            "where the ground line begins, a fraction of the flank's contact part from its root; negative: below it",
-            field!(start),
-        )
+keys! {
+    ToothDestruction = Self { start: f64::NAN, line: DestructionLine::start(), offset_mm: 0.0, noise_mm: 0.0 }, chosen by line;
+    start "-" "where the ground line begins, a fraction of the flank's contact part from its root; negative: below it"
         .required_unless(&["severity"])
-        .range(
-            Range::between(Excluded(-1.0), Excluded(1.0))
-                .message("must be more than -1 and less than 1 (negative: below contact)"),
-        );
-        let rest = [
-            row("offset_mm", "mm", "how far inside the flank the line begins", field!(offset_mm))
-                .range(Range::not_negative())
-                .rule("less than π/4 modules, half the tooth's thickness"),
-            row(
-                "noise_mm",
-                "mm",
-                "the amplitude of the uniform random roughness of the ground flank",
-                field!(noise_mm),
-            )
-            .range(Range::not_negative())
-            .rule("likewise"),
-        ];
-        std::iter::once(start).chain(flatten(field!(line))).chain(rest).collect()
-    }
-
-    fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        self.line.choose(table, files)
-    }
+        .range(Range::between(Excluded(-1.0), Excluded(1.0)).message("must be more than -1 and less than 1 (negative: below contact)"));
+    .. { flatten(field!(line)) };
+    offset_mm "mm" "how far inside the flank the line begins"
+        .range(Range::not_negative()).rule("less than π/4 modules, half the tooth's thickness");
+    noise_mm "mm" "the amplitude of the uniform random roughness of the ground flank"
+        .range(Range::not_negative()).rule("likewise");
 }
 
-impl Keys for DestructionLine {
-    fn start() -> Self {
-        Self::End(f64::NAN)
-    }
+keys! {
+    DestructionLine = Self::End(f64::NAN), chosen with given_form;
+    [Self::End, 0] end "-" "the flank point to which the line leads, likewise"
+        .required_unless(&["slope_deg", "severity"]).rule("more than `start`, ≤ 1");
+    [Self::SlopeDeg, 0] slope_deg "°" "the angle to the tooth's centre line by which the line falls towards the tip, instead of end"
+        .otherwise("none").range(Range::between(Excluded(0.0), Excluded(90.0))).alternative("22.0");
+}
 
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "end",
-                "-",
-                "the flank point to which the line leads, likewise",
-                field!(Self::End, 0),
-            )
-            .required_unless(&["slope_deg", "severity"])
-            .rule("more than `start`, ≤ 1"),
-            row(
-                "slope_deg",
-                "°",
-                "the angle to the tooth's centre line by which the line falls towards the tip, instead of end",
-                field!(Self::SlopeDeg, 0),
-            )
-            .otherwise("none")
-            .range(Range::between(Excluded(0.0), Excluded(90.0)))
-            .alternative("22.0"),
-        ]
-    }
-
-    fn choose(&mut self, table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+impl DestructionLine {
+    /// Takes the form that is given.
+    fn given_form(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
         match (table.optional("end").is_some(), table.optional("slope_deg").is_some()) {
             (true, false) => Ok(()),
             (false, true) => {

@@ -5,7 +5,7 @@ use super::description::hundredths;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, FaultyTeeth, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, Range, check_keys, field, row};
+use crate::keys::{Check, Range, check_keys, keys};
 use crate::wheel::{Gears, Teeth, WheelName};
 
 /// Worn working flanks: the sliding wear of Archard's law, scaled to its largest depth.
@@ -23,21 +23,11 @@ fn most_um(tooth: &SoundTooth) -> f64 {
     MOST_UM.min(1e3 * tooth.least_half_thickness_mm())
 }
 
-impl Keys for Wear {
-    fn start() -> Self {
-        Self { depth_um: f64::NAN }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("depth_um", "µm", "the largest depth of wear, along the flank's normal", field!(depth_um))
-                .required_unless(&["severity"])
-                .range(Range::from_to(0.0, MOST_UM).help(
-                    "a flank that is worn deeper touches where it was not worn before; for a flank that is \
-                     destroyed, use kind = \"tooth-destruction\"",
-                )),
-        ]
-    }
+keys! {
+    Wear = Self { depth_um: f64::NAN };
+    depth_um "µm" "the largest depth of wear, along the flank's normal"
+        .required_unless(&["severity"])
+        .range(Range::from_to(0.0, MOST_UM).help("a flank that is worn deeper touches where it was not worn before; for a flank that is destroyed, use kind = \"tooth-destruction\""));
 }
 
 impl Kind for Wear {

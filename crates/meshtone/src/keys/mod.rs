@@ -6,20 +6,11 @@
 //! function beside the rows.
 //!
 //! ```ignore
-//! impl Keys for Shaft {
-//!     fn start() -> Self {
-//!         Shaft { length_mm: 200.0, radius_mm: 10.0 }
-//!     }
-//!
-//!     fn rows() -> Vec<KeyRow<Self>> {
-//!         vec![
-//!             row("length_mm", "mm", "length between wheel and motor or brake", field!(length_mm))
-//!                 .range(Range::positive().implausible_above(1e6)),
-//!             row("radius_mm", "mm", "radius, which is also the wheel's bore", field!(radius_mm))
-//!                 .range(Range::positive())
-//!                 .rule("less than the root radius"),
-//!         ]
-//!     }
+//! keys! {
+//!     Shaft = Shaft { length_mm: 200.0, radius_mm: 10.0 };
+//!     length_mm "mm" "length between wheel and motor or brake" .range(Range::positive().implausible_above(1e6));
+//!     radius_mm "mm" "radius, which is also the wheel's bore"
+//!         .range(Range::positive()).rule("less than the root radius");
 //! }
 //! ```
 
@@ -88,3 +79,64 @@ macro_rules! field {
     };
 }
 pub(crate) use field;
+
+/// The rows of a section, in the order of the documentation: the field, whose name is the key's, its unit and its meaning, then what
+/// else is known of it. Before a field of one form of the section stands that form in brackets, with `0` where it is the form's only
+/// value, and before one further inside its place in parentheses, before a field of another name than the key that name in angles; `=` begins a row that is made otherwise, and `..` several.
+macro_rules! rows {
+    ($($(.. $others:block)? $(= $other:block)? $(
+        $([$form:path $(, $only:literal)?])? $(<$field:ident>)? $(($place:ident))? $name:ident $unit:literal $meaning:literal $(. $known:ident ($($word:expr),*))*
+    )?;)*) => {{
+        let mut rows = Vec::new();
+        $(
+            $(rows.extend($others);)?
+            $(rows.extend([$other]);)?
+            $(rows.extend([
+                $crate::keys::row(stringify!($name), $unit, $meaning, $crate::keys::rows!(@ $([$form $(, $only)?])? $(<$field>)? $(($place))? $name))$(.$known($($word),*))*
+            ]);)?
+        )*
+        rows
+    }};
+    (@ [$form:path, $only:literal] $name:ident) => { $crate::keys::field!($form, 0) };
+    (@ [$form:path] $name:ident) => { $crate::keys::field!($form, $name) };
+    (@ <$field:ident> $name:ident) => { $crate::keys::field!($field) };
+    (@ ($place:ident) $name:ident) => { $crate::keys::field!($place.$name) };
+    (@ $name:ident) => { $crate::keys::field!($name) };
+}
+pub(crate) use rows;
+
+/// The keys of a type: what they are before a file is read, which may also be the `default`, then their [`rows`]; before it the section's name, if it has one. Which form
+/// a table has is decided by a field (`chosen by`) or a method (`chosen with`).
+macro_rules! keys {
+    ($($section:literal:)? $type:ident = default $start:expr $(, chosen with $form:ident)?; $($rows:tt)*) => {
+        impl Default for $type {
+            fn default() -> Self {
+                $start
+            }
+        }
+
+        $crate::keys::keys! { $($section:)? $type = Self::default() $(, chosen with $form)?; $($rows)* }
+    };
+    ($($section:literal:)? $type:ident = $start:expr $(, chosen by $part:ident)? $(, chosen with $form:ident)?; $($rows:tt)*) => {
+        impl $crate::keys::Keys for $type {
+            $(const SECTION: &str = $section;)?
+
+            fn start() -> Self {
+                $start
+            }
+
+            fn rows() -> Vec<$crate::keys::KeyRow<Self>> {
+                $crate::keys::rows! { $($rows)* }
+            }
+
+            $(fn choose(&mut self, table: &meshtone_toml::TomlTable<'_>, files: &dyn $crate::keys::NumberFiles) -> meshtone_toml::ReadResult<()> {
+                self.$part.choose(table, files)
+            })?
+
+            $(fn choose(&mut self, table: &meshtone_toml::TomlTable<'_>, _: &dyn $crate::keys::NumberFiles) -> meshtone_toml::ReadResult<()> {
+                self.$form(table)
+            })?
+        }
+    };
+}
+pub(crate) use keys;

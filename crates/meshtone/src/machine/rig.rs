@@ -5,7 +5,7 @@ use std::ops::Bound::Excluded;
 use meshtone_toml::{ReadResult, TomlValue};
 
 use super::{Support, Unbalance};
-use crate::keys::{Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, field, row};
+use crate::keys::{Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, rows};
 use crate::wheel::{Gears, WheelName};
 
 /// Condensed shafts in their bearings and supports.
@@ -66,36 +66,17 @@ impl Keys for Rig {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "bearing_stiffness_n_per_m",
-                "N/m",
-                "the stiffness of each wheel's bearings in x, y and z",
-                field!(bearing_stiffness_n_per_m),
-            )
-            .range(STIFFNESS),
-            row(
-                "wheel_rotational_stiffness_nm_per_rad",
-                "N m/rad",
-                "the tilting stiffness of each wheel, about x and about y",
-                field!(wheel_rotational_stiffness_nm_per_rad),
-            )
-            .range(STIFFNESS),
-            row(
-                "damping_ratio",
-                "-",
-                "the modal damping ratio: one for all modes, or 13 by rising frequency",
-                field!(damping_ratio),
-            )
-            .range(
-                Range::below_one()
-                    .message("must be from 0 to less than 1 (1 is critical damping)")
-                    .help("a usual ratio is 0.05, which is 5 %"),
-            ),
-            row("pinion_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(pinion_shaft)),
-            row("gear_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(gear_shaft)),
-            row("support", "", "the supports of the shafts' bearings", field!(support)),
-        ]
+        rows! {
+            bearing_stiffness_n_per_m "N/m" "the stiffness of each wheel's bearings in x, y and z"
+                .range(STIFFNESS);
+            wheel_rotational_stiffness_nm_per_rad "N m/rad" "the tilting stiffness of each wheel, about x and about y"
+                .range(STIFFNESS);
+            damping_ratio "-" "the modal damping ratio: one for all modes, or 13 by rising frequency"
+                .range(Range::below_one().message("must be from 0 to less than 1 (1 is critical damping)").help("a usual ratio is 0.05, which is 5 %"));
+            pinion_shaft "" "the shaft to motor (pinion) or brake (gear)";
+            gear_shaft "" "the shaft to motor (pinion) or brake (gear)";
+            support "" "the supports of the shafts' bearings";
+        }
     }
 }
 
@@ -209,39 +190,19 @@ impl Keys for Shaft {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("length_mm", "mm", "the length from the wheel to motor or brake", field!(length_mm))
-                .range(Range::positive().implausible_above(1e6)),
-            row("radius_mm", "mm", "the radius, also of the wheel's bore", field!(radius_mm))
-                .range(Range::positive())
-                .rule("less than the wheel's root radius"),
-            row(
-                "bearing_span_mm",
-                "mm",
-                "the distance between the shaft's two bearings",
-                field!(bearing_span_mm),
-            )
-            .range(Range::positive().implausible_above(1e5)),
-            row("wheel_at", "-", "the position of the wheel between them", field!(wheel_at)).range(
-                Range::between(Excluded(0.0), Excluded(1.0))
-                    .message("must be more than 0 and less than 1 (0.5: midway between the bearings)"),
-            ),
-            row(
-                "bearing_stiffness_n_per_m",
-                "N/m",
-                "the stiffness of both bearings together",
-                field!(bearing_stiffness_n_per_m),
-            )
-            .otherwise("`rig.bearing_stiffness_n_per_m`")
-            .range(STIFFNESS),
-            row(
-                "damping_ratio",
-                "-",
-                "the damping ratio of the shaft and its bearings",
-                field!(damping_ratio),
-            )
-            .range(STRUCTURAL_DAMPING),
-        ]
+        rows! {
+            length_mm "mm" "the length from the wheel to motor or brake"
+                .range(Range::positive().implausible_above(1e6));
+            radius_mm "mm" "the radius, also of the wheel's bore"
+                .range(Range::positive()).rule("less than the wheel's root radius");
+            bearing_span_mm "mm" "the distance between the shaft's two bearings"
+                .range(Range::positive().implausible_above(1e5));
+            wheel_at "-" "the position of the wheel between them"
+                .range(Range::between(Excluded(0.0), Excluded(1.0)).message("must be more than 0 and less than 1 (0.5: midway between the bearings)"));
+            bearing_stiffness_n_per_m "N/m" "the stiffness of both bearings together"
+                .otherwise("`rig.bearing_stiffness_n_per_m`").range(STIFFNESS);
+            damping_ratio "-" "the damping ratio of the shaft and its bearings" .range(STRUCTURAL_DAMPING);
+        }
     }
 }
 
@@ -263,24 +224,11 @@ impl Keys for WheelInertia {
 
     fn rows() -> Vec<KeyRow<Self>> {
         const DISC: &str = "the disc's";
-        vec![
-            row("mass_kg", "kg", "the mass", field!(mass_kg)).otherwise(DISC).range(MASS),
-            row(
-                "polar_inertia_kgm2",
-                "kg m²",
-                "the moment of inertia about the shaft",
-                field!(polar_inertia_kgm2),
-            )
-            .otherwise(DISC)
-            .range(MASS),
-            row(
-                "transverse_inertia_kgm2",
-                "kg m²",
-                "the moment of inertia about a diameter",
-                field!(transverse_inertia_kgm2),
-            )
-            .otherwise(DISC)
-            .range(MASS),
-        ]
+        rows! {
+            mass_kg "kg" "the mass" .otherwise(DISC).range(MASS);
+            polar_inertia_kgm2 "kg m²" "the moment of inertia about the shaft" .otherwise(DISC).range(MASS);
+            transverse_inertia_kgm2 "kg m²" "the moment of inertia about a diameter"
+                .otherwise(DISC).range(MASS);
+        }
     }
 }

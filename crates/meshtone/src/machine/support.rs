@@ -6,7 +6,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::rig::{MASS, STIFFNESS, STRUCTURAL_DAMPING};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
-use crate::keys::{Check, Field, KeyRow, Keys, NumberFiles, Range, field, flatten, row};
+use crate::keys::{Check, Keys, Range, field, flatten, keys};
 
 /// What the bearings of each of the two shafts sit in: a bracket or the wall of a housing, that moves across the shafts.
 ///
@@ -46,12 +46,6 @@ pub enum SupportSprings {
         /// (N/m) Between the two supports. Default 5e8.
         coupling_n_per_m: f64,
     },
-}
-
-impl Default for Support {
-    fn default() -> Self {
-        Self { mass_kg: 2.3, springs: SupportSprings::start(), damping_ratio: 0.025 }
-    }
 }
 
 impl Support {
@@ -126,36 +120,16 @@ impl Support {
 const FREQUENCIES: [&str; 2] = ["base_hz", "differential_hz"];
 const STIFFNESSES: [&str; 2] = ["stiffness_n_per_m", "coupling_n_per_m"];
 
-impl Keys for Support {
-    fn start() -> Self {
-        Self::default()
-    }
+keys! {
+    Support = default Self { mass_kg: 2.3, springs: SupportSprings::start(), damping_ratio: 0.025 }, chosen with given_form;
+    mass_kg "kg" "the mass of each support; 1.6 by default where a stiffness is given" .range(MASS);
+    .. { flatten(field!(springs)) };
+    damping_ratio "-" "the damping ratio of the supports on their stiffnesses" .range(STRUCTURAL_DAMPING);
+}
 
-    fn rows() -> Vec<KeyRow<Self>> {
-        let springs: Field<Self, SupportSprings> = field!(springs);
-        let mut rows = vec![
-            row(
-                "mass_kg",
-                "kg",
-                "the mass of each support; 1.6 by default where a stiffness is given",
-                field!(mass_kg),
-            )
-            .range(MASS),
-        ];
-        rows.extend(flatten(springs));
-        rows.push(
-            row(
-                "damping_ratio",
-                "-",
-                "the damping ratio of the supports on their stiffnesses",
-                field!(damping_ratio),
-            )
-            .range(STRUCTURAL_DAMPING),
-        );
-        rows
-    }
-
-    fn choose(&mut self, table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+impl Support {
+    /// Takes the form that is given.
+    fn given_form(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
         let given = |keys: [&'static str; 2]| keys.into_iter().find(|key| table.optional(key).is_some());
         match (given(FREQUENCIES), given(STIFFNESSES)) {
             (Some(frequency), Some(stiffness)) => Err(table
@@ -181,49 +155,18 @@ impl Keys for Support {
     }
 }
 
-impl Keys for SupportSprings {
-    fn start() -> Self {
-        Self::Frequencies { base_hz: 450.0, differential_hz: 2900.0 }
-    }
+const HZ: Range = Range::positive().implausible_above(1e6);
 
-    fn rows() -> Vec<KeyRow<Self>> {
-        const HZ: Range = Range::positive().implausible_above(1e6);
-        vec![
-            row(
-                "base_hz",
-                "Hz",
-                "the natural frequency of the bare supports, moving in phase",
-                field!(Self::Frequencies, base_hz),
-            )
-            .range(HZ)
-            .alternative("450.0"),
-            row(
-                "differential_hz",
-                "Hz",
-                "the natural frequency of the bare supports, moving against each other",
-                field!(Self::Frequencies, differential_hz),
-            )
-            .range(HZ)
-            .rule("more than base_hz")
-            .alternative("2900.0"),
-            row(
-                "stiffness_n_per_m",
-                "N/m",
-                "instead of the frequencies, the stiffness between each support and the base",
-                field!(Self::Stiffnesses, stiffness_n_per_m),
-            )
-            .range(STIFFNESS)
-            .otherwise("1.6e8 where coupling_n_per_m is given")
-            .alternative("1.6e8"),
-            row(
-                "coupling_n_per_m",
-                "N/m",
-                "instead of the frequencies, the stiffness between the two supports",
-                field!(Self::Stiffnesses, coupling_n_per_m),
-            )
-            .range(Range::not_negative().implausible_above(1e15))
-            .otherwise("5e8 where stiffness_n_per_m is given")
-            .alternative("5e8"),
-        ]
-    }
+keys! {
+    SupportSprings = Self::Frequencies { base_hz: 450.0, differential_hz: 2900.0 };
+    [Self::Frequencies] base_hz "Hz" "the natural frequency of the bare supports, moving in phase"
+        .range(HZ).alternative("450.0");
+    [Self::Frequencies] differential_hz "Hz" "the natural frequency of the bare supports, moving against each other"
+        .range(HZ).rule("more than base_hz").alternative("2900.0");
+    [Self::Stiffnesses] stiffness_n_per_m "N/m"
+        "instead of the frequencies, the stiffness between each support and the base"
+        .range(STIFFNESS).otherwise("1.6e8 where coupling_n_per_m is given").alternative("1.6e8");
+    [Self::Stiffnesses] coupling_n_per_m "N/m" "instead of the frequencies, the stiffness between the two supports"
+        .range(Range::not_negative().implausible_above(1e15))
+        .otherwise("5e8 where stiffness_n_per_m is given").alternative("5e8");
 }

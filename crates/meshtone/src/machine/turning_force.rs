@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::keys::{KeyRow, Keys, Range, field, row};
+use crate::keys::{Range, keys};
 
 /// (°) Any angle once around, either way.
 const ANGLE: Range = Range::from_to(-360.0, 360.0);
@@ -16,30 +16,11 @@ pub struct Unbalance {
     pub angle_deg: f64,
 }
 
-impl Default for Unbalance {
-    fn default() -> Self {
-        Self { g_mm: 0.0, angle_deg: 0.0 }
-    }
-}
-
-impl Keys for Unbalance {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("g_mm", "g mm", "the mass times its distance from the axis", field!(g_mm))
-                .range(Range::not_negative().implausible_above(1e7)),
-            row(
-                "angle_deg",
-                "°",
-                "its direction at time 0, before settling, from x towards y",
-                field!(angle_deg),
-            )
-            .range(ANGLE),
-        ]
-    }
+keys! {
+    Unbalance = default Self { g_mm: 0.0, angle_deg: 0.0 };
+    g_mm "g mm" "the mass times its distance from the axis"
+        .range(Range::not_negative().implausible_above(1e7));
+    angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
 }
 
 /// The bow of a shaft that is not straight: half a sine over its length, without a load.
@@ -51,35 +32,11 @@ pub struct Bow {
     pub angle_deg: f64,
 }
 
-impl Default for Bow {
-    fn default() -> Self {
-        Self { middle_um: 0.0, angle_deg: 0.0 }
-    }
-}
-
-impl Keys for Bow {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "middle_um",
-                "µm",
-                "the distance of its middle from the line through its ends, without a load",
-                field!(middle_um),
-            )
-            .range(Range::not_negative().implausible_above(1e4)),
-            row(
-                "angle_deg",
-                "°",
-                "its direction at time 0, before settling, from x towards y",
-                field!(angle_deg),
-            )
-            .range(ANGLE),
-        ]
-    }
+keys! {
+    Bow = default Self { middle_um: 0.0, angle_deg: 0.0 };
+    middle_um "µm" "the distance of its middle from the line through its ends, without a load"
+        .range(Range::not_negative().implausible_above(1e4));
+    angle_deg "°" "its direction at time 0, before settling, from x towards y" .range(ANGLE);
 }
 
 /// Forces on a machine that turn with a shaft.

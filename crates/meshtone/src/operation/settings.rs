@@ -2,7 +2,7 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use crate::keys::{KeyRow, Keys, Range, field, row, rows_but};
+use crate::keys::{KeyRow, Range, keys, rows, rows_but};
 
 /// Settings of the solver of the equations of motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,21 +31,6 @@ pub struct Solver {
     pub initial_displacement: Option<[f64; 13]>,
     /// (m/s, rad/s) Initial velocity of the 13 coordinates. Default the rigid rotation.
     pub initial_velocity: Option<[f64; 13]>,
-}
-
-impl Default for Solver {
-    fn default() -> Self {
-        Self {
-            sampling_rate_hz: 1e5,
-            duration_s: None,
-            pinion_revolutions: None,
-            settle_fraction: 0.5,
-            settle_tolerance: 1e-6,
-            highest_mode_hz: None,
-            initial_displacement: None,
-            initial_velocity: None,
-        }
-    }
 }
 
 impl Solver {
@@ -96,111 +81,42 @@ pub struct LengthKey {
     pub change: &'static str,
 }
 
-impl Keys for Solver {
-    const SECTION: &str = "solver";
-
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "sampling_rate_hz",
-                "S/s",
-                "the nominal sampling rate; the actual one is the next at which a whole number of samples passes from one pair \
-                 of teeth to the next",
-                field!(sampling_rate_hz),
-            )
-            .range(Range::positive()),
-            row("duration_s", "s", "the length of the kept signal; settling comes before it", field!(duration_s))
-                .otherwise("see pinion_revolutions")
-                .range(Range::positive())
-                .rule("not beside pinion_revolutions")
-                .example("1.0"),
-            row(
-                "pinion_revolutions",
-                "-",
-                "the same as a number of revolutions of the pinion; settling comes before them",
-                field!(pinion_revolutions),
-            )
-            .otherwise("2 z_g revolutions less settling, or as long as a profile")
-            .range(Range::positive())
-            .rule("not beside duration_s, not with a speed profile")
-            .alternative("20.0"),
-            row(
-                "settle_fraction",
-                "-",
-                "the part of the simulated time that is discarded from the start, while the vibration settles",
-                field!(settle_fraction),
-            )
-            .range(Range::below_one().message(
-                "must be from 0 to less than 1, the part of the simulation that is discarded",
-            )),
-            row(
-                "settle_tolerance",
-                "-",
-                "the fraction of the slowest mode's transient that may remain where the kept signal starts: \
-                 a steady simulation starts in equilibrium and simulates only as much of the discarded part \
-                 as this needs; 0: all of it, as always under published",
-                field!(settle_tolerance),
-            )
-            .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1")),
-            row(
-                "initial_displacement",
-                "m, rad",
-                "the displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and \
-                 brake, z of gear and pinion, tilt φ of both, tilt ψ of both",
-                field!(initial_displacement),
-            )
-            .otherwise("the loaded mesh's equilibrium; zeros under published")
-            .example("[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"),
-            row("initial_velocity", "m/s, rad/s", "the velocity of the same at the start", field!(initial_velocity))
-                .otherwise("rigid rotation at the nominal speed")
-                .alternative("[ 13 numbers ]"),
-        ]
-    }
+keys! {
+    "solver": Solver = default Self {
+        sampling_rate_hz: 1e5,
+        duration_s: None,
+        pinion_revolutions: None,
+        settle_fraction: 0.5,
+        settle_tolerance: 1e-6,
+        highest_mode_hz: None,
+        initial_displacement: None,
+        initial_velocity: None,
+    };
+    sampling_rate_hz "S/s"
+        "the nominal sampling rate; the actual one is the next at which a whole number of samples passes from one pair of teeth to the next"
+        .range(Range::positive());
+    duration_s "s" "the length of the kept signal; settling comes before it"
+        .otherwise("see pinion_revolutions").range(Range::positive())
+        .rule("not beside pinion_revolutions").example("1.0");
+    pinion_revolutions "-" "the same as a number of revolutions of the pinion; settling comes before them"
+        .otherwise("2 z_g revolutions less settling, or as long as a profile").range(Range::positive())
+        .rule("not beside duration_s, not with a speed profile").alternative("20.0");
+    settle_fraction "-" "the part of the simulated time that is discarded from the start, while the vibration settles"
+        .range(Range::below_one().message("must be from 0 to less than 1, the part of the simulation that is discarded"));
+    settle_tolerance "-"
+        "the fraction of the slowest mode's transient that may remain where the kept signal starts: a steady simulation starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as always under published"
+        .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1"));
+    initial_displacement "m, rad"
+        "the displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both"
+        .otherwise("the loaded mesh's equilibrium; zeros under published")
+        .example("[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]");
+    initial_velocity "m/s, rad/s" "the velocity of the same at the start"
+        .otherwise("rigid rotation at the nominal speed").alternative("[ 13 numbers ]");
 }
 
 impl Solver {
     /// The rows where revolutions are those of the shaft that is coupled to the motor.
     pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
-        let rate = row(
-            "sampling_rate_hz",
-            "S/s",
-            "the nominal sampling rate; the actual one is the next with a whole number of samples per revolution of the input",
-            field!(sampling_rate_hz),
-        )
-        .range(Range::positive());
-        let duration = row(
-            "duration_s",
-            "s",
-            "the length of the kept signal; settling comes before it",
-            field!(duration_s),
-        )
-        .otherwise("that of input_revolutions")
-        .range(Range::positive())
-        .rule("not beside input_revolutions")
-        .example("1.0");
-        let revolutions = row(
-            "input_revolutions",
-            "rev",
-            "the number of kept revolutions of the input; settling comes before them",
-            field!(pinion_revolutions),
-        )
-        .otherwise("those of 1 s, or as long as a profile")
-        .range(Range::positive())
-        .rule("not beside duration_s, not with a speed profile")
-        .example("30.0");
-        let highest = row(
-            "highest_mode_hz",
-            "Hz",
-            "the natural frequency up to which modes are integrated; those above deform statically",
-            field!(highest_mode_hz),
-        )
-        .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
-        .range(Range::between(Excluded(0.0), Included(1e9)))
-        .alternative("20000.0");
         const OWN: [&str; 5] = [
             "sampling_rate_hz",
             "duration_s",
@@ -208,6 +124,21 @@ impl Solver {
             "initial_displacement",
             "initial_velocity",
         ];
-        [rate, duration, revolutions].into_iter().chain(rows_but(&OWN)).chain([highest]).collect()
+        rows! {
+            sampling_rate_hz "S/s"
+                "the nominal sampling rate; the actual one is the next with a whole number of samples per revolution of the input"
+                .range(Range::positive());
+            duration_s "s" "the length of the kept signal; settling comes before it"
+                .otherwise("that of input_revolutions").range(Range::positive())
+                .rule("not beside input_revolutions").example("1.0");
+            <pinion_revolutions> input_revolutions "rev"
+                "the number of kept revolutions of the input; settling comes before them"
+                .otherwise("those of 1 s, or as long as a profile").range(Range::positive())
+                .rule("not beside duration_s, not with a speed profile").example("30.0");
+            .. { rows_but(&OWN) };
+            highest_mode_hz "Hz" "the natural frequency up to which modes are integrated; those above deform statically"
+                .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
+                .range(Range::between(Excluded(0.0), Included(1e9))).alternative("20000.0");
+        }
     }
 }

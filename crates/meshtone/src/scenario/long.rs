@@ -8,7 +8,7 @@ use super::{
     Fault, Material, Model, Operation, Scenario, ScenarioMesh, ScenarioWheel, SectionDescription, Sensor,
     Shafts, Solver, Structure,
 };
-use crate::keys::{KeyRow, Keys, NumberFiles, describe, describe_rows, field, read_keys, read_rows, row};
+use crate::keys::{KeyRow, Keys, NumberFiles, describe, describe_rows, field, read_keys, read_rows, rows};
 use crate::machine::{Bearing, GearboxShaft, Housing};
 
 /// Names of the sections that only shafts of beams have.
@@ -33,24 +33,7 @@ pub(super) fn is_written_in(root: &TomlTable<'_>) -> ReadResult<bool> {
 
 /// The keys above the sections.
 pub(super) fn top() -> Section {
-    let rows = vec![
-        row(
-            "seed",
-            "",
-            "the seed of every random draw: deviations, fluctuations, sensors' noise",
-            field!(in Scenario: seed),
-        ),
-        row(
-            "wheels_seed",
-            "",
-            "the seed of the wheels' deviations alone, for the same wheels with other noise and fluctuations",
-            field!(in Scenario: wheels_seed),
-        )
-        .otherwise("seed")
-        .alternative("2"),
-        row("material", "", "the material of shafts and wheels", field!(in Scenario: material)),
-    ];
-    Section { name: "", rows }
+    Section { name: "", rows: Scenario::rows_of_top() }
 }
 
 /// `[operation]`: speed and load.
@@ -103,6 +86,16 @@ pub(super) fn read(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<
 }
 
 impl Scenario {
+    fn rows_of_top() -> Vec<KeyRow<Self>> {
+        rows! {
+            seed "" "the seed of every random draw: deviations, fluctuations, sensors' noise";
+            wheels_seed ""
+                "the seed of the wheels' deviations alone, for the same wheels with other noise and fluctuations"
+                .otherwise("seed").alternative("2");
+            material "" "the material of shafts and wheels";
+        }
+    }
+
     /// Shafts of beams without any, and every other key at its default.
     pub(super) fn start_of_shafts() -> Self {
         Self {

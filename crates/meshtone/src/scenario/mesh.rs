@@ -1,7 +1,7 @@
 //! Two wheels of a scenario in mesh.
 
 use super::ScenarioWheel;
-use crate::keys::{KeyRow, Keys, Range, field, row};
+use crate::keys::{KeyRow, Keys, Range, field, rows};
 use crate::wheel::rows::*;
 use crate::wheel::{BodyRotation, EndRelief, FoundationCoefficients, Gears, Hand, Material, WheelName};
 
@@ -143,44 +143,30 @@ impl Keys for ScenarioMesh {
     }
 
     fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("wheels", "", "the names of the driving and of the driven wheel", field!(wheels)).required(),
-            module_row(field!(module_mm)),
-            pressure_angle_row(field!(pressure_angle_deg)),
-            helix_angle_row(field!(helix_angle_deg)),
-            hand_row("the hand of the driving wheel's helix; the driven one's is the other one", field!(hand)),
-            lead_crowning_row(field!(lead_crowning_um)),
-            end_relief_row(field!(end_relief)),
-            slices_row(field!(slices)),
-            centre_distance_row(field!(centre_distance_mm)),
-            backlash_row(field!(backlash_mm)),
-            misalignment_row(field!(misalignment_um)),
-            points_row(field!(points_per_tooth)),
-            foundation_row(field!(foundation)),
-            row(
-                "phase",
-                "base pitches",
-                "where on its path of contact the first pair of teeth is at the start",
-                field!(phase),
-            )
-            .otherwise("0; for a wheel in two meshes, the phase that follows from the other mesh")
-            .alternative("0.0"),
-            row(
-                "damping_ratio",
-                "-",
-                "the damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh stiffness",
-                field!(damping_ratio),
-            )
-            .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
-            row("friction", "-", "the coefficient of friction of the flanks; 0 for frictionless ones", field!(friction))
-                .range(Range::from_to(0.0, 0.5).help("lubricated flanks have 0.02 to 0.1")),
-            row(
-                "random_force",
-                "-",
-                "the size of the random force across the line of action, modulated by the load; 0 for none",
-                field!(random_force),
-            )
-            .range(Range::from_to(0.0, 10.0).help("0.02 to 0.2 sounds like recorded gearboxes")),
-        ]
+        rows! {
+            wheels "" "the names of the driving and of the driven wheel" .required();
+            = { module_row(field!(module_mm)) };
+            = { pressure_angle_row(field!(pressure_angle_deg)) };
+            = { helix_angle_row(field!(helix_angle_deg)) };
+            = { hand_row("the hand of the driving wheel's helix; the driven one's is the other one", field!(hand)) };
+            = { lead_crowning_row(field!(lead_crowning_um)) };
+            = { end_relief_row(field!(end_relief)) };
+            = { slices_row(field!(slices)) };
+            = { centre_distance_row(field!(centre_distance_mm)) };
+            = { backlash_row(field!(backlash_mm)) };
+            = { misalignment_row(field!(misalignment_um)) };
+            = { points_row(field!(points_per_tooth)) };
+            = { foundation_row(field!(foundation)) };
+            phase "base pitches" "where on its path of contact the first pair of teeth is at the start"
+                .otherwise("0; for a wheel in two meshes, the phase that follows from the other mesh")
+                .alternative("0.0");
+            damping_ratio "-"
+                "the damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh stiffness"
+                .range(Range::below_one().help("measured ratios are 0.03 to 0.17"));
+            friction "-" "the coefficient of friction of the flanks; 0 for frictionless ones"
+                .range(Range::from_to(0.0, 0.5).help("lubricated flanks have 0.02 to 0.1"));
+            random_force "-" "the size of the random force across the line of action, modulated by the load; 0 for none"
+                .range(Range::from_to(0.0, 10.0).help("0.02 to 0.2 sounds like recorded gearboxes"));
+        }
     }
 }

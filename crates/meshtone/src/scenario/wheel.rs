@@ -5,7 +5,7 @@ use std::ops::Bound::Included;
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::error::ScenarioWarning;
-use crate::keys::{KeyKind, KeyRow, Keys, NumberFiles, Range, documented, field, load, read_keys, row};
+use crate::keys::{KeyKind, Keys, NumberFiles, Range, documented, field, keys, load, read_keys};
 use crate::machine::{Unbalance, WheelInertia};
 use crate::wheel::quality::{file_deviations, ignored_shares};
 use crate::wheel::rows::*;
@@ -131,137 +131,90 @@ impl ScenarioWheel {
 const ALONG: Range = Range::between(Included(0.0), Included(1.0))
     .message("must be from 0 to 1, the part of the shaft's length from its beginning");
 
-impl Keys for ScenarioWheel {
-    const SECTION: &str = "wheel";
+const SHARE: Range = Range::from_to(0.0, 1.0);
+const MATES: &str = "the same of both wheels of a mesh";
 
-    fn start() -> Self {
-        Self {
-            name: String::new(),
-            shaft: String::new(),
-            at: f64::NAN,
-            teeth: 0,
-            face_width_mm: f64::NAN,
-            profile_shift: 0.0,
-            addendum: 1.0,
-            dedendum: 1.25,
-            tip_chamfer_mm: None,
-            active_profile_shortening: 0.1,
-            uniform_flank_reduction_mm: 0.0,
-            flank_relief: FlankRelief::default(),
-            material: None,
-            inertia: WheelInertia::default(),
-            unbalance: Unbalance::default(),
-            eccentricity_mm: 0.0,
-            din_grade: 0,
-            iso_class: 0,
-            tooth_share: 0.75,
-            pitch_share: 0.5,
-            run_out_share: 0.6,
-            slope_wobble: 1.0,
-            helix_share: 0.0,
-            profile_errors_mm: None,
-            deviations: WheelDeviations::default(),
-        }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        const SHARE: Range = Range::from_to(0.0, 1.0);
-        const MATES: &str = "the same of both wheels of a mesh";
-        vec![
-            row("name", "", "the wheel's name", field!(name)).required().rule("no other wheel's"),
-            row("shaft", "", "the name of its shaft", field!(shaft)).required(),
-            row("at", "-", "the position along the shaft, as a fraction of its length from its beginning", field!(at))
-                .required()
-                .range(ALONG)
-                .rule("within half a face width of its mating wheels"),
-            teeth_row("teeth", field!(teeth)),
-            face_width_row("the face width; a mesh has what both faces have in common", field!(face_width_mm))
-                .rule("on its shaft, clear of other wheels"),
-            profile_shift_row("profile_shift", field!(profile_shift)),
-            addendum_row("addendum", field!(addendum)),
-            dedendum_row("dedendum", field!(dedendum)),
-            chamfer_row(field!(tip_chamfer_mm)).rule(MATES),
-            shortening_row(field!(active_profile_shortening)).rule(MATES),
-            flank_reduction_row(field!(uniform_flank_reduction_mm)).rule(MATES),
-            row("flank_relief", "", "the relief of the flanks near the tips, as a gap in µm", field!(flank_relief))
-                .rule(MATES),
-            row("material", "", "its material", field!(material))
-                .otherwise("that of the gearbox")
-                .rule(MATES)
-                .alternative("\"steel\""),
-            row("inertia", "", "its mass and inertias, any of the three", field!(inertia))
-                .otherwise("those of a solid disc of pitch radius")
-                .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
-            row("unbalance", "", "its unbalance", field!(unbalance)).otherwise("none").alternative("{ g_mm = 50.0 }"),
-            row("eccentricity_mm", "mm", "the eccentricity of its seat", field!(eccentricity_mm))
-                .range(Range::not_negative())
-                .rule("less than the module; of a wheel in one mesh"),
-            row("din_grade", "", "the grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade))
-                .range(Range::from_to(0.0, 12.0)),
-            row("iso_class", "", "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none", field!(iso_class))
-                .range(Range::from_to(0.0, 11.0))
-                .rule("not beside din_grade"),
-            row(
-                "tooth_share",
-                "-",
-                "the part of the tolerances of profile slope and form that each tooth has of its own",
-                field!(tooth_share),
-            )
-            .range(SHARE),
-            row("pitch_share", "-", "its largest single pitch deviation over its tolerance f_p", field!(pitch_share))
-                .range(SHARE),
-            row("run_out_share", "-", "its run-out over its tolerance F_r", field!(run_out_share)).range(SHARE),
-            row(
-                "slope_wobble",
-                "-",
-                "the profile slope that varies once a revolution, over the rms deviation of the wheel's profiles",
-                field!(slope_wobble),
-            )
-            .range(Range::from_to(0.0, 3.0)),
-            row("helix_share", "-", "its largest helix slope deviation, of either sign, over its tolerance f_Hβ", field!(helix_share))
-                .range(SHARE),
-            documented(
-                "errors_file",
-                "an .npz with its deviations, as `meshtone wheels` writes it: the pinion's of a wheel that drives in its first mesh, the \
-                 gear's of one that is driven there",
-                KeyKind::File,
-            )
-            .otherwise("none")
-            .alternative("\"wheels.npz\""),
-            row(
-                "profile_errors_mm",
-                "mm",
-                "its profile errors, instead of a draw: 100 rows of one number a tooth, in the order of contact in its first mesh",
-                field!(profile_errors_mm),
-            )
-            .otherwise("none")
-            .rule("100 × teeth, each below the module; not beside errors_file, din_grade, iso_class")
-            .alternative("[ 100 rows of one number a tooth ]"),
-            row(
-                "cumulative_pitch_um",
-                "µm",
-                "the working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added",
-                field!(deviations.cumulative_pitch_um),
-            )
-            .otherwise("drawn")
-            .rule("one a tooth, each below the module")
-            .alternative("[ one number a tooth ]"),
-            row("run_out_um", "µm", "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)", field!(deviations.run_out_um))
-                .otherwise("drawn")
-                .range(Range::not_negative().implausible_above(1e4))
-                .alternative("0.0"),
-            row("run_out_phase_rad", "rad", "its phase φ", field!(deviations.run_out_phase_rad))
-                .otherwise("drawn")
-                .alternative("0.0"),
-            row(
-                "helix_slope_um",
-                "µm",
-                "the helix slope deviation over the face width, positive where metal is added towards positive z",
-                field!(deviations.helix_slope_um),
-            )
-            .otherwise("drawn by `helix_share`, or none")
-            .range(Range::from_to(-1e3, 1e3))
-            .alternative("0.0"),
-        ]
-    }
+keys! {
+    "wheel": ScenarioWheel = Self {
+        name: String::new(),
+        shaft: String::new(),
+        at: f64::NAN,
+        teeth: 0,
+        face_width_mm: f64::NAN,
+        profile_shift: 0.0,
+        addendum: 1.0,
+        dedendum: 1.25,
+        tip_chamfer_mm: None,
+        active_profile_shortening: 0.1,
+        uniform_flank_reduction_mm: 0.0,
+        flank_relief: FlankRelief::default(),
+        material: None,
+        inertia: WheelInertia::default(),
+        unbalance: Unbalance::default(),
+        eccentricity_mm: 0.0,
+        din_grade: 0,
+        iso_class: 0,
+        tooth_share: 0.75,
+        pitch_share: 0.5,
+        run_out_share: 0.6,
+        slope_wobble: 1.0,
+        helix_share: 0.0,
+        profile_errors_mm: None,
+        deviations: WheelDeviations::default(),
+    };
+    name "" "the wheel's name" .required().rule("no other wheel's");
+    shaft "" "the name of its shaft" .required();
+    at "-" "the position along the shaft, as a fraction of its length from its beginning"
+        .required().range(ALONG).rule("within half a face width of its mating wheels");
+    = { teeth_row("teeth", field!(teeth)) };
+    = { face_width_row("the face width; a mesh has what both faces have in common", field!(face_width_mm))
+        .rule("on its shaft, clear of other wheels") };
+    = { profile_shift_row("profile_shift", field!(profile_shift)) };
+    = { addendum_row("addendum", field!(addendum)) };
+    = { dedendum_row("dedendum", field!(dedendum)) };
+    = { chamfer_row(field!(tip_chamfer_mm)).rule(MATES) };
+    = { shortening_row(field!(active_profile_shortening)).rule(MATES) };
+    = { flank_reduction_row(field!(uniform_flank_reduction_mm)).rule(MATES) };
+    flank_relief "" "the relief of the flanks near the tips, as a gap in µm" .rule(MATES);
+    material "" "its material" .otherwise("that of the gearbox").rule(MATES).alternative("\"steel\"");
+    inertia "" "its mass and inertias, any of the three"
+        .otherwise("those of a solid disc of pitch radius")
+        .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }");
+    unbalance "" "its unbalance" .otherwise("none").alternative("{ g_mm = 50.0 }");
+    eccentricity_mm "mm" "the eccentricity of its seat"
+        .range(Range::not_negative()).rule("less than the module; of a wheel in one mesh");
+    din_grade "" "the grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth"
+        .range(Range::from_to(0.0, 12.0));
+    iso_class "" "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none"
+        .range(Range::from_to(0.0, 11.0)).rule("not beside din_grade");
+    tooth_share "-" "the part of the tolerances of profile slope and form that each tooth has of its own"
+        .range(SHARE);
+    pitch_share "-" "its largest single pitch deviation over its tolerance f_p" .range(SHARE);
+    run_out_share "-" "its run-out over its tolerance F_r" .range(SHARE);
+    slope_wobble "-" "the profile slope that varies once a revolution, over the rms deviation of the wheel's profiles"
+        .range(Range::from_to(0.0, 3.0));
+    helix_share "-" "its largest helix slope deviation, of either sign, over its tolerance f_Hβ"
+        .range(SHARE);
+    = { documented(
+        "errors_file",
+        "an .npz with its deviations, as `meshtone wheels` writes it: the pinion's of a wheel that drives in its first mesh, the \
+         gear's of one that is driven there",
+        KeyKind::File,
+    )
+    .otherwise("none")
+    .alternative("\"wheels.npz\"") };
+    profile_errors_mm "mm"
+        "its profile errors, instead of a draw: 100 rows of one number a tooth, in the order of contact in its first mesh"
+        .otherwise("none")
+        .rule("100 × teeth, each below the module; not beside errors_file, din_grade, iso_class")
+        .alternative("[ 100 rows of one number a tooth ]");
+    (deviations) cumulative_pitch_um "µm"
+        "the working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added"
+        .otherwise("drawn").rule("one a tooth, each below the module").alternative("[ one number a tooth ]");
+    (deviations) run_out_um "µm" "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)"
+        .otherwise("drawn").range(Range::not_negative().implausible_above(1e4)).alternative("0.0");
+    (deviations) run_out_phase_rad "rad" "its phase φ" .otherwise("drawn").alternative("0.0");
+    (deviations) helix_slope_um "µm"
+        "the helix slope deviation over the face width, positive where metal is added towards positive z"
+        .otherwise("drawn by `helix_share`, or none").range(Range::from_to(-1e3, 1e3)).alternative("0.0");
 }

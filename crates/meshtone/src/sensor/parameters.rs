@@ -7,8 +7,8 @@ use super::frequency_response::FrequencyResponse;
 use super::path::SensorPath;
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, by_name, check_keys, field, require,
-    row, rows_but,
+    Check, KeyKind, KeyRow, KeyValue, NumberFiles, Range, Written, by_name, check_keys, keys, require, rows,
+    rows_but,
 };
 use crate::model::Model;
 
@@ -138,111 +138,49 @@ pub enum ResponseInput {
 
 by_name!(ResponseInput, ["acceleration" => ResponseInput::Acceleration, "force" => ResponseInput::Force]);
 
-impl Default for Sensor {
-    fn default() -> Self {
-        Self {
-            name: None,
-            at: SensorPlace::default(),
-            direction: SensorDirection::default(),
-            resonance_hz: None,
-            resonance_damping_ratio: 0.02,
-            noise_density_g_per_rthz: 0.0,
-            noise_seed: None,
-            range_g: None,
-            bits: None,
-            path: SensorPath::default(),
-            frequency_response: None,
-            response_input: ResponseInput::default(),
-        }
-    }
-}
-
-impl Keys for Sensor {
-    const SECTION: &str = "sensor";
-
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(name))
-                .otherwise("place and direction, such as `gear_support_vertical`")
-                .rule("a letter, then letters, digits and `_`; no other channel's")
-                .example("\"accelerometer_1\""),
-            row(
-                "at",
-                "",
-                "where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the \
-                 wheels under linear and published",
-                field!(at),
-            )
-            .kind(KeyKind::Name(vec!["support", "pinion-support", "gear-support", "wheels"])),
-            row(
-                "direction",
-                "",
-                "the direction it measures in; under contact axial only at the wheels",
-                field!(direction),
-            ),
-            row("resonance_hz", "Hz", "the natural frequency of the sensor on its mount", field!(resonance_hz))
-                .otherwise("none")
-                .range(Range::positive().implausible_above(1e7))
-                .example("12000.0"),
-            row(
-                "resonance_damping_ratio",
-                "-",
-                "the damping ratio of that resonance",
-                field!(resonance_damping_ratio),
-            )
-            .range(Range::positive().implausible_above(10.0)),
-            row(
-                "noise_density_g_per_rthz",
-                "g/√Hz",
-                "the density of its white normal noise: the standard deviation over the root of half the sampling \
-                 rate",
-                field!(noise_density_g_per_rthz),
-            )
-            .range(Range::not_negative().implausible_above(1e3)),
-            row("noise_seed", "", "the seed of the noise alone", field!(noise_seed))
-                .otherwise("the scenario's `seed`")
-                .example("1"),
-            row("range_g", "g", "the largest acceleration, of either sign, that it measures", field!(range_g))
-                .otherwise("none")
-                .range(Range::positive().implausible_above(1e9))
-                .example("50.0"),
-            row("bits", "", "the resolution: the range from minus to plus has 2^bits steps", field!(bits))
-                .otherwise("none")
-                .range(Range::from_to(8.0, 32.0))
-                .rule("with range_g")
-                .example("16"),
-            row(
-                "path",
-                "",
-                "the wall and the modes of a housing between its place and the sensor; rigid under linear and published",
-                field!(path),
-            ),
-            row(
-                "frequency_response",
-                "Hz, -, °",
-                "the measured path to the sensor: magnitude and phase over frequency, straight between the \
-                 points, the phase unwrapped; zero outside them. Or { file = \"….csv\" } with the columns \
-                 frequency_hz, magnitude, phase_deg",
-                field!(frequency_response),
-            )
-            .otherwise("none")
-            .rule("at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0")
-            .example("{ frequency_hz = [0.0, 20000.0], magnitude = [1.0, 1.0], phase_deg = [0.0, 0.0] }"),
-            row(
-                "response_input",
-                "",
-                "the input of the frequency response: the place's acceleration, magnitudes without unit; or, \
-                 regardless of `at` and `direction`, the force along the line of action, magnitudes in \
-                 (m/s²)/N",
-                field!(response_input),
-            )
-            .rule("\"force\" with frequency_response"),
-        ]
-    }
+keys! {
+    "sensor": Sensor = default Self {
+        name: None,
+        at: SensorPlace::default(),
+        direction: SensorDirection::default(),
+        resonance_hz: None,
+        resonance_damping_ratio: 0.02,
+        noise_density_g_per_rthz: 0.0,
+        noise_seed: None,
+        range_g: None,
+        bits: None,
+        path: SensorPath::default(),
+        frequency_response: None,
+        response_input: ResponseInput::default(),
+    };
+    name "" "the sensor's name; its signal is the channel `NAME_g`"
+        .otherwise("place and direction, such as `gear_support_vertical`")
+        .rule("a letter, then letters, digits and `_`; no other channel's")
+        .example("\"accelerometer_1\"");
+    at ""
+        "where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the wheels under linear and published"
+        .kind(KeyKind::Name(vec!["support", "pinion-support", "gear-support", "wheels"]));
+    direction "" "the direction it measures in; under contact axial only at the wheels";
+    resonance_hz "Hz" "the natural frequency of the sensor on its mount"
+        .otherwise("none").range(Range::positive().implausible_above(1e7)).example("12000.0");
+    resonance_damping_ratio "-" "the damping ratio of that resonance"
+        .range(Range::positive().implausible_above(10.0));
+    noise_density_g_per_rthz "g/√Hz"
+        "the density of its white normal noise: the standard deviation over the root of half the sampling rate"
+        .range(Range::not_negative().implausible_above(1e3));
+    noise_seed "" "the seed of the noise alone" .otherwise("the scenario's `seed`").example("1");
+    range_g "g" "the largest acceleration, of either sign, that it measures"
+        .otherwise("none").range(Range::positive().implausible_above(1e9)).example("50.0");
+    bits "" "the resolution: the range from minus to plus has 2^bits steps"
+        .otherwise("none").range(Range::from_to(8.0, 32.0)).rule("with range_g").example("16");
+    path "" "the wall and the modes of a housing between its place and the sensor; rigid under linear and published";
+    frequency_response "Hz, -, °"
+        "the measured path to the sensor: magnitude and phase over frequency, straight between the points, the phase unwrapped; zero outside them. Or { file = \"….csv\" } with the columns frequency_hz, magnitude, phase_deg"
+        .otherwise("none").rule("at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0")
+        .example("{ frequency_hz = [0.0, 20000.0], magnitude = [1.0, 1.0], phase_deg = [0.0, 0.0] }");
+    response_input ""
+        "the input of the frequency response: the place's acceleration, magnitudes without unit; or, regardless of `at` and `direction`, the force along the line of action, magnitudes in (m/s²)/N"
+        .rule("\"force\" with frequency_response");
 }
 
 impl Sensor {
@@ -256,21 +194,16 @@ impl Sensor {
 
     /// The rows among shafts of beams.
     pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
-        let at = row(
-            "at",
-            "",
-            "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \
-             \"housing:[x, y, z]\" in mm on the housing",
-            field!(at),
-        )
-        .required();
-        let name = row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(name))
-            .otherwise("place and direction, such as `input_0_vertical`")
-            .rule("a letter, then letters, digits and `_`; no other channel's")
-            .alternative("\"output_bearing\"");
-        let direction = row("direction", "", "the direction it measures in", field!(direction));
-        let others = rows_but(&["at", "name", "direction", "response_input"]);
-        [at, name, direction].into_iter().chain(others).collect()
+        rows! {
+            at "" "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \"housing:[x, y, z]\" in mm on the housing"
+                .required();
+            name "" "the sensor's name; its signal is the channel `NAME_g`"
+                .otherwise("place and direction, such as `input_0_vertical`")
+                .rule("a letter, then letters, digits and `_`; no other channel's")
+                .alternative("\"output_bearing\"");
+            direction "" "the direction it measures in";
+            .. { rows_but(&["at", "name", "direction", "response_input"]) };
+        }
     }
 
     /// Its name, given or by place and direction.

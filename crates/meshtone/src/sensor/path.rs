@@ -6,7 +6,7 @@ use meshtone_fourier::Complex64;
 
 use super::measure::REMEMBERED;
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyRow, Keys, Range, check_keys, field, row};
+use crate::keys::{Check, Range, check_keys, keys};
 use crate::random::{Draws, Purpose};
 
 /// The path from the motion of a support's mass to that of a sensor on it.
@@ -33,49 +33,25 @@ pub struct SensorPath {
     pub seed: u64,
 }
 
-impl Default for SensorPath {
-    fn default() -> Self {
-        Self { plate_hz: 4000.0, ..Self::RIGID }
-    }
-}
-
 /// (-) Frequency at which the plate's response stops growing, over [`SensorPath::plate_hz`].
 const PLATE_ENDS: f64 = 10.0;
 /// Most modes of a housing.
 const MOST_MODES: f64 = 1e4;
 
-impl Keys for SensorPath {
-    fn start() -> Self {
-        Self::default()
-    }
+const HZ: Range = Range::positive().implausible_above(1e7);
 
-    fn rows() -> Vec<KeyRow<Self>> {
-        const HZ: Range = Range::positive().implausible_above(1e7);
-        vec![
-            row(
-                "plate_hz",
-                "Hz",
-                "the frequency at which the wall under the sensor bends as far as the support moves; 0: no wall",
-                field!(plate_hz),
-            )
-            .range(Range::not_negative().implausible_above(1e7)),
-            row(
-                "strength",
-                "-",
-                "the standard deviation of a housing mode's share; 0: no modes",
-                field!(strength),
-            )
-            .range(Range::not_negative().implausible_above(100.0)),
-            row("modes_per_khz", "1/kHz", "the housing modes in a kilohertz", field!(modes_per_khz))
-                .range(Range::positive().implausible_above(1e3)),
-            row("band_hz", "Hz", "the frequency band of the housing's modes", field!(band_hz))
-                .range(HZ)
-                .rule("the first less than the second"),
-            row("damping_ratio", "-", "the damping ratio of the housing's modes", field!(damping_ratio))
-                .range(Range::positive().implausible_above(1.0)),
-            row("seed", "", "the seed of the housing's modes", field!(seed)),
-        ]
-    }
+keys! {
+    SensorPath = default Self { plate_hz: 4000.0, ..Self::RIGID };
+    plate_hz "Hz" "the frequency at which the wall under the sensor bends as far as the support moves; 0: no wall"
+        .range(Range::not_negative().implausible_above(1e7));
+    strength "-" "the standard deviation of a housing mode's share; 0: no modes"
+        .range(Range::not_negative().implausible_above(100.0));
+    modes_per_khz "1/kHz" "the housing modes in a kilohertz" .range(Range::positive().implausible_above(1e3));
+    band_hz "Hz" "the frequency band of the housing's modes"
+        .range(HZ).rule("the first less than the second");
+    damping_ratio "-" "the damping ratio of the housing's modes"
+        .range(Range::positive().implausible_above(1.0));
+    seed "" "the seed of the housing's modes";
 }
 
 /// A mode of a housing.

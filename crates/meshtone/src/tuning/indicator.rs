@@ -22,34 +22,16 @@ pub enum TuningIndicator {
     EnvelopeSkewness,
 }
 
+meshtone_toml::named!(TuningIndicator {
+    Rms = "rms",
+    Kurtosis = "kurtosis",
+    Skewness = "skewness",
+    EnvelopeRms = "envelope_rms",
+    EnvelopeKurtosis = "envelope_kurtosis",
+    EnvelopeSkewness = "envelope_skewness",
+});
+
 impl TuningIndicator {
-    /// All of its values.
-    pub const ALL: [Self; 6] = [
-        Self::Rms,
-        Self::Kurtosis,
-        Self::Skewness,
-        Self::EnvelopeRms,
-        Self::EnvelopeKurtosis,
-        Self::EnvelopeSkewness,
-    ];
-
-    /// Its name in files.
-    ///
-    /// ```
-    /// use meshtone::tuning::TuningIndicator;
-    /// assert_eq!(TuningIndicator::EnvelopeRms.name(), "envelope_rms");
-    /// ```
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rms => "rms",
-            Self::Kurtosis => "kurtosis",
-            Self::Skewness => "skewness",
-            Self::EnvelopeRms => "envelope_rms",
-            Self::EnvelopeKurtosis => "envelope_kurtosis",
-            Self::EnvelopeSkewness => "envelope_skewness",
-        }
-    }
-
     /// Returns whether the healthy state's rms is divided out.
     pub fn is_relative(self) -> bool {
         matches!(self, Self::Rms | Self::EnvelopeRms)

@@ -1,7 +1,7 @@
 //! Relief of the flank near the tip, as a gap of some micrometres.
 
 use super::{ReliefShape, Wheel};
-use crate::keys::{KeyRow, Keys, Range, field, row};
+use crate::keys::{Range, keys};
 
 /// Material removed from the flank near the tip, so that loaded teeth enter and leave contact softly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,12 +12,6 @@ pub struct FlankRelief {
     pub length_mm: f64,
     /// (µm) How far the flank lies back at the tip, along its normal. Default 0: no relief.
     pub amount_um: f64,
-}
-
-impl Default for FlankRelief {
-    fn default() -> Self {
-        Self { shape: ReliefShape::Parabolic, length_mm: 1.0, amount_um: 0.0 }
-    }
 }
 
 impl FlankRelief {
@@ -37,29 +31,11 @@ impl FlankRelief {
     }
 }
 
-impl Keys for FlankRelief {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("shape", "", "a parabola that leaves the flank smoothly, or a straight line", field!(shape)),
-            row(
-                "length_mm",
-                "mm",
-                "the length from the tip along the tooth's centre line",
-                field!(length_mm),
-            )
-            .range(Range::positive())
-            .rule("less than 2 modules"),
-            row(
-                "amount_um",
-                "µm",
-                "the depth of the relief at the tip, along the flank's normal; usually 10 to 40",
-                field!(amount_um),
-            )
-            .range(Range::not_negative().implausible_above(1000.0)),
-        ]
-    }
+keys! {
+    FlankRelief = default Self { shape: ReliefShape::Parabolic, length_mm: 1.0, amount_um: 0.0 };
+    shape "" "a parabola that leaves the flank smoothly, or a straight line";
+    length_mm "mm" "the length from the tip along the tooth's centre line"
+        .range(Range::positive()).rule("less than 2 modules");
+    amount_um "µm" "the depth of the relief at the tip, along the flank's normal; usually 10 to 40"
+        .range(Range::not_negative().implausible_above(1000.0));
 }

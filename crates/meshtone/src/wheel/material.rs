@@ -5,8 +5,7 @@ use std::ops::Bound::Excluded;
 use meshtone_toml::{ReadResult, TomlValue};
 
 use crate::keys::{
-    Check, KeyDescription, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, check_keys,
-    describe, field, row,
+    Check, KeyDescription, KeyKind, KeyValue, Keys, NumberFiles, Range, Written, check_keys, describe, keys,
 };
 
 /// An isotropic elastic material, by name or by its constants.
@@ -43,25 +42,13 @@ pub struct MaterialConstants {
     pub density_kg_per_m3: f64,
 }
 
-impl Keys for MaterialConstants {
-    fn start() -> Self {
-        Self { youngs_modulus_gpa: f64::NAN, poisson_ratio: f64::NAN, density_kg_per_m3: f64::NAN }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("youngs_modulus_gpa", "GPa", "Young's modulus", field!(youngs_modulus_gpa))
-                .required()
-                .range(Range::positive().implausible_above(2e3)),
-            row("poisson_ratio", "-", "Poisson's ratio", field!(poisson_ratio)).required().range(
-                Range::between(Excluded(-1.0), Excluded(0.5))
-                    .message("must be more than −1 and less than 0.5"),
-            ),
-            row("density_kg_per_m3", "kg/m³", "the density", field!(density_kg_per_m3))
-                .required()
-                .range(Range::positive().implausible_above(1e5)),
-        ]
-    }
+keys! {
+    MaterialConstants = Self { youngs_modulus_gpa: f64::NAN, poisson_ratio: f64::NAN, density_kg_per_m3: f64::NAN };
+    youngs_modulus_gpa "GPa" "Young's modulus" .required().range(Range::positive().implausible_above(2e3));
+    poisson_ratio "-" "Poisson's ratio"
+        .required()
+        .range(Range::between(Excluded(-1.0), Excluded(0.5)).message("must be more than −1 and less than 0.5"));
+    density_kg_per_m3 "kg/m³" "the density" .required().range(Range::positive().implausible_above(1e5));
 }
 
 /// Names of the materials in the scenario file, in the order of [`Material::ALL`].

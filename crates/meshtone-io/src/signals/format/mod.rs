@@ -23,21 +23,10 @@ pub enum SignalFormat {
     Wav,
 }
 
+// The names are also the endings of their files; the default comes first.
+meshtone_toml::named!(SignalFormat { Parquet = "parquet", Csv = "csv", Mat = "mat", Npz = "npz", Wav = "wav" });
+
 impl SignalFormat {
-    /// All of them, the default first.
-    pub const ALL: [Self; 5] = [Self::Parquet, Self::Csv, Self::Mat, Self::Npz, Self::Wav];
-
-    /// Its name, which is also the ending of its files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Parquet => "parquet",
-            Self::Csv => "csv",
-            Self::Mat => "mat",
-            Self::Npz => "npz",
-            Self::Wav => "wav",
-        }
-    }
-
     /// Name of the file of signals in a folder of results.
     pub const fn file_name(self) -> &'static str {
         match self {

@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::keys::{KeyRow, Keys, Range, field, row};
+use crate::keys::{Range, keys};
 use crate::random::{Draws, Purpose};
 
 /// (Hz) Frequency above which a housing has no modes: what lies higher hardly passes to where sensors sit.
@@ -81,31 +81,12 @@ fn place_number(at_m: [f64; 3]) -> u64 {
         .fold(0, |number, along| number.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(along))
 }
 
-impl Default for HousingModes {
-    fn default() -> Self {
-        Self { per_khz: 4.0, ..Self::RIGID }
-    }
-}
-
-impl Keys for HousingModes {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "per_khz",
-                "1/kHz",
-                "how many modes it has in a kHz, up to 9 kHz; 0 for a rigid housing",
-                field!(per_khz),
-            )
-            .range(Range::from_to(0.0, 20.0)),
-            row("first_hz", "Hz", "the frequency from which on it has modes", field!(first_hz))
-                .range(Range::positive().implausible_above(9e3)),
-            row("damping_ratio", "-", "the damping ratio of its modes", field!(damping_ratio))
-                .range(Range::below_one().help("measured peaks of housings have 0.01 to 0.06")),
-            row("seed", "", "the seed of their frequencies and shapes: which housing it is", field!(seed)),
-        ]
-    }
+keys! {
+    HousingModes = default Self { per_khz: 4.0, ..Self::RIGID };
+    per_khz "1/kHz" "how many modes it has in a kHz, up to 9 kHz; 0 for a rigid housing"
+        .range(Range::from_to(0.0, 20.0));
+    first_hz "Hz" "the frequency from which on it has modes" .range(Range::positive().implausible_above(9e3));
+    damping_ratio "-" "the damping ratio of its modes"
+        .range(Range::below_one().help("measured peaks of housings have 0.01 to 0.06"));
+    seed "" "the seed of their frequencies and shapes: which housing it is";
 }

@@ -9,7 +9,7 @@ use crate::bearing::{
     RollingParts, Spall,
 };
 use crate::error::ScenarioError;
-use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
+use crate::keys::{Keys, Range, by_name, keys};
 
 /// A round shaft between two ends, with wheels and bearings on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,101 +125,48 @@ const MAYBE_STIFF: Range = Range::not_negative().implausible_above(1e15);
 const MASS: Range = Range::positive().implausible_above(1e9);
 const DAMPING: Range = Range::below_one().help("a bolted structure has 0.01 to 0.05");
 
-impl Keys for GearboxShaft {
-    const SECTION: &str = "shaft";
-
-    fn start() -> Self {
-        Self {
-            name: String::new(),
-            length_mm: f64::NAN,
-            start_mm: 0.0,
-            radius_mm: None,
-            segments: Vec::new(),
-            bore_radius_mm: 0.0,
-            position_mm: None,
-            elements: 12,
-            couples_to: Coupled::Nothing,
-            coupling_stiffness_nm_per_rad: None,
-            damping_ratio: 0.05,
-            unbalance: Unbalance::default(),
-            bow: Bow::default(),
-        }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("name", "", "the shaft's name", field!(name)).required().rule("no other shaft's"),
-            row("length_mm", "mm", "the shaft's length", field!(length_mm))
-                .required()
-                .range(Range::positive().implausible_above(1e5)),
-            row(
-                "start_mm",
-                "mm",
-                "z of its beginning: shafts of one axis stand behind one another",
-                field!(start_mm),
-            )
-            .range(Range::between(Excluded(-1e5), Excluded(1e5))),
-            row("radius_mm", "mm", "its radius, also of the bores of the wheels on it", field!(radius_mm))
-                .otherwise("required, unless segments is given")
-                .range(Range::positive())
-                .rule("less than the wheels' root radii"),
-            row(
-                "segments",
-                "mm",
-                "the length and the radius of each piece, from its beginning on, in place of one radius",
-                field!(segments),
-            )
-            .otherwise("one piece of radius_mm")
-            .range(Range::positive())
-            .rule("lengths add up to length_mm")
-            .alternative("[[100.0, 8.0], [140.0, 10.0]]"),
-            row("bore_radius_mm", "mm", "the radius of the shaft's own bore", field!(bore_radius_mm))
-                .range(Range::not_negative())
-                .rule("less than its radius"),
-            row("position_mm", "mm", "x and y of its axis", field!(position_mm))
-                .otherwise(
-                    "beside the shaft that it meshes with, at the mesh's centre distance towards positive x",
-                )
-                .rule("at the mesh's centre distance from the axis of each mating shaft, within 0.01 mm")
-                .alternative("[101.6, 0.0]"),
-            row("elements", "", "the number of its beam elements", field!(elements))
-                .range(Range::from_to(2.0, 60.0)),
-            row(
-                "couples_to",
-                "",
-                "what it is coupled to: the motor at its beginning, or the brake at the other end",
-                field!(couples_to),
-            )
-            .rule("one shaft to the motor, one to the brake"),
-            row(
-                "coupling_stiffness_nm_per_rad",
-                "N m/rad",
-                "the torsional stiffness of that coupling",
-                field!(coupling_stiffness_nm_per_rad),
-            )
-            .otherwise("2e3 of a motor's, 4e3 of a brake's")
-            .range(STIFFNESS)
-            .alternative("2000.0"),
-            row(
-                "damping_ratio",
-                "-",
-                "the damping ratio of the shaft and its coupling",
-                field!(damping_ratio),
-            )
-            .range(DAMPING),
-            row("unbalance", "", "the unbalance of the shaft, midway along it", field!(unbalance))
-                .otherwise("none")
-                .alternative("{ g_mm = 50.0 }"),
-            row(
-                "bow",
-                "",
-                "the bow of a shaft that is not straight: half a sine over its length",
-                field!(bow),
-            )
-            .otherwise("none")
-            .alternative("{ middle_um = 20.0 }"),
-        ]
-    }
+keys! {
+    "shaft": GearboxShaft = Self {
+        name: String::new(),
+        length_mm: f64::NAN,
+        start_mm: 0.0,
+        radius_mm: None,
+        segments: Vec::new(),
+        bore_radius_mm: 0.0,
+        position_mm: None,
+        elements: 12,
+        couples_to: Coupled::Nothing,
+        coupling_stiffness_nm_per_rad: None,
+        damping_ratio: 0.05,
+        unbalance: Unbalance::default(),
+        bow: Bow::default(),
+    };
+    name "" "the shaft's name" .required().rule("no other shaft's");
+    length_mm "mm" "the shaft's length" .required().range(Range::positive().implausible_above(1e5));
+    start_mm "mm" "z of its beginning: shafts of one axis stand behind one another"
+        .range(Range::between(Excluded(-1e5), Excluded(1e5)));
+    radius_mm "mm" "its radius, also of the bores of the wheels on it"
+        .otherwise("required, unless segments is given").range(Range::positive())
+        .rule("less than the wheels' root radii");
+    segments "mm" "the length and the radius of each piece, from its beginning on, in place of one radius"
+        .otherwise("one piece of radius_mm").range(Range::positive())
+        .rule("lengths add up to length_mm").alternative("[[100.0, 8.0], [140.0, 10.0]]");
+    bore_radius_mm "mm" "the radius of the shaft's own bore"
+        .range(Range::not_negative()).rule("less than its radius");
+    position_mm "mm" "x and y of its axis"
+        .otherwise("beside the shaft that it meshes with, at the mesh's centre distance towards positive x")
+        .rule("at the mesh's centre distance from the axis of each mating shaft, within 0.01 mm")
+        .alternative("[101.6, 0.0]");
+    elements "" "the number of its beam elements" .range(Range::from_to(2.0, 60.0));
+    couples_to "" "what it is coupled to: the motor at its beginning, or the brake at the other end"
+        .rule("one shaft to the motor, one to the brake");
+    coupling_stiffness_nm_per_rad "N m/rad" "the torsional stiffness of that coupling"
+        .otherwise("2e3 of a motor's, 4e3 of a brake's").range(STIFFNESS).alternative("2000.0");
+    damping_ratio "-" "the damping ratio of the shaft and its coupling" .range(DAMPING);
+    unbalance "" "the unbalance of the shaft, midway along it"
+        .otherwise("none").alternative("{ g_mm = 50.0 }");
+    bow "" "the bow of a shaft that is not straight: half a sine over its length"
+        .otherwise("none").alternative("{ middle_um = 20.0 }");
 }
 
 /// A bearing between a shaft and the seat that it sits in.
@@ -450,108 +397,66 @@ fn refused(key: &str, problem: &str) -> ScenarioError {
     ScenarioError::new(key, "", problem)
 }
 
-impl Keys for Bearing {
-    const SECTION: &str = "bearing";
-
-    fn start() -> Self {
-        Self {
-            shaft: String::new(),
-            at: f64::NAN,
-            kind: BearingKind::Linear,
-            name: None,
-            elements: None,
-            element_mm: None,
-            pitch_mm: None,
-            contact_angle_deg: 0.0,
-            roller_length_mm: None,
-            clearance_um: 10.0,
-            preload_n: 0.0,
-            slip_percent: 1.0,
-            defect: Vec::new(),
-            stiffness_n_per_m: 1.5e8,
-            vertical_stiffness_n_per_m: None,
-            axial_stiffness_n_per_m: None,
-            tilt_stiffness_nm_per_rad: 100.0,
-            seat: Seat::default(),
-            damping_ratio: 0.05,
-        }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("shaft", "", "the name of its shaft", field!(shaft)).required(),
-            row("at", "-", "the position along the shaft, as a fraction of its length from its beginning", field!(at))
-                .required()
-                .range(ALONG),
-            row("kind", "", "the kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact", field!(kind)),
-            row("name", "", "the name of a rolling bearing whose geometry is published: 6203, 6205, ER-10K, ER-16K, UER204", field!(name))
-                .otherwise("none: the keys below state the geometry")
-                .alternative("\"6205\""),
-            row("elements", "", "the number of balls or rollers", field!(elements))
-                .otherwise("required of a rolling bearing without name")
-                .range(Range::from_to(3.0, 200.0))
-                .alternative("9"),
-            row("element_mm", "mm", "the diameter of a ball or roller", field!(element_mm))
-                .otherwise("required of a rolling bearing without name")
-                .range(Range::positive())
-                .rule("room for all elements on the pitch circle")
-                .alternative("7.94"),
-            row("pitch_mm", "mm", "the pitch diameter, of the circle through the centres of the elements", field!(pitch_mm))
-                .otherwise("required of a rolling bearing without name")
-                .range(Range::positive())
-                .alternative("39.04"),
-            row("contact_angle_deg", "°", "the contact angle of a ball bearing", field!(contact_angle_deg))
-                .range(Range::between(Included(0.0), Excluded(90.0))),
-            row("roller_length_mm", "mm", "the length of a roller", field!(roller_length_mm))
-                .otherwise("its diameter")
-                .range(Range::positive())
-                .alternative("9.0"),
-            row("clearance_um", "µm", "the diametral clearance of a rolling bearing; negative for an interference", field!(clearance_um))
-                .range(Range::from_to(-200.0, 1000.0)),
-            row("preload_n", "N", "the axial preload of a ball bearing with a contact angle; it takes up the clearance", field!(preload_n))
-                .range(Range::not_negative().implausible_above(1e6)),
-            row(
-                "slip_percent",
-                "%",
-                "the random slip of the cage at each pass of an element: its standard deviation, in the spacing of the elements",
-                field!(slip_percent),
-            )
-            .range(Range::from_to(0.0, 2.0)),
-            row("defect", "", "the spalls of a rolling bearing, one by one", field!(defect))
-                .otherwise("none")
-                .alternative("[{ race = \"outer\", width_mm = 1.0 }]"),
-            row("stiffness_n_per_m", "N/m", "the radial stiffness of a linear bearing", field!(stiffness_n_per_m))
-                .range(STIFFNESS),
-            row(
-                "vertical_stiffness_n_per_m",
-                "N/m",
-                "the radial stiffness of a linear bearing along y, where it differs from that along x",
-                field!(vertical_stiffness_n_per_m),
-            )
-            .otherwise("stiffness_n_per_m")
-            .range(STIFFNESS)
-            .alternative("1e8"),
-            row(
-                "axial_stiffness_n_per_m",
-                "N/m",
-                "the axial stiffness; 0 where the shaft may slide",
-                field!(axial_stiffness_n_per_m),
-            )
-            .otherwise("3e7; 0 of a roller bearing")
-            .range(MAYBE_STIFF)
-            .alternative("3e7"),
-            row(
-                "tilt_stiffness_nm_per_rad",
-                "N m/rad",
-                "the tilting stiffness of the shaft in the bearing",
-                field!(tilt_stiffness_nm_per_rad),
-            )
-            .range(MAYBE_STIFF),
-            row("seat", "", "the bearing's seat, on the housing or on the ground", field!(seat)),
-            row("damping_ratio", "-", "the damping ratio of the bearing and its seat", field!(damping_ratio))
-                .range(DAMPING),
-        ]
-    }
+keys! {
+    "bearing": Bearing = Self {
+        shaft: String::new(),
+        at: f64::NAN,
+        kind: BearingKind::Linear,
+        name: None,
+        elements: None,
+        element_mm: None,
+        pitch_mm: None,
+        contact_angle_deg: 0.0,
+        roller_length_mm: None,
+        clearance_um: 10.0,
+        preload_n: 0.0,
+        slip_percent: 1.0,
+        defect: Vec::new(),
+        stiffness_n_per_m: 1.5e8,
+        vertical_stiffness_n_per_m: None,
+        axial_stiffness_n_per_m: None,
+        tilt_stiffness_nm_per_rad: 100.0,
+        seat: Seat::default(),
+        damping_ratio: 0.05,
+    };
+    shaft "" "the name of its shaft" .required();
+    at "-" "the position along the shaft, as a fraction of its length from its beginning"
+        .required().range(ALONG);
+    kind "" "the kind of bearing: a linear spring, or balls or cylindrical rollers in Hertzian contact";
+    name "" "the name of a rolling bearing whose geometry is published: 6203, 6205, ER-10K, ER-16K, UER204"
+        .otherwise("none: the keys below state the geometry").alternative("\"6205\"");
+    elements "" "the number of balls or rollers"
+        .otherwise("required of a rolling bearing without name").range(Range::from_to(3.0, 200.0))
+        .alternative("9");
+    element_mm "mm" "the diameter of a ball or roller"
+        .otherwise("required of a rolling bearing without name").range(Range::positive())
+        .rule("room for all elements on the pitch circle").alternative("7.94");
+    pitch_mm "mm" "the pitch diameter, of the circle through the centres of the elements"
+        .otherwise("required of a rolling bearing without name").range(Range::positive())
+        .alternative("39.04");
+    contact_angle_deg "°" "the contact angle of a ball bearing"
+        .range(Range::between(Included(0.0), Excluded(90.0)));
+    roller_length_mm "mm" "the length of a roller"
+        .otherwise("its diameter").range(Range::positive()).alternative("9.0");
+    clearance_um "µm" "the diametral clearance of a rolling bearing; negative for an interference"
+        .range(Range::from_to(-200.0, 1000.0));
+    preload_n "N" "the axial preload of a ball bearing with a contact angle; it takes up the clearance"
+        .range(Range::not_negative().implausible_above(1e6));
+    slip_percent "%"
+        "the random slip of the cage at each pass of an element: its standard deviation, in the spacing of the elements"
+        .range(Range::from_to(0.0, 2.0));
+    defect "" "the spalls of a rolling bearing, one by one"
+        .otherwise("none").alternative("[{ race = \"outer\", width_mm = 1.0 }]");
+    stiffness_n_per_m "N/m" "the radial stiffness of a linear bearing" .range(STIFFNESS);
+    vertical_stiffness_n_per_m "N/m"
+        "the radial stiffness of a linear bearing along y, where it differs from that along x"
+        .otherwise("stiffness_n_per_m").range(STIFFNESS).alternative("1e8");
+    axial_stiffness_n_per_m "N/m" "the axial stiffness; 0 where the shaft may slide"
+        .otherwise("3e7; 0 of a roller bearing").range(MAYBE_STIFF).alternative("3e7");
+    tilt_stiffness_nm_per_rad "N m/rad" "the tilting stiffness of the shaft in the bearing"
+        .range(MAYBE_STIFF);
+    seat "" "the bearing's seat, on the housing or on the ground";
+    damping_ratio "-" "the damping ratio of the bearing and its seat" .range(DAMPING);
 }
 
 /// What a bearing sits in: a mass on springs to the housing or to the ground.
@@ -569,53 +474,21 @@ pub struct Seat {
     pub tilt_stiffness_nm_per_rad: f64,
 }
 
-impl Default for Seat {
-    fn default() -> Self {
-        Self {
-            mass_kg: 1.0,
-            inertia_kgm2: 1e-3,
-            stiffness_n_per_m: 4e8,
-            vertical_stiffness_n_per_m: None,
-            tilt_stiffness_nm_per_rad: 1e6,
-        }
-    }
-}
-
-impl Keys for Seat {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("mass_kg", "kg", "the seat's mass", field!(mass_kg)).range(MASS),
-            row("inertia_kgm2", "kg m²", "its moment of inertia about every axis", field!(inertia_kgm2))
-                .range(MASS),
-            row(
-                "stiffness_n_per_m",
-                "N/m",
-                "its stiffness to the housing or to the ground, in every direction",
-                field!(stiffness_n_per_m),
-            )
-            .range(STIFFNESS),
-            row(
-                "vertical_stiffness_n_per_m",
-                "N/m",
-                "its stiffness along y, where it differs",
-                field!(vertical_stiffness_n_per_m),
-            )
-            .otherwise("stiffness_n_per_m")
-            .range(STIFFNESS)
-            .alternative("2e8"),
-            row(
-                "tilt_stiffness_nm_per_rad",
-                "N m/rad",
-                "its rotational stiffness about every axis",
-                field!(tilt_stiffness_nm_per_rad),
-            )
-            .range(STIFFNESS),
-        ]
-    }
+keys! {
+    Seat = default Self {
+        mass_kg: 1.0,
+        inertia_kgm2: 1e-3,
+        stiffness_n_per_m: 4e8,
+        vertical_stiffness_n_per_m: None,
+        tilt_stiffness_nm_per_rad: 1e6,
+    };
+    mass_kg "kg" "the seat's mass" .range(MASS);
+    inertia_kgm2 "kg m²" "its moment of inertia about every axis" .range(MASS);
+    stiffness_n_per_m "N/m" "its stiffness to the housing or to the ground, in every direction"
+        .range(STIFFNESS);
+    vertical_stiffness_n_per_m "N/m" "its stiffness along y, where it differs"
+        .otherwise("stiffness_n_per_m").range(STIFFNESS).alternative("2e8");
+    tilt_stiffness_nm_per_rad "N m/rad" "its rotational stiffness about every axis" .range(STIFFNESS);
 }
 
 /// The housing: a body on feet, to which all seats are fixed. It is rigid but for its [modes](HousingModes).
@@ -634,42 +507,22 @@ pub struct Housing {
     pub modes: HousingModes,
 }
 
-impl Keys for Housing {
-    const SECTION: &str = "housing";
-
-    fn start() -> Self {
-        Self {
-            mass_kg: 30.0,
-            inertia_kgm2: None,
-            feet: Vec::new(),
-            damping_ratio: 0.05,
-            modes: HousingModes::default(),
-        }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("mass_kg", "kg", "the housing's mass, without the seats", field!(mass_kg)).range(MASS),
-            row("inertia_kgm2", "kg m²", "its moment of inertia about every axis", field!(inertia_kgm2))
-                .otherwise("mass_kg (0.3² + 0.2²)/12")
-                .range(MASS)
-                .alternative("0.325"),
-            row("feet", "", "the feet on which it stands, one by one", field!(feet))
-                .otherwise(
-                    "four feet of 6e7 N/m: in x 100 mm outside of the outermost shafts, in y 100 mm below the lowest one, \
-                     at both ends of the longest shaft",
-                )
-                .alternative("[{ at_mm = [-100.0, -100.0, 0.0], stiffness_n_per_m = 6e7 }]"),
-            row("damping_ratio", "-", "the damping ratio of the feet", field!(damping_ratio)).range(DAMPING),
-            row("modes", "", "the modes in which it vibrates between its feet and the seats", field!(modes)),
-        ]
-    }
-}
-
-impl Default for Housing {
-    fn default() -> Self {
-        Self::start()
-    }
+keys! {
+    "housing": Housing = default Self {
+        mass_kg: 30.0,
+        inertia_kgm2: None,
+        feet: Vec::new(),
+        damping_ratio: 0.05,
+        modes: HousingModes::default(),
+    };
+    mass_kg "kg" "the housing's mass, without the seats" .range(MASS);
+    inertia_kgm2 "kg m²" "its moment of inertia about every axis"
+        .otherwise("mass_kg (0.3² + 0.2²)/12").range(MASS).alternative("0.325");
+    feet "" "the feet on which it stands, one by one"
+        .otherwise("four feet of 6e7 N/m: in x 100 mm outside of the outermost shafts, in y 100 mm below the lowest one, at both ends of the longest shaft")
+        .alternative("[{ at_mm = [-100.0, -100.0, 0.0], stiffness_n_per_m = 6e7 }]");
+    damping_ratio "-" "the damping ratio of the feet" .range(DAMPING);
+    modes "" "the modes in which it vibrates between its feet and the seats";
 }
 
 impl Housing {
@@ -690,27 +543,10 @@ pub struct Foot {
     pub vertical_stiffness_n_per_m: Option<f64>,
 }
 
-impl Keys for Foot {
-    fn start() -> Self {
-        Self { at_mm: [f64::NAN; 3], stiffness_n_per_m: 6e7, vertical_stiffness_n_per_m: None }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("at_mm", "mm", "where it is: x, y, z", field!(at_mm))
-                .required()
-                .range(Range::between(Excluded(-1e5), Excluded(1e5))),
-            row("stiffness_n_per_m", "N/m", "its stiffness in every direction", field!(stiffness_n_per_m))
-                .range(STIFFNESS),
-            row(
-                "vertical_stiffness_n_per_m",
-                "N/m",
-                "its stiffness along y, where it differs",
-                field!(vertical_stiffness_n_per_m),
-            )
-            .otherwise("stiffness_n_per_m")
-            .range(STIFFNESS)
-            .alternative("3e7"),
-        ]
-    }
+keys! {
+    Foot = Self { at_mm: [f64::NAN; 3], stiffness_n_per_m: 6e7, vertical_stiffness_n_per_m: None };
+    at_mm "mm" "where it is: x, y, z" .required().range(Range::between(Excluded(-1e5), Excluded(1e5)));
+    stiffness_n_per_m "N/m" "its stiffness in every direction" .range(STIFFNESS);
+    vertical_stiffness_n_per_m "N/m" "its stiffness along y, where it differs"
+        .otherwise("stiffness_n_per_m").range(STIFFNESS).alternative("3e7");
 }

@@ -29,20 +29,14 @@ pub enum DefectKind {
     Element,
 }
 
+meshtone_toml::named!(DefectKind {
+    Cage = "cage",
+    OuterRace = "outer race",
+    InnerRace = "inner race",
+    Element = "rolling element",
+});
+
 impl DefectKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Cage, Self::OuterRace, Self::InnerRace, Self::Element];
-
-    /// Its name, such as `outer race`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cage => "cage",
-            Self::OuterRace => "outer race",
-            Self::InnerRace => "inner race",
-            Self::Element => "rolling element",
-        }
-    }
-
     /// Name of its first line: `FTF`, `BPFO`, `BPFI` or `2 BSF`.
     pub fn line(self) -> &'static str {
         match self {

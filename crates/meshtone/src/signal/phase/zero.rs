@@ -19,22 +19,16 @@ pub enum AngleZero {
     Chance,
 }
 
+meshtone_toml::named!(AngleZero {
+    Given = "angle 0",
+    Simulated = "simulation",
+    Pulse = "pulse",
+    FirstPulse = "first pulse",
+    FirstSample = "first sample",
+    Chance = "chance",
+});
+
 impl AngleZero {
-    /// All with their names.
-    pub const NAMES: [(&'static str, Self); 6] = [
-        ("angle 0", Self::Given),
-        ("simulation", Self::Simulated),
-        ("pulse", Self::Pulse),
-        ("first pulse", Self::FirstPulse),
-        ("first sample", Self::FirstSample),
-        ("chance", Self::Chance),
-    ];
-
-    /// Its name, in words.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize].0
-    }
-
     /// Returns whether teeth can be counted from it.
     pub fn counts_teeth(self) -> bool {
         self != Self::Chance

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use meshtone::damage::{damage_kinds, keys_of_every_fault};
-use meshtone::scenario::{KeyDescription, gearbox_sections, sections};
+use meshtone::scenario::{KeyDescription, SectionDescription, gearbox_sections, sections};
 
 use super::both_wheels::of_both_wheels;
 
@@ -32,10 +32,11 @@ fn table(name: &str) -> String {
     if name == "fault" {
         let names = damage_kinds().iter().map(|kind| format!("`\"{}\"`", kind.name)).collect::<Vec<_>>();
         let kind = format!("| `kind` | the kind of damage | | required | {} |\n", names.join(", "));
-        return rows(&keys_of_every_fault(), &kind);
+        let keys = keys_of_every_fault();
+        return rows(&keys, &keys, &kind);
     }
     if let Some(kind) = damage_kinds().into_iter().find(|kind| kind.name == own) {
-        return rows(&kind.keys, "");
+        return rows(&kind.keys, &kind.keys, "");
     }
     let (sections, own) = match own.strip_prefix("gearbox:") {
         Some("top") => (gearbox_sections(), ""),
@@ -43,17 +44,51 @@ fn table(name: &str) -> String {
         None => (sections(), own),
     };
     let section = sections.iter().find(|section| section.name == own).unwrap_or_else(|| panic!("{name}"));
-    rows(&section.keys, "")
+    if name.starts_with("gearbox:") { of_gearbox(section) } else { rows(&section.keys, &section.keys, "") }
 }
 
-fn rows(keys: &[KeyDescription], first: &str) -> String {
+/// The table of a section of gearboxes: the keys that are the same in the file of a pair are named below it, with where they stand.
+fn of_gearbox(section: &SectionDescription) -> String {
+    let pair = sections();
+    let of_pair = |key: &KeyDescription| {
+        let same = |of: &KeyDescription| {
+            of.key.strip_prefix("pinion_").unwrap_or(&of.key) == key.key
+                && (of.meaning, of.unit) == (key.meaning, key.unit)
+                && (&of.default, &of.allowed) == (&key.default, &key.allowed)
+        };
+        pair.iter().find(|section| section.keys.iter().any(same)).map(|section| section.name)
+    };
+    let (shared, own): (Vec<_>, Vec<_>) =
+        section.keys.iter().cloned().partition(|key| of_pair(key).is_some());
+    let mut text = rows(&own, &section.keys, "");
+    for of in &pair {
+        let names =
+            shared.iter().filter(|key| of_pair(key) == Some(of.name)).map(|key| format!("`{}`", key.key));
+        let names = names.collect::<Vec<_>>().join(", ");
+        if !names.is_empty() {
+            let (title, anchor) = match of.name {
+                "" => ("above the sections".to_owned(), "top-level"),
+                "sensor" => ("in `[[sensor]]`".to_owned(), "sensor"),
+                name => (format!("in `[{name}]`"), name),
+            };
+            writeln!(text, "\nAs [{title} of a pair](scenario-file.md#{anchor}): {names}.").unwrap();
+        }
+    }
+    text
+}
+
+/// # Arguments
+/// * `keys` - those of the table
+/// * `all` - of the section
+/// * `first` - rows before them
+fn rows(keys: &[KeyDescription], all: &[KeyDescription], first: &str) -> String {
     let mut text = format!("| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n{first}");
     for (key, of_gear) in of_both_wheels(keys) {
-        let mut defaults = vec![default(key, keys)];
+        let mut defaults = vec![default(key, all)];
         let mut names = format!("`{}`", key.key);
         if let Some(of_gear) = of_gear {
             write!(names, ", `{}`", of_gear.key).unwrap();
-            defaults.push(default(of_gear, keys));
+            defaults.push(default(of_gear, all));
             defaults.dedup();
         }
         let ignored = key.ignored_in_words.clone();
