@@ -266,7 +266,11 @@ settle_tolerance = 1e-2
         format!("{}{scenario}{}\n", &line[..brackets], &line[brackets..])
     };
     let parts = gearbox.split("\n\n").filter(has_section);
-    let parts: String = parts.map(|part| part.lines().map(of_scenario).collect::<String>() + "\n").collect();
+    // Of a steady motion one cycle is simulated and repeated, of a speed that wanders the whole record.
+    let is_steady = |line: &&str| !line.starts_with("speed_wander_percent");
+    let parts: String = parts
+        .map(|part| part.lines().filter(is_steady).map(of_scenario).collect::<String>() + "\n")
+        .collect();
     include_str!("template_gearbox.toml").replace("# <gearbox>\n", &format!("{parts}{SOLVER}\n"))
 }
 

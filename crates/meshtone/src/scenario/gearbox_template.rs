@@ -259,9 +259,9 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         "[housing]\nmass_kg = 30.0\n".to_owned(),
         format!(
             "[operation]\ninput_speed_hz = {input_speed_hz:?}{}\nbrake_torque_nm = 60.0{assumed}\n\
-             # The torque varies as a coupling of three jaws makes it at the input, and with the middle shaft.\n\
+             # The torque varies as a coupling of three jaws makes it at the input, and with the middle shaft; the speed wanders slowly.\n\
              torque_ripple = [{{ shaft = \"input\", order = 3.0, amplitude = 0.3 }}, {{ shaft = \"middle\", order = 1.0, amplitude = 0.2 }}]{assumed}\n\
-             # The speed wanders slowly, as that of an induction motor does.\nspeed_wander_percent = 0.03{assumed}\n",
+             speed_wander_percent = 0.03{assumed}\n",
             if matches!(rig, Some(GearboxRig::Uconn | GearboxRig::Tecnalia)) { assumed } else { "" }
         ),
         fault.to_owned(),

@@ -350,6 +350,8 @@ fn at_speed_of(scenario: &Scenario, piece: &Piece) -> Scenario {
     healthy.wheels_seed = None;
     healthy.operation.pinion_speed_hz = piece.mean_speed_hz();
     healthy.operation.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
+    // The profile has the recording's own wander.
+    healthy.operation.speed_wander_percent = 0.0;
     healthy.operation.torque_profile_nm = None;
     healthy.operation.end_profiles_at(SETTLING_S + piece.length_s);
     healthy.solver.discard_and_keep(0.0, SETTLING_S + piece.length_s);
