@@ -42,6 +42,15 @@ class PathEstimate:
         (°) Phase: the least that a system of this magnitude can have.
     compared_hz : tuple of float
         (Hz) The lowest and the highest frequency at which recordings and simulations were compared.
+    speed_wander_percent : tuple of float, or None
+        (%) Standard deviation of the speed below 8 Hz of the longest steady recording, and the interval that holds it with 90 %: the key
+        of that name. None of run-ups and of a speed that was stated, not measured.
+    line_share : tuple of float, or None
+        (-) The part of the power that repeats with the hunting-tooth period, of the recording and of the mean simulation; None of run-ups, of fewer than
+        three periods and without random forces.
+    random_force_factor : tuple of float, or None
+        (-) By what ``random_force`` of every mesh is to be multiplied for the recording's share, and its interval of 90 % over the draws. Noise of
+        the sensor counts as such a force.
     """
 
     frequency_hz: Array = field(repr=False)
@@ -50,6 +59,9 @@ class PathEstimate:
     high_db: Array = field(repr=False)
     phase_deg: Array = field(repr=False)
     compared_hz: tuple[float, float]
+    speed_wander_percent: tuple[float, ...] | None
+    line_share: tuple[float, ...] | None
+    random_force_factor: tuple[float, ...] | None
     _csv: str = field(repr=False)
 
     @property
@@ -121,13 +133,15 @@ def estimate_path(
     """
     several: list[Any] = recordings if isinstance(recordings, list) else [recordings]
     report = _progress.shown("simulations") if progress is True else (progress or None)
-    (frequency_hz, magnitude_db, low_db, high_db, phase_deg), compared_hz, csv = _core.estimate_path(
+    columns, compared_hz, drive, csv = _core.estimate_path(
         native_scenario(scenario),
         [_healthy(one) for one in several],
         whole("draws", draws, FEWEST_DRAWS),
         whole("seed", seed),
         report,
     )
+    frequency_hz, magnitude_db, low_db, high_db, phase_deg = columns
+    wander, share, factor = (None if known is None else tuple(known) for known in drive)
     return PathEstimate(
         frequency_hz=read_only(frequency_hz),
         magnitude_db=read_only(magnitude_db),
@@ -135,6 +149,9 @@ def estimate_path(
         high_db=read_only(high_db),
         phase_deg=read_only(phase_deg),
         compared_hz=(compared_hz[0], compared_hz[1]),
+        speed_wander_percent=wander,
+        line_share=share,
+        random_force_factor=factor,
         _csv=csv,
     )
 

@@ -15,7 +15,10 @@ use crate::process::stated_of_rig;
 use crate::scenario::Scenario;
 
 /// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
-type Estimated<'py> = ([Array<'py>; 5], [f64; 2], String);
+type Estimated<'py> = ([Array<'py>; 5], [f64; 2], Drive, String);
+
+/// Wander of the speed, share of the lines, factor of the random force: each with what else is known of it.
+type Drive = (Option<[f64; 3]>, Option<[f64; 2]>, Option<[f64; 3]>);
 
 /// A recording: values in g, rate, phase, and the name of the shaft that it is of; none of the pinion or the input.
 type Recorded<'py> = (Signal<'py>, f64, PyRef<'py, ShaftPhase>, Option<String>);
@@ -54,7 +57,9 @@ pub fn estimate_path<'py>(
         _ => value_error(error),
     })?;
     let text = path_csv(&estimate);
-    let PathEstimate { frequency_hz, magnitude_db, low_db, high_db, phase_deg, compared_hz, .. } = estimate;
+    let PathEstimate { frequency_hz, magnitude_db, low_db, high_db, phase_deg, compared_hz, drive, .. } =
+        estimate;
     let columns = [frequency_hz, magnitude_db, low_db, high_db, phase_deg].map(|column| array(py, column));
-    Ok((columns, compared_hz, text))
+    let drive = (drive.speed_wander_percent, drive.line_share, drive.random_force_factor);
+    Ok((columns, compared_hz, drive, text))
 }

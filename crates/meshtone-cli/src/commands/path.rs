@@ -8,8 +8,8 @@ use meshtone::Error;
 use meshtone::scenario::Scenario;
 use meshtone::signal::{SignalWarning, StatedFacts, TrainBearing, TrainRecording};
 use meshtone::tuning::{
-    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
-    estimate_path,
+    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordedDrive,
+    RecordingProblem, estimate_path,
 };
 use meshtone_diagnose::other_tone;
 use meshtone_io::indicators::WarningEntry;
@@ -187,8 +187,30 @@ fn summary(estimate: &PathEstimate, output: &path::Path) -> String {
     }
     format!(
         "{text}\n  compared from {from_hz:.0} to {to_hz:.0} Hz; the recordings differ {:.1} times as much from the simulations as draws of the \
-         wheels do\n  take it by frequency_response = {{ file = \"{1}\" }}\n\n{1}\n",
+         wheels do\n  take it by frequency_response = {{ file = \"{1}\" }}\n{2}\n{1}\n",
         estimate.misfit.into_iter().fold(0.0, f64::max).sqrt(),
-        output.display()
+        output.display(),
+        drive(&estimate.drive)
     )
+}
+
+/// What the recordings say of the drive, and what to write for it.
+fn drive(found: &RecordedDrive) -> String {
+    let mut text = String::new();
+    if let Some([wander, low, high]) = found.speed_wander_percent {
+        text += &format!(
+            "  the speed wanders by {wander:.3} % ({low:.3} to {high:.3}): operation.speed_wander_percent = {wander:.3}\n"
+        );
+    }
+    if let (Some([recorded, simulated]), Some([factor, low, high])) =
+        (found.line_share, found.random_force_factor)
+    {
+        text += &format!(
+            "  lines hold {:.0} % of the recorded power and {:.0} % of the simulated one: multiply random_force of every mesh by {factor:.2} ({low:.2} to \
+             {high:.2})\n",
+            100.0 * recorded,
+            100.0 * simulated
+        );
+    }
+    text
 }

@@ -56,8 +56,10 @@ pub fn gearbox_answer(
     is_wanted: &dyn Fn() -> bool,
 ) -> Result<GearboxState, Refusal> {
     let mut simulated = gearbox.clone();
+    // The page's spectrum is over time, in which lines of a speed that wanders have no one place.
+    simulated.operation.speed_wander_percent = 0.0;
     let kept_s = simulated.time_grid().kept_samples() as f64 * simulated.time_grid().step_s();
-    if options.detail == Detail::Coarse && gearbox.operation.is_steady() && kept_s > SHORT_S {
+    if options.detail == Detail::Coarse && simulated.operation.is_steady() && kept_s > SHORT_S {
         let settings = &mut simulated.solver;
         settings.discard_and_keep(gearbox.time_grid().kept_from_s(), SHORT_S);
         settings.settle_tolerance = settings.settle_tolerance.max(SHORT_TOLERANCE);
@@ -134,7 +136,7 @@ impl GearboxState {
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
         let force = channels.of(SignalSource::MeshForce(self.mesh));
         let train = GearTrain::of_stages(stages);
-        let turning = TrainTurning::of_simulated(&self.gearbox, channels.start_s, signal.values.len());
+        let turning = TrainTurning::of_simulated(&stages.scenario, channels.start_s, signal.values.len());
         let recording = || {
             let turning = turning.as_ref().map_err(Clone::clone)?;
             let sampling_rate_hz = channels.sampling_rate_hz;

@@ -20,6 +20,7 @@ pub fn plain(mut gearbox: Scenario) -> Scenario {
         wheel.iso_class = if wheel.iso_class == 0 { 0 } else { 6 };
     }
     gearbox.operation.torque_ripple.clear();
+    gearbox.operation.speed_wander_percent = 0.0;
     if let Some(shafts) = gearbox.structure.shafts_mut() {
         for shaft in &mut shafts.shafts {
             (shaft.radius_mm, shaft.damping_ratio) = (Some(7.9375), DAMPING_RATIO);

@@ -4,11 +4,13 @@
 //! simulations at a frequency, in mesh harmonics, sidebands and remainder alike, is the path.
 
 mod cells;
+mod drive;
 mod error;
 mod minimum_phase;
 mod recording;
 mod smoothing;
 
+pub use drive::RecordedDrive;
 pub use error::{PathError, RecordingProblem};
 pub use recording::HealthyRecording;
 
@@ -87,6 +89,8 @@ pub struct PathEstimate {
     pub compared_hz: [f64; 2],
     /// (-) Distance of the recordings from the simulations, over what wheels explain: mean squares of the kinds of lines and of the cells.
     pub misfit: [f64; 2],
+    /// What the recordings say of the drive, and of what lies between their lines.
+    pub drive: RecordedDrive,
 }
 
 impl PathEstimate {
@@ -163,7 +167,7 @@ pub fn estimate_path(
     };
     let compared = levels.iter().map(|level| cells.frequency_hz[level.cell.frequency]);
     let compared_hz = compared.fold([f64::INFINITY, 0.0], |[from, to], hz| [from.min(hz), to.max(hz)]);
-    Ok(PathEstimate {
+    let mut estimate = PathEstimate {
         low_db: end_db(-1.0),
         high_db: end_db(1.0),
         phase_deg: minimum_phase_deg(&frequency_hz, &magnitude_db),
@@ -171,7 +175,11 @@ pub fn estimate_path(
         frequency_hz,
         magnitude_db,
         misfit,
-    })
+        drive: RecordedDrive::default(),
+    };
+    let response = estimate.frequency_response();
+    estimate.drive = RecordedDrive::of(scenario, &train, &over_input, response, settings, control)?;
+    Ok(estimate)
 }
 
 /// Refuses wheels of which every draw is the same, and a sensor that shows forces.
@@ -341,18 +349,29 @@ fn simulated(
     }
 }
 
-/// The healthy machine at the speed of a piece of a recording.
-fn at_speed_of(scenario: &Scenario, piece: &Piece) -> Scenario {
+/// The healthy machine at a constant speed, with other wheels than those of the scenario's own.
+///
+/// # Arguments
+/// * `scenario` - of the machine
+/// * `speed_hz` - (rev/s) of the motor
+/// * `length_s` - (s) of the kept signal
+fn at_steady_speed(scenario: &Scenario, speed_hz: f64, length_s: f64) -> Scenario {
     let mut healthy = scenario.clone().with_faults(Vec::new());
     let first = scenario.all_sensors().into_iter().next();
     healthy.sensors = vec![without_path(first.unwrap_or_default())];
-    // Other wheels than those of the scenario's own.
     healthy.wheels_seed = None;
-    healthy.operation.pinion_speed_hz = piece.mean_speed_hz();
-    healthy.operation.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
-    // The profile has the recording's own wander.
+    healthy.operation.pinion_speed_hz = speed_hz;
+    (healthy.operation.speed_profile_hz, healthy.operation.torque_profile_nm) = (None, None);
     healthy.operation.speed_wander_percent = 0.0;
-    healthy.operation.torque_profile_nm = None;
+    healthy.solver.pinion_revolutions = None;
+    healthy.solver.duration_s = Some(length_s);
+    healthy
+}
+
+/// The healthy machine at the speed of a piece of a recording, which has the recording's own wander.
+fn at_speed_of(scenario: &Scenario, piece: &Piece) -> Scenario {
+    let mut healthy = at_steady_speed(scenario, piece.mean_speed_hz(), piece.length_s);
+    healthy.operation.speed_profile_hz = Some(piece.settled_speed_hz(SETTLING_S));
     healthy.operation.end_profiles_at(SETTLING_S + piece.length_s);
     healthy.solver.discard_and_keep(0.0, SETTLING_S + piece.length_s);
     healthy

@@ -81,14 +81,19 @@ pub(super) struct InputRecording<'a> {
 
 impl InputRecording<'_> {
     /// (Hz) Mean speed of the pinion between two samples of the phase.
-    fn speed_hz(&self, from: usize, to: usize) -> f64 {
+    pub(super) fn speed_hz(&self, from: usize, to: usize) -> f64 {
         let angle = &self.input.revolutions;
         (angle[to] - angle[from]) * self.sampling_rate_hz / (to - from) as f64
     }
 
     /// Samples that have both a value and an angle.
-    fn samples(&self) -> usize {
+    pub(super) fn samples(&self) -> usize {
         self.input.revolutions.len().min(self.values_g.len().saturating_sub(self.input.first_sample))
+    }
+
+    /// (s) How long it has an angle.
+    pub(super) fn length_s(&self) -> f64 {
+        self.samples() as f64 / self.sampling_rate_hz
     }
 
     /// The samples of a piece.
