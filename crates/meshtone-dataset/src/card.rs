@@ -7,9 +7,7 @@ use serde_json::json;
 use crate::croissant::citation;
 use crate::finish::Finished;
 use crate::manifest::PREVIEW;
-use crate::plan::{
-    AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, Wheel, wheel_words,
-};
+use crate::plan::{AveragedWheels, Class, ClassFault, Growth, PlanFile, Severity, SplitBy, wheel_words};
 use crate::sampling::Design;
 use crate::shard::{Column, Topic, WARNINGS, column_name, varied_keys};
 use crate::words::counted;
@@ -51,7 +49,7 @@ fn head(set: &Finished) -> String {
         (Some(angle), _) => format!(
             "raw channels over {} of the {} at {} points each, of a sampling rate of {rate}",
             counted(angle.revolutions as u64, "revolution"),
-            keep.wheel.all()[0].name(),
+            keep.wheel.all()[0],
             angle.points_per_revolution,
         ),
         (None, Some(seconds)) => format!("raw channels at {rate} over {seconds} s"),
@@ -253,13 +251,13 @@ fn columns(set: &Finished) -> String {
         text += &match &set.plan.content.keep.wheel {
             AveragedWheels::One(wheel) => format!(
                 "\nIndicators of the analysed channel over the {}'s revolutions: {}.\n",
-                wheel_words(wheel.name()),
+                wheel_words(wheel),
                 names.join(", ")
             ),
             AveragedWheels::Each(wheels) => format!(
                 "\nIndicators of the analysed channel over the revolutions of the {}, and likewise of {}: {}.\n",
-                wheel_words(wheels[0].name()),
-                wheels[1..].iter().map(Wheel::name).collect::<Vec<_>>().join(", "),
+                wheel_words(&wheels[0]),
+                wheels[1..].join(", "),
                 names[..names.len() / wheels.len()].join(", ")
             ),
         };

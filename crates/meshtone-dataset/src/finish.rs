@@ -8,7 +8,7 @@ use crate::croissant;
 use crate::digest::Digest;
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, CROISSANT, Document, MANIFEST, PREVIEW};
-use crate::plan::{Plan, Wheel, column_part};
+use crate::plan::{Plan, column_part};
 use crate::shard::{self, Column, Shards, Topic, Wanted};
 use crate::store::{Destination, Files};
 use crate::words::{counted, words_of};
@@ -101,7 +101,7 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
         let keep = &plan.content.keep;
         let class = plan.content.classes.iter().find(|class| class.label == *label);
         let damaged = class.and_then(|class| class.faults.first()?.teeth()).map(|of| of.wheel.as_str());
-        let averaged = keep.wheel.all().iter().find(|wheel| damaged == Some(wheel.name()));
+        let averaged = keep.wheel.all().iter().find(|wheel| damaged == Some(wheel.as_str()));
         let prefix = keep.wheel.prefix(averaged.unwrap_or(&keep.wheel.all()[0]));
         let of_revolution = SHOWN.iter().find_map(|name| of_name(&format!("{prefix}{name}")));
         of_revolution.or_else(|| columns.iter().find(|column| column.is_signal()))
@@ -152,7 +152,7 @@ fn signal(to: &Destination, shard: &str, row: usize, column: &str) -> Vec<f64> {
 /// Teeth, speed, load and severity of one record, in words.
 fn conditions(plan: &Plan, to: &Destination, shard: &str, row: usize) -> String {
     let speed = plan.content.base.speed_key().trim_start_matches("operation.");
-    let teeth = Wheel::all(&plan.content.base).into_iter().map(|wheel| column_part(wheel.name()) + "_teeth");
+    let teeth = plan.content.base.wheel_names().into_iter().map(|wheel| column_part(wheel) + "_teeth");
     let names: Vec<String> = teeth.chain([speed, "brake_torque_nm", "severity"].map(str::to_owned)).collect();
     let wanted: Vec<&str> = names.iter().map(String::as_str).collect();
     let Ok(read) = to.read_shard(shard, Wanted::Columns(&wanted)) else { return String::new() };

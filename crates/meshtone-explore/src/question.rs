@@ -1,8 +1,6 @@
 //! A scenario as the page sends it.
 
-use meshtone::scenario::{
-    FileProblem, MemoryLimit, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles,
-};
+use meshtone::scenario::{FileProblem, MemoryLimit, Profile, ProfileErrors, Scenario, ScenarioFiles};
 use meshtone_io::memory;
 use serde_json::Value;
 
@@ -24,7 +22,9 @@ pub fn memory_limit() -> MemoryLimit {
 /// # Arguments
 /// * `question` - as of [`scenario`]
 pub fn pair(question: &Value) -> Result<Scenario, Refusal> {
-    read_with(question, |text| Scenario::pair_from_toml_within(text, &NoFiles, memory_limit()))
+    let scenario = scenario(question)?;
+    scenario.expect_pair()?;
+    Ok(scenario)
 }
 
 /// Reads and checks a scenario, with the errors of a scenario file.
@@ -32,19 +32,11 @@ pub fn pair(question: &Value) -> Result<Scenario, Refusal> {
 /// # Arguments
 /// * `question` - with `toml`, a scenario file's text, or `scenario`, its sections and keys
 pub fn scenario(question: &Value) -> Result<Scenario, Refusal> {
-    read_with(question, |text| Scenario::from_toml_within(text, &NoFiles, memory_limit()))
-}
-
-fn read_with(
-    question: &Value,
-    read: impl Fn(&str) -> Result<Scenario, ScenarioError>,
-) -> Result<Scenario, Refusal> {
+    let read = |text: &str| Scenario::from_toml_within(text, &NoFiles, memory_limit());
     match (question.get("toml"), question.get("scenario")) {
-        (Some(Value::String(text)), _) => read(text).map_err(Refusal::from),
-        (_, Some(sections)) => {
-            // Lines would be those of a text that nobody has seen.
-            Ok(read(&text_of(sections)?).map_err(|error| error.at_line(None))?)
-        }
+        (Some(Value::String(text)), _) => Ok(read(text)?),
+        // Lines would be those of a text that nobody has seen.
+        (_, Some(sections)) => Ok(read(&text_of(sections)?).map_err(|error| error.at_line(None))?),
         _ => Err(Refusal::unfit("a request has a scenario, or a scenario file's text as toml")),
     }
 }

@@ -7,9 +7,7 @@ use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
 use meshtone::signal::FEWEST_REVOLUTIONS;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{
-    Class, Content, Distribution, Keep, Level, Plan, Rule, SplitBy, Splits, Wheel, refused, wheel_words,
-};
+use super::{Class, Content, Distribution, Keep, Level, Plan, Rule, SplitBy, Splits, refused, wheel_words};
 use crate::draw::{DrawnRecord, NOISE_KEYS, Sampler, is_of_plan};
 use crate::record::Turning;
 use crate::shard::FailedRecord;
@@ -368,7 +366,7 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
         return Err(error.with_help("shorten it, or leave it out: a record is then as long as that"));
     }
     let turning = Turning::of(scenario)?;
-    let of_wheel = |wheel: &Wheel| &turning.wheels[turning.number(wheel.name())];
+    let of_wheel = |wheel: &String| &turning.wheels[turning.number(wheel)];
     let first = of_wheel(&wheel.all()[0]);
     // The slowest has the fewest revolutions; its first one begins up to a pitch after the record.
     let slowest = wheel.all().iter().map(of_wheel).min_by(|a, b| a.speed_hz.total_cmp(&b.speed_hz));

@@ -33,7 +33,7 @@ pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
 pub use variation::Variation;
-pub use wheel::{AveragedWheels, Wheel};
+pub use wheel::AveragedWheels;
 pub(crate) use wheel::{column_part, wheel_words};
 
 use crate::digest::Digest;

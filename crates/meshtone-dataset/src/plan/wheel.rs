@@ -1,50 +1,19 @@
 //! Wheels of the base scenario, as a plan names them.
 
-use meshtone::scenario::{Scenario, WheelName};
+use meshtone::scenario::WheelName;
 
-/// A wheel of the base scenario, by its name: `pinion` or `gear` of a pair.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Wheel(String);
-
-impl From<WheelName> for Wheel {
-    fn from(wheel: WheelName) -> Self {
-        Self(wheel.name().to_owned())
-    }
-}
-
-impl From<String> for Wheel {
-    fn from(name: String) -> Self {
-        Self(name)
-    }
-}
-
-impl Wheel {
-    /// All wheels of a scenario, in order.
-    ///
-    /// # Arguments
-    /// * `base` - the scenario
-    pub fn all(base: &Scenario) -> Vec<Self> {
-        base.wheel_names().into_iter().map(|name| Self(name.to_owned())).collect()
-    }
-
-    /// Its name in a plan.
-    pub fn name(&self) -> &str {
-        &self.0
-    }
-}
-
-/// The wheels over whose revolutions signals are averaged.
+/// The wheels over whose revolutions signals are averaged, by their names: `pinion` or `gear` of a pair.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AveragedWheels {
     /// One wheel: the columns of its average are called as they are.
-    One(Wheel),
+    One(String),
     /// Several: the names of each one's columns begin with its name.
-    Each(Vec<Wheel>),
+    Each(Vec<String>),
 }
 
 impl AveragedWheels {
     /// The wheels.
-    pub fn all(&self) -> &[Wheel] {
+    pub fn all(&self) -> &[String] {
         match self {
             Self::One(wheel) => std::slice::from_ref(wheel),
             Self::Each(wheels) => wheels,
@@ -53,17 +22,17 @@ impl AveragedWheels {
 
     /// The names of the wheels, with commas between.
     pub fn names(&self) -> String {
-        self.all().iter().map(Wheel::name).collect::<Vec<_>>().join(", ")
+        self.all().join(", ")
     }
 
     /// What the names of the columns of a wheel's average begin with.
     ///
     /// # Arguments
     /// * `wheel` - one of these
-    pub(crate) fn prefix(&self, wheel: &Wheel) -> String {
+    pub(crate) fn prefix(&self, wheel: &str) -> String {
         match self {
             Self::One(_) => String::new(),
-            Self::Each(_) => format!("{}_", column_part(wheel.name())),
+            Self::Each(_) => format!("{}_", column_part(wheel)),
         }
     }
 }

@@ -17,7 +17,7 @@ use super::kept::KeptChain;
 use super::window::Window;
 use super::{Record, RecordFault, RecordSpall, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
-use crate::plan::{Content, FaultPlace, FaultyBase, Keep, Wheel};
+use crate::plan::{Content, FaultPlace, FaultyBase, Keep};
 
 /// Makes a record of the simulation of a pair.
 pub(super) fn record(
@@ -197,8 +197,8 @@ impl<'a> View<'a> {
     }
 
     /// How a wheel turns.
-    fn wheel(&self, wheel: &Wheel) -> &TurningWheel {
-        &self.window.turning.wheels[self.window.turning.number(wheel.name())]
+    fn wheel(&self, wheel: &str) -> &TurningWheel {
+        &self.window.turning.wheels[self.window.turning.number(wheel)]
     }
 
     /// The fault at a place; none of a healthy twin.
@@ -328,14 +328,14 @@ impl<'a> View<'a> {
     }
 
     /// Phase of an averaged wheel's shaft at the recording's samples.
-    fn phase(&self, wheel: &Wheel, samples: usize) -> Result<ShaftPhase, SignalError> {
+    fn phase(&self, wheel: &str, samples: usize) -> Result<ShaftPhase, SignalError> {
         let rate_hz = self.keep.sampling_rate_hz;
         let turning = &self.window.turning;
         if self.is_steady() && turning.enter_together {
             return ShaftPhase::constant(self.wheel(wheel).speed_hz, rate_hz, samples);
         }
         // The wheels of a pair turn with the marked one.
-        let number = if turning.enter_together { turning.marked } else { turning.number(wheel.name()) };
+        let number = if turning.enter_together { turning.marked } else { turning.number(wheel) };
         let turns = f64::from(turning.wheels[number].teeth) / f64::from(self.wheel(wheel).teeth);
         let angles = self.angles(number, usize::MAX);
         let step = self.simulated.time.sampling_rate_hz / rate_hz;

@@ -6,7 +6,7 @@ use meshtone::signal::{
 };
 
 use super::{Record, RecordAverage};
-use crate::plan::{Keep, OverAngle, Wheel};
+use crate::plan::{Keep, OverAngle};
 
 /// How the channels of a record become what its data set keeps. Simulated and recorded channels take the same way.
 pub(super) struct KeptChain<'a> {
@@ -90,8 +90,8 @@ impl KeptChain<'_> {
     }
 
     /// Number of a wheel of the plan in the machine.
-    fn number(&self, wheel: &Wheel) -> usize {
-        self.train.wheels.iter().position(|known| known.name == wheel.name()).unwrap_or(0)
+    fn number(&self, wheel: &str) -> usize {
+        self.train.wheels.iter().position(|known| known.name == wheel).unwrap_or(0)
     }
 
     /// What a channel shows over the revolutions of an averaged wheel.

@@ -6,7 +6,7 @@ use meshtone::signal::{AntiAliasing, Edge, GearTrain, ShaftPhase, SignalError};
 use super::kept::KeptChain;
 use super::{Record, RecordWheel};
 use crate::draw::DrawnRecord;
-use crate::plan::{Content, Wheel};
+use crate::plan::Content;
 
 /// (rev) Distance from a whole revolution that is rounding.
 const ROUNDING_REV: f64 = 1e-9;
@@ -76,7 +76,7 @@ pub(crate) fn records(
         return Err(format!(
             "it turns {:.3} revolutions of the {} in {:.3} s; a record of the data set needs {needed}",
             phase.span_rev(),
-            keep.wheel.all()[0].name(),
+            keep.wheel.all()[0],
             phase.revolutions.len() as f64 / rate_hz
         ));
     }
@@ -118,15 +118,11 @@ pub(crate) fn records(
 }
 
 /// Number of a wheel of the plan in the machine that was recorded.
-fn wheel_number(train: &GearTrain, wheel: &Wheel) -> Result<usize, String> {
+fn wheel_number(train: &GearTrain, wheel: &str) -> Result<usize, String> {
     let names: Vec<&str> = train.wheels.iter().map(|known| known.name.as_str()).collect();
-    let number = names.iter().position(|name| *name == wheel.name());
+    let number = names.iter().position(|name| *name == wheel);
     number.ok_or_else(|| {
-        format!(
-            "the machine has no wheel {:?}, which the data set averages, but {}",
-            wheel.name(),
-            names.join(", ")
-        )
+        format!("the machine has no wheel {:?}, which the data set averages, but {}", wheel, names.join(", "))
     })
 }
 

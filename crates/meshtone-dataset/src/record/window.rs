@@ -93,7 +93,7 @@ fn margin(
 fn kept_samples(keep: &Keep, turning: &Turning, is_steady: bool, time: &TimeGrid) -> usize {
     match (keep.over_angle, keep.duration_s) {
         (Some(angle), _) => {
-            let wheel = &turning.wheels[turning.number(keep.wheel.all()[0].name())];
+            let wheel = &turning.wheels[turning.number(&keep.wheel.all()[0])];
             // Its first tooth may come a pitch after the record's start.
             let before = if turning.enter_together { 0.0 } else { 1.0 };
             let pitches = angle.revolutions as f64 * f64::from(wheel.teeth) + before;

@@ -7,8 +7,8 @@ use meshtone_plot::without_unit;
 
 use crate::draw::{NOISE_KEYS, PATH_KEYS, is_of_plan};
 use crate::plan::{
-    AveragedWheels, Class, ClassFault, Content, Keep, OverAngle, Plan, Rule, Wheel, column_part,
-    list_and_entry, wheel_words,
+    AveragedWheels, Class, ClassFault, Content, Keep, OverAngle, Plan, Rule, column_part, list_and_entry,
+    wheel_words,
 };
 use crate::record::{Record, RecordSpall};
 
@@ -167,7 +167,7 @@ impl From<&Column> for TableColumn {
 /// * `plan` - the plan
 pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
     let Content { classes, keep, .. } = &plan.content;
-    let wheel = &wheel_words(keep.wheel.all()[0].name());
+    let wheel = &wheel_words(&keep.wheel.all()[0]);
     let mut columns = of_record(&plan.content);
     if classes.iter().any(|class| class.growth.is_some()) {
         columns.extend(of_run(classes));
@@ -234,7 +234,7 @@ fn of_record(content: &Content) -> Vec<Column> {
     ];
     // All data sets have the columns of one fault, even if every class is healthy.
     let most_faults = content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
-    let wheels = Wheel::all(&content.base);
+    let wheels = content.base.wheel_names();
     for number in 0..most_faults.max(1) {
         let any = |is: &dyn Fn(&ClassFault) -> bool| {
             content.classes.iter().any(|class| class.faults.get(number).is_some_and(is))
@@ -388,7 +388,7 @@ fn of_run(classes: &[Class]) -> [Column; 3] {
 /// The indicators of the analysed channel over the revolutions of one of the averaged wheels.
 fn of_indicators(keep: &Keep, number: usize) -> Vec<Column> {
     let wheel = &keep.wheel.all()[number];
-    let (prefix, words) = (keep.wheel.prefix(wheel), wheel_words(wheel.name()));
+    let (prefix, words) = (keep.wheel.prefix(wheel), wheel_words(wheel));
     let previewed = match keep.wheel {
         AveragedWheels::One(_) => &PREVIEWED_INDICATORS[..],
         AveragedWheels::Each(_) => &PREVIEWED_OF_SEVERAL,
@@ -412,7 +412,7 @@ fn of_revolution(keep: &Keep, number: usize) -> Vec<Column> {
     let prefix = keep.wheel.prefix(wheel);
     let turn = format!(
         "over one revolution of the {}, at equal angles from where its tooth 1 comes into contact",
-        wheel_words(wheel.name())
+        wheel_words(wheel)
     );
     let mut columns = Vec::new();
     if keep.average {
@@ -461,7 +461,7 @@ fn of_spall(number: usize) -> [Column; 5] {
 /// * `number` - of the fault in its class, from 0
 /// * `wheels` - of the machine
 /// * `with_bearings` - whether some class has a spall as this fault
-fn of_fault(number: usize, wheels: &[Wheel], with_bearings: bool) -> [Column; 4] {
+fn of_fault(number: usize, wheels: &[&str], with_bearings: bool) -> [Column; 4] {
     let (of_kind, of_severity) = match with_bearings {
         true => (
             ", of a bearing outer-race, inner-race or rolling-element",
@@ -470,12 +470,11 @@ fn of_fault(number: usize, wheels: &[Wheel], with_bearings: bool) -> [Column; 4]
         false => ("", ""),
     };
     let named = |last: &str| format!("{}_{last}", name_in_list("fault", number));
-    let names: Vec<String> = wheels.iter().map(|wheel| wheel.name().to_owned()).collect();
     [
         Column::text(&named("kind"), move |r| Some(r.faults.get(number)?.kind.to_owned()))
             .meaning(format!("kind of damage{of_kind}")),
         Column::text(&named("wheel"), move |r| r.faults.get(number)?.wheel.clone())
-            .meaning(format!("the damaged wheel: {}", names.join(" or "))),
+            .meaning(format!("the damaged wheel: {}", wheels.join(" or "))),
         Column::int32(&named("tooth"), move |r| r.faults.get(number)?.tooth).meaning(
             "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
              start of the record on, null where it is several; in the plan and the scenario teeth are counted from where \

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError, ScenarioFiles};
+use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone_toml::TomlDocument;
 
 use super::{FileKind, FilesBeside, ReadScenarioError};
@@ -22,9 +22,6 @@ pub struct ScenarioFile {
     pub named_files: Vec<PathBuf>,
 }
 
-/// A reader of a scenario's text.
-type ReadText = fn(&str, &dyn ScenarioFiles, MemoryLimit) -> Result<Scenario, ScenarioError>;
-
 impl ScenarioFile {
     /// Reads and validates a scenario file, and the files that it names, within the [limit](memory::limit) of memory.
     ///
@@ -34,7 +31,7 @@ impl ScenarioFile {
     /// # Errors
     /// Those of [`super::read_scenario`].
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
-        Self::read_as(path, Scenario::from_toml_within)
+        Self::read_checked(path, |_| Ok(()))
     }
 
     /// Does what [`Self::read`] does, where one pair is expected.
@@ -45,15 +42,18 @@ impl ScenarioFile {
     /// # Errors
     /// Those of [`Self::read`]; a gearbox.
     pub fn read_pair(path: &Path) -> Result<Self, ReadScenarioError> {
-        Self::read_as(path, Scenario::pair_from_toml_within)
+        Self::read_checked(path, |scenario| scenario.expect_pair().map(drop))
     }
 
-    /// Reads a file with one of the readers of scenarios.
-    fn read_as(path: &Path, read: ReadText) -> Result<Self, ReadScenarioError> {
+    fn read_checked(
+        path: &Path,
+        check: fn(&Scenario) -> Result<(), ScenarioError>,
+    ) -> Result<Self, ReadScenarioError> {
         let text = read_text(path)?;
         let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
         let path = path.to_path_buf();
-        match read(&text, &files, memory::limit()) {
+        let read = Scenario::from_toml_within(&text, &files, memory::limit());
+        match read.and_then(|scenario| check(&scenario).map(|()| scenario)) {
             Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.named.into_inner() }),
             Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error.into())),
         }

@@ -133,12 +133,6 @@ fn the_run_stands_in_both_files() {
     assert_eq!((texts[0].keyword.as_str(), texts[0].text.as_str()), ("meshtone.run", "0123abcd"));
 }
 
-#[test]
-fn the_same_panel_twice_is_the_same() {
-    let (_, scenario) = crate::support::gallery().remove(3);
-    assert_eq!(drawn(&scenario), drawn(&scenario));
-}
-
 /// The example's pair with one damage of the gear's first tooth, or none.
 fn of_example(damage: Option<Damage>) -> Scenario {
     let GearPair { pinion_teeth, gear_teeth, .. } = GearPair::example();

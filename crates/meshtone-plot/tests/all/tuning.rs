@@ -168,12 +168,6 @@ fn tuned_keys_are_listed() {
 }
 
 #[test]
-fn the_same_figure_twice_is_the_same() {
-    let experiment = experiment(&LABELS[..3], &TWO);
-    assert_eq!(drawn(&experiment, "A rig"), drawn(&experiment, "A rig"));
-}
-
-#[test]
 fn a_result_of_other_cases_is_refused() {
     let result = result(&experiment(&LABELS[..2], &TWO));
     let error = tuning_figure(&experiment(&LABELS[..3], &TWO), &result, "").unwrap_err();

@@ -524,7 +524,8 @@ fn mistakes_are_named_with_their_key_and_line() {
     assert!(error.problem.starts_with("tooth 5 of z4 has fault[1] already"), "{error}");
     let error = change("pressure_angle_deg = 20.0", "pressure_angle_deg = 35.0\nbacklash_mm = 2.0");
     assert_eq!((error.key.as_str(), error.line), ("mesh[0].backlash_mm", Some(67)), "{error}");
-    let pair = Scenario::pair_from_toml(&text).unwrap_err();
+    let gearbox = Scenario::from_toml(&text).unwrap();
+    let pair = gearbox.expect_pair().unwrap_err();
     assert!(pair.problem.contains("is of a gearbox"), "{pair}");
 }
 

@@ -7,7 +7,7 @@ use meshtone_io::channel_name::{accelerations, read_channel};
 use meshtone_io::experiment::Tuned;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use super::super::{AveragedWheels, Keep, MOST_SHARD_RECORDS, OverAngle, Wheel};
+use super::super::{AveragedWheels, Keep, MOST_SHARD_RECORDS, OverAngle};
 use super::{number_where, over_zero};
 
 const RATE_HZ: f64 = 25e3;
@@ -51,7 +51,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     let wheel = wheel.unwrap_or_else(|| default_wheels(base));
     // The meshes of all wheels on a shaft are taken away from the average over its revolutions.
     let train = GearTrain::of_scenario(base)?;
-    let is_averaged = |name: &str| wheel.all().iter().any(|wheel| wheel.name() == name);
+    let is_averaged = |name: &str| wheel.all().iter().any(|wheel| wheel == name);
     let averaged = train.wheels.iter().filter(|wheel| is_averaged(&wheel.name));
     let fewest = averaged.flat_map(|wheel| train.teeth_on(wheel.shaft)).min();
     let teeth = u64::from(fewest.unwrap_or(1));
@@ -112,8 +112,8 @@ fn over_angle(table: &TomlTable<'_>) -> ReadResult<Option<OverAngle>> {
 
 /// One wheel, or a list of several.
 fn wheels(value: &TomlValue<'_>, base: &Scenario) -> ReadResult<AveragedWheels> {
-    let all = Wheel::all(base);
-    let choices: Vec<(&str, Wheel)> = all.iter().map(|wheel| (wheel.name(), wheel.clone())).collect();
+    let choices: Vec<(&str, String)> =
+        base.wheel_names().into_iter().map(|wheel| (wheel, wheel.to_owned())).collect();
     if !value.is_array() {
         return value.choice(&choices).map(AveragedWheels::One);
     }
@@ -135,7 +135,7 @@ fn wheels(value: &TomlValue<'_>, base: &Scenario) -> ReadResult<AveragedWheels> 
 fn default_wheels(base: &Scenario) -> AveragedWheels {
     match base.rig() {
         Some(_) => AveragedWheels::One(WheelName::default().into()),
-        None => AveragedWheels::Each(Wheel::all(base)),
+        None => AveragedWheels::Each(base.wheel_names().into_iter().map(str::to_owned).collect()),
     }
 }
 

@@ -7,7 +7,6 @@ use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 pub use self::files::ScenarioFiles;
 
 pub(super) use self::files::Numbers;
-use super::structure::refused_as_pair;
 use super::{MemoryLimit, Scenario, ScenarioError, long, short};
 use crate::keys::{NoFiles, NumberFiles};
 use crate::wheel::WheelDeviations;
@@ -84,54 +83,6 @@ impl Scenario {
     /// An unknown or missing key, a value of the wrong type, what `files` reports.
     pub fn from_table(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Self> {
         read(table, &Numbers(files))
-    }
-
-    /// Does what [`Scenario::from_toml_within`] does, where one pair is expected.
-    ///
-    /// # Arguments
-    /// * `text` - the scenario file's text
-    /// * `files` - loads the files that the text names
-    /// * `limit` - most that [`Scenario::memory_estimate_bytes`] may be
-    ///
-    /// # Errors
-    /// Those of [`Scenario::from_toml_within`]; shafts of beams.
-    pub fn pair_from_toml_within(
-        text: &str,
-        files: &dyn ScenarioFiles,
-        limit: MemoryLimit,
-    ) -> Result<Self, ScenarioError> {
-        Self::refuse_long_form(text)?;
-        Self::from_toml_within(text, files, limit)
-    }
-
-    /// Does what [`Scenario::from_toml`] does, where one pair is expected.
-    ///
-    /// # Arguments
-    /// * `text` - the scenario file's text
-    ///
-    /// # Errors
-    /// Those of [`Scenario::from_toml`]; shafts of beams.
-    pub fn pair_from_toml(text: &str) -> Result<Self, ScenarioError> {
-        Self::refuse_long_form(text)?;
-        Self::from_toml(text)
-    }
-
-    fn refuse_long_form(text: &str) -> Result<(), ScenarioError> {
-        let document = TomlDocument::parse(text)?;
-        let is_long = long::is_written_in(&document.root()).map_err(|error| document.locate(error))?;
-        if is_long { Err(located(&document, refused_as_pair())) } else { Ok(()) }
-    }
-
-    /// Whether a text is the long form of a scenario file: it has a section that only shafts of beams have, and none that only a rig has.
-    ///
-    /// # Arguments
-    /// * `text` - the scenario file's text
-    ///
-    /// # Errors
-    /// Text that is not TOML; sections of both forms.
-    pub fn is_long_form(text: &str) -> Result<bool, ScenarioError> {
-        let document = TomlDocument::parse(text)?;
-        long::is_written_in(&document.root()).map_err(|error| document.locate(error).into())
     }
 }
 
