@@ -13,6 +13,8 @@ use super::modes::Modes;
 const STEPPED_SHIFT: f64 = 0.01;
 /// (-) Part of the largest moment of inertia below which one is left out: what that shifts is told.
 const LEAST_PART: f64 = 0.02;
+/// (-) Shift by a part alone below which it is left out too.
+const LEAST_SHIFT: f64 = 1e-3;
 /// Most parts whose moments are stepped.
 const MOST_SPINNING: usize = 16;
 
@@ -90,6 +92,11 @@ impl Modes {
         let least = LEAST_PART * nodes[0].polar_kgm2.abs();
         nodes.retain(|node| node.polar_kgm2.abs() >= least);
         nodes.truncate(MOST_SPINNING);
+        let shifts = |node: &Spinning| {
+            let shifted = self.largest_shift(std::slice::from_ref(node), motor_rad_per_s, highest_rad_per_s);
+            shifted.is_some_and(|[_, part]| part >= LEAST_SHIFT)
+        };
+        nodes.retain(shifts);
         nodes
     }
 

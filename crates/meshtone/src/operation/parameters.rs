@@ -174,8 +174,7 @@ impl Keys for Operation {
             row(
                 "brake_torque_nm",
                 "N m",
-                "the nominal torque of the brake on the gear's shaft; negative where that drives: the other flanks carry then, and faults and \
-                 deviations are on these",
+                "the nominal torque of the brake on the gear's shaft, negative where it drives",
                 field!(brake_torque_nm),
             )
             .required()
@@ -228,8 +227,7 @@ impl Operation {
         let torque = row(
             "brake_torque_nm",
             "N m",
-            "the nominal torque of the brake on the shaft that is coupled to it; negative where that drives: the other flanks carry then, and \
-             faults and deviations are on these",
+            "the nominal torque of the brake on the shaft that is coupled to it, negative where it drives",
             field!(brake_torque_nm),
         )
         .required()

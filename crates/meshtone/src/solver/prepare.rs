@@ -283,8 +283,10 @@ impl Prepared {
             force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
         }
         force.extend(of_friction);
-        // Nothing tilts at the start.
-        force.resize(self.columns.len(), 0.0);
+        for of in &model.spinning {
+            let [about_x, about_y] = of.tilts.each_ref().map(|tilt| dot(tilt, &model.initial_velocity));
+            force.extend([-of.momentum * about_y, of.momentum * about_x]);
+        }
         self.state_of([&displacement, &model.initial_velocity], force, block, external)
     }
 
