@@ -374,7 +374,7 @@ fn the_envelope_of_a_rolling_bearing_shows_its_defect() {
     let healthy = asked(&geared(""), "full");
     let spalled = asked(&geared("defect = [{ race = \"outer\", width_mm = 2.0 }]\n"), "full");
     assert!(
-        amplitude(&spalled, "BPFO") > 10.0 * amplitude(&healthy, "BPFO"),
+        amplitude(&spalled, "BPFO") > 5.0 * amplitude(&healthy, "BPFO"),
         "{} {}",
         spalled["bearing"],
         healthy["bearing"]
