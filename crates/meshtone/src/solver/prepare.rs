@@ -301,10 +301,12 @@ impl Prepared {
         block: &ForcingBlock,
         external: [f64; EXTERNALS],
     ) -> FirstState {
-        self.state_of([&state.displacement, &state.velocity], state.force.clone(), block, external)
+        let rates = state.velocity.iter().zip(&self.steps);
+        let velocity: Vec<f64> = rates.map(|(rate, step)| rate / step.rate_factor()).collect();
+        self.state_of([&state.displacement, &velocity], state.force.clone(), block, external)
     }
 
-    /// The motion of a state.
+    /// The motion of a state, with the modes' own rates: those of another step's trapezium rule are others.
     ///
     /// # Arguments
     /// * `sample` - at which it is
@@ -323,7 +325,7 @@ impl Prepared {
                 .map(|(n, step)| displacement[n] + step.beta * acceleration[n])
                 .collect(),
             velocity: (0..self.steps.len())
-                .map(|n| (velocity[n] + acceleration[n] / 2.0) / self.step_s)
+                .map(|n| (velocity[n] + acceleration[n] / 2.0) / self.step_s * self.steps[n].rate_factor())
                 .collect(),
             force,
         }
