@@ -613,7 +613,8 @@ class GearboxOperation(TypedDict, total=False):
         (rev/s) The nominal speed of the motor and of the shaft that is coupled to it; the sampling rate is chosen for
         it. Allowed: > 0, ≤ 100000.
     brake_torque_nm : float
-        (N m) The nominal torque of the brake on the shaft that is coupled to it. Allowed: ≥ 0, ≤ 1e9.
+        (N m) The nominal torque of the brake on the shaft that is coupled to it, negative where it drives. Allowed:
+        −1e9…1e9.
     speed_fluctuation_hz : float
         (Hz) The amplitude of the uniform random error of every sample's speed. Allowed: ≥ 0; less than the lowest
         speed.
@@ -628,7 +629,7 @@ class GearboxOperation(TypedDict, total=False):
         […] }, straight between the points, constant outside them; or { file = "….csv" } with the columns time_s and
         value. Allowed: at least 2 points, times increasing, values > 0. Ignored by published.
     torque_profile_nm : dict of time_s and value
-        (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0.
+        (s, N m) The torque against time, likewise. Allowed: likewise, values of one sign.
     brake_inertia_kgm2 : float
         (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9.
     torque_ripple : sequence of Ripple
@@ -1069,7 +1070,7 @@ class ScenarioKeys:
         face_width_mm : float
             (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
         brake_torque_nm : float
-            (N m) The nominal torque of the brake on the gear's shaft. Allowed: ≥ 0, ≤ 1e9.
+            (N m) The nominal torque of the brake on the gear's shaft, negative where it drives. Allowed: −1e9…1e9.
         fault : a fault, optional
             The damage, if there is but one; a healthy pair by default.
         faults : sequence of faults, optional
@@ -1150,7 +1151,7 @@ class ScenarioKeys:
             = […] }, straight between the points, constant outside them; or { file = "….csv" } with the columns time_s
             and value. Allowed: at least 2 points, times increasing, values > 0. Default: none. Ignored by published.
         torque_profile_nm : dict of time_s and value, optional
-            (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
+            (s, N m) The torque against time, likewise. Allowed: likewise, values of one sign. Default: none.
         din_grade : int, optional
             The grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
             Default: 0.

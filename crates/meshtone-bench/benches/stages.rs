@@ -54,6 +54,7 @@ fn before_the_time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenar
                 inertias: [&scenario.wheels[0].inertia, &scenario.wheels[1].inertia],
                 unbalances: [&scenario.wheels[0].unbalance, &scenario.wheels[1].unbalance],
                 brake_inertia_kgm2: scenario.operation.brake_inertia_kgm2,
+                overruns: false,
             };
             let train = RigMachine::new(parts, black_box(sound), Supports::Held);
             Modes::damped_alike(&train.machine, 0.07)

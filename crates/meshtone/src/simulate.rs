@@ -52,6 +52,8 @@ pub struct Stages {
     pub pairs: Vec<MeshedPair>,
     /// The meshes, in the order of the scenario; none under the published model, which has one of its own.
     pub meshes: Vec<Mesh>,
+    /// The wheels as they push one another where the brake drives; none where the motor does.
+    pub(crate) overrun: Option<Overrun>,
     /// The rolling bearings: each with its number in the scenario.
     pub bearings: Vec<(usize, RollingBearing)>,
     /// The sensors, each with its name: those listed, or among shafts of beams without any those on the bearings' seats.
@@ -74,6 +76,13 @@ pub struct Stages {
     pub(crate) memory_limit: MemoryLimit,
     /// The random forces of the run, once the meshes' forces are known; none where there are none.
     pub(crate) random_forces: Option<RandomForces>,
+}
+
+/// How the wheels push one another where the brake drives: the second one of each mesh comes first.
+#[derive(Clone, PartialEq)]
+pub(crate) struct Overrun {
+    layout: Layout,
+    pairs: Vec<MeshedPair>,
 }
 
 /// Time that a stage took.
@@ -185,7 +194,7 @@ pub(crate) fn stages_with(
     } else {
         published_parts(&scenario, &layout, &time, teeth, &mut clock)?
     };
-    let Parts { pairs, meshes, bearings, equations, slowest_mode } = parts;
+    let Parts { pairs, overrun, meshes, bearings, equations, slowest_mode } = parts;
     let settle_tolerance = scenario.solver.settle_tolerance;
     // Only a motion that starts in equilibrium, and not one that is drawn anew for every sample: before the kept signal all else is steady.
     let operation = &scenario.operation;
@@ -204,6 +213,7 @@ pub(crate) fn stages_with(
         layout,
         time,
         pairs,
+        overrun,
         meshes,
         bearings,
         fault_severities: severities.into_values().collect(),
@@ -229,6 +239,7 @@ fn with_sizes(mut scenario: Scenario, pairs: &[MeshedPair]) -> Scenario {
 /// What a model makes of the teeth.
 struct Parts {
     pairs: Vec<MeshedPair>,
+    overrun: Option<Overrun>,
     meshes: Vec<Mesh>,
     bearings: Vec<(usize, RollingBearing)>,
     equations: Equations,
@@ -258,8 +269,16 @@ fn machine_parts(
             sound_pair(scenario, layout, time, mesh, teeth, force_n).damaged(scenario, layout, mesh)
         })
         .collect::<Result<_, _>>()?;
+    let overrun = scenario.operation.overruns().then(|| {
+        let layout = layout.overrun(scenario);
+        let teeth = healthy_teeth(scenario.model, &layout);
+        let pairs = pairs.iter().zip(teeth).map(|(pair, teeth)| pair.exchanged(teeth)).collect();
+        Overrun { layout, pairs }
+    });
     clock.lap("profile errors and faults");
-    let meshes = meshes::meshes(scenario, layout, time, (&pairs, &machine), None)?;
+    let (layout, pushing) =
+        overrun.as_ref().map_or((layout, &pairs), |Overrun { layout, pairs }| (layout, pairs));
+    let meshes = meshes::meshes(scenario, layout, time, (pushing, &machine), None)?;
     clock.lap("mesh stiffness");
     let face_reach_m: Vec<f64> = meshes.iter().map(Mesh::face_reach_m).collect();
     let is_tilted = face_reach_m.iter().any(|reach_m| *reach_m > 0.0);
@@ -269,7 +288,7 @@ fn machine_parts(
     let slowest_mode = modal.slowest_closed(&closed, TAU * machine.highest_of_slow_hz);
     clock.lap("settling");
     let equations = Equations::Machine(Box::new(machine), Box::new(modal));
-    Ok(Parts { pairs, meshes, bearings, equations, slowest_mode })
+    Ok(Parts { pairs, overrun, meshes, bearings, equations, slowest_mode })
 }
 
 /// The same of the published model, which has a mesh and equations of motion of its own.
@@ -290,7 +309,7 @@ fn published_parts(
     clock.lap("mesh stiffness");
     let slowest_mode = published.slowest_mode();
     let equations = Equations::Published(Box::new(published));
-    Ok(Parts { pairs, meshes: Vec::new(), bearings: Vec::new(), equations, slowest_mode })
+    Ok(Parts { pairs, overrun: None, meshes: Vec::new(), bearings: Vec::new(), equations, slowest_mode })
 }
 
 /// (N) The forces along the lines of action that hold a torque of the brake: of one mesh by the driven wheel's base radius, of several by
@@ -303,7 +322,7 @@ fn published_parts(
 fn static_forces_n(modal: Option<&ModalMachine>, driven_mm: &[f64], torque_nm: f64) -> Vec<f64> {
     match (driven_mm, modal) {
         ([_, _, ..], Some(modal)) => modal.balancing_forces_n(torque_nm),
-        _ => driven_mm.iter().map(|radius_mm| torque_nm / (radius_mm * 1e-3)).collect(),
+        _ => driven_mm.iter().map(|radius_mm| torque_nm.abs() / (radius_mm * 1e-3)).collect(),
     }
 }
 
@@ -359,7 +378,7 @@ impl Stages {
 
     /// The tooth pairs of the first mesh, at any position of their path; not under the published model, whose flanks are not conjugate.
     pub fn tooth_pairs(&self) -> Pairs<'_> {
-        let (gears, MeshedPair { teeth, damaged, .. }) = (&self.layout.gears[0], &self.pairs[0]);
+        let (gears, MeshedPair { teeth, damaged, .. }) = (&self.layout.gears[0], &self.pushing().1[0]);
         Pairs::new(teeth, damaged, gears.material, &gears.foundation)
     }
 
@@ -372,13 +391,13 @@ impl Stages {
     /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load.
     pub fn meshes_at(&self, points_per_pitch: NonZeroUsize) -> Result<Vec<Mesh>, ScenarioError> {
         let Some((machine, _)) = self.machine() else { return Ok(Vec::new()) };
-        meshes::meshes(
-            &self.scenario,
-            &self.layout,
-            &self.time,
-            (&self.pairs, machine),
-            Some(points_per_pitch),
-        )
+        let (layout, pairs) = self.pushing();
+        meshes::meshes(&self.scenario, layout, &self.time, (pairs, machine), Some(points_per_pitch))
+    }
+
+    /// The wheels with the one that pushes its mate first: where the brake drives, the second of each mesh.
+    fn pushing(&self) -> (&Layout, &[MeshedPair]) {
+        self.overrun.as_ref().map_or((&self.layout, &self.pairs), |overrun| (&overrun.layout, &overrun.pairs))
     }
 
     /// The deviations of the wheels of each mesh beside their profile errors: run-out and helix slope. With the profile errors, of

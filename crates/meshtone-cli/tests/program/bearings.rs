@@ -179,7 +179,7 @@ fn bearings_of_a_gearbox_are_on_its_shafts() {
     );
     assert_eq!(results(&workplace)["bearings"][0]["verdict"], "cannot tell");
     assert!(
-        stdout(&output).contains("1.9 of the cycles after which the same teeth meet again"),
+        stdout(&output).contains("1.8 of the cycles after which the same teeth meet again"),
         "{}",
         stdout(&output)
     );

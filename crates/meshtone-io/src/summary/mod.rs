@@ -92,6 +92,9 @@ pub struct MachineSummary {
     pub bearings: Vec<BearingSummary>,
     /// (Hz) The natural frequencies at the mean mesh stiffness, rising: of a pair 13, under `contact` 17.
     pub natural_frequencies_hz: Vec<f64>,
+    /// (Hz) Of each mode of shafts of beams without their meshes the natural frequency without and with gyroscopic moments; none of a rig.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gyroscopic_modes_hz: Vec<[f64; 2]>,
 }
 
 /// Indicators of a pair's main signal, synchronously averaged on either shaft.
@@ -260,6 +263,9 @@ impl MachineSummary {
                 .map(|((_, bearing), (name, _))| BearingSummary::new(name.clone(), bearing))
                 .collect(),
             natural_frequencies_hz: stages.natural_frequencies_hz(),
+            gyroscopic_modes_hz: (stages.gyroscopic_shifts(input_hz).into_iter())
+                .map(|mode| [mode.frequency_hz, mode.shifted_hz])
+                .collect(),
         }
     }
 }

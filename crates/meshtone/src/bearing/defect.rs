@@ -174,8 +174,9 @@ impl Spall {
 /// By how much an element drops into a spall on its way: over each edge on a circle around that, and flat between them.
 ///
 /// At a distance x from the nearer edge an element of radius r, whose middle stands on a circle around the edge, has dropped by
-/// `r − √(r² − x²)`, and at most by the depth. Where it touches both edges before it touches the bottom the two circles meet in the middle, and
-/// their kink there is the stroke: an element that bridges the gap strikes half a width after it has entered.
+/// `r − √(r² − x²)`, and at most by the depth. Where it touches both edges before it touches the bottom the two circles meet in the middle.
+/// Elements have no mass here: one that drops deeper than it is pressed is unloaded near the first edge and loaded again near the last, and is not heard
+/// in between.
 ///
 /// Source: N. Sawalhi, R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, on the events of entry and impact.
 #[derive(Debug, Clone, Copy, PartialEq)]

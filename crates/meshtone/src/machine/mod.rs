@@ -5,6 +5,7 @@
 
 mod body;
 mod gearbox;
+mod gyroscopic;
 mod modes;
 mod parts;
 mod rig;
@@ -19,6 +20,7 @@ pub use gearbox::{
     Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft,
     Housing, HousingModes, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
 };
+pub use gyroscopic::Spinning;
 pub(crate) use modes::KnownModes;
 pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};

@@ -281,6 +281,7 @@ mod tests {
             lines: Vec::new(),
             bearings: Vec::new(),
             turning_forces: Vec::new(),
+            spinning: Vec::new(),
             drives: Vec::new(),
             places: Vec::new(),
             rigid_rotation: DVector::zeros(20),

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::TurningForce;
+use super::{Spinning, TurningForce};
 
 /// A machine without its meshes, in n coordinates.
 ///
@@ -27,6 +27,8 @@ pub struct Machine {
     pub bearings: Vec<[DVector<f64>; 2]>,
     /// Forces that turn with the shafts.
     pub turning_forces: Vec<TurningForce>,
+    /// What spins with gyroscopic moments that are stepped.
+    pub spinning: Vec<Spinning>,
     /// Motors and brakes.
     pub drives: Vec<Drive>,
     /// Where something can be measured.

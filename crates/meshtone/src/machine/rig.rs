@@ -52,6 +52,8 @@ pub struct RigParts<'a> {
     pub unbalances: [&'a Unbalance; 2],
     /// (kg m²) Inertia of the brake.
     pub brake_inertia_kgm2: f64,
+    /// Whether the brake drives, so that the gear pushes the pinion.
+    pub overruns: bool,
 }
 
 /// Beyond these the equations are solved in rounding errors.

@@ -125,7 +125,7 @@ impl RigMachine {
     /// * `teeth` - both wheels
     /// * `supports` - whether the supports move
     pub fn new(parts: RigParts, teeth: &Teeth, supports: Supports) -> Self {
-        let RigParts { gears, rig, inertias, .. } = parts;
+        let RigParts { gears, rig, inertias, overruns, .. } = parts;
         let pinion = WheelBody::new(&teeth.pinion, gears.material, inertias[0]);
         let gear = WheelBody::new(&teeth.gear, gears.material, inertias[1]);
         let coordinates = match supports {
@@ -138,7 +138,10 @@ impl RigMachine {
                 let with_body = |body: f64| 1.0 / (1.0 / of_shaft + 1.0 / body);
                 body_stiffness_nm_per_rad(wheel, gears).map_or(of_shaft, with_body)
             });
-        let turn = turn(teeth.gear.working_pressure_angle_rad, coordinates);
+        let angle_rad = teeth.gear.working_pressure_angle_rad;
+        // The other flanks push downwards where these push upwards.
+        let angle_rad = if overruns { PI - angle_rad } else { angle_rad };
+        let turn = turn(angle_rad, coordinates);
         let ratio = f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth);
         let mut rigid_rotation = DVector::zeros(coordinates);
         rigid_rotation[THETA_GEAR] = -1.0 / ratio;
@@ -157,9 +160,10 @@ impl RigMachine {
                     .iter()
                     .map(|spring| spring.turned(&turn))
                     .collect(),
-                lines: vec![line_of_action(gears, teeth, coordinates)],
+                lines: vec![line_of_action((gears, teeth), angle_rad, coordinates)],
                 bearings: Vec::new(),
                 turning_forces: unbalances(parts.unbalances, &turn, &rigid_rotation),
+                spinning: Vec::new(),
                 drives: vec![
                     Drive::Motor {
                         coordinate: THETA_PINION,
@@ -260,17 +264,19 @@ pub(crate) fn turn_planes(
 /// `g0 = [sin α, cos α, −sin α, −cos α, Rb_g, Rb_p, 0, t, −t, 0, 0, −t r_g, −t r_p, 0 …]` and
 /// `g1 = [0×9, −cos α, cos α, sin α, −sin α, 0 …]`, α the working pressure angle in the transverse section, t the thrust of helical wheels and
 /// r the radii of the working pitch circles, at which it tilts them.
-fn line_of_action(gears: &Gears, teeth: &Teeth, coordinates: usize) -> LineOfAction {
+fn line_of_action((gears, teeth): (&Gears, &Teeth), angle_rad: f64, coordinates: usize) -> LineOfAction {
     let (mut at_middle, mut per_m) = (DVector::zeros(coordinates), DVector::zeros(coordinates));
     at_middle[X_GEAR] = 1.0;
     at_middle[X_PINION] = -1.0;
-    let (sin, cos) = teeth.gear.working_pressure_angle_rad.sin_cos();
-    let thrust = gears.thrust();
+    let (sin, cos) = angle_rad.sin_cos();
+    // Of the other flanks, beyond a right angle, what turns and what pushes along the shafts has the other sign.
+    let sense = cos.signum();
+    let thrust = sense * gears.thrust();
     for (wheel, theta, z, phi, psi, side) in [
         (&teeth.gear, THETA_GEAR, Z_GEAR, PHI_GEAR, PSI_GEAR, 1.0),
         (&teeth.pinion, THETA_PINION, Z_PINION, PHI_PINION, PSI_PINION, -1.0),
     ] {
-        at_middle[theta] = wheel.base_radius_mm * 1e-3;
+        at_middle[theta] = sense * wheel.base_radius_mm * 1e-3;
         at_middle[z] = side * thrust;
         // A moment about y, whose tilt ψ is turned with the line of action.
         let about_y = -thrust * wheel.working_pitch_radius_mm * 1e-3;

@@ -15,7 +15,8 @@ pub struct Operation {
     /// (rev/s) Nominal speed of the motor and of the shaft that is coupled to it, which a pair's pinion is on. A file with a speed profile may
     /// leave it out: the highest speed of that.
     pub pinion_speed_hz: f64,
-    /// (N m) Nominal torque of the brake on the shaft that is coupled to it, which a pair's gear is on.
+    /// (N m) Nominal torque of the brake on the shaft that is coupled to it, which a pair's gear is on. Negative where that shaft drives: the other
+    /// flanks of all wheels carry then.
     pub brake_torque_nm: f64,
     /// (Hz) Half width of a uniform error of the motor's speed, drawn for every sample. Default 0.
     pub speed_fluctuation_hz: f64,
@@ -82,6 +83,11 @@ impl Operation {
     /// Whether the speed neither follows a profile nor wanders; errors of single samples may be.
     pub(crate) fn keeps_speed(&self) -> bool {
         self.speed_profile_hz.is_none() && self.speed_wander_percent == 0.0
+    }
+
+    /// Whether the brake drives at its nominal torque, so that the other flanks carry.
+    pub(crate) fn overruns(&self) -> bool {
+        self.brake_torque_nm < 0.0
     }
 
     /// Takes the highest speed of the profile as the nominal one, where none was given.
@@ -179,9 +185,14 @@ impl Keys for Operation {
             )
             .required_unless(SPEED_PROFILE)
             .range(Range::positive().implausible_above(1e5)),
-            row("brake_torque_nm", "N m", "the nominal torque of the brake on the gear's shaft", field!(brake_torque_nm))
-                .required()
-                .range(Range::not_negative().implausible_above(1e9)),
+            row(
+                "brake_torque_nm",
+                "N m",
+                "the nominal torque of the brake on the gear's shaft, negative where it drives",
+                field!(brake_torque_nm),
+            )
+            .required()
+            .range(TORQUE),
             row(
                 "speed_fluctuation_hz",
                 "Hz",
@@ -217,7 +228,7 @@ impl Keys for Operation {
             .example("{ time_s = [0.0, 1.0], value = [40.0, 40.0] }"),
             row("torque_profile_nm", "s, N m", "the torque against time, likewise", field!(torque_profile_nm))
                 .otherwise("none")
-                .rule("likewise, values ≥ 0")
+                .rule("likewise, values of one sign")
                 .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }"),
         ]
     }
@@ -237,11 +248,11 @@ impl Operation {
         let torque = row(
             "brake_torque_nm",
             "N m",
-            "the nominal torque of the brake on the shaft that is coupled to it",
+            "the nominal torque of the brake on the shaft that is coupled to it, negative where it drives",
             field!(brake_torque_nm),
         )
         .required()
-        .range(Range::not_negative().implausible_above(1e9));
+        .range(TORQUE);
         let own = [
             row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
                 .range(Range::positive().implausible_above(1e9)),
@@ -259,6 +270,9 @@ impl Operation {
         [input, torque].into_iter().chain(varying).chain(own).collect()
     }
 }
+
+/// (N m) Beyond it there is no wheel: a tooth of module 100 and a metre wide breaks at less.
+const TORQUE: Range = Range::from_to(-1e9, 1e9);
 
 /// (-) Largest sum of the amplitudes of the torque's harmonics. Beyond it the motion flips between two states.
 pub(super) const MOST_RIPPLE: f64 = 1.2;

@@ -10,7 +10,13 @@ impl Operation {
     pub(crate) fn check(&self) -> Check {
         let (speeds, torques) = (self.speed_profile_hz.as_ref(), self.torque_profile_nm.as_ref());
         values(speeds, "operation.speed_profile_hz", |speed| speed > 0.0, "must be more than 0 rev/s")?;
-        values(torques, "operation.torque_profile_nm", |torque| torque >= 0.0, "must be 0 N m or more")?;
+        // Faults and deviations are on the flanks that carry, and these are those of the nominal torque.
+        let (sign, rule) = if self.overruns() {
+            (-1.0, "must be 0 N m or less, as operation.brake_torque_nm is")
+        } else {
+            (1.0, "must be 0 N m or more")
+        };
+        values(torques, "operation.torque_profile_nm", |torque| sign * torque >= 0.0, rule)?;
         let slowest = smallest(self.pinion_speed_hz, speeds);
         fluctuation("operation.speed_fluctuation_hz", self.speed_fluctuation_hz, slowest, "speed", "Hz")?;
         let lightest = smallest(self.brake_torque_nm, torques);
@@ -30,7 +36,9 @@ impl Operation {
 }
 
 fn smallest(nominal: f64, profile: Option<&Profile>) -> f64 {
-    profile.map_or(nominal, |profile| profile.value.iter().copied().fold(f64::INFINITY, f64::min))
+    let sizes =
+        |profile: &Profile| profile.value.iter().map(|value| value.abs()).fold(f64::INFINITY, f64::min);
+    profile.map_or(nominal.abs(), sizes)
 }
 
 fn fluctuation(key: &str, value: f64, nominal: f64, quantity: &str, unit: &str) -> Check {

@@ -205,6 +205,18 @@ impl Layout {
         }
     }
 
+    /// The same machine where the brake drives: the second wheel of each mesh pushes the first one, by the other flanks.
+    ///
+    /// # Arguments
+    /// * `scenario` - whose layout this is
+    pub(crate) fn overrun(&self, scenario: &Scenario) -> Self {
+        let mut this = self.clone();
+        this.wheels_of_mesh.iter_mut().for_each(|wheels| wheels.reverse());
+        this.gears = std::mem::take(&mut this.gears).into_iter().map(Gears::exchanged).collect();
+        this.phases = this.find_phases(scenario);
+        this
+    }
+
     /// A wheel in several meshes has one helix.
     fn check_helices(&self, scenario: &Scenario) -> Result<(), ScenarioError> {
         // (°) Positive of a right-hand helix.

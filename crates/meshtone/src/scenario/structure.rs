@@ -110,6 +110,7 @@ impl Scenario {
             inertias: [&pinion.inertia, &gear.inertia],
             unbalances: [&pinion.unbalance, &gear.unbalance],
             brake_inertia_kgm2: self.operation.brake_inertia_kgm2,
+            overruns: self.operation.overruns(),
         })
     }
 

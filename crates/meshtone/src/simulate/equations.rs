@@ -308,7 +308,7 @@ impl Stages {
                 time,
                 [operation.pinion_speed_hz, operation.brake_torque_nm],
                 time.first_simulated_sample,
-                self.meshes.iter().zip(self.pairs.iter().map(deviations)),
+                self.meshes.iter().zip(self.pushing().1.iter().map(deviations)),
             )
             .with_bearings(self.bearings.iter().map(turning).collect())
             .with_turning_forces(&machine.machine.turning_forces),

@@ -7,7 +7,7 @@ use crate::bearing::{RollingBearing, RollingParts};
 use crate::error::ScenarioError;
 use crate::machine::{
     Disc, GearboxMachine, GearboxParts, GearboxShaft, KnownModes, Machine, MeshLine, Modes, PlacedUnbalance,
-    RigMachine, RigParts, SeatedBearing, Supports, WheelBody, body_stiffness_nm_per_rad,
+    RigMachine, RigParts, SeatedBearing, Spinning, Supports, WheelBody, body_stiffness_nm_per_rad,
 };
 use crate::scenario::{Layout, Scenario};
 use crate::solver::{InitialMotion, ModalMachine};
@@ -26,8 +26,8 @@ pub struct AssembledMachine {
     pub wheels: Vec<WheelBody>,
     /// (N m/rad) Torsional stiffness between each shaft and what it is coupled to, of a pair between wheel and coupling.
     pub shaft_stiffness_nm_per_rad: Vec<f64>,
-    /// (kg m²) What turns with the nodes of shafts of beams: [`GearboxMachine::spinning`]; nothing of a rig.
-    pub spinning: Vec<(usize, f64)>,
+    /// What turns with the nodes of shafts of beams; nothing of a rig. What of it is stepped is the machine's.
+    pub spinning: Vec<Spinning>,
     /// (kg) The mass that the wheels' rotation has along each line of action.
     pub mesh_mass_kg: Vec<f64>,
     /// (-) Damping ratio of each mesh.
@@ -103,8 +103,8 @@ pub(super) fn bare(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Res
 /// Shafts of beams in bearings, with what is known of them beside the machine.
 struct Beams {
     machine: GearboxMachine,
-    /// (kg m²) What turns with the nodes.
-    spinning: Vec<(usize, f64)>,
+    /// What turns with the nodes.
+    spinning: Vec<Spinning>,
     discs: Vec<Disc>,
     mesh_mass_kg: Vec<f64>,
     bearings: Bearings,
@@ -131,15 +131,19 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
             }
         })
         .collect();
+    let overruns = scenario.operation.overruns();
     let has_forces_across = scenario.meshes.iter().any(|mesh| mesh.friction > 0.0 || mesh.random_force > 0.0);
     let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears).enumerate())
-        .map(|(mesh, ((teeth, &wheels), gears))| MeshLine {
-            wheels,
-            offsets_m: layout.offsets_of_face_m(scenario, mesh),
-            base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
-            working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
-            thrust: gears.thrust(),
-            has_forces_across,
+        .map(|(mesh, ((teeth, &wheels), gears))| {
+            let line = MeshLine {
+                wheels,
+                offsets_m: layout.offsets_of_face_m(scenario, mesh),
+                base_radii_m: WheelName::BOTH.map(|side| teeth.wheel(side).base_radius_mm * 1e-3),
+                working_pressure_angle_rad: teeth.gear.working_pressure_angle_rad,
+                thrust: gears.thrust(),
+                has_forces_across,
+            };
+            if overruns { line.exchanged() } else { line }
         })
         .collect();
     let mass_kg = lines.iter().map(|line| {
@@ -205,6 +209,10 @@ fn shafts_of_beams(
     for (number, mesh) in scenario.meshes.iter().enumerate() {
         machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
     }
+    let stepped_up_to_hz = scenario.solver.highest_mode_hz(scenario.time_grid().sampling_rate_hz);
+    let modes = known.damped_by_springs(&machine.machine);
+    let (_, fastest_hz) = scenario.fastest_speed(layout);
+    machine.machine.spinning = modes.stepped_spinning(&spinning, TAU * fastest_hz, TAU * stepped_up_to_hz);
     let assembled = AssembledMachine {
         wheels: discs.iter().map(|disc| disc.body).collect(),
         shaft_stiffness_nm_per_rad: scenario.shafts().iter().map(GearboxShaft::coupling_nm_per_rad).collect(),
@@ -212,8 +220,8 @@ fn shafts_of_beams(
         spinning,
         mesh_mass_kg,
         highest_of_slow_hz: HIGHEST_OF_SLOW_HZ,
-        stepped_up_to_hz: scenario.solver.highest_mode_hz(scenario.time_grid().sampling_rate_hz),
-        modes: known.damped_by_springs(&machine.machine),
+        stepped_up_to_hz,
+        modes,
         machine: machine.machine,
     };
     Ok((assembled, bearings))

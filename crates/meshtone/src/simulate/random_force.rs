@@ -149,7 +149,7 @@ impl Stages {
     /// # Arguments
     /// * `sensor` - its number
     /// * `motion` - is added to
-    pub(super) fn add_random_part(&self, sensor: usize, motion: &mut [f64]) {
+    pub(crate) fn add_random_part(&self, sensor: usize, motion: &mut [f64]) {
         let Some(RandomForces { spectra, length, response }) = &self.random_forces else { return };
         let Output::Acceleration { factor, .. } = self.sensors[sensor].output() else { return };
         let rate_hz = self.time.sampling_rate_hz;

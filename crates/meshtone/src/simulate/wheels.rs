@@ -92,6 +92,32 @@ impl MeshedPair {
         self.misalignment_um + self.helix_slope_um.iter().sum::<f64>()
     }
 
+    /// The pair where the gear drives the pinion: the flanks that carry are others, with the deviations and the damage that are stated.
+    ///
+    /// # Arguments
+    /// * `teeth` - both wheels, the gear first
+    pub(super) fn exchanged(&self, teeth: Teeth) -> Self {
+        let backwards = |table: &ErrorTable| {
+            let last = table.points() - 1;
+            ErrorTable::from_fn(table.points(), table.teeth(), |point, tooth| table[(last - point, tooth)])
+        };
+        // Rows of both lie in the order in which they touch.
+        let flanks = self.profile_errors.as_ref().map(|errors| ProfileErrors {
+            pinion_profile_errors_mm: backwards(&errors.gear_profile_errors_mm),
+            gear_profile_errors_mm: backwards(&errors.pinion_profile_errors_mm),
+        });
+        let mut this = Self {
+            profile_errors: flanks,
+            run_out: [self.run_out[1], self.run_out[0]],
+            helix_slope_um: [self.helix_slope_um[1], self.helix_slope_um[0]],
+            eccentricity_mm: [self.eccentricity_mm[1], self.eccentricity_mm[0]],
+            teeth,
+            ..self.clone()
+        };
+        this.damaged.iter_mut().for_each(|tooth| tooth.wheel = tooth.wheel.mate());
+        this
+    }
+
     /// The pair with its damaged teeth.
     ///
     /// # Arguments

@@ -38,6 +38,9 @@ const MOST_UNKNOWNS: usize = MOST_MESHES + 2 * MOST_ROLLING_BEARINGS;
 /// Samples that are forced and handed out at a time.
 const BLOCK: usize = 256;
 
+/// (-) Change of the motor's speed from which on gyroscopic moments are those of another speed.
+const SAME_SPEED: f64 = 2e-3;
+
 /// Modes that are stepped side by side.
 const SIDE_BY_SIDE: usize = 8;
 
@@ -146,8 +149,7 @@ impl History {
     /// Keeps what some outputs see.
     fn new(outputs: &[OutputOfModes]) -> Self {
         let kept = |number: usize| {
-            let seen =
-                || outputs.iter().map(|output| &output.weights[number]).filter(|seen| !seen.lots.is_empty());
+            let seen = || outputs.iter().map(|output| &output.0[number]).filter(|seen| !seen.lots.is_empty());
             let end = seen().map(|seen| seen.first + seen.lots.len()).max().unwrap_or(0);
             let lots = seen().map(|seen| seen.first).min().unwrap_or(0)..end;
             let tiles = vec![LotTile([Lanes::splat(0.0); TILE]); lots.len() * BLOCK / TILE];
@@ -192,9 +194,10 @@ pub(super) fn integrate(
     instructions: InstructionSet,
     recorder: &mut dyn Recorder,
 ) -> Result<(), Diverged> {
-    let prepared = Prepared::new(&problem);
+    let mut speed = 1.0;
+    let prepared = Prepared::new(&problem, speed);
     let order = Order::new(&prepared);
-    let constants = Constants::new(&prepared, &order);
+    let mut constants = Constants::new(prepared, &order);
     let (start, end) = (problem.time.first_simulated_sample, problem.time.samples);
     let mut block = ForcingBlock::default();
     problem.forcing.next_block(1, &mut block);
@@ -202,24 +205,30 @@ pub(super) fn integrate(
     let first_external = external(&block, 0);
     springs.iter_mut().zip(&block.meshes).for_each(|(springs, block)| springs.line_up(block));
     let first = match from {
-        Some(state) => prepared.resumed_state(state, &block, first_external),
-        None => prepared.first_state(&problem.machine, &block, &springs, first_external),
+        Some(state) => constants.prepared.resumed_state(state, &block, first_external),
+        None => constants.prepared.first_state(&problem.machine, &block, &springs, first_external),
     };
-    let mut state = State::new(first, first_external, &prepared, &order);
-    let largest = order.lots(&prepared.largest_displacement);
+    let mut state = State::new(first, first_external, &constants.prepared, &order);
+    let largest = order.lots(&constants.prepared.largest_displacement);
     let mut history = History::new(&constants.outputs);
-    let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
+    let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); constants.outputs.len()];
     let mut sample = start;
     while sample < end && recorder.goes_on() {
         let steps = BLOCK.min(end - sample);
         if recorder.wants_state(sample) {
             let numbers = [0, 1, 2].map(|number| order.modes(&state.lots, number));
-            recorder.keep_state(prepared.motion_state(sample, numbers, state.force.clone()));
+            recorder.keep_state(constants.prepared.motion_state(sample, numbers, state.force.clone()));
         }
         problem.forcing.next_block(steps, &mut block);
         springs.iter_mut().zip(&block.meshes).for_each(|(springs, block)| springs.line_up(block));
         outputs.iter_mut().for_each(Vec::clear);
         history.clear();
+        let now = mean_speed(&block, problem.machine.rotation_rad_per_s);
+        if !problem.machine.spinning.is_empty() && (now / speed - 1.0).abs() > SAME_SPEED {
+            speed = now;
+            constants = Constants::new(Prepared::new(&problem, speed), &order);
+            state.equations = Equations::new(&constants.prepared);
+        }
         let first_recorded = problem.first_sample.max(sample);
         instructions.run(Steps {
             constants: &constants,
@@ -256,30 +265,33 @@ pub(super) fn integrate(
     Ok(())
 }
 
+/// (-) The motor's speed over the nominal one, in the mean of a block.
+fn mean_speed(block: &ForcingBlock, nominal_rad_per_s: f64) -> f64 {
+    let deviations = &block.external.speed_deviation_rad_per_s;
+    1.0 + deviations.iter().sum::<f64>() / (deviations.len().max(1) as f64 * nominal_rad_per_s)
+}
+
 /// Motor lead, torque deviation and speed deviation at one sample of a block; 0 while motor and brake are steady.
 fn external(block: &ForcingBlock, k: usize) -> [f64; EXTERNALS] {
     block.external.parts().map(|part| part.get(k).copied().unwrap_or(0.0))
 }
 
 /// What does not change from step to step.
-struct Constants<'a> {
-    prepared: &'a Prepared,
+struct Constants {
+    prepared: Prepared,
     lots: Vec<LotConstants>,
     columns: Vec<Vec<LotColumn>>,
     turning: Vec<[Vec<Lot>; 2]>,
-    outputs: Vec<OutputOfModes<'a>>,
+    outputs: Vec<OutputOfModes>,
     /// Whether all loads act midway along their faces.
     all_midway: bool,
 }
 
-/// An output: the weights of each number of a [`LotState`], and of what has no modes.
-struct OutputOfModes<'a> {
-    weights: [Weights; 3],
-    others: &'a OutputWeights,
-}
+/// An output: the weights of each number of a [`LotState`].
+struct OutputOfModes([Weights; 3]);
 
-impl<'a> Constants<'a> {
-    fn new(prepared: &'a Prepared, order: &Order) -> Self {
+impl Constants {
+    fn new(prepared: Prepared, order: &Order) -> Self {
         let column = |column: &super::prepare::Column| {
             let [push, of_displacement, of_velocity] =
                 [&column.push, &column.of_displacement, &column.of_velocity].map(|values| order.lots(values));
@@ -291,10 +303,8 @@ impl<'a> Constants<'a> {
             };
             lots.map(lot).collect()
         };
-        let output = |others: &'a OutputWeights| OutputOfModes {
-            weights: [&others.displacement, &others.velocity, &others.acceleration]
-                .map(|list| order.weights(list)),
-            others,
+        let output = |of: &OutputWeights| {
+            OutputOfModes([&of.displacement, &of.velocity, &of.acceleration].map(|list| order.weights(list)))
         };
         let (restore, damp) = (order.lots(&prepared.restore), order.lots(&prepared.damp));
         let external_push = prepared.external_push.each_ref().map(|push| order.lots(push));
@@ -362,8 +372,8 @@ fn total(lanes: Lanes<SIDE_BY_SIDE>) -> f64 {
 }
 
 /// The steps of one block of samples: all that is compiled for each instruction set.
-struct Steps<'a, 'c> {
-    constants: &'a Constants<'c>,
+struct Steps<'a> {
+    constants: &'a Constants,
     state: &'a mut State,
     /// Of each mesh, at the samples after the state's.
     springs: &'a [SpringSamples],
@@ -374,7 +384,7 @@ struct Steps<'a, 'c> {
     history: &'a mut History,
 }
 
-impl Task for Steps<'_, '_> {
+impl Task for Steps<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -391,8 +401,8 @@ impl Task for Steps<'_, '_> {
 }
 
 /// What is read off the states of one block.
-struct Outputs<'a, 'c> {
-    constants: &'a Constants<'c>,
+struct Outputs<'a> {
+    constants: &'a Constants,
     history: &'a mut History,
     first_recorded: usize,
     outputs: &'a mut [Vec<f64>],
@@ -401,17 +411,18 @@ struct Outputs<'a, 'c> {
 /// Samples whose outputs are summed in registers; a part of [`BLOCK`].
 const TILE: usize = 8;
 
-impl Task for Outputs<'_, '_> {
+impl Task for Outputs<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: Instructions>(self, simd: I) {
         let History { states, force, external } = self.history;
         let columns = self.constants.columns.len();
-        for (values, output) in self.outputs.iter_mut().zip(&self.constants.outputs) {
+        let outputs = self.constants.outputs.iter().zip(&self.constants.prepared.outputs);
+        for (values, (output, others)) in self.outputs.iter_mut().zip(outputs) {
             for (tile, external) in external.chunks(TILE).enumerate() {
                 let mut sums = [Lanes::splat(0.0); TILE];
-                for (weights, (kept, tiles)) in output.weights.iter().zip(states.iter()) {
+                for (weights, (kept, tiles)) in output.0.iter().zip(states.iter()) {
                     let first = tile * kept.len() + weights.first.saturating_sub(kept.start);
                     for (weight, lot) in weights.lots.iter().zip(&tiles[first..]) {
                         for k in 0..TILE {
@@ -419,13 +430,11 @@ impl Task for Outputs<'_, '_> {
                         }
                     }
                 }
-                let weights = output.others;
                 for (k, external) in external.iter().enumerate() {
                     let sample = tile * TILE + k;
-                    let forces = dot(&weights.force, &force[sample * columns..]);
-                    let steady =
-                        weights.constant + weights.per_sample * (self.first_recorded + sample) as f64;
-                    values.push(steady + forces + dot(&weights.external, external) + total(sums[k]));
+                    let forces = dot(&others.force, &force[sample * columns..]);
+                    let steady = others.constant + others.per_sample * (self.first_recorded + sample) as f64;
+                    values.push(steady + forces + dot(&others.external, external) + total(sums[k]));
                 }
             }
         }
@@ -460,10 +469,13 @@ impl State {
             }
         }
         self.external = external.unwrap_or_default();
-        let prepared = constants.prepared;
+        let prepared = &constants.prepared;
         // Nothing is deflected along the columns of friction.
-        let deflected = self.free.iter_mut().zip(&prepared.columns).zip(&constants.columns);
-        for ((free, column), lots) in deflected.take(prepared.first_across) {
+        let is_deflected =
+            |number: &usize| *number < prepared.first_across || *number >= prepared.first_spinning;
+        for number in (0..prepared.columns.len()).filter(is_deflected) {
+            let (free, column, lots) =
+                (&mut self.free[number], &prepared.columns[number], &constants.columns[number]);
             let [mut of_displacement, mut of_velocity] = [Lanes::splat(0.0); 2];
             for (LotState([displacement, velocity, _]), lot) in self.lots.iter().zip(lots) {
                 of_displacement = lot.of_displacement.mul_add(simd, *displacement, of_displacement);
@@ -485,7 +497,7 @@ impl State {
     }
 }
 
-impl Constants<'_> {
+impl Constants {
     /// Sets (N) the forces of the meshes and bearings on the modes at the end of a step, in each column, relative to the static ones.
     ///
     /// # Arguments
@@ -493,7 +505,7 @@ impl Constants<'_> {
     /// * `state` - has the free deflections, and the deflection of each mesh at the step's start; those of all unknowns are set to those at its end
     #[inline(always)]
     fn contact_forces(&self, sample: &ContactSample, state: &mut State) {
-        let prepared = self.prepared;
+        let prepared = &self.prepared;
         let mut face_centres = [0.0; MOST_UNKNOWNS];
         let centres = sample.springs.iter().map(|springs| springs.face_centre_m(sample.k));
         face_centres.iter_mut().zip(centres).for_each(|(own, centre)| *own = centre);
@@ -537,8 +549,12 @@ impl Constants<'_> {
             }
             columns.for_each(|column| state.force[column] = -face_centres[unknown] * force);
         }
-        for (across, friction) in state.force[prepared.first_across..].chunks_exact_mut(2).zip(friction) {
+        let (forces, moments) = state.force.split_at_mut(prepared.first_spinning);
+        for (across, friction) in forces[prepared.first_across..].chunks_exact_mut(2).zip(friction) {
             across.iter_mut().zip(friction).for_each(|(force, [friction, _])| *force = *friction);
+        }
+        for (number, moment) in (prepared.first_spinning..).zip(moments) {
+            *moment = state.free[number] + dot(&prepared.compliance[number], forces);
         }
     }
 }
@@ -557,7 +573,7 @@ impl Prepared {
                 if is_one { of_friction(unknown, mesh, number) } else { 0.0 }
             })
         };
-        let rubs = self.first_across < self.columns.len();
+        let rubs = self.first_across < self.first_spinning;
         rubs.then(|| Box::new(from_fn(|mesh| [of_unknowns(mesh, 0), of_unknowns(mesh, 1)])))
     }
 

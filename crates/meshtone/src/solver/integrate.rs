@@ -154,6 +154,8 @@ pub enum SteppedAlone {
     PublishedModel,
     /// The machine has several meshes, whose deflections are solved together.
     SeveralMeshes,
+    /// Gyroscopic moments shift its modes.
+    GyroscopicMoments,
     /// The machine has rolling bearings, whose stretches are solved together with the mesh.
     RollingBearings,
     /// The face is cut into slices, each of which is a spring.
@@ -174,6 +176,8 @@ impl SteppedAlone {
     ) -> Option<Self> {
         if machine.lines.len() != 1 {
             Some(Self::SeveralMeshes)
+        } else if !machine.spinning.is_empty() {
+            Some(Self::GyroscopicMoments)
         } else if !machine.bearings.is_empty() {
             Some(Self::RollingBearings)
         } else if meshes.clone().any(|mesh| mesh.slices() > 1) {
@@ -195,6 +199,7 @@ impl fmt::Display for SteppedAlone {
         match self {
             Self::PublishedModel => formatter.write_str("the published model has a solver of its own"),
             Self::SeveralMeshes => formatter.write_str("it has several meshes"),
+            Self::GyroscopicMoments => formatter.write_str("gyroscopic moments shift its modes"),
             Self::RollingBearings => formatter.write_str("it has rolling bearings"),
             Self::SlicedFace => formatter.write_str("its face is cut into slices"),
             Self::Friction => formatter.write_str("its flanks rub"),
@@ -343,7 +348,7 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
     instructions: InstructionSet,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
-    let prepared: [Prepared; L] = problems.each_ref().map(Prepared::new);
+    let prepared: [Prepared; L] = problems.each_ref().map(|problem| Prepared::new(problem, 1.0));
     let coefficients = Coefficients::<L, N, M, R>::new(&prepared);
     let law = law_lanes(&prepared);
     let start = Lanes::from_fn(|l| problems[l].time.first_simulated_sample as f64);

@@ -8,6 +8,7 @@
 //! stepped by `coupled`.
 
 mod coupled;
+mod gyroscopic;
 mod history;
 mod integrate;
 mod lane_outputs;

@@ -22,6 +22,8 @@ pub struct ModalMachine {
     pub bearings: Vec<[Vec<f64>; 2]>,
     /// Forces that turn with the shafts, in the modes.
     pub turning_forces: Vec<ModalTurningForce>,
+    /// What spins with gyroscopic moments, in the modes.
+    pub spinning: Vec<ModalSpinning>,
     /// Modal force per rad of motor angle.
     pub motor: Vec<f64>,
     /// Modal force per N m of brake torque.
@@ -119,6 +121,15 @@ pub struct ModalTurningForce {
     pub of_square_speed: bool,
     /// Modal forces where the shaft stands as at the start, and a quarter of a revolution later.
     pub at: [Vec<f64>; 2],
+}
+
+/// What spins in the modes: see [`Spinning`](crate::machine::Spinning).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalSpinning {
+    /// Modal tilt about x and about y.
+    pub tilts: [Vec<f64>; 2],
+    /// (kg m²/s) Its angular momentum at the motor's nominal speed.
+    pub momentum: f64,
 }
 
 /// The line of action of a mesh in the modes.
@@ -219,9 +230,13 @@ impl ModalMachine {
             machine.bearings.iter().map(|stretch| stretch.each_ref().map(modal)).collect();
         let turning: Vec<[DVector<f64>; 2]> =
             machine.turning_forces.iter().map(|force| force.at.each_ref().map(modal)).collect();
+        let spinning: Vec<[DVector<f64>; 2]> = (machine.spinning.iter())
+            .map(|of| [of.about_x, of.about_x + 1].map(|row| modes.shapes.row(row).transpose()))
+            .collect();
         let moved = |n: usize| {
             let columns = lines.iter().flatten().chain(bearings.iter().flatten());
             let columns = columns.chain(turning.iter().flatten()).chain(across.iter().flatten().flatten());
+            let columns = columns.chain(spinning.iter().flatten());
             [&motor, &brake, &rigid, &velocity].into_iter().chain(columns).any(|v| v[n] != 0.0)
         };
         // Modes that no mesh moves come last.
@@ -250,6 +265,12 @@ impl ModalMachine {
                     speed_ratio: force.speed_ratio,
                     of_square_speed: force.of_square_speed,
                     at: at.each_ref().map(pick),
+                })
+                .collect(),
+            spinning: (machine.spinning.iter().zip(&spinning))
+                .map(|(of, tilts)| ModalSpinning {
+                    tilts: tilts.each_ref().map(pick),
+                    momentum: of.polar_kgm2 * start.nominal_rad_per_s,
                 })
                 .collect(),
             motor: pick(&motor),
@@ -293,6 +314,7 @@ impl ModalMachine {
         }
         // What turns with a shaft hardly moves what is left out: the motion of a bent shaft's middle differs by 0.1 % from that with all modes.
         self.turning_forces.iter_mut().flat_map(|force| &mut force.at).for_each(|values| drop(split(values)));
+        self.spinning.iter_mut().flat_map(|of| &mut of.tilts).for_each(|values| drop(split(values)));
         self
     }
 
@@ -477,6 +499,9 @@ fn drives(machine: &Machine) -> [DVector<f64>; 2] {
 
 /// Solves `A x = b`; where there are more equations than unknowns or fewer, with the least squares.
 fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
+    if matrix.is_empty() {
+        return DVector::zeros(matrix.ncols());
+    }
     let exact = matrix.is_square().then(|| matrix.clone().lu().solve(right)).flatten();
     exact.unwrap_or_else(|| {
         let svd = matrix.clone().svd(true, true);

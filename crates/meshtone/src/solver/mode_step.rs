@@ -110,6 +110,19 @@ impl StepOfMode {
         Self { beta, force_factor: fitted / own.stiffness, stiffness: fitted, damping: loss }
     }
 
+    /// (-) A mode's own rate over that which the steps make of its free vibration.
+    ///
+    /// # Arguments
+    /// * `turn_rad` - (rad) turn of the mode in a step
+    pub(super) fn rate_factor(&self) -> f64 {
+        // The steps turn by θ with `2 − 2 cos θ = K/(1 + βK)`, and their rate is that of the trapezium rule.
+        let turn_rad = (1.0 - self.stiffness / (2.0 * (1.0 + self.beta * self.stiffness))).max(-1.0).acos();
+        if turn_rad == 0.0 {
+            return 1.0;
+        }
+        2.0 * turn_rad * (turn_rad / 2.0).tan() / self.stiffness
+    }
+
     /// (-) `E = 1/(1 + ½ Δt c + β Δt² k)`: acceleration at a step's end per force that nothing yields to.
     pub(super) fn yielding(&self) -> f64 {
         1.0 / (1.0 + self.damping / 2.0 + self.beta * self.stiffness)

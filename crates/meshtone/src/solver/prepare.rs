@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::gyroscopic::{Gyroscopic, Pushes};
 use super::integrate::{MotionState, Problem};
 use super::modal::ModalMachine;
 use super::mode_step::StepOfMode;
@@ -10,7 +11,7 @@ use crate::bearing::RollingBearing;
 use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples, deflection_at_rest};
 
 /// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh, then those of the
-/// bearings, along x and y of each, and then those across the lines in which friction acts, two of each mesh.
+/// bearings, along x and y of each, those across the lines in which friction acts, two of each mesh, and then the tilts about x and y of what spins.
 pub(super) struct Prepared {
     /// (s) Δt.
     step_s: f64,
@@ -30,6 +31,9 @@ pub(super) struct Prepared {
     pub(super) columns_of_unknown: Vec<Range<usize>>,
     /// Number of the first column in which friction acts; as many as there are columns without friction.
     pub(super) first_across: usize,
+    /// Number of the first column in which a gyroscopic moment acts: it is what [`Column`] has of the step's end, plus [`Self::compliance`] times the forces
+    /// in the columns before.
+    pub(super) first_spinning: usize,
     /// (m/N) G: deflection, with its damping's lead, in each column per force of the step in each.
     pub(super) compliance: Vec<Vec<f64>>,
     /// The outputs.
@@ -84,7 +88,11 @@ impl Prepared {
     ///
     /// Follows the equations of [`super::step`]: the factors of each mode first, then what they make of a force in each column of the
     /// lines of action.
-    pub(super) fn new(problem: &Problem) -> Self {
+    ///
+    /// # Arguments
+    /// * `problem` - the simulation
+    /// * `speed` - (-) of the motor over the nominal one, for gyroscopic moments
+    pub(super) fn new(problem: &Problem, speed: f64) -> Self {
         let model = &problem.machine;
         let step_s = problem.time.step_s();
         let steps = model.steps(&problem.laws, step_s);
@@ -110,7 +118,10 @@ impl Prepared {
             model.lines.iter().filter(|_| problem.has_friction()).filter_map(|line| line.across.as_ref());
         let lines: Vec<(&[f64], f64)> =
             lines.into_iter().chain(of_friction.flatten().map(|column| (column.as_slice(), 0.0))).collect();
+        let first_spinning = lines.len();
         let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| pushed(line)).collect();
+        let spinning_pushes: Vec<Vec<f64>> =
+            model.spinning.iter().flat_map(|of| &of.tilts).map(|tilt| pushed(tilt)).collect();
         let column = |((line, lead), push): (&(&[f64], f64), &Vec<f64>)| {
             let of_modes =
                 |of: &dyn Fn(usize) -> f64| (0..steps.len()).map(|n| line[n] * of(n)).collect::<Vec<f64>>();
@@ -118,7 +129,8 @@ impl Prepared {
             let of_acceleration = of_modes(&ahead);
             let of_displacement = of_modes(&|n| 1.0 + ahead(n) * restore[n]);
             let of_velocity = of_modes(&|n| lead + ahead(n) * damp[n]);
-            let compliance: Vec<f64> = pushes.iter().map(|push| dot(&of_acceleration, push)).collect();
+            let all_pushes = pushes.iter().chain(&spinning_pushes);
+            let compliance: Vec<f64> = all_pushes.map(|push| dot(&of_acceleration, push)).collect();
             let column = Column {
                 push: push.clone(),
                 static_deflection: dot(line, &model.static_displacement),
@@ -142,7 +154,7 @@ impl Prepared {
         for (((column, compliance), residual), (_, lead)) in
             columns.iter_mut().zip(&mut compliance).zip(residual).zip(&lines)
         {
-            compliance
+            compliance[..first_spinning]
                 .iter_mut()
                 .zip(residual.of_force)
                 .for_each(|(compliance, residual)| *compliance += residual);
@@ -156,6 +168,9 @@ impl Prepared {
                 .zip(of_external)
                 .for_each(|(external, residual)| *external += residual);
         }
+        let spinning = Gyroscopic { model, steps: &steps, step_s, speed };
+        let pushes = Pushes { moments: &spinning_pushes, externals: &external_push, turning: &turning_push };
+        spinning.add_to(&mut columns, &mut compliance, [&restore, &damp], pushes);
         let mut next = 0;
         let of_meshes = model.lines.iter().map(|line| line.columns.len());
         let columns_of_unknown = (of_meshes.chain(model.bearings.iter().flatten().map(|_| 1)))
@@ -169,12 +184,13 @@ impl Prepared {
             columns,
             columns_of_unknown,
             first_across,
+            first_spinning,
             compliance,
             outputs: (problem.outputs.iter())
                 .map(|output| {
                     let mut weights = output.weights(model, &steps, step_s);
                     // Without friction nothing acts across the lines.
-                    weights.force.truncate(lines.len());
+                    weights.force.truncate(first_spinning);
                     weights
                 })
                 .collect(),
@@ -228,7 +244,7 @@ impl Prepared {
             .flat_map(|line| &line.columns)
             .chain(model.bearings.iter().flatten())
             .collect();
-        let has_friction = self.first_across < self.columns.len();
+        let has_friction = self.first_across < self.first_spinning;
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
                 let force_n = self.static_force_n[mesh].max(0.0);
@@ -267,6 +283,10 @@ impl Prepared {
             force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
         }
         force.extend(of_friction);
+        for of in &model.spinning {
+            let [about_x, about_y] = of.tilts.each_ref().map(|tilt| dot(tilt, &model.initial_velocity));
+            force.extend([-of.momentum * about_y, of.momentum * about_x]);
+        }
         self.state_of([&displacement, &model.initial_velocity], force, block, external)
     }
 
@@ -281,10 +301,12 @@ impl Prepared {
         block: &ForcingBlock,
         external: [f64; EXTERNALS],
     ) -> FirstState {
-        self.state_of([&state.displacement, &state.velocity], state.force.clone(), block, external)
+        let rates = state.velocity.iter().zip(&self.steps);
+        let velocity: Vec<f64> = rates.map(|(rate, step)| rate / step.rate_factor()).collect();
+        self.state_of([&state.displacement, &velocity], state.force.clone(), block, external)
     }
 
-    /// The motion of a state.
+    /// The motion of a state, with the modes' own rates: those of another step's trapezium rule are others.
     ///
     /// # Arguments
     /// * `sample` - at which it is
@@ -303,7 +325,7 @@ impl Prepared {
                 .map(|(n, step)| displacement[n] + step.beta * acceleration[n])
                 .collect(),
             velocity: (0..self.steps.len())
-                .map(|n| (velocity[n] + acceleration[n] / 2.0) / self.step_s)
+                .map(|n| (velocity[n] + acceleration[n] / 2.0) / self.step_s * self.steps[n].rate_factor())
                 .collect(),
             force,
         }

@@ -265,7 +265,7 @@ fn overload(
     let (module_mm, width_mm) = (gears.module_mm, gears.face_width_mm);
     let most_mm = TOLERATED_DEFLECTION * module_mm;
     (deflection_mm > most_mm).then(|| {
-        let most_nm = torque_nm * most_mm / deflection_mm;
+        let most_nm = torque_nm.abs() * most_mm / deflection_mm;
         let message = format!(
             "{torque_nm:?} N m deflects {teeth} by {deflection_mm:.3} mm, {:.2} modules, with {force_n:.0} N \
              on {width_mm} mm of face: they would break; at most {most_nm:.0} N m stays below a tenth of the \
@@ -282,6 +282,7 @@ fn largest_torque(operation: &Operation) -> (String, f64) {
     let values =
         values.map(|(index, &torque)| (format!("operation.torque_profile_nm.value[{index}]"), torque));
     let constant = ("operation.brake_torque_nm".to_owned(), operation.brake_torque_nm);
-    let of_profile = values.reduce(|largest, other| if other.1 > largest.1 { other } else { largest });
+    let of_profile =
+        values.reduce(|largest, other| if other.1.abs() > largest.1.abs() { other } else { largest });
     of_profile.unwrap_or(constant)
 }

@@ -1,5 +1,6 @@
 //! The error of a steady vibration that the solver's step causes.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -188,9 +189,10 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
     let Simulation { stages, channels, .. } = simulation;
     let (_, modal) = stages.machine().filter(|_| stages.is_steady())?;
     let is_judged: Vec<bool> = channels.signals.iter().map(|of| is_judged(of.source, stages)).collect();
-    let judged_ones = || channels.signals.iter().zip(&is_judged).filter(|(_, is)| **is).map(|(of, _)| of);
-    let powers: Vec<f64> = judged_ones().map(|signal| mean_square(&signal.values)).collect();
-    let spectra: Vec<Vec<f64>> = judged_ones().map(|signal| power_spectrum(&signal.values)).collect();
+    let judged_ones = channels.signals.iter().zip(&is_judged).filter(|(_, is)| **is);
+    let motions: Vec<Cow<[f64]>> = judged_ones.map(|(of, _)| motion(stages, of)).collect();
+    let powers: Vec<f64> = motions.iter().map(|motion| mean_square(motion)).collect();
+    let spectra: Vec<Vec<f64>> = motions.iter().map(|motion| power_spectrum(motion)).collect();
     let resolution_hz = channels.sampling_rate_hz / channels.len() as f64;
     let line = |index: usize| Line {
         frequency_hz: index as f64 * resolution_hz,
@@ -222,18 +224,18 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
 pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
     let Simulation { stages, channels, states, .. } = simulation;
     let signals = channels.signals.iter().zip(stages.scenario.outputs());
-    // What a random force adds to a sensor is not in its motion, which alone is simulated again.
-    let is_motion = |source| !(stages.random_forces.is_some() && matches!(source, SignalSource::Sensor(_)));
-    let (signals, outputs): (Vec<_>, Vec<Output>) =
-        signals.filter(|(of, _)| is_judged(of.source, stages) && is_motion(of.source)).unzip();
+    let (signals, outputs): (Vec<Cow<[f64]>>, Vec<Output>) = (signals
+        .filter(|(of, _)| is_judged(of.source, stages)))
+    .map(|(of, output)| (motion(stages, of), output))
+    .unzip();
     let part = |state: &MotionState| {
         let from = state.sample - stages.time.first_kept_sample;
         from..(from + channels.len() / 10).min(channels.len())
     };
     let violence = |state: &MotionState| -> f64 {
-        let relative = |signal: &&NamedSignal| {
-            let whole = mean_square(&signal.values);
-            if whole < ROUNDING * ROUNDING { 0.0 } else { mean_square(&signal.values[part(state)]) / whole }
+        let relative = |signal: &Cow<[f64]>| {
+            let whole = mean_square(signal);
+            if whole < ROUNDING * ROUNDING { 0.0 } else { mean_square(&signal[part(state)]) / whole }
         };
         signals.iter().map(relative).sum()
     };
@@ -247,9 +249,20 @@ pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         (mean_square(values) - mean * mean).max(0.0).sqrt()
     };
-    let coarse = signals.iter().map(|signal| deviation(&signal.values[samples.clone()]));
+    let coarse = signals.iter().map(|signal| deviation(&signal[samples.clone()]));
     let gain = largest(coarse.zip(squares.deviations()).map(|(coarse, finer)| gain(coarse, finer)));
     Some(StepError::Shown { gain, finer_rate_hz: 2.0 * channels.sampling_rate_hz })
+}
+
+/// What a signal is of the solution, which alone is simulated again: without what random forces add to a plain sensor's.
+fn motion<'a>(stages: &Stages, signal: &'a NamedSignal) -> Cow<'a, [f64]> {
+    let SignalSource::Sensor(number) = signal.source else { return Cow::Borrowed(&signal.values) };
+    if stages.random_forces.is_none() {
+        return Cow::Borrowed(&signal.values);
+    }
+    let mut random = vec![0.0; signal.values.len()];
+    stages.add_random_part(number, &mut random);
+    Cow::Owned(signal.values.iter().zip(random).map(|(value, random)| value - random).collect())
 }
 
 /// The number of some that is the farthest from 0.

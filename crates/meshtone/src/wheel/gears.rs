@@ -113,6 +113,16 @@ impl Gears {
         self.tip_chamfer_mm.unwrap_or(0.23 * self.module_mm)
     }
 
+    /// The same wheels where the gear drives the pinion.
+    pub(crate) fn exchanged(mut self) -> Self {
+        std::mem::swap(&mut self.pinion_teeth, &mut self.gear_teeth);
+        std::mem::swap(&mut self.pinion_profile_shift, &mut self.gear_profile_shift);
+        std::mem::swap(&mut self.pinion_addendum, &mut self.gear_addendum);
+        std::mem::swap(&mut self.pinion_dedendum, &mut self.gear_dedendum);
+        self.hand = self.hand.other();
+        self
+    }
+
     /// Tooth count of a wheel.
     ///
     /// # Arguments

@@ -22,6 +22,14 @@ impl Hand {
             Self::Left => -1.0,
         }
     }
+
+    /// That of a wheel that meshes with one of this hand.
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
 }
 
 /// Material removed from the flanks towards both ends of the face.

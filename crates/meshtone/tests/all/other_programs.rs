@@ -524,6 +524,7 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
         lines: vec![LineOfAction { at_middle: at_middle.into(), per_m: DVector::zeros(8), across: None }],
         bearings: Vec::new(),
         turning_forces: Vec::new(),
+        spinning: Vec::new(),
         drives: Vec::new(),
         places: Vec::new(),
         rigid_rotation: DVector::zeros(8),
@@ -553,6 +554,7 @@ fn natural_frequencies_without_the_mesh() {
         inertias: [&inertia; 2],
         unbalances: [&unbalance; 2],
         brake_inertia_kgm2: scenario.operation.brake_inertia_kgm2,
+        overruns: false,
     };
     let train = RigMachine::new(parts, &linear_teeth(gears, 20.0), Supports::Held);
     let modes = Modes::damped_alike(&train.machine, 0.0);

@@ -192,6 +192,7 @@ fn the_mesh_pushes_at_the_working_pressure_angle() {
         inertias: [&inertia; 2],
         unbalances: [&unbalance; 2],
         brake_inertia_kgm2: stages.scenario.operation.brake_inertia_kgm2,
+        overruns: false,
     };
     let train = RigMachine::new(parts, &stages.pairs[0].teeth, Supports::Held);
     let coordinate = |name: &str| {

@@ -598,16 +598,15 @@ fn warnings_are_those_of_a_pair_mesh_by_mesh() {
         assert_eq!(named(mesh, WarningKind::Overload), 1, "{both:?}");
     }
     assert!(both.iter().any(|warning| warning.key == "operation.torque_profile_nm.value[1]"), "{both:?}");
+    // What is stepped is not warned of.
     let fast = warnings(&|gearbox| gearbox.operation.pinion_speed_hz = 200.0);
-    assert!(codes(&fast).contains(&"gyroscopic"), "{fast:?}");
+    assert!(!codes(&fast).contains(&"gyroscopic"), "{fast:?}");
     let run_up = warnings(&|gearbox| {
         gearbox.solver.duration_s = None;
         gearbox.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 5.1], value: vec![10.0, 205.0] });
     });
-    let of_run_up = run_up.iter().find(|warning| warning.kind == WarningKind::Gyroscopic).unwrap();
-    assert_eq!(of_run_up.key, "operation.speed_profile_hz.value[1]");
-    assert!(of_run_up.message.starts_with("at 205.0 rev/s gyroscopic moments"), "{of_run_up}");
+    assert!(!codes(&run_up).contains(&"gyroscopic"), "{run_up:?}");
     // What is given is not drawn, and a share of it has no effect.
     let ignored = warnings(&|gearbox| {
         let [first, second, ..] = &mut gearbox.wheels[..] else { unreachable!() };

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::body::WheelBody;
 use super::parts::{AcrossLine, Axis, Drive, LineOfAction, Machine, Place, Spring};
-use super::{TurningForce, Unbalance};
+use super::{Spinning, TurningForce, Unbalance};
 use crate::keys::Keys;
 use crate::wheel::Material;
 use beam::{Beam, PER_NODE};
@@ -107,6 +107,16 @@ pub struct MeshLine {
     pub thrust: f64,
     /// Whether forces across its line of action act too: friction, and a random part.
     pub has_forces_across: bool,
+}
+
+impl MeshLine {
+    /// The line where the second wheel pushes the first one.
+    pub(crate) fn exchanged(mut self) -> Self {
+        self.wheels.reverse();
+        self.offsets_m.reverse();
+        self.base_radii_m.reverse();
+        Self { thrust: -self.thrust, ..self }
+    }
 }
 
 /// A place at which the motion can be measured.
@@ -318,6 +328,7 @@ impl GearboxMachine {
                 lines: Vec::new(),
                 bearings: Vec::new(),
                 turning_forces: Vec::new(),
+                spinning: Vec::new(),
                 drives: Vec::new(),
                 places: Vec::new(),
                 rigid_rotation: DVector::zeros(coordinates),
@@ -508,24 +519,22 @@ impl GearboxMachine {
         rolling.map(stretch).collect()
     }
 
-    /// (kg m²) What turns with each node: the number of its rotation about x, behind which stands that about y, and its polar moment of inertia times the speed
-    /// of its shaft over that of the input. Beams count half at either end.
+    /// What turns with each node. Beams count half at either end.
     ///
     /// # Arguments
     /// * `parts` - what the machine is made of
-    pub fn spinning(&self, parts: &GearboxParts) -> Vec<(usize, f64)> {
-        let discs = parts.discs.iter().enumerate().map(|(number, disc)| {
-            (
-                self.node_of_disc(parts, number) + ABOUT_X,
-                disc.body.polar_kgm2 * parts.speed_ratios[disc.shaft],
-            )
+    pub fn spinning(&self, parts: &GearboxParts) -> Vec<Spinning> {
+        let discs = parts.discs.iter().enumerate().map(|(number, disc)| Spinning {
+            about_x: self.node_of_disc(parts, number) + ABOUT_X,
+            polar_kgm2: disc.body.polar_kgm2 * parts.speed_ratios[disc.shaft],
         });
         let beams = self.nodes.iter().zip(parts.shafts).zip(parts.speed_ratios).flat_map(
             |((nodes, (shaft, _)), ratio)| {
                 nodes.windows(2).flat_map(move |ends| {
                     let half_kgm2 =
                         beam_between(shaft, [ends[0].0, ends[1].0], parts.material).polar_kgm2() / 2.0;
-                    [ends[0].1, ends[1].1].map(|node| (node + ABOUT_X, half_kgm2 * ratio))
+                    [ends[0].1, ends[1].1]
+                        .map(|node| Spinning { about_x: node + ABOUT_X, polar_kgm2: half_kgm2 * ratio })
                 })
             },
         );

@@ -72,6 +72,15 @@ fn refuse_unknown_to_published(scenario: &Scenario) -> Check {
         let problem = if *key == "gears.helix_angle_deg" { ONLY_SPUR } else { ONLY_STANDARD };
         return Err(ScenarioError::new(*key, format!("{value:?}"), problem).with_help(STANDARD_HELP));
     }
+    if scenario.operation.overruns() {
+        let problem = "the published model knows one flank of a tooth, which the motor presses; the torque must be 0 N m or more";
+        return Err(ScenarioError::new(
+            "operation.brake_torque_nm",
+            format!("{:?}", scenario.operation.brake_torque_nm),
+            problem,
+        )
+        .with_help(STANDARD_HELP));
+    }
     relief_leaves_tips(&gears)?;
     let error = match scenario.faults.as_slice() {
         [] => return Ok(()),

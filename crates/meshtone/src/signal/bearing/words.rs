@@ -7,12 +7,15 @@ impl std::fmt::Display for CannotTell {
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::FewTurns { turns, needed } => {
+                let (turns, needed) = (rounded_down(*turns), needed.ceil());
                 write!(to, "its shaft turns {turns:.1} times, and {needed:.0} are needed; record longer")
             }
             Self::FewCycles { cycles, needed } => write!(
                 to,
-                "the recording has {cycles:.1} of the cycles after which the same teeth meet again, and {needed:.0} are needed to remove the \
-                 lines of the gears; record longer"
+                "the recording has {:.1} of the cycles after which the same teeth meet again, and {:.0} are needed to remove the \
+                 lines of the gears; record longer",
+                rounded_down(*cycles),
+                needed.ceil()
             ),
             Self::Unresolved => write!(
                 to,
@@ -25,6 +28,11 @@ impl std::fmt::Display for CannotTell {
             }
         }
     }
+}
+
+/// A tenth at most less: what is short of a number is not written as that number.
+fn rounded_down(count: f64) -> f64 {
+    (10.0 * count).floor() / 10.0
 }
 
 impl BearingVerdict {
