@@ -6,7 +6,7 @@ use meshtone::scenario::{Scenario, template};
 use meshtone::sensor::{ChannelKind, Channels, NamedSignal};
 use meshtone::signal::{Edge, resample_to};
 use meshtone_io::atomic_file::StagedFile;
-use meshtone_io::signals::{SignalFormat, SignalTable};
+use meshtone_io::signals::SignalTable;
 
 use crate::failure::Failure;
 
@@ -78,6 +78,6 @@ fn recording(scenario: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     measured.values = resample_to(simulated, channels.sampling_rate_hz, SAMPLING_RATE_HZ, Edge::Reflect)?;
     let measured = Channels::new(SAMPLING_RATE_HZ, 0.0, vec![measured]);
     let mut file = Vec::new();
-    SignalTable::without_scenario(&measured).write(&mut file, SignalFormat::Parquet)?;
+    SignalTable::without_scenario(&measured).write_parquet(&mut file)?;
     Ok(file)
 }

@@ -3,6 +3,7 @@
 use std::io::ErrorKind;
 
 use meshtone_dataset::DatasetError;
+use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::WriteFileError;
 use meshtone_io::scenario_file::{FileKind, ReadScenarioError};
 
@@ -137,6 +138,20 @@ fn noun(kind: FileKind) -> &'static str {
 impl From<WriteFileError> for Failure {
     fn from(error: WriteFileError) -> Self {
         Self::of_writing(error.source.kind(), error.to_string())
+    }
+}
+
+impl From<ReadResultsError> for Failure {
+    fn from(error: ReadResultsError) -> Self {
+        match &error {
+            ReadResultsError::Unreadable { path, source } if source.kind() == ErrorKind::NotFound => {
+                Self::bad_input(format!("there is no file {}", path.display()))
+                    .with_help("name the directory that `meshtone simulate` wrote its results to")
+            }
+            ReadResultsError::Unreadable { source, .. } => Self::of_reading(source.kind(), error.to_string()),
+            ReadResultsError::Foreign { .. } => Self::bad_input(error.to_string())
+                .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`"),
+        }
     }
 }
 

@@ -25,34 +25,40 @@ const LARGEST: u64 = 1 << 20;
 /// * `expected` - what is read here, such as "a recording"
 /// * `failure` - what would be said otherwise
 pub fn or_other_kind(path: &Path, expected: &str, failure: Failure) -> Failure {
-    let Some((what, reader)) = found(path) else { return failure };
+    let Some((what, readers)) = found(path) else { return failure };
+    let readers: Vec<String> = readers.iter().map(|reader| format!("`{reader}`")).collect();
+    let read = if readers.len() == 1 { "reads" } else { "read" };
     Failure::bad_input(format!("{}: is {what}, and {expected} is expected here", path.display()))
-        .with_help(format!("`{reader}` reads it"))
+        .with_help(format!("{} {read} it", readers.join(" and ")))
 }
 
-/// Kind of a path, and the command that reads it.
-fn found(path: &Path) -> Option<(&'static str, String)> {
-    let by = |command: &str, path: &Path| format!("{command} {}", path.display());
+/// Kind of a path, and the commands that read it.
+fn found(path: &Path) -> Option<(&'static str, Vec<String>)> {
+    let by = |commands: &[&str], path: &Path| -> Vec<String> {
+        commands.iter().map(|command| format!("{command} {}", path.display())).collect()
+    };
     if path.is_dir() {
         let inside = |name: &str| Some(path.join(name)).filter(|file| file.is_file());
         if inside(MANIFEST).is_some() {
-            return Some(("a data set", by("meshtone dataset verify", path)));
+            return Some(("a data set", by(&["meshtone dataset verify"], path)));
         }
         if signals_in(path).is_some() {
-            return Some(("what `meshtone simulate` wrote", by("meshtone indicators", path)));
+            let readers = by(&["meshtone indicators", "meshtone panel"], path);
+            return Some(("what `meshtone simulate` wrote", readers));
         }
-        return inside(TUNED).map(|file| ("what `meshtone tune` wrote", by(FileKind::Tuned.reader(), &file)));
+        return inside(TUNED)
+            .map(|file| ("what `meshtone tune` wrote", by(&[FileKind::Tuned.reader()], &file)));
     }
     // To open a pipe would wait for its other end.
     let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
     if starts_as_parquet(path) {
-        return Some(("a recording", by("meshtone indicators", path)));
+        return Some(("a recording", by(&["meshtone indicators"], path)));
     }
     if metadata.len() > LARGEST {
         return None;
     }
     let kind = FileKind::of(&fs::read_to_string(path).ok()?)?;
-    Some((kind.in_words(), by(kind.reader(), path)))
+    Some((kind.in_words(), by(&[kind.reader()], path)))
 }
 
 /// A directory of recordings or of results, or of directories of such: one of them.

@@ -22,7 +22,7 @@ pub fn with_tip(mut error: clap::Error, arguments: impl Iterator<Item = OsString
         ("--shaft-rpm", _) | ("--rpm" | "--speed-rpm", Some("indicators")) => rpm_as_hz(&value),
         ("--rpm" | "--speed-rpm" | "--pinion-speed-rpm", _) => speed_of_scenario(&value),
         ("--seed", Some("dataset")) => seed_of("plan", &value),
-        ("--seed", Some("simulate" | "explore" | "wheels")) => seed_of("scenario", &value),
+        ("--seed", Some("simulate" | "explore" | "panel" | "wheels")) => seed_of("scenario", &value),
         _ => return error,
     };
     // What is only spelt like it would be a second tip.

@@ -35,7 +35,7 @@ pub fn named_after(input: &Path, results: &str) -> PathBuf {
 }
 
 /// Has a directory's results for this program alone.
-fn claim(directory: &Path) -> Result<Claim, Failure> {
+pub fn claim(directory: &Path) -> Result<Claim, Failure> {
     let name = directory.display();
     let claim = Claim::take(directory, "results").map_err(|error| {
         Failure::of_writing(error.kind(), format!("cannot write results to the directory {name}: {error}"))

@@ -71,7 +71,7 @@ pub fn replace(
         return Err(error);
     }
     fs::rename(&gathered, whole).map_err(failed)?;
-    finish(directory, names, earlier)
+    finish(directory, names, earlier).map(drop)
 }
 
 /// Gives results that are whole their names, where that was interrupted; interrupted itself, it can be done again. A directory without a
@@ -79,7 +79,9 @@ pub fn replace(
 ///
 /// # Arguments
 /// * `directory`, `names`, `earlier` - as of [`replace`]
-pub fn finish(directory: &Path, names: &[&str], earlier: &[&str]) -> Result<(), WriteFileError> {
+///
+/// Returns whether there was anything to do.
+pub fn finish(directory: &Path, names: &[&str], earlier: &[&str]) -> Result<bool, WriteFileError> {
     let [_, whole, naming] = STAGES.map(|stage| directory.join(stage));
     let failed = |source| WriteFileError { path: directory.to_path_buf(), source };
     if whole.exists() {
@@ -90,10 +92,11 @@ pub fn finish(directory: &Path, names: &[&str], earlier: &[&str]) -> Result<(), 
         fs::rename(&whole, &naming).map_err(failed)?;
     }
     if !naming.exists() {
-        return Ok(());
+        return Ok(false);
     }
     let take = |name: &&str| unless_absent(fs::rename(naming.join(name), directory.join(name)));
-    names.iter().rev().try_for_each(take).and_then(|()| fs::remove_dir(&naming)).map_err(failed)
+    names.iter().rev().try_for_each(take).and_then(|()| fs::remove_dir(&naming)).map_err(failed)?;
+    Ok(true)
 }
 
 /// A result of which it is no error that a file does not exist.
@@ -128,7 +131,7 @@ mod tests {
                 &|| fs::rename(naming.join("summary"), path("summary")),
             ];
             steps[..done].iter().for_each(|step| step().unwrap());
-            finish(directory.path(), &NAMES, &NAMES).unwrap();
+            assert_eq!(finish(directory.path(), &NAMES, &NAMES).unwrap(), done > 0);
             let read = |name| fs::read_to_string(path(name)).unwrap();
             let expected = if done > 0 { "new" } else { "old" };
             assert_eq!(["signals", "summary", "notes"].map(read), [expected, expected, "old"], "{done}");

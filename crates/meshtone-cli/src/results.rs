@@ -94,7 +94,7 @@ pub fn write(
 }
 
 /// Writes the files of a drawn panel, to be committed.
-fn stage_panel(
+pub fn stage_panel(
     directory: &Path,
     run: RunIdentity,
     figure: Result<Figure, PlotError>,
@@ -105,7 +105,8 @@ fn stage_panel(
     staged.map_err(|failure| Failure { help: None, ..failure })
 }
 
-/// The files of an earlier run in a directory, the summary first: those that its summary states.
+/// The files of an earlier run in a directory, the summary first: those that its summary states, and the panel, which
+/// `meshtone panel` may have drawn since.
 fn earlier_files(directory: &Path) -> Vec<&'static str> {
     let text = fs::read(directory.join(SUMMARY)).unwrap_or_default();
     let summary: Value = serde_json::from_slice(&text).unwrap_or_default();
@@ -113,10 +114,10 @@ fn earlier_files(directory: &Path) -> Vec<&'static str> {
         return vec![SUMMARY];
     };
     let is_listed = |name: &&str| files.iter().any(|file| file == name);
-    RESULTS.into_iter().filter(|name| *name == SUMMARY || is_listed(name)).collect()
+    RESULTS.into_iter().filter(|name| *name == SUMMARY || PANEL.contains(name) || is_listed(name)).collect()
 }
 
-/// Gives the results of a run that was interrupted behind the last of its work their names.
-pub fn finish_interrupted(directory: &Path) -> Result<(), WriteFileError> {
+/// Gives the results of a run that was interrupted behind the last of its work their names. Returns whether there were any.
+pub fn finish_interrupted(directory: &Path) -> Result<bool, WriteFileError> {
     finish(directory, &RESULTS, &earlier_files(directory))
 }

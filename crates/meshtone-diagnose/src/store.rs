@@ -138,7 +138,7 @@ impl ReferenceStore {
 }
 
 fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
-    let mut archive = NpzWriter::stored();
+    let mut archive = NpzWriter::stored(file);
     let mut numbers = Vec::with_capacity(records.len() * (COLUMNS + SIZES));
     for record in records {
         let fault = record.fault.as_ref();
@@ -172,7 +172,8 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
         add(&format!("lines_{wheel}"), &[parts.len() / 2, 2], &parts)?;
     }
     archive.add(DIGEST, &[32], &digest(hash))?;
-    archive.write(file)
+    archive.finish()?;
+    Ok(())
 }
 
 /// Name of the array that holds the SHA-256 digest of all others.
@@ -290,7 +291,7 @@ mod tests {
             let mut original = NpzReader::new(File::open(&path).unwrap()).unwrap();
             let kept = original.floats(DIGEST, 32).unwrap().numbers;
             write_atomically(&path, |file| {
-                let mut archive = NpzWriter::stored();
+                let mut archive = NpzWriter::stored(file);
                 for (name, values) in &arrays {
                     let width = match *name {
                         "records" => COLUMNS + 1 + SIZES,
@@ -300,7 +301,8 @@ mod tests {
                     archive.add(name, &[values.len() / width, width], values)?;
                 }
                 archive.add(DIGEST, &[32], &kept)?;
-                archive.write(file)
+                archive.finish()?;
+                Ok(())
             })
             .unwrap();
             store.get(&prior, 1, &control).is_ok()

@@ -2,7 +2,7 @@
 
 use meshtone::scenario::{GearPair, Scenario};
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{SignalFormat, SignalTable};
+use meshtone_io::signals::SignalTable;
 use serde_json::{Map, Value};
 
 use crate::question::memory_limit;
@@ -46,7 +46,7 @@ pub fn export(form: &str, scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> 
         "parquet" => {
             let mut bytes = Vec::new();
             SignalTable::of_scenario(scenario, &simulated()?.channels)
-                .write(&mut bytes, SignalFormat::Parquet)
+                .write_parquet(&mut bytes)
                 .map_err(|error| Refusal::unfit(format!("the signals cannot be written: {error}")))?;
             Ok(Exported { ending: "parquet", media_type: "application/vnd.apache.parquet", bytes })
         }

@@ -11,6 +11,7 @@ pub mod memory;
 pub mod npz;
 pub mod own_file;
 pub mod path_csv;
+mod read_results;
 pub mod recording;
 pub mod run_identity;
 pub mod scenario_file;
@@ -19,3 +20,5 @@ pub mod summary;
 pub mod table;
 pub mod trace_npz;
 pub mod wheel_name;
+
+pub use read_results::ReadResultsError;

@@ -4,7 +4,7 @@
 //! with a grammar are read by the [`recording`](crate::recording)'s reader, which has to know more of them.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Cursor, Read, Write};
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
@@ -20,22 +20,21 @@ const ALIGNMENT: usize = 64;
 /// Before the header: NumPy's mark, the version of the format, the header's length.
 const MARK: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
-/// An archive, in memory until it is whole: the crate `zip` ends an archive even where it is dropped after an error, and then
-/// prints on standard error that it cannot.
-pub struct NpzWriter {
-    archive: ZipWriter<Cursor<Vec<u8>>>,
+/// An archive that is written.
+pub struct NpzWriter<W: Write + Seek> {
+    archive: ZipWriter<SilentAfterError<W>>,
     method: CompressionMethod,
 }
 
-impl NpzWriter {
+impl<W: Write + Seek> NpzWriter<W> {
     /// Numbers as they are: those of computed signals hardly become smaller.
-    pub fn stored() -> Self {
-        Self { archive: ZipWriter::new(Cursor::default()), method: CompressionMethod::Stored }
+    pub fn stored(to: W) -> Self {
+        Self { archive: ZipWriter::new(SilentAfterError::new(to)), method: CompressionMethod::Stored }
     }
 
     /// Compressed numbers.
-    pub fn compressed() -> Self {
-        Self { method: CompressionMethod::Deflated, ..Self::stored() }
+    pub fn compressed(to: W) -> Self {
+        Self { archive: ZipWriter::new(SilentAfterError::new(to)), method: CompressionMethod::Deflated }
     }
 
     /// Adds an array of numbers.
@@ -76,10 +75,65 @@ impl NpzWriter {
         to.flush()
     }
 
-    /// Ends the archive and writes it.
-    pub fn write(self, mut to: impl Write) -> io::Result<()> {
-        to.write_all(self.archive.finish()?.get_ref())
+    /// Ends the archive.
+    pub fn finish(self) -> io::Result<W> {
+        let SilentAfterError { to, has_failed, .. } = self.archive.finish()?;
+        if has_failed { Err(io::Error::other("a part of it was not written")) } else { Ok(to) }
     }
+}
+
+/// A writer that accepts everything after its first error, which has been returned by then. Where it is dropped, the crate `zip`
+/// tries to end the archive all the same, and would print on standard error that it cannot.
+struct SilentAfterError<W> {
+    to: W,
+    /// Where it writes, or would.
+    at: u64,
+    has_failed: bool,
+}
+
+impl<W> SilentAfterError<W> {
+    fn new(to: W) -> Self {
+        Self { to, at: 0, has_failed: false }
+    }
+}
+
+impl<W: Write> Write for SilentAfterError<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let done = if self.has_failed { Ok(bytes.len()) } else { self.to.write(bytes) };
+        self.has_failed |= is_failure(&done);
+        self.at += done.as_ref().map_or(0, |&written| written as u64);
+        done
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.has_failed {
+            return Ok(());
+        }
+        let done = self.to.flush();
+        self.has_failed = is_failure(&done);
+        done
+    }
+}
+
+impl<W: Seek> Seek for SilentAfterError<W> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        if self.has_failed {
+            self.at = match place {
+                SeekFrom::Start(at) => at,
+                SeekFrom::Current(further) => self.at.saturating_add_signed(further),
+                SeekFrom::End(_) => self.at,
+            };
+            return Ok(self.at);
+        }
+        let done = self.to.seek(place);
+        self.has_failed = is_failure(&done);
+        self.at = done.as_ref().copied().unwrap_or(self.at);
+        done
+    }
+}
+
+fn is_failure<T>(done: &io::Result<T>) -> bool {
+    done.as_ref().is_err_and(|error| error.kind() != io::ErrorKind::Interrupted)
 }
 
 /// What stands before an array's numbers.

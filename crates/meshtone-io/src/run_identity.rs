@@ -1,6 +1,7 @@
 //! Which files belong to one run.
 
 use std::fmt;
+use std::str::FromStr;
 
 use meshtone::scenario::Scenario;
 
@@ -19,10 +20,15 @@ use meshtone::scenario::Scenario;
 /// let run = RunIdentity::of(&scenario);
 /// assert_eq!(run, RunIdentity::of(&scenario));
 /// assert_ne!(run, RunIdentity::of(&other));
-/// assert_eq!(run.to_string().len(), 16);
+/// assert_eq!(run.to_string().parse(), Ok(run));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct RunIdentity(u64);
+
+/// A text that is no [`RunIdentity`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no run's identity; must be 16 hexadecimal digits")]
+pub struct ParseRunError(String);
 
 const DIGITS: usize = 16;
 
@@ -58,6 +64,16 @@ impl fmt::Display for RunIdentity {
     }
 }
 
+impl FromStr for RunIdentity {
+    type Err = ParseRunError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let digits = text.len() == DIGITS && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let number = digits.then(|| u64::from_str_radix(text, 16).ok()).flatten();
+        number.map(Self).ok_or_else(|| ParseRunError(text.to_string()))
+    }
+}
+
 /// The hash FNV-1a of 64 bits: two runs are confused by chance once in 2⁶⁴, and a forged one is of no use.
 ///
 /// # Arguments
@@ -84,6 +100,11 @@ mod tests {
 
     #[test]
     fn identities_are_written_with_all_their_digits() {
-        assert_eq!(RunIdentity(0x2a).to_string(), "000000000000002a");
+        let small = RunIdentity(0x2a);
+        assert_eq!(small.to_string(), "000000000000002a");
+        assert_eq!(small.to_string().parse(), Ok(small));
+        for wrong in ["", "2a", "+00000000000002a", "000000000000002g", "000000000000002a0"] {
+            assert_eq!(wrong.parse::<RunIdentity>(), Err(ParseRunError(wrong.to_string())));
+        }
     }
 }

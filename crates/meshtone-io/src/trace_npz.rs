@@ -1,6 +1,6 @@
 //! Traces as NumPy archives.
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
 use meshtone::Trace;
 
@@ -20,11 +20,11 @@ pub const RUN_ENTRY: &str = "run";
 ///
 /// # Errors
 /// Those of `to`, and a field whose values do not fill its shape.
-pub fn write_trace(to: impl Write, run: RunIdentity, trace: &Trace) -> io::Result<()> {
-    let mut archive = NpzWriter::stored();
+pub fn write_trace(to: impl Write + io::Seek, run: RunIdentity, trace: &Trace) -> io::Result<()> {
+    let mut archive = NpzWriter::stored(BufWriter::new(to));
     for field in &trace.fields {
         archive.add(&field.name, &field.shape, &field.values)?;
     }
     archive.add_whole(RUN_ENTRY, run.number())?;
-    archive.write(to)
+    archive.finish()?.flush()
 }

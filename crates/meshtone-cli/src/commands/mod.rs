@@ -8,6 +8,7 @@ mod enhance;
 mod explore;
 mod indicators;
 mod init;
+mod panel;
 mod path;
 mod simulate;
 mod tune;
@@ -29,6 +30,7 @@ pub enum Command {
     Explore(explore::Explore),
     Init(init::Init),
     Wheels(wheels::Wheels),
+    Panel(panel::Panel),
     Tune(tune::Tune),
     Enhance(enhance::Enhance),
     Dataset(dataset::Dataset),
@@ -47,6 +49,7 @@ impl Command {
             Self::Explore(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),
             Self::Wheels(arguments) => arguments.run(),
+            Self::Panel(arguments) => arguments.run(),
             Self::Tune(arguments) => arguments.run(),
             Self::Enhance(arguments) => arguments.run(),
             Self::Dataset(arguments) => arguments.run(),

@@ -53,8 +53,8 @@ pub struct Simulate {
     /// Write every stage's output too (one scenario only)
     #[arg(long, value_name = "FILE.npz")]
     trace: Option<PathBuf>,
-    /// Formats of the signals, a file each; several are separated by commas. Only Parquet contains the scenario, which other
-    /// commands take from it
+    /// Formats of the signals, a file each; several are separated by commas. Only Parquet contains the scenario, which `meshtone panel` and
+    /// other commands take from it
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', default_value = "parquet", value_parser = one_of(&FORMATS))]
     format: Vec<SignalFormat>,
     /// Print no table and no progress; warnings and errors are still printed

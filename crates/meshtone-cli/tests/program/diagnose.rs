@@ -6,10 +6,11 @@ use std::process::Stdio;
 
 use crate::plain::plain;
 use meshtone::scenario::{Scenario, gearbox_template};
+use meshtone_io::signals::read_signals;
 use serde_json::Value;
 
 use crate::indicators::{csv, tacho};
-use crate::support::{Workplace, fast_with, names, program, read_signals, stderr, stdout};
+use crate::support::{Workplace, fast_with, names, program, stderr, stdout};
 
 const DATA: &str = "diagnosis.json";
 const FIGURES: [&str; 2] = ["diagnosis.png", "diagnosis.svg"];
@@ -31,7 +32,7 @@ fn workplace() -> Workplace {
 
 /// What was simulated, as a CSV file with a tachometer.
 fn as_measured(workplace: &Workplace, of: &str) {
-    let channels = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).channels;
+    let channels = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().channels;
     let rate = channels.sampling_rate_hz;
     workplace.write(&format!("{of}.csv"), csv(rate, &channels["vertical_g"], tacho(40.0, rate)));
 }
@@ -252,7 +253,7 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     // is the first.
     let speed_hz = gearbox.operation.pinion_speed_hz;
     for of in ["box", "gone"] {
-        let recorded = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).channels;
+        let recorded = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().channels;
         let rate = recorded.sampling_rate_hz;
         workplace.write(&format!("{of}.csv"), csv(rate, &recorded.signals[0].values, tacho(speed_hz, rate)));
     }
@@ -281,7 +282,7 @@ fn the_damaged_wheel_of_a_gearbox_is_named() {
     // A measured file does not say what it is of: the output's orders, which the teeth's deviations have, do.
     workplace.write("rough.toml", small_gearbox().to_toml());
     workplace.succeeds(&["simulate", "rough.toml", "-o", "rough", "--no-panel", "-q"]);
-    let recorded = read_signals(&workplace.path("rough/signals.parquet")).channels;
+    let recorded = read_signals(&workplace.path("rough/signals.parquet")).unwrap().channels;
     let rate = recorded.sampling_rate_hz;
     workplace.write("rough.csv", csv(rate, &recorded.signals[0].values, tacho(speed_hz, rate)));
     let measured =

@@ -66,6 +66,6 @@ fn the_same_wheels() {
     // They are the wheels that the healthy example draws.
     let healthy = examples().join("healthy.toml");
     workplace.succeeds(&["simulate", healthy.to_str().unwrap(), "--no-panel"]);
-    let read = |path: &str| crate::support::read_signals(&workplace.path(path)).channels;
+    let read = |path: &str| meshtone_io::signals::read_signals(&workplace.path(path)).unwrap().channels;
     assert_eq!(read("out/healthy/signals.parquet"), read("healthy_results/signals.parquet"));
 }

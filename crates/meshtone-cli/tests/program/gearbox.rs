@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::indicators::{csv, tacho};
-use crate::support::{Workplace, read_signals, stderr, stdout};
+use crate::support::{Workplace, stderr, stdout};
+use meshtone_io::signals::read_signals;
 use serde_json::Value;
 
 /// An example of 0.1 s with a broken tooth.
@@ -40,7 +41,7 @@ fn every_mesh_is_in_every_result() {
     assert_eq!(summary["wheels"][2], serde_json::json!({ "name": "z3", "shaft": "middle", "teeth": 48 }));
     assert_eq!(summary["faults"][0]["wheel"], "z3");
     let path = workplace.path("out/signals.parquet");
-    let recorded = read_signals(&path);
+    let recorded = read_signals(&path).unwrap();
     for name in ["force_n.z3-z4", "speed_hz.output"] {
         assert!(recorded.channels.signal(name).is_some(), "{name}");
     }
@@ -72,7 +73,7 @@ fn wheels_of_a_file_are_those_of_a_mesh() {
     let with_file = text.replacen("iso_class = 5", "errors_file = \"wheels.npz\"", 2);
     workplace.write("file.toml", &with_file);
     workplace.succeeds(&["simulate", "file.toml", "-o", "out", "--no-panel", "--trace", "trace.npz"]);
-    let recorded = read_signals(&workplace.path("out/signals.parquet"));
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     let gearbox = &recorded.scenario;
     let stages = meshtone::stages(gearbox).unwrap();
     let read = meshtone_io::scenario_file::ScenarioFile::read(&workplace.path("pair.toml")).unwrap();
@@ -167,7 +168,7 @@ fn indicators_of_every_shaft() {
         assert!(figure.contains(words), "{words}");
     }
 
-    let recorded = read_signals(&workplace.path("out/signals.parquet"));
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     let rate_hz = recorded.channels.sampling_rate_hz;
     let tone = |(i, value): (usize, &f64)| value + 2.0 * (TAU * 91.57 * i as f64 / rate_hz).cos();
     let values: Vec<f64> = recorded.channels.signals[0].values.iter().enumerate().map(tone).collect();

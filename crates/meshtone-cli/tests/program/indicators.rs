@@ -5,11 +5,12 @@ use std::fmt::Write;
 use std::fs::File;
 
 use meshtone::signal::{ChainSettings, Recording, ShaftPhase, process_series};
+use meshtone_io::signals::read_signals;
 use meshtone_io::table::TableReader;
 use ndarray::Array1;
 use serde_json::Value;
 
-use crate::support::{Workplace, fast_with, read_signals, stderr, stdout};
+use crate::support::{Workplace, fast_with, stderr, stdout};
 
 pub const RATE_HZ: f64 = 5000.0;
 const FIGURES: [&str; 2] = ["indicators.png", "indicators.svg"];
@@ -155,7 +156,7 @@ fn a_simulation_and_the_same_signal_from_other_files() {
         assert!(of_summary.get("residual_rms_g").is_none());
     }
 
-    let channels = read_signals(&workplace.path("gone/signals.parquet")).channels;
+    let channels = read_signals(&workplace.path("gone/signals.parquet")).unwrap().channels;
     let rate = channels.sampling_rate_hz;
     workplace.write("gone.csv", csv(rate, &channels["vertical_g"], tacho(40.0, rate)));
     ndarray_npy::write_npy(workplace.path("gone.npy"), &Array1::from(channels["vertical_g"].to_vec()))

@@ -57,13 +57,16 @@ fn files_of_other_kinds_are_named() {
         }
     }
     // Nor are they recordings, results or data sets.
-    for command in [&["indicators"][..], &["dataset", "verify"]] {
+    for command in [&["indicators"][..], &["panel"], &["dataset", "verify"]] {
         let words = ["is a scenario", "is expected here", "`meshtone simulate healthy.toml` reads it"];
         workplace.fails(2, &[command, &["healthy.toml"]].concat(), &words);
     }
     workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel", "-q"]);
     for command in [&["simulate"][..], &["dataset"], &["dataset", "verify"]] {
-        let words = ["is what `meshtone simulate` wrote", "`meshtone indicators out` reads it"];
+        let words = [
+            "is what `meshtone simulate` wrote",
+            "`meshtone indicators out` and `meshtone panel out` read it",
+        ];
         workplace.fails(2, &[command, &["out"]].concat(), &words);
     }
 }
@@ -254,7 +257,7 @@ fn version_and_help() {
     let workplace = Workplace::new();
     let version = format!("meshtone {}\n", env!("CARGO_PKG_VERSION"));
     workplace.succeeds(&["--version"]).stdout(version);
-    for command in ["simulate", "init", "wheels", "dataset"] {
+    for command in ["simulate", "init", "wheels", "panel", "dataset"] {
         let help = stdout(&workplace.succeeds(&[command, "--help"]));
         assert!(help.contains("Example") && help.contains("Usage: meshtone"), "{help}");
         assert!(stdout(&workplace.succeeds(&["--help"])).contains(command));

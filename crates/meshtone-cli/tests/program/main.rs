@@ -21,4 +21,4 @@ mod simulate;
 mod support;
 mod tune;
 mod unwritable;
-mod wheels;
+mod wheels_and_panel;

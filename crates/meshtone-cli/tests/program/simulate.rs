@@ -2,16 +2,21 @@
 
 use std::fs::File;
 
-use crate::support::{Workplace, fast_and, fast_with, read_signals, stderr, stdout, summary};
+use crate::support::{Workplace, fast_and, fast_with, stderr, stdout};
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::read_scenario;
+use meshtone_io::signals::read_signals;
 use meshtone_io::table::{FoundColumn, TableReader};
 use ndarray::{ArrayD, IxDyn};
 use ndarray_npy::NpzReader;
 use serde_json::{Value, json};
 
 const ALL_FILES: [&str; 4] = ["panel.png", "panel.svg", "signals.parquet", "summary.json"];
+
+fn summary(workplace: &Workplace, directory: &str) -> Value {
+    serde_json::from_slice(&workplace.read(&format!("{directory}/summary.json"))).unwrap()
+}
 
 #[test]
 fn signals_are_those_of_the_library() {
@@ -20,7 +25,7 @@ fn signals_are_those_of_the_library() {
     workplace.succeeds(&["simulate", "worn.toml", "-o", "out"]);
     assert_eq!(workplace.names("out"), ALL_FILES);
     let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
-    let recorded = read_signals(&workplace.path("out/signals.parquet"));
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     assert_eq!(recorded.scenario, scenario.clone());
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
 }
@@ -33,7 +38,7 @@ fn signals_in_other_formats() {
         workplace.succeeds(&[&["simulate", "fast.toml", "-o", "out", "--no-panel"], arguments].concat());
     };
     run(&[]);
-    let recorded = read_signals(&workplace.path("out/signals.parquet"));
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     run(&["--format", "mat,wav"]);
     assert_eq!(workplace.names("out"), ["signals.mat", "signals.wav", "summary.json"]);
     let recording = read_recording(&workplace.path("out"), &RecordingOptions::default()).unwrap();
@@ -64,9 +69,9 @@ fn parquet_panel_and_summary_carry_the_runs_identity() {
     let runs = ["linear", "published"].map(|model| {
         workplace.succeeds(&["simulate", "fast.toml", "--model", model, "-o", "out"]);
         let run = summary(&workplace, "out")["run"].as_str().unwrap().to_string();
-        let recorded = read_signals(&workplace.path("out/signals.parquet"));
-        assert_eq!(recorded.run, run);
-        assert_eq!(run, RunIdentity::of_toml(&recorded.scenario.to_toml()).to_string());
+        let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
+        assert_eq!(recorded.run.to_string(), run);
+        assert_eq!(recorded.run, RunIdentity::of_toml(&recorded.scenario.to_toml()));
         for panel in ["out/panel.svg", "out/panel.png"] {
             let bytes = workplace.read(panel);
             assert!(bytes.windows(run.len()).any(|part| part == run.as_bytes()), "{panel}");
@@ -194,7 +199,7 @@ fn every_field_of_the_trace() {
         }
         assert_eq!(array, expected, "{}", field.name);
     }
-    let recorded = read_signals(&workplace.path("out/signals.parquet"));
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     assert_eq!(recorded.channels, simulation.channels);
 }
 
@@ -207,13 +212,14 @@ fn several_scenarios_on_the_same_wheels() {
     let both = ["simulate", "fast.toml", "gone.toml", "--errors-file", "wheels.npz", "-o", "out/deep"];
     workplace.succeeds(&both);
     assert_eq!(workplace.names("out/deep"), ["fast", "gone"]);
-    let read = |name: &str| read_signals(&workplace.path(&format!("out/deep/{name}/signals.parquet")));
+    let read =
+        |name: &str| read_signals(&workplace.path(&format!("out/deep/{name}/signals.parquet"))).unwrap();
     let [healthy, gone] = ["fast", "gone"].map(|name| read(name).scenario);
     assert_eq!(healthy.quality(), gone.quality());
     assert!(healthy.quality().profile_errors.is_some());
     // The wheels are those that the grade draws.
     workplace.succeeds(&["simulate", "worn.toml", "--quiet", "--no-panel"]);
-    let drawn = read_signals(&workplace.path("worn_results/signals.parquet"));
+    let drawn = read_signals(&workplace.path("worn_results/signals.parquet")).unwrap();
     assert_eq!(drawn.channels, read("fast").channels);
 }
 

@@ -5,11 +5,6 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
-use meshtone::scenario::Scenario;
-use meshtone::sensor::Channels;
-use meshtone_io::signals::{GEARBOX_KEY, RATE_KEY, RUN_KEY, SCENARIO_KEY};
-use meshtone_io::table::TableReader;
-use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_meshtone");
@@ -122,28 +117,4 @@ pub fn fast_with(key: &str, line: &str) -> String {
 /// The scenario with more lines, from line 11 on.
 pub fn fast_and(lines: &str) -> String {
     format!("{FAST}{lines}\n")
-}
-
-pub fn summary(workplace: &Workplace, directory: &str) -> Value {
-    serde_json::from_slice(&workplace.read(&format!("{directory}/summary.json"))).unwrap()
-}
-
-/// What a run wrote as `signals.parquet`.
-pub struct Recorded {
-    pub scenario: Scenario,
-    pub channels: Channels,
-    pub run: String,
-}
-
-#[track_caller]
-pub fn read_signals(path: &Path) -> Recorded {
-    let table = TableReader::new(fs::File::open(path).unwrap()).unwrap();
-    let text = |key| table.text_of(key);
-    let scenario = Scenario::from_toml(text(GEARBOX_KEY).or(text(SCENARIO_KEY)).unwrap()).unwrap();
-    let numbers = |name| table.numbers(table.column(name).unwrap(), 0).unwrap().values;
-    let mut signals = scenario.signals();
-    signals.iter_mut().for_each(|signal| signal.values = numbers(&signal.name));
-    let start_s = numbers("time_s").first().copied().unwrap_or(0.0);
-    let channels = Channels::new(text(RATE_KEY).unwrap().parse().unwrap(), start_s, signals);
-    Recorded { scenario, channels, run: text(RUN_KEY).unwrap().to_owned() }
 }

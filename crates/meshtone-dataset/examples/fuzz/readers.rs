@@ -15,7 +15,8 @@ use meshtone_dataset::verify::{Check, verify};
 use meshtone_io::experiment::{Tuned, read_experiment, read_tuned, write_tuned};
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
-use meshtone_io::signals::{SignalFormat, SignalTable};
+use meshtone_io::signals::{SignalTable, read_signals};
+use meshtone_io::summary::read_run;
 use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
 
 /// A reader.
@@ -112,6 +113,13 @@ pub fn readers(work: &Path) -> Vec<Reader> {
             &["speed.csv"],
             Box::new(|path| beside(path, |files, name| files.profile(name).is_ok())),
         ),
+        reader(
+            "signals",
+            "signals.parquet",
+            &["signals.parquet"],
+            Box::new(|path| read_signals(path).is_ok()),
+        ),
+        reader("summary", "summary.json", &["summary.json"], Box::new(|path| read_run(path).is_ok())),
         reader("manifest", "manifest of a data set", &["set/manifest.json"], Box::new(verified)),
         reader("shard", "shard of a data set", &["set/data/train-000000.parquet"], Box::new(verified)),
         reader(
@@ -145,6 +153,10 @@ fn make_others(work: &Path) {
     write("speed.csv", b"time_s,speed_hz\n0,38\n0.5,40\n1,42\n");
     write("a.npy", &npy(&[10, 3]));
     write("a.wav", &wav(80));
+    write(
+        "summary.json",
+        b"{ \"format_version\": 2, \"run\": \"00000000000000ff\", \"model\": \"contact\" }\n",
+    );
     let tuned = Tuned {
         model: Model::Contact,
         enhancement: Enhancement { width_ratio: 0.2, fault_to_harmonics_ratio: 2.0, noise_level: 0.5 },
@@ -162,7 +174,7 @@ fn make_others(work: &Path) {
     let simulation = meshtone::simulate(&scenario).expect("an example");
     let mut signals = Vec::new();
     let table = SignalTable::of_scenario(&scenario, &simulation.channels);
-    table.write(&mut signals, SignalFormat::Parquet).expect("it can be written");
+    table.write_parquet(&mut signals).expect("it can be written");
     write("signals.parquet", &signals);
     let plan =
         Plan::read_text(PLAN.to_owned(), &work.join("plan.toml")).unwrap_or_else(|error| panic!("{error}"));

@@ -1,5 +1,6 @@
 //! Profile errors of both wheels and their other deviations, in a NumPy archive.
 
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use meshtone::scenario::{FileProblem, ProfileErrors, WheelDeviations};
@@ -112,7 +113,7 @@ pub fn write_wheels_npz(
     deviations: &[WheelDeviations; 2],
 ) -> Result<(), WriteFileError> {
     write_atomically(path, |file| {
-        let mut archive = NpzWriter::compressed();
+        let mut archive = NpzWriter::compressed(BufWriter::new(file));
         for (name, errors) in
             [(PINION, &errors.pinion_profile_errors_mm), (GEAR, &errors.gear_profile_errors_mm)]
         {
@@ -123,6 +124,6 @@ pub fn write_wheels_npz(
         for (name, numbers) in WheelDeviations::entries(deviations) {
             archive.add(name, &[numbers.len()], &numbers)?;
         }
-        archive.write(file)
+        archive.finish()?.flush()
     })
 }

@@ -7,10 +7,12 @@
 //! where the file is written: the same simulation gives the same bytes.
 
 mod format;
+mod read;
 mod signal_table;
 
 pub use format::SignalFormat;
 pub(crate) use format::wav::{WavChannel, WavComment};
+pub use read::{Recorded, read_signals};
 pub use signal_table::SignalTable;
 
 /// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::Channels), sensors first.

@@ -1,6 +1,6 @@
 //! What a file of signals holds.
 
-use std::io::{self, Write};
+use std::io::{self, Seek, Write};
 
 use meshtone::scenario::Scenario;
 use meshtone::sensor::{Channels, NamedSignal};
@@ -61,7 +61,7 @@ impl<'a> SignalTable<'a> {
     /// assert_eq!(recording.channels[1].samples, simulation.channels["vertical_g"]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn write(&self, to: impl Write + Send, format: SignalFormat) -> io::Result<()> {
+    pub fn write(&self, to: impl Write + Seek + Send, format: SignalFormat) -> io::Result<()> {
         self.check_lengths()?;
         match format {
             SignalFormat::Parquet => parquet::write(self, to),
@@ -70,6 +70,18 @@ impl<'a> SignalTable<'a> {
             SignalFormat::Npz => npz::write(self, to),
             SignalFormat::Wav => wav::write(self, to),
         }
+    }
+
+    /// Writes the signals as Parquet to anything, also to what has no places to go back to.
+    ///
+    /// # Arguments
+    /// * `to` - where the file is written to; it needs no buffer
+    ///
+    /// # Errors
+    /// Those of `to`; signals of different lengths.
+    pub fn write_parquet(&self, to: impl Write + Send) -> io::Result<()> {
+        self.check_lengths()?;
+        parquet::write(self, to)
     }
 
     /// Checks that all signals have as many samples as the first.

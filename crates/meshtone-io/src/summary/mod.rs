@@ -11,6 +11,7 @@ pub use bearing::{BearingOrders, BearingSummary, DefectSummary};
 pub use json::write_json;
 pub use mesh::{HelixSummary, MeshForce, MeshStiffness, MeshSummary, OneMesh, TransmissionError};
 
+use std::path::Path;
 use std::time::Duration;
 
 use meshtone::damage::{QuantityValue, ToothPart, damages_of_fault};
@@ -23,7 +24,10 @@ use meshtone::signal::{
 use meshtone::wheel::WheelName;
 use meshtone::{Simulation, Stages};
 use serde::Serialize;
+use serde_json::Value;
 
+use crate::ReadResultsError;
+use crate::input_file::read_document;
 use crate::run_identity::RunIdentity;
 
 /// Version of the summary's format: it grows when a key changes its name or meaning.
@@ -305,4 +309,32 @@ impl Summary {
     pub fn total_time(&self) -> Duration {
         self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
     }
+}
+
+/// The identity of the run that a summary is of.
+///
+/// # Arguments
+/// * `path` - what [`write_json`] wrote
+///
+/// # Errors
+/// The file cannot be read, or it is no summary.
+///
+/// ```
+/// use meshtone_io::summary::read_run;
+///
+/// let directory = tempfile::tempdir()?;
+/// let path = directory.path().join("summary.json");
+/// std::fs::write(&path, r#"{ "run": "00000000000000ff" }"#)?;
+/// assert_eq!(read_run(&path)?.number(), 255);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_run(path: &Path) -> Result<RunIdentity, ReadResultsError> {
+    let text = read_document(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
+    let foreign = |problem: String| ReadResultsError::foreign(path, problem);
+    let summary: Value =
+        serde_json::from_slice(&text).map_err(|error| foreign(format!("is not whole JSON: {error}")))?;
+    let run = summary.get("run").and_then(Value::as_str);
+    let run =
+        run.ok_or_else(|| foreign("has no `run`, so `meshtone simulate` did not write it".to_string()))?;
+    run.parse().map_err(|error| foreign(format!("run: {error}")))
 }

@@ -9,6 +9,7 @@ mod arrow_schema;
 mod flat_buffer;
 mod found_type;
 mod read;
+mod split_signal;
 mod write;
 
 pub use found_type::{FoundType, NumberType};

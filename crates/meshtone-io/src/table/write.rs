@@ -13,7 +13,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 
-use super::{arrow_schema, into_io};
+use super::{arrow_schema, into_io, split_signal};
 
 /// Name of the table itself, as Arrow's writers give it.
 const TABLE: &str = "arrow_schema";
@@ -116,6 +116,11 @@ impl TableColumn {
         column.map(Arc::new)
     }
 
+    /// Whether no cell is empty, and each is a number in double precision.
+    fn holds_signals(&self) -> bool {
+        self.cells == CellType::Float64 && !self.nullable
+    }
+
     /// Names from the column to where its numbers are, as properties of the file name them.
     ///
     /// # Arguments
@@ -174,12 +179,27 @@ impl<W: Write + Send> TableWriter<W> {
         if given != needed {
             return Err(ParquetError::General(format!("{given} columns instead of {needed}")));
         }
+        let properties = Arc::clone(self.file.properties());
+        let leaves = self.file.schema_descr().columns().to_vec();
         let mut group = self.file.next_row_group()?;
-        for (column, cells) in self.columns.iter().zip(cells) {
-            let writer = group.next_column()?;
-            let mut writer = writer.ok_or_else(|| ParquetError::General("a column too many".to_owned()))?;
-            write_cells(writer.untyped(), column, cells)?;
-            writer.close()?;
+        for ((column, leaf), cells) in self.columns.iter().zip(leaves).zip(cells) {
+            match cells {
+                Cells::Signal(signal)
+                    if !signal.is_empty()
+                        && column.holds_signals()
+                        && split_signal::applies_to(&properties, leaf.path()) =>
+                {
+                    let (pages, closed) = split_signal::encode(leaf, signal)?;
+                    group.append_column(&pages, closed)?;
+                }
+                cells => {
+                    let writer = group.next_column()?;
+                    let mut writer =
+                        writer.ok_or_else(|| ParquetError::General("a column too many".to_owned()))?;
+                    write_cells(writer.untyped(), column, cells)?;
+                    writer.close()?;
+                }
+            }
         }
         group.close().map(drop)
     }
@@ -235,7 +255,7 @@ fn write_cells(writer: &mut ColumnWriter, column: &TableColumn, cells: Cells) ->
         (CellType::Int32, Cells::Int32(cells)) => write::<Int32Type>(writer, column, cells),
         (CellType::Int64, Cells::Int64(cells)) => write::<Int64Type>(writer, column, cells),
         (CellType::Float64, Cells::Float64(cells)) => write::<DoubleType>(writer, column, cells),
-        (CellType::Float64, Cells::Signal(signal)) if !column.nullable => {
+        (_, Cells::Signal(signal)) if column.holds_signals() => {
             get_typed_column_writer_mut::<DoubleType>(writer).write_batch(signal, None, None).map(drop)
         }
         (CellType::Text, Cells::Text(cells)) => {

@@ -10,7 +10,7 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 use meshtone::scenario::{GearPair, Scenario};
 use meshtone::sensor::{ChannelKind, Channels, NamedSignal};
 use meshtone_io::recording::{ColumnChoice, Recording, RecordingOptions, read_recording};
-use meshtone_io::signals::{SignalFormat, SignalTable};
+use meshtone_io::signals::SignalTable;
 use ndarray::{Array1, Array2, Array3, ShapeBuilder, arr0};
 use ndarray_npy::{NpzWriter, WriteNpyExt};
 
@@ -39,7 +39,7 @@ fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
     let channels = Channels::new(258_400.0, 0.95, named.collect());
     let scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     let file = File::create(directory.path().join("signals.parquet")).unwrap();
-    SignalTable::of_scenario(&scenario, &channels).write(file, SignalFormat::Parquet).unwrap();
+    SignalTable::of_scenario(&scenario, &channels).write_parquet(file).unwrap();
     // The folder stands for its signals.
     let recording = read_recording(directory.path(), &defaults()).unwrap();
     assert_eq!((recording.sampling_rate_hz, recording.start_s), (258_400.0, 0.95));

@@ -4,13 +4,17 @@
 use std::fs::{self, File};
 use std::io::{self, Write};
 
+use crate::parquet_help::{Plain, parquet};
 use meshtone::scenario::{GearPair, Scenario, Sensor, gearbox_template};
 use meshtone::sensor::{ChannelKind, Channels, NamedSignal, SignalSource};
+use meshtone_io::ReadResultsError;
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{RUN_KEY, SCENARIO_KEY, SignalFormat, SignalTable};
+use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, SignalFormat, SignalTable, read_signals};
 use meshtone_io::table::{CellType, Cells, TableColumn, TableReader, TableWriter};
-use parquet::file::properties::WriterProperties;
+use parquet::basic::{Compression, Encoding};
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use tempfile::tempdir;
 
 fn scenario() -> Scenario {
@@ -34,6 +38,24 @@ fn of_sensor(number: usize, name: &str, value: f64) -> NamedSignal {
     let mut signal = NamedSignal::new(name.to_owned(), SignalSource::Sensor(number));
     signal.values = vec![value; 70_000];
     signal
+}
+
+fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
+    fs::write(path, parquet(vec![("time_s", Plain::Single(vec![Some(1.0)]))], metadata)).unwrap();
+    let error = read_signals(path).unwrap_err();
+    assert!(matches!(error, ReadResultsError::Foreign { .. }));
+    assert!(error.to_string().contains(words), "{error}");
+}
+
+#[test]
+fn signals_are_read_back_exactly() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    SignalTable::of_scenario(scenario(), &channels()).write_parquet(File::create(&path).unwrap()).unwrap();
+    let recorded = read_signals(&path).unwrap();
+    assert_eq!((recorded.scenario, recorded.channels), (scenario(), channels()));
+    assert_eq!(recorded.run, RunIdentity::of(scenario()));
+    assert_eq!(recorded.version, env!("CARGO_PKG_VERSION"));
 }
 
 /// What is written is read back: bit by bit, or from WAV within half of the last of 24 bits of the full scale.
@@ -111,6 +133,40 @@ fn signals_of_a_gearbox_have_names_that_matlab_accepts() {
 }
 
 #[test]
+fn files_of_others_are_refused() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    refused(&path, Vec::new(), "has no metadata meshtone.scenario");
+    let text = |key: &str, value: &str| KeyValue::new(key.to_string(), value.to_string());
+    let written =
+        [text("meshtone.version", "0.1.0"), text(RUN_KEY, "00000000000000ff"), text(RATE_KEY, "1000.0")];
+    let broken = [written.to_vec(), vec![text(SCENARIO_KEY, "seed = -1")]].concat();
+    refused(&path, broken, "seed = -1");
+    let good = || vec![text(SCENARIO_KEY, &scenario().to_toml()), text("meshtone.version", "0.1.0")];
+    refused(&path, good(), "has no metadata meshtone.run");
+    let wrong_run = [good(), vec![text(RUN_KEY, "7")]].concat();
+    refused(&path, wrong_run, "`7` is no run's identity; must be 16 hexadecimal digits");
+    let good = || [good(), vec![text(RUN_KEY, "00000000000000ff")]].concat();
+    let wrong_rate = [good(), vec![text(RATE_KEY, "fast")]].concat();
+    refused(&path, wrong_rate, "is `fast`; must be a number above 0");
+    let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
+    refused(&path, single, "column time_s of Float32; must be of Float64");
+}
+
+#[test]
+fn cut_files_are_refused() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    let mut bytes = Vec::new();
+    SignalTable::of_scenario(scenario(), &channels()).write_parquet(&mut bytes).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let error = read_signals(&path).unwrap_err();
+    assert!(error.to_string().contains("not a whole Parquet file"), "{error}");
+    let error = read_signals(&directory.path().join("absent")).unwrap_err();
+    assert!(matches!(error, ReadResultsError::Unreadable { .. }));
+}
+
+#[test]
 fn columns_of_one_name_are_refused_before_anything_is_written() {
     let column = || TableColumn {
         name: "speed".into(),
@@ -124,16 +180,45 @@ fn columns_of_one_name_are_refused_before_anything_is_written() {
     assert!(file.is_empty());
 }
 
-fn signal_file(to: impl Write + Send, signal: &[f64]) -> io::Result<()> {
+fn signal_file(to: impl Write + Send, cells: Cells, statistics: EnabledStatistics) -> io::Result<()> {
     let column = TableColumn {
         name: "vertical_g".into(),
         cells: CellType::Float64,
         nullable: false,
         metadata: Vec::new(),
     };
-    let mut table = TableWriter::new(to, vec![column], WriterProperties::builder().build())?;
-    table.write_rows(vec![Cells::Signal(signal)])?;
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_dictionary_enabled(false)
+        .set_encoding(Encoding::BYTE_STREAM_SPLIT)
+        .set_statistics_enabled(statistics)
+        .build();
+    let mut table = TableWriter::new(to, vec![column], properties)?;
+    table.write_rows(vec![cells])?;
     table.close()
+}
+
+/// Single cells go through the library's encoder, signals through our own.
+#[test]
+fn signals_are_split_as_the_library_splits_them() {
+    let wave = |row: usize| (row as f64).sin() + if row.is_multiple_of(1000) { f64::NAN } else { 0.0 };
+    let (time, nowhere) = (|row: usize| row as f64 / 3.0, |_: usize| f64::NAN);
+    let signals: [&dyn Fn(usize) -> f64; 3] = [&wave, &time, &nowhere];
+    for rows in [1, 63, 64, 20_479, 20_480, 20_481, 70_000] {
+        for (at, statistics) in signals
+            .into_iter()
+            .flat_map(|at| [EnabledStatistics::None, EnabledStatistics::Chunk].map(|kind| (at, kind)))
+        {
+            let written = |cells: Cells| {
+                let mut file = Vec::new();
+                signal_file(&mut file, cells, statistics).unwrap();
+                file
+            };
+            let library = written(Cells::Float64((0..rows).map(|row| Some(at(row))).collect()));
+            let signal: Vec<f64> = (0..rows).map(at).collect();
+            assert!(library == written(Cells::Signal(&signal)), "{rows} rows, {statistics:?}");
+        }
+    }
 }
 
 /// A disk with room for some bytes.
@@ -154,12 +239,14 @@ impl Write for Full {
 
 #[test]
 fn a_full_disk_is_reported_wherever_it_happens() {
-    let signal: Vec<f64> = (0..30_000).map(f64::from).collect();
+    let signal = vec![1.0; 30_000];
     let mut file = Vec::new();
-    signal_file(&mut file, &signal).unwrap();
-    signal_file(&mut Full { room: file.len() }, &signal).unwrap();
+    let write =
+        |to: &mut (dyn Write + Send)| signal_file(to, Cells::Signal(&signal), EnabledStatistics::None);
+    write(&mut file).unwrap();
+    write(&mut Full { room: file.len() }).unwrap();
     for room in [0, 4, file.len() / 2, file.len() - 1] {
-        let error = signal_file(&mut Full { room }, &signal).unwrap_err();
+        let error = write(&mut Full { room }).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{room} of {}", file.len());
     }
 }
@@ -175,13 +262,11 @@ fn sensors_are_the_first_columns() {
     let mut channels = channels();
     let sensors = [of_sensor(0, "pinion_support_vertical_g", 1.5), of_sensor(1, "casing_g", -2.5)];
     channels.signals.splice(..0, sensors);
-    SignalTable::of_scenario(&scenario, &channels)
-        .write(File::create(&path).unwrap(), SignalFormat::Parquet)
-        .unwrap();
+    SignalTable::of_scenario(&scenario, &channels).write_parquet(File::create(&path).unwrap()).unwrap();
     let table = TableReader::new(File::open(&path).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names[..4], ["time_s", "pinion_support_vertical_g", "casing_g", "horizontal_g"]);
     assert_eq!(names.len(), 9);
-    assert_eq!(Scenario::from_toml(table.text_of(SCENARIO_KEY).unwrap()).unwrap(), scenario);
-    assert_eq!(table.text_of(RUN_KEY), Some(&*RunIdentity::of(&scenario).to_string()));
+    let recorded = read_signals(&path).unwrap();
+    assert_eq!((recorded.scenario, recorded.channels), (scenario, channels));
 }

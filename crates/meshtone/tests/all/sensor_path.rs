@@ -349,27 +349,34 @@ fn recordings_that_do_not_fit_are_refused() {
     assert_eq!(refused, PathError::OnlyNoise);
 }
 
-/// From 5 s of a hidden gearbox at one speed its wander and its random force are found again.
+/// From 5 s of hidden gearboxes at one speed their wander and their random force are found again. The share of the lines differs from wheels to
+/// wheels, so that one recording tells the force within a factor of 1.5.
 #[test]
-fn wander_and_random_force_of_a_hidden_gearbox_are_found_again() {
+fn wander_and_random_force_of_hidden_gearboxes_are_found_again() {
     let mut known = Scenario::from_toml(&gearbox_template(None)).unwrap();
     known.sensors.truncate(1);
     known.solver.sampling_rate_hz = 51_200.0;
-    let mut hidden = known.clone().with_seed(77);
-    hidden.operation.speed_wander_percent = 0.06;
-    hidden.meshes.iter_mut().for_each(|mesh| mesh.random_force = 0.03);
-    hidden.sensors[0].frequency_response = Some(hidden_response());
-    hidden.solver.duration_s = Some(5.0);
-    let channels = meshtone::simulate(&hidden).unwrap().channels;
-    let input = ShaftPhase::of_simulated_input(&hidden, channels.start_s, channels.len()).unwrap();
-    let healthy =
-        at_rate_of_recordings(&channels.signals[0].values, &input.revolutions, channels.sampling_rate_hz);
-    let drive = estimate_of(known, healthy, FEW_DRAWS).unwrap().drive;
-    println!("{drive:?}");
-    let [wander, low, high] = drive.speed_wander_percent.unwrap();
-    assert!((low..high).contains(&0.06) && (0.04..0.08).contains(&wander));
-    let [factor, ..] = drive.random_force_factor.unwrap();
-    assert!((factor / (0.03 / 0.055) - 1.0).abs() < 0.25, "{factor}");
-    let [recorded, simulated] = drive.line_share.unwrap();
-    assert!(recorded > simulated && recorded < 1.0);
+    let truth = 0.03 / 0.055;
+    let mut mean = 0.0;
+    for seed in [77, 78, 79] {
+        let mut hidden = known.clone().with_seed(seed);
+        hidden.operation.speed_wander_percent = 0.06;
+        hidden.meshes.iter_mut().for_each(|mesh| mesh.random_force = 0.03);
+        hidden.sensors[0].frequency_response = Some(hidden_response());
+        hidden.solver.duration_s = Some(5.0);
+        let channels = meshtone::simulate(&hidden).unwrap().channels;
+        let input = ShaftPhase::of_simulated_input(&hidden, channels.start_s, channels.len()).unwrap();
+        let signal = &channels.signals[0].values;
+        let healthy = at_rate_of_recordings(signal, &input.revolutions, channels.sampling_rate_hz);
+        let drive = estimate_of(known.clone(), healthy, FEW_DRAWS).unwrap().drive;
+        println!("{seed}: {drive:.3?}");
+        let [wander, low, high] = drive.speed_wander_percent.unwrap();
+        assert!((low..high).contains(&0.06) && (0.04..0.09).contains(&wander), "{wander}");
+        let [factor, ..] = drive.random_force_factor.unwrap();
+        assert!((truth / 1.5..truth * 1.5).contains(&factor), "{factor}");
+        mean += factor / 3.0;
+        let [recorded, simulated] = drive.line_share.unwrap();
+        assert!(recorded > simulated && recorded < 1.0);
+    }
+    assert!((mean / truth - 1.0).abs() < 0.3, "{mean}");
 }
