@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use crate::step::{StepRunner, in_parallel};
 use crate::surroundings::unusual;
 use crate::{
-    budgets, compilations, dist, docs, environment, features, kernels, packages, python, rooms, rustdoc,
-    scipy, toolchain,
+    budgets, compilations, dist, docs, environment, features, formatting, kernels, packages, python, rooms,
+    rustdoc, scipy, toolchain,
 };
 
 /// The parts of Python that the tests of the Rust packages need.
@@ -32,7 +32,7 @@ pub fn quick(row: &StepRunner) -> Result<(), u8> {
 
 /// What needs the sources alone.
 fn sources(row: &StepRunner) -> Result<(), u8> {
-    row.cargo(&["fmt", "--all", "--check"], &[])?;
+    row.check("formatting", formatting::problems)?;
     row.check("rooms check", rooms::problems)?;
     row.check("docs check", docs::problems)?;
     row.check("budgets of sources", budgets::of_sources)
@@ -50,6 +50,7 @@ pub fn all(root: &Path) -> Result<(), u8> {
     let [rust, python] = StepRunner::pair(root, &logs, &linted())?;
     sources(&rust)?;
     rust.cargo(&["fetch", "--locked"], &[])?;
+    rust.check("nothing is compiled twice", compilations::problems)?;
     let (ready, prepared) = channel();
     in_parallel(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))?;
     rust.check("budgets", |root| budgets::of_checks(root, &rust.times()))

@@ -172,7 +172,8 @@ pub fn try_wheel(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8
 
 /// Builds a wheel from the source distribution as pip does, installs it into an empty environment and simulates there.
 ///
-/// Its sources are those of the workspace, so that cargo takes what it has compiled of them for the wheel, unless a source is missing. The interpreter that builds is the one that built the wheel, as PyO3 is compiled anew
+/// Its sources are those of the workspace, which is checked first. So cargo takes what it has compiled of them for the wheel, unless a
+/// source is missing, and nothing is compiled twice. The interpreter that builds is the one that built the wheel, as PyO3 is compiled anew
 /// for every other.
 ///
 /// # Arguments
@@ -182,6 +183,7 @@ pub fn try_wheel(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8
 /// The exit code of what failed.
 pub fn try_source(row: &StepRunner, python: &Path, source: &Path) -> Result<(), u8> {
     row.step("Source distribution, in an empty environment", || {
+        row.program(Command::new(python).args(["-c", COMPARISON]).arg(source).arg(row.root()))?;
         let alike = [
             ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
             ("MATURIN_PEP517_ARGS", STRIPPED.into()),
@@ -195,6 +197,22 @@ pub fn try_source(row: &StepRunner, python: &Path, source: &Path) -> Result<(), 
         try_package(row, python, "source", &wheel)
     })
 }
+
+/// Program that compares the sources of a source distribution with those of the workspace. What describes packages is written anew
+/// for it: it names those packages alone that are there.
+const COMPARISON: &str = "\
+import pathlib, sys, tarfile
+root, compared = pathlib.Path(sys.argv[2]), 0
+with tarfile.open(sys.argv[1]) as archive:
+    for member in filter(tarfile.TarInfo.isfile, archive):
+        path = pathlib.PurePosixPath(member.name).relative_to(pathlib.PurePosixPath(member.name).parts[0])
+        if path.name in ('PKG-INFO', 'README.md', 'Cargo.toml', 'Cargo.lock', 'pyproject.toml'):
+            continue
+        if archive.extractfile(member).read() != (root / path).read_bytes():
+            sys.exit(f'{path} in the source distribution is not the one of the workspace')
+        compared += 1
+assert compared > 100, compared
+";
 
 fn try_package(row: &StepRunner, pip: &Path, name: &str, wheel: &Path) -> Result<(), u8> {
     let folder = empty_folder(row, name)?;

@@ -10,6 +10,7 @@ mod docs;
 mod environment;
 mod features;
 mod files;
+mod formatting;
 mod kernels;
 mod packages;
 mod python;

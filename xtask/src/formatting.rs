@@ -1,0 +1,67 @@
+//! Formatting, and whether it has reached every source.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::files;
+use crate::step::cargo;
+
+/// Folders of the sources.
+const SOURCES: [&str; 2] = ["crates", "xtask"];
+
+/// What is not formatted, and the sources that the formatter has not read: those that no module declares in a way that it follows.
+///
+/// # Errors
+/// The formatter cannot be started, or a folder cannot be read.
+pub fn problems(root: &Path) -> Result<Vec<String>, String> {
+    let mut cargo = cargo();
+    let output = cargo.args(["fmt", "--all", "--check", "--", "--verbose"]).current_dir(root).output();
+    let output = output.map_err(|error| format!("cannot start cargo: {error}"))?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    // As rustfmt names them: without links.
+    let root = &root.canonicalize().map_err(|error| format!("{}: {error}", root.display()))?;
+    let mut sources = BTreeSet::new();
+    for folder in SOURCES {
+        sources.extend(files::below(&root.join(folder), "rs").map_err(|error| error.to_string())?);
+    }
+    let unread = unread(&sources, &said, root).into_iter().map(|path| {
+        format!("{path}: the formatter has not read it: declare it by a plain `mod` of a file that it reads")
+    });
+    let mut problems: Vec<String> = unread.collect();
+    if !output.status.success() {
+        let said = said.lines().filter(|line| !is_remark(line)).collect::<Vec<_>>().join("\n");
+        problems.push(format!(
+            "not formatted (`cargo fmt --all`):\n{said}{}",
+            String::from_utf8_lossy(&output.stderr)
+        ));
+    }
+    Ok(problems)
+}
+
+/// The beginning of the line with which rustfmt names a file that it reads.
+const READ: &str = "Formatting ";
+
+fn is_remark(line: &str) -> bool {
+    [READ, "Using rustfmt config file", "Spent "].iter().any(|start| line.starts_with(start))
+}
+
+/// The sources, from the root, that rustfmt does not say that it has read.
+fn unread(sources: &BTreeSet<PathBuf>, said: &str, root: &Path) -> Vec<String> {
+    let read: BTreeSet<&Path> =
+        said.lines().filter_map(|line| line.strip_prefix(READ)).map(Path::new).collect();
+    let unread = sources.iter().filter(|path| !read.contains(path.as_path()));
+    unread.map(|path| path.strip_prefix(root).unwrap_or(path).display().to_string()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_source_that_was_not_read_is_named() {
+        let root = Path::new("/project");
+        let sources = ["crates/a/src/lib.rs", "crates/a/src/hidden.rs"].map(|name| root.join(name)).into();
+        let said = "Using rustfmt config file /project/rustfmt.toml for …\nFormatting /project/crates/a/src/lib.rs\nSpent 0.001 secs";
+        assert_eq!(unread(&sources, said, root), ["crates/a/src/hidden.rs"]);
+    }
+}
