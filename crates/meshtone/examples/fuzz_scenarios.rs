@@ -275,6 +275,8 @@ fn faults_of(gearbox: &Scenario, simulation: &Simulation, kinds: &[WarningKind])
         found.push(("a peak beyond 1e6 g", peak_g));
     }
     let is_said = |kind| kinds.contains(&kind);
+    // What a mesh that idles carries counts against the loaded ones.
+    let loaded_n = simulation.stages.pairs.iter().map(|pair| pair.static_force_n.abs()).fold(0.0, f64::max);
     if gearbox.operation.is_steady() {
         for (mesh, pair) in simulation.stages.pairs.iter().enumerate() {
             let force_n = channels.of(SignalSource::MeshForce(mesh));
@@ -284,7 +286,8 @@ fn faults_of(gearbox: &Scenario, simulation: &Simulation, kinds: &[WarningKind])
                 force_n.iter().enumerate().map(|(n, force)| weight(n) * force).sum::<f64>() / weights;
             let rms_n =
                 (force_n.iter().map(|force| force * force).sum::<f64>() / force_n.len() as f64).sqrt();
-            let part = (mean_n - pair.static_force_n).abs() / rms_n.max(pair.static_force_n.abs()).max(1e-9);
+            let part = (mean_n - pair.static_force_n).abs()
+                / rms_n.max(pair.static_force_n.abs()).max(0.01 * loaded_n).max(1e-9);
             if part > 0.05 && !is_said(WarningKind::TorqueImbalance) && !is_said(WarningKind::Unsettled) {
                 found.push(("a broken balance without a word", part));
             }

@@ -4,8 +4,8 @@
 const MOST_WINDOWS: usize = 16;
 /// Fewest windows in which a trend can be told from chance.
 const FEWEST_WINDOWS: usize = 6;
-/// (g, N) Rms below which a signal is rounding.
-const ROUNDING: f64 = 1e-9;
+/// (g, N) Rms below which a signal is less than what sensors tell from nothing.
+const NOTHING: f64 = 1e-4;
 /// (-) Standard errors from which on a trend is not chance.
 const CERTAIN: f64 = 4.0;
 
@@ -77,7 +77,7 @@ pub(crate) fn transient_part(variances: &[f64], decay_per_window: f64) -> f64 {
     let count = variances.len();
     let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / count as f64;
     let whole = mean(&mut variances.iter().copied());
-    if count < FEWEST_WINDOWS || whole.is_nan() || whole.sqrt() < ROUNDING {
+    if count < FEWEST_WINDOWS || whole.is_nan() || whole.sqrt() < NOTHING {
         return 0.0;
     }
     // A mode that hardly decays is still one that fades: its trend is straight.

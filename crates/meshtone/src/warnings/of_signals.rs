@@ -23,6 +23,8 @@ const TOLERATED_SPEED: f64 = 0.2;
 const TOLERATED_APART: f64 = 0.5;
 /// (-) Part of the largest torque on a shaft by which its torques may be off balance without a warning.
 const TOLERATED_IMBALANCE: f64 = 0.01;
+/// (-) Part of the largest mesh force that a mesh which idles carries at most.
+const IDLE_PART: f64 = 0.01;
 /// (-) How far the step may falsify the rms of a signal without a warning.
 const TOLERATED_STEP: f64 = 0.02;
 /// (-) The same of a part of a motion that does not last: of a few hits more is chance.
@@ -109,7 +111,13 @@ impl Simulation {
         let slowest =
             stages.layout.ratios.iter().map(|ratio| ratio.value().abs()).fold(f64::INFINITY, f64::min);
         let samples_per_turn = (stages.time.samples_per_pinion_revolution as f64 / slowest).round() as usize;
-        let is_shown = |source| matches!(source, SignalSource::Sensor(_) | SignalSource::MeshForce(_));
+        // A mesh that idles settles whenever it has struck for the last time.
+        let loaded_n = stages.pairs.iter().map(|pair| pair.static_force_n).fold(0.0, f64::max);
+        let is_shown = |source| match source {
+            SignalSource::Sensor(_) => true,
+            SignalSource::MeshForce(mesh) => stages.pairs[mesh].static_force_n > IDLE_PART * loaded_n,
+            _ => false,
+        };
         let shown = channels.signals.iter().filter(|signal| is_shown(signal.source));
         let windows: Vec<WindowSums> = shown
             .map(|signal| {
