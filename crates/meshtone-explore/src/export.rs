@@ -1,6 +1,7 @@
 //! Files that the page offers for download: the scenario as TOML and as Python, the picture as SVG, the signals as Parquet.
 
-use meshtone::scenario::{GearPair, Scenario};
+use meshtone::damage::damage_kinds;
+use meshtone::scenario::{GearPair, KeyDescription, Scenario};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::SignalTable;
 use serde_json::{Map, Value};
@@ -105,13 +106,88 @@ fn sections(scenario: &Scenario) -> Map<String, Value> {
     }
 }
 
-/// Python that makes the scenario of the keys that differ from their defaults, of a gearbox of all.
+/// Python that makes the scenario.
 fn python(scenario: &Scenario) -> String {
-    let brief = || toml::to_string(&without_defaults(scenario)).ok();
-    let toml = scenario.rig().and_then(|_| brief()).unwrap_or_else(|| scenario.to_toml());
+    let head = "import meshtone as mt\n\n";
+    let tail = "\nsimulation = mt.simulate(scenario)\n";
+    if scenario.rig().is_none() || scenario.quality().profile_errors.is_some() {
+        // Thousands of numbers read better in a file, and so do the lists of a gearbox.
+        let toml = scenario.to_toml();
+        return format!("{head}scenario = mt.Scenario.from_toml(\n    \"\"\"\n{toml}\"\"\"\n)\n{tail}");
+    }
+    let mut own = without_defaults(scenario);
+    let mut lines = Vec::new();
+    // In the order of the scenario file, but for what is broken and what listens, which come last.
+    let of_lists = ["fault", "sensor"];
+    for section in
+        meshtone::scenario::sections().into_iter().filter(|section| !of_lists.contains(&section.name))
+    {
+        let keys = match section.name {
+            "" => own.clone(),
+            name => own.remove(name).and_then(|keys| keys.as_object().cloned()).unwrap_or_default(),
+        };
+        for (key, value) in in_order(&keys, &section.keys) {
+            let key = if section.name == "quality" && key == "seed" { "wheels_seed" } else { key };
+            lines.push(format!("{key}={}", literal(value)));
+        }
+    }
+    for (section, argument) in [("fault", "faults"), ("sensor", "sensors")] {
+        let of_entry = if section == "fault" { fault_in_python } else { sensor_in_python };
+        lines.extend(own.remove(section).map(|value| entries(argument, value, of_entry)));
+    }
+    let lines: String = lines.iter().map(|line| format!("    {line},\n")).collect();
+    format!("{head}scenario = mt.Scenario(\n{lines})\n{tail}")
+}
+
+/// The entries that are described, in the order of the descriptions.
+fn in_order<'a>(
+    keys: &'a Map<String, Value>,
+    described: &'a [KeyDescription],
+) -> impl Iterator<Item = (&'a str, &'a Value)> {
+    described.iter().filter_map(|key| Some((key.key.as_str(), keys.get(&key.key)?)))
+}
+
+/// An argument that is a list of a section's entries, be it one or several.
+fn entries(argument: &str, value: Value, entry: fn(&Map<String, Value>) -> String) -> String {
+    let all = if let Value::Array(all) = value { all } else { vec![value] };
+    let written: Vec<String> = all.iter().filter_map(Value::as_object).map(entry).collect();
+    format!("{argument}=[{}]", written.join(", "))
+}
+
+fn fault_in_python(section: &Map<String, Value>) -> String {
+    let kind = section.get("kind").and_then(Value::as_str).unwrap_or_default();
+    let Some(kind) = damage_kinds().into_iter().find(|known| known.name == kind) else {
+        return String::new();
+    };
+    let described = [kind.keys, kind.place].concat();
+    format!("mt.{}({})", kind.type_name, arguments(in_order(section, &described)))
+}
+
+fn sensor_in_python(section: &Map<String, Value>) -> String {
+    let described = meshtone::scenario::sections().into_iter().find(|known| known.name == "sensor");
     format!(
-        "import meshtone as mt\n\nscenario = mt.Scenario.from_toml(\n    \"\"\"\n{toml}\"\"\"\n)\n\nsimulation = mt.simulate(scenario)\n"
+        "mt.Sensor({})",
+        described.map_or(String::new(), |known| arguments(in_order(section, &known.keys)))
     )
+}
+
+fn arguments<'a>(entries: impl Iterator<Item = (&'a str, &'a Value)>) -> String {
+    entries.map(|(key, value)| format!("{key}={}", literal(value))).collect::<Vec<_>>().join(", ")
+}
+
+/// A value as Python has it. Texts are written alike in JSON, in ASCII.
+fn literal(value: &Value) -> String {
+    match value {
+        Value::Null => "None".to_owned(),
+        Value::Bool(true) => "True".to_owned(),
+        Value::Bool(false) => "False".to_owned(),
+        Value::Array(entries) => format!("[{}]", entries.iter().map(literal).collect::<Vec<_>>().join(", ")),
+        Value::Object(entries) => {
+            let entry = |(key, value): (&String, &Value)| format!("\"{key}\": {}", literal(value));
+            format!("{{{}}}", entries.iter().map(entry).collect::<Vec<_>>().join(", "))
+        }
+        other => other.to_string(),
+    }
 }
 
 #[cfg(test)]
@@ -127,8 +203,9 @@ mod tests {
     #[test]
     fn python_names_what_is_not_default() {
         let text = python(&preset("tooth_breakage"));
+        assert!(text.contains("    module_mm=3.0,\n    pinion_teeth=17,\n"), "{text}");
         assert!(
-            text.contains("pinion_teeth = 17\n") && text.contains("kind = \"tooth-breakage\"\n"),
+            text.contains("    din_grade=7,\n    faults=[mt.ToothBreakage(chip_height_mm=5.0, "),
             "{text}"
         );
         assert!(!text.contains("pressure_angle_deg"), "{text}");

@@ -222,9 +222,9 @@ fn keys_that_are_commented_out_in_an_experiment_can_be_set() {
 }
 
 #[test]
-fn completions_know_all_commands() {
+fn completions_and_the_manual_know_all_commands() {
     let workplace = Workplace::new();
-    for kind in ["bash", "elvish", "fish", "powershell", "zsh"] {
+    for kind in ["bash", "elvish", "fish", "powershell", "zsh", "man"] {
         let text = stdout(&workplace.succeeds(&["completions", kind]));
         for word in ["simulate", "indicators", "verify", "merge", "sampling"] {
             assert!(text.contains(word), "{kind}: {word}");
@@ -232,7 +232,7 @@ fn completions_know_all_commands() {
         // An option that is only answered with a tip is offered nowhere.
         assert!(!text.contains("shaft-rpm"), "{kind}");
     }
-    workplace.fails(2, &["completions", "tcsh"], &["bash", "zsh"]);
+    workplace.fails(2, &["completions", "tcsh"], &["bash", "zsh", "man"]);
 }
 
 #[test]
