@@ -47,9 +47,11 @@ fn is_remark(line: &str) -> bool {
 
 /// The sources, from the root, that rustfmt does not say that it has read.
 fn unread(sources: &BTreeSet<PathBuf>, said: &str, root: &Path) -> Vec<String> {
-    let read: BTreeSet<&Path> =
-        said.lines().filter_map(|line| line.strip_prefix(READ)).map(Path::new).collect();
-    let unread = sources.iter().filter(|path| !read.contains(path.as_path()));
+    // A module that names its file may name it by way of the folder above.
+    let direct = |path: &str| Path::new(path).canonicalize().unwrap_or_else(|_| path.into());
+    let read: BTreeSet<PathBuf> =
+        said.lines().filter_map(|line| line.strip_prefix(READ)).map(direct).collect();
+    let unread = sources.iter().filter(|path| !read.contains(*path));
     unread.map(|path| path.strip_prefix(root).unwrap_or(path).display().to_string()).collect()
 }
 
