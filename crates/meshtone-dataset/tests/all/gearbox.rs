@@ -286,7 +286,11 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
 #[test]
 fn what_a_gearbox_does_not_have_is_refused_at_its_key() {
     for (written, other, words) in [
-        ("fault = { wheel = \"z4\"", "fault = { wheel = \"z9\"", vec!["class[4].fault", "z1, z2, z3, z4"]),
+        (
+            "wheel = \"z4\", kind = \"pits\"",
+            "wheel = \"z9\", kind = \"pits\"",
+            vec!["class[4].fault", "z1, z2, z3, z4"],
+        ),
         (
             "key = \"wheel[z3].face_width_mm\"",
             "key = \"wheel[z3].face_widht_mm\"",
