@@ -199,14 +199,14 @@ fn drive(found: &RecordedDrive) -> String {
     let mut text = String::new();
     if let Some([wander, low, high]) = found.speed_wander_percent {
         text += &format!(
-            "  the speed wanders by {wander:.3} % ({low:.3} to {high:.3}): operation.speed_wander_percent = {wander:.3}\n"
+            "  the speed wanders by {wander:.3} % (90 %: {low:.3} to {high:.3}): operation.speed_wander_percent = {wander:.3}\n"
         );
     }
     if let (Some([recorded, simulated]), Some([factor, low, high])) =
         (found.line_share, found.random_force_factor)
     {
         text += &format!(
-            "  lines hold {:.0} % of the recorded power and {:.0} % of the simulated one: multiply random_force of every mesh by {factor:.2} ({low:.2} to \
+            "  lines hold {:.0} % of the recorded power and {:.0} % of the simulated one: multiply random_force of every mesh by {factor:.2} (90 %: {low:.2} to \
              {high:.2})\n",
             100.0 * recorded,
             100.0 * simulated

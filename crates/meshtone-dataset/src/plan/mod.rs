@@ -267,7 +267,7 @@ settle_tolerance = 1e-2
     };
     let parts = gearbox.split("\n\n").filter(has_section);
     // Of a steady motion one cycle is simulated and repeated, of a speed that wanders the whole record.
-    let is_steady = |line: &&str| !line.starts_with("speed_wander_percent");
+    let is_steady = |line: &&str| !line.contains("wander");
     let parts: String = parts
         .map(|part| part.lines().filter(is_steady).map(of_scenario).collect::<String>() + "\n")
         .collect();

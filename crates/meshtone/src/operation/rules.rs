@@ -17,7 +17,8 @@ impl Operation {
             (1.0, "must be 0 N m or more")
         };
         values(torques, "operation.torque_profile_nm", |torque| sign * torque >= 0.0, rule)?;
-        let slowest = smallest(self.pinion_speed_hz, speeds);
+        // The wander may reach five standard deviations.
+        let slowest = smallest(self.pinion_speed_hz, speeds) * (1.0 - 5e-2 * self.speed_wander_percent);
         fluctuation("operation.speed_fluctuation_hz", self.speed_fluctuation_hz, slowest, "speed", "Hz")?;
         let lightest = smallest(self.brake_torque_nm, torques);
         fluctuation(

@@ -13,6 +13,8 @@ use crate::wheel::Gears;
 
 /// (-) Part of the largest torque on a shaft by which its torques may not balance in a result.
 const REFUSED_IMBALANCE: f64 = 0.1;
+/// Periods of the mode that decays the slowest over which torques balance.
+const FEWEST_PERIODS: f64 = 4.0;
 
 /// (-) Part of the largest torque on any shaft that counts as one on a shaft that idles.
 const IDLE_PART: f64 = 0.01;
@@ -107,7 +109,7 @@ impl Stages {
 
     /// (Hz) Mean speed of the motor over the kept samples.
     pub(crate) fn mean_driven_hz(&self) -> f64 {
-        if self.scenario.operation.speed_profile_hz.is_none() {
+        if self.scenario.operation.keeps_speed() {
             return self.scenario.operation.pinion_speed_hz;
         }
         let kept = self.kept_motion(self.time.kept_samples());
@@ -145,10 +147,15 @@ impl Stages {
     /// * `figures` - of the kept signals
     pub(crate) fn imbalances(&self, figures: &Figures) -> Vec<Imbalance> {
         let Some((assembled, _)) = self.machine() else { return Vec::new() };
+        // Over less than a few periods of what rings longest a mean says nothing.
+        let kept_s = self.time.kept_samples() as f64 * self.time.step_s();
+        if kept_s * self.slowest_mode.frequency_hz < FEWEST_PERIODS {
+            return Vec::new();
+        }
         let mean_n: Vec<f64> = figures.forces.iter().map(SignalFigures::mean_in_middle).collect();
         let rms_n: Vec<f64> = figures.forces.iter().map(SignalFigures::rms).collect();
         let operation = &self.scenario.operation;
-        let (torque_nm, acceleration) = if self.is_steady() {
+        let (torque_nm, acceleration) = if operation.is_constant() {
             (operation.brake_torque_nm, 0.0)
         } else {
             let kept = self.kept_motion(self.time.kept_samples());

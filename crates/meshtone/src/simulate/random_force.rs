@@ -129,7 +129,7 @@ impl Stages {
             let kept = self.motion().skip(self.time.first_kept_sample).take(samples);
             kept.map(|motion| motion.speed_hz / operation.pinion_speed_hz).collect()
         };
-        operation.speed_profile_hz.is_some().then(relative)
+        (!operation.keeps_speed()).then(relative)
     }
 
     /// (m/s) Mean over the path of the speed at which the flanks of a mesh slide, at the nominal speed.

@@ -207,7 +207,10 @@ impl Stages {
     pub(super) fn unsettled(&self, windows: &[WindowSums]) -> Option<ScenarioWarning> {
         // What has decayed to 1 % of the start, which is a motion in equilibrium, is a part of no signal.
         let is_undamped = self.slowest_mode.decay_per_s <= 0.0;
-        if is_undamped || !self.is_steady() || self.transient_remainder() < TOLERATED_TRANSIENT {
+        // A slow wander changes a signal by less than a transient that counts.
+        let is_steady =
+            Operation { speed_wander_percent: 0.0, ..self.scenario.operation.clone() }.is_steady();
+        if is_undamped || !is_steady || self.transient_remainder() < TOLERATED_TRANSIENT {
             return None;
         }
         let (slowest, time) = (&self.slowest_mode, &self.time);

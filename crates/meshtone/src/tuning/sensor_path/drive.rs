@@ -20,15 +20,16 @@ const FEWEST_SPEEDS: usize = 32;
 const CORRELATION: f64 = 0.675;
 /// (-) Standard deviation of the wander over that of its means over the time between two of them.
 const OVER_MEANS: f64 = 1.032;
-/// (-) Deviation of a speed that was stated to be constant, or to follow a profile.
+/// (-) Deviation of a speed that was stated to be constant, or to rise steadily.
 const ROUNDING: f64 = 1e-7;
 /// Cycles of the train that are compared, and the fewest of which what repeats is told from what does not.
 const CYCLES: usize = 4;
 const FEWEST_CYCLES: usize = 3;
 /// (s) Longest simulation of so many cycles.
 const LONGEST_S: f64 = 10.0;
-/// Most draws of the wheels.
+/// Most draws of the wheels, and Student's quantile of 90 % for so many.
 const MOST_DRAWS: usize = 6;
+const OF_FEW_DRAWS: f64 = 2.015;
 
 /// How the longest steady recording of a healthy machine is driven, and what it has between its lines; nothing of run-ups.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -70,10 +71,12 @@ impl RecordedDrive {
         let mut drive = Self { speed_wander_percent: wander_percent(recording), ..Self::default() };
         let cycle = train.revolutions_of_a_cycle(train.input());
         let speed_hz = recording.input.mean_speed_hz(recording.sampling_rate_hz);
-        let cycles = ((recording.input.span_rev() / cycle as f64) as usize).min(CYCLES);
+        // Of slow trains as many cycles as are simulated in a moment.
+        let in_longest = LONGEST_S * speed_hz / cycle as f64 - 0.1;
+        let cycles = (recording.input.span_rev() / cycle as f64).min(in_longest).min(CYCLES as f64) as usize;
         let length_s = (cycles as f64 + 0.1) * cycle as f64 / speed_hz;
         let has_random_force = scenario.meshes.iter().any(|mesh| mesh.random_force > 0.0);
-        if cycles < FEWEST_CYCLES || length_s > LONGEST_S || !has_random_force {
+        if cycles < FEWEST_CYCLES || !has_random_force {
             return Ok(drive);
         }
         let mut simulated = at_steady_speed(scenario, speed_hz, length_s);
@@ -132,7 +135,7 @@ fn factor_of(factors: &[f64]) -> Option<[f64; 3]> {
     let mean = mean(factors).filter(|_| factors.len() > 1)?;
     let count = factors.len() as f64;
     let variance = factors.iter().map(|factor| (factor - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    let reach = NINETY_PERCENT * (variance * (1.0 + 1.0 / count)).sqrt();
+    let reach = OF_FEW_DRAWS * (variance * (1.0 + 1.0 / count)).sqrt();
     Some([mean, (mean - reach).max(0.0), mean + reach])
 }
 
@@ -150,11 +153,12 @@ fn wander_percent(recording: &InputRecording) -> Option<[f64; 3]> {
     let rise =
         speeds.iter().enumerate().map(|(n, speed)| from_middle(n) * (speed - mean_hz)).sum::<f64>() / moment;
     let rest = |(n, speed): (usize, &f64)| (speed - mean_hz - rise * from_middle(n)).powi(2);
-    let variance = speeds.iter().enumerate().map(rest).sum::<f64>() / (count - 2) as f64;
+    // Speeds that follow each other are alike: a mean or a rise takes as much of their variance as of so many independent ones.
+    let alike = (1.0 + CORRELATION) / (1.0 - CORRELATION);
+    let variance = speeds.iter().enumerate().map(rest).sum::<f64>() / (count as f64 - 2.0 * alike);
     let deviation = OVER_MEANS * variance.sqrt() / mean_hz;
-    // Speeds that follow each other are alike: so many are independent.
     let correlated = CORRELATION * CORRELATION;
-    let independent = count as f64 * (1.0 - correlated) / (1.0 + correlated);
+    let independent = count as f64 * (1.0 - correlated) / (1.0 + correlated) - 2.0;
     let reach = NINETY_PERCENT / (2.0 * independent).sqrt();
     (deviation > ROUNDING).then(|| {
         [1.0, 1.0 / (1.0 + reach), 1.0 / (1.0 - reach).max(0.1)].map(|factor| 100.0 * deviation * factor)
