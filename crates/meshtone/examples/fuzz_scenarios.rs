@@ -221,7 +221,7 @@ fn drawn_gearbox(seed: u64, number: u64, attempt: u64) -> Odd {
     Odd { text, traits }
 }
 
-/// What is asked for, with a mesh frequency on a natural one where it is to resound.
+/// Draws what is asked for, with a mesh frequency on a natural one where the gearbox is to resound.
 fn legal(seed: u64, number: u64) -> (Scenario, Odd) {
     for attempt in 0.. {
         let mut odd = drawn_gearbox(seed, number, attempt);
@@ -260,7 +260,7 @@ fn change(of: &Channels, better: &Channels) -> f64 {
     changes.fold(0.0, f64::max)
 }
 
-/// What is wrong with a result; nothing, most of the time.
+/// Returns what is wrong with a result, which is nothing most of the time.
 fn faults_of(gearbox: &Scenario, simulation: &Simulation, kinds: &[WarningKind]) -> Vec<(&'static str, f64)> {
     let mut found = Vec::new();
     let channels = &simulation.channels;

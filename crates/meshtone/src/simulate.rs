@@ -197,8 +197,7 @@ pub(crate) fn stages_with(
     let Parts { pairs, overrun, meshes, bearings, equations, slowest_mode } = parts;
     let settle_tolerance = scenario.solver.settle_tolerance;
     // Only a motion that starts in equilibrium, and not one that is drawn anew for every sample: before the kept signal all else is steady.
-    let operation = &scenario.operation;
-    let is_drawn = operation.speed_fluctuation_hz > 0.0 || operation.torque_fluctuation_nm > 0.0;
+    let is_drawn = scenario.operation.is_drawn_for_every_sample();
     if scenario.model.has_meshes() && scenario.solver.initial_velocity.is_none() && !is_drawn {
         time.first_simulated_sample = start_of_settling(&time, settle_tolerance, &slowest_mode);
     }

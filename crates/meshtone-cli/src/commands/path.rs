@@ -194,7 +194,7 @@ fn summary(estimate: &PathEstimate, output: &path::Path) -> String {
     )
 }
 
-/// What the recordings say of the drive, and what to write for it.
+/// Says what the recordings tell of the drive, and which keys to write for it.
 fn drive(found: &RecordedDrive) -> String {
     let mut text = String::new();
     if let Some([wander, low, high]) = found.speed_wander_percent {

@@ -78,7 +78,7 @@ impl ObservedRecorder {
     /// * `stages` - as of [`Keep::recorder`]
     ///
     /// # Errors
-    /// As of [`Keep::check`].
+    /// Does what [`Keep::check`] does.
     pub fn check(&self, stages: &Stages) -> Result<(), Error> {
         stages.check_laws(&self.observer.figures)
     }

@@ -1,4 +1,4 @@
-//! What the laws look at in the signals, gathered while these come.
+//! This module gathers, while signals come, the sums by which the laws judge them.
 
 /// Sums of the signals of all meshes and all shafts.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ pub(crate) struct SignalFigures {
     /// Sum with weights that rise evenly to the middle and fall again.
     weighted: f64,
     squares: f64,
-    /// Of the first half, of the sample midway where there is one, and of the second half.
+    /// The sums of the first half, of the sample midway where there is one, and of the second half.
     parts: [f64; 3],
     largest: f64,
 }

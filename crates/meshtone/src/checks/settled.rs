@@ -1,4 +1,4 @@
-//! Whether a signal still holds a transient, by the signal itself.
+//! This module tells by a signal itself whether it still holds a transient.
 
 /// Windows that a signal is divided into, at most.
 const MOST_WINDOWS: usize = 16;
@@ -16,7 +16,7 @@ pub(crate) struct WindowSums {
     length: usize,
     /// Samples that were added.
     samples: usize,
-    /// Of each window the sum and the sum of squares.
+    /// The sum and the sum of squares of each window.
     sums: Vec<[f64; 2]>,
 }
 
@@ -28,12 +28,12 @@ impl WindowSums {
     /// * `samples_per_turn` - of the slowest shaft: a window holds whole turns of it where the signal is long enough
     pub(crate) fn new(samples: usize, samples_per_turn: usize) -> Self {
         let turns = samples.checked_div(samples_per_turn).unwrap_or(0);
-        let windows = if turns >= FEWEST_WINDOWS { turns.min(MOST_WINDOWS) } else { MOST_WINDOWS };
-        let length = if turns >= FEWEST_WINDOWS {
+        let (windows, length) = if turns >= FEWEST_WINDOWS {
+            let windows = turns.min(MOST_WINDOWS);
             // Of the turns that are left over, none is looked at.
-            turns / windows * samples_per_turn
+            (windows, turns / windows * samples_per_turn)
         } else {
-            samples / windows
+            (MOST_WINDOWS, samples / MOST_WINDOWS)
         };
         Self { length, samples: 0, sums: vec![[0.0; 2]; if length == 0 { 0 } else { windows }] }
     }

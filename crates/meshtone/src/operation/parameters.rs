@@ -64,10 +64,20 @@ impl Operation {
     /// assert!(meshtone::operation::Operation::new(40.0, 10.0).is_steady());
     /// ```
     pub fn is_steady(&self) -> bool {
-        self.turns_evenly()
+        self.is_steady_but_for_wander() && self.speed_wander_percent == 0.0
+    }
+
+    /// Whether the motion repeats itself with the wheels' but for a slow wander of the speed.
+    pub(crate) fn is_steady_but_for_wander(&self) -> bool {
+        self.speed_profile_hz.is_none()
             && self.torque_profile_nm.is_none()
-            && self.torque_fluctuation_nm == 0.0
+            && !self.is_drawn_for_every_sample()
             && self.torque_ripple.iter().all(|ripple| ripple.order.fract() == 0.0)
+    }
+
+    /// Whether speed or torque has an error that is drawn for every sample: with another step the motion is another one.
+    pub(crate) fn is_drawn_for_every_sample(&self) -> bool {
+        self.speed_fluctuation_hz > 0.0 || self.torque_fluctuation_nm > 0.0
     }
 
     /// Whether speed and torque are constant.

@@ -112,13 +112,13 @@ impl Stages {
         if self.scenario.operation.keeps_speed() {
             return self.scenario.operation.pinion_speed_hz;
         }
-        let kept = self.kept_motion(self.time.kept_samples());
+        let kept = self.kept_motion();
         SignalFigures::of(kept.iter().map(|motion| motion.speed_hz)).mean()
     }
 
-    /// Motor and brake at the first kept samples.
-    fn kept_motion(&self, samples: usize) -> Vec<MotionSample> {
-        self.motion().skip(self.time.first_kept_sample).take(samples).collect()
+    /// Motor and brake at the kept samples.
+    pub(super) fn kept_motion(&self) -> Vec<MotionSample> {
+        self.motion().skip(self.time.first_kept_sample).take(self.time.kept_samples()).collect()
     }
 
     /// What a mesh is called.
@@ -158,7 +158,7 @@ impl Stages {
         let (torque_nm, acceleration) = if operation.is_constant() {
             (operation.brake_torque_nm, 0.0)
         } else {
-            let kept = self.kept_motion(self.time.kept_samples());
+            let kept = self.kept_motion();
             let torque_nm = SignalFigures::of(kept.iter().map(|motion| motion.torque_nm));
             let speed_hz = SignalFigures::of(kept.iter().map(|motion| motion.speed_hz));
             (torque_nm.mean_in_middle(), TAU * self.time.sampling_rate_hz * speed_hz.rise())

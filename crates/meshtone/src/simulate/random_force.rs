@@ -76,7 +76,7 @@ impl Stages {
         let rate_hz = self.time.sampling_rate_hz;
         // A density of 1 over all frequencies up to half the rate.
         let deviation = (rate_hz / 2.0).sqrt();
-        let speed = self.sliding_over_nominal(samples);
+        let speed = self.sliding_over_nominal();
         let spectrum = |(mesh, force_n): (usize, &&[f64])| {
             let envelope = self.density_n_per_rthz(mesh, force_n, speed.as_deref());
             let mut draws = Draws::new(self.scenario.seed, Purpose::RandomForce, mesh as u64);
@@ -123,12 +123,10 @@ impl Stages {
     }
 
     /// (-) The motor's speed over the nominal one at each kept sample; none where it is constant.
-    fn sliding_over_nominal(&self, samples: usize) -> Option<Vec<f64>> {
+    fn sliding_over_nominal(&self) -> Option<Vec<f64>> {
         let operation = &self.scenario.operation;
-        let relative = || {
-            let kept = self.motion().skip(self.time.first_kept_sample).take(samples);
-            kept.map(|motion| motion.speed_hz / operation.pinion_speed_hz).collect()
-        };
+        let relative =
+            || self.kept_motion().iter().map(|motion| motion.speed_hz / operation.pinion_speed_hz).collect();
         (!operation.keeps_speed()).then(relative)
     }
 

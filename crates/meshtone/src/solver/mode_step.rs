@@ -111,9 +111,6 @@ impl StepOfMode {
     }
 
     /// (-) A mode's own rate over that which the steps make of its free vibration.
-    ///
-    /// # Arguments
-    /// * `turn_rad` - (rad) turn of the mode in a step
     pub(super) fn rate_factor(&self) -> f64 {
         // The steps turn by θ with `2 − 2 cos θ = K/(1 + βK)`, and their rate is that of the trapezium rule.
         let turn_rad = (1.0 - self.stiffness / (2.0 * (1.0 + self.beta * self.stiffness))).max(-1.0).acos();

@@ -208,8 +208,7 @@ impl Stages {
         // What has decayed to 1 % of the start, which is a motion in equilibrium, is a part of no signal.
         let is_undamped = self.slowest_mode.decay_per_s <= 0.0;
         // A slow wander changes a signal by less than a transient that counts.
-        let is_steady =
-            Operation { speed_wander_percent: 0.0, ..self.scenario.operation.clone() }.is_steady();
+        let is_steady = self.scenario.operation.is_steady_but_for_wander();
         if is_undamped || !is_steady || self.transient_remainder() < TOLERATED_TRANSIENT {
             return None;
         }

@@ -69,14 +69,10 @@ impl Observer {
     }
 }
 
-/// Returns whether a steady vibration is reached whose lines can be looked at. A fluctuation is drawn for every sample: with a finer step it
-/// is another one.
+/// Returns whether a steady vibration is reached whose lines can be looked at.
 fn lasts(stages: &Stages) -> bool {
     let operation = &stages.scenario.operation;
-    stages.scenario.model.has_meshes()
-        && operation.keeps_speed()
-        && operation.speed_fluctuation_hz == 0.0
-        && operation.torque_fluctuation_nm == 0.0
+    stages.scenario.model.has_meshes() && operation.keeps_speed() && !operation.is_drawn_for_every_sample()
 }
 
 /// Figures of the force along the line of action.

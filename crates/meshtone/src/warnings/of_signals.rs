@@ -39,34 +39,35 @@ impl Simulation {
     /// # Arguments
     /// * `judgement` - how the step is judged where a resonance is suspected
     pub fn warnings_of_signals(&self, judgement: StepJudgement) -> Vec<ScenarioWarning> {
+        let in_part = self.is_judged_in_part(judgement);
         let mut warnings = match self.stages.scenario.rig() {
-            None => self.warnings_of_train(judgement),
+            None => {
+                let step = if in_part { None } else { step_error_of_signals(self, judgement) };
+                self.warnings_of_train(step)
+            }
             Some(_) => {
                 let mut observer = Observer::new(&self.stages);
                 observer.observe(Observer::CHANNELS.map(|kind| self.channels.of(kind.source())));
                 // Where a part is simulated again, there is no estimate to be judged.
-                let estimated =
-                    if self.is_judged_in_part(judgement) { StepJudgement::Estimated } else { judgement };
+                let estimated = if in_part { StepJudgement::Estimated } else { judgement };
                 self.stages.warnings_of_signals(&observer, estimated)
             }
         };
         let rate_hz = self.channels.sampling_rate_hz;
-        let step = self.is_judged_in_part(judgement).then(|| step_error_of_part(self)).flatten();
+        let step = in_part.then(|| step_error_of_part(self)).flatten();
         warnings.extend(step.and_then(|error| long_step(error, rate_hz, TOLERATED_STEP_OF_PART)));
         warnings.extend(self.silent_sensors());
         warnings
     }
 
     /// Whether the step is judged by a tenth of the time that is simulated again: where the motion does not last, where teeth part, and with rolling
-    /// bearings. What fluctuates from sample to sample is another motion with another step.
+    /// bearings.
     fn is_judged_in_part(&self, judgement: StepJudgement) -> bool {
         let stages = &self.stages;
-        let operation = &stages.scenario.operation;
-        let is_drawn = operation.speed_fluctuation_hz > 0.0 || operation.torque_fluctuation_nm > 0.0;
         let parts = |mesh: usize| self.channels.of(SignalSource::MeshForce(mesh)).contains(&0.0);
         judgement == StepJudgement::Repeated
             && stages.machine().is_some()
-            && !is_drawn
+            && !stages.scenario.operation.is_drawn_for_every_sample()
             && (!stages.is_steady()
                 || !stages.bearings.is_empty()
                 || stages.teeth_part() && (0..stages.meshes.len()).any(parts))
@@ -90,7 +91,10 @@ impl Simulation {
     }
 
     /// The same of shafts of beams: of the force of each mesh and the speed of each shaft.
-    fn warnings_of_train(&self, judgement: StepJudgement) -> Vec<ScenarioWarning> {
+    ///
+    /// # Arguments
+    /// * `step` - the error of the step by all signals, where it is judged by them
+    fn warnings_of_train(&self, step: Option<StepError>) -> Vec<ScenarioWarning> {
         let (stages, channels) = (&self.stages, &self.channels);
         let (_, torque_nm) = largest_torque(&stages.scenario.operation);
         let static_n = stages.forces_of_torque_n(torque_nm);
@@ -105,8 +109,6 @@ impl Simulation {
             other_speed(&format!("shaft {shaft:?}"), driven_hz * ratio.value().abs(), speed_hz.mean().abs())
         });
         let rate_hz = channels.sampling_rate_hz;
-        let step =
-            if self.is_judged_in_part(judgement) { None } else { step_error_of_signals(self, judgement) };
         let step = step.and_then(|error| long_step(error, rate_hz, TOLERATED_STEP));
         let slowest =
             stages.layout.ratios.iter().map(|ratio| ratio.value().abs()).fold(f64::INFINITY, f64::min);

@@ -112,6 +112,19 @@ impl SquareSums {
         Self { samples: 0, sums: vec![[0.0; 2]; outputs] }
     }
 
+    /// Adds the next samples.
+    ///
+    /// # Arguments
+    /// * `samples` - their number
+    /// * `of` - the values of each output
+    fn add<'a>(&mut self, samples: usize, of: impl Fn(usize) -> &'a [f64]) {
+        self.samples += samples;
+        for (index, sum) in self.sums.iter_mut().enumerate() {
+            *sum =
+                of(index).iter().fold(*sum, |[sum, squares], value| [sum + value, squares + value * value]);
+        }
+    }
+
     fn rms(&self) -> impl Iterator<Item = f64> {
         self.sums.iter().map(|[_, squares]| (squares / self.samples.max(1) as f64).sqrt())
     }
@@ -125,13 +138,7 @@ impl SquareSums {
 
 impl Recorder for SquareSums {
     fn record(&mut self, block: &Block) {
-        self.samples += block.len();
-        for (index, sum) in self.sums.iter_mut().enumerate() {
-            *sum = block
-                .output(index)
-                .iter()
-                .fold(*sum, |[sum, squares], value| [sum + value, squares + value * value]);
-        }
+        self.add(block.len(), |index| block.output(index));
     }
 }
 
@@ -245,12 +252,10 @@ pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
     if stages.integrate_part_finer(violent, samples.len(), &outputs, &mut squares).is_err() {
         return Some(StepError::Suspected(1.0));
     }
-    let deviation = |values: &[f64]| {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        (mean_square(values) - mean * mean).max(0.0).sqrt()
-    };
-    let coarse = signals.iter().map(|signal| deviation(&signal[samples.clone()]));
-    let gain = largest(coarse.zip(squares.deviations()).map(|(coarse, finer)| gain(coarse, finer)));
+    let mut coarse = SquareSums::of(signals.len());
+    coarse.add(samples.len(), |index| &signals[index][samples.clone()]);
+    let gain =
+        largest(coarse.deviations().zip(squares.deviations()).map(|(coarse, finer)| gain(coarse, finer)));
     Some(StepError::Shown { gain, finer_rate_hz: 2.0 * channels.sampling_rate_hz })
 }
 

@@ -1,9 +1,8 @@
 //! What a recording of the healthy machine says beside the path: how its speed wanders, and how much of it no line has.
 
 use super::recording::InputRecording;
-use super::{NINETY_PERCENT, PASSED, PathError, PathSettings, at_steady_speed, seeds};
-use crate::batch::{Control, KeepOf, simulate_many};
-use crate::error::Error;
+use super::{NINETY_PERCENT, PASSED, PathError, PathSettings, at_steady_speed, seeds, simulate_all};
+use crate::batch::{Control, KeepOf};
 use crate::scenario::Scenario;
 use crate::sensor::FrequencyResponse;
 use crate::signal::{
@@ -63,9 +62,12 @@ impl RecordedDrive {
         settings: &PathSettings,
         control: &super::ExperimentControl,
     ) -> Result<Self, PathError> {
-        let steady =
-            recordings.iter().filter(|recording| !recording.input.is_run_up(recording.sampling_rate_hz));
-        let Some(recording) = steady.max_by(|a, b| a.length_s().total_cmp(&b.length_s())) else {
+        let steady = recordings
+            .iter()
+            .enumerate()
+            .filter(|(_, recording)| !recording.input.is_run_up(recording.sampling_rate_hz));
+        let Some((index, recording)) = steady.max_by(|(_, a), (_, b)| a.length_s().total_cmp(&b.length_s()))
+        else {
             return Ok(Self::default());
         };
         let mut drive = Self { speed_wander_percent: wander_percent(recording), ..Self::default() };
@@ -80,8 +82,8 @@ impl RecordedDrive {
             return Ok(drive);
         }
         let mut simulated = at_steady_speed(scenario, speed_hz, length_s);
-        // Teeth that part and meet again do not repeat themselves exactly where the speed wanders.
         simulated.sensors[0].frequency_response = Some(path);
+        // Teeth that part and meet again do not repeat themselves exactly where the speed wanders.
         simulated.operation.speed_wander_percent =
             drive.speed_wander_percent.map_or(0.0, |[wander, ..]| wander);
         // Both are compared up to the same order.
@@ -90,7 +92,7 @@ impl RecordedDrive {
         let points = (2.0 * most_hz * cycle as f64 / speed_hz) as usize;
         let share = |values: &[f64], input: &ShaftPhase| share_of_lines(values, input, cycle, points);
         let recorded = share(recording.values_g, &recording.input)
-            .map_err(|error| PathError::Recording { index: 0, problem: error.into() })?;
+            .map_err(|error| PathError::Recording { index, problem: error.into() })?;
         let draws =
             seeds(settings).into_iter().take(MOST_DRAWS).map(|seed| simulated.clone().with_seed(seed));
         let keep = KeepOf(|_: usize, simulation: Simulation| {
@@ -103,15 +105,8 @@ impl RecordedDrive {
             share(&channels.signals[0].values, &input)
         });
         let mut shares = Vec::new();
-        let mut failed: Option<Error> = None;
         let control = Control { cancelled: control.cancelled, ..Control::default() };
-        simulate_many(draws.collect::<Vec<_>>(), &keep, &control, |_, kept| match kept {
-            Ok(share) => shares.extend(share.ok().flatten()),
-            Err(error) => failed = failed.take().or(Some(error)),
-        });
-        if let Some(error) = failed {
-            return Err(error.into());
-        }
+        simulate_all(draws.collect(), &keep, &control, |_, share| shares.extend(share.ok().flatten()))?;
         if let (Some(recorded), Some(mean)) = (recorded, mean(&shares)) {
             drive.line_share = Some([recorded, mean]);
             let between = |share: f64| (1.0 / share - 1.0).max(0.0);

@@ -333,19 +333,42 @@ fn simulated(
         seeds.iter().map(move |&seed| of_piece.clone().with_seed(seed)).collect::<Vec<Scenario>>()
     });
     let mut powers = vec![vec![0.0; cells.cells.len()]; draws];
-    let mut failed: Option<Error> = None;
     let keep = KeepPowers { cells, draws };
     let all = pieces.len() * draws;
     let progress = |finished: usize| (control.progress)(finished, all);
     let control = Control { progress: &progress, cancelled: control.cancelled, ..Control::default() };
-    let taken = simulate_many(scenarios.collect::<Vec<_>>(), &keep, &control, |index, kept| match kept {
-        Ok(kept) => powers[index % draws].iter_mut().zip(kept).for_each(|(sum, power)| *sum += power),
+    simulate_all(scenarios.collect(), &keep, &control, |index, kept| {
+        powers[index % draws].iter_mut().zip(kept).for_each(|(sum, power)| *sum += power);
+    })?;
+    Ok(powers)
+}
+
+/// Simulates some scenarios, each of which is needed.
+///
+/// # Arguments
+/// * `scenarios` - to be simulated
+/// * `keep` - what is kept of each
+/// * `control` - progress and cancellation
+/// * `take` - takes what was kept, with the scenario's index
+///
+/// # Errors
+/// The first simulation that failed, or [`PathError::Cancelled`] where some were not begun.
+fn simulate_all<K: Keep>(
+    scenarios: Vec<Scenario>,
+    keep: &K,
+    control: &Control,
+    mut take: impl FnMut(usize, K::Kept) + Send,
+) -> Result<(), PathError> {
+    let all = scenarios.len();
+    let mut failed: Option<Error> = None;
+    let taken = simulate_many(scenarios, keep, control, |index, kept| match kept {
+        Ok(kept) => take(index, kept),
         Err(error) => failed = failed.take().or(Some(error)),
     });
     match failed {
         Some(error) => Err(error.into()),
         None if taken < all => Err(PathError::Cancelled),
-        None => Ok(powers),
+        None => Ok(()),
     }
 }
 
