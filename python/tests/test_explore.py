@@ -620,6 +620,19 @@ def test_damage_is_added_to_a_wheel_and_a_file_opened(train_page: Page, train: m
     page.wait(lambda: "pair.toml" in changes_words(page.browser), "the refusal of a pair")
 
 
+def test_a_recording_of_a_gearbox_is_dropped(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+    open_recording(page, "box.parquet", signals_of(train, train.scenario))
+    assert "by scenario" in text_of(page, "recording") and text_of(page, "diagnose") == "Diagnose"
+    head = "return [...document.querySelectorAll('#indicators thead th')].map((cell) => cell.textContent)"
+    page.wait(lambda: page.run(head) == ["indicator", "now", "recording"], "the recording's indicators")
+    for plot in ("waveform", "spectrum", "average"):
+        page.wait(lambda plot=plot: "recording" in page.described(plot), plot)  # type: ignore[misc]
+    page.run("[...document.querySelectorAll('#recording button')].at(-1).click()")
+    page.wait(lambda: page.run(head) == ["indicator", "now"], "the removal")
+    assert text_of(page, "diagnosis") == ""
+
+
 def test_a_bearing_becomes_a_rolling_one_with_a_defect(train_page: Page, train: mt.Explorer) -> None:
     page = train_page
 

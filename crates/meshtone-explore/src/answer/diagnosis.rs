@@ -12,7 +12,7 @@ use meshtone_diagnose::{
 use meshtone_io::recording::Recording;
 use serde_json::{Value, json};
 
-use super::recording::{RecordingQuestion, by_tachometer, chosen, read};
+use super::recording::{RecordingQuestion, Turned, chosen, read, turned};
 use crate::refusal::Refusal;
 
 /// A recording that is diagnosed, or the healthy one that it is compared with: its file, and what that does not say itself.
@@ -129,7 +129,7 @@ fn observe(
 
 /// Observes the rig's wheels in a recording that was read, and says what is doubtful about the angle of its shaft.
 ///
-/// The shafts turn as the scenario of a simulation says, or by the tachometer, which has one pulse a revolution of the pinion. Where there
+/// The shafts turn as the scenario of a simulation says, or by the tachometer, which has one pulse a revolution of the input. Where there
 /// is none, the mesh tone makes the speed of the page's scenario exact.
 fn of_recording(
     recording: &Recording,
@@ -157,24 +157,17 @@ fn of_recording(
         }
         is_there
     });
-    if let (Some(simulated), None) = (&simulated, tachometer) {
-        let turning = TrainTurning::of_simulated(simulated, recording.start_s, recording.len())?;
-        let train = GearTrain::of_scenario(simulated)?;
-        let recording =
-            TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
-        return Ok((Observation::of_recording(&recording)?, doubts));
-    }
-    let train = GearTrain::of_scenario(rig)?;
-    let (stated, phase) = match tachometer {
-        Some(name) => by_tachometer(recording, name)?,
-        None => {
-            let nominal_hz = rig.operation.pinion_speed_hz;
-            let tone = MeshTone::new(rig.wheels[0].teeth, nominal_hz);
-            (StatedTurning::MeshTone { nominal_hz }, ShaftPhase::from_mesh_tone(samples, rate_hz, &tone)?)
-        }
+    let by_mesh_tone = |train: &GearTrain| {
+        let nominal_hz = rig.operation.pinion_speed_hz;
+        let on_input = train.wheels.iter().find(|wheel| wheel.shaft == train.input());
+        let tone = MeshTone::new(on_input.map_or(1, |wheel| wheel.teeth), nominal_hz);
+        let phase = ShaftPhase::from_mesh_tone(samples, rate_hz, &tone)?;
+        Ok(("mesh tone", StatedTurning::MeshTone { nominal_hz }, phase))
     };
-    doubts.extend(phase.warnings.iter().map(ToString::to_string));
-    let turning = TrainTurning::Shaft { shaft: 0, phase, stated };
+    let Turned { train, turning, .. } = turned(recording, tachometer, simulated.as_ref(), rig, by_mesh_tone)?;
+    if let TrainTurning::Shaft { phase, .. } = &turning {
+        doubts.extend(phase.warnings.iter().map(ToString::to_string));
+    }
     let recording =
         TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
     Ok((Observation::of_recording(&recording)?, doubts))

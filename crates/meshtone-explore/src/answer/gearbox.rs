@@ -3,8 +3,8 @@
 use meshtone::scenario::{Scenario, ScenarioWarning};
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
-    AngularSettings, GearTrain, SignalError, TrainBearing, TrainRecording, TrainSettings, TrainTurning,
-    revolution_average,
+    AngularSettings, EnvelopeBand, FrequencyBand, GearTrain, SignalError, TrainRecording, TrainSettings,
+    TrainTurning, revolution_average,
 };
 use meshtone::{Simulation, StepJudgement};
 use serde_json::{Map, Value, json};
@@ -21,8 +21,6 @@ use crate::refusal::Refusal;
 const SHORT_S: f64 = 0.25;
 /// (-) What may be left of the transient then.
 const SHORT_TOLERANCE: f64 = 1e-2;
-/// Mesh harmonics of the fastest mesh up to which the spectrum is sent.
-const SENT_HARMONICS: f64 = 8.0;
 
 /// Everything that the page draws of a gearbox.
 pub struct GearboxState {
@@ -30,6 +28,8 @@ pub struct GearboxState {
     options: AnswerOptions,
     warnings: Vec<ScenarioWarning>,
     simulation: Simulation,
+    /// Its shafts, wheels and bearings.
+    train: GearTrain,
     /// Number of the signal that is drawn.
     signal: usize,
     /// Number of the wheel that is looked at.
@@ -81,6 +81,7 @@ pub fn gearbox_answer(
     let of_wheel = simulation.stages.layout.mesh_of(wheel).map(|(mesh, _)| gearbox.meshes[mesh].name());
     let mesh = options.mesh.as_deref().or(of_wheel.as_deref());
     let signals = &simulation.channels.signals;
+    let train = GearTrain::of_stages(&simulation.stages);
     Ok(GearboxState {
         signal: number(
             options.channel.as_deref(),
@@ -88,25 +89,13 @@ pub fn gearbox_answer(
         ),
         wheel,
         mesh: number(mesh, gearbox.meshes.iter().map(|mesh| mesh.name()).collect()),
-        bearing: looked_at(gearbox, &simulation, options.bearing.as_deref()),
+        bearing: LookedAtBearing::of(gearbox, &train, options.bearing.as_deref()),
+        train,
         gearbox: gearbox.clone(),
         options: options.clone(),
         warnings,
         simulation,
     })
-}
-
-/// The rolling bearing of a name; where there is none of it the first with a defect, or else the first.
-fn looked_at(gearbox: &Scenario, simulation: &Simulation, name: Option<&str>) -> Option<LookedAtBearing> {
-    let Simulation { stages, .. } = simulation;
-    let (bearings, rolling) = (gearbox.bearings(), &stages.bearings);
-    let named = rolling.iter().find(|(number, _)| Some(bearings[*number].seat_name().as_str()) == name);
-    let damaged = || rolling.iter().find(|(_, bearing)| !bearing.parts.spalls.is_empty());
-    let (number, bearing) = named.or_else(damaged).or(rolling.first())?;
-    let of = &bearings[*number];
-    let shaft = stages.layout.shaft_of_bearing[*number];
-    let placed = TrainBearing { geometry: bearing.parts.geometry, shaft };
-    Some(LookedAtBearing { name: of.seat_name(), shaft: of.shaft.clone(), placed })
 }
 
 /// The sections of a gearbox, as the page sets them.
@@ -127,15 +116,12 @@ impl GearboxState {
         let mut packet = Packet::default();
         let Simulation { stages, channels, .. } = &self.simulation;
         let signal = &channels.signals[self.signal];
-        let tones = Tones::of(stages);
+        let tones = Tones::of(&self.train, stages.scenario.operation.pinion_speed_hz);
         let spectrum = Spectrum::of(&signal.values, channels.sampling_rate_hz);
         let lines = if stages.is_steady() { spectrum.lines(&tones) } else { Vec::new() };
-        let highest_hz = tones.meshes.iter().map(|mesh| mesh.frequency_hz).fold(0.0, f64::max);
-        let sent = (SENT_HARMONICS * highest_hz / spectrum.step_hz) as usize;
         let line = |line: &SpectrumLine| json!([line.frequency_hz, line.amplitude, line.name]);
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
         let force = channels.of(SignalSource::MeshForce(self.mesh));
-        let train = GearTrain::of_stages(stages);
         let turning = TrainTurning::of_simulated(&stages.scenario, channels.start_s, signal.values.len());
         let recording = || {
             let turning = turning.as_ref().map_err(Clone::clone)?;
@@ -143,7 +129,7 @@ impl GearboxState {
             Ok::<_, SignalError>(TrainRecording {
                 signal: &signal.values,
                 sampling_rate_hz,
-                train: &train,
+                train: &self.train,
                 turning,
             })
         };
@@ -151,7 +137,10 @@ impl GearboxState {
         let indicators = self.indicators(recording().ok().as_ref(), signal.unit);
         // What is kept while a control moves is too short for averages.
         let bearing = self.bearing.as_ref().filter(|_| self.options.detail == Detail::Full);
-        let bearing = bearing.map(|bearing| bearing.json(recording(), &mut packet));
+        // A simulation has no noise: the most impulsive band is one in which there is next to nothing.
+        let band = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * channels.sampling_rate_hz };
+        let bearing =
+            bearing.map(|bearing| bearing.json(recording(), EnvelopeBand::Stated(band), &mut packet));
         let wheel = &self.gearbox.wheels[self.wheel];
         let average = average.map(
             |(values, revolutions)| json!({ "values": packet.array(values), "revolutions": revolutions }),
@@ -171,10 +160,7 @@ impl GearboxState {
                 "start_s": channels.start_s,
                 "values": packet.array(signal.values.iter().copied()),
             },
-            "spectrum": {
-                "step_hz": spectrum.step_hz,
-                "values": packet.array(spectrum.amplitudes.iter().copied().take(sent.max(2))),
-            },
+            "spectrum": spectrum.json(&tones, &mut packet),
             "lines": lines.iter().map(line).collect::<Vec<_>>(),
             "wheel": { "name": wheel.name, "teeth": wheel.teeth, "average": average, "indicators": indicators },
             "bearing": bearing,

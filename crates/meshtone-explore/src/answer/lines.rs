@@ -1,9 +1,13 @@
 //! What the lines of a gearbox's spectrum are: harmonics of which mesh, sidebands of which shaft.
 
-use meshtone::Stages;
 use meshtone::signal::GearTrain;
 use meshtone_fourier::{hann_window, real_spectrum};
+use serde_json::{Value, json};
 
+use crate::packet::Packet;
+
+/// Mesh harmonics of the fastest mesh up to which a spectrum is sent.
+const SENT_HARMONICS: f64 = 8.0;
 /// Lines of a spectrum that are named: the strongest.
 const MOST_LINES: usize = 24;
 /// Multiples of a shaft's rotation by which a line is named instead of a mesh.
@@ -70,6 +74,17 @@ impl Spectrum {
         Self { step_hz: sampling_rate_hz / count, amplitudes }
     }
 
+    /// As JSON, up to some harmonics of the fastest mesh, with its array in a packet.
+    ///
+    /// # Arguments
+    /// * `tones` - of the train
+    /// * `packet` - takes the array up
+    pub fn json(&self, tones: &Tones, packet: &mut Packet) -> Value {
+        let highest_hz = tones.meshes.iter().map(|mesh| mesh.frequency_hz).fold(0.0, f64::max);
+        let sent = (SENT_HARMONICS * highest_hz / self.step_hz) as usize;
+        json!({ "step_hz": self.step_hz, "values": packet.array(self.amplitudes.iter().copied().take(sent.max(2))) })
+    }
+
     /// The strongest lines by their frequencies, each with its name.
     ///
     /// # Arguments
@@ -95,10 +110,12 @@ impl Spectrum {
 }
 
 impl Tones {
-    /// The tones of a machine at its nominal speed.
-    pub fn of(stages: &Stages) -> Self {
-        let train = GearTrain::of_stages(stages);
-        let input_hz = stages.scenario.operation.pinion_speed_hz;
+    /// The tones of a machine.
+    ///
+    /// # Arguments
+    /// * `train` - the machine
+    /// * `input_hz` - (Hz) speed of its input
+    pub fn of(train: &GearTrain, input_hz: f64) -> Self {
         let speed_hz = |shaft: usize| train.shafts[shaft].speed_ratio.value() * input_hz;
         let mesh = |(number, wheels): (usize, &[usize; 2])| {
             let shafts = wheels.map(|wheel| train.wheels[wheel].shaft);

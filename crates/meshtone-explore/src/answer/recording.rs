@@ -6,14 +6,14 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone::signal::{
-    AngularSettings, AngularSignal, ChainSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts,
-    StatedFacts, StatedTurning, Tachometer, angular_resample, check_recording, process_angular,
-    tachometer_pulses,
+    EnvelopeBand, GearTrain, ShaftPhase, StatedTurning, Tachometer, TrainRecording, TrainSettings,
+    TrainTurning, tachometer_pulses,
 };
-use meshtone::wheel::WheelName;
 use meshtone_io::recording::{Channel, Recording, RecordingOptions, read_recording};
 use serde_json::{Value, json};
 
+use super::bearing::LookedAtBearing;
+use super::lines::{Spectrum, Tones};
 use super::wanted;
 use super::wheel_signals::WheelSignals;
 use crate::packet::Packet;
@@ -31,8 +31,11 @@ pub struct RecordingQuestion {
     pub channel: Option<String>,
     /// (S/s) Sampling rate, where the file does not say it.
     pub sampling_rate_hz: Option<f64>,
-    /// Channel with a tachometer's pulses, one a revolution of the pinion's shaft; the scenario's speed, constant, where none is named.
+    /// Channel with a tachometer's pulses, one a revolution of the shaft that the motor turns; the scenario's speed, constant, where
+    /// none is named.
     pub tachometer: Option<String>,
+    /// The rolling bearing that is looked at, by the name of its seat.
+    pub bearing: Option<String>,
 }
 
 impl RecordingQuestion {
@@ -47,21 +50,22 @@ impl RecordingQuestion {
             channel: text("channel"),
             sampling_rate_hz: fields.get("sampling_rate_hz").and_then(Value::as_f64),
             tachometer: text("tachometer"),
+            bearing: text("bearing"),
         }
     }
 }
 
-/// The answer's bytes: what a recording shows of both wheels, through the chain with the wheels and the speed of a scenario.
+/// The answer's bytes: what a recording shows of all wheels, and of a rolling bearing, with the wheels and the speed of a scenario.
 ///
 /// # Arguments
 /// * `bytes` - the file
 /// * `question` - what it does not say itself
-/// * `scenario` - whose teeth and speed are taken, unless the file is of a simulation
+/// * `scenario` - whose wheels and speed are taken, unless the file is of a simulation
 /// * `is_wanted` - whether the answer still is
 ///
 /// # Errors
-/// What [`read_recording`] refuses; a channel that is not there; no longer wanted. Where only one wheel's average cannot be made, its
-/// part says why.
+/// What [`read_recording`] refuses; a channel that is not there; a simulation of another machine; no longer wanted. Where one wheel's
+/// average cannot be made, its part says why.
 pub fn recording(
     bytes: &[u8],
     question: &RecordingQuestion,
@@ -71,20 +75,54 @@ pub fn recording(
     let recording = read(bytes, question)?;
     wanted(is_wanted)?;
     let (simulated, channel) = chosen(&recording, question)?;
-    let (turning, wheels, doubts) = match (&simulated, &question.tachometer) {
-        (Some(simulated), None) => ("scenario", of_simulation(&recording, channel, simulated), Vec::new()),
-        _ => of_measurement(&recording, channel, question, scenario)?,
+    let speed_hz = scenario.operation.pinion_speed_hz;
+    let constant = |_: &GearTrain| {
+        let phase = ShaftPhase::constant(speed_hz, recording.sampling_rate_hz, recording.len())?;
+        Ok(("constant speed", StatedTurning::ConstantSpeed { speed_hz }, phase))
     };
-    let of_records = wheels.iter().filter_map(|wheel| wheel.record.as_ref().ok());
-    let of_signal =
-        doubts.iter().chain(of_records.flat_map(|record| &record.warnings)).map(ToString::to_string);
-    let warnings: Vec<String> = recording.warnings.iter().map(ToString::to_string).chain(of_signal).collect();
+    let machine = simulated.as_ref().unwrap_or(scenario);
+    let tachometer = question.tachometer.as_deref();
+    let Turned { source, train, turning } =
+        turned(&recording, tachometer, simulated.as_ref(), scenario, constant)?;
+    let looked_at = TrainRecording {
+        signal: &channel.samples,
+        sampling_rate_hz: recording.sampling_rate_hz,
+        train: &train,
+        turning: &turning,
+    };
     let mut packet = Packet::default();
     let unit = channel.unit.as_deref().unwrap_or("");
+    let mut warnings: Vec<String> = recording.warnings.iter().map(ToString::to_string).collect();
+    if let TrainTurning::Shaft { phase, .. } = &turning {
+        // What cannot be resampled is a problem of its wheels.
+        let doubts = looked_at.check().unwrap_or_default();
+        warnings.extend(phase.warnings.iter().chain(&doubts).map(ToString::to_string));
+    }
+    let mut wheels = Vec::new();
+    for (number, wheel) in train.wheels.iter().enumerate() {
+        wanted(is_wanted)?;
+        let records = looked_at.process_one(number, &TrainSettings::default());
+        let Some(record) = records.map(|of| of.records.into_iter().next()).transpose() else { continue };
+        if let Ok(record) = &record {
+            warnings.extend(record.warnings.iter().map(ToString::to_string));
+        }
+        let signals = WheelSignals { record, teeth: wheel.teeth, damaged: Vec::new() };
+        let mut said = signals.json(unit, &mut packet);
+        said["name"] = wheel.name.as_str().into();
+        wheels.push(said);
+    }
+    // A pair's page draws the spectrum of the average instead, and a rig has no rolling bearings.
+    let (mut spectrum, mut bearing) = (Value::Null, Value::Null);
+    if machine.rig().is_none() {
+        let all = Spectrum::of(&channel.samples, recording.sampling_rate_hz);
+        spectrum = all.json(&Tones::of(&train, machine.operation.pinion_speed_hz), &mut packet);
+        let of = LookedAtBearing::of(machine, &train, question.bearing.as_deref());
+        bearing = of.map_or(Value::Null, |of| of.json(Ok(looked_at), EnvelopeBand::default(), &mut packet));
+    }
     let said = json!({
         "name": question.name,
         "channels": recording.channels.iter().map(|channel| &channel.name).collect::<Vec<_>>(),
-        "turning": turning,
+        "turning": source,
         "warnings": warnings,
         "signal": {
             "channel": { "name": channel.name, "unit": unit },
@@ -92,7 +130,9 @@ pub fn recording(
             "start_s": recording.start_s,
             "values": packet.array(channel.samples.iter().copied()),
         },
-        "wheels": wheels.each_ref().map(|wheel| wheel.json(unit, &mut packet)),
+        "wheels": wheels,
+        "spectrum": spectrum,
+        "bearing": bearing,
     });
     Ok(packet.bytes(&said))
 }
@@ -127,15 +167,59 @@ pub(super) fn chosen<'r>(
     Ok((simulated, channel))
 }
 
-/// How the pinion's shaft turns by a tachometer's channel, one pulse a revolution.
-pub(super) fn by_tachometer(
+/// A machine, and how its shafts turned over a recording.
+pub(super) struct Turned {
+    /// What says how they turned.
+    pub(super) source: &'static str,
+    /// The machine.
+    pub(super) train: GearTrain,
+    /// How its shafts turned.
+    pub(super) turning: TrainTurning,
+}
+
+/// How the shafts turned: by a tachometer; else as the scenario says that a file of ours has; else as the page's scenario lets one believe.
+///
+/// # Arguments
+/// * `recording` - the recording
+/// * `tachometer` - the channel of the tachometer, which has one pulse a revolution of the input
+/// * `simulated` - what was simulated, where the recording is a simulation
+/// * `scenario` - the page's
+/// * `otherwise` - the phase of the input where nothing else says it: its source, what is stated, itself
+///
+/// # Errors
+/// A simulation of a machine with other wheels; a channel that is not there, or that has no pulses.
+pub(super) fn turned(
     recording: &Recording,
-    name: &str,
-) -> Result<(StatedTurning, ShaftPhase), Refusal> {
+    tachometer: Option<&str>,
+    simulated: Option<&Scenario>,
+    scenario: &Scenario,
+    otherwise: impl FnOnce(&GearTrain) -> Result<(&'static str, StatedTurning, ShaftPhase), Refusal>,
+) -> Result<Turned, Refusal> {
+    let names = |scenario: &Scenario| -> Vec<String> {
+        scenario.wheels.iter().map(|wheel| wheel.name.clone()).collect()
+    };
+    if let Some(simulated) = simulated.filter(|simulated| names(simulated) != names(scenario)) {
+        let [own, pages] = [simulated, scenario].map(|of| names(of).join(", "));
+        let problem = format!("the recording is a simulation of the wheels {own}, and the page has {pages}");
+        return Err(Refusal::unfit(problem).with_help("open the page with the scenario of that machine"));
+    }
     let rate_hz = recording.sampling_rate_hz;
-    let times = tachometer_pulses(&named(recording, Some(name))?.samples, rate_hz, &Tachometer::default())?;
-    let phase = ShaftPhase::from_pulses(&times, 1, None, rate_hz, recording.len())?;
-    Ok((StatedTurning::Pulses { per_revolution: 1 }, phase))
+    let train = GearTrain::of_scenario(scenario)?;
+    let (source, stated, phase) = match (tachometer, simulated) {
+        (Some(name), _) => {
+            let pulses = &named(recording, Some(name))?.samples;
+            let times = tachometer_pulses(pulses, rate_hz, &Tachometer::default())?;
+            let phase = ShaftPhase::from_pulses(&times, 1, None, rate_hz, recording.len())?;
+            ("tachometer", StatedTurning::Pulses { per_revolution: 1 }, phase)
+        }
+        (None, Some(simulated)) => {
+            let turning = TrainTurning::of_simulated(simulated, recording.start_s, recording.len())?;
+            return Ok(Turned { source: "scenario", train: GearTrain::of_scenario(simulated)?, turning });
+        }
+        (None, None) => otherwise(&train)?,
+    };
+    let turning = TrainTurning::Shaft { shaft: train.input(), phase, stated };
+    Ok(Turned { source, train, turning })
 }
 
 /// The channel of a name, or the first.
@@ -149,50 +233,4 @@ fn named<'r>(recording: &'r Recording, name: Option<&str>) -> Result<&'r Channel
         let asked = name.unwrap_or_default();
         Refusal::unfit(format!("there is no channel {asked}; there are {}", known.join(", ")))
     })
-}
-
-/// The scenario that a file of ours has says how far the shafts have turned.
-fn of_simulation(recording: &Recording, channel: &Channel, scenario: &Scenario) -> [WheelSignals; 2] {
-    let shafts = SimulatedShafts::new(scenario, recording.start_s, recording.len());
-    let of_wheel = |shaft| {
-        let record = shafts.process(&channel.samples, shaft, &ChainSettings::default());
-        WheelSignals { record, teeth: shafts.teeth(shaft), damaged: Vec::new() }
-    };
-    WheelName::BOTH.map(of_wheel)
-}
-
-fn of_measurement(
-    recording: &Recording,
-    channel: &Channel,
-    question: &RecordingQuestion,
-    scenario: &Scenario,
-) -> Result<(&'static str, [WheelSignals; 2], Vec<SignalWarning>), Refusal> {
-    let (rate_hz, samples) = (recording.sampling_rate_hz, recording.len());
-    let [pinion_teeth, gear_teeth] = [scenario.gears().pinion_teeth, scenario.gears().gear_teeth];
-    let speed_hz = scenario.operation.pinion_speed_hz;
-    let (name, (turning, phase)) = match &question.tachometer {
-        Some(name) => ("tachometer", by_tachometer(recording, name)?),
-        None => {
-            let turning = StatedTurning::ConstantSpeed { speed_hz };
-            ("constant speed", (turning, ShaftPhase::constant(speed_hz, rate_hz, samples)?))
-        }
-    };
-    let stated = StatedFacts { teeth: pinion_teeth, mate_teeth: Some(gear_teeth), turning };
-    let settings = ChainSettings::default();
-    let over = |phase: &ShaftPhase| angular_resample(&channel.samples, phase, &AngularSettings::default());
-    let process = |angular: &Result<AngularSignal, SignalError>, teeth: u32| WheelSignals {
-        record: angular
-            .as_ref()
-            .map_err(Clone::clone)
-            .and_then(|angular| process_angular(angular, teeth, &settings)),
-        teeth,
-        damaged: Vec::new(),
-    };
-    let pinion = over(&phase);
-    let mut doubts = phase.warnings.clone();
-    if let Ok(angular) = &pinion {
-        doubts.extend(check_recording(angular, &stated, &phase, rate_hz));
-    }
-    let gear = over(&phase.of_mate(pinion_teeth, gear_teeth)?);
-    Ok((name, [process(&pinion, pinion_teeth), process(&gear, gear_teeth)], doubts))
 }

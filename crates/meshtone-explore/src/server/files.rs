@@ -7,14 +7,25 @@ use axum::routing::get;
 use super::guard::respond;
 use meshtone::scenario::Scenario;
 
+/// The page of a pair or of a gearbox: what differs stands between what all pages begin and end with.
+macro_rules! page {
+    ($own:literal) => {
+        concat!(
+            include_str!("../page/head.html"),
+            include_str!(concat!("../page/", $own)),
+            include_str!("../page/foot.html")
+        )
+    };
+}
+
 /// One row a file: its path, its kind, where it lies.
 macro_rules! files {
     ($($path:literal $media_type:literal $file:literal;)+) => {
         /// The page of a scenario and its parts.
         pub(super) fn router(start: &Scenario) -> Router {
-            let page = match start.rig() {
-                Some(_) => &include_bytes!("../page/index.html")[..],
-                None => &include_bytes!("../page/gearbox.html")[..],
+            let page: &'static str = match start.rig() {
+                Some(_) => page!("pair.html"),
+                None => page!("gearbox.html"),
             };
             let page = move || async move { respond(StatusCode::OK, "text/html; charset=utf-8", page) };
             Router::new().route("/", get(page))$(.route($path, get(|| async {
@@ -26,6 +37,9 @@ macro_rules! files {
 
 files! {
     "/style.css" "text/css; charset=utf-8" "style.css";
+    "/page.js" "text/javascript; charset=utf-8" "page.js";
+    "/recording.js" "text/javascript; charset=utf-8" "recording.js";
+    "/gearbox_controls.js" "text/javascript; charset=utf-8" "gearbox_controls.js";
     "/gearbox.js" "text/javascript; charset=utf-8" "gearbox.js";
     "/train.js" "text/javascript; charset=utf-8" "train.js";
     "/icon.svg" "image/svg+xml" "icon.svg";

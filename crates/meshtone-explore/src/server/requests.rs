@@ -151,12 +151,12 @@ async fn start(Shares(shared): Shares<Arc<Shared>>) -> Response {
     if scenario.rig().is_some() {
         said = controls();
         said["scenario"] = Value::Object(without_defaults(scenario));
-        said["records"] =
-            json!([ReferenceStore::BATCH, ReferenceStore::USUAL_RECORDS, ReferenceStore::MOST_RECORDS]);
     } else {
         said = gearbox_controls();
         said["scenario"] = gearbox_sections_json(scenario);
     }
+    said["records"] =
+        json!([ReferenceStore::BATCH, ReferenceStore::USUAL_RECORDS, ReferenceStore::MOST_RECORDS]);
     respond(StatusCode::OK, JSON, said.to_string())
 }
 
@@ -245,7 +245,7 @@ pub(super) fn framed(body: &Bytes) -> Result<(Bytes, Bytes), Refusal> {
 /// A recording that was dropped on the page.
 async fn of_recording(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
     let (said, file) = framed(&body)?;
-    let bytes = compute(&shared, "recording", &said, move |asked, scenario, turn| {
+    let bytes = compute_of(&shared, "recording", &said, question::scenario, move |asked, scenario, turn| {
         recording(&file, &RecordingQuestion::of(&asked.fields), scenario, &|| turn.is_wanted())
     });
     Ok(respond(StatusCode::OK, PACKET, bytes.await?))

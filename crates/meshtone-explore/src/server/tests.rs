@@ -401,6 +401,47 @@ fn the_envelope_of_a_rolling_bearing_shows_its_defect() {
 }
 
 #[test]
+fn a_recording_of_a_gearbox_shows_its_wheels_and_a_bearing() {
+    let server = server();
+    let gearbox = Scenario::from_toml(&geared("defect = [{ race = \"outer\", width_mm = 2.0 }]\n")).unwrap();
+    let export = |scenario: &Scenario| {
+        server.post("export/parquet", &json!({ "page": "a", "toml": scenario.to_toml() })).body
+    };
+    let ask = |name: &str, scenario: &Scenario, file: &[u8]| {
+        let asked = json!({ "page": "a", "name": name, "toml": scenario.to_toml(), "bearing": "input:0" });
+        server.ask("POST", "recording", &framed(asked.to_string().into_bytes(), file))
+    };
+    // The page shows another gearbox: a sound bearing.
+    let file = export(&gearbox);
+    let (said, _) = ask("own.parquet", &Scenario::from_toml(&geared("")).unwrap(), &file).packet();
+    assert_eq!(said["turning"], "scenario");
+    let names: Vec<&Value> = said["wheels"].as_array().unwrap().iter().map(|wheel| &wheel["name"]).collect();
+    assert_eq!(names, ["z1", "z2", "z3", "z4"]);
+    // 2 s at 30, 10, 10 and 6 rev/s, from the angles at which first teeth enter contact on.
+    let turns = |of: &Value| {
+        of["wheels"].as_array().unwrap().iter().map(|wheel| wheel["revolutions"].as_u64()).collect::<Vec<_>>()
+    };
+    assert_eq!(turns(&said), [59, 19, 19, 11].map(Some));
+    assert_eq!(said["bearing"]["name"], "input:0");
+    let lines = said["bearing"]["lines"].as_array().unwrap();
+    let over_median = |name: &str| lines.iter().find(|line| line[0] == name).unwrap()[4].as_f64().unwrap();
+    assert!(over_median("BPFO") > 3.0 * over_median("BPFI"), "{lines:?}");
+    assert!(said["spectrum"]["values"]["length"].as_u64().unwrap() > 1000);
+    // A measured one turns with the page's speed.
+    let rows =
+        (0..40_000_u32).map(|i| format!("{:.4}", (f64::from(i) * 0.3).sin() + 0.1 * f64::from(i * i % 7)));
+    let csv = std::iter::once("bearing [g]".to_owned()).chain(rows).collect::<Vec<_>>().join("\n");
+    let asked = json!({ "page": "a", "name": "a.csv", "sampling_rate_hz": 2e4, "toml": geared("") });
+    let body = framed(asked.to_string().into_bytes(), csv.as_bytes());
+    let (measured, _) = server.ask("POST", "recording", &body).packet();
+    assert_eq!((&measured["turning"], turns(&measured)[0]), (&json!("constant speed"), Some(59)));
+    // What was simulated of other wheels is not looked at with these.
+    let text =
+        ask("pair.parquet", &gearbox, &export(&fast())).json()["error"]["text"].as_str().unwrap().to_owned();
+    assert!(text.contains("pinion, gear") && text.contains("z1, z2, z3, z4"), "{text}");
+}
+
+#[test]
 fn a_defect_that_does_not_fit_is_refused_at_its_key() {
     let server = server();
     for (defect, key, problem) in [
