@@ -48,13 +48,21 @@ impl Modes {
             return Self::damped_alike(machine, spring.damping_ratio);
         }
         let mut modes = Self::undamped(machine);
+        let springs: Vec<(&Spring, Vec<usize>)> =
+            machine.springs.iter().map(|spring| (spring, spring.coordinates())).collect();
         modes.damping_ratio = (0..modes.damping_ratio.len())
             .map(|n| {
                 let shape = modes.shapes.column(n);
-                let energies = machine.springs.iter().map(|spring| (&spring.stiffness * shape).dot(&shape));
-                let whole: f64 = energies.clone().sum();
-                let ratios = machine.springs.iter().map(|spring| spring.damping_ratio);
-                let damped: f64 = ratios.zip(energies).map(|(ratio, energy)| ratio * energy).sum();
+                let energy = |(spring, coordinates): &(&Spring, Vec<usize>)| {
+                    let mut force = DVector::zeros(shape.len());
+                    for &coordinate in coordinates {
+                        force.axpy(shape[coordinate], &spring.stiffness.column(coordinate), 1.0);
+                    }
+                    [force.dot(&shape), spring.damping_ratio]
+                };
+                let energies: Vec<[f64; 2]> = springs.iter().map(energy).collect();
+                let whole: f64 = energies.iter().map(|[energy, _]| energy).sum();
+                let damped: f64 = energies.iter().map(|[energy, ratio]| ratio * energy).sum();
                 if modes.angular_frequencies[n] > 0.0 { damped / whole } else { 0.0 }
             })
             .collect();

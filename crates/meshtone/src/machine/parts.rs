@@ -129,6 +129,12 @@ impl Spring {
         Self { stiffness: DMatrix::zeros(coordinates, coordinates), damping_ratio }
     }
 
+    /// Numbers of the coordinates that it holds.
+    pub(crate) fn coordinates(&self) -> Vec<usize> {
+        let columns = self.stiffness.column_iter().enumerate();
+        columns.filter(|(_, column)| column.iter().any(|value| *value != 0.0)).map(|(n, _)| n).collect()
+    }
+
     /// Adds `k v vᵀ`: a spring that resists a combination of coordinates.
     ///
     /// # Arguments

@@ -507,20 +507,22 @@ impl MeshLaw {
     #[inline(always)]
     pub(crate) fn friction(&self, springs: Springs, deflection_m: f64) -> [[f64; 2]; 2] {
         let lets_go_m = self.contact.lets_go_at_m();
-        let mut sums = [[0.0; 2]; 2];
-        let each = springs
-            .stiffness
-            .iter()
-            .zip(springs.offset)
-            .zip(springs.sliding[0].iter().zip(springs.sliding[1]));
-        for ((stiffness, offset), (across, moment)) in each {
-            let penetration_m = deflection_m + offset;
-            let touching = if penetration_m > lets_go_m { *stiffness } else { 0.0 };
-            for (sum, part) in sums.iter_mut().zip([across, moment]) {
-                sum[0] += touching * penetration_m * part;
-                sum[1] += touching * part;
+        // As many springs as fit whole sums: see [`SpringSamples`].
+        let [stiffness, offset, across, moment] =
+            [springs.stiffness, springs.offset, springs.sliding[0], springs.sliding[1]]
+                .map(|values| values.as_chunks::<AT_ONCE>().0);
+        let mut by_place = [[[0.0; AT_ONCE]; 2]; 2];
+        for (((stiffness, offset), across), moment) in stiffness.iter().zip(offset).zip(across).zip(moment) {
+            for n in 0..AT_ONCE {
+                let penetration_m = deflection_m + offset[n];
+                let touching = if penetration_m > lets_go_m { stiffness[n] } else { 0.0 };
+                for (sums, part) in by_place.iter_mut().zip([across[n], moment[n]]) {
+                    sums[0][n] += touching * penetration_m * part;
+                    sums[1][n] += touching * part;
+                }
             }
         }
+        let mut sums = by_place.map(|sums| sums.map(|[a, b, c, d]| (a + b) + (c + d)));
         for corner in springs.corners {
             let of_corner = corner.force_and_slope(springs.laws, deflection_m);
             for (sum, part) in sums.iter_mut().zip(springs.sliding_of_laws[corner.law as usize]) {

@@ -62,12 +62,30 @@ struct LotConstants {
     external_push: [Lanes<SIDE_BY_SIDE>; EXTERNALS],
 }
 
-/// The modes of a lot in a column of a line of action.
+/// Columns whose deflections are summed in one pass over the modes.
+const AT_ONCE: usize = 2;
+
+/// For each of some columns two numbers of a lot: what a predicted displacement deflects, and a predicted velocity.
+#[derive(Clone, Copy)]
 #[repr(align(64))]
-struct LotColumn {
-    push: Lanes<SIDE_BY_SIDE>,
-    of_displacement: Lanes<SIDE_BY_SIDE>,
-    of_velocity: Lanes<SIDE_BY_SIDE>,
+struct LotColumns([[Lanes<SIDE_BY_SIDE>; 2]; AT_ONCE]);
+
+impl LotColumns {
+    const ZERO: Self = Self([[Lanes([0.0; SIDE_BY_SIDE]); 2]; AT_ONCE]);
+
+    /// Adds what a lot deflects in the columns.
+    ///
+    /// # Arguments
+    /// * `columns` - of the lot
+    /// * `state` - its predicted displacement and velocity
+    #[inline(always)]
+    fn add<I: Instructions>(&mut self, simd: I, columns: &Self, state: [Lanes<SIDE_BY_SIDE>; 2]) {
+        for (sums, columns) in self.0.iter_mut().zip(&columns.0) {
+            for n in 0..2 {
+                sums[n] = columns[n].mul_add(simd, state[n], sums[n]);
+            }
+        }
+    }
 }
 
 /// One of the numbers of a [`LotState`] at the samples of a tile.
@@ -280,7 +298,11 @@ fn external(block: &ForcingBlock, k: usize) -> [f64; EXTERNALS] {
 struct Constants {
     prepared: Prepared,
     lots: Vec<LotConstants>,
-    columns: Vec<Vec<LotColumn>>,
+    /// `Δt² q̈` of each lot per force in each column.
+    pushes: Vec<Lot>,
+    /// The columns in which something is deflected, which those of friction are not, and for as many as are summed at once their lots.
+    deflected: Vec<usize>,
+    columns: Vec<Vec<LotColumns>>,
     turning: Vec<[Vec<Lot>; 2]>,
     outputs: Vec<OutputOfModes>,
     /// Whether all loads act midway along their faces.
@@ -292,16 +314,19 @@ struct OutputOfModes([Weights; 3]);
 
 impl Constants {
     fn new(prepared: Prepared, order: &Order) -> Self {
-        let column = |column: &super::prepare::Column| {
-            let [push, of_displacement, of_velocity] =
-                [&column.push, &column.of_displacement, &column.of_velocity].map(|values| order.lots(values));
-            let lots = push.iter().zip(&of_displacement).zip(&of_velocity);
-            let lot = |((push, of_displacement), of_velocity): ((&Lot, &Lot), &Lot)| LotColumn {
-                push: push.0,
-                of_displacement: of_displacement.0,
-                of_velocity: of_velocity.0,
-            };
-            lots.map(lot).collect()
+        let pushes: Vec<Vec<Lot>> =
+            prepared.columns.iter().map(|column| order.lots(&column.push)).collect();
+        let is_deflected =
+            |number: &usize| *number < prepared.first_across || *number >= prepared.first_spinning;
+        let deflected: Vec<usize> = (0..prepared.columns.len()).filter(is_deflected).collect();
+        let at_once = |numbers: &[usize]| {
+            let mut lots = vec![LotColumns::ZERO; pushes[0].len()];
+            for (place, column) in numbers.iter().map(|number| &prepared.columns[*number]).enumerate() {
+                for (n, values) in [&column.of_displacement, &column.of_velocity].into_iter().enumerate() {
+                    lots.iter_mut().zip(order.lots(values)).for_each(|(lot, own)| lot.0[place][n] = own.0);
+                }
+            }
+            lots
         };
         let output = |of: &OutputWeights| {
             OutputOfModes([&of.displacement, &of.velocity, &of.acceleration].map(|list| order.weights(list)))
@@ -315,7 +340,9 @@ impl Constants {
         };
         Self {
             lots: (0..restore.len()).map(lot).collect(),
-            columns: prepared.columns.iter().map(column).collect(),
+            pushes: (0..restore.len()).flat_map(|n| pushes.iter().map(move |lots| lots[n])).collect(),
+            columns: deflected.chunks(AT_ONCE).map(at_once).collect(),
+            deflected,
             turning: prepared
                 .turning_push
                 .iter()
@@ -417,7 +444,7 @@ impl Task for Outputs<'_> {
     #[inline(always)]
     fn run<I: Instructions>(self, simd: I) {
         let History { states, force, external } = self.history;
-        let columns = self.constants.columns.len();
+        let columns = self.constants.prepared.columns.len();
         let outputs = self.constants.outputs.iter().zip(&self.constants.prepared.outputs);
         for (values, (output, others)) in self.outputs.iter_mut().zip(outputs) {
             for (tile, external) in external.chunks(TILE).enumerate() {
@@ -451,8 +478,9 @@ impl State {
         sample: &ContactSample,
         external: Option<[f64; EXTERNALS]>,
     ) {
-        for (LotState([displacement, velocity, acceleration]), constants) in
-            self.lots.iter_mut().zip(&constants.lots)
+        let mut sums = LotColumns::ZERO;
+        for ((LotState([displacement, velocity, acceleration]), constants), columns) in
+            self.lots.iter_mut().zip(&constants.lots).zip(&constants.columns[0])
         {
             *velocity = velocity.add(simd, *acceleration);
             *displacement = displacement.add(simd, *velocity);
@@ -461,6 +489,7 @@ impl State {
             for (push, external) in constants.external_push.iter().zip(external.into_iter().flatten()) {
                 *acceleration = push.mul_add(simd, Lanes::splat(external), *acceleration);
             }
+            sums.add(simd, columns, [*displacement, *velocity]);
         }
         for ([cos, sin], values) in constants.turning.iter().zip(&sample.block.external.turning) {
             let [of_cos, of_sin] = values.each_ref().map(|values| Lanes::splat(values[sample.k]));
@@ -470,28 +499,30 @@ impl State {
         }
         self.external = external.unwrap_or_default();
         let prepared = &constants.prepared;
-        // Nothing is deflected along the columns of friction.
-        let is_deflected =
-            |number: &usize| *number < prepared.first_across || *number >= prepared.first_spinning;
-        for number in (0..prepared.columns.len()).filter(is_deflected) {
-            let (free, column, lots) =
-                (&mut self.free[number], &prepared.columns[number], &constants.columns[number]);
-            let [mut of_displacement, mut of_velocity] = [Lanes::splat(0.0); 2];
-            for (LotState([displacement, velocity, _]), lot) in self.lots.iter().zip(lots) {
-                of_displacement = lot.of_displacement.mul_add(simd, *displacement, of_displacement);
-                of_velocity = lot.of_velocity.mul_add(simd, *velocity, of_velocity);
+        for (part, numbers) in constants.deflected.chunks(AT_ONCE).enumerate() {
+            if part > 0 {
+                sums = LotColumns::ZERO;
+                for (LotState([displacement, velocity, _]), columns) in
+                    self.lots.iter().zip(&constants.columns[part])
+                {
+                    sums.add(simd, columns, [*displacement, *velocity]);
+                }
             }
-            let sum = of_displacement.add(simd, of_velocity);
-            let turned = column.of_turning.iter().zip(&sample.block.external.turning);
-            let turned: f64 =
-                turned.map(|(of, [cos, sin])| of[0] * cos[sample.k] + of[1] * sin[sample.k]).sum();
-            *free = column.static_deflection + dot(&column.of_external, &self.external) + turned + total(sum);
+            for (&number, [of_displacement, of_velocity]) in numbers.iter().zip(sums.0) {
+                let (free, column) = (&mut self.free[number], &prepared.columns[number]);
+                let sum = of_displacement.add(simd, of_velocity);
+                let turned = column.of_turning.iter().zip(&sample.block.external.turning);
+                let turned: f64 =
+                    turned.map(|(of, [cos, sin])| of[0] * cos[sample.k] + of[1] * sin[sample.k]).sum();
+                *free =
+                    column.static_deflection + dot(&column.of_external, &self.external) + turned + total(sum);
+            }
         }
         constants.contact_forces(sample, self);
-        for (column, force) in constants.columns.iter().zip(&self.force) {
-            let force = Lanes::splat(*force);
-            for (LotState([.., acceleration]), lot) in self.lots.iter_mut().zip(column) {
-                *acceleration = lot.push.mul_add(simd, force, *acceleration);
+        let pushes = constants.pushes.chunks_exact(self.force.len());
+        for (LotState([.., acceleration]), pushes) in self.lots.iter_mut().zip(pushes) {
+            for (push, force) in pushes.iter().zip(&self.force) {
+                *acceleration = push.0.mul_add(simd, Lanes::splat(*force), *acceleration);
             }
         }
     }
