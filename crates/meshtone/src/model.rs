@@ -69,12 +69,16 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
     (
         &["published"],
         &[
+            "gears.pinion_material",
+            "gears.gear_material",
+            "gears.phase",
             "gears.hand",
             "gears.slices",
             "gears.flank_relief",
             "gears.tip_chamfer_mm",
             "gears.foundation",
             "operation.speed_profile_hz",
+            "operation.torque_ripple",
             "quality.iso_class",
             "quality.tooth_share",
             "quality.pitch_share",

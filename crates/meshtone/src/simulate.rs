@@ -32,7 +32,7 @@ use crate::machine::{DecayingMode, Drive, KnownModes};
 use crate::mesh::{Contact, FacesAtRest, Mesh, Pairs};
 use crate::operation::{Motion, TimeGrid, TorqueHarmonic};
 use crate::published::Published;
-use crate::scenario::{GearboxShaft, Layout, MemoryLimit, Ripple, Scenario};
+use crate::scenario::{Layout, MemoryLimit, Ripple, Scenario};
 use crate::sensor::{Channels, ContactFigures, Sensor, SignalSource};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, ModalMachine, MotionState, Output, Recorder, StepCounts};
@@ -378,7 +378,7 @@ impl Stages {
     /// The tooth pairs of the first mesh, at any position of their path; not under the published model, whose flanks are not conjugate.
     pub fn tooth_pairs(&self) -> Pairs<'_> {
         let (gears, MeshedPair { teeth, damaged, .. }) = (&self.layout.gears[0], &self.pushing().1[0]);
-        Pairs::new(teeth, damaged, gears.material, &gears.foundation)
+        Pairs::new(teeth, damaged, gears)
     }
 
     /// The meshes, with another number of points from one pair to the next than the time loop has; none under the published model.
@@ -463,8 +463,7 @@ impl Stages {
             of_brake.unwrap_or(1.0)
         });
         let ratio = |ripple: &Ripple| {
-            let is_named = |shaft: &&GearboxShaft| Some(&shaft.name) == ripple.shaft.as_ref();
-            let shaft = self.scenario.shafts().iter().position(|shaft| is_named(&shaft));
+            let shaft = self.layout.shaft_names.iter().position(|name| Some(name) == ripple.shaft.as_ref());
             shaft.map_or(brake, |shaft| self.layout.ratios[shaft].value().abs())
         };
         let harmonic = |ripple: &Ripple| TorqueHarmonic {

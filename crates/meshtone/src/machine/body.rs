@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::machine::WheelInertia;
-use crate::wheel::{BodyRotation, Gears, Material, Wheel};
+use crate::wheel::{BodyRotation, Gears, Material, Wheel, WheelName};
 
 /// Mass and inertias of one wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,11 +44,12 @@ impl WheelBody {
 ///
 /// # Arguments
 /// * `wheel` - geometry
+/// * `side` - which of the two it is
 /// * `gears` - for the shear modulus, and where the rotation is
-pub(crate) fn body_stiffness_nm_per_rad(wheel: &Wheel, gears: &Gears) -> Option<f64> {
+pub(crate) fn body_stiffness_nm_per_rad(wheel: &Wheel, side: WheelName, gears: &Gears) -> Option<f64> {
     let of_radius = |radius_mm: f64| (radius_mm * 1e-3).powi(-2);
     let width_m = wheel.face_width_mm * 1e-3;
-    let stiffness = 4.0 * PI * gears.material.shear_modulus_mpa() * 1e6 * width_m
+    let stiffness = 4.0 * PI * gears.material_of(side).shear_modulus_mpa() * 1e6 * width_m
         / (of_radius(wheel.bore_radius_mm) - of_radius(wheel.root_radius_mm));
     (gears.foundation.rotation == BodyRotation::Machine).then_some(stiffness)
 }

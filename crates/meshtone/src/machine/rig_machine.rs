@@ -126,18 +126,17 @@ impl RigMachine {
     /// * `supports` - whether the supports move
     pub fn new(parts: RigParts, teeth: &Teeth, supports: Supports) -> Self {
         let RigParts { gears, rig, inertias, overruns, .. } = parts;
-        let pinion = WheelBody::new(&teeth.pinion, gears.material, inertias[0]);
-        let gear = WheelBody::new(&teeth.gear, gears.material, inertias[1]);
+        let pinion = WheelBody::new(&teeth.pinion, gears.material_of(WheelName::Pinion), inertias[0]);
+        let gear = WheelBody::new(&teeth.gear, gears.material_of(WheelName::Gear), inertias[1]);
         let coordinates = match supports {
             Supports::Moving => NAMES.len(),
             Supports::Held => WITHOUT_SUPPORTS,
         };
-        let torsion =
-            [(&rig.pinion_shaft, &teeth.pinion), (&rig.gear_shaft, &teeth.gear)].map(|(shaft, wheel)| {
-                let of_shaft = torsional_stiffness(shaft, gears);
-                let with_body = |body: f64| 1.0 / (1.0 / of_shaft + 1.0 / body);
-                body_stiffness_nm_per_rad(wheel, gears).map_or(of_shaft, with_body)
-            });
+        let torsion = WheelName::BOTH.map(|side| {
+            let of_shaft = torsional_stiffness(rig.shaft(side), gears);
+            let with_body = |body: f64| 1.0 / (1.0 / of_shaft + 1.0 / body);
+            body_stiffness_nm_per_rad(teeth.wheel(side), side, gears).map_or(of_shaft, with_body)
+        });
         let angle_rad = teeth.gear.working_pressure_angle_rad;
         // The other flanks push downwards where these push upwards.
         let angle_rad = if overruns { PI - angle_rad } else { angle_rad };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::sequence::PairKind;
 use crate::damage::{DamagedTooth, united};
 use crate::stiffness::{FlankLoad, LoadedFlank, hertz_compliance_mm_per_n};
-use crate::wheel::{FlankPoint, FoundationCoefficients, Material, Teeth, WheelName};
+use crate::wheel::{FlankPoint, FoundationCoefficients, Gears, Material, Teeth, WheelName};
 
 /// A pair that is loaded at one position of its path of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Pairs<'a> {
     damaged: &'a [DamagedTooth],
     sound: Arc<[LoadedFlank<'a>; 2]>,
     broken: Vec<LoadedFlank<'a>>,
-    material: Material,
+    materials: [Material; 2],
     foundation: FoundationCoefficients,
     /// (-) Cosine of the base helix angle, by which a stiffness across the teeth is less in the transverse section.
     base_cos: f64,
@@ -48,21 +48,19 @@ impl<'a> Pairs<'a> {
     /// # Arguments
     /// * `teeth` - both sound teeth
     /// * `damaged` - the damaged teeth
-    /// * `material` - of both wheels
-    /// * `foundation` - coefficients of the fillet foundation
-    pub fn new(
-        teeth: &'a Teeth,
-        damaged: &'a [DamagedTooth],
-        material: Material,
-        foundation: &FoundationCoefficients,
-    ) -> Self {
-        let loaded = |wheel, damage| LoadedFlank::new(teeth.flank(wheel), damage, material, foundation);
+    /// * `gears` - for the materials and the coefficients of the fillet foundation
+    pub fn new(teeth: &'a Teeth, damaged: &'a [DamagedTooth], gears: &Gears) -> Self {
+        let (materials, foundation) =
+            (WheelName::BOTH.map(|wheel| gears.material_of(wheel)), &gears.foundation);
+        let loaded = |wheel: WheelName, damage| {
+            LoadedFlank::new(teeth.flank(wheel), damage, materials[wheel as usize], foundation)
+        };
         Self {
             teeth,
             damaged,
             sound: Arc::new(WheelName::BOTH.map(|wheel| loaded(wheel, None))),
             broken: damaged.iter().map(|tooth| loaded(tooth.wheel, Some(tooth))).collect(),
-            material,
+            materials,
             foundation: *foundation,
             base_cos: teeth.pinion.base_helix_angle_rad().cos(),
         }
@@ -74,7 +72,8 @@ impl<'a> Pairs<'a> {
     /// * `damaged` - the damaged teeth
     pub(crate) fn with_damaged(&self, damaged: &'a [DamagedTooth]) -> Self {
         let loaded = |tooth: &'a DamagedTooth| {
-            LoadedFlank::new(self.teeth.flank(tooth.wheel), Some(tooth), self.material, &self.foundation)
+            let material = self.materials[tooth.wheel as usize];
+            LoadedFlank::new(self.teeth.flank(tooth.wheel), Some(tooth), material, &self.foundation)
         };
         Self { damaged, broken: damaged.iter().map(loaded).collect(), sound: self.sound.clone(), ..*self }
     }
@@ -125,7 +124,7 @@ impl<'a> Pairs<'a> {
             let FlankPoint { load_sin: sin, load_cos: cos, .. } = tooth.point;
             tooth.loaded.compliance_mm_per_n(&FlankLoad { point: tooth.point, sin, cos, z_mm, width_mm })
         });
-        let compliance = compliance.sum::<f64>() + hertz_compliance_mm_per_n(self.material, width_mm);
+        let compliance = compliance.sum::<f64>() + hertz_compliance_mm_per_n(self.materials, width_mm);
         // What has no width left has no compliance that is a number.
         let stiffness_n_per_mm = if compliance > 0.0 { self.base_cos / compliance } else { 0.0 };
         LoadedPair { stiffness_n_per_mm, face_centre_m }

@@ -240,6 +240,15 @@ impl Keys for Operation {
                 .otherwise("none")
                 .rule("likewise, values of one sign")
                 .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }"),
+            row(
+                "torque_ripple",
+                "",
+                "harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ))",
+                field!(torque_ripple),
+            )
+            .otherwise("none")
+            .rule("amplitudes add up to 1.2 at most")
+            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
         ]
     }
 }
@@ -263,19 +272,9 @@ impl Operation {
         )
         .required()
         .range(TORQUE);
-        let own = [
-            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
-                .range(Range::positive().implausible_above(1e9)),
-            row(
-                "torque_ripple",
-                "",
-                "harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ))",
-                field!(torque_ripple),
-            )
-            .otherwise("none")
-            .rule("amplitudes add up to 1.2 at most")
-            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
-        ];
+        let own =
+            [row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
+                .range(Range::positive().implausible_above(1e9))];
         let varying = rows_but(&["pinion_speed_hz", "brake_torque_nm"]);
         [input, torque].into_iter().chain(varying).chain(own).collect()
     }

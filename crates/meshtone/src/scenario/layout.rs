@@ -400,7 +400,6 @@ impl Layout {
                 "name wheels of two shafts",
             );
         }
-        let material = |wheel: &ScenarioWheel| wheel.material.unwrap_or(scenario.material);
         let mates = [
             ("tip_chamfer_mm", pinion.tip_chamfer_mm == gear.tip_chamfer_mm),
             ("flank_relief", pinion.flank_relief == gear.flank_relief),
@@ -409,7 +408,6 @@ impl Layout {
                 "uniform_flank_reduction_mm",
                 pinion.uniform_flank_reduction_mm == gear.uniform_flank_reduction_mm,
             ),
-            ("material", material(pinion) == material(gear)),
         ];
         if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {
             return refuse(

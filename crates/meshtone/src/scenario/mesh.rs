@@ -79,7 +79,8 @@ impl ScenarioMesh {
         (gears.pinion_dedendum, gears.gear_dedendum) = (pinion.dedendum, gear.dedendum);
         gears.centre_distance_mm = self.centre_distance_mm;
         gears.backlash_mm = self.backlash_mm;
-        gears.material = pinion.material.unwrap_or(material);
+        gears.material = material;
+        (gears.pinion_material, gears.gear_material) = (pinion.material, gear.material);
         gears.flank_relief = pinion.flank_relief;
         gears.tip_chamfer_mm = pinion.tip_chamfer_mm;
         gears.active_profile_shortening = pinion.active_profile_shortening;
@@ -105,6 +106,7 @@ impl ScenarioMesh {
             wheel.face_width_mm = gears.face_width_mm;
             wheel.profile_shift = side.choose(gears.pinion_profile_shift, gears.gear_profile_shift);
             wheel.addendum = side.choose(gears.pinion_addendum, gears.gear_addendum);
+            wheel.material = side.choose(gears.pinion_material, gears.gear_material);
             wheel.dedendum = side.choose(gears.pinion_dedendum, gears.gear_dedendum);
             wheel.flank_relief = gears.flank_relief;
             wheel.tip_chamfer_mm = gears.tip_chamfer_mm;

@@ -123,6 +123,11 @@ pub(super) fn top() -> Section {
 /// `[gears]`: the teeth of both wheels.
 pub(super) fn gears() -> Section {
     type Of = ScenarioWheel;
+    let material = |key| {
+        row(key, "", "its material", field!(in Of: material))
+            .otherwise("gears.material")
+            .alternative("\"bronze\"")
+    };
     let rows = vec![
         module_row(field!(in ScenarioMesh: module_mm)).of(MESH),
         teeth_row("pinion_teeth", field!(in Of: teeth)).of(PINION),
@@ -146,6 +151,8 @@ pub(super) fn gears() -> Section {
         dedendum_row("gear_dedendum", field!(in Of: dedendum)).of(GEAR),
         centre_distance_row(field!(in ScenarioMesh: centre_distance_mm)).of(MESH),
         row("material", "", "the material of wheels and shafts", field!(in Scenario: material)),
+        material("pinion_material").of(PINION),
+        material("gear_material").of(GEAR),
         both(row(
             "flank_relief",
             "",
@@ -158,6 +165,15 @@ pub(super) fn gears() -> Section {
         both(flank_reduction_row(field!(in Of: uniform_flank_reduction_mm))),
         points_row(field!(in ScenarioMesh: points_per_tooth)).of(MESH),
         foundation_row(field!(in ScenarioMesh: foundation)).of(MESH),
+        row(
+            "phase",
+            "base pitches",
+            "where on its path of contact the first pair of teeth is at the start",
+            field!(in ScenarioMesh: phase),
+        )
+        .otherwise("0")
+        .alternative("0.0")
+        .of(MESH),
     ];
     Section { name: "gears", rows }
 }

@@ -176,7 +176,7 @@ keys! {
     = { shortening_row(field!(active_profile_shortening)).rule(MATES) };
     = { flank_reduction_row(field!(uniform_flank_reduction_mm)).rule(MATES) };
     flank_relief "" "the relief of the flanks near the tips, as a gap in µm" .rule(MATES);
-    material "" "its material" .otherwise("that of the gearbox").rule(MATES).alternative("\"steel\"");
+    material "" "its material" .otherwise("that of the gearbox").alternative("\"steel\"");
     inertia "" "its mass and inertias, any of the three"
         .otherwise("those of a solid disc of pitch radius")
         .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }");

@@ -126,8 +126,8 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
             Disc {
                 shaft: layout.shaft_of_wheel[number],
                 at: wheel.at,
-                body: WheelBody::new(&tooth, gears.material, &wheel.inertia),
-                body_stiffness_nm_per_rad: body_stiffness_nm_per_rad(&tooth, gears),
+                body: WheelBody::new(&tooth, gears.material_of(side), &wheel.inertia),
+                body_stiffness_nm_per_rad: body_stiffness_nm_per_rad(&tooth, side, gears),
             }
         })
         .collect();

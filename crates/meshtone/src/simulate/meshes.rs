@@ -191,7 +191,7 @@ impl MeshOf<'_> {
         let tabulated =
             |faces: &[Pairs]| checked(Mesh::new(faces, shape, sequence, points_per_pitch, parameters), gears);
         if slices == 1 {
-            return tabulated(&[Pairs::new(teeth, damaged, gears.material, &gears.foundation)]);
+            return tabulated(&[Pairs::new(teeth, damaged, gears)]);
         }
         let width_mm = gears.face_width_mm;
         let of_slice = teeth.with_face_width(width_mm / slices as f64);
@@ -199,7 +199,7 @@ impl MeshOf<'_> {
             .map(|slice| [slice, slice + 1].map(|edge| width_mm * place_on_face(edge as f64, slices)))
             .map(|ends_mm| damaged.iter().map(|tooth| tooth.slice(ends_mm, width_mm)).collect())
             .collect();
-        let sound = Pairs::new(&of_slice, &[], gears.material, &gears.foundation);
+        let sound = Pairs::new(&of_slice, &[], gears);
         tabulated(&damaged.iter().map(|damaged| sound.with_damaged(damaged)).collect::<Vec<_>>())
     }
 

@@ -314,8 +314,7 @@ struct OutputOfModes([Weights; 3]);
 
 impl Constants {
     fn new(prepared: Prepared, order: &Order) -> Self {
-        let pushes: Vec<Vec<Lot>> =
-            prepared.columns.iter().map(|column| order.lots(&column.push)).collect();
+        let pushes: Vec<Vec<Lot>> = prepared.columns.iter().map(|column| order.lots(&column.push)).collect();
         let is_deflected =
             |number: &usize| *number < prepared.first_across || *number >= prepared.first_spinning;
         let deflected: Vec<usize> = (0..prepared.columns.len()).filter(is_deflected).collect();

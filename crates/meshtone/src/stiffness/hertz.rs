@@ -10,15 +10,19 @@ use crate::wheel::Material;
 /// impact dynamics", Journal of Mechanisms, Transmissions, and Automation in Design 109 (1987).
 ///
 /// # Arguments
-/// * `material` - of both wheels
+/// * `materials` - of the two wheels
 /// * `width_mm` - (mm) width over which they touch
 ///
 /// ```
 /// use meshtone::{scenario::Material, stiffness::hertz_compliance_mm_per_n};
-/// let stiffness = 1.0 / hertz_compliance_mm_per_n(Material::Steel, 20.0);
+/// let stiffness = 1.0 / hertz_compliance_mm_per_n([Material::Steel; 2], 20.0);
 /// assert!((stiffness / 3.6249e6 - 1.0).abs() < 1e-4);
 /// ```
-pub fn hertz_compliance_mm_per_n(material: Material, width_mm: f64) -> f64 {
-    let poisson = material.poisson_ratio();
-    4.0 * (1.0 - poisson * poisson) / (PI * material.youngs_modulus_mpa() * width_mm)
+pub fn hertz_compliance_mm_per_n(materials: [Material; 2], width_mm: f64) -> f64 {
+    // Of both alike: each yields half of it.
+    let alike = materials.map(|material| {
+        let poisson = material.poisson_ratio();
+        4.0 * (1.0 - poisson * poisson) / (PI * material.youngs_modulus_mpa() * width_mm)
+    });
+    alike.iter().sum::<f64>() / 2.0
 }

@@ -42,8 +42,12 @@ pub struct Gears {
     pub gear_dedendum: f64,
     /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
     pub centre_distance_mm: Option<f64>,
-    /// Material of wheels and shafts. Default steel.
+    /// Material of the shafts, and of a wheel that has none of its own. Default steel.
     pub material: Material,
+    /// Material of the pinion; none for that of the shafts.
+    pub pinion_material: Option<Material>,
+    /// Material of the gear; none for that of the shafts.
+    pub gear_material: Option<Material>,
     /// Relief of the flank near the tip, as a gap. Default none.
     pub flank_relief: FlankRelief,
     /// (mm) Height of the chamfer or rounding of all tips, which the flank ends below; none for 0.23 modules.
@@ -96,6 +100,8 @@ impl Gears {
             gear_dedendum: STANDARD_DEDENDUM,
             centre_distance_mm: None,
             material: Material::default(),
+            pinion_material: None,
+            gear_material: None,
             flank_relief: FlankRelief::default(),
             tip_chamfer_mm: None,
             active_profile_shortening: 0.1,
@@ -119,8 +125,17 @@ impl Gears {
         std::mem::swap(&mut self.pinion_profile_shift, &mut self.gear_profile_shift);
         std::mem::swap(&mut self.pinion_addendum, &mut self.gear_addendum);
         std::mem::swap(&mut self.pinion_dedendum, &mut self.gear_dedendum);
+        std::mem::swap(&mut self.pinion_material, &mut self.gear_material);
         self.hand = self.hand.other();
         self
+    }
+
+    /// Material of a wheel.
+    ///
+    /// # Arguments
+    /// * `wheel` - which of the two
+    pub fn material_of(&self, wheel: WheelName) -> Material {
+        wheel.choose(self.pinion_material, self.gear_material).unwrap_or(self.material)
     }
 
     /// Tooth count of a wheel.

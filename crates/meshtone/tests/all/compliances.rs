@@ -468,19 +468,40 @@ fn expanded_integrals_equal_the_direct_ones() {
 // Another program's value: 3.5559e9 N/m for E 206 GPa, ν 0.3 and 20 mm, given to five digits.
 #[test]
 fn hertzian_contact() {
-    let steel = 1e3 / hertz_compliance_mm_per_n(Material::Steel, 20.0) * 206.0 / 210.0;
+    let steel = 1e3 / hertz_compliance_mm_per_n([Material::Steel; 2], 20.0) * 206.0 / 210.0;
     assert_close("contact stiffness", 2e-5, [(steel, 3.5559e9)]);
     for material in Material::ALL {
         let (e, nu) = (material.youngs_modulus_mpa(), material.poisson_ratio());
         let plane_strain = e / (1.0 - nu * nu);
-        let compliance = hertz_compliance_mm_per_n(material, 8.0);
+        let compliance = hertz_compliance_mm_per_n([material; 2], 8.0);
         assert_close("contact", 1e-14, [(1.0 / compliance, PI * plane_strain * 8.0 / 4.0)]);
         assert_close(
             "contact is inverse in the width",
             1e-14,
-            [(compliance, 3.0 * hertz_compliance_mm_per_n(material, 24.0))],
+            [(compliance, 3.0 * hertz_compliance_mm_per_n([material; 2], 24.0))],
         );
     }
+}
+
+// What both teeth and their contact yield by adds up: steel on bronze and bronze on steel together yield as two of steel and two of bronze.
+#[test]
+fn wheels_of_two_materials() {
+    let compliance = |pinion, gear| {
+        let mut gears = example_gears();
+        (gears.pinion_material, gears.gear_material) = (Some(pinion), Some(gear));
+        let teeth = linear_teeth(&gears, 20.0);
+        sound_pairs(&gears, &teeth).at(&SOUND_PAIR, 0.4).stiffness_n_per_mm.recip()
+    };
+    use Material::{Bronze, Steel};
+    let mixed = [compliance(Steel, Bronze), compliance(Bronze, Steel)];
+    let [steel, bronze] = [Steel, Bronze].map(|material| compliance(material, material));
+    assert_close("two materials", 1e-13, [(mixed[0] + mixed[1], steel + bronze)]);
+    assert!(mixed.iter().all(|mixed| 1.2 * steel < *mixed && *mixed < 0.9 * bronze), "{mixed:?}");
+    // Hertz: 1/E' is the mean of (1 − ν²)/E of both.
+    let reduced = [Steel, Bronze]
+        .map(|material| (1.0 - material.poisson_ratio().powi(2)) / material.youngs_modulus_mpa());
+    let contact = 2.0 * (reduced[0] + reduced[1]) / (PI * 8.0);
+    assert_close("contact", 1e-14, [(hertz_compliance_mm_per_n([Steel, Bronze], 8.0), contact)]);
 }
 
 // Sainsot's polynomials, evaluated by hand for θ_f 0.1, h 2: X = 100 A + 4 B + 20 C + 10 D + 2 E + F.
@@ -529,7 +550,7 @@ fn pair_is_its_parts_in_series() {
         "pair in series",
         1e-13,
         pair.healthy_n_per_mm.iter().enumerate().map(|(i, k)| {
-            let contact = hertz_compliance_mm_per_n(Material::Steel, WIDTH);
+            let contact = hertz_compliance_mm_per_n([Material::Steel; 2], WIDTH);
             (1.0 / k, pinion.total_mm_per_n(i) + gear.total_mm_per_n(last - i) + contact)
         }),
     );
@@ -554,7 +575,7 @@ fn pair_of_conjugate_teeth_is_its_parts_in_series() {
                     FlankLoad { point, sin: point.load_sin, cos: point.load_cos, z_mm: 0.0, width_mm: WIDTH };
                 loaded(flank.wheel, flank.profile, None, &gears.foundation).compliance_mm_per_n(&load)
             });
-            let contact = hertz_compliance_mm_per_n(Material::Steel, WIDTH);
+            let contact = hertz_compliance_mm_per_n([Material::Steel; 2], WIDTH);
             (1.0 / state.stiffness_n_per_mm, parts[0] + parts[1] + contact)
         }),
     );

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::physics::*;
-use meshtone::scenario::{GearPair, Model, Profile, Scenario};
+use meshtone::scenario::{GearPair, Model, Profile, Ripple, Scenario};
 use meshtone::sensor::Channels;
 use meshtone::simulate;
 
@@ -159,4 +159,41 @@ fn fluctuations_reach_the_signals() {
     let shaken = channels(&scenario);
     assert_ne!(calm["mesh_force_n"], shaken["mesh_force_n"]);
     assert_close("mean mesh force", 2e-3, [(mean(&shaken["mesh_force_n"]), mean(&calm["mesh_force_n"]))]);
+}
+
+// Far below the first torsional mode (100 Hz) the mesh carries what the brake holds: T (1 + Σ a cos(hθ + ψ)) / r_b.
+#[test]
+fn a_ripple_of_the_torque_comes_with_its_shaft() {
+    for model in [Model::Linear, Model::Contact] {
+        let mut scenario = pair();
+        scenario.model = model;
+        scenario.operation.pinion_speed_hz = 4.0;
+        let ripple = |shaft: Option<&str>, order, amplitude| Ripple {
+            shaft: shaft.map(str::to_owned),
+            order,
+            amplitude,
+            phase_deg: 0.0,
+        };
+        scenario.operation.torque_ripple = vec![ripple(None, 1.0, 0.2), ripple(Some("pinion"), 3.0, 0.3)];
+        // Two revolutions of the pinion, one of the gear.
+        scenario.solver.discard_and_keep(0.5, 0.5);
+        let channels = channels(&scenario);
+        let force = &channels["mesh_force_n"];
+        let mean = force.iter().sum::<f64>() / force.len() as f64;
+        let part = |hz: f64| amplitude(force, channels.sampling_rate_hz, hz) / mean;
+        println!("{model:?}: {} {} {}", part(2.0), part(12.0), part(4.0));
+        // The mode makes 1/(1 − (12/100)²) of the faster one.
+        assert!((part(2.0) / 0.2 - 1.0).abs() < 0.005);
+        assert!((part(12.0) / 0.3 - 1.0).abs() < 0.03);
+        assert!(part(4.0) < 0.002);
+    }
+}
+
+#[test]
+fn a_ripple_of_an_unknown_shaft_is_refused() {
+    let mut scenario = pair();
+    let ripple = Ripple { shaft: Some("middle".into()), order: 1.0, amplitude: 0.2, phase_deg: 0.0 };
+    scenario.operation.torque_ripple = vec![ripple];
+    let error = simulate(&scenario).unwrap_err().to_string();
+    assert!(error.contains("operation.torque_ripple.shaft") && error.contains("pinion"), "{error}");
 }

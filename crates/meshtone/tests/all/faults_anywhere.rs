@@ -337,7 +337,7 @@ fn the_mate_of_a_pit_touches_its_edges() {
         let own = compliance(&sound, pinion.at_curvature(path.line_mm - edge_mm));
         let expected = own
             + compliance(&pitted, gear.at_curvature(edge_mm))
-            + hertz_compliance_mm_per_n(Material::Steel, width_mm);
+            + hertz_compliance_mm_per_n([Material::Steel; 2], width_mm);
         let away_mm =
             (rho_mm * rho_mm - edge_mm * edge_mm) / (2.0 * stages.pairs[0].teeth.gear.base_radius_mm);
         let gap_mm = away_mm * away_mm / (2.0 * rho_mm * (path.line_mm - rho_mm) / path.line_mm);

@@ -96,7 +96,7 @@ pub const SOUND_PAIR: PairKind = PairKind { pinion: None, gear: None, pairs_per_
 
 /// Sound pairs of the wheels.
 pub fn sound_pairs<'a>(gears: &Gears, teeth: &'a Teeth) -> Pairs<'a> {
-    Pairs::new(teeth, &[], gears.material, &gears.foundation)
+    Pairs::new(teeth, &[], gears)
 }
 
 /// The mesh of a simulation that has one.

@@ -201,7 +201,7 @@ fn stiffness_falls_a_little_with_the_depth() {
     let ratio = teeth.path.contact_ratio;
     let stiffness = |depth_um: f64| -> Vec<f64> {
         let damaged = damaged_teeth(&all_worn(depth_um, depth_um), &teeth, 1).unwrap();
-        let pairs = Pairs::new(&teeth, &damaged, gears.material, &gears.foundation);
+        let pairs = Pairs::new(&teeth, &damaged, &gears);
         let kind = PairKind { pinion: Some(0), gear: Some(1), pairs_per_cycle: 1 };
         (0..=20).map(|k| pairs.at(&kind, ratio * f64::from(k) / 20.0).stiffness_n_per_mm).collect()
     };

@@ -98,7 +98,7 @@ fn pair_stiffness(gears: &Gears, teeth: &Teeth, pinion: &ToothSection, gear: &To
     (0..=last)
         .map(|i| {
             let met = last - i;
-            let hertz = hertz_compliance_mm_per_n(gears.material, gear.contact_width_mm[first + met]);
+            let hertz = hertz_compliance_mm_per_n([gears.material; 2], gear.contact_width_mm[first + met]);
             let total = pinion_compliance.total_mm_per_n(i) + gear_compliance.total_mm_per_n(met) + hertz;
             // Where a chip leaves no width at all the compliance is not a number: no stiffness.
             if total > 0.0 { 1.0 / total } else { 0.0 }

@@ -83,24 +83,9 @@ fn check_values(scenario: &Scenario, rig: &Rig) -> Check {
     model::check(scenario, rig)?;
     check(short::rig())?;
     check_rig(scenario, rig, &gears)?;
-    check_is_written(scenario)?;
+    scenario.check_ripple(&WheelName::BOTH.map(WheelName::name))?;
     check_sensors(&scenario.sensors, scenario.model)?;
     check(short::solver())
-}
-
-/// What the file of a pair cannot state would be lost in it.
-fn check_is_written(scenario: &Scenario) -> Check {
-    let lost = [
-        ("operation.torque_ripple", !scenario.operation.torque_ripple.is_empty()),
-        ("mesh.phase", scenario.meshes.iter().any(|mesh| mesh.phase.is_some())),
-        ("wheel.material", scenario.wheels.iter().any(|wheel| wheel.material.is_some())),
-    ];
-    match lost.into_iter().find(|(_, is_given)| *is_given) {
-        Some((key, _)) => {
-            Err(ScenarioError::new(key, "", "is a key of gearboxes, and not of one pair in a rig"))
-        }
-        None => Ok(()),
-    }
 }
 
 /// The rig with the wheels that run in it.

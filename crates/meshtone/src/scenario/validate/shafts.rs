@@ -42,7 +42,8 @@ impl Scenario {
         check_rows(&long::operation().rows, self, "operation")?;
         check_rows(&long::solver().rows, self, "solver")?;
         self.check_counts()?;
-        self.check_ripple()?;
+        let names: Vec<&str> = self.shafts().iter().map(|shaft| shaft.name.as_str()).collect();
+        self.check_ripple(&names)?;
         self.check_pieces()?;
         self.rolling_bearings()?;
         self.operation.check()?;
@@ -75,12 +76,11 @@ impl Scenario {
     }
 
     /// The shafts of the torque's harmonics must be there.
-    fn check_ripple(&self) -> Result<(), ScenarioError> {
-        let names: Vec<&str> = self.shafts().iter().map(|shaft| shaft.name.as_str()).collect();
+    pub(super) fn check_ripple(&self, names: &[&str]) -> Result<(), ScenarioError> {
         let ripple = &self.operation.torque_ripple;
         let named = ripple.iter().enumerate().filter_map(|(index, of)| Some((index, of.shaft.as_ref()?)));
         for (index, shaft) in named {
-            find(&names, shaft, "shaft").map_err(|error| {
+            find(names, shaft, "shaft").map_err(|error| {
                 let key = entry_key("torque_ripple", index, ripple.len(), "shaft");
                 ScenarioError { key: format!("operation.{key}"), ..error }
             })?;
