@@ -54,7 +54,7 @@ fn head(set: &Finished) -> String {
         ),
         (None, Some(seconds)) => format!("raw channels at {rate} over {seconds} s"),
         (None, None) => {
-            format!("raw channels at {rate} over one hunting period, after which the same teeth meet again")
+            format!("raw channels at {rate} over one hunting-tooth period")
         }
     };
     let mountings = set.plan.content.mountings;
