@@ -190,7 +190,7 @@ fn bad_lines_are_named() {
     let dates = b"timestamp,a\n2026-11-20 10:00:00,1\n2026-11-20 10:00:01,2\n2026-11-20 10:00:02,3\n";
     let message = refused("run.csv", dates, &RecordingOptions::default());
     assert!(
-        message.contains("not a number; dates and times of day are not read: state the sampling rate"),
+        message.contains("not a number; times of day are not read: state the sampling rate"),
         "{message}"
     );
 }

@@ -188,9 +188,7 @@ impl<'h> Numbers<'h> {
                 "the first lines are read with the decimal {is}; if it is the {other}, say so (option text.decimal_sign)"
             )
         } else if text.contains(':') {
-            "dates and times of day are not read: state the sampling rate instead (option sampling_rate_hz), or choose \
-             other columns (option channels)"
-                .to_string()
+            "times of day are not read: state the sampling rate (option sampling_rate_hz)".to_string()
         } else if self.rows == 0 {
             "if the line belongs to the file's head, skip it (option text.skip_lines) or begin it with #; if the column \
              holds no numbers, choose others (option channels)"
