@@ -1,7 +1,7 @@
 """How rms and kurtosis of the difference signal grow with a broken tooth.
 
 The gear's first tooth loses its tip over the whole width, up to 4 mm, beside a chip of one corner: a line for each width of the
-chip, all on the same wheels. Up to 2 mm the fault hides behind the deviations; then teeth part and meet again.
+chip, all on the same wheels. Up to 2 mm the fault hides behind the deviations; then contact is lost.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """What a rig rings at: the spectrum of one support of the present defaults beside those of before, with the modes named.
 
 Before: supports of 1.6 kg at 1592 and 4285 Hz, the mean of both, no wall. Now: supports of 2.3 kg at 450 and 2900 Hz, the pinion's
-support, a wall of 4 kHz under the sensor. The mean of both hides the mode in which they move against each other.
+support, a wall of 4 kHz under the sensor. The mean of both hides the mode in which they move out of phase.
 """
 
 import sys
@@ -35,7 +35,7 @@ for ax, scenario, name in [(axes[0], former, "Before: mean of both supports"), (
         # Both directions often ring at nearly one frequency.
         if energy[GEAR_SUPPORT + PINION_SUPPORT].sum() > energy.sum() / 6 and (not named or frequency_hz > 1.15 * named[-1]):
             named.append(frequency_hz)
-            words = "in phase" if shape[GEAR_SUPPORT] @ shape[PINION_SUPPORT] > 0 else "in opposition"
+            words = "in phase" if shape[GEAR_SUPPORT] @ shape[PINION_SUPPORT] > 0 else "out of phase"
             ax.axvline(frequency_hz / 1e3, color=GREY, linestyle="--", linewidth=0.8)
             ax.text(frequency_hz / 1e3 + 0.03, 1.4, f"{frequency_hz:.0f} Hz, {words}", rotation=90, va="bottom", fontsize=8)
     ax.set(ylabel="Amplitude (g)", ylim=(1e-4, 1e4))

@@ -146,7 +146,7 @@ class Support(TypedDict, total=False):
     base_hz : float
         (Hz) The natural frequency of the bare supports, moving in phase. Allowed: > 0, ≤ 1000000.
     differential_hz : float
-        (Hz) The natural frequency of the bare supports, moving against each other. Allowed: > 0, ≤ 1000000; more than
+        (Hz) The natural frequency of the bare supports, moving out of phase. Allowed: > 0, ≤ 1000000; more than
         base_hz.
     stiffness_n_per_m : float
         (N/m) Instead of the frequencies, the stiffness between each support and the base. Allowed: > 0, ≤ 1e15.
@@ -273,20 +273,22 @@ class GearboxWheel(TypedDict, total=False):
     eccentricity_mm : float
         (mm) The eccentricity of its seat. Allowed: ≥ 0; less than the module; of a wheel in one mesh.
     din_grade : int
-        The grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
+        The grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
     iso_class : int
-        The class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none. Allowed: whole number 0…11; not beside din_grade.
+        The class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none. Allowed: whole
+        number 0…11; not beside din_grade.
     tooth_share : float
-        (-) The part of the tolerances of profile slope and form that each tooth has of its own. Allowed: 0…1.
+        (-) The part of the tolerances of profile slope and form that each tooth has of its own; the rest is common to a
+        wheel's teeth. Allowed: 0…1.
     pitch_share : float
-        (-) Its largest single pitch deviation over its tolerance f_p. Allowed: 0…1.
+        (-) A wheel's largest single pitch deviation over its tolerance f_p. Allowed: 0…1.
     run_out_share : float
-        (-) Its run-out over its tolerance F_r. Allowed: 0…1.
+        (-) A wheel's run-out over its tolerance F_r. Allowed: 0…1.
     slope_wobble : float
         (-) The profile slope that varies once a revolution, over the rms deviation of the wheel's profiles. Allowed:
         0…3.
     helix_share : float
-        (-) Its largest helix slope deviation, of either sign, over its tolerance f_Hβ. Allowed: 0…1.
+        (-) A wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ. Allowed: 0…1.
     profile_errors_mm : array of float64, shape (100, teeth)
         (mm) Its profile errors, instead of a draw: 100 rows of one number a tooth, in the order of contact in its first
         mesh. Allowed: 100 × teeth, each below the module; not beside errors_file, din_grade, iso_class.
@@ -296,7 +298,7 @@ class GearboxWheel(TypedDict, total=False):
     run_out_um : float
         (µm) The run-out F_r, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
     run_out_phase_rad : float
-        (rad) Its phase φ.
+        (rad) Its phase φ; θ counts from where the wheel's first tooth enters contact.
     helix_slope_um : float
         (µm) The helix slope deviation over the face width, positive where metal is added towards positive z. Allowed:
         −1000…1000.

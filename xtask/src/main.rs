@@ -44,7 +44,7 @@ Tasks:
   wheel        Of these, only the wheel
   benchmark    Make the benchmark's data set there, as the archive that a release carries (two minutes on two cores; needs
                Python), and check that the package has its SHA-256
-  generate     Write what follows from the rows of the library's keys: Python's arguments and classes, the guide's tables
+  generate     Write what follows from the rows of the library's keys: Python's arguments and classes, the guide's lists
   check-rooms  Only the check that no folder of the library imports against the direction of the data
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)

@@ -53,9 +53,7 @@ fn head(set: &Finished) -> String {
             angle.points_per_revolution,
         ),
         (None, Some(seconds)) => format!("raw channels at {rate} over {seconds} s"),
-        (None, None) => {
-            format!("raw channels at {rate} over one hunting period, after which the same teeth meet again")
-        }
+        (None, None) => format!("raw channels at {rate} over one hunting-tooth period"),
     };
     let mountings = set.plan.content.mountings;
     let mounted = if mountings > 1 { format!(", each mounted {mountings} times") } else { String::new() };

@@ -1,4 +1,4 @@
-//! The source of the page's controls: the same rows as the guide's tables, the commented files and Python's signatures.
+//! The source of the page's controls: the same rows as the guide's lists, the commented files and Python's signatures.
 
 use meshtone::bearing::{NAMED_BEARINGS, NamedBearing};
 use meshtone::damage::{DamageKind, damage_kinds};

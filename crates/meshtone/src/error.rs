@@ -283,7 +283,7 @@ warning_kinds! {
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
     Unsettled "unsettled" "a start-up transient changes the rms of the kept signal by more than 1 %";
     TorqueImbalance "torque-imbalance" "the mean forces of the meshes differ from those that the load asks for by more than 1 %";
-    Rattle "rattle" "the teeth of a mesh are apart for more than half of the time and bounce";
+    Rattle "rattle" "the teeth of a mesh lose contact for more than half of the time and bounce";
     SilentSensor "silent-sensor" "a sensor shows exactly 0 throughout";
     BeyondBand "beyond-band" "a sensor or a mesh lies above the highest mode that is simulated";
     LargeRunOut "large-run-out" "a wheel runs out by more than a tenth of the module";
@@ -294,7 +294,7 @@ warning_kinds! {
     Resonance "resonance" "the mesh force is far beyond what a machine survives";
     MeshResonance "mesh-resonance" "a mesh frequency, or twice or three times it, is within 1 % of a natural frequency";
     BrakedRotation "braked-rotation" "the published model's damping brakes the whole machine, and the mean mesh force differs from the load's";
-    TorqueReverses "torque-reverses" "the brake's torque reverses at times, so that teeth part and meet again";
+    TorqueReverses "torque-reverses" "the brake's torque reverses at times, so that the teeth lose contact";
     OtherSpeed "other-speed" "a shaft does not turn at the speed that it is driven at";
     StepError "step-error" "the step changes the rms by more than 2 %";
 }

@@ -12,7 +12,7 @@ pub const MOST_SHARD_RECORDS: u64 = 65_536;
 pub struct Keep {
     /// (S/s) Sampling rate of the raw channels.
     pub sampling_rate_hz: f64,
-    /// (s) Length of the raw channels; none for a hunting period, after which the same teeth meet again.
+    /// (s) Length of the raw channels; none for a hunting-tooth period.
     pub duration_s: Option<f64>,
     /// How the raw channels lie over the angle of the first wheel of `wheel`, as many values in every record; none where they are over time.
     pub over_angle: Option<OverAngle>,

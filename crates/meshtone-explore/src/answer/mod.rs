@@ -295,8 +295,8 @@ fn modes_json(stages: &Stages, source: SignalSource) -> Value {
     let housing = sensor.map_or_else(Vec::new, |sensor| sensor.path.housing_frequencies_hz());
     let mount: Vec<f64> = sensor.and_then(|sensor| sensor.resonance_hz).into_iter().collect();
     json!([
-        ["supports alike", of_supports(true)],
-        ["supports against each other", of_supports(false)],
+        ["supports in phase", of_supports(true)],
+        ["supports out of phase", of_supports(false)],
         ["housing", housing],
         ["sensor on its mount", mount],
     ])

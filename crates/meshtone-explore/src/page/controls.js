@@ -12,7 +12,7 @@ const SECTIONS = [
   { name: "", title: "Model", first: ["model", "seed"] },
 ];
 const UNIT_ENDING = /_(mm|um|deg|rad|hz|nm|g|s|n|n_per_m|nm_per_rad|kgm2|kg|percent|per_cent)$/;
-/** From here on a slider goes by powers of ten. */
+/** From here on a slider is logarithmic. */
 const LARGE = 1e3;
 /** The keys that a profile over time begins from, and rows of it that are shown. */
 const NOMINAL = { speed_profile_hz: "pinion_speed_hz", torque_profile_nm: "brake_torque_nm" };

@@ -133,7 +133,7 @@ export class Plot {
    * @param marks places on the axis that a line is drawn at, such as mesh orders
    * @param labels places and names: a line is drawn at each, with its name along it
    * @param triangles places that small triangles at the top point to, such as natural frequencies
-   * @param isLog whether y goes by powers of ten
+   * @param isLog whether y is logarithmic
    */
   set(lines, { range = null, bands = [], marks = [], labels = [], triangles = [], isLog = false, title = null, x = null, y = null, empty = "" } = {}) {
     this.#lines = lines.filter(({ y: values }) => values?.length);

@@ -138,7 +138,7 @@ fn columns_are_chosen_and_calibrated() {
     let message = refused("run.csv", content, &RecordingOptions { channels: vec![9.into()], ..rate(1.0) });
     assert!(message.contains("has no column number 9; it has when, note"), "{message}");
     let message = refused("run.csv", content, &RecordingOptions { channels: vec!["c".into()], ..rate(1.0) });
-    assert!(message.contains("line 2, column c: `x` is no number"), "{message}");
+    assert!(message.contains("line 2, column c: `x` is not a number"), "{message}");
 }
 
 #[test]
@@ -172,14 +172,14 @@ fn bad_lines_are_named() {
             "a,b\n1,2\n3,4\n5",
             "line 4 has 1 cells, but the lines above it have 2; mend or remove it (if the file ends",
         ),
-        ("a,b\n1,2\n3,x4\n5,6\n", "line 3, column b: `x4` is no number; mend it, or choose other columns"),
+        ("a,b\n1,2\n3,x4\n5,6\n", "line 3, column b: `x4` is not a number; mend it, or choose other columns"),
         (
             "a;b\n1;2.5\n3;4.5\n5;6.5\n7;8,5\n",
-            "line 5, column b: `8,5` is no number; the first lines are read with",
+            "line 5, column b: `8,5` is not a number; the first lines are read with",
         ),
-        ("0.1x2\n0.2\n0.3\n0.4\n", "line 1, column 1: `0.1x2` is no number; if the line belongs"),
-        ("a\n0.1x2\n0.2\n0.3\n0.4\n", "line 2, column a: `0.1x2` is no number"),
-        ("1;0,1x2\n2;0,2\n3;0,3\n4;0,4\n", "line 1, column 2: `0,1x2` is no number"),
+        ("0.1x2\n0.2\n0.3\n0.4\n", "line 1, column 1: `0.1x2` is not a number; if the line belongs"),
+        ("a\n0.1x2\n0.2\n0.3\n0.4\n", "line 2, column a: `0.1x2` is not a number"),
+        ("1;0,1x2\n2;0,2\n3;0,3\n4;0,4\n", "line 1, column 2: `0,1x2` is not a number"),
         ("a\n1\n\n3\n", "line 3 of column a is empty"),
         ("a,b\n", "holds no line of numbers"),
     ];
@@ -187,6 +187,12 @@ fn bad_lines_are_named() {
         let message = refused("run.csv", content.as_bytes(), &rate(1.0));
         assert!(message.starts_with("run.csv: ") && message.contains(words), "{content:?}: {message}");
     }
+    let dates = b"timestamp,a\n2026-11-20 10:00:00,1\n2026-11-20 10:00:01,2\n2026-11-20 10:00:02,3\n";
+    let message = refused("run.csv", dates, &RecordingOptions::default());
+    assert!(
+        message.contains("not a number; times of day are not read: state the sampling rate"),
+        "{message}"
+    );
 }
 
 #[test]

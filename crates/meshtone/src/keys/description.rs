@@ -2,7 +2,7 @@
 
 use crate::model::{PUBLISHED_KEYS, models_ignoring};
 
-/// Description of a key of the scenario file, from which the guide's tables, the commented files of `meshtone init` and Python's signatures
+/// Description of a key of the scenario file, from which the guide's lists, the commented files of `meshtone init` and Python's signatures
 /// are made.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]

@@ -2,7 +2,7 @@
 //!
 //! A struct of parameters says in [`Keys::rows`] what its keys are: name, unit, meaning, range and the field that holds the
 //! value. From these rows come the reading of a scenario file, its writing, the checks of single values, the commented files
-//! of `meshtone init`, the guide's tables and the arguments of the Python classes. What concerns several keys at once is a
+//! of `meshtone init`, the guide's lists and the arguments of the Python classes. What concerns several keys at once is a
 //! function beside the rows.
 //!
 //! ```ignore

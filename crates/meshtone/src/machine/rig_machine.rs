@@ -85,7 +85,7 @@ pub struct SupportMode {
     pub frequency_hz: f64,
     /// (-) Part of the kinetic energy that the supports have.
     pub share: f64,
-    /// Whether both supports move alike; otherwise they move against each other.
+    /// Whether both supports move in phase; otherwise they move out of phase.
     pub is_alike: bool,
 }
 

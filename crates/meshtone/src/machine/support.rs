@@ -36,7 +36,7 @@ pub enum SupportSprings {
     Frequencies {
         /// (Hz) Both move alike: only what lies between them and the base deforms. Default 450.
         base_hz: f64,
-        /// (Hz) They move against each other. Default 2900.
+        /// (Hz) They move out of phase. Default 2900.
         differential_hz: f64,
     },
     /// Stiffnesses.
@@ -72,7 +72,7 @@ impl Support {
         }
     }
 
-    /// (Hz) Natural frequencies of the two supports without shafts and wheels: both alike, and against each other.
+    /// (Hz) Natural frequencies of the two supports without shafts and wheels: in phase, and out of phase.
     pub fn frequencies_hz(&self) -> [f64; 2] {
         let [base, between] = self.stiffnesses_n_per_m();
         [base, base + 2.0 * between].map(|stiffness| (stiffness / self.mass_kg).sqrt() / TAU)
@@ -161,7 +161,7 @@ keys! {
     SupportSprings = Self::Frequencies { base_hz: 450.0, differential_hz: 2900.0 };
     [Self::Frequencies] base_hz "Hz" "the natural frequency of the bare supports, moving in phase"
         .range(HZ).alternative("450.0");
-    [Self::Frequencies] differential_hz "Hz" "the natural frequency of the bare supports, moving against each other"
+    [Self::Frequencies] differential_hz "Hz" "the natural frequency of the bare supports, moving out of phase"
         .range(HZ).rule("more than base_hz").alternative("2900.0");
     [Self::Stiffnesses] stiffness_n_per_m "N/m"
         "instead of the frequencies, the stiffness between each support and the base"

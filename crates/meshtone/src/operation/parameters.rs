@@ -111,7 +111,7 @@ impl Operation {
     pub(crate) fn reversed_torque(&self) -> Option<ScenarioWarning> {
         let sum: f64 = self.torque_ripple.iter().map(|ripple| ripple.amplitude).sum();
         let message = format!(
-            "amplitudes add up to {sum}: where they come together the brake's torque reverses, and teeth part and meet again"
+            "amplitudes add up to {sum}: where they come together the brake's torque reverses, and the teeth lose contact"
         );
         let warning = ScenarioWarning::new(WarningKind::TorqueReverses, "operation.torque_ripple", message);
         Some(warning).filter(|_| sum > 1.0)

@@ -30,8 +30,7 @@ impl Operation {
         )?;
         let amplitudes: f64 = self.torque_ripple.iter().map(|ripple| ripple.amplitude).sum();
         // The sum of 0.8 and 0.4 is a little more than 1.2.
-        let problem =
-            "amplitudes add up to more than 1.2; must be less: the teeth would be apart for most of the time";
+        let problem = "amplitudes add up to more than 1.2; must be less: there would be contact loss for most of the time";
         require("operation.torque_ripple", amplitudes, amplitudes <= MOST_RIPPLE * (1.0 + 1e-9), problem)
     }
 }

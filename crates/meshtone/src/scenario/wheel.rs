@@ -183,17 +183,18 @@ keys! {
     unbalance "" "its unbalance" .otherwise("none").alternative("{ g_mm = 50.0 }");
     eccentricity_mm "mm" "the eccentricity of its seat"
         .range(Range::not_negative()).rule("less than the module; of a wheel in one mesh");
-    din_grade "" "the grade of DIN 3961 of its deviations, 1 (best) to 12; 0: ideal teeth"
+    din_grade "" "the grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth"
         .range(Range::from_to(0.0, 12.0));
-    iso_class "" "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none"
+    iso_class "" "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none"
         .range(Range::from_to(0.0, 11.0)).rule("not beside din_grade");
-    tooth_share "-" "the part of the tolerances of profile slope and form that each tooth has of its own"
+    tooth_share "-"
+        "the part of the tolerances of profile slope and form that each tooth has of its own; the rest is common to a wheel's teeth"
         .range(SHARE);
-    pitch_share "-" "its largest single pitch deviation over its tolerance f_p" .range(SHARE);
-    run_out_share "-" "its run-out over its tolerance F_r" .range(SHARE);
+    pitch_share "-" "a wheel's largest single pitch deviation over its tolerance f_p" .range(SHARE);
+    run_out_share "-" "a wheel's run-out over its tolerance F_r" .range(SHARE);
     slope_wobble "-" "the profile slope that varies once a revolution, over the rms deviation of the wheel's profiles"
         .range(Range::from_to(0.0, 3.0));
-    helix_share "-" "its largest helix slope deviation, of either sign, over its tolerance f_Hβ"
+    helix_share "-" "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ"
         .range(SHARE);
     = { documented(
         "errors_file",
@@ -213,7 +214,9 @@ keys! {
         .otherwise("drawn").rule("one a tooth, each below the module").alternative("[ one number a tooth ]");
     (deviations) run_out_um "µm" "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)"
         .otherwise("drawn").range(Range::not_negative().implausible_above(1e4)).alternative("0.0");
-    (deviations) run_out_phase_rad "rad" "its phase φ" .otherwise("drawn").alternative("0.0");
+    (deviations) run_out_phase_rad "rad"
+        "its phase φ; θ counts from where the wheel's first tooth enters contact"
+        .otherwise("drawn").alternative("0.0");
     (deviations) helix_slope_um "µm"
         "the helix slope deviation over the face width, positive where metal is added towards positive z"
         .otherwise("drawn by `helix_share`, or none").range(Range::from_to(-1e3, 1e3)).alternative("0.0");

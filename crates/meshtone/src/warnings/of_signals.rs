@@ -174,7 +174,7 @@ impl Stages {
         let (mesh, part) = meshes.max_by(|a, b| a.1.total_cmp(&b.1))?;
         (self.teeth_part() && part > TOLERATED_APART).then(|| {
             let message = format!(
-                "the teeth of {} are apart for {:.0} % of the time: they bounce, and when each strikes depends on the smallest change \
+                "the teeth of {} lose contact for {:.0} % of the time: they bounce, and when each strikes depends on the smallest change \
                  of rate, seed or settling; compare statistics of long signals, or load the teeth",
                 self.mesh_in_words(mesh),
                 100.0 * part

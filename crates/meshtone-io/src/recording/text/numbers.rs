@@ -187,6 +187,8 @@ impl<'h> Numbers<'h> {
             format!(
                 "the first lines are read with the decimal {is}; if it is the {other}, say so (option text.decimal_sign)"
             )
+        } else if text.contains(':') {
+            "times of day are not read: state the sampling rate (option sampling_rate_hz)".to_string()
         } else if self.rows == 0 {
             "if the line belongs to the file's head, skip it (option text.skip_lines) or begin it with #; if the column \
              holds no numbers, choose others (option channels)"
@@ -195,7 +197,7 @@ impl<'h> Numbers<'h> {
             "mend it, or choose other columns (option channels)".to_string()
         };
         Problem::Refused(format!(
-            "line {}, {}: `{text}` is no number; {help}",
+            "line {}, {}: `{text}` is not a number; {help}",
             self.line,
             column_words(column)
         ))

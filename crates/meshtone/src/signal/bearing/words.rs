@@ -12,8 +12,7 @@ impl std::fmt::Display for CannotTell {
             }
             Self::FewCycles { cycles, needed } => write!(
                 to,
-                "the recording has {:.1} of the cycles after which the same teeth meet again, and {:.0} are needed to remove the \
-                 lines of the gears; record longer",
+                "the recording has {:.1} hunting-tooth periods, and {:.0} are needed to remove the lines of the gears; record longer",
                 rounded_down(*cycles),
                 needed.ceil()
             ),

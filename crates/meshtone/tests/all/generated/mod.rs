@@ -1,4 +1,4 @@
-//! What is written from the rows of the scenario's keys: parts of the Python package and tables of the guide.
+//! What is written from the rows of the scenario's keys: parts of the Python package and lists of the guide.
 //!
 //! `cargo xtask generate` writes them; these tests fail where they are stale.
 #![allow(clippy::unwrap_used, clippy::panic)]
@@ -48,9 +48,9 @@ fn python_class_of_a_sensor() {
 }
 
 #[test]
-fn tables_of_the_guide() {
+fn lists_of_the_guide() {
     for name in guide::PAGES {
         let text = fs::read_to_string(workspace().join(name)).unwrap();
-        check(name, &guide::with_tables(&text));
+        check(name, &guide::with_lists(&text));
     }
 }
