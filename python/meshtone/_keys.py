@@ -632,11 +632,11 @@ class GearboxOperation(TypedDict, total=False):
         value. Allowed: at least 2 points, times increasing, values > 0. Ignored by published.
     torque_profile_nm : dict of time_s and value
         (s, N m) The torque against time, likewise. Allowed: likewise, values of one sign.
-    brake_inertia_kgm2 : float
-        (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9.
     torque_ripple : sequence of Ripple
         Harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ)). Allowed: amplitudes add
-        up to 1.2 at most.
+        up to 1.2 at most. Ignored by published.
+    brake_inertia_kgm2 : float
+        (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9.
     """
 
     input_speed_hz: float
@@ -646,8 +646,8 @@ class GearboxOperation(TypedDict, total=False):
     torque_fluctuation_nm: float
     speed_profile_hz: Profile
     torque_profile_nm: Profile
-    brake_inertia_kgm2: float
     torque_ripple: Sequence[Ripple]
+    brake_inertia_kgm2: float
 
 
 class GearboxSensor(TypedDict, total=False):
@@ -752,6 +752,8 @@ SECTION_OF_KEY: dict[str, str] = {
     "gear_dedendum": "gears",
     "centre_distance_mm": "gears",
     "material": "gears",
+    "pinion_material": "gears",
+    "gear_material": "gears",
     "flank_relief": "gears",
     "tip_chamfer_mm": "gears",
     "active_profile_shortening": "gears",
@@ -759,12 +761,14 @@ SECTION_OF_KEY: dict[str, str] = {
     "uniform_flank_reduction_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
+    "phase": "gears",
     "pinion_speed_hz": "operation",
     "speed_fluctuation_hz": "operation",
     "speed_wander_percent": "operation",
     "torque_fluctuation_nm": "operation",
     "speed_profile_hz": "operation",
     "torque_profile_nm": "operation",
+    "torque_ripple": "operation",
     "din_grade": "quality",
     "wheels_seed": "quality",
     "iso_class": "quality",
@@ -851,6 +855,8 @@ class ScenarioChanges(TypedDict, total=False):
     gear_dedendum: Any
     centre_distance_mm: Any
     material: Any
+    pinion_material: Any
+    gear_material: Any
     flank_relief: Any
     tip_chamfer_mm: Any
     active_profile_shortening: Any
@@ -858,12 +864,14 @@ class ScenarioChanges(TypedDict, total=False):
     uniform_flank_reduction_mm: Any
     points_per_tooth: Any
     foundation: Any
+    phase: Any
     pinion_speed_hz: Any
     speed_fluctuation_hz: Any
     speed_wander_percent: Any
     torque_fluctuation_nm: Any
     speed_profile_hz: Any
     torque_profile_nm: Any
+    torque_ripple: Any
     din_grade: Any
     wheels_seed: Any
     iso_class: Any
@@ -930,6 +938,8 @@ class ScenarioKeys:
     gear_dedendum: float
     centre_distance_mm: float | None
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float]
+    pinion_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None
+    gear_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None
     flank_relief: FlankRelief
     tip_chamfer_mm: float | None
     active_profile_shortening: float
@@ -937,12 +947,14 @@ class ScenarioKeys:
     uniform_flank_reduction_mm: float
     points_per_tooth: int
     foundation: Foundation
+    phase: float
     pinion_speed_hz: float
     speed_fluctuation_hz: float
     speed_wander_percent: float
     torque_fluctuation_nm: float
     speed_profile_hz: dict[str, list[float]] | None
     torque_profile_nm: dict[str, list[float]] | None
+    torque_ripple: Sequence[Ripple] | None
     din_grade: int
     wheels_seed: int | None
     iso_class: int
@@ -1007,6 +1019,8 @@ class ScenarioKeys:
         gear_dedendum: float | None = None,
         centre_distance_mm: float | None = None,
         material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
+        pinion_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
+        gear_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
         flank_relief: FlankRelief | None = None,
         tip_chamfer_mm: float | None = None,
         active_profile_shortening: float | None = None,
@@ -1014,12 +1028,14 @@ class ScenarioKeys:
         uniform_flank_reduction_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
+        phase: float | None = None,
         pinion_speed_hz: float | None = None,
         speed_fluctuation_hz: float | None = None,
         speed_wander_percent: float | None = None,
         torque_fluctuation_nm: float | None = None,
         speed_profile_hz: Profile | None = None,
         torque_profile_nm: Profile | None = None,
+        torque_ripple: Sequence[Ripple] | None = None,
         din_grade: int | None = None,
         wheels_seed: int | None = None,
         iso_class: int | None = None,
@@ -1115,6 +1131,8 @@ class ScenarioKeys:
             that without backlash.
         material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
             The material of wheels and shafts. Default: "steel".
+        pinion_material, gear_material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
+            Its material. Default: gears.material. Ignored by published.
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by published.
@@ -1136,6 +1154,9 @@ class ScenarioKeys:
         foundation : Foundation, optional
             The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
             Duverger (2004). Ignored by published.
+        phase : float, optional
+            (base pitches) Where on its path of contact the first pair of teeth is at the start. Default: 0. Ignored by
+            published.
         pinion_speed_hz : float, optional
             (rev/s) The nominal speed of the motor and the pinion; the sampling rate is chosen for it. Allowed: > 0, ≤
             100000. Required, unless ``speed_profile_hz`` is given.
@@ -1154,6 +1175,9 @@ class ScenarioKeys:
             and value. Allowed: at least 2 points, times increasing, values > 0. Default: none. Ignored by published.
         torque_profile_nm : dict of time_s and value, optional
             (s, N m) The torque against time, likewise. Allowed: likewise, values of one sign. Default: none.
+        torque_ripple : sequence of Ripple, optional
+            Harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ)). Allowed: amplitudes
+            add up to 1.2 at most. Default: none. Ignored by published.
         din_grade : int, optional
             The grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
             Default: 0.

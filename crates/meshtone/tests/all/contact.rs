@@ -7,7 +7,7 @@ use meshtone::machine::Drive;
 use meshtone::mesh::{Contact, PairState};
 use meshtone::scenario::*;
 use meshtone::solver::Output;
-use meshtone::{simulate, stages};
+use meshtone::{Simulation, simulate, stages};
 use nalgebra::DVector;
 
 fn pair(brake_torque_nm: f64) -> Scenario {
@@ -312,4 +312,65 @@ fn helix_slopes_and_misalignment_add_up() {
     scenario.operation.brake_torque_nm = 0.0;
     let refused = stages(&scenario).unwrap_err();
     assert_eq!(refused.key, "operation.brake_torque_nm");
+}
+
+/// A pair of 50 teeth each on stubby shafts between a motor and a brake that are coupled softly, whose speed rises or falls.
+fn sweep(torque_nm: f64, from_hz: f64, to_hz: f64) -> Simulation {
+    let shaft = |name: &str, to: &str| {
+        format!(
+            "[[shaft]]\nname = \"{name}\"\nlength_mm = 60.0\nradius_mm = 20.0\ncouples_to = \"{to}\"\ncoupling_stiffness_nm_per_rad = 2e3\n\
+             [[bearing]]\nshaft = \"{name}\"\nat = 0.0\nstiffness_n_per_m = 2e10\n\
+             [[bearing]]\nshaft = \"{name}\"\nat = 1.0\nstiffness_n_per_m = 2e10\n\
+             [[wheel]]\nname = \"{name}\"\nshaft = \"{name}\"\nat = 0.5\nteeth = 50\nface_width_mm = 20.0\n"
+        )
+    };
+    let toml = format!(
+        "{}{}[[mesh]]\nwheels = [\"a\", \"b\"]\nmodule_mm = 3.0\ndamping_ratio = 0.02\nfriction = 0.0\nrandom_force = 0.0\n\
+         [operation]\nbrake_torque_nm = {torque_nm:?}\nbrake_inertia_kgm2 = 1.0\n\
+         speed_profile_hz = {{ time_s = [0.0, 2.0], value = [{from_hz:?}, {to_hz:?}] }}\n\
+         [solver]\nsampling_rate_hz = 1e5\n",
+        shaft("a", "motor"),
+        shaft("b", "brake"),
+    );
+    simulate(Scenario::from_toml(&toml).unwrap()).unwrap()
+}
+
+// With clearance the resonance of the mesh leans to lower speeds, as Kahraman and Blankenship measured it (Journal of Applied Mechanics
+// 64, 1997): on the way up the teeth part at a jump, on the way down they meet again at a lower one, and both speeds hardly depend on the
+// load.
+#[test]
+fn a_mesh_resonance_jumps_up_and_down() {
+    const SLOW_HZ: f64 = 55.0;
+    const FAST_HZ: f64 = 80.0;
+    let jump = |torque_nm: f64, is_up: bool| {
+        let [from_hz, to_hz] = if is_up { [SLOW_HZ, FAST_HZ] } else { [FAST_HZ, SLOW_HZ] };
+        let simulation = sweep(torque_nm, from_hz, to_hz);
+        let force = &simulation.channels["force_n.a-b"];
+        let window = 1_000;
+        let windows: Vec<bool> = force
+            .chunks_exact(window)
+            .map(|values| values.iter().filter(|value| **value <= 0.0).count() > window / 5)
+            .collect();
+        let at_window = |n: usize| from_hz + (to_hz - from_hz) * (n as f64 + 0.5) / windows.len() as f64;
+        let changed = if is_up {
+            windows.iter().position(|parts| *parts)
+        } else {
+            windows.iter().rposition(|parts| *parts)
+        };
+        let mesh_hz = simulation.stages.natural_frequencies_hz();
+        (50.0 * at_window(changed.unwrap()), mesh_hz)
+    };
+    let [light, heavy] = [150.0, 340.0].map(|torque_nm| [jump(torque_nm, true).0, jump(torque_nm, false).0]);
+    println!("up and down: {light:?} at 150 N m, {heavy:?} at 340 N m");
+    // The mode in which both wheels turn against each other on the mean mesh.
+    let (_, modes_hz) = jump(150.0, true);
+    let mode_hz = modes_hz.into_iter().find(|hz| *hz > 3.5e3).unwrap();
+    assert!((mode_hz - 4060.0).abs() < 20.0, "{mode_hz}");
+    for [up_hz, down_hz] in [light, heavy] {
+        assert!((0.86..0.94).contains(&(up_hz / mode_hz)), "{up_hz} of {mode_hz}");
+        assert!((0.79..0.89).contains(&(down_hz / up_hz)), "{down_hz} of {up_hz}");
+    }
+    for (light_hz, heavy_hz) in light.into_iter().zip(heavy) {
+        assert!((heavy_hz / light_hz - 1.0).abs() < 0.02, "{light_hz} {heavy_hz}");
+    }
 }

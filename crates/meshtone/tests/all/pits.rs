@@ -37,7 +37,7 @@ fn damaged(teeth: &Teeth, faults: &[Damage]) -> Vec<DamagedTooth> {
 
 /// The pair of the gear's damaged tooth where its flank is touched at a fraction of its contact part.
 fn at(gears: &Gears, teeth: &Teeth, damaged: &[DamagedTooth], fraction: f64) -> LoadedPair {
-    let pairs = Pairs::new(teeth, damaged, &gears);
+    let pairs = Pairs::new(teeth, damaged, gears);
     let flank = teeth.flank(WheelName::Gear);
     let first = teeth.initial_contact_index(WheelName::Gear);
     let index = first + (fraction * (flank.profile.len() - 1 - first) as f64).round() as usize;

@@ -29,7 +29,7 @@ fn cracked(teeth: &Teeth, crack: RootCrack) -> DamagedTooth {
 /// (-) Loss of stiffness of the pair of a gear tooth with given damages at positions of its path.
 fn losses<const N: usize>(gears: &Gears, teeth: &Teeth, faults: &[Fault], positions: [f64; N]) -> [f64; N] {
     let damaged = damaged_teeth(faults, teeth, 1).unwrap();
-    let pairs = Pairs::new(teeth, &damaged, &gears);
+    let pairs = Pairs::new(teeth, &damaged, gears);
     positions.map(|at| {
         1.0 - pairs.at(&DAMAGED_GEAR, at).stiffness_n_per_mm / pairs.at(&SOUND_PAIR, at).stiffness_n_per_mm
     })
