@@ -132,7 +132,7 @@ fn short_recordings_do_not_tell() {
     };
     // 148 turns of the pinion, of which 61 are a cycle.
     let said = why(&judged(&signal, &phase, &hunting, bearing("6205")));
-    assert!(said.contains("2.4 of the cycles") && said.contains("4 are needed"), "{said}");
+    assert!(said.contains("2.4 hunting-tooth periods") && said.contains("4 are needed"), "{said}");
     let part = phase.part(0..9000).unwrap();
     let said = why(&judged(&signal[..9000], &part, &GearTrain::of_shaft("motor"), bearing("6205")));
     assert!(said.contains("its shaft turns 12.7 times, and 14 are needed"), "{said}");

@@ -325,9 +325,9 @@ fn sweep(torque_nm: f64, from_hz: f64, to_hz: f64) -> Simulation {
         )
     };
     let toml = format!(
-        "{}{}[[mesh]]\nwheels = [\"a\", \"b\"]\nmodule_mm = 3.0\ndamping_ratio = 0.02\nfriction = 0.0\nrandom_force = 0.0\n\
+        "{}{}[[mesh]]\nwheels = [\"a\", \"b\"]\nmodule_mm = 3.0\ndamping_ratio = 0.05\nfriction = 0.0\nrandom_force = 0.0\n\
          [operation]\nbrake_torque_nm = {torque_nm:?}\nbrake_inertia_kgm2 = 1.0\n\
-         speed_profile_hz = {{ time_s = [0.0, 2.0], value = [{from_hz:?}, {to_hz:?}] }}\n\
+         speed_profile_hz = {{ time_s = [0.0, 4.0], value = [{from_hz:?}, {to_hz:?}] }}\n\
          [solver]\nsampling_rate_hz = 1e5\n",
         shaft("a", "motor"),
         shaft("b", "brake"),
