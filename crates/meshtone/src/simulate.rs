@@ -248,8 +248,8 @@ struct Parts {
 /// The stages of a machine around meshes, in the order in which each needs what the ones before it gave.
 ///
 /// The machine needs the base radii of the teeth, and gives the static forces that press these together; the meshes' tables need these
-/// forces, the deviations and the damage of the wheels. The tables then say how far a load moves along the face: where it does, the machine
-/// is taken to its modes a second time, with the tilt that this excites.
+/// forces, the deviations and the damage of the wheels. The meshes then say which has its tilt as an unknown: there the machine
+/// is taken to its modes a second time, with that tilt.
 fn machine_parts(
     scenario: &Scenario,
     layout: &Layout,
@@ -279,9 +279,10 @@ fn machine_parts(
         overrun.as_ref().map_or((layout, &pairs), |Overrun { layout, pairs }| (layout, pairs));
     let meshes = meshes::meshes(scenario, layout, time, (pushing, &machine), None)?;
     clock.lap("mesh stiffness");
-    let face_reach_m: Vec<f64> = meshes.iter().map(Mesh::face_reach_m).collect();
-    let is_tilted = face_reach_m.iter().any(|reach_m| *reach_m > 0.0);
-    let modal = if is_tilted { machine.modal(scenario, &face_reach_m) } else { modal };
+    let half_face_m = |mesh: &Mesh| mesh.two_unknowns().map_or(0.0, |[width_m, _]| width_m / 2.0);
+    let half_faces_m: Vec<f64> = meshes.iter().map(half_face_m).collect();
+    let is_tilted = half_faces_m.iter().any(|half_m| *half_m > 0.0);
+    let modal = if is_tilted { machine.modal(scenario, &half_faces_m) } else { modal };
     let closed: Vec<_> = meshes.iter().map(Mesh::closed).collect();
     let modal = modal.up_to(TAU * machine.stepped_up_to_hz);
     let slowest_mode = modal.slowest_closed(&closed, TAU * machine.highest_of_slow_hz);

@@ -26,18 +26,16 @@ type Matrix = [Vector; COORDINATES];
 /// The mesh at one sample.
 #[derive(Clone, Copy, Default)]
 struct Sample {
-    /// Number of the pairs' stiffness and of the place of their load along the face: which matrices hold.
+    /// Number of the pairs' stiffness: which matrices hold.
     state: usize,
     /// (N) Force of the deviations, `Σ k (o + τ ȯ)`.
     deviation_n: f64,
 }
 
-/// The matrices that hold while the pairs are equally stiff and their load acts at the same place.
+/// The matrices that hold while the pairs are equally stiff.
 struct State {
     /// (N/m) Sum of the stiffnesses.
     stiffness_n_per_m: f64,
-    /// (m) Where along the face the load acts.
-    face_centre_m: f64,
     line: Vector,
     damping: Matrix,
     /// Inverse of the effective stiffness `K + 2/h C + 4/h² M`.
@@ -68,9 +66,8 @@ impl<'a> Newmark<'a> {
         let (stiffness, damping) = (machine.turn_back(&machine.stiffness()), modes.damping_matrix(machine));
         let mut at_rest = None;
         let brake = brake(stages, machine);
-        let new_state = |stiffness_n_per_m: f64, face_centre_m: f64, deviation_n: f64| {
-            let line =
-                &machine.turn * (&machine.lines[0].at_middle + &machine.lines[0].per_m * face_centre_m);
+        let new_state = |stiffness_n_per_m: f64, deviation_n: f64| {
+            let line = &machine.turn * &machine.lines[0].at_middle;
             let of_mesh = &line * line.transpose() * stiffness_n_per_m;
             let (stiffness, damping) = (&stiffness + &of_mesh, &damping + of_mesh * mesh.damping_time_s);
             at_rest.get_or_insert_with(|| {
@@ -86,13 +83,7 @@ impl<'a> Newmark<'a> {
                 effective[(n, n)] += mass * 4.0 / (step_s * step_s);
             }
             let inverse = columns(&effective.try_inverse().expect("definite"));
-            State {
-                stiffness_n_per_m,
-                face_centre_m,
-                line: padded(&line),
-                damping: columns(&damping),
-                inverse,
-            }
+            State { stiffness_n_per_m, line: padded(&line), damping: columns(&damping), inverse }
         };
         let (samples, states) = mesh_samples(stages, mesh, new_state);
         Self {
@@ -118,7 +109,7 @@ impl<'a> Newmark<'a> {
 fn mesh_samples(
     stages: &Stages,
     mesh: &Mesh,
-    mut new_state: impl FnMut(f64, f64, f64) -> State,
+    mut new_state: impl FnMut(f64, f64) -> State,
 ) -> (Vec<Sample>, Vec<State>) {
     let (time, operation) = (&stages.time, &stages.scenario.operation);
     let deviations = PairDeviations {
@@ -142,14 +133,10 @@ fn mesh_samples(
                 stiffness_n_per_m += stiffness[k];
                 deviation_n += stiffness[k] * offset[k];
             }
-            let face_centre_m = pairs.face_centre.get(k).copied().unwrap_or(0.0);
             let known = &mut at_point[samples.len() % mesh.points_per_pitch];
-            let is_this = |&&state: &&usize| {
-                let State { stiffness_n_per_m: k, face_centre_m: z, .. } = states[state];
-                k == stiffness_n_per_m && z == face_centre_m
-            };
+            let is_this = |&&state: &&usize| states[state].stiffness_n_per_m == stiffness_n_per_m;
             let state = known.iter().find(is_this).copied().unwrap_or_else(|| {
-                states.push(new_state(stiffness_n_per_m, face_centre_m, deviation_n));
+                states.push(new_state(stiffness_n_per_m, deviation_n));
                 known.push(states.len() - 1);
                 states.len() - 1
             });

@@ -19,8 +19,8 @@ struct Cost {
     has_corners: bool,
     /// Whether it has more modes than spur wheels alone: helical ones, or a force that turns with a shaft.
     has_more_modes: bool,
-    /// Whether some damage moves the forces of its pairs.
-    moves_forces: bool,
+    /// Whether its flanks close by more at one end of the face, or its teeth have lost a part of it, so that its tilt is probably an unknown.
+    leans: bool,
 }
 
 impl Cost {
@@ -29,13 +29,14 @@ impl Cost {
         let unbalanced = scenario.wheels.iter().any(|wheel| wheel.unbalance.g_mm > 0.0);
         Self {
             alone: !scenario.model.has_meshes() || !scenario.shafts().is_empty(),
-            is_sliced: gears.lead_crowning_um > 0.0
-                || gears.end_relief.amount_um > 0.0
+            is_sliced: gears.is_crowned()
                 || gears.is_helical() && (gears.flank_relief.amount_um > 0.0 || !scenario.faults.is_empty()),
             has_corners: scenario.model.teeth_part() && is_slanted(gears.overlap_ratio()),
             has_more_modes: gears.is_helical() || unbalanced,
             varies: !scenario.operation.is_constant() || scenario.solver.initial_velocity.is_some(),
-            moves_forces: scenario.faults.iter().any(|fault| fault.damage.moves_forces()),
+            leans: scenario.meshes[0].misalignment_um != 0.0
+                || scenario.wheels.iter().any(|wheel| wheel.helix_share > 0.0)
+                || scenario.faults.iter().any(|fault| fault.damage.moves_forces()),
         }
     }
 

@@ -105,17 +105,6 @@ impl Modes {
         let modal = DVector::from_fn(self.angular_frequencies.len(), |n, _| self.damping_per_s(n));
         &mass_shapes * DMatrix::from_diagonal(&modal) * mass_shapes.transpose()
     }
-
-    /// (rad/(N m)) How far a moment of a mesh's force about the middle of the face tilts its wheels against one another, at rest.
-    ///
-    /// # Arguments
-    /// * `machine` - the machine whose modes these are
-    /// * `mesh` - number of the mesh
-    pub fn tilt_rad_per_nm(&self, machine: &Machine, mesh: usize) -> f64 {
-        let tilt = self.shapes.transpose() * &machine.lines[mesh].per_m;
-        let yields = tilt.iter().zip(&self.angular_frequencies).filter(|(_, omega)| **omega > 0.0);
-        yields.map(|(tilt, omega)| (tilt / omega).powi(2)).sum()
-    }
 }
 
 /// Modes that several simulations of the same machine share.

@@ -2,7 +2,6 @@
 
 use std::array::from_fn;
 use std::f64::consts::TAU;
-use std::ops::RangeInclusive;
 
 use super::deviations::{Eccentricity, FlankErrors, PairDeviations};
 use super::gear_mesh::{FaceForm, Mesh, PairTable};
@@ -55,12 +54,13 @@ pub struct PairsBlock {
     pub stiffness: Vec<Vec<f64>>,
     /// (m) What the pair's deviation and separation add to the deflection, with the damping's lead: `o + τ ȯ`, `o = e − S`.
     pub offset: Vec<Vec<f64>>,
-    /// (m) Where along the face the load acts; empty where that is the middle throughout.
-    pub face_centre: Vec<f64>,
     /// What each spring has outside the path, before its start and beyond its end; none of spur teeth.
     pub(crate) corners: Vec<[CornerBlock; 2]>,
     /// Of each place, the classes of its pairs, each from a sample on; none of spur teeth.
     pub(crate) classes: Vec<Vec<(usize, usize)>>,
+    /// (-) Of each spring, where the middle of what touches of its face lies along it, from −1 to 1, and half of its width, of any value where there is no
+    /// pair; none where they are the same throughout.
+    pub(crate) strips: Vec<[Vec<f64>; 2]>,
     /// (-, m) Of each spring, friction across the line of action per force along it and its moment about the pitch point, of any value where
     /// there is no pair; none without friction.
     pub(crate) sliding: Vec<[Vec<f64>; 2]>,
@@ -72,11 +72,13 @@ pub(crate) struct CornerBlock {
     pub(crate) offset: Vec<f64>,
     pub(crate) near: Vec<f64>,
     pub(crate) far: Vec<f64>,
+    /// None where it is the spring's.
+    pub(crate) place: Vec<f64>,
 }
 
 impl PairsBlock {
     /// Room for `samples` samples of the springs of a mesh, whatever they hold: the tabulated forcing sets each.
-    fn resize(&mut self, mesh: &Mesh, samples: usize, tilts: bool) {
+    fn resize(&mut self, mesh: &Mesh, samples: usize) {
         let (springs, has_corners) = (mesh.springs(), mesh.has_corners());
         self.stiffness.resize_with(springs, Vec::new);
         self.offset.resize_with(springs, Vec::new);
@@ -90,25 +92,30 @@ impl PairsBlock {
         }
         self.sliding.resize_with(if mesh.has_friction() { springs } else { 0 }, Default::default);
         self.sliding.iter_mut().flatten().for_each(|values| values.resize(samples, 0.0));
+        self.strips.resize_with(if mesh.has_strips() { springs } else { 0 }, Default::default);
+        self.strips.iter_mut().flatten().for_each(|values| values.resize(samples, 0.0));
+        for corner in self.corners.iter_mut().flatten().filter(|_| mesh.has_strips()) {
+            corner.place.resize(samples, 0.0);
+        }
         self.classes.iter_mut().for_each(Vec::clear);
-        self.face_centre.resize(if tilts { samples } else { 0 }, 0.0);
     }
 
     /// `samples` samples without pairs.
-    fn clear(&mut self, mesh: &Mesh, samples: usize, tilts: bool) {
-        self.resize(mesh, 0, false);
-        self.resize(mesh, samples, tilts);
+    fn clear(&mut self, mesh: &Mesh, samples: usize) {
+        self.resize(mesh, 0);
+        self.resize(mesh, samples);
     }
 
-    /// Sets friction of the springs of a pair at a sample, between two points of its tables.
+    /// Sets friction and places of the springs of a pair at a sample, between two points of its tables.
     ///
     /// # Arguments
     /// * `mesh` - whose tables
+    /// * `class` - of the pair
     /// * `at` - number of the pair's first spring, and of the sample
     /// * `point` - index of the point before, and (-) part of the way to the next one
-    fn set_sliding(
+    fn set_sliding_and_strips(
         &mut self,
-        mesh: &Mesh,
+        (mesh, class): (&Mesh, usize),
         (first_spring, sample): (usize, usize),
         (index, part): (usize, f64),
     ) {
@@ -117,17 +124,25 @@ impl PairsBlock {
                 values[sample] = between(table, index, part);
             }
         }
+        if let Some(strip) = self.strips.get_mut(first_spring) {
+            let [here, next] = [index, index + 1].map(|point| mesh.strip(class, point));
+            for (values, (here, next)) in strip.iter_mut().zip(here.into_iter().zip(next)) {
+                values[sample] = here + part * (next - here);
+            }
+        }
+        for (end, corner) in self.corners.get_mut(first_spring).into_iter().flatten().enumerate() {
+            if let (Some(place), Some(tables)) =
+                (corner.place.get_mut(sample), mesh.classes[class].corners.first())
+            {
+                *place = between(&tables[end].along_face, index, part);
+            }
+        }
     }
 
     /// The class of the pair in a place at a sample; that of sound pairs before the first one.
     pub(crate) fn class_at(&self, place: usize, sample: usize) -> usize {
         let before = self.classes[place].iter().rev().find(|(from, _)| *from <= sample);
         before.map_or(SOUND, |(_, class)| *class)
-    }
-
-    /// (m) Where along the face the load acts at a sample.
-    pub(crate) fn face_centre_m(&self, sample: usize) -> f64 {
-        self.face_centre.get(sample).copied().unwrap_or(0.0)
     }
 }
 
@@ -367,8 +382,6 @@ struct MeshForcing<'a> {
     pinion: FlankErrors<'a>,
     gear: FlankErrors<'a>,
     eccentricity: Option<Eccentricity>,
-    /// Whether the load moves along the face.
-    tilts: bool,
     /// (-) τ over the time step.
     lead: f64,
     reading: Reading,
@@ -397,36 +410,10 @@ struct TabulatedPairs {
     corners: Vec<Vec<[[Vec<f64>; 2]; 2]>>,
     /// (base pitches) That lead.
     lead_of_corners: f64,
-    /// By class; none where the load stays midway along the face.
-    bearing: Vec<BorneLoad>,
 }
 
 /// The class of sound pairs.
 const SOUND: usize = 0;
-
-/// The part of the nominal load that a class of pairs bears, at every point of a pair.
-struct BorneLoad {
-    /// (N) Load.
-    load: Vec<f64>,
-    /// (N m) Its moment about the middle of the face.
-    moment: Vec<f64>,
-    /// Whether it acts beside the middle anywhere.
-    leans: bool,
-}
-
-impl BorneLoad {
-    fn of(mesh: &Mesh, table: &PairTable) -> Self {
-        let points = mesh.points();
-        let (mut load, mut moment) = (vec![0.0; points], vec![0.0; points]);
-        for (number, state) in table.states.iter().enumerate() {
-            let borne_n = mesh.borne_n(state, number % points);
-            load[number % points] += borne_n;
-            moment[number % points] += borne_n * state.face_centre_m;
-        }
-        let leans = table.states.iter().any(|state| state.face_centre_m != 0.0);
-        Self { load, moment, leans }
-    }
-}
 
 /// Makes an offset at uniform points `o + τ ȯ`, the derivative by central differences: one to the point before would be late by half
 /// a step, and the motion's error of the first order.
@@ -453,7 +440,6 @@ impl TabulatedPairs {
         mesh: &Mesh,
         flanks: [&FlankErrors; 2],
         eccentricity: Option<&Eccentricity>,
-        tilts: bool,
         [lead, lead_of_corners]: [f64; 2],
     ) -> Self {
         let sound = &mesh.classes[SOUND].states;
@@ -508,9 +494,6 @@ impl TabulatedPairs {
                 .map(|class| class.states.iter().map(|state| state.stiffness_n_per_m).collect())
                 .collect(),
             further_apart_m: mesh.classes.iter().map(further_apart).collect(),
-            bearing: (mesh.classes.iter().filter(|_| tilts))
-                .map(|class| BorneLoad::of(mesh, class))
-                .collect(),
             pinion_m: tabulate(WheelName::Pinion),
             gear_m: tabulate(WheelName::Gear),
             alike_m: eccentricity.filter(|_| !is_whole).map(alike),
@@ -624,7 +607,6 @@ impl<'a> MeshForcing<'a> {
         let [pinion, gear] = FlankErrors::of_both(deviations);
         let lead = mesh.damping_time_s / step_s;
         let eccentricity = Eccentricity::of(deviations);
-        let tilts = mesh.face_reach_m() > 0.0;
         // (-) τ over the time from one point to the next. In any motion it is found from the samples.
         let lead_of_points = match reading {
             Reading::EveryPoint => Some(lead),
@@ -638,10 +620,10 @@ impl<'a> MeshForcing<'a> {
         };
         let of_corners = lead * points_per_sample / mesh.points_per_pitch as f64;
         let tables = lead_of_points.map(|lead| {
-            TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, [lead, of_corners])
+            TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), [lead, of_corners])
         });
         let before = vec![(i64::MIN, [0.0; 2]); mesh.springs()];
-        Self { mesh, pinion, gear, eccentricity, tilts, lead, reading, tables, before }
+        Self { mesh, pinion, gear, eccentricity, lead, reading, tables, before }
     }
 
     /// Sets a block to `samples` samples from `first` on.
@@ -651,17 +633,17 @@ impl<'a> MeshForcing<'a> {
     fn next_block(&mut self, first: usize, samples: usize, revolutions: &[f64], block: &mut PairsBlock) {
         match (&self.tables, self.reading) {
             (Some(tables), Reading::EveryPoint) => {
-                block.resize(self.mesh, samples, self.tilts);
+                block.resize(self.mesh, samples);
                 self.copy_from(tables, first, block);
             }
             (Some(tables), _) => {
-                block.clear(self.mesh, samples, self.tilts);
+                block.clear(self.mesh, samples);
                 let mut before = std::mem::take(&mut self.before);
                 self.read_tables_between_points(tables, revolutions, &mut before, block);
                 self.before = before;
             }
             (None, _) => {
-                block.clear(self.mesh, samples, self.tilts);
+                block.clear(self.mesh, samples);
                 self.read_between_points(revolutions, block);
             }
         }
@@ -678,12 +660,10 @@ impl<'a> MeshForcing<'a> {
         let oldest = (first_point as i64 - self.mesh.points() as i64).div_euclid(per_pitch as i64) + 1;
         let pairs = oldest..=(last_point / per_pitch) as i64;
         let mut set = vec![0; at_once];
-        let mut leans = false;
-        for pair in pairs.clone() {
+        for pair in pairs {
             let Some(Part { from, until, point }) = self.part(pair, first, samples) else { continue };
             let place = pair.rem_euclid(at_once as i64) as usize;
             let PairParts { class, alike, slices: parts } = tables.of_pair(self.mesh, pair);
-            leans |= tables.bearing.get(class).is_some_and(|bearing| bearing.leans);
             if let Some(classes) = block.classes.get_mut(place) {
                 classes.push((from, class));
             }
@@ -696,6 +676,11 @@ impl<'a> MeshForcing<'a> {
                 if let Some(sliding) = block.sliding.get_mut(spring) {
                     for (values, table) in sliding.iter_mut().zip(&self.mesh.sliding[slice]) {
                         values[from..until].copy_from_slice(&table[point..point + until - from]);
+                    }
+                }
+                if let Some([places, half_widths]) = block.strips.get_mut(spring) {
+                    for (at, point) in (from..until).zip(point..) {
+                        [places[at], half_widths[at]] = self.mesh.strip(class, point);
                     }
                 }
                 let offsets = &mut block.offset[spring][from..until];
@@ -715,7 +700,9 @@ impl<'a> MeshForcing<'a> {
                     offsets.iter_mut().zip(term).for_each(|(offset, term)| *offset += term);
                 }
                 let Some(corners) = block.corners.get_mut(spring) else { continue };
-                for (end, CornerBlock { offset, near, far }) in corners.iter_mut().enumerate() {
+                for (end, CornerBlock { offset, near, far, place: along_face }) in
+                    corners.iter_mut().enumerate()
+                {
                     near[set[place]..from].fill(0.0);
                     far[set[place]..from].fill(0.0);
                     let Some(corner) = part.corners.as_ref().map(|corners| &corners[end]) else {
@@ -724,6 +711,10 @@ impl<'a> MeshForcing<'a> {
                         continue;
                     };
                     let points = point..point + until - from;
+                    if !along_face.is_empty() {
+                        let table = &self.mesh.classes[class].corners[slice][end].along_face;
+                        along_face[from..until].copy_from_slice(&table[points.clone()]);
+                    }
                     near[from..until].copy_from_slice(&corner.near[points.clone()]);
                     far[from..until].copy_from_slice(&corner.far[points.clone()]);
                     let outside = |point: &usize| corner.far[*point] > corner.near[*point];
@@ -745,10 +736,6 @@ impl<'a> MeshForcing<'a> {
                 far[set[spring / slices]..].fill(0.0);
             }
         }
-        block.face_centre.fill(0.0);
-        if leans {
-            self.find_face_centre(tables, pairs, first, &mut block.face_centre);
-        }
     }
 
     /// The samples of a block from `first` on in which a pair takes part.
@@ -760,48 +747,6 @@ impl<'a> MeshForcing<'a> {
         let part =
             || Part { from: from as usize, until: until as usize, point: (from - since_first) as usize };
         (from < until).then(part)
-    }
-
-    /// (m) Where along the face the load of all pairs acts at the samples of a block.
-    fn find_face_centre(
-        &self,
-        tables: &TabulatedPairs,
-        pairs: RangeInclusive<i64>,
-        first: usize,
-        face_centre: &mut [f64],
-    ) {
-        let mut whole_load = vec![0.0; face_centre.len()];
-        for pair in pairs {
-            let Some(Part { from, until, point }) = self.part(pair, first, face_centre.len()) else {
-                continue;
-            };
-            let bearing = &tables.bearing[self.mesh.sequence.class(pair)];
-            let sums = face_centre[from..until].iter_mut().zip(&mut whole_load[from..until]);
-            let of_pair = bearing.moment[point..].iter().zip(&bearing.load[point..]);
-            for ((moments, whole), (moment, load)) in sums.zip(of_pair) {
-                *moments += moment;
-                *whole += load;
-            }
-        }
-        for (k, (moment, whole)) in face_centre.iter_mut().zip(whole_load).enumerate() {
-            *moment = if whole > 0.0 { *moment / whole } else { self.face_centre_m(first + k) };
-        }
-    }
-
-    /// (m) Where along the face the load of all pairs acts: where all are further apart than the nominal load presses the mean mesh
-    /// together, or without a load, that of the nearest pair.
-    fn face_centre_m(&self, point: usize) -> f64 {
-        let (mut moment, mut whole) = (0.0, 0.0);
-        let (mut least_m, mut of_nearest) = (f64::INFINITY, 0.0);
-        for (.., state) in self.mesh.pairs_at(point) {
-            let load = self.mesh.borne_n(state, point + self.mesh.points_before);
-            moment += load * state.face_centre_m;
-            whole += load;
-            if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
-                (least_m, of_nearest) = (state.separation_m, state.face_centre_m);
-            }
-        }
-        if whole > 0.0 { moment / whole } else { of_nearest }
     }
 
     /// Reads the tables between their points, pair by pair: straight from one point to the next. Where the mesh turns evenly the samples of
@@ -859,24 +804,18 @@ impl<'a> MeshForcing<'a> {
                 for (spring, slice) in (first_spring..).zip(&parts.slices) {
                     for (end, corner) in slice.corners.iter().flatten().enumerate() {
                         let [near, far] = [corner.near, corner.far].map(|table| between(table, index, part));
-                        let CornerBlock { offset: offsets, near: nears, far: fars } =
+                        let CornerBlock { offset: offsets, near: nears, far: fars, .. } =
                             &mut block.corners[spring][end];
                         (nears[k], fars[k]) = (near, far);
                         offsets[k] = corner.offset_m(point) + parts.alike_between(index, part);
                     }
                 }
-                block.set_sliding(mesh, (first_spring, k), (index, part));
+                block.set_sliding_and_strips((mesh, parts.class), (first_spring, k), (index, part));
                 for (spring, [stiffness, offset]) in (first_spring..).zip(parts.between_points(index, part)) {
                     block.stiffness[spring][k] = stiffness;
                     block.offset[spring][k] =
                         if is_even { offset } else { self.leading(offset, pair, &mut before[spring]) };
                 }
-            }
-        }
-        if self.tilts {
-            for (centre, revolutions) in block.face_centre.iter_mut().zip(revolutions) {
-                let pitches = turning.first_pitch + revolutions * turning.pitches_per_revolution;
-                *centre = self.face_centre_m((pitches * per_pitch).round().max(0.0) as usize);
             }
         }
     }
@@ -931,13 +870,11 @@ impl<'a> MeshForcing<'a> {
                     + self.gear.at_position_m(gear_tooth, position)
                     + eccentric
                     - between(here.separation_m, next.separation_m);
-                block.set_sliding(mesh, (place, k), (index, part));
+                let class = mesh.sequence.class(pair);
+                block.set_sliding_and_strips((mesh, class), (place, k), (index, part));
                 block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
                 block.offset[place][k] = self.leading(offset, pair, &mut before);
                 self.before[place] = before;
-            }
-            if self.tilts {
-                block.face_centre[k] = self.face_centre_m((pitches * per_pitch).round().max(0.0) as usize);
             }
         }
     }
@@ -975,27 +912,4 @@ struct Part {
     from: usize,
     until: usize,
     point: usize,
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::scenario::{Fault, GearPair, Scenario, ToothBreakage};
-    use crate::simulate::stages;
-
-    use super::ForcingBlock;
-
-    // Also where all pairs are further apart than the load presses the mesh together, as without a load.
-    #[test]
-    fn damage_on_a_side_moves_the_load_at_any_torque() {
-        for brake_torque_nm in [0.0, 10.0] {
-            let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
-            let chip = ToothBreakage { chip_height_mm: 6.0, chip_width_mm: 14.0, tip_loss_mm: 0.0 };
-            scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
-            let stages = stages(&scenario).unwrap();
-            let mut block = ForcingBlock::default();
-            let revolution = 3 * stages.time.samples_per_pinion_revolution;
-            stages.lane(&[]).unwrap().forcing.next_block(revolution, &mut block);
-            assert!(block.meshes[0].face_centre.iter().any(|z_m| *z_m < -1e-3), "{brake_torque_nm} N m");
-        }
-    }
 }

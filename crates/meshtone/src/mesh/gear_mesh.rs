@@ -4,7 +4,6 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 
 use super::corner::REACH;
-use super::face_load::{FaceLoad, FaceSlope};
 use super::forcing::{CornerReading, PAIRS, Turning};
 use super::law::{Contact, CornerLaw, MeshLaw, Springs, deflection_at_rest};
 use super::pair::Pairs;
@@ -116,13 +115,15 @@ pub struct Mesh {
     pub nominal_deflection_m: f64,
     /// How it bears along its face at rest under the nominal load; evenly where flanks may pull, or without a load.
     pub along_face: LoadAlongFace,
+    /// (m) Half the width of its face.
+    pub(crate) half_face_m: f64,
+    /// (m) Of a mesh that has the slope of its deflection along the face as a second unknown, by how much closer its flanks are at the end of the
+    /// face at positive z than midway, while its wheels do not tilt.
+    pub(crate) closer_at_end_m: Option<f64>,
     /// How its flanks touch.
     pub contact: Contact,
     /// How it turns with the motor.
     pub turning: Turning,
-    /// (m) How far the nominal load presses sound pairs together at each point of a pitch, counted as those of the tables; none where that
-    /// is taken as [`Self::nominal_deflection_m`] throughout.
-    pressed_m: Vec<f64>,
     /// Sound pairs of helical teeth along their path; none of spur wheels.
     along_path: Option<AlongPath>,
     /// Friction of the flanks; none of frictionless ones.
@@ -143,9 +144,17 @@ pub struct PairTable {
     /// Of each slice, what its contact lines have outside the path, before its start and beyond its end; none of spur teeth, whose states
     /// are those of corners there.
     pub corners: Vec<[CornerTable; 2]>,
+    /// (-) Of faces that tilt and are no slices, where the middle of what touches of each state lies along the face, from −1 to 1, and half of its
+    /// width: that of an even strip with the same stiffness, centroid and moment of inertia. None where that is always the whole face.
+    pub strips: Vec<[f64; 2]>,
 }
 
 impl PairTable {
+    /// Whether what is left of its pairs' faces lies beside the middle anywhere.
+    fn loses_a_part(&self) -> bool {
+        self.states.iter().any(|state| state.face_centre_m != 0.0)
+    }
+
     /// Whether its pairs can touch at all.
     pub(crate) fn can_touch(&self) -> bool {
         self.states.iter().any(|state| state.stiffness_n_per_m > 0.0)
@@ -167,8 +176,8 @@ pub(crate) struct MeshParameters {
     pub(crate) backlash_m: f64,
     /// (N) Nominal load along the line of action.
     pub(crate) static_force_n: f64,
-    /// How the flanks close along the face; none where they close alike.
-    pub(crate) slope: Option<FaceSlope>,
+    /// (m) By how much more the flanks close at the end of the face at positive z than at the other one; of faces in slices.
+    pub(crate) closer_m: f64,
     /// How they lie along it otherwise.
     pub(crate) face: FaceForm,
     /// (m) Face width.
@@ -183,8 +192,7 @@ impl Mesh {
 
     /// Tabulates the pairs.
     ///
-    /// The tables reach as far beyond the path as a tip corner can touch. Where the flanks close unevenly along the face, the states of all
-    /// pairs are changed to those of the part of the face that bears under the nominal load; slices have their own separations instead.
+    /// The tables reach as far beyond the path as a tip corner can touch.
     ///
     /// # Arguments
     /// * `faces` - the tooth pairs of each slice
@@ -206,7 +214,7 @@ impl Mesh {
             mesh_mass_kg,
             backlash_m,
             static_force_n,
-            slope,
+            closer_m,
             face,
             face_width_m,
             friction,
@@ -231,7 +239,7 @@ impl Mesh {
             if kind.is_sound() { along_path.clone() } else { tables[slice].along_path(kind) }
         };
         let table = |&kind: &PairKind| {
-            let mut table = PairTable { kind, states: Vec::new(), corners: Vec::new() };
+            let mut table = PairTable { kind, states: Vec::new(), corners: Vec::new(), strips: Vec::new() };
             for slice in 0..face.slices() {
                 let window = face.window(slice);
                 let mut states = match along_path_of(&kind, slice) {
@@ -246,13 +254,7 @@ impl Mesh {
                         along_path.over_face(&positions, window)
                     }
                 };
-                // The load of slices moves along the face where this leans; otherwise it acts midway.
-                let leans = face == FaceForm::Spur || slope.is_some();
-                for state in &mut states {
-                    state.separation_m += face.gap_m(slice);
-                    state.face_centre_m =
-                        if leans { state.face_centre_m + window.middle * face_width_m } else { 0.0 };
-                }
+                states.iter_mut().for_each(|state| state.separation_m += face.gap_m(slice));
                 table.states.append(&mut states);
             }
             table
@@ -288,30 +290,19 @@ impl Mesh {
             face,
             nominal_deflection_m: 0.0,
             along_face: LoadAlongFace::EVEN,
+            half_face_m: face_width_m / 2.0,
+            closer_at_end_m: None,
             contact,
             turning,
-            pressed_m: Vec::new(),
             along_path,
             friction,
             sliding,
         };
-        match slope {
-            Some(slope) if mesh.slices() == 1 => {
-                let of_mean = FaceLoad::new(slope, static_force_n / mesh.mean_stiffness_n_per_m);
-                mesh.lean(slope, &of_mean, static_force_n);
-                mesh.mean_stiffness_n_per_m = mean_stiffness(&mesh.classes);
-                mesh.closed_stiffness_n_per_m = mesh.mean_stiffness_n_per_m;
-            }
-            slope => {
-                if let Some(slope) = slope {
-                    // Slices touch at one deflection: the wheels' tilt under the load is taken off beforehand.
-                    let loaded =
-                        FaceLoad::new(slope, static_force_n / mesh.mean_stiffness_n_per_m).loaded_slope();
-                    mesh.close_slices(loaded * face_width_m);
-                }
-                if mesh.slices() > 1 && contact == Contact::Unilateral && static_force_n > 0.0 {
-                    mesh.press(static_force_n);
-                }
+        mesh.nominal_deflection_m = static_force_n / mesh.mean_stiffness_n_per_m;
+        if mesh.slices() > 1 {
+            mesh.close_slices(closer_m);
+            if contact == Contact::Unilateral && static_force_n > 0.0 {
+                mesh.mean_stiffness_n_per_m = mesh.mean_of_sound_n_per_m();
             }
         }
         mesh.damping_time_s = 2.0 * damping_ratio * (mesh_mass_kg / mesh.mean_stiffness_n_per_m).sqrt();
@@ -335,38 +326,6 @@ impl Mesh {
         }
     }
 
-    /// Makes pairs whose flanks close alike along the face such whose flanks close as given.
-    fn lean(&mut self, face: FaceSlope, of_mean: &FaceLoad, static_force_n: f64) {
-        let per_pitch = self.points_per_pitch;
-        let sound: Vec<FaceLoad> = (0..per_pitch)
-            .map(|from| pressed_m(&self.classes[0].states, from, per_pitch, static_force_n))
-            .map(|deflection_m| FaceLoad::new(face, deflection_m))
-            .collect();
-        let classes = self.classes.iter_mut();
-        for (at, state) in classes.flat_map(|class| class.states.iter_mut().enumerate()) {
-            sound[at % per_pitch].lean(state, of_mean.middle_m());
-        }
-    }
-
-    /// Finds how far the nominal load presses sound pairs together at each point of a pitch, and by what of them touches then the mean
-    /// stiffness.
-    fn press(&mut self, static_force_n: f64) {
-        let (per_pitch, points) = (self.points_per_pitch, self.points());
-        let states = &self.classes[0].states;
-        let mut stiffness_n_per_m = 0.0;
-        let mut pressed_m = Vec::with_capacity(per_pitch);
-        for from in 0..per_pitch {
-            let together =
-                || states.chunks(points).flat_map(move |states| states.iter().skip(from).step_by(per_pitch));
-            let deflection_m = deflection_of_springs(self.contact, together(), static_force_n);
-            let touching = together().filter(|state| state.separation_m < deflection_m);
-            stiffness_n_per_m += touching.map(|state| state.stiffness_n_per_m).sum::<f64>();
-            pressed_m.push(deflection_m);
-        }
-        self.mean_stiffness_n_per_m = stiffness_n_per_m / per_pitch as f64;
-        self.pressed_m = pressed_m;
-    }
-
     /// (-) λ, half of what closes the flanks by more at one end of the face over the mean deflection, less what the wheels yield: while the whole face bears,
     /// 1 + λ is the face load factor.
     ///
@@ -381,6 +340,25 @@ impl Mesh {
     /// Number of slices of the face; 1 where it is taken as a whole.
     pub fn slices(&self) -> usize {
         self.face.slices()
+    }
+
+    /// (-) Where the middle of a slice lies along the face, from −1 to 1, and half of its width.
+    pub(super) fn strip_of_slice(&self, slice: usize) -> [f64; 2] {
+        [2.0 * self.face.window(slice).middle, 1.0 / self.slices() as f64]
+    }
+
+    /// (-) The same of what touches of a state.
+    ///
+    /// # Arguments
+    /// * `class`, `number` - of the pair, and of the state in its table
+    pub(super) fn strip(&self, class: usize, number: usize) -> [f64; 2] {
+        let of_state = self.classes[class].strips.get(number).copied();
+        of_state.unwrap_or_else(|| self.strip_of_slice(number / self.points()))
+    }
+
+    /// Whether that differs from state to state.
+    pub(super) fn has_strips(&self) -> bool {
+        self.classes.iter().any(|class| !class.strips.is_empty())
     }
 
     /// Number of pairs that are looked at together.
@@ -418,17 +396,6 @@ impl Mesh {
             if class.corners.is_empty() { none } else { places.collect() }
         };
         self.classes.iter().flat_map(of_class).collect()
-    }
-
-    /// (N) The part of the nominal load that a slice of a pair bears: its weight where the place of the load along the face is found.
-    ///
-    /// # Arguments
-    /// * `state` - the slice
-    /// * `point` - of the tables
-    pub(super) fn borne_n(&self, state: &PairState, point: usize) -> f64 {
-        let deflection_m =
-            self.pressed_m.get(point % self.points_per_pitch).copied().unwrap_or(self.nominal_deflection_m);
-        state.stiffness_n_per_m * (deflection_m - state.separation_m).max(0.0)
     }
 
     /// Points by which the flanks' tables begin before a pair's, and end after it: as many as the first slice is ahead of the middle.
@@ -520,15 +487,20 @@ impl Mesh {
         (point as f64 - self.points_before as f64) / self.points_per_pitch as f64
     }
 
-    /// (m) How far from the middle of the face the load of a pair acts at most; 0 where no load tilts the wheels.
-    pub fn face_reach_m(&self) -> f64 {
-        let states = self.classes.iter().flat_map(|class| &class.states);
-        states.map(|state| state.face_centre_m.abs()).fold(0.0, f64::max)
-    }
-
     /// The mesh as if it were closed always, with its mean stiffness.
     pub(crate) fn closed(&self) -> ClosedMesh {
         ClosedMesh { stiffness_n_per_m: self.mean_stiffness_n_per_m, damping_time_s: self.damping_time_s }
+    }
+
+    /// (m) What the tilt of the wheels under the nominal load adds to the deflection at the end of the face at positive z.
+    pub(super) fn tilt_at_rest_m(&self) -> f64 {
+        self.along_face.tilt_m / 2.0
+    }
+
+    /// (m) Of a mesh that has the slope of its deflection along the face as a second unknown: the width of its face, and by how much more its flanks
+    /// close at the end at positive z than at the other one, while its wheels do not tilt.
+    pub fn two_unknowns(&self) -> Option<[f64; 2]> {
+        self.closer_at_end_m.map(|closer_m| [2.0 * self.half_face_m, 2.0 * closer_m])
     }
 
     /// Its law.
@@ -544,7 +516,10 @@ impl Mesh {
     /// (N/m) Sum of the stiffnesses of the pairs that touch at a point, counted from the start of the simulation: under a light load, and
     /// where the face has slices under the nominal one.
     pub(crate) fn whole_stiffness_at(&self, point: usize) -> f64 {
-        self.touching_n_per_m(&self.pairs_at(point).map(|(_, _, state)| *state).collect::<Vec<_>>())
+        let pairs = self
+            .pairs_at(point)
+            .map(|(pair, number, state)| (self.strip(self.sequence.class(pair), number), *state));
+        self.touching_n_per_m(&pairs.collect::<Vec<_>>())
     }
 
     /// (N/mm) Sum of the stiffnesses of the pairs that touch, at every point of some pitches: under a light load, and where the face has slices
@@ -559,28 +534,92 @@ impl Mesh {
 
     /// (N/mm) The same of sound teeth, over one pitch.
     pub fn healthy_stiffness_n_per_mm(&self) -> Vec<f64> {
-        let states = &self.classes[0].states;
-        (0..self.points_per_pitch)
-            .map(|since| {
-                let of_slice = |slice: &[PairState]| -> Vec<PairState> {
-                    let first = (since + self.points_before) % self.points_per_pitch;
-                    slice[first..].iter().step_by(self.points_per_pitch).copied().collect()
-                };
-                let pairs: Vec<PairState> = states.chunks(self.points()).flat_map(of_slice).collect();
-                self.touching_n_per_m(&pairs) * 1e-3
-            })
-            .collect()
+        let first = |since: usize| (since + self.points_before) % self.points_per_pitch;
+        (0..self.points_per_pitch).map(|since| self.sound_n_per_m(first(since)) * 1e-3).collect()
+    }
+
+    /// (N/m) Its mean.
+    fn mean_of_sound_n_per_m(&self) -> f64 {
+        let points = 0..self.points_per_pitch;
+        points.map(|first| self.sound_n_per_m(first)).sum::<f64>() / self.points_per_pitch as f64
+    }
+
+    /// (N/m) The same where the tables' point of the newest pair is one of the first pitch.
+    fn sound_n_per_m(&self, first: usize) -> f64 {
+        let points = (first..self.points()).step_by(self.points_per_pitch);
+        let numbers = (0..self.slices()).flat_map(|slice| points.clone().map(move |point| (slice, point)));
+        let numbers = numbers.map(|(slice, point)| slice * self.points() + point);
+        let state = |number: usize| (self.strip(0, number), self.classes[0].states[number]);
+        self.touching_n_per_m(&numbers.map(state).collect::<Vec<_>>())
+    }
+
+    /// Whether it is of spur teeth of which some have lost a part of their faces: its load would tilt the wheels, at hardly any cost.
+    pub(crate) fn loses_a_part(&self) -> bool {
+        self.face == FaceForm::Spur && self.classes.iter().any(PairTable::loses_a_part)
+    }
+
+    /// Makes the slope of its deflection along the face a second unknown.
+    ///
+    /// # Arguments
+    /// * `closer_m` - (m) by how much more its flanks close at the end of the face at positive z than at the other one, while its wheels do not tilt
+    pub(crate) fn tilt(&mut self, closer_m: f64) {
+        self.closer_at_end_m = Some(closer_m / 2.0);
+        if self.slices() > 1 {
+            return;
+        }
+        let positions: Vec<f64> = (0..self.points()).map(|point| self.position(point)).collect();
+        let (window, half_face_m) = (self.face.window(0), self.half_face_m);
+        for class in &mut self.classes {
+            if let Some(along_path) = self.along_path.as_ref().filter(|_| !class.corners.is_empty()) {
+                class.strips = along_path.strips(&positions, window);
+            } else if class.loses_a_part() {
+                let places = class.states.iter().map(|state| state.face_centre_m / half_face_m);
+                class.strips = places.map(|place| [place, 1.0 - place.abs()]).collect();
+            }
+        }
+    }
+
+    /// Takes how it bears along its face at rest under the nominal load. The mean stiffness of a mesh with two unknowns whose flanks close by more at
+    /// one end of the face is that of what bears then.
+    ///
+    /// # Arguments
+    /// * `load` - how it bears
+    pub(crate) fn bear(&mut self, load: LoadAlongFace) {
+        self.along_face = load;
+        if self.closer_at_end_m.is_some_and(|closer_m| closer_m != 0.0) {
+            let mean_n_per_m = self.mean_of_sound_n_per_m();
+            let part = mean_n_per_m / self.mean_stiffness_n_per_m;
+            self.mean_stiffness_n_per_m = mean_n_per_m;
+            self.nominal_deflection_m /= part;
+            self.damping_time_s /= part.sqrt();
+        }
     }
 
     /// (N/m) Stiffness of the pairs that carry a light load: those that are hardly farther apart than the nearest, or all where they
-    /// may pull. Of slices those that the nominal load brings together.
-    fn touching_n_per_m(&self, states: &[PairState]) -> f64 {
-        let pairs = || states.iter().filter(|state| state.stiffness_n_per_m > 0.0);
+    /// may pull. Of slices, and of flanks that close by more at one end of the face, what the nominal load brings together.
+    ///
+    /// # Arguments
+    /// * `states` - with the strip of each
+    fn touching_n_per_m(&self, states: &[([f64; 2], PairState)]) -> f64 {
+        if let Some(closer_m) = self.closer_at_end_m.filter(|closer_m| *closer_m != 0.0) {
+            let numbers = states.iter().map(|(_, state)| (state.stiffness_n_per_m, -state.separation_m));
+            let (stiffness, offset): (Vec<f64>, Vec<f64>) = numbers.unzip();
+            let strips: Vec<[f64; 2]> = states.iter().map(|(strip, _)| *strip).collect();
+            let springs =
+                Springs { strips: &strips, closer_m, ..Springs::frictionless(&stiffness, &offset, &[], &[]) };
+            let force_n = self.nominal_deflection_m * self.mean_stiffness_n_per_m;
+            let at_rest_m = self.law().tilted_at_rest(springs, self.tilt_at_rest_m(), force_n);
+            return self.law().tilted(springs, [at_rest_m, self.tilt_at_rest_m()]).slopes[0];
+        }
+        let states = || states.iter().map(|(_, state)| state);
+        let pairs = || states().filter(|state| state.stiffness_n_per_m > 0.0);
         let farthest_m = match self.contact {
-            Contact::Unilateral if self.pressed_m.is_empty() => nearest_m(pairs()) + TOUCHING_M,
+            Contact::Unilateral if self.slices() == 1 || self.nominal_deflection_m <= 0.0 => {
+                nearest_m(pairs()) + TOUCHING_M
+            }
             Contact::Unilateral => {
                 let force_n = self.nominal_deflection_m * self.mean_stiffness_n_per_m;
-                deflection_of_springs(self.contact, states.iter(), force_n)
+                deflection_of_springs(self.contact, states(), force_n)
             }
             Contact::Bilateral => f64::INFINITY,
         };
@@ -606,19 +645,6 @@ fn deflection_of_springs<'a>(
         states.filter(can_touch).map(|state| (state.stiffness_n_per_m, -state.separation_m)).unzip();
     let springs = Springs::frictionless(&stiffness, &offset, &[], &[]);
     deflection_at_rest(contact, springs, force_n)
-}
-
-/// (m) How far a load presses the nearest of sound pairs together at rest.
-///
-/// # Arguments
-/// * `states` - of sound pairs
-/// * `from` - first point of those that pairs are at together
-/// * `per_pitch` - number of points from one pair to the next
-/// * `force_n` - (N) the load
-fn pressed_m(states: &[PairState], from: usize, per_pitch: usize, force_n: f64) -> f64 {
-    let together =
-        || states.iter().skip(from).step_by(per_pitch).filter(|state| state.stiffness_n_per_m > 0.0);
-    deflection_of_springs(Contact::Unilateral, together(), force_n) - nearest_m(together())
 }
 
 /// (m) Least separation of some pairs.

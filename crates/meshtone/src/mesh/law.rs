@@ -14,6 +14,11 @@
 //! convex, so that from the first iterate on the method comes down to the solution, and ends when no pair leaves. With corners it is smooth:
 //! there the method ends when an iterate is so near to the last one that the tangent is exact between them.
 //!
+//! Where the face closes unevenly and the wheels tilt under the load, the mesh has a second unknown, the slope of its deflection along the face: at
+//! ζ from −1 to 1 the deflection is `D + ζ (T + c)`, with T what the tilt of the wheels adds at the end of the face at positive z, and c what their flanks do. A
+//! spring is then a strip of the face with an even stiffness, of which that part carries where it is positive ([`MeshLaw::tilted`]). Force and moment are the
+//! derivatives of `Σ ∫ ½ k' max(0, x)² dz`, which is convex, so that a step has one solution.
+//!
 //! Where two teeth meet at speed the force begins when `x + τ ẋ` crosses 0, which is earlier than x does by τ, a few
 //! microseconds: so the force has no jump, and the equation always a solution.
 
@@ -94,6 +99,8 @@ pub(crate) struct CornerAt {
     /// (√m) The edges of the line, as the v at which the corner reaches them: that nearer to the path, and the farther one.
     pub(crate) near: f64,
     pub(crate) far: f64,
+    /// (-) Where it is along a face that tilts, from −1 to 1.
+    pub(crate) place: f64,
 }
 
 impl CornerAt {
@@ -206,8 +213,8 @@ pub(crate) struct PairsSample<const L: usize, const P: usize, const C: usize> {
     pub(crate) stiffness: [Lanes<L>; P],
     /// (m) What deviations, damage and separation add to the deflection, with the damping's lead: `o + τ ȯ`, `o = e − S`.
     pub(crate) offset: [Lanes<L>; P],
-    /// (m) Where along the face the load acts.
-    pub(crate) face_centre: Lanes<L>,
+    /// (-) Where the middle of what is left of its face lies along it, of teeth that tilt.
+    pub(crate) place: [Lanes<L>; P],
     /// What lies outside the path, before its start and beyond its end.
     pub(crate) corners: [[CornerSample<L>; 2]; C],
 }
@@ -217,7 +224,7 @@ impl<const L: usize, const P: usize, const C: usize> PairsSample<L, P, C> {
     pub(crate) const NONE: Self = Self {
         stiffness: [Lanes([0.0; L]); P],
         offset: [Lanes([0.0; L]); P],
-        face_centre: Lanes([0.0; L]),
+        place: [Lanes([0.0; L]); P],
         corners: [[CornerSample::NONE; 2]; C],
     };
 
@@ -231,6 +238,10 @@ impl<const L: usize, const P: usize, const C: usize> PairsSample<L, P, C> {
             };
             line_up(samples, part(|pairs| &pairs.stiffness), |sample| &mut sample.stiffness[place]);
             line_up(samples, part(|pairs| &pairs.offset), |sample| &mut sample.offset[place]);
+            if blocks.iter().any(|pairs| !pairs.strips.is_empty()) {
+                let places = blocks.map(|pairs| pairs.strips.get(place).map_or(&none[..], |of| &of[0][..]));
+                line_up(samples, places, |sample| &mut sample.place[place]);
+            }
         }
         for (place, end) in (0..C).flat_map(|place| [(place, 0), (place, 1)]) {
             let part = |of: fn(&CornerBlock) -> &Vec<f64>| {
@@ -241,11 +252,6 @@ impl<const L: usize, const P: usize, const C: usize> PairsSample<L, P, C> {
             line_up(samples, part(|corner| &corner.offset), |sample| &mut sample.corners[place][end].offset);
             line_up(samples, part(|corner| &corner.near), |sample| &mut sample.corners[place][end].near);
             line_up(samples, part(|corner| &corner.far), |sample| &mut sample.corners[place][end].far);
-        }
-        for (lane, pairs) in blocks.iter().enumerate() {
-            for (sample, z) in samples.iter_mut().zip(&pairs.face_centre) {
-                sample.face_centre.0[lane] = *z;
-            }
         }
     }
 }
@@ -296,7 +302,40 @@ pub(crate) struct Springs<'a> {
     pub(crate) laws: &'a [CornerLaw],
     /// Of each law what `sliding` is of springs.
     pub(crate) sliding_of_laws: &'a [[f64; 2]],
+    /// (-) Of a face that tilts, the middle of each along it, from −1 to 1, and half of its width.
+    pub(crate) strips: &'a [[f64; 2]],
+    /// (m) Of the same, by how much closer its flanks are at 1 than at 0 while its wheels do not tilt.
+    pub(crate) closer_m: f64,
 }
+
+/// What a mesh with two unknowns carries: all of its numbers are by the deflection D midway, and by what the tilt adds at the end of the face, T.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct TiltedLoad {
+    /// (N) Force, and moment about the middle of the face over half its width.
+    pub(crate) forces: [f64; 2],
+    /// (N/m) Of the force by D, of the force by T and of the moment by D, and of the moment by T.
+    pub(crate) slopes: [f64; 3],
+    /// Friction across the line of action and its moment about the pitch point, each with its slopes by D and T; 0 without friction.
+    pub(crate) friction: [[f64; 3]; 2],
+}
+
+impl TiltedLoad {
+    /// Adds what a spring carries at a place.
+    #[inline(always)]
+    fn add(&mut self, [force, moment]: [f64; 2], slopes: [f64; 3], sliding: Option<[f64; 2]>) {
+        self.forces[0] += force;
+        self.forces[1] += moment;
+        self.slopes.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += slope);
+        for (sums, part) in self.friction.iter_mut().zip(sliding.into_iter().flatten()) {
+            for (sum, number) in sums.iter_mut().zip([force, slopes[0], slopes[1]]) {
+                *sum += part * number;
+            }
+        }
+    }
+}
+
+/// (m) Lean below which a strip is as if it did not lean: no penetration is as small.
+const NO_LEAN_M: f64 = 1e-40;
 
 impl<'a> Springs<'a> {
     /// Those of frictionless flanks; arguments as the fields.
@@ -306,7 +345,29 @@ impl<'a> Springs<'a> {
         corners: &'a [CornerAt],
         laws: &'a [CornerLaw],
     ) -> Self {
-        Self { stiffness, offset, sliding: [&[]; 2], corners, laws, sliding_of_laws: &[] }
+        Self {
+            stiffness,
+            offset,
+            sliding: [&[]; 2],
+            corners,
+            laws,
+            sliding_of_laws: &[],
+            strips: &[],
+            closer_m: 0.0,
+        }
+    }
+
+    /// One of them, without corners.
+    pub(crate) fn only(self, n: usize) -> Self {
+        let one = |of: &'a [f64]| of.get(n..=n).unwrap_or_default();
+        Self {
+            stiffness: one(self.stiffness),
+            offset: one(self.offset),
+            sliding: self.sliding.map(one),
+            strips: self.strips.get(n..=n).unwrap_or_default(),
+            corners: &[],
+            ..self
+        }
     }
 }
 
@@ -328,8 +389,11 @@ pub(crate) struct SpringSamples {
     laws: Vec<CornerLaw>,
     /// Of each law the friction of what it carries, as of [`Springs::sliding_of_laws`].
     sliding_of_laws: Vec<[f64; 2]>,
-    /// (m) Where along the face the load acts at each sample; empty where that is the middle throughout.
-    face_centre: Vec<f64>,
+    /// (m) By how much closer its flanks are at the end of the face, where the tilt is an unknown.
+    closer_m: Option<f64>,
+    /// How they lie along a face that tilts, as of [`Springs`], and the same sample by sample, where it differs; empty elsewhere.
+    strips: Vec<[f64; 2]>,
+    strips_of_samples: Vec<[f64; 2]>,
 }
 
 impl SpringSamples {
@@ -342,15 +406,17 @@ impl SpringSamples {
         Self {
             laws: mesh.corner_laws(),
             sliding_of_laws: mesh.sliding_of_corner_laws(),
+            closer_m: mesh.closer_at_end_m,
+            strips: (0..mesh.springs()).map(|n| mesh.strip_of_slice(n % mesh.slices())).collect(),
             per_spring,
             ..Self::default()
         }
     }
 
-    /// Whether the mesh has corners, so that its force is smooth.
+    /// Whether the mesh has corners or tilts, so that its force is smooth.
     #[inline(always)]
     pub(crate) fn is_smooth(&self) -> bool {
-        !self.laws.is_empty()
+        !self.laws.is_empty() || self.closer_m.is_some()
     }
 
     /// Takes the samples of a block.
@@ -365,6 +431,12 @@ impl SpringSamples {
                 values[3 * self.springs + n] = sliding[1][k];
             }
         }
+        self.strips_of_samples
+            .resize(if block.strips.is_empty() { 0 } else { samples * self.springs }, [0.0; 2]);
+        for (n, [places, half_widths]) in block.strips.iter().enumerate() {
+            let samples = self.strips_of_samples.chunks_exact_mut(self.springs);
+            samples.zip(places.iter().zip(half_widths)).for_each(|(sample, (a, b))| sample[n] = [*a, *b]);
+        }
         for (n, (stiffness, offset)) in block.stiffness.iter().zip(&block.offset).enumerate() {
             let at = self.values.chunks_exact_mut(stride).zip(stiffness.iter().zip(offset));
             for (values, (stiffness, offset)) in at {
@@ -372,7 +444,6 @@ impl SpringSamples {
                 values[self.springs + n] = *offset;
             }
         }
-        self.face_centre.clone_from(&block.face_centre);
         self.line_corners_up(block, samples);
     }
 
@@ -380,7 +451,7 @@ impl SpringSamples {
     fn line_corners_up(&mut self, block: &PairsBlock, samples: usize) {
         self.corners.clear();
         self.corners_until.clear();
-        if !self.is_smooth() {
+        if self.laws.is_empty() {
             return;
         }
         let slices = block.corners.len() / block.classes.len().max(1);
@@ -392,6 +463,7 @@ impl SpringSamples {
                         offset_m: corner.offset[sample],
                         near: corner.near[sample],
                         far: corner.far[sample],
+                        place: corner.place.get(sample).copied().unwrap_or(self.strips[spring][0]),
                     };
                     if at.can_touch() {
                         let class = block.class_at(spring / slices, sample);
@@ -420,13 +492,13 @@ impl SpringSamples {
             corners: &self.corners[from..until(sample)],
             laws: &self.laws,
             sliding_of_laws: &self.sliding_of_laws,
+            strips: self
+                .strips_of_samples
+                .get(sample * self.springs..(sample + 1) * self.springs)
+                .filter(|strips| !strips.is_empty())
+                .unwrap_or(&self.strips),
+            closer_m: self.closer_m.unwrap_or(0.0),
         }
-    }
-
-    /// (m) Where along the face the load acts at a sample.
-    #[inline(always)]
-    pub(crate) fn face_centre_m(&self, sample: usize) -> f64 {
-        self.face_centre.get(sample).copied().unwrap_or(0.0)
     }
 }
 
@@ -531,6 +603,78 @@ impl MeshLaw {
         }
         sums
     }
+
+    /// What a mesh with two unknowns carries.
+    ///
+    /// A strip of half width w about ζ, with x midway, leans by `(T + c) w` towards its ends: of it the part `a = ½ + x/(2 (T + c) w)`, at least 0
+    /// and at most 1, carries, about a place that lies `(1 − a) w` nearer to the end that is pressed more. What carries has the force of its middle, and
+    /// about that the moment of inertia `(2 a w)²/12`.
+    ///
+    /// # Arguments
+    /// * `springs` - with their strips
+    /// * `deflection_m` - (m) D and T
+    #[inline(always)]
+    pub(crate) fn tilted(&self, springs: Springs, [deflection_m, tilt_m]: [f64; 2]) -> TiltedLoad {
+        let mut sums = TiltedLoad::default();
+        let lean_m = tilt_m + springs.closer_m;
+        let rubs = !springs.sliding[0].is_empty();
+        let each = springs.stiffness.iter().zip(springs.offset).zip(springs.strips).enumerate();
+        for (n, ((stiffness, offset), [middle, half_width])) in each {
+            let per_m = 0.5 / (lean_m.abs() * half_width).max(NO_LEAN_M);
+            let middle_m = deflection_m + offset + middle * lean_m;
+            let part = (0.5 + middle_m * per_m).clamp(0.0, 1.0);
+            let beside = (1.0 - part) * half_width.copysign(lean_m);
+            let (place, carries) = (middle + beside, stiffness * part);
+            let force = carries * (middle_m + beside * lean_m);
+            let spread = carries * (part * part * half_width * half_width / 3.0);
+            let moment = place * force + spread * lean_m;
+            let slopes = [carries, carries * place, carries * place * place + spread];
+            let sliding = rubs.then(|| [springs.sliding[0][n], springs.sliding[1][n]]);
+            sums.add([force, moment], slopes, sliding);
+        }
+        for corner in springs.corners {
+            let (law, place) = (corner.law as usize, corner.place);
+            let [force, slope] = corner.force_and_slope(springs.laws, deflection_m + place * lean_m);
+            let slopes = [slope, slope * place, slope * place * place];
+            sums.add([force, place * force], slopes, springs.sliding_of_laws.get(law).copied());
+        }
+        let back_m = self.back_touches_at_m() - deflection_m;
+        if back_m > 0.0 {
+            sums.forces[0] -= self.back_stiffness_n_per_m * back_m;
+            sums.slopes[0] += self.back_stiffness_n_per_m;
+        }
+        sums
+    }
+
+    /// (m) D at which a mesh with two unknowns carries a force at rest.
+    ///
+    /// # Arguments
+    /// * `springs` - with their strips
+    /// * `tilt_m` - (m) T
+    /// * `force_n` - (N) the force; where it is 0, the deflection is one at which nothing touches
+    pub(crate) fn tilted_at_rest(&self, springs: Springs, tilt_m: f64, force_n: f64) -> f64 {
+        let carried = |deflection_m: f64| self.tilted(springs, [deflection_m, tilt_m]);
+        let (mut low_m, mut high_m) = (0.0, FIRST_PRESSED_M);
+        while carried(high_m).forces[0] < force_n && high_m < 1.0 {
+            high_m *= 2.0;
+        }
+        while carried(low_m).forces[0] > 0.0 && low_m > -1.0 {
+            low_m -= high_m;
+        }
+        // The force is convex from where it begins: Newton's steps come down, and halves are there for rounding.
+        let mut at_m = high_m;
+        for _ in 0..MOST_SMOOTH_ITERATIONS {
+            let load = carried(at_m);
+            let step_m = (force_n - load.forces[0]) / load.slopes[0].max(f64::MIN_POSITIVE);
+            let next_m = at_m + step_m;
+            let next_m = if next_m > low_m { next_m } else { (low_m + at_m) / 2.0 };
+            if (next_m - at_m).abs() <= 1e-15 * at_m.abs() {
+                break;
+            }
+            at_m = next_m;
+        }
+        at_m
+    }
 }
 
 /// The laws of one mesh in each of `L` simulations side by side.
@@ -541,6 +685,8 @@ pub(crate) struct LawLanes<const L: usize> {
     back_touches: Lanes<L>,
     /// (m) Penetration below which a pair carries nothing.
     lets_go: Lanes<L>,
+    /// (m) By how much closer the flanks of wheels that do not tilt are at the end of the face than midway; nothing of a mesh with one unknown.
+    closer: [Option<f64>; L],
 }
 
 impl<const L: usize> LawLanes<L> {
@@ -549,25 +695,26 @@ impl<const L: usize> LawLanes<L> {
     /// # Arguments
     /// * `laws` - of each
     /// * `static_force_n` - (N) mesh force of each under the constant loads
-    pub(crate) fn new(laws: [MeshLaw; L], static_force_n: [f64; L]) -> Self {
+    /// * `closer_m` - (m) of each mesh with two unknowns, by how much closer its flanks are at the end of the face than midway
+    pub(crate) fn new(laws: [MeshLaw; L], static_force_n: [f64; L], closer_m: [Option<f64>; L]) -> Self {
         Self {
             static_force: Lanes(static_force_n),
             back_stiffness: Lanes::from_fn(|l| laws[l].back_stiffness_n_per_m),
             back_touches: Lanes::from_fn(|l| laws[l].back_touches_at_m()),
             lets_go: Lanes::from_fn(|l| laws[l].contact.lets_go_at_m()),
+            closer: closer_m,
         }
     }
 
     /// (N) The mesh's force on the modes at the end of a step, relative to the static one: the whole force, and where R is 2 its moment
-    /// about the middle of the face.
+    /// about the middle of the face over half its width.
     ///
-    /// The load acts in the one direction `g(z̄) = g₀ + z̄ g₁`, so that deflections and compliances in g₀ and g₁ come down to one
-    /// equation in D. It is solved for the drive flanks first; only where D would reach the coast flanks, which is rare, they are added
+    /// The equation is solved for the drive flanks first; only where D would reach the coast flanks, which is rare, they are added
     /// and the equation is solved again.
     ///
     /// # Arguments
-    /// * `free` - (m) deflection with its damping's lead in g₀ and g₁ at the step's end, without the new force
-    /// * `compliance` - (m/N) the same deflection in each of them per new force in each
+    /// * `free` - (m) each unknown with its damping's lead at the step's end, without the new force
+    /// * `compliance` - (m/N) the same per new force in each
     /// * `sample` - the pairs at the step's end
     /// * `corners` - their laws
     /// * `last` - what touched at the step's start; set to what does at its end
@@ -582,23 +729,41 @@ impl<const L: usize> LawLanes<L> {
         last: &mut LastContact<L>,
     ) -> [Lanes<L>; R] {
         if C > 0 {
-            // Teeth with corners act midway along the face.
             let mut result = [Lanes::splat(0.0); R];
             result[0] = self.smooth_force(simd, free[0], compliance[0][0], sample, corners, last);
             return result;
         }
-        let touching = &mut last.touching;
-        let (z, gamma) = (sample.face_centre, compliance);
-        let (mut load, mut compliance) = (free[0], gamma[0][0]);
-        // What the static force, which acts midway, adds to the deflection.
-        let mut of_static = gamma[0][0];
-        if R > 1 {
-            load = z.mul_add(simd, free[1], load);
-            of_static = z.mul_add(simd, gamma[1][0], of_static);
-            let cross = gamma[0][1].add(simd, gamma[1][0]);
-            compliance = z.mul_add(simd, z.mul_add(simd, gamma[1][1], cross), compliance);
+        if R > 1 && self.closer != [None; L] {
+            let tilted = self.tilted_force(simd, free, compliance, sample, last);
+            if self.closer.iter().any(Option::is_none) {
+                // Side by side with others that have one unknown.
+                let mut result = [Lanes::splat(0.0); R];
+                result[0] = self.touching_force(simd, free[0], compliance[0][0], sample, &mut last.touching);
+                for l in (0..L).filter(|l| self.closer[*l].is_some()) {
+                    for r in 0..R {
+                        result[r].0[l] = tilted[r].0[l];
+                    }
+                }
+                return result;
+            }
+            return tilted;
         }
-        load = of_static.mul_add(simd, self.static_force, load);
+        let mut result = [Lanes::splat(0.0); R];
+        result[0] = self.touching_force(simd, free[0], compliance[0][0], sample, &mut last.touching);
+        result
+    }
+
+    /// (N) The force of a mesh of spur teeth with one unknown, relative to the static one.
+    #[inline(always)]
+    fn touching_force<I: Instructions, const P: usize, const C: usize>(
+        &self,
+        simd: I,
+        free: Lanes<L>,
+        compliance: Lanes<L>,
+        sample: &PairsSample<L, P, C>,
+        touching: &mut Touching<L>,
+    ) -> Lanes<L> {
+        let load = compliance.mul_add(simd, self.static_force, free);
         let one = Lanes::splat(1.0);
         let before = *touching;
         let (mut deflection, mut sums) = self.solve(simd, sample, [compliance, one, load], touching);
@@ -619,12 +784,113 @@ impl<const L: usize> LawLanes<L> {
             back = stiffness.mul(simd, self.back_touches.sub(simd, deflection));
         }
         let force = sums[0].mul_add(simd, deflection, sums[1]).sub(simd, back);
-        let mut result = [zero; R];
-        result[0] = self.static_force.sub(simd, force);
-        if R > 1 {
-            result[1] = z.mul(simd, force).neg(simd);
+        self.static_force.sub(simd, force)
+    }
+
+    /// (N) Force and moment of a mesh of spur teeth whose tilt is an unknown, by Newton's method as of [`Self::smooth_force`].
+    #[inline(always)]
+    fn tilted_force<I: Instructions, const R: usize, const P: usize, const C: usize>(
+        &self,
+        simd: I,
+        free: &[Lanes<L>; R],
+        compliance: &[[Lanes<L>; R]; R],
+        sample: &PairsSample<L, P, C>,
+        last: &mut LastContact<L>,
+    ) -> [Lanes<L>; R] {
+        let [[a, b], [c, d]] = [0, 1].map(|row: usize| [0, 1].map(|column: usize| compliance[row][column]));
+        let loads =
+            [a.mul_add(simd, self.static_force, free[0]), c.mul_add(simd, self.static_force, free[1])];
+        let mut closer = [0.0; L];
+        for l in 0..L {
+            closer[l] = self.closer[l].unwrap_or(0.0);
         }
+        let one = Lanes::splat(1.0);
+        let [mut deflection, mut tilt] = [last.deflection, last.tilt];
+        let [mut force, mut moment] = [Lanes::splat(0.0); 2];
+        let mut is_found = [false; L];
+        for _ in 0..MOST_SMOOTH_ITERATIONS {
+            let ([force_now, moment_now], [whole, cross, of_tilt]) =
+                self.tilted(simd, sample, closer, [deflection, tilt]);
+            let pushed = a.mul(simd, force_now).add(simd, b.mul(simd, moment_now));
+            let turned = c.mul(simd, force_now).add(simd, d.mul(simd, moment_now));
+            let residuals = [
+                loads[0].sub(simd, deflection).sub(simd, pushed),
+                loads[1].sub(simd, tilt).sub(simd, turned),
+            ];
+            let jacobian = [
+                a.mul_add(simd, whole, b.mul_add(simd, cross, one)),
+                a.mul(simd, cross).add(simd, b.mul(simd, of_tilt)),
+                c.mul(simd, whole).add(simd, d.mul(simd, cross)),
+                c.mul_add(simd, cross, d.mul_add(simd, of_tilt, one)),
+            ];
+            let determinant =
+                jacobian[1].negative_mul_add(simd, jacobian[2], jacobian[0].mul(simd, jacobian[3]));
+            let step = [
+                jacobian[1].negative_mul_add(simd, residuals[1], jacobian[3].mul(simd, residuals[0])),
+                jacobian[2].negative_mul_add(simd, residuals[0], jacobian[0].mul(simd, residuals[1])),
+            ];
+            let step = [step[0].div(simd, determinant), step[1].div(simd, determinant)];
+            let next = [deflection.add(simd, step[0]), tilt.add(simd, step[1])];
+            let ahead = [
+                whole.mul_add(simd, step[0], cross.mul_add(simd, step[1], force_now)),
+                cross.mul_add(simd, step[0], of_tilt.mul_add(simd, step[1], moment_now)),
+            ];
+            let mut all_found = true;
+            for l in 0..L {
+                if !is_found[l] {
+                    (deflection.0[l], tilt.0[l]) = (next[0].0[l], next[1].0[l]);
+                    (force.0[l], moment.0[l]) = (ahead[0].0[l], ahead[1].0[l]);
+                    let most = TANGENT_PART * next[0].0[l].abs() + TANGENT_M;
+                    is_found[l] = step[0].0[l].abs() <= most && step[1].0[l].abs() <= most;
+                }
+                all_found &= is_found[l];
+            }
+            if all_found {
+                break;
+            }
+        }
+        (last.deflection, last.tilt) = (deflection, tilt);
+        let mut result = [moment.neg(simd); R];
+        result[0] = self.static_force.sub(simd, force);
         result
+    }
+
+    /// Force and moment of spur teeth on what is left of their faces, and their slopes, as of [`MeshLaw::tilted`].
+    #[inline(always)]
+    fn tilted<I: Instructions, const P: usize, const C: usize>(
+        &self,
+        simd: I,
+        sample: &PairsSample<L, P, C>,
+        closer: [f64; L],
+        [deflection, tilt]: [Lanes<L>; 2],
+    ) -> ([Lanes<L>; 2], [Lanes<L>; 3]) {
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(Lanes::splat);
+        let lean = tilt.add(simd, Lanes(closer));
+        let size = lean.max(simd, lean.neg(simd));
+        let pressed_end = Lanes::splat(-1.0).where_less(simd, lean, zero, one);
+        let ([mut force, mut moment], [mut whole, mut cross, mut of_tilt]) = ([zero; 2], [zero; 3]);
+        for n in 0..P {
+            let of_left = sample.place[n];
+            let half_width = one.sub(simd, of_left.max(simd, of_left.neg(simd)));
+            let per_m = half.div(simd, size.mul(simd, half_width).max(simd, Lanes::splat(NO_LEAN_M)));
+            let middle = of_left.mul_add(simd, lean, deflection.add(simd, sample.offset[n]));
+            let part = middle.mul_add(simd, per_m, half).max(simd, zero).min(simd, one);
+            let beside = one.sub(simd, part).mul(simd, pressed_end).mul(simd, half_width);
+            let place = of_left.add(simd, beside);
+            let carries = sample.stiffness[n].mul(simd, part);
+            let own = carries.mul(simd, beside.mul_add(simd, lean, middle));
+            let reach = part.mul(simd, half_width);
+            let spread = carries.mul(simd, reach.mul(simd, reach).mul(simd, Lanes::splat(1.0 / 3.0)));
+            let turned = carries.mul(simd, place);
+            force = force.add(simd, own);
+            moment = place.mul_add(simd, own, spread.mul_add(simd, lean, moment));
+            whole = whole.add(simd, carries);
+            cross = cross.add(simd, turned);
+            of_tilt = turned.mul_add(simd, place, spread.add(simd, of_tilt));
+        }
+        let back = self.back_stiffness.where_less(simd, deflection, self.back_touches, zero);
+        let pressed = deflection.sub(simd, self.back_touches);
+        ([back.mul_add(simd, pressed, force), moment], [whole.add(simd, back), cross, of_tilt])
     }
 
     /// (N) The force of a mesh of teeth with corners, relative to the static one.
@@ -759,8 +1025,9 @@ type Touching<const L: usize> = [usize; L];
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct LastContact<const L: usize> {
-    /// (m) D at the last step, of teeth with corners.
+    /// (m) D at the last step, of teeth with corners or whose wheels tilt, and T of the latter.
     deflection: Lanes<L>,
+    tilt: Lanes<L>,
     /// The pairs that touched, of teeth without.
     touching: Touching<L>,
 }
@@ -768,7 +1035,7 @@ pub(crate) struct LastContact<const L: usize> {
 impl<const L: usize> LastContact<L> {
     /// Before the first step.
     pub(crate) const fn none() -> Self {
-        Self { deflection: Lanes([0.0; L]), touching: [0; L] }
+        Self { deflection: Lanes([0.0; L]), tilt: Lanes([0.0; L]), touching: [0; L] }
     }
 }
 
@@ -886,7 +1153,7 @@ mod tests {
         #[inline(always)]
         fn run<I: Instructions>(self, simd: I) -> Vec<[f64; 2]> {
             let h = self.half_step;
-            let law = LawLanes::<1>::new([self.law], [0.0]);
+            let law = LawLanes::<1>::new([self.law], [0.0], [None]);
             let e = 1.0 / (1.0 + 2.0 * self.damping_ratio * h);
             let ([mut x, mut s, mut w], mut load) = ([0.0; 3], (self.at)(0.0).2);
             let mut states = Vec::with_capacity(self.steps);
@@ -974,6 +1241,148 @@ mod tests {
         }
     }
 
+    /// How the slices of three pairs lie along a face.
+    fn strips(slices: usize) -> Vec<[f64; 2]> {
+        let place = |n: usize| (2.0 * (n % slices) as f64 + 1.0) / slices as f64 - 1.0;
+        (0..3 * slices).map(|n| [place(n), 1.0 / slices as f64]).collect()
+    }
+
+    /// Force and moment are those of many small springs, their slopes their derivatives, and these symmetric, whatever part of the face bears.
+    #[test]
+    fn a_face_that_leans_is_as_its_springs() {
+        const SPRINGS: usize = 4000;
+        let (stiffness, offset) = ([2e8, 1.5e8, 1e8], [0.5e-6, -1e-6, -4e-6]);
+        let numbers = |slices: usize| -> [Vec<f64>; 2] {
+            let each =
+                |of: [f64; 3], share: f64| of.into_iter().flat_map(|x| vec![x * share; slices]).collect();
+            [each(stiffness, 1.0 / slices as f64), each(offset, 1.0)]
+        };
+        for [d, t] in
+            [[3e-6, 1e-6], [1e-6, 4e-6], [-1e-6, -6e-6], [2e-6, 0.0], [-3e-6, 1e-6], [0.4e-6, -9e-6]]
+        {
+            for (slices, closer_m) in [(1, 0.0), (1, 2e-6), (5, -1e-6)] {
+                let ([stiffness, offset], strips) = (numbers(slices), strips(slices));
+                let springs = Springs {
+                    strips: &strips,
+                    closer_m,
+                    ..Springs::frictionless(&stiffness, &offset, &[], &[])
+                };
+                let load = |d: f64, t: f64| UNDAMPED.tilted(springs, [d, t]);
+                let found = load(d, t);
+                let mut sums = [0.0; 2];
+                for (k, o) in [2e8, 1.5e8, 1e8].into_iter().zip([0.5e-6, -1e-6, -4e-6]) {
+                    for n in 0..SPRINGS {
+                        let place = (2.0 * n as f64 + 1.0) / SPRINGS as f64 - 1.0;
+                        let force = k / SPRINGS as f64 * f64::max(0.0, d + o + place * (t + closer_m));
+                        sums = [sums[0] + force, sums[1] + place * force];
+                    }
+                }
+                for (found, sum) in found.forces.into_iter().zip(sums) {
+                    assert!((found - sum).abs() < 1e-5 * (1.0 + sums[0]), "{slices} {d} {t}: {found} {sum}");
+                }
+                let h = 1e-11;
+                let [plus, minus] = [1.0, -1.0].map(|side| [load(d + side * h, t), load(d, t + side * h)]);
+                for (by, [of_force, of_moment]) in [[0, 1], [1, 2]].into_iter().enumerate() {
+                    for (row, slope) in [of_force, of_moment].into_iter().enumerate() {
+                        let change = (plus[by].forces[row] - minus[by].forces[row]) / (2.0 * h);
+                        let slope = found.slopes[slope];
+                        assert!((change - slope).abs() < 1e-5 * 4.5e8, "{slices} {d} {t}: {change} {slope}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// A step with two unknowns obeys its equations, with all of the face in contact, an end of it, the other, or nothing, coast flanks too, and side by
+    /// side with one unknown as alone.
+    #[test]
+    fn a_step_of_a_face_that_leans_is_solved() {
+        use crate::random::{Draws, Purpose};
+        struct Solve<'a, const L: usize> {
+            law: &'a LawLanes<L>,
+            free: [Lanes<L>; 2],
+            compliance: [[Lanes<L>; 2]; 2],
+            pairs: &'a PairsSample<L, PAIRS, 0>,
+        }
+        impl<const L: usize> Task for Solve<'_, L> {
+            type Output = [Lanes<L>; 2];
+            #[inline(always)]
+            fn run<I: Instructions>(self, simd: I) -> [Lanes<L>; 2] {
+                let mut last = LastContact::none();
+                self.law.force(simd, &self.free, &self.compliance, self.pairs, &[], &mut last)
+            }
+        }
+        let mut draws = Draws::new(4, Purpose::Candidate, 0);
+        let mut seen = [0; 4];
+        for _ in 0..2000 {
+            let mut micrometre = |half: f64| draws.uniform(0.0, half) * 1e-6;
+            let offset = [micrometre(10.0), micrometre(10.0), micrometre(10.0)];
+            let free = [micrometre(30.0), micrometre(30.0)];
+            let (closer_m, backlash) = (micrometre(10.0), micrometre(20.0).abs());
+            let [own, of_tilt] = [draws.uniform(1e-9, 1e-9), draws.uniform(1e-8, 1e-8)];
+            let cross = draws.uniform(0.0, 0.9) * f64::sqrt(own * of_tilt);
+            let gamma = [[own, cross], [cross, of_tilt]];
+            let stiffness: [f64; PAIRS] = std::array::from_fn(|_| draws.uniform(2e8, 2e8));
+            let law = MeshLaw {
+                contact: Contact::Unilateral,
+                backlash_m: Some(backlash),
+                back_stiffness_n_per_m: 2e8,
+                damping_time_s: 2e-6,
+            };
+            let one = sample(stiffness, offset);
+            let alone = LawLanes::new([law], [300.0], [Some(closer_m)]);
+            let lanes = |value: f64| Lanes([value]);
+            let solve = Solve {
+                law: &alone,
+                free: free.map(lanes),
+                compliance: gamma.map(|row| row.map(lanes)),
+                pairs: &one,
+            };
+            let [force, moment] = InstructionSet::fastest().run(solve).map(|lanes| lanes.0[0]);
+            let carried = [300.0 - force, -moment];
+            // Both unknowns follow from what is carried, and make it again.
+            let unknowns =
+                [0, 1].map(|row: usize| free[row] + gamma[row][0] * force + gamma[row][1] * moment);
+            let strips = strips(1);
+            let springs =
+                Springs { strips: &strips, closer_m, ..Springs::frictionless(&stiffness, &offset, &[], &[]) };
+            let load = law.tilted(springs, unknowns);
+            for (carried, found) in carried.into_iter().zip(load.forces) {
+                assert!((carried - found).abs() < 1e-6 * (1.0 + carried.abs()), "{carried} {found}");
+            }
+            let part = load.slopes[0] / stiffness.iter().sum::<f64>();
+            let which = [part > 0.999, load.slopes[1] > 0.0, load.slopes[1] < 0.0, carried[0] < 0.0];
+            seen.iter_mut().zip(which).for_each(|(count, is)| *count += usize::from(is));
+            // Beside a simulation with one unknown.
+            let two = LawLanes::new([law; 2], [300.0; 2], [Some(closer_m), None]);
+            let lanes = |value: f64| Lanes([value; 2]);
+            let pairs = PairsSample {
+                stiffness: stiffness.map(lanes),
+                offset: offset.map(lanes),
+                ..PairsSample::NONE
+            };
+            let mut compliance = gamma.map(|row| row.map(lanes));
+            let mut of_both = free.map(lanes);
+            of_both[1].0[1] = 0.0;
+            for [row, column] in [[0, 1], [1, 0], [1, 1]] {
+                compliance[row][column].0[1] = 0.0;
+            }
+            let solve = Solve { law: &two, free: of_both, compliance, pairs: &pairs };
+            let together = InstructionSet::fastest().run(solve);
+            assert_eq!([together[0].0[0], together[1].0[0]], [force, moment]);
+            let plain = LawLanes::new([law], [300.0], [None]);
+            let solve = Solve {
+                law: &plain,
+                free: [Lanes([free[0]]), Lanes([0.0])],
+                compliance: [[Lanes([own]), Lanes([0.0])], [Lanes([0.0]); 2]],
+                pairs: &one,
+            };
+            let of_one = InstructionSet::fastest().run(solve);
+            assert_eq!([together[0].0[1], together[1].0[1]], [of_one[0].0[0], 0.0]);
+        }
+        assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
+    }
+
     #[test]
     fn two_pairs_share_a_load_as_in_closed_form() {
         let (stiffness, offset) = ([2e8, 1e8, 0.0], [1e-6, -2e-6, 0.0]);
@@ -1025,7 +1434,7 @@ mod tests {
                 back_stiffness_n_per_m: 2e8,
                 damping_time_s: 2e-6,
             };
-            let lanes = LawLanes::new([law], [300.0]);
+            let lanes = LawLanes::new([law], [300.0], [None]);
             let pairs = sample(stiffness, offset);
             let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
             let force = 300.0 - InstructionSet::fastest().run(solve);

@@ -4,7 +4,6 @@ mod bridging;
 mod corner;
 pub(crate) mod curve;
 mod deviations;
-mod face_load;
 mod forcing;
 mod gear_mesh;
 mod law;
@@ -19,7 +18,6 @@ mod window;
 pub use corner::CornerReach;
 pub use curve::MeshCurve;
 pub use deviations::PairDeviations;
-pub(crate) use face_load::FaceSlope;
 #[cfg(not(feature = "internals"))]
 pub(crate) use forcing::ForcingBlock;
 #[cfg(feature = "internals")]
@@ -31,7 +29,7 @@ pub use gear_mesh::{FaceForm, Mesh, PairTable};
 pub use law::{Contact, CornerLaw, MeshLaw};
 pub(crate) use law::{
     CornerLane, CornerLanes, LastContact, LawLanes, PairsSample, SpringSamples, TANGENT_M, TANGENT_PART,
-    deflection_at_rest, line_up,
+    TiltedLoad, deflection_at_rest, line_up,
 };
 pub use pair::{LoadedPair, Pairs};
 pub(crate) use path_table::TipShape;

@@ -57,7 +57,8 @@ impl Mesh {
         let rows = last_pair.map_or(0, |last| (last + 1 - first_pair).max(0) as usize);
         let mut pair_force_n = vec![vec![0.0; points.len()]; rows];
         let mut deflection_m = Vec::with_capacity(points.len());
-        let laws = self.corner_laws();
+        let (law, laws) = (self.law(), self.corner_laws());
+        let (closer_m, tilt_m) = (self.closer_at_end_m, self.tilt_at_rest_m());
         for (column, point) in points.enumerate() {
             let touching: Vec<_> =
                 self.pairs_at(point).filter(|(.., state)| state.stiffness_n_per_m > 0.0).collect();
@@ -68,19 +69,31 @@ impl Mesh {
                 deflection_m.push(f64::NAN);
                 continue;
             }
-            let springs = Springs::frictionless(&stiffness, &offset, &corners, &laws);
-            let deflection = deflection_at_rest(self.contact, springs, force_n);
+            let strip = |(pair, number, _): &(i64, usize, _)| self.strip(self.sequence.class(*pair), *number);
+            let strips: Vec<[f64; 2]> = touching.iter().map(strip).collect();
+            let springs = Springs {
+                strips: &strips,
+                closer_m: closer_m.unwrap_or(0.0),
+                ..Springs::frictionless(&stiffness, &offset, &corners, &laws)
+            };
+            let deflection = match closer_m {
+                Some(_) => law.tilted_at_rest(springs, tilt_m, force_n),
+                None => deflection_at_rest(self.contact, springs, force_n),
+            };
             deflection_m.push(deflection);
-            for (pair, _, state) in touching {
+            for (n, (pair, _, state)) in touching.into_iter().enumerate() {
                 let penetration = deflection - state.separation_m;
-                if self.contact.touches(penetration) {
-                    pair_force_n[(pair - first_pair) as usize][column] +=
-                        state.stiffness_n_per_m * penetration;
-                }
+                let carried = match closer_m {
+                    Some(_) => law.tilted(springs.only(n), [deflection, tilt_m]).forces[0],
+                    None if self.contact.touches(penetration) => state.stiffness_n_per_m * penetration,
+                    None => continue,
+                };
+                pair_force_n[(pair - first_pair) as usize][column] += carried;
             }
             for (pair, corner) in of_corner.iter().zip(&corners) {
-                pair_force_n[(pair - first_pair) as usize][column] +=
-                    corner.force_and_slope(&laws, deflection)[0];
+                let at_m =
+                    closer_m.map_or(deflection, |closer_m| deflection + corner.place * (tilt_m + closer_m));
+                pair_force_n[(pair - first_pair) as usize][column] += corner.force_and_slope(&laws, at_m)[0];
             }
         }
         StaticMesh { deflection_m, first_pair, pair_force_n }
@@ -98,6 +111,7 @@ impl Mesh {
                     offset_m: -table.separation_m,
                     near: table.reach.signed_root_at(table.near[at]),
                     far: table.reach.signed_root_at(table.far[at]),
+                    place: table.along_face.get(at).copied().unwrap_or(self.strip_of_slice(slice)[0]),
                 };
                 corners.extend(corner.can_touch().then_some((pair, corner)));
             }

@@ -16,6 +16,8 @@ pub struct LoadAlongFace {
     /// (m) By how much more the shafts' lean under the load closes the flanks at the end of the face at positive z than at the other one,
     /// before the load moves there.
     pub lean_m: f64,
+    /// (m) The same with what the moment of the load takes back.
+    pub tilt_m: f64,
     /// (-) χ = c k̄ b²/12, c the tilt of the wheels against one another per moment about the middle of the face: of so much a part of the
     /// flanks' unevenness the wheels yield while the whole face bears, χ/(1 + χ).
     pub tilt_product: f64,
@@ -30,7 +32,7 @@ fn place(strip: usize) -> f64 {
 
 impl LoadAlongFace {
     /// An even load.
-    pub(super) const EVEN: Self = Self { lean_m: 0.0, tilt_product: 0.0, face_load_factor: 1.0 };
+    pub(super) const EVEN: Self = Self { lean_m: 0.0, tilt_m: 0.0, tilt_product: 0.0, face_load_factor: 1.0 };
 }
 
 /// A face of a mean mesh.
@@ -169,6 +171,7 @@ impl FacesAtRest {
         }
         let load = |(mesh, face): (usize, &UnevenFace)| LoadAlongFace {
             lean_m: slopes[mesh] * face.width_m,
+            tilt_m: tilts[mesh] * face.width_m,
             tilt_product: rad_per_nm[mesh][mesh] * face.stiffness_n_per_m * face.width_m.powi(2) / 12.0,
             face_load_factor: face.factor(tilts[mesh]),
         };

@@ -232,8 +232,8 @@ impl AssembledMachine {
     ///
     /// # Arguments
     /// * `scenario` - nominal speed and load, and the motion at the start
-    /// * `face_reach_m` - (m) for each mesh, how far from the middle of its face the load acts at most
-    pub(super) fn modal(&self, scenario: &Scenario, face_reach_m: &[f64]) -> ModalMachine {
+    /// * `half_faces_m` - (m) as of [`ModalMachine::new`]
+    pub(super) fn modal(&self, scenario: &Scenario, half_faces_m: &[f64]) -> ModalMachine {
         let operation = &scenario.operation;
         let first_hz = operation.speed_profile_hz.as_ref().map(|profile| profile.value[0]);
         let start = InitialMotion {
@@ -242,6 +242,6 @@ impl AssembledMachine {
             motor_rad_per_s: TAU * first_hz.unwrap_or(operation.pinion_speed_hz),
             velocity: scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
         };
-        ModalMachine::new(&self.machine, &self.modes, face_reach_m, start)
+        ModalMachine::new(&self.machine, &self.modes, half_faces_m, start)
     }
 }

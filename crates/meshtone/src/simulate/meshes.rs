@@ -7,7 +7,7 @@ use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
 use crate::machine::Machine;
 use crate::mesh::{
-    Contact, FaceForm, FaceSlope, FacesAtRest, Friction, Mesh, MeshParameters, PairSequence, PairTable,
+    Contact, FaceForm, FacesAtRest, Friction, LoadAlongFace, Mesh, MeshParameters, PairSequence, PairTable,
     Pairs, TipShape, Turning, UnevenFace, is_slanted, place_on_face,
 };
 use crate::operation::TimeGrid;
@@ -31,7 +31,7 @@ pub(super) fn meshes(
     points_per_pitch: Option<NonZeroUsize>,
 ) -> Result<Vec<Mesh>, ScenarioError> {
     let contact = if scenario.model.teeth_part() { Contact::Unilateral } else { Contact::Bilateral };
-    let mesh = |(number, pair): (usize, &MeshedPair)| {
+    let mesh_of = |(number, pair): (usize, &MeshedPair), along_face: Option<(LoadAlongFace, bool)>| {
         let turning = Turning {
             pitches_per_revolution: layout.pitches_per_revolution(number),
             first_pitch: layout.phases[number],
@@ -41,6 +41,7 @@ pub(super) fn meshes(
             pair,
             machine,
             number,
+            along_face,
             // Flanks that may pull bear on the whole face.
             closer_um: match contact {
                 Contact::Unilateral => pair.closer_um(),
@@ -54,12 +55,39 @@ pub(super) fn meshes(
         let of_time = || points_of(time, scenario.operation.turns_evenly(), &turning, pair);
         mesh.with_tables(points_per_pitch.unwrap_or_else(of_time))
     };
-    let mut meshes: Vec<Mesh> = pairs.iter().enumerate().map(mesh).collect::<Result<_, _>>()?;
-    let faces = faces_at_rest(scenario, layout, &machine.machine, pairs, &meshes);
-    let loads = faces.iter().flat_map(FacesAtRest::loads);
-    meshes.iter_mut().zip(loads).for_each(|(mesh, load)| mesh.along_face = load);
-    Ok(meshes)
+    let even: Vec<Mesh> =
+        pairs.iter().enumerate().map(|pair| mesh_of(pair, None)).collect::<Result<_, _>>()?;
+    let Some(faces) = faces_at_rest(scenario, layout, &machine.machine, pairs, &even) else {
+        return Ok(even);
+    };
+    // How each bears at rest says which of them need another form.
+    let meshes = even.into_iter().zip(faces.loads()).zip(pairs.iter().zip(&layout.gears).enumerate());
+    let of_load = |((mut mesh, load), (number, (pair, gears))): ((Mesh, _), (_, (&MeshedPair, &Gears)))| {
+        mesh.bear(load);
+        let closer_m = pair.closer_um() * 1e-6;
+        let is_uneven = gears.is_crowned() || pair.damaged.iter().any(DamagedTooth::varies_over_face);
+        let unevenness = mesh.unevenness_of(load.lean_m + closer_m, pair.static_force_n);
+        // Helical teeth have one unknown still.
+        let tilts = !gears.is_helical()
+            && (unevenness > MOST_UNEVENNESS
+                || is_uneven && load.tilt_product > MOST_TILT_PRODUCT
+                || mesh.loses_a_part());
+        if !tilts && closer_m != 0.0 && (mesh.slices() > 1 || gears.is_helical()) {
+            mesh = mesh_of((number, pair), Some((load, tilts)))?;
+        }
+        if tilts {
+            mesh.tilt(closer_m);
+        }
+        mesh.bear(load);
+        Ok(mesh)
+    };
+    meshes.map(of_load).collect()
 }
+
+/// (-) λ above which the slope of a mesh's deflection along the face is an unknown: it adds λ²(1 + χ)/3 to the mesh's compliance.
+const MOST_UNEVENNESS: f64 = 0.2;
+/// (-) χ above which it is one where the gap varies along the face.
+const MOST_TILT_PRODUCT: f64 = 0.1;
 
 /// How each mesh bears along its face at rest: by the lean of the shafts under the nominal load, misalignment, slopes of the flanks, crowning and
 /// end relief. None without a load, or where flanks may pull.
@@ -133,6 +161,8 @@ struct MeshOf<'a> {
     friction: f64,
     /// 1 where the driving wheel turns about positive z, −1 where it turns the other way.
     sense: f64,
+    /// How it bears along its face at rest, and whether its tilt is an unknown; none before that is known.
+    along_face: Option<(LoadAlongFace, bool)>,
 }
 
 impl MeshOf<'_> {
@@ -148,11 +178,9 @@ impl MeshOf<'_> {
             return Err(ScenarioError::no_load_along_the_face(gears.load()));
         }
         let width_m = gears.face_width_mm * 1e-3;
-        let slope = || FaceSlope {
-            slope: closer_um * 1e-6 / width_m,
-            width_m,
-            tilt_rad_per_m: machine.modes.tilt_rad_per_nm(&machine.machine, number) * static_force_n,
-        };
+        // While the whole face bears, wheels whose tilt is no unknown yield to a part of what closes their flanks.
+        let one_unknown = self.along_face.filter(|(_, tilts)| !tilts);
+        let closer_m = one_unknown.map_or(0.0, |(load, _)| closer_um * 1e-6 / (1.0 + load.tilt_product));
         let slices = if self.gap_varies_along_face() { gears.slices as usize } else { 1 };
         let overlap = self.sense * gears.hand.sign() * gears.overlap_ratio();
         let is_spur = !is_slanted(overlap / slices as f64);
@@ -175,7 +203,7 @@ impl MeshOf<'_> {
             // Across the teeth, as it is measured; in the transverse section it is larger.
             backlash_m: gears.normal_backlash_mm() * 1e-3 / gears.base_helix_angle_rad().cos(),
             static_force_n,
-            slope: (closer_um != 0.0).then(slope),
+            closer_m,
             face,
             face_width_m: width_m,
             friction: self.friction(),
@@ -214,16 +242,15 @@ impl MeshOf<'_> {
         })
     }
 
-    /// Whether the gap between two flanks differs along the face, so that its slices touch one after the other. A slope of spur wheels'
-    /// flanks and what is lost of their faces need no slices: see [`FaceSlope`] and [`Pairs`].
+    /// Whether the face is cut into slices, since the gap between two flanks differs along it. Spur teeth that tilt, or have lost a part of
+    /// their face, need none: see [`MeshLaw`](crate::mesh::MeshLaw) and [`Pairs`].
     fn gap_varies_along_face(&self) -> bool {
         let gears = self.gears;
-        let is_crowned = gears.lead_crowning_um > 0.0 || gears.end_relief.amount_um > 0.0;
         let varies_along_contact_lines = || {
-            self.closer_um != 0.0
+            self.along_face.is_some()
                 || gears.flank_relief.amount_um > 0.0
                 || self.pair.damaged.iter().any(DamagedTooth::varies_over_face)
         };
-        is_crowned || gears.is_helical() && varies_along_contact_lines()
+        gears.is_crowned() || gears.is_helical() && varies_along_contact_lines()
     }
 }

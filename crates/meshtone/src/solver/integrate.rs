@@ -350,7 +350,7 @@ fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: 
 ) -> [Result<(), Diverged>; L] {
     let prepared: [Prepared; L] = problems.each_ref().map(|problem| Prepared::new(problem, 1.0));
     let coefficients = Coefficients::<L, N, M, R>::new(&prepared);
-    let law = law_lanes(&prepared);
+    let law = law_lanes(&prepared, &problems);
     let start = Lanes::from_fn(|l| problems[l].time.first_simulated_sample as f64);
     let outputs = prepared.iter().map(|of| of.outputs.len()).max().unwrap_or(0);
     let terms: Vec<OutputTerms<L>> = (0..outputs)
@@ -499,7 +499,7 @@ impl<const L: usize, const P: usize, const C: usize> LaneForcing<L, P, C> {
 mod tests {
     use super::*;
     use crate::machine::Unbalance;
-    use crate::scenario::{Fault, GearPair, MissingTooth, Scenario, ToothBreakage};
+    use crate::scenario::{Fault, GearPair, MissingTooth, Scenario};
     use crate::sensor::ChannelKind;
     use crate::simulate::stages;
 
@@ -564,20 +564,35 @@ mod tests {
         };
         check_both_steppers(&one, Size::Turning, "a trace of unbalance");
         check_both_steppers(&unbalanced(pair(0.0, 15.0)), Size::Turning, "two wheels");
-        let chip = ToothBreakage { chip_height_mm: 3.0, chip_width_mm: 9.0, tip_loss_mm: 0.0 };
         let mut tilting = unbalanced(pair(0.0, 15.0));
-        tilting.faults = vec![Fault::on_first_gear_tooth(chip)];
+        tilting.meshes[0].misalignment_um = 6.0;
         check_both_steppers(&tilting, Size::Steady, "tilting wheels");
         let mut varying = unbalanced(pair(0.0, 15.0));
         varying.operation.speed_fluctuation_hz = 0.3;
         check_both_steppers(&varying, Size::General, "a speed that varies");
     }
 
+    /// By the whole face, by an end of it and by the other, with teeth that part; at constant and at varying speed.
+    #[test]
+    fn tilting_wheels_move_both_steppers_alike() {
+        for misalignment_um in [2.0, -12.0, 40.0] {
+            let mut tilting = pair(0.0, 15.0);
+            tilting.meshes[0].misalignment_um = misalignment_um;
+            tilting.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
+            check_both_steppers(&tilting, Size::Tilting, "tilting wheels");
+            tilting.operation.speed_fluctuation_hz = 0.3;
+            check_both_steppers(&tilting, Size::General, "tilting wheels at a speed that varies");
+        }
+    }
+
     #[test]
     fn helical_teeth_move_both_steppers_alike() {
         check_both_steppers(&pair(5.0, 15.0), Size::Helical, "two pairs at once");
         check_both_steppers(&pair(20.0, 30.0), Size::Helical, "three pairs at once");
-        check_both_steppers(&pair(25.0, 60.0), Size::GeneralHelical, "more pairs at once");
+        let mut fine = pair(25.0, 30.0);
+        fine.meshes[0].module_mm /= 2.0;
+        fine.wheels.iter_mut().for_each(|wheel| wheel.teeth *= 2);
+        check_both_steppers(&fine, Size::GeneralHelical, "more pairs at once");
         check_both_steppers(&unbalanced(pair(20.0, 15.0)), Size::GeneralHelical, "unbalanced wheels");
         let mut missing = pair(20.0, 15.0);
         missing.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];

@@ -96,12 +96,12 @@ fn gains_at(
     for n in 0..model.modes() {
         let displacement = Complex64::new(model.stiffness[n] - inertia, model.damping[n] * rad_per_s).inv();
         for (mesh, line) in model.lines.iter().enumerate() {
-            let along = displacement * line.columns[0][n];
+            let along = displacement * line.at_middle[n];
             let across =
                 displacement * line.across.as_ref().map_or(0.0, |[at_pitch_point, _]| at_pitch_point[n]);
             for (other, row) in model.lines.iter().enumerate() {
-                line_of_line[(other, mesh)] += along * row.columns[0][n];
-                line_of_across[(other, mesh)] += across * row.columns[0][n];
+                line_of_line[(other, mesh)] += along * row.at_middle[n];
+                line_of_across[(other, mesh)] += across * row.at_middle[n];
             }
             for (sensor, entries) in sensors.iter().enumerate() {
                 sensor_of_line[(sensor, mesh)] -= along * (inertia * entries[n]);

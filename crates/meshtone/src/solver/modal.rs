@@ -51,7 +51,7 @@ pub struct Residual {
     stiffness: Vec<f64>,
     /// Their mass-normalised shapes.
     shapes: Vec<DVector<f64>>,
-    /// Their entries in the columns of all lines of action, mesh by mesh, then of the bearings, and then across the lines.
+    /// Their entries in the columns of [`ModalMachine::columns`], and then across the lines.
     columns: Vec<Vec<f64>>,
     /// Their force per rad of motor angle.
     motor: Vec<f64>,
@@ -135,29 +135,26 @@ pub struct ModalSpinning {
 /// The line of action of a mesh in the modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalLine {
-    /// At the middle of the face, and where the load moves along the face, what is added per m.
-    pub columns: Vec<Vec<f64>>,
+    /// At the middle of the face.
+    pub at_middle: Vec<f64>,
+    /// What is added at the end of the face at positive z; none where the wheels' tilt is no unknown.
+    pub to_end: Option<Vec<f64>>,
     /// Modal force of friction across it: per N at the pitch point, and per N and m beyond it; none of a mesh without friction or a random part.
     pub across: Option<[Vec<f64>; 2]>,
     /// (-) Sum of the wheels' speeds, at which their flanks slide with the distance from the pitch point, over that of the motor; 0 without
     /// [`Self::across`].
     pub sliding_speed_ratio: f64,
-    /// (m) Farthest from the middle of the face that the load acts.
-    pub face_reach_m: f64,
     /// (N) The mesh's force under the constant loads, which the displacements do not bring about: they are relative to it.
     pub static_force_n: f64,
 }
 
 impl ModalLine {
-    /// The line of action where the load acts farthest from the middle of the face, on either side.
+    /// The line of action at both ends of the face, or at its middle where no load moves away from it.
     pub(super) fn extremes(&self) -> [Vec<f64>; 2] {
         [-1.0, 1.0].map(|side| {
-            let mut line = self.columns[0].clone();
-            for column in &self.columns[1..] {
-                line.iter_mut()
-                    .zip(column)
-                    .for_each(|(line, per_m)| *line += side * self.face_reach_m * per_m);
-            }
+            let mut line = self.at_middle.clone();
+            let to_end = self.to_end.iter().flatten();
+            line.iter_mut().zip(to_end).for_each(|(line, to_end)| *line += side * to_end);
             line
         })
     }
@@ -201,9 +198,9 @@ impl ModalMachine {
     /// # Arguments
     /// * `machine` - the machine
     /// * `modes` - its modes without the meshes
-    /// * `face_reach_m` - (m) for each mesh, how far from the middle of its face the load acts at most; 0 where it always acts there
+    /// * `half_faces_m` - (m) half the face width of each mesh whose tilt is an unknown; 0 of the others
     /// * `start` - how the simulation starts
-    pub fn new(machine: &Machine, modes: &Modes, face_reach_m: &[f64], start: InitialMotion) -> Self {
+    pub fn new(machine: &Machine, modes: &Modes, half_faces_m: &[f64], start: InitialMotion) -> Self {
         let shapes = modes.shapes.transpose();
         let modal = |turned: &DVector<f64>| clean(&shapes * turned);
         let modal_motion =
@@ -217,10 +214,10 @@ impl ModalMachine {
             None => &machine.rigid_rotation * start.motor_rad_per_s,
         };
         let velocity = modal_motion(&(velocity - &machine.rigid_rotation * start.nominal_rad_per_s));
-        let lines: Vec<Vec<DVector<f64>>> = (machine.lines.iter().zip(face_reach_m))
-            .map(|(line, &reach_m)| {
-                let columns = [Some(&line.at_middle), (reach_m > 0.0).then_some(&line.per_m)];
-                columns.into_iter().flatten().map(modal).collect()
+        let lines: Vec<Vec<DVector<f64>>> = (machine.lines.iter().zip(half_faces_m))
+            .map(|(line, &half_m)| {
+                let to_end = (half_m > 0.0).then(|| modal(&(&line.per_m * half_m)));
+                [Some(modal(&line.at_middle)), to_end].into_iter().flatten().collect()
             })
             .collect();
         let across: Vec<Option<[DVector<f64>; 2]>> = (machine.lines.iter())
@@ -249,13 +246,13 @@ impl ModalMachine {
             shapes: turned_back(&machine.turn, &modes.shapes, &active),
             stiffness: active.iter().map(|&n| modes.angular_frequencies[n].powi(2)).collect(),
             damping: active.iter().map(|&n| modes.damping_per_s(n)).collect(),
-            lines: (lines.iter().zip(&across).zip(&machine.lines).zip(face_reach_m))
-                .map(|(((columns, across), line), &face_reach_m)| ModalLine {
-                    columns: columns.iter().map(pick).collect(),
+            lines: (lines.iter().zip(&across).zip(&machine.lines))
+                .map(|((columns, across), line)| ModalLine {
+                    at_middle: pick(&columns[0]),
+                    to_end: columns.get(1).map(pick),
                     sliding_speed_ratio: (line.across.as_ref())
                         .map_or(0.0, |across| across.per_m.dot(&machine.rigid_rotation).abs()),
                     across: across.as_ref().map(|across| across.each_ref().map(pick)),
-                    face_reach_m,
                     static_force_n: 0.0,
                 })
                 .collect(),
@@ -298,11 +295,14 @@ impl ModalMachine {
         self.residual = Residual {
             shapes: take_out(&mut self.shapes, &is_stepped),
             columns: {
-                let (lines, across): (Vec<_>, Vec<_>) =
-                    self.lines.iter_mut().map(|line| (&mut line.columns, &mut line.across)).unzip();
+                let (mut middles, mut ends, mut across) = (Vec::new(), Vec::new(), Vec::new());
+                for line in &mut self.lines {
+                    middles.push(&mut line.at_middle);
+                    ends.extend(&mut line.to_end);
+                    across.extend(line.across.iter_mut().flatten());
+                }
                 let bearings = self.bearings.iter_mut().flatten();
-                let across = across.into_iter().flatten().flatten();
-                lines.into_iter().flatten().chain(bearings).chain(across).map(split).collect()
+                middles.into_iter().chain(bearings).chain(ends).chain(across).map(split).collect()
             },
             motor: split(&mut self.motor),
             brake: split(&mut self.brake),
@@ -321,8 +321,7 @@ impl ModalMachine {
     /// (m √kg) How far each mode may move in a machine that exists: until a mesh or a bearing deflects by [`LARGEST_DEFLECTION_M`]. A mode that
     /// turns with the motor has no such bound, since its displacement is relative to the rotation at the nominal speed.
     pub(super) fn largest_displacements(&self) -> Vec<f64> {
-        let columns =
-            || self.lines.iter().flat_map(|line| &line.columns[..1]).chain(self.bearings.iter().flatten());
+        let columns = || self.lines.iter().map(|line| &line.at_middle).chain(self.bearings.iter().flatten());
         let turns_most = self.rigid_velocity.iter().fold(0.0, |most: f64, rigid| most.max(rigid.abs()));
         let of_mode = |n: usize| {
             let deflected = columns().map(|column| column[n].abs()).fold(0.0, f64::max);
@@ -344,8 +343,7 @@ impl ModalMachine {
         }
         self.static_displacement = (0..self.modes())
             .map(|n| {
-                let meshes: f64 =
-                    self.lines.iter().map(|line| line.columns[0][n] * line.static_force_n).sum();
+                let meshes: f64 = self.lines.iter().map(|line| line.at_middle[n] * line.static_force_n).sum();
                 let load = self.brake[n] * torque_nm - meshes;
                 // What turns freely is in balance already.
                 if self.stiffness[n] == 0.0 { 0.0 } else { load / self.stiffness[n] }
@@ -374,7 +372,7 @@ impl ModalMachine {
         let of_low = |values: &[f64]| DVector::from_iterator(low.len(), low.iter().map(|&n| values[n]));
         let mut closed = DMatrix::from_diagonal(&of_low(&self.stiffness));
         let mut damping = DMatrix::from_diagonal(&of_low(&self.damping));
-        let columns: Vec<DVector<f64>> = self.lines.iter().map(|line| of_low(&line.columns[0])).collect();
+        let columns: Vec<DVector<f64>> = self.lines.iter().map(|line| of_low(&line.at_middle)).collect();
         for (column, mesh) in columns.iter().zip(meshes) {
             let stiffness = column * column.transpose() * mesh.stiffness_n_per_m;
             damping += &stiffness * mesh.damping_time_s;
@@ -431,7 +429,7 @@ impl ModalMachine {
 
     /// Entries of the lines of action in some modes: a row for each mesh.
     fn line_entries(&self, modes: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(self.lines.len(), modes.len(), |line, mode| self.lines[line].columns[0][modes[mode]])
+        DMatrix::from_fn(self.lines.len(), modes.len(), |line, mode| self.lines[line].at_middle[modes[mode]])
     }
 
     /// Number of active modes.
@@ -441,9 +439,19 @@ impl ModalMachine {
 
     /// Number of the modes that the meshes move, which come first.
     pub(super) fn modes_moved_by_meshes(&self) -> usize {
-        let columns = self.lines.iter().flat_map(|line| &line.columns);
+        let columns = self.lines.iter().flat_map(|line| std::iter::once(&line.at_middle).chain(&line.to_end));
         let moved = columns.filter_map(|column| column.iter().rposition(|entry| *entry != 0.0));
         moved.max().map_or(0, |last| last + 1)
+    }
+
+    /// The columns in which meshes and bearings push the modes, each with the number of its mesh: the lines of action at the middle of each face,
+    /// then the stretches of the bearings, along x and y of each, and then what the meshes whose tilt is an unknown have to the end of the face.
+    pub(super) fn columns(&self) -> impl Iterator<Item = (&[f64], Option<usize>)> {
+        let middles = self.lines.iter().enumerate().map(|(mesh, line)| (&line.at_middle[..], Some(mesh)));
+        let bearings = self.bearings.iter().flatten().map(|column| (&column[..], None));
+        let ends = self.lines.iter().enumerate();
+        let ends = ends.filter_map(|(mesh, line)| Some((&line.to_end.as_ref()?[..], Some(mesh))));
+        middles.chain(bearings).chain(ends)
     }
 
     /// Weights of the machine's coordinates in the motion of a place, as [`Machine::weights`].

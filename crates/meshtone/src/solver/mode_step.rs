@@ -75,7 +75,10 @@ impl ModalMachine {
             };
             if line.extremes().iter().any(|line| used_up(line) > STABLE_PART) {
                 for (n, (&stiffness, &damping)) in modes().enumerate() {
-                    if steps[n].beta == FOX_GOODWIN && line.columns.iter().any(|column| column[n] != 0.0) {
+                    if steps[n].beta == FOX_GOODWIN
+                        && (line.at_middle[n] != 0.0
+                            || line.to_end.as_ref().is_some_and(|to_end| to_end[n] != 0.0))
+                    {
                         steps[n] = StepOfMode::fitted(stiffness, damping, step_s, AVERAGE_ACCELERATION);
                     }
                 }

@@ -68,7 +68,7 @@ pub(super) struct OutputWeights {
     pub(super) velocity: Vec<f64>,
     /// Of the accelerations times Δt².
     pub(super) acceleration: Vec<f64>,
-    /// Of the force in each column of each mesh's line of action, mesh by mesh, and then in each bearing's.
+    /// Of the force in each of [`ModalMachine::columns`], and of what acts across the lines.
     pub(super) force: Vec<f64>,
     /// Of the externals, by way of the modes that are not stepped.
     pub(super) external: [f64; EXTERNALS],
@@ -140,11 +140,8 @@ impl Output {
 
 /// The whole force of a mesh: that in the column at the middle of its face.
 fn mesh_force(model: &ModalMachine, mesh: usize) -> OutputWeights {
-    let columns = model.lines.iter().enumerate().flat_map(|(number, line)| {
-        (0..line.columns.len()).map(move |column| if (number, column) == (mesh, 0) { -1.0 } else { 0.0 })
-    });
     OutputWeights {
-        force: columns.collect(),
+        force: (0..model.lines.len()).map(|number| if number == mesh { -1.0 } else { 0.0 }).collect(),
         constant: model.lines.get(mesh).map_or(0.0, |line| line.static_force_n),
         ..OutputWeights::default()
     }
@@ -152,8 +149,7 @@ fn mesh_force(model: &ModalMachine, mesh: usize) -> OutputWeights {
 
 /// The moment of a mesh's friction, which both wheels turn against, times the sum of their speeds.
 fn friction_loss(model: &ModalMachine, mesh: usize) -> OutputWeights {
-    let of_lines: usize = model.lines.iter().map(|line| line.columns.len()).sum();
-    let first_across = of_lines + 2 * model.bearings.len();
+    let first_across = model.columns().count();
     let mut force = vec![0.0; first_across + 2 * model.lines.len()];
     let sliding_rad_per_s = model.lines[mesh].sliding_speed_ratio * model.rotation_rad_per_s.abs();
     force[first_across + 2 * mesh + 1] = sliding_rad_per_s;

@@ -1,7 +1,5 @@
 //! Everything about a simulation that does not change from step to step, and its first state.
 
-use std::ops::Range;
-
 use super::gyroscopic::{Gyroscopic, Pushes};
 use super::integrate::{MotionState, Problem};
 use super::modal::ModalMachine;
@@ -10,8 +8,8 @@ use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
 use crate::bearing::RollingBearing;
 use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples, deflection_at_rest};
 
-/// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh, then those of the
-/// bearings, along x and y of each, those across the lines in which friction acts, two of each mesh, and then the tilts about x and y of what spins.
+/// The constants of one simulation's steps; its columns are those of [`ModalMachine::columns`], each with its unknown, those across the lines in which
+/// friction acts, two of each mesh, and then the tilts about x and y of what spins.
 pub(super) struct Prepared {
     /// (s) Δt.
     step_s: f64,
@@ -27,9 +25,9 @@ pub(super) struct Prepared {
     pub(super) turning_push: Vec<[Vec<f64>; 2]>,
     /// Each column.
     pub(super) columns: Vec<Column>,
-    /// Numbers of the columns of each unknown: the deflection of each mesh, and the stretch of each bearing along x and along y.
-    pub(super) columns_of_unknown: Vec<Range<usize>>,
-    /// Number of the first column in which friction acts; as many as there are columns without friction.
+    /// Of each mesh whose tilt is an unknown, the number of its column.
+    pub(super) tilt_of_mesh: Vec<Option<usize>>,
+    /// Number of the first column in which friction acts, and of the unknowns, which are the deflections in the columns before; as many as there are columns without friction.
     pub(super) first_across: usize,
     /// Number of the first column in which a gyroscopic moment acts: it is what [`Column`] has of the step's end, plus [`Self::compliance`] times the forces
     /// in the columns before.
@@ -106,13 +104,9 @@ impl Prepared {
         let turning_push: Vec<[Vec<f64>; 2]> =
             model.turning_forces.iter().map(|force| force.at.each_ref().map(|at| pushed(at))).collect();
         // (-) ℓ of each column; the damping of a bearing is that of its linear spring, in the modes.
-        let of_bearings = model.bearings.iter().flatten().map(|column| (column.as_slice(), 0.0));
-        let lines: Vec<(&[f64], f64)> = (model.lines.iter().zip(&problem.laws))
-            .flat_map(|(line, law)| {
-                line.columns.iter().map(|column| (column.as_slice(), law.damping_time_s / step_s))
-            })
-            .chain(of_bearings)
-            .collect();
+        let lead = |mesh: usize| problem.laws[mesh].damping_time_s / step_s;
+        let lines: Vec<(&[f64], f64)> =
+            model.columns().map(|(column, mesh)| (column, mesh.map_or(0.0, lead))).collect();
         let first_across = lines.len();
         let of_friction =
             model.lines.iter().filter(|_| problem.has_friction()).filter_map(|line| line.across.as_ref());
@@ -171,18 +165,14 @@ impl Prepared {
         let spinning = Gyroscopic { model, steps: &steps, step_s, speed };
         let pushes = Pushes { moments: &spinning_pushes, externals: &external_push, turning: &turning_push };
         spinning.add_to(&mut columns, &mut compliance, [&restore, &damp], pushes);
-        let mut next = 0;
-        let of_meshes = model.lines.iter().map(|line| line.columns.len());
-        let columns_of_unknown = (of_meshes.chain(model.bearings.iter().flatten().map(|_| 1)))
-            .map(|count| {
-                next += count;
-                next - count..next
-            })
-            .collect();
+        let tilts = model.lines.iter().filter(|line| line.to_end.is_some()).count();
+        let mut tilts = first_across - tilts..first_across;
+        let tilt_of_mesh =
+            model.lines.iter().map(|line| line.to_end.as_ref().and_then(|_| tilts.next())).collect();
         Self {
             step_s,
             columns,
-            columns_of_unknown,
+            tilt_of_mesh,
             first_across,
             first_spinning,
             compliance,
@@ -231,27 +221,18 @@ impl Prepared {
         springs: &[SpringSamples],
         external: [f64; EXTERNALS],
     ) -> FirstState {
-        let (columns, blocks) = (&self.columns_of_unknown, &block.meshes);
-        let at_face_centre = |mesh: usize, of: &dyn Fn(usize) -> f64| {
-            let z = blocks[mesh].face_centre_m(0);
-            let tilted: f64 = columns[mesh].clone().skip(1).map(|column| z * of(column)).sum();
-            (of(columns[mesh].start), tilted)
-        };
         let turned = self.turned_at_rest(model, block);
-        let lines: Vec<&Vec<f64>> = model
-            .lines
-            .iter()
-            .flat_map(|line| &line.columns)
-            .chain(model.bearings.iter().flatten())
-            .collect();
+        let lines: Vec<&[f64]> = model.columns().map(|(column, _)| column).collect();
         let has_friction = self.first_across < self.first_spinning;
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
                 let force_n = self.static_force_n[mesh].max(0.0);
-                let closed = deflection_at_rest(law.contact, springs[mesh].at(0), force_n);
-                let (at_rest, tilted) =
-                    at_face_centre(mesh, &|column| self.columns[column].static_deflection);
-                closed - at_rest - tilted - dot(lines[columns[mesh].start], &turned)
+                let at_rest = |column: usize| self.columns[column].static_deflection;
+                let closed = match self.tilt_of_mesh[mesh] {
+                    None => deflection_at_rest(law.contact, springs[mesh].at(0), force_n),
+                    Some(tilt) => law.tilted_at_rest(springs[mesh].at(0), at_rest(tilt), force_n),
+                };
+                closed - at_rest(mesh) - dot(lines[mesh], &turned)
             })
             .collect();
         // All has turned by the motor's lead, as in a run-up that is not simulated from its start.
@@ -260,20 +241,25 @@ impl Prepared {
                 .map(|((closing, turned), rigid)| closing + turned + rigid * external[0])
                 .collect();
         let (mut force, mut of_friction) = (Vec::with_capacity(self.columns.len()), Vec::new());
+        let mut moments = Vec::new();
         for (mesh, law) in self.laws.iter().enumerate() {
-            let (deflection, tilted) = at_face_centre(mesh, &|column| {
-                self.columns[column].static_deflection + dot(lines[column], &displacement)
-            });
-            let lead = law.damping_time_s * dot(lines[columns[mesh].start], &model.initial_velocity);
-            let [carried, _] = law.force_and_slope(springs[mesh].at(0), deflection + tilted + lead);
-            if has_friction {
-                let [friction, moment] = law.friction(springs[mesh].at(0), deflection + tilted + lead);
-                of_friction.extend([friction[0], moment[0]]);
-            }
-            let whole = self.static_force_n[mesh] - carried;
-            force.push(whole);
-            let z = blocks[mesh].face_centre_m(0);
-            force.extend(columns[mesh].clone().skip(1).map(|_| z * (whole - self.static_force_n[mesh])));
+            let deflection = |column: usize| {
+                let at_rest = self.columns[column].static_deflection + dot(lines[column], &displacement);
+                at_rest + law.damping_time_s * dot(lines[column], &model.initial_velocity)
+            };
+            let springs = springs[mesh].at(0);
+            let carried = if let Some(tilt) = self.tilt_of_mesh[mesh] {
+                let load = law.tilted(springs, [deflection(mesh), deflection(tilt)]);
+                moments.push(-load.forces[1]);
+                of_friction.extend(load.friction.iter().map(|friction| friction[0]).filter(|_| has_friction));
+                load.forces[0]
+            } else {
+                if has_friction {
+                    of_friction.extend(law.friction(springs, deflection(mesh)).map(|friction| friction[0]));
+                }
+                law.force_and_slope(springs, deflection(mesh))[0]
+            };
+            force.push(self.static_force_n[mesh] - carried);
         }
         for ((bearing, places), first) in
             self.bearings.iter().zip(&block.bearings).zip((force.len()..).step_by(2))
@@ -282,6 +268,7 @@ impl Prepared {
                 .map(|column| self.columns[column].static_deflection + dot(lines[column], &displacement));
             force.extend(bearing.beside_spring(stretch_m, &places.places(0)).force_n.map(|beside| -beside));
         }
+        force.extend(moments);
         force.extend(of_friction);
         for of in &model.spinning {
             let [about_x, about_y] = of.tilts.each_ref().map(|tilt| dot(tilt, &model.initial_velocity));

@@ -44,16 +44,12 @@ impl<'a> MeanMachine<'a> {
     ) -> Self {
         let of_sensor =
             |(place, axis): &(Cow<'static, str>, Axis)| model.of_coordinates(&model.weights(place, *axis)).0;
-        // The first column of each line of action.
-        let first: Vec<usize> = (model.lines.iter())
-            .scan(0, |next, line| Some(std::mem::replace(next, *next + line.columns.len())))
-            .collect();
         let compliance = model.residual.compliance();
         Self {
             steps: model.steps(&laws, step_s),
             sensors: sensors.iter().map(of_sensor).collect(),
             residual: DMatrix::from_fn(laws.len(), laws.len(), |a, b| {
-                compliance.get(first[a]).map_or(0.0, |row| row[first[b]])
+                compliance.get(a).map_or(0.0, |row| row[b])
             }),
             model,
             laws,
@@ -89,7 +85,7 @@ impl<'a> MeanMachine<'a> {
     fn squared_gains(&self, answer: &dyn Fn(usize) -> [Complex64; 3]) -> Vec<f64> {
         // Of one mesh, whose sines are many, all of this is a few numbers.
         if let ([law], [sensor]) = (&self.laws[..], &self.sensors[..]) {
-            let line = &self.model.lines[0].columns[0];
+            let line = &self.model.lines[0].at_middle;
             let (mut of_line, mut of_sensor) = (Complex64::from(self.residual[(0, 0)]), Complex64::ZERO);
             for (n, (line, sensor)) in line.iter().zip(sensor).enumerate() {
                 let [displacement, velocity, acceleration] = answer(n);
@@ -100,7 +96,7 @@ impl<'a> MeanMachine<'a> {
             return vec![(of_sensor * force).norm_sqr(), force.norm_sqr()];
         }
         let (meshes, sensors) = (self.laws.len(), self.sensors.len());
-        let line = |mesh: usize, n: usize| self.model.lines[mesh].columns[0][n];
+        let line = |mesh: usize, n: usize| self.model.lines[mesh].at_middle[n];
         let mut of_line = self.residual.map(Complex64::from);
         let mut of_sensor = DMatrix::from_element(sensors, meshes, Complex64::ZERO);
         for n in 0..self.model.modes() {

@@ -410,10 +410,15 @@ impl<const L: usize, const N: usize, const M: usize, const R: usize, const P: us
 }
 
 /// The laws of the meshes of `L` simulations.
-pub(super) fn law_lanes<const L: usize>(prepared: &[Prepared; L]) -> LawLanes<L> {
+///
+/// # Arguments
+/// * `prepared` - their constants
+/// * `problems` - the simulations
+pub(super) fn law_lanes<const L: usize>(prepared: &[Prepared; L], problems: &[Problem; L]) -> LawLanes<L> {
     LawLanes::new(
         prepared.each_ref().map(|of| of.laws[0]),
         prepared.each_ref().map(|of| of.static_force_n[0]),
+        problems.each_ref().map(|of| of.forcing.meshes().find_map(|mesh| mesh.closer_at_end_m)),
     )
 }
 
@@ -444,7 +449,7 @@ impl Size {
         let most = |of: fn(&Problem) -> usize| problems.iter().map(of).max().unwrap_or(0);
         let modes = most(|problem| problem.machine.modes());
         let moved = most(|problem| problem.machine.modes_moved_by_meshes());
-        let columns = most(|problem| problem.machine.lines[0].columns.len());
+        let columns = most(|problem| 1 + usize::from(problem.machine.lines[0].to_end.is_some()));
         let is_steady = problems.iter().all(|problem| problem.is_steady);
         let springs = most(|problem| problem.forcing.meshes().map(Mesh::springs).max().unwrap_or(0));
         let turning_forces = most(|problem| problem.machine.turning_forces.len());

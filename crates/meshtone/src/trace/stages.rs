@@ -65,10 +65,11 @@ pub(super) fn helix(trace: &mut Trace, suffix: &str, gears: &Gears, static_force
 /// * `named` - what a quantity of this mesh is called
 /// * `mesh` - with its tables
 pub(super) fn along_face(trace: &mut Trace, named: &dyn Fn(&str) -> String, mesh: &Mesh) {
-    let LoadAlongFace { lean_m, tilt_product, face_load_factor } = mesh.along_face;
+    let LoadAlongFace { lean_m, tilt_product, face_load_factor, .. } = mesh.along_face;
     trace.scalar(&named("face_load_factor"), face_load_factor);
     trace.scalar(&named("lean_um"), lean_m * 1e6);
     trace.scalar(&named("tilt_product"), tilt_product);
+    trace.scalar(&named("tilt_unknowns"), f64::from(u8::from(mesh.closer_at_end_m.is_some())));
 }
 
 fn wheels(trace: &mut Trace, stages: &Stages) {

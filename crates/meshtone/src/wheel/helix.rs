@@ -81,6 +81,11 @@ impl Gears {
         (crowned(until) - crowned(from) + relieved(until) - relieved(from)) / (until - from)
     }
 
+    /// Whether its flanks are farther apart at the ends of the face than in the middle.
+    pub(crate) fn is_crowned(&self) -> bool {
+        self.lead_crowning_um > 0.0 || self.end_relief.amount_um > 0.0
+    }
+
     /// (mm) Length of all contact lines together while the wheels are at a position.
     ///
     /// Pair n touches between `τ − n − ε_β/2` and `τ − n + ε_β/2` where that lies on the path, from 0 to ε_α.

@@ -143,10 +143,11 @@ fn mixed_in_space() -> Vec<Scenario> {
             }
         }
     }
-    let mut wide = small(20, 30, None);
+    // So narrow that its thrust hardly tilts the wheels, with many teeth.
+    let mut wide = small(40, 60, None);
     wide.model = Model::Contact;
-    wide.meshes[0].helix_angle_deg = 30.0;
-    wide.wheels.iter_mut().for_each(|wheel| wheel.face_width_mm = 60.0);
+    (wide.meshes[0].helix_angle_deg, wide.meshes[0].module_mm) = (30.0, wide.meshes[0].module_mm / 2.0);
+    wide.wheels.iter_mut().for_each(|wheel| wheel.face_width_mm = 30.0);
     scenarios.push(wide);
     let mut refused = small(17, 38, None);
     refused.meshes[0].module_mm = -1.0;

@@ -11,7 +11,7 @@ use meshtone::mesh::{Contact, CornerTable, Mesh, PairDeviations, PairState};
 use meshtone::operation::{MotionSample, TimeGrid};
 use meshtone::solver::{Block, InitialMotion, Output, Recorder};
 use meshtone::wheel::WheelName;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, Matrix2, Vector2};
 
 /// Most of Newton's iterations in a step.
 const MOST_ITERATIONS: usize = 50;
@@ -66,14 +66,15 @@ pub struct DenseMesh<'a> {
 /// What a mesh does at one sample.
 struct Load<'a> {
     contact: Contact,
-    /// (N/m, m) Stiffness of each pair, or of each slice of it, and what it adds to the deflection, with the damping's lead.
-    pairs: Vec<[f64; 2]>,
+    /// (N/m, m) Stiffness of each pair, or of each slice of it, and what it adds to the deflection, with the damping's lead; (m) where its middle
+    /// is along the face, and its width.
+    pairs: Vec<[f64; 4]>,
     /// The same of what helical teeth have outside their path: a stretch of contact line each.
     corners: Vec<Stretch<'a>>,
     /// (N/m, m) The same of the coast flanks.
     back: Option<[f64; 2]>,
-    /// (m) Where along the face the load acts.
-    face_centre_m: f64,
+    /// (-) Of a mesh with two unknowns, by how much closer the flanks are per length of face.
+    closer: Option<f64>,
 }
 
 /// A stretch of a contact line outside its path, at one sample.
@@ -83,6 +84,8 @@ struct Stretch<'a> {
     edges: [f64; 2],
     /// (m) What the pair adds to the deflection.
     offset_m: f64,
+    /// (m) Where its middle is along the face.
+    z_m: f64,
 }
 
 impl Stretch<'_> {
@@ -255,7 +258,17 @@ impl<'a> DenseMesh<'a> {
                 at(wheel, 0.0) + lead * change
             };
             let offset_m = WheelName::BOTH.map(deviation).iter().sum::<f64>() - corner.separation_m;
-            let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m };
+            let z_m = if corner.along_face.is_empty() {
+                self.place_m(slice)
+            } else {
+                let (index, part) = (point as usize, point - point.floor());
+                let [here, next] =
+                    [index, (index + 1).min(corner.along_face.len() - 1)].map(|n| corner.along_face[n]);
+                self.mesh
+                    .two_unknowns()
+                    .map_or(0.0, |[width_m, _]| (here + part * (next - here)) * width_m / 2.0)
+            };
+            let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m, z_m };
             let shift = if end == 0 { -ahead_pitches } else { ahead_pitches };
             stretch.edges = [&corner.near, &corner.far].map(|table| read(table, shift, &stretch));
             // The damping's lead makes the penetration deeper.
@@ -310,7 +323,8 @@ impl<'a> DenseMesh<'a> {
                     (None, _) => 0.0,
                 }
             };
-            Some([stiffness, offset + mesh.damping_time_s * change / time.step_s()])
+            let [z_m, width_m] = self.left_at(pair, slice, point)?;
+            Some([stiffness, offset + mesh.damping_time_s * change / time.step_s(), z_m, width_m])
         };
         Load {
             contact: mesh.contact,
@@ -322,68 +336,92 @@ impl<'a> DenseMesh<'a> {
                 .flat_map(|(pair, point)| self.corners_at(pair, point, (on_points, is_steady), time))
                 .collect(),
             back: mesh.backlash_m.map(|backlash_m| [mesh.closed_stiffness_n_per_m, backlash_m]),
-            face_centre_m: self.face_centre_m((pitches(sample) * per_pitch).round()),
+            closer: self.mesh.two_unknowns().map(|[width_m, closer_m]| closer_m / width_m),
         }
     }
 
-    /// (m) Where the parts of the nominal load that the pairs bear at a point act together; at the nearest pair where none bears any.
-    fn face_centre_m(&self, point: f64) -> f64 {
-        let (mesh, points) = (self.mesh, self.mesh.points());
-        let pairs: Vec<(i64, f64)> = self.pairs_after(point / mesh.points_per_pitch as f64).collect();
-        let states_of = |class: usize, at: f64| -> Vec<&PairState> {
-            let at = at.round() as usize;
-            let slices = mesh.classes[class].states.chunks(points);
-            slices.filter_map(|slice| slice.get(at)).collect()
-        };
-        let nominal_n = mesh.nominal_deflection_m * mesh.mean_stiffness_n_per_m;
-        let deflection_m = if mesh.slices() == 1 {
-            mesh.nominal_deflection_m
-        } else {
-            let sound = pairs.iter().flat_map(|(_, at)| states_of(0, *at));
-            let pairs = sound.map(|state| [state.stiffness_n_per_m, -state.separation_m]).collect();
-            Load { contact: mesh.contact, pairs, corners: Vec::new(), back: None, face_centre_m: 0.0 }
-                .at_rest_m(nominal_n)
-        };
-        let (mut load, mut moment) = (0.0, 0.0);
-        let (mut least_m, mut of_nearest_m) = (f64::INFINITY, 0.0);
-        for (pair, at) in &pairs {
-            for state in states_of(mesh.sequence.class(*pair), *at) {
-                let borne = state.stiffness_n_per_m * (deflection_m - state.separation_m).max(0.0);
-                load += borne;
-                moment += borne * state.face_centre_m;
-                if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
-                    (least_m, of_nearest_m) = (state.separation_m, state.face_centre_m);
-                }
-            }
+    /// (m) Middle and width of a slice, or of what touches of a whole face.
+    fn left_at(&self, pair: i64, slice: usize, point: f64) -> Option<[f64; 2]> {
+        let width_m = self.mesh.two_unknowns().map_or(0.0, |[width_m, _]| width_m);
+        let strips = &self.mesh.classes[self.mesh.sequence.class(pair)].strips;
+        if strips.is_empty() {
+            return Some([self.place_m(slice), width_m / self.mesh.slices() as f64]);
         }
-        if load > 0.0 { moment / load } else { of_nearest_m }
+        let (index, part) = (point as usize, point - point.floor());
+        let here = *strips.get(index)?;
+        let next = strips.get(index + 1).copied().unwrap_or(here);
+        let [place, half_width] = [0, 1].map(|n| here[n] + part * (next[n] - here[n]));
+        Some([place * width_m / 2.0, half_width * width_m])
+    }
+
+    /// (m) Middle of a slice along the face; 0 of a mesh with one unknown.
+    fn place_m(&self, slice: usize) -> f64 {
+        let middle = (slice as f64 + 0.5) / self.mesh.slices() as f64 - 0.5;
+        self.mesh.two_unknowns().map_or(0.0, |[width_m, _]| middle * width_m)
     }
 }
 
+/// Force and moment of a mesh at its deflection and the slope of this along the face, and the derivatives of both; one unknown has no moment.
+type Carried = (Vector2<f64>, Matrix2<f64>);
+
 impl Load<'_> {
-    /// (N/m, N) Slope and constant of the straight line on which the force lies about a deflection.
-    fn straight(&self, deflection_m: f64) -> [f64; 2] {
-        let touching =
-            |&&[_, offset]: &&[f64; 2]| self.contact == Contact::Bilateral || deflection_m + offset > 0.0;
-        let drive = self.pairs.iter().filter(touching).map(|[k, offset]| [*k, k * offset]);
-        let back = self.back.filter(|[_, backlash]| deflection_m + backlash < 0.0);
-        let corners = self.corners.iter().map(|corner| corner.force_and_slope(deflection_m));
-        let corners = corners.map(|[force, slope]| [slope, force - slope * deflection_m]);
-        let all = drive.chain(back.map(|[k, backlash]| [k, k * backlash])).chain(corners);
-        all.fold([0.0; 2], |[slope, constant], [k, force]| [slope + k, constant + force])
+    /// What is carried at a deflection and its slope along the face.
+    ///
+    /// With two unknowns a slice from a to c, with an even stiffness k' per length, penetrates by `x₀ + z x₁`: what of it does so has the moments `m_j`
+    /// of its length, `F = k' (x₀ m₀ + x₁ m₁)`, and `M = k' (x₀ m₁ + x₁ m₂)`.
+    fn carried(&self, deflection: Vector2<f64>) -> Carried {
+        let mut sums: Carried = (Vector2::zeros(), Matrix2::zeros());
+        let mut add = |force: Vector2<f64>, slopes: Matrix2<f64>| {
+            sums.0 += force;
+            sums.1 += slopes;
+        };
+        for [stiffness, offset, z_m, width_m] in &self.pairs {
+            let Some(closer) = self.closer else {
+                let penetration_m = deflection.x + offset;
+                if self.contact == Contact::Bilateral || penetration_m > 0.0 {
+                    add(
+                        Vector2::new(stiffness * penetration_m, 0.0),
+                        Matrix2::new(*stiffness, 0.0, 0.0, 0.0),
+                    );
+                }
+                continue;
+            };
+            let slope = deflection.y + closer;
+            let at_0 = deflection.x + offset;
+            let (mut from, mut until) = (z_m - width_m / 2.0, z_m + width_m / 2.0);
+            if slope > 0.0 {
+                from = from.max(-at_0 / slope).min(until);
+            } else if slope < 0.0 {
+                until = until.min(-at_0 / slope).max(from);
+            } else if at_0 <= 0.0 {
+                continue;
+            }
+            let m = [1, 2, 3].map(|n| (until.powi(n) - from.powi(n)) / f64::from(n) * stiffness / width_m);
+            let slopes = Matrix2::new(m[0], m[1], m[1], m[2]);
+            add(slopes * Vector2::new(at_0, slope), slopes);
+        }
+        for corner in &self.corners {
+            let place = Vector2::new(1.0, corner.z_m);
+            let closer = self.closer.unwrap_or(0.0);
+            let [force, slope] = corner.force_and_slope(deflection.dot(&place) + closer * corner.z_m);
+            add(place * force, place * place.transpose() * slope);
+        }
+        if let Some([stiffness, backlash_m]) = self.back.filter(|[_, backlash]| deflection.x + backlash < 0.0)
+        {
+            add(
+                Vector2::new(stiffness * (deflection.x + backlash_m), 0.0),
+                Matrix2::new(stiffness, 0.0, 0.0, 0.0),
+            );
+        }
+        sums
     }
 
-    fn force_n(&self, deflection_m: f64) -> f64 {
-        let [slope, constant] = self.straight(deflection_m);
-        slope * deflection_m + constant
-    }
-
-    /// (m) Deflection at which the drive flanks carry a force.
-    fn at_rest_m(&self, force_n: f64) -> f64 {
+    /// (m) Deflection at which the drive flanks carry a force, at a slope along the face.
+    fn at_rest_m(&self, force_n: f64, slope: f64) -> f64 {
         let (mut low, mut high) = (-1e-2, 1e-2);
         for _ in 0..100 {
             let middle = (low + high) / 2.0;
-            if self.force_n(middle) < force_n { low = middle } else { high = middle }
+            if self.carried(Vector2::new(middle, slope)).0.x < force_n { low = middle } else { high = middle }
         }
         high
     }
@@ -441,12 +479,10 @@ impl<'a> Dense<'a> {
         force
     }
 
-    /// The line of action of each mesh, where its load acts along the face.
-    fn lines(&self, loads: &[Load]) -> Vec<DVector<f64>> {
-        let lines = self.machine.lines.iter().zip(loads);
-        lines
-            .map(|(line, load)| &self.machine.turn * (&line.at_middle + &line.per_m * load.face_centre_m))
-            .collect()
+    /// The line of action of each mesh at the middle of its face, and what is added per m along it.
+    fn lines(&self) -> Vec<[DVector<f64>; 2]> {
+        let turned = |column: &DVector<f64>| &self.machine.turn * column;
+        self.machine.lines.iter().map(|line| [&line.at_middle, &line.per_m].map(turned)).collect()
     }
 
     /// Displacement at rest under the nominal torque and the meshes' forces, which act midway along the faces, with the meshes closed.
@@ -454,9 +490,10 @@ impl<'a> Dense<'a> {
         let (n, meshes) = (self.machine.coordinates(), loads.len());
         let mut matrix = DMatrix::zeros(n + meshes, n + meshes);
         matrix.view_mut((0, 0), (n, n)).copy_from(stiffness);
-        for (mesh, (line, at_load)) in self.machine.lines.iter().zip(self.lines(loads)).enumerate() {
-            matrix.view_mut((0, n + mesh), (n, 1)).copy_from(&(&self.machine.turn * &line.at_middle));
-            matrix.view_mut((n + mesh, 0), (1, n)).copy_from(&at_load.transpose());
+        let lines = self.lines();
+        for (mesh, [at_middle, _]) in lines.iter().enumerate() {
+            matrix.view_mut((0, n + mesh), (n, 1)).copy_from(at_middle);
+            matrix.view_mut((n + mesh, 0), (1, n)).copy_from(&at_middle.transpose());
         }
         let matrix = matrix.lu();
         let mut right = DVector::zeros(n + meshes);
@@ -465,10 +502,11 @@ impl<'a> Dense<'a> {
                 right[coordinate] += torque_share * self.start.brake_torque_nm;
             }
         }
-        // The forces do not depend on how far the meshes give way.
-        let forces = matrix.solve(&right).unwrap();
+        // Neither the forces nor the wheels' tilts depend on how far the meshes give way.
+        let before = matrix.solve(&right).unwrap();
         for (mesh, load) in loads.iter().enumerate() {
-            right[n + mesh] = load.at_rest_m(forces[n + mesh].max(0.0));
+            let slope = lines[mesh][1].dot(&before.rows(0, n));
+            right[n + mesh] = load.at_rest_m(before[n + mesh].max(0.0), slope);
         }
         matrix.solve(&right).unwrap().rows(0, n).into_owned()
     }
@@ -504,8 +542,11 @@ impl<'a> Dense<'a> {
         let mut v = self.start.velocity.map_or_else(|| rigid * self.start.motor_rad_per_s, given)
             - rigid * self.start.nominal_rad_per_s;
         let mut force = self.external(0, &own_damping) - &steps.damping * &v - &stiffness * &u;
-        for ((line, load), tau) in self.lines(&loads).iter().zip(&loads).zip(&tau) {
-            force -= line * load.force_n(line.dot(&u) + tau * line.dot(&v));
+        let lines = self.lines();
+        for ((line, load), tau) in lines.iter().zip(&loads).zip(&tau) {
+            let of = |column: &DVector<f64>| column.dot(&u) + tau * column.dot(&v);
+            let (carried, _) = load.carried(Vector2::new(of(&line[0]), of(&line[1])));
+            force -= &line[0] * carried.x + &line[1] * carried.y;
         }
         let mut a = steps.mass.clone().lu().solve(&force).unwrap();
         // What is stepped is an acceleration of the changed mass: the machine's own has the same force.
@@ -514,42 +555,57 @@ impl<'a> Dense<'a> {
         let mut accelerations = vec![own(&a)];
         for sample in 1..self.motion.len() {
             let loads = loads_at(sample);
-            let lines = self.lines(&loads);
             let predicted_u = &u + &v * dt + (&a * 0.5 - &steps.beta * &a) * (dt * dt);
             let predicted_v = &v + &a * (dt / 2.0);
             let known = self.external(sample, &own_damping)
                 - &steps.damping * &predicted_v
                 - &stiffness * &predicted_u;
             // D is the free part and the part that goes with the acceleration.
-            let free: Vec<f64> = lines
-                .iter()
-                .zip(&tau)
-                .map(|(line, tau)| line.dot(&predicted_u) + tau * line.dot(&predicted_v))
-                .collect();
-            let with_a: Vec<DVector<f64>> = lines
-                .iter()
-                .zip(&tau)
-                .map(|(line, tau)| steps.beta.tr_mul(line) * (dt * dt) + line * (tau * dt / 2.0))
-                .collect();
-            let straight = |a: &DVector<f64>| -> Vec<[f64; 2]> {
-                (0..lines.len()).map(|n| loads[n].straight(free[n] + with_a[n].dot(a))).collect()
+            let free = |(line, tau): (&[DVector<f64>; 2], &f64)| {
+                Vector2::from_iterator(
+                    line.iter().map(|line| line.dot(&predicted_u) + tau * line.dot(&predicted_v)),
+                )
             };
-            let mut touching = straight(&a);
+            let free: Vec<Vector2<f64>> = lines.iter().zip(&tau).map(free).collect();
+            let with_a = |(line, tau): (&[DVector<f64>; 2], &f64)| {
+                line.each_ref().map(|line| steps.beta.tr_mul(line) * (dt * dt) + line * (tau * dt / 2.0))
+            };
+            let with_a: Vec<[DVector<f64>; 2]> = lines.iter().zip(&tau).map(with_a).collect();
+            let deflection =
+                |a: &DVector<f64>, n: usize| free[n] + Vector2::new(with_a[n][0].dot(a), with_a[n][1].dot(a));
+            let carried = |a: &DVector<f64>| -> Vec<Carried> {
+                (0..lines.len()).map(|n| loads[n].carried(deflection(a, n))).collect()
+            };
+            let mut before = carried(&a);
             for iteration in 0.. {
                 assert!(iteration < MOST_ITERATIONS, "sample {sample}: no end of the iterations");
                 let (mut matrix, mut right) = (implicit.clone(), known.clone());
-                for (n, [slope, constant]) in touching.iter().enumerate() {
-                    matrix += &lines[n] * with_a[n].transpose() * *slope;
-                    right -= &lines[n] * (slope * free[n] + constant);
+                for (n, (forces, slopes)) in before.iter().enumerate() {
+                    // On the tangent: forces at free deflections.
+                    let constant = forces - slopes * (deflection(&a, n) - free[n]);
+                    for row in 0..2 {
+                        right -= &lines[n][row] * constant[row];
+                        for column in 0..2 {
+                            if slopes[(row, column)] != 0.0 {
+                                matrix +=
+                                    &lines[n][row] * with_a[n][column].transpose() * slopes[(row, column)];
+                            }
+                        }
+                    }
                 }
-                a = matrix.lu().solve(&right).unwrap();
-                let now = straight(&a);
-                // What corners carry is found to rounding.
-                let is_near = |(now, before): (&f64, &f64)| (now - before).abs() <= 1e-13 * before.abs();
-                if now.iter().flatten().zip(touching.iter().flatten()).all(is_near) {
+                let next = matrix.lu().solve(&right).unwrap();
+                let has_moved = (&next - &a).amax() > 1e-13 * next.amax();
+                a = next;
+                let now = carried(&a);
+                // What corners and leaning faces carry is found to rounding.
+                let is_near = |((force, now), (force_before, before)): (&Carried, &Carried)| {
+                    (now - before).amax() <= 1e-13 * before.amax()
+                        || (force - force_before).amax() <= 1e-14 * force_before.amax()
+                };
+                if !has_moved || now.iter().zip(&before).all(is_near) {
                     break;
                 }
-                touching = now;
+                before = now;
             }
             u = predicted_u + &steps.beta * &a * (dt * dt);
             v = predicted_v + &a * (dt / 2.0);
@@ -572,8 +628,7 @@ impl<'a> Dense<'a> {
         };
         let mut betas: Vec<f64> = (0..n).map(|mode| if resolved(mode) { 1.0 / 12.0 } else { 0.25 }).collect();
         for (line, mesh) in machine.lines.iter().zip(&self.meshes) {
-            let states = mesh.mesh.classes.iter().flat_map(|class| &class.states);
-            let reach_m = states.map(|state| state.face_centre_m.abs()).fold(0.0, f64::max);
+            let reach_m = mesh.mesh.two_unknowns().map_or(0.0, |[width_m, _]| width_m / 2.0);
             let lines = [-1.0, 1.0].map(|side| {
                 shapes.tr_mul(&(&machine.turn * (&line.at_middle + &line.per_m * (side * reach_m))))
             });

@@ -1,5 +1,4 @@
-//! Load that is carried by a part of the face: the time loop lets a pair act at the middle of what bears; here, in a solver of its
-//! own, every slice of the face of every pair touches or does not, with the wheels' tilt.
+//! Load that is carried by a part of the face: the time loop has two unknowns, with what of the face touches in closed form; here, in a solver of its own, every slice of the face of every pair touches or does not, with the wheels' tilt.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::dense::machine_of;
@@ -163,24 +162,22 @@ fn indicators(signal: &[f64]) -> [f64; 2] {
     [moment(2).sqrt().log10(), (moment(4) / moment(2).powi(2)).log10()]
 }
 
-// A pit over a part of the face, and a broken corner: the mean of what bears suffices. Under a heavy load the slices of sound pairs resist
-// the wheels' tilt, which one spring a pair does not.
+// A pit over a part of the face, and a broken corner.
 #[test]
-fn the_middle_of_what_bears_acts_as_its_slices_do() {
+fn a_part_of_the_face_acts_as_its_slices_do() {
     let pit = PitCircle::Fractions { start: 0.3, end: 0.7, depth: 0.5 };
-    let damages: [(&str, f64, f64, Damage); 5] = [
-        ("pit over 5 of 15 mm", 10.0, 0.01, PartialFace { width_mm: 5.0, pit }.into()),
-        ("pit over 10 of 15 mm", 10.0, 0.01, PartialFace { width_mm: 10.0, pit }.into()),
-        ("pit over 10 of 15 mm, light", 1.0, 0.01, PartialFace { width_mm: 10.0, pit }.into()),
-        ("pit over 10 of 15 mm, heavy", 100.0, 0.02, PartialFace { width_mm: 10.0, pit }.into()),
+    let damages: [(&str, f64, Damage); 5] = [
+        ("pit over 5 of 15 mm", 10.0, PartialFace { width_mm: 5.0, pit }.into()),
+        ("pit over 10 of 15 mm", 10.0, PartialFace { width_mm: 10.0, pit }.into()),
+        ("pit over 10 of 15 mm, light", 1.0, PartialFace { width_mm: 10.0, pit }.into()),
+        ("pit over 10 of 15 mm, heavy", 100.0, PartialFace { width_mm: 10.0, pit }.into()),
         (
             "corner of 5 x 12 mm",
             10.0,
-            0.01,
             ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 2.0 }.into(),
         ),
     ];
-    for (name, brake_torque_nm, most, damage) in damages {
+    for (name, brake_torque_nm, damage) in damages {
         let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
         with_own_structure(&mut scenario);
         scenario.sensors = vec![mean_of_supports()];
@@ -204,12 +201,13 @@ fn the_middle_of_what_bears_acts_as_its_slices_do() {
             rms(&sliced) / 9.81,
             100.0 * off
         );
-        assert!(off < most, "{name}: {off}");
+        let of_rms = rms(&mean) / rms(&sliced) - 1.0;
+        println!("{name}: {of_rms:.4} of the rms");
+        assert!(of_rms.abs() < 0.005 && off < 0.02, "{name}: {of_rms} {off}");
     }
 }
 
-// Flanks that lie closer together towards one end of the face: the spring that the pair is about the nominal load, beside slices. By
-// their indicators, because a spring of its own for every load would be another motion sample by sample.
+// Flanks that lie closer together towards one end of the face: two unknowns beside slices, which are stepped by the average acceleration.
 #[test]
 fn an_end_of_the_face_acts_as_its_slices_do() {
     let broken = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 5.0, tip_loss_mm: 3.0 };
@@ -260,7 +258,7 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
             sliced[1],
         );
         for (found, sliced) in found.into_iter().zip(sliced) {
-            assert!((found - sliced).abs() < 0.05, "{misalignment_um} {brake_torque_nm}: {found} {sliced}");
+            assert!((found - sliced).abs() < 0.01, "{misalignment_um} {brake_torque_nm}: {found} {sliced}");
         }
     }
 }

@@ -117,6 +117,10 @@ fn modal_and_dense_solutions_agree() {
                 if round == 2 {
                     driven_unsteadily(&mut scenario, &mut random);
                 }
+                if model == Model::Contact && kind % 2 == 1 {
+                    // With two unknowns.
+                    scenario.meshes[0].misalignment_um = random(-20.0, 20.0);
+                }
                 let damage = damage(kind, module, width, &mut random);
                 scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
                 if kind > 0 {
@@ -137,7 +141,8 @@ fn modal_and_dense_solutions_agree() {
                 let difference = difference(&modal, &dense);
                 println!("{round} {kind} {model:?} {pinion}/{gear}: {difference:.2e}");
                 worst = worst.max(difference);
-                assert!(difference < 1e-9, "{difference:.2e} for\n{}", scenario.to_toml());
+                let most = if stages.meshes[0].two_unknowns().is_some() { 1e-8 } else { 1e-9 };
+                assert!(difference < most, "{difference:.2e} for\n{}", scenario.to_toml());
             }
         }
     }

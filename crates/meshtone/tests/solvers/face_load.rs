@@ -1,10 +1,18 @@
-//! Load along the face at rest, against a solution of the whole machine with faces of springs that only push.
+//! Load along the face: at rest against a solution of the whole machine with faces of springs that only push, and in motion against dense matrices
+//! with two unknowns a mesh.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use std::f64::consts::TAU;
+
 use meshtone::machine::{Drive, Machine};
+use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
+use meshtone::solver::{InitialMotion, Output};
 use meshtone::{Stages, stages};
 use nalgebra::{DMatrix, DVector};
+
+use crate::dense::{Dense, DenseMesh, coordinates, outputs_from};
+use crate::plain::plain;
 
 /// Springs along each face.
 const SPRINGS: usize = 400;
@@ -198,5 +206,82 @@ fn offset_faces_bear_where_they_overlap() {
         });
         println!("{one:.3e} {other:.3e}");
         assert!((one + other).abs() < 1e-12 && (one.abs() > 4e-3) == is_tilted, "{one} {other}");
+    }
+}
+
+/// A gearbox of few elements, whose samples are points of the tables, over a few milliseconds.
+fn slender() -> Scenario {
+    let mut gearbox = plain(Scenario::from_toml(&gearbox_template(None)).unwrap());
+    gearbox.sensors.clear();
+    let of = gearbox.structure.shafts_mut().unwrap();
+    of.shafts.iter_mut().for_each(|shaft| shaft.elements = 4);
+    of.housing = None;
+    // 105 samples for a pitch of the first mesh, 210 for one of the second.
+    gearbox.solver.sampling_rate_hz = 105.0 * 32.0 * 30.0;
+    gearbox.solver.highest_mode_hz = Some(1e9);
+    gearbox.solver.settle_fraction = 0.0;
+    gearbox.solver.duration_s = Some(0.003);
+    gearbox
+}
+
+/// Gearboxes on slender shafts, whose meshes have two unknowns: with crowning and with damage of a part of the face, move as a dense
+/// solution has it that integrates what of each face touches.
+#[test]
+fn leaning_faces_move_as_with_dense_matrices() {
+    let chip = ToothBreakage { chip_height_mm: 2.5, chip_width_mm: 8.0, tip_loss_mm: 0.0 };
+    let chipped = || vec![Fault::new("z2", 1, chip), Fault::new("z4", 1, chip)];
+    for (name, crowning_um, faults) in [
+        ("spur", 0.0, Vec::new()),
+        ("spur, missing tooth", 0.0, vec![Fault::new("z2", 1, MissingTooth)]),
+        ("spur, chipped", 0.0, chipped()),
+        ("spur, crowned", 8.0, Vec::new()),
+    ] {
+        let mut gearbox = slender();
+        for mesh in &mut gearbox.meshes {
+            (mesh.lead_crowning_um, mesh.slices, mesh.phase) = (crowning_um, 7, Some(0.0));
+        }
+        gearbox.faults = faults;
+        let stages = stages(&gearbox).unwrap();
+        assert!(stages.meshes.iter().all(|mesh| mesh.two_unknowns().is_some()), "{name}");
+        let (machine, modes) = stages.machine_and_modes().unwrap();
+        let nominal_rad_per_s = TAU * gearbox.operation.pinion_speed_hz;
+        let deviations = |mesh: usize| PairDeviations {
+            teeth: &stages.pairs[mesh].teeth,
+            errors: stages.pairs[mesh].profile_errors.as_ref(),
+            eccentricity_m: [0.0; 2],
+            run_out: stages.pairs[mesh].run_out,
+        };
+        let dense = Dense {
+            machine,
+            modes,
+            meshes: (stages.meshes.iter().enumerate())
+                .map(|(n, mesh)| DenseMesh::new(mesh, deviations(n)))
+                .collect(),
+            time: &stages.time,
+            motion: stages.motion().take(stages.time.samples).collect(),
+            is_steady: true,
+            start: InitialMotion {
+                nominal_rad_per_s,
+                brake_torque_nm: gearbox.operation.brake_torque_nm,
+                motor_rad_per_s: nominal_rad_per_s,
+                velocity: None,
+            },
+        };
+        let theirs = dense.accelerations();
+        let outputs: Vec<Output> = coordinates(machine, 2).collect();
+        let ours = outputs_from(0, &stages, &outputs);
+        let rms = |of: &mut dyn Iterator<Item = f64>| of.map(|x| x * x).sum::<f64>().sqrt();
+        let scales: Vec<f64> =
+            (0..ours.len()).map(|n| rms(&mut theirs.iter().map(|sample| sample[n]))).collect();
+        let largest = scales.iter().copied().fold(0.0, f64::max);
+        let (worst, coordinate) = (ours.iter().enumerate())
+            .map(|(n, ours)| {
+                let difference = rms(&mut ours.iter().zip(&theirs).map(|(ours, theirs)| ours - theirs[n]));
+                (difference / if scales[n] > 1e-6 * largest { scales[n] } else { largest }, n)
+            })
+            .fold((0.0, 0), |worst, of| if of.0 > worst.0 { of } else { worst });
+        let (named, size) = (&machine.names[coordinate], scales[coordinate] / largest);
+        println!("{name}: {worst:.1e} in {named}, {size:.1e} of the largest");
+        assert!(worst < 1e-8, "{name}: {worst:e}");
     }
 }

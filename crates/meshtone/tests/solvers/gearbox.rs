@@ -203,7 +203,7 @@ fn few_modes_leave_transmission_errors_as_they_are() {
     run_up.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.4], value: vec![20.0, 40.0] });
     (run_up.solver.duration_s, run_up.solver.settle_fraction) = (None, 0.5);
     for (gearbox, highest_hz, vibration_um) in
-        [(&steady, 5e3, 0.03), (&steady, 500.0, 0.6), (&run_up, 5e3, 0.03)]
+        [(&steady, 5e3, 0.03), (&steady, 500.0, 0.8), (&run_up, 5e3, 0.03)]
     {
         let [few, all] = [highest_hz, 1e9].map(|highest_hz| {
             let mut gearbox = gearbox.clone();
@@ -216,7 +216,8 @@ fn few_modes_leave_transmission_errors_as_they_are() {
             let (mean, rms) = (mean(&differences), rms(&differences));
             println!("{} up to {highest_hz} Hz: {mean:.1e} {}, vibrating {rms:.1e}", few.name, few.unit);
             match few.unit {
-                "µm" => assert!(mean.abs() < 0.01 && rms < vibration_um),
+                // The load along the faces follows from the wheels' tilts, of which little is left below 500 Hz.
+                "µm" => assert!(mean.abs() < 0.04 && rms < vibration_um),
                 "Hz" => assert!(mean.abs() < 1e-5),
                 _ => {}
             }
@@ -425,6 +426,9 @@ fn a_ripple_of_the_torque_comes_with_the_brakes_shaft() {
 #[test]
 fn a_missing_tooth_of_any_wheel_is_felt_once_a_revolution() {
     let mut gearbox = two_stages();
+    // On slender shafts the flanks of sound teeth part too.
+    let shafts = &mut gearbox.structure.shafts_mut().unwrap().shafts;
+    shafts.iter_mut().for_each(|shaft| shaft.radius_mm = Some(20.0));
     // Without chamfers the tip corners of the neighbours hold the wheels.
     gearbox.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = None);
     gearbox.solver.duration_s = Some(0.5);
