@@ -218,7 +218,7 @@ impl Prepared {
     }
 
     /// The state at the first simulated sample: with the given velocity, and the meshes closed at rest. All that deforms is then as
-    /// under the constant loads, and the shafts that turn freely have turned until the pairs carry the load.
+    /// under the constant loads and the torque with which a profile begins, and the shafts that turn freely have turned until the pairs carry the load.
     ///
     /// # Arguments
     /// * `model` - the machine
@@ -237,7 +237,13 @@ impl Prepared {
             let tilted: f64 = columns[mesh].clone().skip(1).map(|column| z * of(column)).sum();
             (of(columns[mesh].start), tilted)
         };
-        let turned = self.turned_at_rest(model, block);
+        let (beside_n, beside) = model.balanced(external[1]);
+        let turned: Vec<f64> = self
+            .turned_at_rest(model, block)
+            .iter()
+            .zip(beside)
+            .map(|(turned, beside)| turned + beside)
+            .collect();
         let lines: Vec<&Vec<f64>> = model
             .lines
             .iter()
@@ -247,7 +253,7 @@ impl Prepared {
         let has_friction = self.first_across < self.first_spinning;
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
-                let force_n = self.static_force_n[mesh].max(0.0);
+                let force_n = (self.static_force_n[mesh] + beside_n[mesh]).max(0.0);
                 let closed = deflection_at_rest(law.contact, springs[mesh].at(0), force_n);
                 let (at_rest, tilted) =
                     at_face_centre(mesh, &|column| self.columns[column].static_deflection);
