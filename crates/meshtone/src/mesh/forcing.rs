@@ -145,7 +145,7 @@ pub struct Forcing<'a> {
     nominal_speed_hz: f64,
     nominal_torque_nm: f64,
     meshes: Vec<MeshForcing<'a>>,
-    bearings: Vec<BearingTurning>,
+    bearings: Vec<BearingTurning<'a>>,
     turning_forces: Vec<TurningShaft>,
     /// (rev) Rotation of the motor at the samples of a block, where a mesh or a bearing needs it.
     revolutions: Vec<f64>,
@@ -203,7 +203,7 @@ impl<'a> Forcing<'a> {
     ///
     /// # Arguments
     /// * `bearings` - from the start of the simulation
-    pub(crate) fn with_bearings(self, bearings: Vec<BearingTurning>) -> Self {
+    pub(crate) fn with_bearings(self, bearings: Vec<BearingTurning<'a>>) -> Self {
         Self { bearings, ..self }
     }
 
