@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use super::deviations::{Eccentricity, FlankErrors, PairDeviations};
+use super::face_load::WobblingPair;
 use super::gear_mesh::{FaceForm, Mesh, PairTable};
 use super::path_table::{CornerTable, PairState};
 use crate::bearing::{BearingBlock, BearingTurning};
@@ -376,6 +377,8 @@ struct MeshForcing<'a> {
     tables: Option<TabulatedPairs>,
     /// (m) Offset of each spring at the two samples before, with the pair's number, where motor or brake is not steady.
     before: Vec<(i64, [f64; 2])>,
+    /// What wobble makes of the last pair in each place, with its number.
+    wobbling: Vec<(i64, [f64; 2])>,
 }
 
 /// Pairs at every point of their tables, with the damping's lead. Tables of a class have all points of the first slice, then those of the
@@ -524,6 +527,7 @@ impl TabulatedPairs {
     /// slice its stiffness and what it has of its own.
     fn of_pair(&self, mesh: &Mesh, pair: i64) -> PairParts<'_> {
         let class = mesh.sequence.class(pair);
+        let wobbling = mesh.wobbling(pair);
         let teeth: [usize; 2] = mesh.sequence.teeth(pair).into();
         let flanks = || [&self.pinion_m, &self.gear_m].into_iter().zip(teeth);
         let points = mesh.points();
@@ -554,7 +558,7 @@ impl TabulatedPairs {
                 corners,
             }
         };
-        PairParts { class, alike: alike.collect(), slices: (0..mesh.slices()).map(slice).collect() }
+        PairParts { class, wobbling, alike: alike.collect(), slices: (0..mesh.slices()).map(slice).collect() }
     }
 }
 
@@ -564,6 +568,8 @@ type FromPoint<'a> = (&'a [f64], usize);
 /// The tables that make the springs of a pair.
 struct PairParts<'a> {
     class: usize,
+    /// What its wheels' wobble makes of it.
+    wobbling: WobblingPair,
     /// What all slices add to their offset.
     alike: Vec<FromPoint<'a>>,
     slices: Vec<SliceParts<'a>>,
@@ -641,7 +647,8 @@ impl<'a> MeshForcing<'a> {
             TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, [lead, of_corners])
         });
         let before = vec![(i64::MIN, [0.0; 2]); mesh.springs()];
-        Self { mesh, pinion, gear, eccentricity, tilts, lead, reading, tables, before }
+        let wobbling = vec![(i64::MIN, [1.0, 0.0]); mesh.pairs_at_once()];
+        Self { mesh, pinion, gear, eccentricity, tilts, lead, reading, tables, before, wobbling }
     }
 
     /// Sets a block to `samples` samples from `first` on.
@@ -682,7 +689,7 @@ impl<'a> MeshForcing<'a> {
         for pair in pairs.clone() {
             let Some(Part { from, until, point }) = self.part(pair, first, samples) else { continue };
             let place = pair.rem_euclid(at_once as i64) as usize;
-            let PairParts { class, alike, slices: parts } = tables.of_pair(self.mesh, pair);
+            let PairParts { class, wobbling, alike, slices: parts } = tables.of_pair(self.mesh, pair);
             leans |= tables.bearing.get(class).is_some_and(|bearing| bearing.leans);
             if let Some(classes) = block.classes.get_mut(place) {
                 classes.push((from, class));
@@ -714,6 +721,13 @@ impl<'a> MeshForcing<'a> {
                 for term in terms {
                     offsets.iter_mut().zip(term).for_each(|(offset, term)| *offset += term);
                 }
+                let [stiffer, closer_m] = self.mesh.wobbles_by(&wobbling, slice);
+                if wobbling != WobblingPair::NONE {
+                    offsets.iter_mut().for_each(|offset| *offset += closer_m);
+                    block.stiffness[spring][from..until]
+                        .iter_mut()
+                        .for_each(|stiffness| *stiffness *= stiffer);
+                }
                 let Some(corners) = block.corners.get_mut(spring) else { continue };
                 for (end, CornerBlock { offset, near, far }) in corners.iter_mut().enumerate() {
                     near[set[place]..from].fill(0.0);
@@ -729,7 +743,7 @@ impl<'a> MeshForcing<'a> {
                     let outside = |point: &usize| corner.far[*point] > corner.near[*point];
                     for at in points.filter(outside) {
                         let alike_m: f64 = alike.iter().map(|(table, begin)| table[begin + at]).sum();
-                        offset[from + at - point] = corner.offset_m(at as f64) + alike_m;
+                        offset[from + at - point] = corner.offset_m(at as f64) + alike_m + closer_m;
                     }
                 }
             }
@@ -856,17 +870,20 @@ impl<'a> MeshForcing<'a> {
                     classes.push((k, parts.class));
                     is_first = false;
                 }
-                for (spring, slice) in (first_spring..).zip(&parts.slices) {
+                for (number, slice) in parts.slices.iter().enumerate() {
+                    let [_, closer_m] = mesh.wobbles_by(&parts.wobbling, number);
                     for (end, corner) in slice.corners.iter().flatten().enumerate() {
                         let [near, far] = [corner.near, corner.far].map(|table| between(table, index, part));
                         let CornerBlock { offset: offsets, near: nears, far: fars } =
-                            &mut block.corners[spring][end];
+                            &mut block.corners[first_spring + number][end];
                         (nears[k], fars[k]) = (near, far);
-                        offsets[k] = corner.offset_m(point) + parts.alike_between(index, part);
+                        offsets[k] = corner.offset_m(point) + parts.alike_between(index, part) + closer_m;
                     }
                 }
                 block.set_sliding(mesh, (first_spring, k), (index, part));
-                for (spring, [stiffness, offset]) in (first_spring..).zip(parts.between_points(index, part)) {
+                for (spring, [stiffness, offset]) in
+                    (first_spring..).zip(parts.between_points(mesh, index, part))
+                {
                     block.stiffness[spring][k] = stiffness;
                     block.offset[spring][k] =
                         if is_even { offset } else { self.leading(offset, pair, &mut before[spring]) };
@@ -932,8 +949,12 @@ impl<'a> MeshForcing<'a> {
                     + eccentric
                     - between(here.separation_m, next.separation_m);
                 block.set_sliding(mesh, (place, k), (index, part));
-                block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
-                block.offset[place][k] = self.leading(offset, pair, &mut before);
+                if self.wobbling[place].0 != pair {
+                    self.wobbling[place] = (pair, mesh.wobbles_by(&mesh.wobbling(pair), 0));
+                }
+                let [stiffer, closer_m] = self.wobbling[place].1;
+                block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m) * stiffer;
+                block.offset[place][k] = self.leading(offset + closer_m, pair, &mut before);
                 self.before[place] = before;
             }
             if self.tilts {
@@ -947,16 +968,18 @@ impl PairParts<'_> {
     /// (N/m, m) Stiffness and offset of every slice between two points.
     ///
     /// # Arguments
+    /// * `mesh` - whose pair this is
     /// * `index` - of the point before
     /// * `part` - (-) of the way to the next one
-    fn between_points(&self, index: usize, part: f64) -> impl Iterator<Item = [f64; 2]> {
+    fn between_points(&self, mesh: &Mesh, index: usize, part: f64) -> impl Iterator<Item = [f64; 2]> {
         let sum = move |terms: &[FromPoint<'_>]| {
             terms.iter().map(|(table, from)| between(table, index + from, part)).sum::<f64>()
         };
         let alike = self.alike_between(index, part);
-        self.slices
-            .iter()
-            .map(move |slice| [between(slice.stiffness, index, part), sum(&slice.offsets) + alike])
+        self.slices.iter().enumerate().map(move |(number, slice)| {
+            let [stiffer, closer_m] = mesh.wobbles_by(&self.wobbling, number);
+            [between(slice.stiffness, index, part) * stiffer, sum(&slice.offsets) + alike + closer_m]
+        })
     }
 
     /// (m) What all slices add to their offset between two points.

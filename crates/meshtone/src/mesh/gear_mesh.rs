@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 
 use super::corner::REACH;
-use super::face_load::{FaceLoad, FaceSlope};
+use super::face_load::{FaceLoad, FaceSlope, HelixWobble, Wobble, WobblingPair};
 use super::forcing::{CornerReading, PAIRS, Turning};
 use super::law::{Contact, CornerLaw, MeshLaw, Springs, deflection_at_rest};
 use super::pair::Pairs;
@@ -130,6 +130,8 @@ pub struct Mesh {
     /// (-, m) Of each slice, friction across the line of action per force along it and its moment about the pitch point, at every point of a
     /// pair; empty without friction.
     pub(super) sliding: Vec<[Vec<f64>; 2]>,
+    /// How pairs differ in the slope of their flanks along the face; none where they are alike.
+    wobble: Option<Wobble>,
 }
 
 /// A class of pairs, point by point.
@@ -169,6 +171,8 @@ pub(crate) struct MeshParameters {
     pub(crate) static_force_n: f64,
     /// How the flanks close along the face; none where they close alike.
     pub(crate) slope: Option<FaceSlope>,
+    /// What turns of this slope with both wheels, and the slope that stays; none where nothing turns.
+    pub(crate) wobble: Option<([HelixWobble; 2], FaceSlope)>,
     /// How they lie along it otherwise.
     pub(crate) face: FaceForm,
     /// (m) Face width.
@@ -207,6 +211,7 @@ impl Mesh {
             backlash_m,
             static_force_n,
             slope,
+            wobble,
             face,
             face_width_m,
             friction,
@@ -294,6 +299,7 @@ impl Mesh {
             along_path,
             friction,
             sliding,
+            wobble: None,
         };
         match slope {
             Some(slope) if mesh.slices() == 1 => {
@@ -316,6 +322,8 @@ impl Mesh {
         }
         mesh.damping_time_s = 2.0 * damping_ratio * (mesh_mass_kg / mesh.mean_stiffness_n_per_m).sqrt();
         mesh.nominal_deflection_m = static_force_n / mesh.mean_stiffness_n_per_m;
+        let even_m = static_force_n / mesh.even_stiffness_n_per_m;
+        mesh.wobble = wobble.map(|(wheels, face)| Wobble::new(wheels, face, even_m));
         mesh
     }
 
@@ -402,6 +410,19 @@ impl Mesh {
             if class.corners.is_empty() { none } else { laws.collect() }
         };
         if self.has_corners() { self.classes.iter().flat_map(of_class).collect() } else { Vec::new() }
+    }
+
+    /// How a pair differs from one whose wheels do not wobble.
+    pub(super) fn wobbling(&self, pair: i64) -> WobblingPair {
+        self.wobble.map_or(WobblingPair::NONE, |wobble| wobble.of_pair(self.sequence.teeth(pair).into()))
+    }
+
+    /// (-, m) What that makes of a slice: its stiffness over that of the other pair, and by how much closer its flanks are.
+    pub(super) fn wobbles_by(&self, pair: &WobblingPair, slice: usize) -> [f64; 2] {
+        match self.face {
+            FaceForm::Sliced { .. } => [1.0, pair.leans_m * self.face.window(slice).middle],
+            _ => [pair.stiffness, pair.closer_m],
+        }
     }
 
     /// Whether its flanks rub.

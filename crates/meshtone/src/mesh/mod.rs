@@ -19,7 +19,7 @@ mod window;
 pub use corner::CornerReach;
 pub use curve::MeshCurve;
 pub use deviations::PairDeviations;
-pub(crate) use face_load::FaceSlope;
+pub(crate) use face_load::{FaceSlope, HelixWobble};
 #[cfg(not(feature = "internals"))]
 pub(crate) use forcing::ForcingBlock;
 #[cfg(feature = "internals")]

@@ -176,6 +176,7 @@ impl MeshOf<'_> {
             backlash_m: gears.normal_backlash_mm() * 1e-3 / gears.base_helix_angle_rad().cos(),
             static_force_n,
             slope: (closer_um != 0.0).then(slope),
+            wobble: self.wobbles().then(|| (self.pair.helix_wobble, slope())),
             face,
             face_width_m: width_m,
             friction: self.friction(),
@@ -203,6 +204,12 @@ impl MeshOf<'_> {
         tabulated(&damaged.iter().map(|damaged| sound.with_damaged(damaged)).collect::<Vec<_>>())
     }
 
+    /// Whether a slope of the flanks along the face turns with the wheels: nothing where flanks may pull, or without a load.
+    fn wobbles(&self) -> bool {
+        let is_pressed = self.contact == Contact::Unilateral && self.pair.static_force_n > 0.0;
+        is_pressed && self.pair.helix_wobble.iter().any(|wheel| wheel.slope != 0.0)
+    }
+
     /// Friction of the flanks; none of frictionless ones.
     fn friction(&self) -> Option<Friction> {
         let teeth = &self.pair.teeth;
@@ -221,6 +228,7 @@ impl MeshOf<'_> {
         let is_crowned = gears.lead_crowning_um > 0.0 || gears.end_relief.amount_um > 0.0;
         let varies_along_contact_lines = || {
             self.closer_um != 0.0
+                || self.wobbles()
                 || gears.flank_relief.amount_um > 0.0
                 || self.pair.damaged.iter().any(DamagedTooth::varies_over_face)
         };
