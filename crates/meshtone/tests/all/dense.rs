@@ -449,7 +449,7 @@ impl<'a> Dense<'a> {
             .collect()
     }
 
-    /// Displacement at rest under the nominal torque and the meshes' forces, which act midway along the faces, with the meshes closed.
+    /// Displacement at rest under the first torque and the meshes' forces, which act midway along the faces, with the meshes closed.
     fn displacement_at_rest(&self, stiffness: &DMatrix<f64>, loads: &[Load]) -> DVector<f64> {
         let (n, meshes) = (self.machine.coordinates(), loads.len());
         let mut matrix = DMatrix::zeros(n + meshes, n + meshes);
@@ -462,7 +462,7 @@ impl<'a> Dense<'a> {
         let mut right = DVector::zeros(n + meshes);
         for drive in &self.machine.drives {
             if let Drive::Brake { coordinate, torque_share } = *drive {
-                right[coordinate] += torque_share * self.start.brake_torque_nm;
+                right[coordinate] += torque_share * self.motion[0].torque_nm;
             }
         }
         // The forces do not depend on how far the meshes give way.
