@@ -367,7 +367,15 @@ def estimate_path(
     seed: int,
     progress: Callable[[int, int], None] | None,
 ) -> tuple[
-    list[_Array], list[float], tuple[list[float] | None, list[float] | None, list[float] | None], str
+    list[_Array],
+    list[float],
+    tuple[
+        list[float] | None,
+        list[float] | None,
+        list[float] | None,
+        list[tuple[str, int, list[float], list[float], bool]],
+    ],
+    str,
 ]: ...
 def dataset_template() -> str: ...
 def check_plan(plan: _Path) -> None: ...

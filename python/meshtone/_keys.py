@@ -289,6 +289,9 @@ class GearboxWheel(TypedDict, total=False):
         0…3.
     helix_share : float
         (-) A wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ. Allowed: 0…1.
+    helix_wobble_um : float
+        (µm) The amplitude of a helix slope over its face width that turns with it, as of a wheel that wobbles. Allowed:
+        0…1000.
     profile_errors_mm : array of float64, shape (100, teeth)
         (mm) Its profile errors, instead of a draw: 100 rows of one number a tooth, in the order of contact in its first
         mesh. Allowed: 100 × teeth, each below the module; not beside errors_file, din_grade, iso_class.
@@ -327,6 +330,7 @@ class GearboxWheel(TypedDict, total=False):
     run_out_share: float
     slope_wobble: float
     helix_share: float
+    helix_wobble_um: float
     profile_errors_mm: npt.ArrayLike
     cumulative_pitch_um: Sequence[float]
     run_out_um: float

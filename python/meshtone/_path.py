@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any, Union
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,21 @@ __all__ = ["PathEstimate", "estimate_path"]
 Array = npt.NDArray[np.float64]
 Recorded = Union[Simulation, Recording, TrainRecording, tuple[npt.ArrayLike, float, ShaftPhase]]
 FEWEST_DRAWS = 8
+
+
+class Sidebands(NamedTuple):
+    """Sidebands at the distance of a shaft's order from the mesh harmonics, as amplitudes over that of their own harmonic."""
+
+    shaft: str
+    """Name of the shaft."""
+    order: int
+    """Its order."""
+    level: tuple[float, ...]
+    """(-) Their median in the recording, and in the mean simulation."""
+    factor: tuple[float, ...]
+    """(-) By what those simulated are to be multiplied, with its interval of 90 % over the draws."""
+    is_unexplained: bool
+    """Whether the recording has more than draws of the wheels, and the scenario no torque that varies so."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +66,8 @@ class PathEstimate:
     random_force_factor : tuple of float, or None
         (-) By what ``random_force`` of every mesh is to be multiplied for the recording's share, and its interval of 90 % over the draws. Noise of
         the sensor counts as such a force.
+    sidebands : list of Sidebands
+        Those of a gearbox at the first orders of its shafts; empty of a pair, of run-ups and of fewer than three periods.
     """
 
     frequency_hz: Array = field(repr=False)
@@ -62,6 +79,7 @@ class PathEstimate:
     speed_wander_percent: tuple[float, ...] | None
     line_share: tuple[float, ...] | None
     random_force_factor: tuple[float, ...] | None
+    sidebands: list[Sidebands]
     _csv: str = field(repr=False)
 
     @property
@@ -141,7 +159,8 @@ def estimate_path(
         report,
     )
     frequency_hz, magnitude_db, low_db, high_db, phase_deg = columns
-    wander, share, factor = (None if known is None else tuple(known) for known in drive)
+    *of_drive, sidebands = drive
+    wander, share, factor = (None if known is None else tuple(known) for known in of_drive)
     return PathEstimate(
         frequency_hz=read_only(frequency_hz),
         magnitude_db=read_only(magnitude_db),
@@ -152,6 +171,10 @@ def estimate_path(
         speed_wander_percent=wander,
         line_share=share,
         random_force_factor=factor,
+        sidebands=[
+            Sidebands(shaft, order, tuple(level), tuple(factor), more)
+            for shaft, order, level, factor, more in sidebands
+        ],
         _csv=csv,
     )
 

@@ -17,8 +17,11 @@ use crate::scenario::Scenario;
 /// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
 type Estimated<'py> = ([Array<'py>; 5], [f64; 2], Drive, String);
 
-/// Wander of the speed, share of the lines, factor of the random force: each with what else is known of it.
-type Drive = (Option<[f64; 3]>, Option<[f64; 2]>, Option<[f64; 3]>);
+/// Wander of the speed, share of the lines, factor of the random force: each with what else is known of it; and sidebands: shaft, order, levels, factor,
+/// and whether the scenario has no cause for more of them than its wheels.
+type Drive = (Option<[f64; 3]>, Option<[f64; 2]>, Option<[f64; 3]>, Vec<Sidebands>);
+
+type Sidebands = (String, usize, [f64; 2], [f64; 3], bool);
 
 /// A recording: values in g, rate, phase, and the name of the shaft that it is of; none of the pinion or the input.
 type Recorded<'py> = (Signal<'py>, f64, PyRef<'py, ShaftPhase>, Option<String>);
@@ -60,6 +63,11 @@ pub fn estimate_path<'py>(
     let PathEstimate { frequency_hz, magnitude_db, low_db, high_db, phase_deg, compared_hz, drive, .. } =
         estimate;
     let columns = [frequency_hz, magnitude_db, low_db, high_db, phase_deg].map(|column| array(py, column));
-    let drive = (drive.speed_wander_percent, drive.line_share, drive.random_force_factor);
+    let sidebands = drive.sidebands.into_iter().map(|of| {
+        let is_unexplained = of.is_unexplained();
+        (of.shaft, of.order, of.level, of.factor, is_unexplained)
+    });
+    let drive =
+        (drive.speed_wander_percent, drive.line_share, drive.random_force_factor, sidebands.collect());
     Ok((columns, compared_hz, drive, text))
 }

@@ -92,6 +92,8 @@ pub enum Purpose {
     RandomForce = 39,
     /// Wander of the motor's speed, from the start of the kept signal on; index: 0.
     SpeedWander = 40,
+    /// Phase of a wheel's helix slope that turns with it; index: 0.
+    HelixWobble = 41,
 }
 
 /// A sequence of random numbers.

@@ -588,6 +588,10 @@ impl Stages {
         if let Some(error) = self.gap(time_s) {
             return error.into();
         }
+        if let Some(help) = self.help_of_load() {
+            let problem = format!("the motion grows without bound within {time_s:.4} s");
+            return Error::Impossible { problem, help };
+        }
         let (key, damping_ratios) = self.damping();
         let help = self.scenario.words().against_growth;
         Error::Diverged { time_s, key, help, damping_ratios }

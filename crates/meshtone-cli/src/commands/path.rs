@@ -9,7 +9,7 @@ use meshtone::scenario::Scenario;
 use meshtone::signal::{SignalWarning, StatedFacts, TrainBearing, TrainRecording};
 use meshtone::tuning::{
     ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordedDrive,
-    RecordingProblem, estimate_path,
+    RecordingProblem, SidebandCause, estimate_path,
 };
 use meshtone_diagnose::other_tone;
 use meshtone_io::indicators::WarningEntry;
@@ -104,6 +104,12 @@ impl Path {
         let estimate = estimate.map_err(|error| self.refuse(&file, error))?;
         let staged = stage_text(&self.output, &path_csv(&estimate))?;
         undisturbed(|| staged.commit())?;
+        if estimate.failed_draws + estimate.drive.failed > 0 {
+            crate::terminal::warn(format_args!(
+                "simulations failed: {} of {} draws of the wheels are left out of the path, {} of those for the drive",
+                estimate.failed_draws, self.draws, estimate.drive.failed
+            ));
+        }
         print_unless(self.quiet, &summary(&estimate, &self.output))
     }
 
@@ -210,6 +216,28 @@ fn drive(found: &RecordedDrive) -> String {
              {high:.2})\n",
             100.0 * recorded,
             100.0 * simulated
+        );
+    }
+    if found.needed_s > 0.0 && found.sidebands.is_empty() && found.line_share.is_none() {
+        text += &format!(
+            "  random_force and sidebands are compared from {:.1} s of one recording at this speed on\n",
+            found.needed_s
+        );
+    }
+    for of in &found.sidebands {
+        let [recorded, simulated] = of.level;
+        let [factor, low, high] = of.factor;
+        let what = match of.cause {
+            SidebandCause::Torque => "multiply torque_ripple at this order by it",
+            SidebandCause::Wheels => "multiply run_out_share and slope_wobble of the shaft's wheels by it",
+            SidebandCause::Nothing if of.is_unexplained() => {
+                "not explained: does the torque vary so, or is a wheel damaged?"
+            }
+            SidebandCause::Nothing => continue,
+        };
+        text += &format!(
+            "  sidebands at order {} of {}: {recorded:.2} of their harmonic, simulated {simulated:.2}; factor {factor:.2} (90 %: {low:.2} to {high:.2}): {what}\n",
+            of.order, of.shaft
         );
     }
     text

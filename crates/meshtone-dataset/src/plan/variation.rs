@@ -41,7 +41,11 @@ impl Variation {
         let numbers = base.numbers();
         for number in &numbers {
             let (key, value) = (number.key.as_str(), number.value);
-            let about = |factor: f64| Distribution::LogUniform([value / factor, value * factor]);
+            // What turns the other way round has no logarithm.
+            let about = |factor: f64| match value < 0.0 {
+                true => Distribution::Uniform([value * factor, value / factor]),
+                false => Distribution::LogUniform([value / factor, value * factor]),
+            };
             let rule = match (key, split_key(key).1.unwrap_or_default()) {
                 ("operation.pinion_speed_hz" | "operation.input_speed_hz", _) => {
                     Some((Level::Record, about(if is_unknown_rig { 1.1 } else { 1.02 })))
@@ -136,5 +140,17 @@ mod tests {
         assert_eq!(of("quality.iso_class", 11.0), [10.0, 11.0, 11.0]);
         assert_eq!(of("quality.din_grade", 1.0), [1.0, 1.0, 2.0]);
         assert_eq!(of("quality.iso_class", 6.0), [5.0, 6.0, 7.0]);
+    }
+
+    #[test]
+    fn torque_that_drives_varies_as_one_that_brakes() {
+        let torque = |brake_torque_nm: f64| {
+            let base = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
+            let mut rules = Variation::KnownRig.rules(&base).into_iter();
+            rules.find(|rule| rule.keys == ["operation.brake_torque_nm"]).map(|rule| rule.distribution)
+        };
+        assert_eq!(torque(10.0), Some(Distribution::LogUniform([10.0 / 1.05, 10.5])));
+        assert_eq!(torque(-10.0), Some(Distribution::Uniform([-10.5, -10.0 / 1.05])));
+        assert_eq!(torque(0.0), None);
     }
 }

@@ -329,7 +329,7 @@ impl Drawing<'_> {
         let line = 1.2 * TextStyle::NOTE.size;
         let drive = TextStyle::NOTE.coloured(colour::BLUE).anchored(Anchor::End).bold().with_halo();
         let coast = TextStyle::NOTE.coloured(colour::MUTED).bold().with_halo();
-        for (row, [left, right]) in [["coast", "drive"], ["flank", "flank"]].into_iter().enumerate() {
+        for (row, [left, right]) in [["back", "working"], ["flank", "flank"]].into_iter().enumerate() {
             let y = middle + line * row as f64;
             canvas.text((area.left + 10.0, y), left, coast);
             canvas.text((area.right() - 10.0, y), right, drive);

@@ -28,7 +28,9 @@ impl Cost {
         let gears = scenario.gears();
         let unbalanced = scenario.wheels.iter().any(|wheel| wheel.unbalance.g_mm > 0.0);
         Self {
-            alone: !scenario.model.has_meshes() || !scenario.shafts().is_empty(),
+            alone: !scenario.model.has_meshes()
+                || !scenario.shafts().is_empty()
+                || scenario.wheels.iter().any(|wheel| wheel.helix_wobble_um > 0.0),
             is_sliced: gears.is_crowned()
                 || gears.is_helical() && (gears.flank_relief.amount_um > 0.0 || !scenario.faults.is_empty()),
             has_corners: scenario.model.teeth_part() && is_slanted(gears.overlap_ratio()),

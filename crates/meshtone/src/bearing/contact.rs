@@ -9,6 +9,8 @@ use crate::keys::by_name;
 const YOUNGS_MODULUS_PA: f64 = 206e9;
 /// (-) Its Poisson's ratio.
 const POISSON_RATIO: f64 = 0.3;
+/// (kg/m³) Its density.
+const DENSITY: f64 = 7850.0;
 /// (-) Radius of a groove over the diameter of its balls.
 const CONFORMITY: f64 = 0.52;
 
@@ -30,6 +32,8 @@ pub struct ElementContact {
     pub element: RollingElement,
     /// (N/mⁿ) K.
     pub stiffness: f64,
+    /// (kg) Mass of the element.
+    pub mass_kg: f64,
 }
 
 impl ElementContact {
@@ -45,18 +49,21 @@ impl ElementContact {
             let along_path = of_race * 2.0 * ratio / (1.0 - of_race * ratio);
             race_stiffness(along_path, geometry.element_mm * 1e-3).powf(-2.0 / 3.0)
         });
-        Self { element: RollingElement::Ball, stiffness: flexible.iter().sum::<f64>().powf(-1.5) }
+        let mass_kg = DENSITY * PI / 6.0 * (geometry.element_mm * 1e-3).powi(3);
+        Self { element: RollingElement::Ball, stiffness: flexible.iter().sum::<f64>().powf(-1.5), mass_kg }
     }
 
     /// A cylindrical roller of steel, `δ = 3.84·10⁻⁵ F^0.9 / l^0.8` at each race, in mm and N.
     ///
     /// # Arguments
+    /// * `geometry` - of the bearing
     /// * `length_mm` - (mm) l, the length of its contact
     ///
     /// Source: G. Lundberg, A. Palmgren, as in T. A. Harris, "Rolling Bearing Analysis", 4th edition, chapter 6.
-    pub fn roller(length_mm: f64) -> Self {
+    pub fn roller(geometry: &BearingGeometry, length_mm: f64) -> Self {
         let both_races_mm = 2.0 * 3.84e-5 / length_mm.powf(0.8);
-        Self { element: RollingElement::Roller, stiffness: (1e3 / both_races_mm).powf(10.0 / 9.0) }
+        let mass_kg = DENSITY * PI / 4.0 * geometry.element_mm.powi(2) * length_mm * 1e-9;
+        Self { element: RollingElement::Roller, stiffness: (1e3 / both_races_mm).powf(10.0 / 9.0), mass_kg }
     }
 
     /// (N, N/m) The load of a ball and its slope.
@@ -84,11 +91,27 @@ impl ElementContact {
     /// # Arguments
     /// * `load_n` - (N) not negative
     pub(crate) fn deflection_m(&self, load_n: f64) -> f64 {
-        let power = match self.element {
-            RollingElement::Ball => 2.0 / 3.0,
-            RollingElement::Roller => 0.9,
-        };
-        (load_n / self.stiffness).powf(power)
+        (load_n / self.stiffness).powf(1.0 / self.power())
+    }
+
+    /// (-) n.
+    fn power(&self) -> f64 {
+        match self.element {
+            RollingElement::Ball => 1.5,
+            RollingElement::Roller => 10.0 / 9.0,
+        }
+    }
+
+    /// (s) How long an element that strikes one race touches it: `3 δ/v` of the deflection δ in which it spends its energy, within 5 % for both
+    /// kinds. That race alone is `2ⁿ` times as stiff as both.
+    ///
+    /// # Arguments
+    /// * `speed_m_per_s` - (m/s) v, at which it strikes
+    pub(super) fn strike_s(&self, speed_m_per_s: f64) -> f64 {
+        let power = self.power();
+        let energy_j = 0.5 * self.mass_kg * speed_m_per_s.powi(2);
+        let stiffness = self.stiffness * f64::powf(2.0, power);
+        3.0 * ((power + 1.0) * energy_j / stiffness).powf(1.0 / (power + 1.0)) / speed_m_per_s
     }
 }
 
@@ -173,7 +196,9 @@ mod tests {
 
     #[test]
     fn slope_is_the_derivative_and_deflection_the_inverse() {
-        for contact in [ElementContact::ball(&geometry("6205")), ElementContact::roller(9.0)] {
+        for contact in
+            [ElementContact::ball(&geometry("6205")), ElementContact::roller(&geometry("6205"), 9.0)]
+        {
             let at = |deflection_m: f64| match contact.element {
                 RollingElement::Ball => contact.of_ball(deflection_m),
                 RollingElement::Roller => contact.of_roller(deflection_m),
@@ -188,7 +213,7 @@ mod tests {
     /// A roller of 10 mm under 1000 N between two races, `2 · 3.84·10⁻⁵ · 1000^0.9 / 10^0.8` mm.
     #[test]
     fn roller_yields_as_the_formula_says() {
-        let deflection_m = ElementContact::roller(10.0).deflection_m(1000.0);
+        let deflection_m = ElementContact::roller(&geometry("6205"), 10.0).deflection_m(1000.0);
         assert!((deflection_m - 6.100e-6).abs() < 1e-9, "{deflection_m}");
     }
 }

@@ -11,6 +11,6 @@ pub use contact::{ElementContact, RollingElement};
 pub use defect::{BearingDefect, DefectPlace, Spall};
 pub use geometry::{BearingError, BearingGeometry, DefectOrders};
 pub use named::{NAMED_BEARINGS, NamedBearing};
-pub(crate) use rolling::{BearingLoad, ElementPlaces};
+pub(crate) use rolling::{BearingLoad, ElementDrop, ElementPlaces};
 pub use rolling::{RollingBearing, RollingParts};
 pub(crate) use turning::{BearingBlock, BearingTurning};

@@ -41,7 +41,8 @@ impl RollingParts {
 /// A rolling bearing with two unknowns, the displacement of its inner ring against its outer ring across the shaft.
 ///
 /// Element j at the angle θ_j is pressed together by `δ_j = (x cos θ_j + y sin θ_j − c) cos α − Δ_j` with the clearance c and the drop into a spall
-/// Δ_j; where that is positive it pushes with `K δⁿ cos α`. An axial preload takes up the clearance: its deflection stands for `−c cos α`.
+/// Δ_j; where that is positive it pushes with `K δⁿ cos α`. An axial preload takes up the clearance: its deflection stands for `−c cos α`. Elements
+/// that strike a spall push by that much more.
 ///
 /// The machine has a linear spring in the bearing's place, the bearing's mean slope under its static load, and the solver adds the
 /// difference between the elements' force and that spring's. So the modes, their damping and the static solution are those of the linearised bearing, and
@@ -61,6 +62,8 @@ pub struct RollingBearing {
     pub spring_n_per_m: [[f64; 2]; 2],
     /// (m) Displacement at which the linear spring is free.
     free_m: [f64; 2],
+    /// (m) Displacement under the static load.
+    static_m: [f64; 2],
     cos_contact_angle: f64,
     lots: Vec<Elements>,
 }
@@ -88,8 +91,19 @@ impl Elements {
 pub(crate) struct ElementPlaces<'a> {
     /// Cosine and sine of the cage's angle.
     pub(crate) cage: [f64; 2],
-    /// Number of the element nearest to each spall, and (m) how deep it has dropped.
-    pub(crate) drops: &'a [(usize, f64)],
+    /// The element nearest to each spall.
+    pub(crate) drops: &'a [ElementDrop],
+}
+
+/// An element in a spall.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ElementDrop {
+    /// Its number.
+    pub(crate) element: usize,
+    /// (m) How deep the spall lets it drop.
+    pub(crate) drop_m: f64,
+    /// (N) Force with which it strikes the spall, between both rings.
+    pub(crate) strike_n: f64,
 }
 
 /// The load of a bearing and its slopes.
@@ -132,6 +146,7 @@ impl RollingBearing {
             stiffness_n_per_m: 0.0,
             spring_n_per_m: [[0.0; 2]; 2],
             free_m: [0.0; 2],
+            static_m: [0.0; 2],
             parts,
         };
         let load_n = static_load_n[0].hypot(static_load_n[1]);
@@ -141,6 +156,7 @@ impl RollingBearing {
         this.stiffness_n_per_m = along;
         let free_m = displacement_m - load_n.max(LEAST_LOAD_N) / along;
         this.free_m = [free_m * cos, free_m * sin];
+        this.static_m = [displacement_m * cos, displacement_m * sin];
         let mixed = (along - across) * cos * sin;
         this.spring_n_per_m = [
             [along * cos * cos + across * sin * sin, mixed],
@@ -153,6 +169,15 @@ impl RollingBearing {
     pub(super) fn load_angle_rad(&self) -> f64 {
         let [x, y] = self.static_load_n;
         if x == 0.0 && y == 0.0 { -TAU / 4.0 } else { y.atan2(x) }
+    }
+
+    /// (m) By how much the static load presses an element together; not positive of one without load.
+    ///
+    /// # Arguments
+    /// * `angle_rad` - (rad) of the element
+    pub(super) fn pressed_m(&self, angle_rad: f64) -> f64 {
+        let (sin, cos) = angle_rad.sin_cos();
+        (self.static_m[0] * cos + self.static_m[1] * sin) * self.cos_contact_angle - self.parts.gap_m()
     }
 
     /// (m, N/m, N/m) Displacement under a load in its direction, and the slopes of the load along and across it, averaged over the places of
@@ -253,17 +278,17 @@ impl RollingBearing {
             }
         }
         let mut sums = sums.map(|[a, b, c, d, e, f, g, h]| ((a + b) + (c + d)) + ((e + f) + (g + h)));
-        for (spall, &(element, drop_m)) in places.drops.iter().enumerate() {
-            if drop_m > 0.0 {
+        for (spall, &ElementDrop { element, drop_m, strike_n }) in places.drops.iter().enumerate() {
+            if drop_m > 0.0 || strike_n > 0.0 {
                 // In several spalls at once an element drops by their sum.
-                let earlier = places.drops[..spall].iter().filter(|(of, _)| *of == element);
-                let earlier_m: f64 = earlier.map(|(_, drop_m)| drop_m).sum();
+                let earlier = places.drops[..spall].iter().filter(|of| of.element == element);
+                let earlier_m: f64 = earlier.map(|of| of.drop_m).sum();
                 let (lot, lane) = (&self.lots[element / SIDE_BY_SIDE], element % SIDE_BY_SIDE);
                 let [cos, sin] = lot.direction(lane, places.cage);
                 let pressed_m = x_m * cos + y_m * sin - lot.gap_m[lane] - earlier_m;
                 let sound = of_element(pressed_m.max(0.0));
                 let dropped = of_element((pressed_m - drop_m).max(0.0));
-                let [force, slope] = [dropped[0] - sound[0], dropped[1] - sound[1]];
+                let [force, slope] = [dropped[0] - sound[0] + strike_n, dropped[1] - sound[1]];
                 let added =
                     [force * cos, force * sin, slope * cos * cos, slope * cos * sin, slope * sin * sin];
                 sums.iter_mut().zip(added).for_each(|(sum, added)| *sum += added);
@@ -393,7 +418,8 @@ mod tests {
     #[test]
     fn slopes_are_the_derivatives_of_the_force_also_in_a_spall() {
         let bearing = bearing("6205", 2e-6, 0.0, 10.0, [50.0, 80.0]);
-        let drops = [(0, 3e-6), (1, 0.0), (0, 1e-6)];
+        let drop = |element, drop_m| ElementDrop { element, drop_m, strike_n: 0.0 };
+        let drops = [drop(0, 3e-6), drop(1, 0.0), drop(0, 1e-6)];
         let places = ElementPlaces { cage: [f64::cos(0.7), f64::sin(0.7)], drops: &drops };
         let (at_m, step_m) = ([6e-6, 9e-6], 1e-11);
         let load = bearing.load(at_m, &places);
@@ -401,10 +427,10 @@ mod tests {
             |x: f64, y: f64| bearing.load([at_m[0] + x * step_m, at_m[1] + y * step_m], &places).force_n;
         let slope = |x, y, of: usize| (moved(x, y)[of] - moved(-x, -y)[of]) / (2.0 * step_m);
         // Two spalls under one element are one of both depths: it never pulls.
-        let both = bearing.load(at_m, &ElementPlaces { drops: &[(0, 4e-6)], ..places });
+        let both = bearing.load(at_m, &ElementPlaces { drops: &[drop(0, 4e-6)], ..places });
         assert!((both.force_n[0] / load.force_n[0] - 1.0).abs() < 1e-12);
-        let deep = |drops: &[(usize, f64)]| bearing.load(at_m, &ElementPlaces { drops, ..places }).force_n;
-        let (one, two) = (deep(&[(0, 1e-3)]), deep(&[(0, 1e-3), (0, 1e-3)]));
+        let deep = |drops: &[ElementDrop]| bearing.load(at_m, &ElementPlaces { drops, ..places }).force_n;
+        let (one, two) = (deep(&[drop(0, 1e-3)]), deep(&[drop(0, 1e-3); 2]));
         assert!(one.iter().zip(two).all(|(one, two)| (one / two - 1.0).abs() < 1e-12), "{one:?} {two:?}");
         for (found, expected) in
             load.slope_n_per_m.into_iter().zip([slope(1.0, 0.0, 0), slope(1.0, 0.0, 1), slope(0.0, 1.0, 1)])

@@ -61,6 +61,8 @@ pub struct PairsBlock {
     /// (-) Of each spring, where the middle of what touches of its face lies along it, from −1 to 1, and half of its width, of any value where there is no
     /// pair; none where they are the same throughout.
     pub(crate) strips: Vec<[Vec<f64>; 2]>,
+    /// (m) Of each spring, [`Mesh::wobble_m`] of its pair, of any value where there is none; none where no slope turns, or the tilt is no unknown.
+    pub(crate) wobble: Vec<Vec<f64>>,
     /// (-, m) Of each spring, friction across the line of action per force along it and its moment about the pitch point, of any value where
     /// there is no pair; none without friction.
     pub(crate) sliding: Vec<[Vec<f64>; 2]>,
@@ -72,8 +74,6 @@ pub(crate) struct CornerBlock {
     pub(crate) offset: Vec<f64>,
     pub(crate) near: Vec<f64>,
     pub(crate) far: Vec<f64>,
-    /// None where it is the spring's.
-    pub(crate) place: Vec<f64>,
 }
 
 impl PairsBlock {
@@ -94,9 +94,8 @@ impl PairsBlock {
         self.sliding.iter_mut().flatten().for_each(|values| values.resize(samples, 0.0));
         self.strips.resize_with(if mesh.has_strips() { springs } else { 0 }, Default::default);
         self.strips.iter_mut().flatten().for_each(|values| values.resize(samples, 0.0));
-        for corner in self.corners.iter_mut().flatten().filter(|_| mesh.has_strips()) {
-            corner.place.resize(samples, 0.0);
-        }
+        self.wobble.resize_with(if mesh.leans_with_pairs() { springs } else { 0 }, Vec::new);
+        self.wobble.iter_mut().for_each(|values| values.resize(samples, 0.0));
         self.classes.iter_mut().for_each(Vec::clear);
     }
 
@@ -130,13 +129,6 @@ impl PairsBlock {
                 values[sample] = here + part * (next - here);
             }
         }
-        for (end, corner) in self.corners.get_mut(first_spring).into_iter().flatten().enumerate() {
-            if let (Some(place), Some(tables)) =
-                (corner.place.get_mut(sample), mesh.classes[class].corners.first())
-            {
-                *place = between(&tables[end].along_face, index, part);
-            }
-        }
     }
 
     /// The class of the pair in a place at a sample; that of sound pairs before the first one.
@@ -160,7 +152,7 @@ pub struct Forcing<'a> {
     nominal_speed_hz: f64,
     nominal_torque_nm: f64,
     meshes: Vec<MeshForcing<'a>>,
-    bearings: Vec<BearingTurning>,
+    bearings: Vec<BearingTurning<'a>>,
     turning_forces: Vec<TurningShaft>,
     /// (rev) Rotation of the motor at the samples of a block, where a mesh or a bearing needs it.
     revolutions: Vec<f64>,
@@ -218,7 +210,7 @@ impl<'a> Forcing<'a> {
     ///
     /// # Arguments
     /// * `bearings` - from the start of the simulation
-    pub(crate) fn with_bearings(self, bearings: Vec<BearingTurning>) -> Self {
+    pub(crate) fn with_bearings(self, bearings: Vec<BearingTurning<'a>>) -> Self {
         Self { bearings, ..self }
     }
 
@@ -537,7 +529,12 @@ impl TabulatedPairs {
                 corners,
             }
         };
-        PairParts { class, alike: alike.collect(), slices: (0..mesh.slices()).map(slice).collect() }
+        PairParts {
+            class,
+            wobble_m: mesh.wobble_m(pair),
+            alike: alike.collect(),
+            slices: (0..mesh.slices()).map(slice).collect(),
+        }
     }
 }
 
@@ -547,6 +544,8 @@ type FromPoint<'a> = (&'a [f64], usize);
 /// The tables that make the springs of a pair.
 struct PairParts<'a> {
     class: usize,
+    /// (m) As of [`Mesh::wobble_m`].
+    wobble_m: f64,
     /// What all slices add to their offset.
     alike: Vec<FromPoint<'a>>,
     slices: Vec<SliceParts<'a>>,
@@ -663,7 +662,7 @@ impl<'a> MeshForcing<'a> {
         for pair in pairs {
             let Some(Part { from, until, point }) = self.part(pair, first, samples) else { continue };
             let place = pair.rem_euclid(at_once as i64) as usize;
-            let PairParts { class, alike, slices: parts } = tables.of_pair(self.mesh, pair);
+            let PairParts { class, wobble_m, alike, slices: parts } = tables.of_pair(self.mesh, pair);
             if let Some(classes) = block.classes.get_mut(place) {
                 classes.push((from, class));
             }
@@ -699,10 +698,15 @@ impl<'a> MeshForcing<'a> {
                 for term in terms {
                     offsets.iter_mut().zip(term).for_each(|(offset, term)| *offset += term);
                 }
+                let closer_m = self.mesh.slice_closer_m(slice, wobble_m);
+                if closer_m != 0.0 {
+                    offsets.iter_mut().for_each(|offset| *offset += closer_m);
+                }
+                if let Some(wobble) = block.wobble.get_mut(spring) {
+                    wobble[from..until].fill(wobble_m);
+                }
                 let Some(corners) = block.corners.get_mut(spring) else { continue };
-                for (end, CornerBlock { offset, near, far, place: along_face }) in
-                    corners.iter_mut().enumerate()
-                {
+                for (end, CornerBlock { offset, near, far }) in corners.iter_mut().enumerate() {
                     near[set[place]..from].fill(0.0);
                     far[set[place]..from].fill(0.0);
                     let Some(corner) = part.corners.as_ref().map(|corners| &corners[end]) else {
@@ -711,16 +715,12 @@ impl<'a> MeshForcing<'a> {
                         continue;
                     };
                     let points = point..point + until - from;
-                    if !along_face.is_empty() {
-                        let table = &self.mesh.classes[class].corners[slice][end].along_face;
-                        along_face[from..until].copy_from_slice(&table[points.clone()]);
-                    }
                     near[from..until].copy_from_slice(&corner.near[points.clone()]);
                     far[from..until].copy_from_slice(&corner.far[points.clone()]);
                     let outside = |point: &usize| corner.far[*point] > corner.near[*point];
                     for at in points.filter(outside) {
                         let alike_m: f64 = alike.iter().map(|(table, begin)| table[begin + at]).sum();
-                        offset[from + at - point] = corner.offset_m(at as f64) + alike_m;
+                        offset[from + at - point] = corner.offset_m(at as f64) + alike_m + closer_m;
                     }
                 }
             }
@@ -801,17 +801,23 @@ impl<'a> MeshForcing<'a> {
                     classes.push((k, parts.class));
                     is_first = false;
                 }
-                for (spring, slice) in (first_spring..).zip(&parts.slices) {
+                for (number, slice) in parts.slices.iter().enumerate() {
+                    let closer_m = mesh.slice_closer_m(number, parts.wobble_m);
+                    if let Some(wobble) = block.wobble.get_mut(first_spring + number) {
+                        wobble[k] = parts.wobble_m;
+                    }
                     for (end, corner) in slice.corners.iter().flatten().enumerate() {
                         let [near, far] = [corner.near, corner.far].map(|table| between(table, index, part));
-                        let CornerBlock { offset: offsets, near: nears, far: fars, .. } =
-                            &mut block.corners[spring][end];
+                        let CornerBlock { offset: offsets, near: nears, far: fars } =
+                            &mut block.corners[first_spring + number][end];
                         (nears[k], fars[k]) = (near, far);
-                        offsets[k] = corner.offset_m(point) + parts.alike_between(index, part);
+                        offsets[k] = corner.offset_m(point) + parts.alike_between(index, part) + closer_m;
                     }
                 }
                 block.set_sliding_and_strips((mesh, parts.class), (first_spring, k), (index, part));
-                for (spring, [stiffness, offset]) in (first_spring..).zip(parts.between_points(index, part)) {
+                for (spring, [stiffness, offset]) in
+                    (first_spring..).zip(parts.between_points(mesh, index, part))
+                {
                     block.stiffness[spring][k] = stiffness;
                     block.offset[spring][k] =
                         if is_even { offset } else { self.leading(offset, pair, &mut before[spring]) };
@@ -872,6 +878,9 @@ impl<'a> MeshForcing<'a> {
                     - between(here.separation_m, next.separation_m);
                 let class = mesh.sequence.class(pair);
                 block.set_sliding_and_strips((mesh, class), (place, k), (index, part));
+                if let Some(wobble) = block.wobble.get_mut(place) {
+                    wobble[k] = mesh.wobble_m(pair);
+                }
                 block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
                 block.offset[place][k] = self.leading(offset, pair, &mut before);
                 self.before[place] = before;
@@ -884,16 +893,18 @@ impl PairParts<'_> {
     /// (N/m, m) Stiffness and offset of every slice between two points.
     ///
     /// # Arguments
+    /// * `mesh` - whose pair this is
     /// * `index` - of the point before
     /// * `part` - (-) of the way to the next one
-    fn between_points(&self, index: usize, part: f64) -> impl Iterator<Item = [f64; 2]> {
+    fn between_points(&self, mesh: &Mesh, index: usize, part: f64) -> impl Iterator<Item = [f64; 2]> {
         let sum = move |terms: &[FromPoint<'_>]| {
             terms.iter().map(|(table, from)| between(table, index + from, part)).sum::<f64>()
         };
         let alike = self.alike_between(index, part);
-        self.slices
-            .iter()
-            .map(move |slice| [between(slice.stiffness, index, part), sum(&slice.offsets) + alike])
+        self.slices.iter().enumerate().map(move |(number, slice)| {
+            let closer_m = mesh.slice_closer_m(number, self.wobble_m);
+            [between(slice.stiffness, index, part), sum(&slice.offsets) + alike + closer_m]
+        })
     }
 
     /// (m) What all slices add to their offset between two points.

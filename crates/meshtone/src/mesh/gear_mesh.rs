@@ -1,5 +1,6 @@
 //! A mesh: all pairs of two wheels, tabulated by class, from before their path to beyond it.
 
+use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
@@ -131,6 +132,26 @@ pub struct Mesh {
     /// (-, m) Of each slice, friction across the line of action per force along it and its moment about the pitch point, at every point of a
     /// pair; empty without friction.
     pub(super) sliding: Vec<[Vec<f64>; 2]>,
+    /// The slopes of the flanks along the face that turn with both wheels; none where pairs are alike.
+    wobble: Option<[HelixWobble; 2]>,
+}
+
+/// A helix slope of a wheel that turns with it: `s cos(2πk/Z + φ)` of tooth k.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HelixWobble {
+    /// (-) s, its amplitude.
+    pub(crate) slope: f64,
+    /// (rad) φ.
+    pub(crate) phase_rad: f64,
+    /// Z.
+    pub(crate) teeth: u32,
+}
+
+impl HelixWobble {
+    /// (-) The slope of a tooth.
+    fn slope_of(&self, tooth: usize) -> f64 {
+        self.slope * (TAU * tooth as f64 / f64::from(self.teeth) + self.phase_rad).cos()
+    }
 }
 
 /// A class of pairs, point by point.
@@ -178,6 +199,8 @@ pub(crate) struct MeshParameters {
     pub(crate) static_force_n: f64,
     /// (m) By how much more the flanks close at the end of the face at positive z than at the other one; of faces in slices.
     pub(crate) closer_m: f64,
+    /// What turns of this slope with both wheels; none where nothing turns.
+    pub(crate) wobble: Option<[HelixWobble; 2]>,
     /// How they lie along it otherwise.
     pub(crate) face: FaceForm,
     /// (m) Face width.
@@ -215,6 +238,7 @@ impl Mesh {
             backlash_m,
             static_force_n,
             closer_m,
+            wobble,
             face,
             face_width_m,
             friction,
@@ -297,6 +321,7 @@ impl Mesh {
             along_path,
             friction,
             sliding,
+            wobble,
         };
         mesh.nominal_deflection_m = static_force_n / mesh.mean_stiffness_n_per_m;
         if mesh.slices() > 1 {
@@ -380,6 +405,31 @@ impl Mesh {
             if class.corners.is_empty() { none } else { laws.collect() }
         };
         if self.has_corners() { self.classes.iter().flat_map(of_class).collect() } else { Vec::new() }
+    }
+
+    /// (m) By how much closer the flanks of a pair are at the end of the face at positive z than midway, by the slopes that turn with its wheels. Wheels
+    /// whose tilt is no unknown yield to a part of it.
+    pub(super) fn wobble_m(&self, pair: i64) -> f64 {
+        let Some(wheels) = &self.wobble else { return 0.0 };
+        let teeth: [usize; 2] = self.sequence.teeth(pair).into();
+        let slope: f64 = wheels.iter().zip(teeth).map(|(wheel, tooth)| wheel.slope_of(tooth)).sum();
+        let yields = if self.closer_at_end_m.is_some() { 0.0 } else { self.along_face.tilt_product };
+        slope * self.half_face_m / (1.0 + yields)
+    }
+
+    /// (m) By how much closer that brings a slice of a mesh with one unknown; where the tilt is another, the law knows.
+    pub(super) fn slice_closer_m(&self, slice: usize, wobble_m: f64) -> f64 {
+        if self.closer_at_end_m.is_some() { 0.0 } else { wobble_m * self.strip_of_slice(slice)[0] }
+    }
+
+    /// Whether a slope turns with its wheels.
+    pub(crate) fn wobbles(&self) -> bool {
+        self.wobble.is_some()
+    }
+
+    /// Whether each pair leans in its own way, and the law is to know it.
+    pub(crate) fn leans_with_pairs(&self) -> bool {
+        self.wobbles() && self.closer_at_end_m.is_some()
     }
 
     /// Whether its flanks rub.
@@ -567,12 +617,9 @@ impl Mesh {
         if self.slices() > 1 {
             return;
         }
-        let positions: Vec<f64> = (0..self.points()).map(|point| self.position(point)).collect();
-        let (window, half_face_m) = (self.face.window(0), self.half_face_m);
+        let half_face_m = self.half_face_m;
         for class in &mut self.classes {
-            if let Some(along_path) = self.along_path.as_ref().filter(|_| !class.corners.is_empty()) {
-                class.strips = along_path.strips(&positions, window);
-            } else if class.loses_a_part() {
+            if class.loses_a_part() {
                 let places = class.states.iter().map(|state| state.face_centre_m / half_face_m);
                 class.strips = places.map(|place| [place, 1.0 - place.abs()]).collect();
             }

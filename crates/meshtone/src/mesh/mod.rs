@@ -24,8 +24,8 @@ pub(crate) use forcing::ForcingBlock;
 pub use forcing::ForcingBlock;
 pub(crate) use forcing::PAIRS;
 pub use forcing::{Forcing, Turning};
-pub(crate) use gear_mesh::MeshParameters;
 pub use gear_mesh::{FaceForm, Mesh, PairTable};
+pub(crate) use gear_mesh::{HelixWobble, MeshParameters};
 pub use law::{Contact, CornerLaw, MeshLaw};
 pub(crate) use law::{
     CornerLane, CornerLanes, LastContact, LawLanes, PairsSample, SpringSamples, TANGENT_M, TANGENT_PART,

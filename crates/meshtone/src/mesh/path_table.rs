@@ -200,11 +200,6 @@ impl<'a> PairTables<'a> {
         };
         let at_ends = [states[0], states[states.len() - 1]];
         Some(AlongPath {
-            moments: [1, 2].map(|power| {
-                let weighted = states.iter().zip(&positions);
-                let weighted = weighted.map(|(state, at)| state.stiffness_n_per_m * at.powi(power));
-                Integral::new(places, &weighted.collect::<Vec<_>>())
-            }),
             stiffness: integral(&|state| state.stiffness_n_per_m),
             separation: integral(&|state| state.stiffness_n_per_m * state.separation_m),
             stiffness_n_per_m: states.iter().map(|state| state.stiffness_n_per_m).collect(),
@@ -254,8 +249,6 @@ pub(crate) struct AlongPath {
     stiffness: Integral,
     /// Of the separation, weighted by the stiffness.
     separation: Integral,
-    /// Of the stiffness times the position, and times its square.
-    moments: [Integral; 2],
     /// (N/m) Stiffness at equal distances from one end to the other.
     stiffness_n_per_m: Vec<f64>,
     /// (base pitches) Where it begins and ends.
@@ -289,25 +282,6 @@ impl AlongPath {
         positions.iter().map(state).collect()
     }
 
-    /// (-) Where along the face the middle of the same lies, from −1 to 1, and half the width of an even strip with the same moment of inertia.
-    ///
-    /// # Arguments
-    /// * `positions`, `window` - as of [`Self::over_face`], of the whole face
-    pub(super) fn strips(&self, positions: &[f64], window: Window) -> Vec<[f64; 2]> {
-        let strip = |&position: &f64| {
-            let stretch = window.around(position);
-            let whole = self.stiffness.between(stretch);
-            if whole <= 0.0 {
-                return [0.0, 1.0];
-            }
-            let [mean, square] = self.moments.each_ref().map(|moment| moment.between(stretch) / whole);
-            let place = 2.0 * (mean - position) / window.overlap;
-            let half_width = 2.0 * (3.0 * (square - mean * mean).max(0.0)).sqrt() / window.overlap.abs();
-            [place, half_width.min(1.0 - place.abs())]
-        };
-        positions.iter().map(strip).collect()
-    }
-
     /// What the same contact lines have outside the path: that before its start, and that beyond its end.
     ///
     /// # Arguments
@@ -332,9 +306,6 @@ impl AlongPath {
                 place: self.places[end],
                 near: edges(0),
                 far: edges(1),
-                along_face: (positions.iter().filter(|_| window.width == 1.0))
-                    .map(|position| (2.0 * (self.places[end] - position) / window.overlap).clamp(-1.0, 1.0))
-                    .collect(),
             }
         };
         from_fn(of_end)
@@ -378,8 +349,6 @@ pub struct CornerTable {
     pub near: Vec<f64>,
     /// (base pitches) The same of the other edge; 0 of one that is on the path.
     pub far: Vec<f64>,
-    /// (-) Where along the whole face the line is nearest to the end, from −1 to 1; none of slices.
-    pub along_face: Vec<f64>,
 }
 
 impl CornerTable {

@@ -91,9 +91,8 @@ impl Mesh {
                 pair_force_n[(pair - first_pair) as usize][column] += carried;
             }
             for (pair, corner) in of_corner.iter().zip(&corners) {
-                let at_m =
-                    closer_m.map_or(deflection, |closer_m| deflection + corner.place * (tilt_m + closer_m));
-                pair_force_n[(pair - first_pair) as usize][column] += corner.force_and_slope(&laws, at_m)[0];
+                pair_force_n[(pair - first_pair) as usize][column] +=
+                    corner.force_and_slope(&laws, deflection)[0];
             }
         }
         StaticMesh { deflection_m, first_pair, pair_force_n }
@@ -111,7 +110,6 @@ impl Mesh {
                     offset_m: -table.separation_m,
                     near: table.reach.signed_root_at(table.near[at]),
                     far: table.reach.signed_root_at(table.far[at]),
-                    place: table.along_face.get(at).copied().unwrap_or(self.strip_of_slice(slice)[0]),
                 };
                 corners.extend(corner.can_touch().then_some((pair, corner)));
             }

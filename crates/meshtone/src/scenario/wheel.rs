@@ -65,6 +65,8 @@ pub struct ScenarioWheel {
     pub slope_wobble: f64,
     /// (-) Largest helix slope deviation as a part of its tolerance. Default 0.
     pub helix_share: f64,
+    /// (µm) Amplitude of a helix slope over its face width that turns with it, as of a wheel that wobbles. Default 0.
+    pub helix_wobble_um: f64,
     /// (mm) Profile errors of its teeth that are given instead of drawn: 100 rows of one number a tooth, in the order in which a tooth
     /// passes through contact in the wheel's first mesh; flanks that work in another sense have none.
     pub profile_errors_mm: Option<ErrorTable>,
@@ -159,6 +161,7 @@ keys! {
         run_out_share: 0.6,
         slope_wobble: 1.0,
         helix_share: 0.0,
+        helix_wobble_um: 0.0,
         profile_errors_mm: None,
         deviations: WheelDeviations::default(),
     };
@@ -196,6 +199,8 @@ keys! {
         .range(Range::from_to(0.0, 3.0));
     helix_share "-" "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ"
         .range(SHARE);
+    helix_wobble_um "µm" "the amplitude of a helix slope over its face width that turns with it, as of a wheel that wobbles"
+        .range(Range::from_to(0.0, 1e3));
     = { documented(
         "errors_file",
         "an .npz with its deviations, as `meshtone wheels` writes it: the pinion's of a wheel that drives in its first mesh, the \

@@ -294,9 +294,10 @@ impl Stages {
             eccentricity_m: pair.eccentricity_mm.map(|of_wheel_mm| of_wheel_mm * 1e-3),
             run_out: pair.run_out,
         };
-        let turning = |(number, bearing): &(usize, RollingBearing)| {
+        let turning = |(number, bearing): &'a (usize, RollingBearing)| {
             let shaft = self.layout.shaft_of_bearing[*number];
-            BearingTurning::new(bearing, self.layout.ratios[shaft].value(), self.scenario.seed, *number)
+            let ratio = self.layout.ratios[shaft].value();
+            BearingTurning::new(bearing, ratio, self.scenario.seed, *number, time.step_s())
         };
         Problem {
             time,

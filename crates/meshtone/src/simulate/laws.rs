@@ -61,11 +61,13 @@ impl Stages {
         }
         if let Some(problem) = self.overlap(figures).or_else(|| self.lost_speed(figures)) {
             let rate_hz = self.time.sampling_rate_hz;
-            let help = format!(
-                "raise solver.sampling_rate_hz from {rate_hz:.0} to {:.0} S/s; where that changes nothing, lower operation.brake_torque_nm, \
-                 raise the damping ratios, or use stiffer parts",
-                4.0 * rate_hz
-            );
+            let help = self.help_of_load().unwrap_or_else(|| {
+                format!(
+                    "raise solver.sampling_rate_hz from {rate_hz:.0} to {:.0} S/s; where that changes nothing, lower \
+                     operation.brake_torque_nm, raise the damping ratios, or use stiffer parts",
+                    4.0 * rate_hz
+                )
+            });
             return Err(Error::Impossible { problem, help });
         }
         let worst = self.imbalances(figures).into_iter().max_by(|a, b| a.lost.total_cmp(&b.lost));
@@ -209,6 +211,12 @@ impl Stages {
             let rotation = balance.rotation_at(&modal.weights(&place, axis))?;
             Some(TAU * self.time.sampling_rate_hz * figures.speeds.get(shaft)?.rise() / rotation)
         })
+    }
+
+    /// What can be done where the load alone breaks the teeth; nothing where it does not.
+    pub(super) fn help_of_load(&self) -> Option<String> {
+        let overload = self.overloads().next()?;
+        Some(format!("lower {}: {}", overload.key, overload.message))
     }
 
     /// What can be done where torques do not balance: the stiffest spring takes the most digits.

@@ -71,7 +71,8 @@ pub(super) fn meshes(
         let tilts = !gears.is_helical()
             && (unevenness > MOST_UNEVENNESS
                 || is_uneven && load.tilt_product > MOST_TILT_PRODUCT
-                || mesh.loses_a_part());
+                || mesh.loses_a_part()
+                || mesh.wobbles());
         if !tilts && closer_m != 0.0 && (mesh.slices() > 1 || gears.is_helical()) {
             mesh = mesh_of((number, pair), Some((load, tilts)))?;
         }
@@ -204,6 +205,7 @@ impl MeshOf<'_> {
             backlash_m: gears.normal_backlash_mm() * 1e-3 / gears.base_helix_angle_rad().cos(),
             static_force_n,
             closer_m,
+            wobble: self.wobbles().then_some(self.pair.helix_wobble),
             face,
             face_width_m: width_m,
             friction: self.friction(),
@@ -231,6 +233,12 @@ impl MeshOf<'_> {
         tabulated(&damaged.iter().map(|damaged| sound.with_damaged(damaged)).collect::<Vec<_>>())
     }
 
+    /// Whether a slope of the flanks along the face turns with the wheels: nothing where flanks may pull, or without a load.
+    fn wobbles(&self) -> bool {
+        let is_pressed = self.contact == Contact::Unilateral && self.pair.static_force_n > 0.0;
+        is_pressed && self.pair.helix_wobble.iter().any(|wheel| wheel.slope != 0.0)
+    }
+
     /// Friction of the flanks; none of frictionless ones.
     fn friction(&self) -> Option<Friction> {
         let teeth = &self.pair.teeth;
@@ -248,6 +256,7 @@ impl MeshOf<'_> {
         let gears = self.gears;
         let varies_along_contact_lines = || {
             self.along_face.is_some()
+                || self.wobbles()
                 || gears.flank_relief.amount_um > 0.0
                 || self.pair.damaged.iter().any(DamagedTooth::varies_over_face)
         };

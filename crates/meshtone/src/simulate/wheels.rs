@@ -1,9 +1,13 @@
 //! The teeth of each mesh, and the deviations and damage of its wheels.
 
+use std::f64::consts::PI;
+
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::ScenarioError;
+use crate::mesh::HelixWobble;
 use crate::operation::{CycleGrid, TimeGrid};
 use crate::published;
+use crate::random::{Draws, Purpose};
 use crate::scenario::{Layout, Model, Scenario};
 use crate::wheel::quality::{deviations, profile_errors};
 use crate::wheel::{
@@ -24,6 +28,8 @@ pub struct MeshedPair {
     pub run_out: [RunOut; 2],
     /// (µm) Helix slope deviation of both over the face width.
     pub helix_slope_um: [f64; 2],
+    /// The helix slope of both that turns with them.
+    pub(crate) helix_wobble: [HelixWobble; 2],
     /// (µm) Misalignment of the shafts over the face width.
     pub misalignment_um: f64,
     /// (mm) Eccentricity of the seats of both wheels, beside their run-out.
@@ -77,6 +83,14 @@ pub(super) fn sound_pair(
         profile_errors,
         run_out,
         helix_slope_um,
+        helix_wobble: numbers.map(|wheel| {
+            let of = &scenario.wheels[wheel];
+            HelixWobble {
+                slope: of.helix_wobble_um * 1e-3 / of.face_width_mm,
+                phase_rad: Draws::new(scenario.seed_of_wheel(wheel), Purpose::HelixWobble, 0).uniform(PI, PI),
+                teeth: of.teeth,
+            }
+        }),
         misalignment_um: scenario.meshes[mesh].misalignment_um,
         eccentricity_mm: numbers.map(|wheel| scenario.wheels[wheel].eccentricity_mm),
         damaged: Vec::new(),
@@ -110,6 +124,7 @@ impl MeshedPair {
             profile_errors: flanks,
             run_out: [self.run_out[1], self.run_out[0]],
             helix_slope_um: [self.helix_slope_um[1], self.helix_slope_um[0]],
+            helix_wobble: [self.helix_wobble[1], self.helix_wobble[0]],
             eccentricity_mm: [self.eccentricity_mm[1], self.eccentricity_mm[0]],
             teeth,
             ..self.clone()

@@ -337,18 +337,29 @@ impl ModalMachine {
 
     /// Finds the static forces of the meshes that hold the shafts that turn freely, and the displacement under these and the torque.
     fn balance(&mut self, torque_nm: f64) {
-        let forces_n = self.balancing_forces_n(torque_nm);
+        let (forces_n, displacement) = self.balanced(torque_nm);
         for (line, force_n) in self.lines.iter_mut().zip(forces_n) {
             line.static_force_n = force_n;
         }
-        self.static_displacement = (0..self.modes())
+        self.static_displacement = displacement;
+    }
+
+    /// (N, m √kg) The static forces of the meshes under a torque, and the displacement under these and the torque.
+    ///
+    /// # Arguments
+    /// * `torque_nm` - (N m) of the brake
+    pub(super) fn balanced(&self, torque_nm: f64) -> (Vec<f64>, Vec<f64>) {
+        let forces_n = self.balancing_forces_n(torque_nm);
+        let displacement = (0..self.modes())
             .map(|n| {
-                let meshes: f64 = self.lines.iter().map(|line| line.at_middle[n] * line.static_force_n).sum();
+                let meshes: f64 =
+                    self.lines.iter().zip(&forces_n).map(|(line, force_n)| line.at_middle[n] * force_n).sum();
                 let load = self.brake[n] * torque_nm - meshes;
                 // What turns freely is in balance already.
                 if self.stiffness[n] == 0.0 { 0.0 } else { load / self.stiffness[n] }
             })
             .collect();
+        (forces_n, displacement)
     }
 
     /// (N) The static forces of the meshes that hold the shafts that turn freely.

@@ -208,7 +208,7 @@ impl Prepared {
     }
 
     /// The state at the first simulated sample: with the given velocity, and the meshes closed at rest. All that deforms is then as
-    /// under the constant loads, and the shafts that turn freely have turned until the pairs carry the load.
+    /// under the constant loads and the torque with which a profile begins, and the shafts that turn freely have turned until the pairs carry the load.
     ///
     /// # Arguments
     /// * `model` - the machine
@@ -221,16 +221,25 @@ impl Prepared {
         springs: &[SpringSamples],
         external: [f64; EXTERNALS],
     ) -> FirstState {
-        let turned = self.turned_at_rest(model, block);
+        let (beside_n, beside) = model.balanced(external[1]);
+        let turned: Vec<f64> = self
+            .turned_at_rest(model, block)
+            .iter()
+            .zip(beside)
+            .map(|(turned, beside)| turned + beside)
+            .collect();
         let lines: Vec<&[f64]> = model.columns().map(|(column, _)| column).collect();
         let has_friction = self.first_across < self.first_spinning;
         let missing: Vec<f64> = (self.laws.iter().enumerate())
             .map(|(mesh, law)| {
-                let force_n = self.static_force_n[mesh].max(0.0);
+                let force_n = (self.static_force_n[mesh] + beside_n[mesh]).max(0.0);
                 let at_rest = |column: usize| self.columns[column].static_deflection;
                 let closed = match self.tilt_of_mesh[mesh] {
                     None => deflection_at_rest(law.contact, springs[mesh].at(0), force_n),
-                    Some(tilt) => law.tilted_at_rest(springs[mesh].at(0), at_rest(tilt), force_n),
+                    Some(tilt) => {
+                        let tilt_m = at_rest(tilt) + dot(lines[tilt], &turned);
+                        law.tilted_at_rest(springs[mesh].at(0), tilt_m, force_n)
+                    }
                 };
                 closed - at_rest(mesh) - dot(lines[mesh], &turned)
             })

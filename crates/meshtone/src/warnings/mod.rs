@@ -80,7 +80,7 @@ impl Stages {
     }
 
     /// Teeth that the load would bend off, mesh by mesh.
-    fn overloads(&self) -> impl Iterator<Item = ScenarioWarning> {
+    pub(crate) fn overloads(&self) -> impl Iterator<Item = ScenarioWarning> {
         let (key, torque_nm) = largest_torque(&self.scenario.operation);
         let forces_n = self.forces_of_torque_n(torque_nm).into_iter().zip(self.mean_stiffness_n_per_m());
         let meshes = self.layout.mesh_names.iter().zip(&self.layout.gears);

@@ -27,7 +27,7 @@ const TOLERATED_IMBALANCE: f64 = 0.01;
 const IDLE_PART: f64 = 0.01;
 /// (-) How far the step may falsify the rms of a signal without a warning.
 const TOLERATED_STEP: f64 = 0.02;
-/// (-) The same of a part of a motion that does not last: of a few hits more is chance.
+/// (-) The same where teeth part, or the motion does not last: a few hits more are chance.
 const TOLERATED_STEP_OF_PART: f64 = 0.03;
 
 impl Simulation {

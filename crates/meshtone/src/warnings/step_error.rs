@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use crate::error::Error;
 use crate::machine::{Axis, PINION_SUPPORT};
@@ -17,6 +18,8 @@ use super::observer::{Observer, TurnSum, WheelTurnSums};
 
 /// (-) Part of a signal's power below which a line of its spectrum does not count.
 const LEAST_PART: f64 = 1e-6;
+/// (-) Part of a force's mean that it varies by at least, as far as its error is concerned.
+const LEAST_VARYING: f64 = 0.05;
 /// (g, N) Rms below which a signal is rounding, as where equal wheels move in opposition.
 const ROUNDING: f64 = 1e-9;
 
@@ -60,13 +63,13 @@ pub enum StepJudgement {
 /// # Arguments
 /// * `estimate` - (-) how far the step may falsify the rms, by the signals alone
 /// * `judgement` - whether that is enough
-/// * `coarse` - rms of the signals that are judged
-/// * `repeated` - the rate of a simulation with half the step, and what its signals are there
+/// * `coarse` - what the signals that are judged have of what changes with the step
+/// * `repeated` - the rate of a simulation with half the step, and the same of its signals
 fn judged(
     estimate: f64,
     judgement: StepJudgement,
     coarse: &[f64],
-    repeated: impl FnOnce() -> Result<(f64, SquareSums), Error>,
+    repeated: impl FnOnce() -> Result<(f64, Vec<f64>), Error>,
 ) -> Option<StepError> {
     if judgement == StepJudgement::Estimated {
         return (estimate >= CERTAIN).then_some(StepError::Suspected(estimate));
@@ -74,10 +77,10 @@ fn judged(
     if estimate <= SUSPICIOUS {
         return None;
     }
-    let Ok((finer_rate_hz, squares)) = repeated() else {
+    let Ok((finer_rate_hz, finer)) = repeated() else {
         return Some(StepError::Suspected(estimate));
     };
-    let gains = coarse.iter().zip(squares.rms()).map(|(&coarse, finer)| gain(coarse, finer));
+    let gains = coarse.iter().zip(finer).map(|(&coarse, finer)| gain(coarse, finer));
     Some(StepError::Shown { gain: largest(gains), finer_rate_hz })
 }
 
@@ -90,14 +93,22 @@ pub(super) fn step_error(
     let [acceleration, force] = observer.turns.as_ref()?;
     let estimate = estimate(stages, [acceleration, force]);
     judged(estimate, judgement, &[acceleration.rms(), force.rms()], || {
-        let mut scenario = stages.scenario.clone();
-        scenario.solver.sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
-        let finer = stages_within(&scenario, stages.memory_limit)?;
         let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
-        let mut squares = SquareSums::of(outputs.len());
-        finer.integrate(&outputs, finer.time.first_kept_sample, &mut squares)?;
-        Ok((finer.time.sampling_rate_hz, squares))
+        finer(stages, &outputs).map(|(rate_hz, squares)| (rate_hz, squares.rms()))
     })
+}
+
+/// The rate of a simulation with half the step, and the sums of outputs there.
+fn finer(stages: &Stages, outputs: &[Output]) -> Result<(f64, SquareSums), Error> {
+    let (mut scenario, rate_hz) = (stages.scenario.clone(), stages.time.sampling_rate_hz);
+    if scenario.rig().is_none() {
+        scenario.keep_highest_mode(rate_hz);
+    }
+    scenario.solver.sampling_rate_hz = 2.0 * rate_hz;
+    let finer = stages_within(&scenario, stages.memory_limit)?;
+    let mut squares = SquareSums::of(outputs.len());
+    finer.integrate(outputs, finer.time.first_kept_sample, &mut squares)?;
+    Ok((finer.time.sampling_rate_hz, squares))
 }
 
 /// Sums of the squares of outputs, whose samples are kept nowhere.
@@ -125,15 +136,30 @@ impl SquareSums {
         }
     }
 
-    fn rms(&self) -> impl Iterator<Item = f64> {
-        self.sums.iter().map(|[_, squares]| (squares / self.samples.max(1) as f64).sqrt())
+    /// Of parts of signals.
+    fn of_signals(signals: &[Cow<[f64]>], part: Range<usize>) -> Self {
+        let mut this = Self::of(signals.len());
+        this.add(part.len(), |index| &signals[index][part.clone()]);
+        this
     }
 
-    /// Standard deviation of each output.
-    fn deviations(&self) -> impl Iterator<Item = f64> {
-        let count = self.samples.max(1) as f64;
-        self.sums.iter().map(move |[sum, squares]| (squares / count - (sum / count).powi(2)).max(0.0).sqrt())
+    fn rms(&self) -> Vec<f64> {
+        self.sums.iter().map(|[_, squares]| (squares / self.samples.max(1) as f64).sqrt()).collect()
     }
+
+    /// What each output varies by.
+    fn varying(&self) -> Vec<f64> {
+        let count = self.samples.max(1) as f64;
+        self.sums.iter().map(|[sum, squares]| varying(sum / count, squares / count)).collect()
+    }
+}
+
+/// Standard deviation of a signal, and at least a twentieth of its mean: of a force that hardly varies less is of no interest.
+///
+/// # Arguments
+/// * `mean`, `mean_square` - of the signal
+fn varying(mean: f64, mean_square: f64) -> f64 {
+    (mean_square - mean * mean).max(0.0).sqrt().max(LEAST_VARYING * mean.abs())
 }
 
 impl Recorder for SquareSums {
@@ -195,10 +221,9 @@ struct Line {
 pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudgement) -> Option<StepError> {
     let Simulation { stages, channels, .. } = simulation;
     let (_, modal) = stages.machine().filter(|_| stages.is_steady())?;
-    let is_judged: Vec<bool> = channels.signals.iter().map(|of| is_judged(of.source, stages)).collect();
-    let judged_ones = channels.signals.iter().zip(&is_judged).filter(|(_, is)| **is);
-    let motions: Vec<Cow<[f64]>> = judged_ones.map(|(of, _)| motion(stages, of)).collect();
-    let powers: Vec<f64> = motions.iter().map(|motion| mean_square(motion)).collect();
+    let (motions, outputs) = judged_signals(simulation);
+    let coarse = SquareSums::of_signals(&motions, 0..channels.len()).varying();
+    let powers: Vec<f64> = coarse.iter().map(|varying| varying * varying).collect();
     let spectra: Vec<Vec<f64>> = motions.iter().map(|motion| power_spectrum(motion)).collect();
     let resolution_hz = channels.sampling_rate_hz / channels.len() as f64;
     let line = |index: usize| Line {
@@ -212,29 +237,19 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
     let sensors: Vec<_> = plain.map(|sensor| (sensor.name().into(), sensor.direction.axis())).collect();
     let laws = stages.meshes.iter().map(|mesh| mesh.law()).collect();
     let machine = MeanMachine::new(modal, laws, stages.time.step_s(), &sensors);
-    let coarse: Vec<f64> = powers.iter().map(|power| power.sqrt()).collect();
     judged(growth(&machine, lines, &powers), judgement, &coarse, || {
-        let mut scenario = stages.scenario.clone();
-        scenario.keep_highest_mode(channels.sampling_rate_hz);
-        scenario.solver.sampling_rate_hz = 2.0 * channels.sampling_rate_hz;
-        let finer = stages_within(&scenario, stages.memory_limit)?;
-        let outputs = scenario.outputs().into_iter().zip(&is_judged).filter(|(_, is)| **is);
-        let outputs: Vec<Output> = outputs.map(|(output, _)| output).collect();
-        let mut squares = SquareSums::of(outputs.len());
-        finer.integrate(&outputs, finer.time.first_kept_sample, &mut squares)?;
-        Ok((finer.time.sampling_rate_hz, squares))
+        finer(stages, &outputs).map(|(rate_hz, squares)| (rate_hz, squares.varying()))
     })
 }
 
 /// The error of the step in the most violent of the tenths of the kept time: that is simulated again with half the step, from the motion with
 /// which it began. It needs no motion that lasts.
+///
+/// Single hits come at another time at any other step, and the most violent tenth is less so there. Where it changes, the whole is therefore simulated
+/// again.
 pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
     let Simulation { stages, channels, states, .. } = simulation;
-    let signals = channels.signals.iter().zip(stages.scenario.outputs());
-    let (signals, outputs): (Vec<Cow<[f64]>>, Vec<Output>) = (signals
-        .filter(|(of, _)| is_judged(of.source, stages)))
-    .map(|(of, output)| (motion(stages, of), output))
-    .unzip();
+    let (signals, outputs) = judged_signals(simulation);
     let part = |state: &MotionState| {
         let from = state.sample - stages.time.first_kept_sample;
         from..(from + channels.len() / 10).min(channels.len())
@@ -252,11 +267,20 @@ pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
     if stages.integrate_part_finer(violent, samples.len(), &outputs, &mut squares).is_err() {
         return Some(StepError::Suspected(1.0));
     }
-    let mut coarse = SquareSums::of(signals.len());
-    coarse.add(samples.len(), |index| &signals[index][samples.clone()]);
-    let gain =
-        largest(coarse.deviations().zip(squares.deviations()).map(|(coarse, finer)| gain(coarse, finer)));
-    Some(StepError::Shown { gain, finer_rate_hz: 2.0 * channels.sampling_rate_hz })
+    let coarse = SquareSums::of_signals(&signals, samples).varying();
+    let changed = largest(coarse.iter().zip(squares.varying()).map(|(&coarse, finer)| gain(coarse, finer)));
+    let whole = SquareSums::of_signals(&signals, 0..channels.len()).varying();
+    judged(changed.abs(), StepJudgement::Repeated, &whole, || {
+        finer(stages, &outputs).map(|(rate_hz, squares)| (rate_hz, squares.varying()))
+    })
+}
+
+/// The signals that are judged, as the solution alone makes them, and their outputs.
+fn judged_signals(simulation: &Simulation) -> (Vec<Cow<'_, [f64]>>, Vec<Output>) {
+    let Simulation { stages, channels, .. } = simulation;
+    let signals = channels.signals.iter().zip(stages.scenario.outputs());
+    let judged = signals.filter(|(of, _)| is_judged(of.source, stages));
+    judged.map(|(of, output)| (motion(stages, of), output)).unzip()
 }
 
 /// What a signal is of the solution, which alone is simulated again: without what random forces add to a plain sensor's.
@@ -342,6 +366,12 @@ fn orders(turns: &TurnSum) -> impl Iterator<Item = (usize, f64)> + use<> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_force_varies_about_its_mean_and_counts_from_a_twentieth_of_it_on() {
+        let cases = [[0.0, 4.0, 2.0], [10.0, 109.0, 3.0], [-100.0, 10_004.0, 5.0]];
+        assert!(cases.iter().all(|[mean, square, varies]| (varying(*mean, *square) - varies).abs() < 1e-9));
+    }
 
     /// Parseval: a signal that repeats with the turn has all its power in its orders.
     #[test]

@@ -84,8 +84,6 @@ struct Stretch<'a> {
     edges: [f64; 2],
     /// (m) What the pair adds to the deflection.
     offset_m: f64,
-    /// (m) Where its middle is along the face.
-    z_m: f64,
 }
 
 impl Stretch<'_> {
@@ -258,17 +256,7 @@ impl<'a> DenseMesh<'a> {
                 at(wheel, 0.0) + lead * change
             };
             let offset_m = WheelName::BOTH.map(deviation).iter().sum::<f64>() - corner.separation_m;
-            let z_m = if corner.along_face.is_empty() {
-                self.place_m(slice)
-            } else {
-                let (index, part) = (point as usize, point - point.floor());
-                let [here, next] =
-                    [index, (index + 1).min(corner.along_face.len() - 1)].map(|n| corner.along_face[n]);
-                self.mesh
-                    .two_unknowns()
-                    .map_or(0.0, |[width_m, _]| (here + part * (next - here)) * width_m / 2.0)
-            };
-            let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m, z_m };
+            let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m };
             let shift = if end == 0 { -ahead_pitches } else { ahead_pitches };
             stretch.edges = [&corner.near, &corner.far].map(|table| read(table, shift, &stretch));
             // The damping's lead makes the penetration deeper.
@@ -401,10 +389,9 @@ impl Load<'_> {
             add(slopes * Vector2::new(at_0, slope), slopes);
         }
         for corner in &self.corners {
-            let place = Vector2::new(1.0, corner.z_m);
-            let closer = self.closer.unwrap_or(0.0);
-            let [force, slope] = corner.force_and_slope(deflection.dot(&place) + closer * corner.z_m);
-            add(place * force, place * place.transpose() * slope);
+            // Teeth with corners have one unknown.
+            let [force, slope] = corner.force_and_slope(deflection.x);
+            add(Vector2::new(force, 0.0), Matrix2::new(slope, 0.0, 0.0, 0.0));
         }
         if let Some([stiffness, backlash_m]) = self.back.filter(|[_, backlash]| deflection.x + backlash < 0.0)
         {
@@ -485,7 +472,7 @@ impl<'a> Dense<'a> {
         self.machine.lines.iter().map(|line| [&line.at_middle, &line.per_m].map(turned)).collect()
     }
 
-    /// Displacement at rest under the nominal torque and the meshes' forces, which act midway along the faces, with the meshes closed.
+    /// Displacement at rest under the first torque and the meshes' forces, which act midway along the faces, with the meshes closed.
     fn displacement_at_rest(&self, stiffness: &DMatrix<f64>, loads: &[Load]) -> DVector<f64> {
         let (n, meshes) = (self.machine.coordinates(), loads.len());
         let mut matrix = DMatrix::zeros(n + meshes, n + meshes);
@@ -499,7 +486,7 @@ impl<'a> Dense<'a> {
         let mut right = DVector::zeros(n + meshes);
         for drive in &self.machine.drives {
             if let Drive::Brake { coordinate, torque_share } = *drive {
-                right[coordinate] += torque_share * self.start.brake_torque_nm;
+                right[coordinate] += torque_share * self.motion[0].torque_nm;
             }
         }
         // Neither the forces nor the wheels' tilts depend on how far the meshes give way.

@@ -77,10 +77,31 @@ fn what_no_machine_does_is_an_error() {
     match simulate(overloaded) {
         Err(Error::Impossible { problem, help }) => {
             assert!(problem.contains("its flanks would overlap by"), "{problem}");
-            assert!(help.contains("solver.sampling_rate_hz"), "{help}");
+            assert!(help.contains("lower operation.brake_torque_nm: "), "{help}");
+            assert!(!help.contains("damping") && !help.contains("sampling_rate_hz"), "{help}");
         }
         other => panic!("{other:?}"),
     }
+}
+
+// A profile far from the nominal torque begins as the constant torque does, with nothing to settle.
+#[test]
+fn a_torque_profile_begins_under_its_first_torque() {
+    let force_n = |torque_nm: f64, profile: Option<f64>| {
+        let gearbox = stock(|gearbox| {
+            gearbox.solver.settle_fraction = 0.0;
+            gearbox.solver.duration_s = profile.is_none().then_some(0.05);
+            gearbox.operation.brake_torque_nm = torque_nm;
+            gearbox.operation.torque_profile_nm =
+                profile.map(|first| Profile { time_s: vec![0.0, 0.05], value: vec![first, first] });
+        });
+        simulate(gearbox).unwrap().channels.of(SignalSource::MeshForce(1)).to_vec()
+    };
+    let (constant, profile) = (force_n(20.0, None), force_n(200.0, Some(20.0)));
+    let mean_n = constant.iter().sum::<f64>() / constant.len() as f64;
+    let off = constant.iter().zip(&profile).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / mean_n;
+    println!("{off:.1e} of {mean_n:.0} N");
+    assert!(off < 0.02, "{off}");
 }
 
 #[test]

@@ -13,14 +13,18 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 /// A rig with teeth without deviations, whose first bearing, at the input, is a ball bearing.
 fn rig(rig: GearboxRig, bearing: &str) -> Scenario {
-    let text = gearbox_template(Some(rig)).replace("iso_class = 5", "iso_class = 0");
-    let first = format!("[[bearing]]\nkind = \"ball\"\nname = \"ER-10K\"\n{bearing}\n");
-    let mut gearbox = plain(Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap());
+    let mut gearbox = plain(template(rig, bearing));
     gearbox.solver.sampling_rate_hz = 100_000.0;
     gearbox.solver.duration_s = Some(1.0);
     gearbox.operation.pinion_speed_hz = 30.0;
     gearbox.sensors.clear();
     gearbox
+}
+
+fn template(rig: GearboxRig, bearing: &str) -> Scenario {
+    let text = gearbox_template(Some(rig)).replace("iso_class = 5", "iso_class = 0");
+    let first = format!("[[bearing]]\nkind = \"ball\"\nname = \"ER-10K\"\n{bearing}\n");
+    Scenario::from_toml(&text.replacen("[[bearing]]\n", &first, 1)).unwrap()
 }
 
 fn simulate(gearbox: &Scenario) -> Simulation {
@@ -122,6 +126,22 @@ fn halving_the_step_changes_the_rms_by_less_than_two_percent() {
     assert!((once / four_times - 1.0).abs() < 0.02 && (twice / four_times - 1.0).abs() < 0.01);
 }
 
+/// Sum of the squared envelope in a band over the passes of the elements.
+fn mean_pass(signal: &[f64], rate_hz: f64, band: FrequencyBand) -> Vec<f64> {
+    let squares = squared_envelope(signal, rate_hz, Some(band)).unwrap();
+    let pass = rate_hz / (30.0 * 3.05231);
+    let bins = pass as usize;
+    let mut mean = vec![0.0; bins];
+    for (k, square) in squares.iter().enumerate() {
+        mean[((k as f64 / pass).fract() * bins as f64) as usize % bins] += square;
+    }
+    mean
+}
+
+fn largest(of: &[f64]) -> usize {
+    (0..of.len()).max_by(|&a, &b| of[a].total_cmp(&of[b])).unwrap()
+}
+
 /// A spall of 6 mm and 20 µm on the outer race: the bursts of entry and exit are as far apart as an element takes from edge to edge.
 #[test]
 fn wide_spalls_make_double_pulses() {
@@ -130,15 +150,8 @@ fn wide_spalls_make_double_pulses() {
     let simulation = simulate(&gearbox);
     let rate_hz = simulation.channels.sampling_rate_hz;
     let band = FrequencyBand { from_hz: 1000.0, to_hz: 9000.0 };
-    let squares = squared_envelope(&seat(&simulation), rate_hz, Some(band)).unwrap();
-    // The mean over the passes of the elements.
-    let pass = rate_hz / (30.0 * 3.05231);
-    let bins = pass as usize;
-    let mut mean = vec![0.0; bins];
-    for (k, square) in squares.iter().enumerate() {
-        mean[((k as f64 / pass).fract() * bins as f64) as usize % bins] += square;
-    }
-    let largest = |of: &[f64]| (0..of.len()).max_by(|&a, &b| of[a].total_cmp(&of[b])).unwrap();
+    let mean = mean_pass(&seat(&simulation), rate_hz, band);
+    let bins = mean.len();
     let first = largest(&mean);
     let apart = |bin: usize| (bin + bins - first) % bins;
     // The second burst: the largest bin farther from the first than an eighth of a pass.
@@ -151,6 +164,39 @@ fn wide_spalls_make_double_pulses() {
     let expected_s = 6.0 / speed_mm_per_s;
     println!("{:.3} ms, {:.3} ms", second as f64 / rate_hz * 1e3, expected_s * 1e3);
     assert!((second as f64 / rate_hz / expected_s - 1.0).abs() < 0.15);
+}
+
+/// A ball that has lost the ring flies over a deep spall, and what it strikes where detectors look is the far edge, half of the width after it
+/// was unloaded: not the ring that presses it again at the end.
+#[test]
+fn the_strong_pulse_of_a_deep_spall_comes_half_of_its_width_after_entry() {
+    for width_mm in [2.0, 3.0] {
+        let defect = format!(
+            "slip_percent = 0.0\ndefect = [{{ race = \"outer\", width_mm = {width_mm:?}, depth_um = 1000.0 }}]"
+        );
+        // On shafts that a machine has, without what would cover the pulses.
+        let steady = rig(GearboxRig::Phm2009Helical, &defect);
+        let mut gearbox = template(GearboxRig::Phm2009Helical, &defect);
+        gearbox.meshes.iter_mut().for_each(|mesh| (mesh.friction, mesh.random_force) = (0.0, 0.0));
+        (gearbox.solver, gearbox.operation, gearbox.sensors) =
+            (steady.solver, steady.operation, steady.sensors);
+        if let Some(housing) = &mut gearbox.structure.shafts_mut().unwrap().housing {
+            housing.modes = HousingModes::RIGID;
+        }
+        gearbox.operation.brake_torque_nm = 80.0;
+        let simulation = simulate(&gearbox);
+        let rate_hz = simulation.channels.sampling_rate_hz;
+        let mean = mean_pass(&seat(&simulation), rate_hz, FrequencyBand { from_hz: 8000.0, to_hz: 16_000.0 });
+        let strong = largest(&mean);
+        // The entry: the largest before it, within a width, that is no part of its own rise.
+        let speed_mm_per_s = 0.38154 * TAU * 30.0 * (33.5026 + 7.9375) / 2.0;
+        let width = width_mm / speed_mm_per_s * rate_hz;
+        let before = |part: f64| mean[(strong + mean.len() - (part * width) as usize) % mean.len()];
+        let parts: Vec<f64> = (30..100).map(|percent| f64::from(percent) / 100.0).collect();
+        let entry = parts.iter().copied().max_by(|a, b| before(*a).total_cmp(&before(*b))).unwrap();
+        println!("{width_mm} mm: {entry:.2} of the width, {:.3} of the power", before(entry) / mean[strong]);
+        assert!((entry - 0.5).abs() <= 0.05);
+    }
 }
 
 /// A bearing with neither clearance nor a defect has the natural frequencies of a linear one of its stiffness.

@@ -11,8 +11,8 @@ use meshtone::scenario::{
 };
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, SimulatedShafts, StatedTurning, resample_to};
 use meshtone::tuning::{
-    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
-    estimate_path,
+    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordedSidebands,
+    RecordingProblem, SidebandCause, estimate_path,
 };
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
@@ -362,12 +362,20 @@ fn wander_and_random_force_of_hidden_gearboxes_are_found_again() {
         let mut hidden = known.clone().with_seed(seed);
         hidden.operation.speed_wander_percent = 0.06;
         hidden.meshes.iter_mut().for_each(|mesh| mesh.random_force = 0.03);
+        let varies_by = if seed == 77 { 1.0 } else { 2.0 };
+        hidden.operation.torque_ripple[0].amplitude *= varies_by;
         hidden.sensors[0].frequency_response = Some(hidden_response());
         hidden.solver.duration_s = Some(3.0);
         let channels = meshtone::simulate(&hidden).unwrap().channels;
         let input = ShaftPhase::of_simulated_input(&hidden, channels.start_s, channels.len()).unwrap();
         let signal = &channels.signals[0].values;
         let healthy = at_rate_of_recordings(signal, &input.revolutions, channels.sampling_rate_hz);
+        let rate_hz = channels.sampling_rate_hz;
+        let second = rate_hz as usize;
+        // The output turns 6 times in a second, of which the first need not be whole.
+        let short = at_rate_of_recordings(&signal[..second], &input.revolutions[..second], rate_hz);
+        let refused = estimate_of(known.clone(), short, FEW_DRAWS).unwrap_err().to_string();
+        assert!(refused.contains("must have at least 1.1"), "{refused}");
         let drive = estimate_of(known.clone(), healthy, FEW_DRAWS).unwrap().drive;
         println!("{seed}: {drive:.3?}");
         let [wander, low, high] = drive.speed_wander_percent.unwrap();
@@ -375,6 +383,18 @@ fn wander_and_random_force_of_hidden_gearboxes_are_found_again() {
         let [factor, ..] = drive.random_force_factor.unwrap();
         assert!((truth / 1.5..truth * 1.5).contains(&factor), "{factor}");
         mean += factor / 2.0;
+        // Torque that varies three times a revolution of the input is in the scenario, and what is not known of the wheels within its interval.
+        let at = |order: usize| {
+            drive.sidebands.iter().find(|of| of.shaft == "input" && of.order == order).unwrap()
+        };
+        let [factor, low, high] = at(3).factor;
+        assert!(at(3).cause == SidebandCause::Torque && at(1).cause == SidebandCause::Wheels);
+        assert!(
+            (varies_by / 1.5..varies_by * 1.5).contains(&factor) && (low..high).contains(&varies_by),
+            "{factor} {low} {high}"
+        );
+        assert!((at(1).factor[1]..at(1).factor[2]).contains(&1.0), "{:?}", at(1));
+        assert!(drive.failed == 0 && !drive.sidebands.iter().any(RecordedSidebands::is_unexplained));
         let [recorded, simulated] = drive.line_share.unwrap();
         assert!(recorded > simulated && recorded < 1.0);
     }

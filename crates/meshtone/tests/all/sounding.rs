@@ -243,7 +243,7 @@ const RECORDED_DB: [[f64; 2]; 10] = [
 /// What is heard of a gearbox, as medians over its sensors.
 #[derive(Debug)]
 struct Heard {
-    /// Part of the energy in lines: at multiples of a tenth of the input's order.
+    /// Part of the energy in lines, at multiples of a tenth of the input's order, without what the remainder has of it there.
     line_share: f64,
     /// Third octaves from 198 Hz to 6.3 kHz within 10 dB of the loudest.
     loud_octaves: f64,
@@ -360,8 +360,10 @@ fn features(signal: &[f64], step_hz: f64) -> [f64; 9] {
         2.0 * spectrum[(order * INPUT_HZ / step_hz).round() as usize].norm() / spectrum[0].norm()
     };
     let moment = |power: i32| signal.iter().map(|value| value.powi(power)).sum::<f64>() / length as f64;
+    // One line in so many is at a multiple, and has its share of the remainder.
+    let by_chance = 1.0 / per_tenth as f64;
     [
-        lines / whole,
+        (lines / whole - by_chance) / (1.0 - by_chance),
         octaves.iter().filter(|db| **db > loudest - 10.0).count() as f64,
         (off[4] + off[5]) / 2.0,
         (first / whole).sqrt().ln(),
@@ -394,9 +396,9 @@ fn gearboxes_sound_like_a_recorded_one() {
         let two = heard(60.0, [0.8, 0.4], housings.clone()).unwrap();
         let more = heard(90.0, [0.8, 0.0], housings.clone()).unwrap();
         println!("housings {housings:?}\none ripple {one:?}\ntwo {two:?}\ntorque x 1.5 {more:?}");
-        // Aimed at by the recordings: 0.35 to 0.65, below 3 dB, and with both ripples at least 4 and 0.2 to 0.4. The Validation page says how far
-        // that is met.
-        assert!((0.35..0.67).contains(&one.line_share) && (6.0..=9.0).contains(&one.loud_octaves));
+        // Aimed at by the recordings: below 3 dB, and with both ripples at least 4 and 0.2 to 0.4. The Validation page says how far that is met,
+        // and why.
+        assert!((0.35..0.65).contains(&one.line_share) && (6.0..=9.0).contains(&one.loud_octaves));
         assert!(one.shape_db < 3.5 && (-2.5..-1.5).contains(&one.first_harmonic));
         assert!((0.4..0.8).contains(&one.remainder_at_3) && one.kurtosis > 3.3 && two.kurtosis > 3.6);
         assert!(two.signal_at_middle > 0.2 && (0.2..0.6).contains(&two.remainder_at_middle));
@@ -435,6 +437,29 @@ fn speed_wanders_slowly_by_what_is_stated() {
     let short = relative(2.0, 7);
     assert_eq!(short[..], long[..short.len()]);
     assert_ne!(relative(2.0, 8)[..], short[..]);
+}
+
+/// A helix slope that turns with an ideal wheel shortens what bears of its teeth at both ends alike, so that the mesh's harmonics get sidebands at twice the
+/// wheel's order; beside a slope that stays, at its order too. 0 leaves every bit as it is.
+#[test]
+fn helix_that_wobbles_makes_sidebands_of_its_wheel() {
+    let sidebands = |wobble_um: f64, slope_um: f64| {
+        let mut gearbox = bare().unwrap();
+        gearbox.solver.duration_s = Some(1.0);
+        gearbox.wheels.iter_mut().for_each(|wheel| wheel.iso_class = 0);
+        gearbox.wheels[0].helix_wobble_um = wobble_um;
+        gearbox.wheels[0].deviations.helix_slope_um = Some(slope_um);
+        let channels = simulate(gearbox).unwrap().channels;
+        let spectrum = meshtone_fourier::real_spectrum(&channels["force_n.z1-z2"]);
+        // 1 Hz a line: 32 teeth at 30 rev/s.
+        [0, 30, 60].map(|apart| spectrum[960 + apart].norm() / spectrum[960].norm())
+    };
+    let [_, first, second] = sidebands(20.0, 0.0);
+    assert!(second > 0.1 && first < 0.1 * second, "{first} {second}");
+    let [_, first, second] = sidebands(20.0, 10.0);
+    assert!(first > 0.1 && second > 0.01, "{first} {second}");
+    let [_, first, second] = sidebands(0.0, 0.0);
+    assert!(first < 1e-3 && second < 1e-3, "{first} {second}");
 }
 
 /// In a spectrum over time lines of high orders lose their energy to the wander of the speed; over angle they keep it.

@@ -91,7 +91,8 @@ fn exact(stages: &Stages, swing: f64) -> [Vec<DVector<f64>>; 3] {
     let damping = modes.damping_matrix(machine) + of_mesh * mesh.damping_time_s;
     let mut force = DVector::zeros(n);
     force[THETA_BRAKE] = stages.scenario.operation.brake_torque_nm;
-    let at_rest = stiffness.clone().lu().solve(&force).unwrap();
+    // Under the torque with which it begins.
+    let at_rest = stiffness.clone().lu().solve(&(&force * (1.0 + swing))).unwrap();
     let velocity = DVector::from_row_slice(&stages.scenario.solver.initial_velocity.unwrap())
         - &machine.rigid_rotation * (TAU * PINION_SPEED_HZ);
     // Displacements times 1e5/s, and both times √m, so that all are about as large.

@@ -280,7 +280,7 @@ impl Bearing {
         let contact = match element {
             RollingElement::Ball => ElementContact::ball(&geometry),
             RollingElement::Roller => {
-                ElementContact::roller(self.roller_length_mm.unwrap_or(geometry.element_mm))
+                ElementContact::roller(&geometry, self.roller_length_mm.unwrap_or(geometry.element_mm))
             }
         };
         if element == RollingElement::Ball && self.roller_length_mm.is_some() {

@@ -1,14 +1,12 @@
 //! What a recording of the healthy machine says beside the path: how its speed wanders, and how much of it no line has.
 
 use super::recording::InputRecording;
+use super::sidebands::{RecordedSidebands, RepeatedLines, compared};
 use super::{NINETY_PERCENT, PASSED, PathError, PathSettings, at_steady_speed, seeds, simulate_all};
 use crate::batch::{Control, KeepOf};
 use crate::scenario::Scenario;
 use crate::sensor::FrequencyResponse;
-use crate::signal::{
-    AngularSettings, GearTrain, ShaftPhase, SignalError, angular_resample, synchronous_average,
-    synchronous_part,
-};
+use crate::signal::{AngularSettings, GearTrain, ShaftPhase, SignalError, angular_resample};
 use crate::simulate::Simulation;
 
 /// (1/s) Mean speeds of which the wander is known: the process has nothing faster.
@@ -31,7 +29,7 @@ const MOST_DRAWS: usize = 6;
 const OF_FEW_DRAWS: f64 = 2.015;
 
 /// How the longest steady recording of a healthy machine is driven, and what it has between its lines; nothing of run-ups.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedDrive {
     /// (%) Standard deviation of the speed below 8 Hz, without a steady rise, and the interval that holds it with 90 %: the key
@@ -42,6 +40,12 @@ pub struct RecordedDrive {
     /// (-) By what the key `random_force` of every mesh is to be multiplied for the recording's share, and its interval of 90 % over draws of the
     /// wheels. Noise of the sensor counts as such a force.
     pub random_force_factor: Option<[f64; 3]>,
+    /// Sidebands of a gearbox at the first orders of each of its shafts; none of a pair.
+    pub sidebands: Vec<RecordedSidebands>,
+    /// (s) How long a recording at this speed must be for the last three; 0 where no gearbox is compared.
+    pub needed_s: f64,
+    /// Simulations that failed, of those that were compared for them.
+    pub failed: usize,
 }
 
 impl RecordedDrive {
@@ -78,7 +82,11 @@ impl RecordedDrive {
         let cycles = (recording.input.span_rev() / cycle as f64).min(in_longest).min(CYCLES as f64) as usize;
         let length_s = (cycles as f64 + 0.1) * cycle as f64 / speed_hz;
         let has_random_force = scenario.meshes.iter().any(|mesh| mesh.random_force > 0.0);
-        if cycles < FEWEST_CYCLES || !has_random_force {
+        if scenario.rig().is_some() && !has_random_force {
+            return Ok(drive);
+        }
+        drive.needed_s = (FEWEST_CYCLES as f64 + 0.1) * cycle as f64 / speed_hz;
+        if cycles < FEWEST_CYCLES {
             return Ok(drive);
         }
         let mut simulated = at_steady_speed(scenario, speed_hz, length_s);
@@ -90,8 +98,9 @@ impl RecordedDrive {
         let most_hz =
             (PASSED[0] * recording.sampling_rate_hz).min(PASSED[1] * scenario.solver.sampling_rate_hz);
         let points = (2.0 * most_hz * cycle as f64 / speed_hz) as usize;
-        let share = |values: &[f64], input: &ShaftPhase| share_of_lines(values, input, cycle, points);
-        let recorded = share(recording.values_g, &recording.input)
+        let lines =
+            |values: &[f64], input: &ShaftPhase| repeated_lines(values, input, train, [cycle, points]);
+        let recorded = lines(recording.values_g, &recording.input)
             .map_err(|error| PathError::Recording { index, problem: error.into() })?;
         let draws =
             seeds(settings).into_iter().take(MOST_DRAWS).map(|seed| simulated.clone().with_seed(seed));
@@ -102,12 +111,20 @@ impl RecordedDrive {
                 channels.start_s,
                 channels.len(),
             )?;
-            share(&channels.signals[0].values, &input)
+            lines(&channels.signals[0].values, &input)
         });
-        let mut shares = Vec::new();
+        let mut of_draws: Vec<RepeatedLines> = Vec::new();
         let control = Control { cancelled: control.cancelled, ..Control::default() };
-        simulate_all(draws.collect(), &keep, &control, |_, share| shares.extend(share.ok().flatten()))?;
-        if let (Some(recorded), Some(mean)) = (recorded, mean(&shares)) {
+        let failed =
+            simulate_all(draws.collect(), &keep, &control, |_, of| of_draws.extend(of.ok().flatten()))?;
+        drive.failed = failed.len();
+        let Some(recorded) = recorded else { return Ok(drive) };
+        if scenario.rig().is_none() {
+            drive.sidebands = compared(scenario, train, &recorded, &of_draws);
+        }
+        let shares: Vec<f64> = of_draws.iter().map(|of| of.share).collect();
+        let recorded = recorded.share;
+        if let Some(mean) = mean(&shares).filter(|_| has_random_force) {
             drive.line_share = Some([recorded, mean]);
             let between = |share: f64| (1.0 / share - 1.0).max(0.0);
             let factors: Vec<f64> = shares
@@ -126,7 +143,7 @@ fn mean(values: &[f64]) -> Option<f64> {
 }
 
 /// The mean of a factor over draws, and what one draw more lies between with 90 %; none of fewer than two.
-fn factor_of(factors: &[f64]) -> Option<[f64; 3]> {
+pub(super) fn factor_of(factors: &[f64]) -> Option<[f64; 3]> {
     let mean = mean(factors).filter(|_| factors.len() > 1)?;
     let count = factors.len() as f64;
     let variance = factors.iter().map(|factor| (factor - mean).powi(2)).sum::<f64>() / (count - 1.0);
@@ -160,29 +177,24 @@ fn wander_percent(recording: &InputRecording) -> Option<[f64; 3]> {
     })
 }
 
-/// (-) The part of a signal's power that repeats itself after each cycle of the train, of which noise leaves nothing on average; none of too few
-/// cycles.
+/// What repeats in a signal after each cycle of the train; none of too few cycles.
 ///
 /// # Arguments
 /// * `values` - the signal
 /// * `input` - angle of the input
-/// * `cycle` - revolutions of the input in a cycle
-/// * `points` - of a cycle
-fn share_of_lines(
+/// * `train` - its tooth counts
+/// * `cycle` - revolutions of the input in a cycle, and how many points it is resampled to
+fn repeated_lines(
     values: &[f64],
     input: &ShaftPhase,
-    cycle: usize,
-    points: usize,
-) -> Result<Option<f64>, SignalError> {
+    train: &GearTrain,
+    [cycle, points]: [usize; 2],
+) -> Result<Option<RepeatedLines>, SignalError> {
     let of_cycle = input.of_mate(1, u32::try_from(cycle).unwrap_or(u32::MAX))?;
     let settings = AngularSettings { points_per_revolution: Some(points), ..AngularSettings::default() };
     let angular = angular_resample(values, &of_cycle, &settings)?;
-    let cycles = angular.revolutions();
-    if cycles < FEWEST_CYCLES {
+    if angular.revolutions() < FEWEST_CYCLES {
         return Ok(None);
     }
-    let average = synchronous_average(&angular)?;
-    let part = synchronous_part(&angular.values, &average.values);
-    let count = cycles as f64;
-    Ok(part.map(|part| ((part.of_mean_square * count - 1.0) / (count - 1.0)).clamp(1e-6, 1.0)))
+    RepeatedLines::of(&angular, train, cycle)
 }

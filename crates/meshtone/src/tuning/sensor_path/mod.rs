@@ -8,11 +8,13 @@ mod drive;
 mod error;
 mod minimum_phase;
 mod recording;
+mod sidebands;
 mod smoothing;
 
 pub use drive::RecordedDrive;
 pub use error::{PathError, RecordingProblem};
 pub use recording::HealthyRecording;
+pub use sidebands::{RecordedSidebands, SidebandCause};
 
 use std::ops::RangeInclusive;
 
@@ -89,8 +91,10 @@ pub struct PathEstimate {
     pub compared_hz: [f64; 2],
     /// (-) Distance of the recordings from the simulations, over what wheels explain: mean squares of the kinds of lines and of the cells.
     pub misfit: [f64; 2],
-    /// What the recordings say of the drive, and of what lies between their lines.
+    /// What the recordings say of the drive, of what lies between their lines, and of sidebands.
     pub drive: RecordedDrive,
+    /// Draws of the wheels that were left out, since a simulation with them failed.
+    pub failed_draws: usize,
 }
 
 impl PathEstimate {
@@ -146,7 +150,10 @@ pub fn estimate_path(
     let most_hz = (PASSED[0] * rate_hz).min(PASSED[1] * scenario.solver.sampling_rate_hz);
     let cells = Cells::new(&pieces, window_s, [most_hz, rate_hz / 2.0], &meshes);
     let measured = measured_powers(&over_input, &pieces, &cells, &train)?;
-    let simulated = simulated(scenario, &pieces, &cells, settings, control)?;
+    if measured.iter().all(|power| *power <= 0.0) {
+        return Err(too_short(&over_input, &train).unwrap_or(PathError::OnlyNoise));
+    }
+    let (simulated, failed_draws) = simulated(scenario, &pieces, &cells, settings, control)?;
     let levels = levels(&cells, &measured, &simulated);
     if levels.is_empty() {
         return Err(PathError::OnlyNoise);
@@ -176,10 +183,26 @@ pub fn estimate_path(
         magnitude_db,
         misfit,
         drive: RecordedDrive::default(),
+        failed_draws,
     };
     let response = estimate.frequency_response();
     estimate.drive = RecordedDrive::of(scenario, &train, &over_input, response, settings, control)?;
     Ok(estimate)
+}
+
+/// The longest steady recording, where all of them are too short for their noise to be known.
+fn too_short(recordings: &[InputRecording], train: &GearTrain) -> Option<PathError> {
+    let slowest = train.shafts.iter().map(|shaft| shaft.speed_ratio.value()).fold(f64::INFINITY, f64::min);
+    // The first revolution may begin anywhere.
+    let needed_rev = (FEWEST_REVOLUTIONS + 1) as f64 / slowest;
+    let (index, longest) = recordings
+        .iter()
+        .enumerate()
+        .max_by(|(_, a), (_, b)| a.input.span_rev().total_cmp(&b.input.span_rev()))?;
+    let recording_s = longest.length_s();
+    let needed_s = recording_s * needed_rev / longest.input.span_rev();
+    let problem = RecordingProblem::TooShort { recording_s, needed_s };
+    (recording_s < needed_s).then_some(PathError::Recording { index, problem })
 }
 
 /// Refuses wheels of which every draw is the same, and a sensor that shows forces.
@@ -318,14 +341,14 @@ fn without_path(sensor: Sensor) -> Sensor {
     }
 }
 
-/// (g²/Hz) Power in each cell of simulations with each draw of the wheels.
+/// (g²/Hz) Power in each cell of simulations with each draw of the wheels, and how many draws are left out since a simulation failed.
 fn simulated(
     scenario: &Scenario,
     pieces: &[Piece],
     cells: &Cells,
     settings: &PathSettings,
     control: &ExperimentControl,
-) -> Result<Vec<Vec<f64>>, PathError> {
+) -> Result<(Vec<Vec<f64>>, usize), PathError> {
     let draws = settings.draws;
     let seeds = seeds(settings);
     let scenarios = pieces.iter().flat_map(|piece| {
@@ -337,13 +360,20 @@ fn simulated(
     let all = pieces.len() * draws;
     let progress = |finished: usize| (control.progress)(finished, all);
     let control = Control { progress: &progress, cancelled: control.cancelled, ..Control::default() };
-    simulate_all(scenarios.collect(), &keep, &control, |index, kept| {
+    let failed = simulate_all(scenarios.collect(), &keep, &control, |index, kept| {
         powers[index % draws].iter_mut().zip(kept).for_each(|(sum, power)| *sum += power);
     })?;
-    Ok(powers)
+    let is_left = |draw: usize| failed.iter().all(|(index, _)| index % draws != draw);
+    let left: Vec<Vec<f64>> =
+        powers.into_iter().enumerate().filter(|(draw, _)| is_left(*draw)).map(|(_, powers)| powers).collect();
+    let failed_draws = draws - left.len();
+    match failed.into_iter().next() {
+        Some((_, error)) if left.len() < *PathSettings::DRAWS.start() => Err(error.into()),
+        _ => Ok((left, failed_draws)),
+    }
 }
 
-/// Simulates some scenarios, each of which is needed.
+/// Simulates some scenarios.
 ///
 /// # Arguments
 /// * `scenarios` - to be simulated
@@ -351,25 +381,23 @@ fn simulated(
 /// * `control` - progress and cancellation
 /// * `take` - takes what was kept, with the scenario's index
 ///
+/// Returns those that failed.
+///
 /// # Errors
-/// The first simulation that failed, or [`PathError::Cancelled`] where some were not begun.
+/// [`PathError::Cancelled`] where some were not begun.
 fn simulate_all<K: Keep>(
     scenarios: Vec<Scenario>,
     keep: &K,
     control: &Control,
     mut take: impl FnMut(usize, K::Kept) + Send,
-) -> Result<(), PathError> {
+) -> Result<Vec<(usize, Error)>, PathError> {
     let all = scenarios.len();
-    let mut failed: Option<Error> = None;
+    let mut failed = Vec::new();
     let taken = simulate_many(scenarios, keep, control, |index, kept| match kept {
         Ok(kept) => take(index, kept),
-        Err(error) => failed = failed.take().or(Some(error)),
+        Err(error) => failed.push((index, error)),
     });
-    match failed {
-        Some(error) => Err(error.into()),
-        None if taken < all => Err(PathError::Cancelled),
-        None => Ok(()),
-    }
+    if taken < all { Err(PathError::Cancelled) } else { Ok(failed) }
 }
 
 /// The healthy machine at a constant speed, with other wheels than those of the scenario's own.
