@@ -72,8 +72,8 @@ fn a_step_that_falsifies_a_run_up_is_told() {
 
 #[test]
 fn what_no_machine_does_is_an_error() {
-    // The teeth would pass through each other.
-    let overloaded = stock(|gearbox| gearbox.operation.brake_torque_nm = 2e6);
+    // The teeth would pass through each other. Under three times as much the faces, of which an end bears on these shafts, move beyond all bounds.
+    let overloaded = stock(|gearbox| gearbox.operation.brake_torque_nm = 3e4);
     match simulate(overloaded) {
         Err(Error::Impossible { problem, help }) => {
             assert!(problem.contains("its flanks would overlap by"), "{problem}");

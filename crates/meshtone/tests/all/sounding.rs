@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use meshtone::machine::Axis;
 use meshtone::scenario::{HousingModes, Ripple, Scenario, ScenarioError, Sensor, gearbox_template};
-use meshtone::simulate;
+use meshtone::{simulate, stages};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// The template, 0.2 s at 51.2 kS/s, without what is random, rubs or vibrates in it.
@@ -440,7 +440,7 @@ fn speed_wanders_slowly_by_what_is_stated() {
 }
 
 /// A helix slope that turns with an ideal wheel shortens what bears of its teeth at both ends alike, so that the mesh's harmonics get sidebands at twice the
-/// wheel's order; beside a slope that stays, at its order too. 0 leaves every bit as it is.
+/// wheel's order; beside a slope that stays, at its order too. A slope that takes back the lean of the shafts makes the rest of the face even.
 #[test]
 fn helix_that_wobbles_makes_sidebands_of_its_wheel() {
     let sidebands = |wobble_um: f64, slope_um: f64| {
@@ -448,7 +448,8 @@ fn helix_that_wobbles_makes_sidebands_of_its_wheel() {
         gearbox.solver.duration_s = Some(1.0);
         gearbox.wheels.iter_mut().for_each(|wheel| wheel.iso_class = 0);
         gearbox.wheels[0].helix_wobble_um = wobble_um;
-        gearbox.wheels[0].deviations.helix_slope_um = Some(slope_um);
+        let lean_um = stages(&gearbox).unwrap().meshes[0].along_face.lean_m * 1e6;
+        gearbox.wheels[0].deviations.helix_slope_um = Some(slope_um - lean_um);
         let channels = simulate(gearbox).unwrap().channels;
         let spectrum = meshtone_fourier::real_spectrum(&channels["force_n.z1-z2"]);
         // 1 Hz a line: 32 teeth at 30 rev/s.
