@@ -120,7 +120,7 @@ fn one_tachometer_gives_the_averages_of_all_shafts() {
 /// input's tooth make it impulsive.
 #[test]
 fn a_missing_tooth_shows_on_its_own_shaft() {
-    let gearbox = healthy(None);
+    let gearbox = crate::plain::even(healthy(None));
     for (number, wheel) in gearbox.wheels.iter().enumerate() {
         let mut damaged = gearbox.clone();
         let fault = Fault::new(WheelName::Gear, 5, MissingTooth);
