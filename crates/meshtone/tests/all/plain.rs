@@ -40,6 +40,7 @@ pub fn plain(mut gearbox: Scenario) -> Scenario {
 ///
 /// # Arguments
 /// * `gearbox` - with its torque and its teeth
+#[allow(dead_code)] // Not in every package that has this file.
 pub fn even(mut gearbox: Scenario) -> Scenario {
     let leans_um =
         meshtone::stages(&gearbox).unwrap().meshes.into_iter().map(|mesh| mesh.along_face.lean_m * 1e6);
