@@ -218,7 +218,7 @@ fn drive(found: &RecordedDrive) -> String {
             100.0 * simulated
         );
     }
-    if found.needed_s > 0.0 && found.sidebands.is_empty() && found.line_share.is_none() {
+    if found.needed_s > 0.0 {
         text += &format!(
             "  random_force and sidebands are compared from {:.1} s of one recording at this speed on\n",
             found.needed_s

@@ -165,15 +165,6 @@ pub(super) fn gears() -> Section {
         both(flank_reduction_row(field!(in Of: uniform_flank_reduction_mm))),
         points_row(field!(in ScenarioMesh: points_per_tooth)).of(MESH),
         foundation_row(field!(in ScenarioMesh: foundation)).of(MESH),
-        row(
-            "phase",
-            "base pitches",
-            "where on its path of contact the first pair of teeth is at the start",
-            field!(in ScenarioMesh: phase),
-        )
-        .otherwise("0")
-        .alternative("0.0")
-        .of(MESH),
     ];
     Section { name: "gears", rows }
 }
