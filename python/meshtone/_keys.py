@@ -1132,7 +1132,7 @@ class ScenarioKeys:
         material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
             The material of wheels and shafts. Default: "steel".
         pinion_material, gear_material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
-            Its material. Default: gears.material. Ignored by published.
+            The material of this wheel alone, its body and teeth. Default: gears.material. Ignored by published.
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by published.

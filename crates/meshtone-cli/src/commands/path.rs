@@ -228,6 +228,7 @@ fn drive(found: &RecordedDrive) -> String {
         let [recorded, simulated] = of.level;
         let [factor, low, high] = of.factor;
         let what = match of.cause {
+            SidebandCause::Torque | SidebandCause::Wheels if low <= 1.0 && 1.0 <= high => "as simulated",
             SidebandCause::Torque => "multiply torque_ripple at this order by it",
             SidebandCause::Wheels => "multiply run_out_share and slope_wobble of the shaft's wheels by it",
             SidebandCause::Nothing if of.is_unexplained() => {

@@ -124,7 +124,7 @@ pub(super) fn top() -> Section {
 pub(super) fn gears() -> Section {
     type Of = ScenarioWheel;
     let material = |key| {
-        row(key, "", "its material", field!(in Of: material))
+        row(key, "", "the material of this wheel alone, its body and teeth", field!(in Of: material))
             .otherwise("gears.material")
             .alternative("\"bronze\"")
     };
