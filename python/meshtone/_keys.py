@@ -765,7 +765,6 @@ SECTION_OF_KEY: dict[str, str] = {
     "uniform_flank_reduction_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
-    "phase": "gears",
     "pinion_speed_hz": "operation",
     "speed_fluctuation_hz": "operation",
     "speed_wander_percent": "operation",
@@ -868,7 +867,6 @@ class ScenarioChanges(TypedDict, total=False):
     uniform_flank_reduction_mm: Any
     points_per_tooth: Any
     foundation: Any
-    phase: Any
     pinion_speed_hz: Any
     speed_fluctuation_hz: Any
     speed_wander_percent: Any
@@ -951,7 +949,6 @@ class ScenarioKeys:
     uniform_flank_reduction_mm: float
     points_per_tooth: int
     foundation: Foundation
-    phase: float
     pinion_speed_hz: float
     speed_fluctuation_hz: float
     speed_wander_percent: float
@@ -1032,7 +1029,6 @@ class ScenarioKeys:
         uniform_flank_reduction_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
-        phase: float | None = None,
         pinion_speed_hz: float | None = None,
         speed_fluctuation_hz: float | None = None,
         speed_wander_percent: float | None = None,
@@ -1136,7 +1132,7 @@ class ScenarioKeys:
         material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
             The material of wheels and shafts. Default: "steel".
         pinion_material, gear_material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
-            Its material. Default: gears.material. Ignored by published.
+            The material of this wheel alone, its body and teeth. Default: gears.material. Ignored by published.
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by published.
@@ -1158,9 +1154,6 @@ class ScenarioKeys:
         foundation : Foundation, optional
             The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
             Duverger (2004). Ignored by published.
-        phase : float, optional
-            (base pitches) Where on its path of contact the first pair of teeth is at the start. Default: 0. Ignored by
-            published.
         pinion_speed_hz : float, optional
             (rev/s) The nominal speed of the motor and the pinion; the sampling rate is chosen for it. Allowed: > 0, ≤
             100000. Required, unless ``speed_profile_hz`` is given.

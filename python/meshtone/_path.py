@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _core, _progress
 from ._files import written_whole
+from ._warnings import warn
 from .recording import Recording
 from .scenario import Scenario, native_scenario
 from .signal._arguments import read_only, whole
@@ -68,6 +69,8 @@ class PathEstimate:
         the sensor counts as such a force.
     sidebands : list of Sidebands
         Those of a gearbox at the first orders of its shafts; empty of a pair, of run-ups and of fewer than three periods.
+    failed_draws : int
+        Draws of the wheels that are left out of the path, since a simulation with them failed.
     """
 
     frequency_hz: Array = field(repr=False)
@@ -80,6 +83,7 @@ class PathEstimate:
     line_share: tuple[float, ...] | None
     random_force_factor: tuple[float, ...] | None
     sidebands: list[Sidebands]
+    failed_draws: int
     _csv: str = field(repr=False)
 
     @property
@@ -151,7 +155,7 @@ def estimate_path(
     """
     several: list[Any] = recordings if isinstance(recordings, list) else [recordings]
     report = _progress.shown("simulations") if progress is True else (progress or None)
-    columns, compared_hz, drive, csv = _core.estimate_path(
+    columns, compared_hz, drive, csv, failed = _core.estimate_path(
         native_scenario(scenario),
         [_healthy(one) for one in several],
         whole("draws", draws, FEWEST_DRAWS),
@@ -159,6 +163,9 @@ def estimate_path(
         report,
     )
     frequency_hz, magnitude_db, low_db, high_db, phase_deg = columns
+    if any(failed):
+        message = f"simulations failed: {failed[0]} of {draws} draws are left out of the path, {failed[1]} of those for the drive"
+        warn([message], ["failed-draws"])
     *of_drive, sidebands = drive
     wander, share, factor = (None if known is None else tuple(known) for known in of_drive)
     return PathEstimate(
@@ -175,6 +182,7 @@ def estimate_path(
             Sidebands(shaft, order, tuple(level), tuple(factor), more)
             for shaft, order, level, factor, more in sidebands
         ],
+        failed_draws=failed[0],
         _csv=csv,
     )
 

@@ -100,9 +100,9 @@ fn touching(force: &MeshForce) -> String {
         return tension.unwrap_or_default();
     };
     let hits = match contact.back_flank_hits {
-        0 => "no back flank hits".to_string(),
-        1 => format!("1 hit of back flanks, {} of the time", percent(contact.back_flank_fraction)),
-        hits => format!("{hits} hits of back flanks, {} of the time", percent(contact.back_flank_fraction)),
+        0 => "no coast flank hits".to_string(),
+        1 => format!("1 hit of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
+        hits => format!("{hits} hits of coast flanks, {} of the time", percent(contact.back_flank_fraction)),
     };
     format!("; contact loss {} of the time, {hits}", percent(contact.apart_fraction))
 }

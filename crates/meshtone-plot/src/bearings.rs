@@ -93,8 +93,7 @@ pub fn draw(figure: &BearingsFigure) -> Figure {
 fn kurtogram(canvas: &mut Canvas, of: &Kurtogram, band: FrequencyBand, kurtosis: Option<f64>) {
     let half_hz = 0.5 * of.sampling_rate_hz;
     let rows = of.levels.len() as f64;
-    let chosen =
-        kurtosis.map_or_else(|| ", as stated".to_owned(), |value| format!(", kurtosis {}", number(value)));
+    let chosen = kurtosis.map_or_else(String::new, |value| format!(", kurtosis {}", number(value)));
     let [from, to] = [band.from_hz, band.to_hz].map(number);
     let title = format!("Kurtogram; band of the squared envelope {from} to {to} Hz{chosen}");
     let axes = Axes::titled(canvas, KURTOGRAM, [0.0, half_hz], [rows, 0.0], &title);

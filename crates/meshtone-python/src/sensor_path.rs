@@ -14,8 +14,9 @@ use crate::phase::ShaftPhase;
 use crate::process::stated_of_rig;
 use crate::scenario::Scenario;
 
-/// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file.
-type Estimated<'py> = ([Array<'py>; 5], [f64; 2], Drive, String);
+/// Frequencies, magnitude, lower and upper end, phase; the frequencies that were compared; the text of the CSV file; draws that failed, of the
+/// path and of the drive.
+type Estimated<'py> = ([Array<'py>; 5], [f64; 2], Drive, String, [usize; 2]);
 
 /// Wander of the speed, share of the lines, factor of the random force: each with what else is known of it; and sidebands: shaft, order, levels, factor,
 /// and whether the scenario has no cause for more of them than its wheels.
@@ -60,6 +61,7 @@ pub fn estimate_path<'py>(
         _ => value_error(error),
     })?;
     let text = path_csv(&estimate);
+    let failed = [estimate.failed_draws, estimate.drive.failed];
     let PathEstimate { frequency_hz, magnitude_db, low_db, high_db, phase_deg, compared_hz, drive, .. } =
         estimate;
     let columns = [frequency_hz, magnitude_db, low_db, high_db, phase_deg].map(|column| array(py, column));
@@ -69,5 +71,5 @@ pub fn estimate_path<'py>(
     });
     let drive =
         (drive.speed_wander_percent, drive.line_share, drive.random_force_factor, sidebands.collect());
-    Ok((columns, compared_hz, drive, text))
+    Ok((columns, compared_hz, drive, text, failed))
 }

@@ -71,7 +71,6 @@ static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
         &[
             "gears.pinion_material",
             "gears.gear_material",
-            "gears.phase",
             "gears.hand",
             "gears.slices",
             "gears.flank_relief",

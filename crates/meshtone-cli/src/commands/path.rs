@@ -218,7 +218,7 @@ fn drive(found: &RecordedDrive) -> String {
             100.0 * simulated
         );
     }
-    if found.needed_s > 0.0 && found.sidebands.is_empty() && found.line_share.is_none() {
+    if found.needed_s > 0.0 {
         text += &format!(
             "  random_force and sidebands are compared from {:.1} s of one recording at this speed on\n",
             found.needed_s
@@ -228,6 +228,7 @@ fn drive(found: &RecordedDrive) -> String {
         let [recorded, simulated] = of.level;
         let [factor, low, high] = of.factor;
         let what = match of.cause {
+            SidebandCause::Torque | SidebandCause::Wheels if low <= 1.0 && 1.0 <= high => "as simulated",
             SidebandCause::Torque => "multiply torque_ripple at this order by it",
             SidebandCause::Wheels => "multiply run_out_share and slope_wobble of the shaft's wheels by it",
             SidebandCause::Nothing if of.is_unexplained() => {

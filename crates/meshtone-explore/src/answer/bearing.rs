@@ -2,7 +2,8 @@
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::{
-    BearingSettings, DefectLine, EnvelopeBand, GearTrain, SignalError, TrainBearing, TrainRecording,
+    BearingSettings, DefectLine, EnvelopeBand, FrequencyBand, GearTrain, SignalError, TrainBearing,
+    TrainRecording,
 };
 use serde_json::{Value, json};
 
@@ -45,16 +46,12 @@ impl LookedAtBearing {
     ///
     /// # Arguments
     /// * `recording` - the channel that is looked at, and how the shafts turned; or why it cannot be processed
-    /// * `band` - of the envelope
     /// * `packet` - takes the arrays up
-    pub fn json(
-        &self,
-        recording: Result<TrainRecording<'_>, SignalError>,
-        band: EnvelopeBand,
-        packet: &mut Packet,
-    ) -> Value {
+    pub fn json(&self, recording: Result<TrainRecording<'_>, SignalError>, packet: &mut Packet) -> Value {
         let found = recording.and_then(|recording| {
-            let settings = BearingSettings { band, ..BearingSettings::default() };
+            // A simulation has no noise: the most impulsive band is one in which there is next to nothing. A recording is drawn over the same.
+            let band = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * recording.sampling_rate_hz };
+            let settings = BearingSettings { band: EnvelopeBand::Stated(band), ..BearingSettings::default() };
             recording.bearings(&[self.placed], &settings)
         });
         let mut said = json!({ "name": self.name, "shaft": self.shaft });

@@ -3,8 +3,7 @@
 use meshtone::scenario::{Scenario, ScenarioWarning};
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
-    AngularSettings, EnvelopeBand, FrequencyBand, GearTrain, SignalError, TrainRecording, TrainSettings,
-    TrainTurning, revolution_average,
+    AngularSettings, GearTrain, SignalError, TrainRecording, TrainSettings, TrainTurning, revolution_average,
 };
 use meshtone::{Simulation, StepJudgement};
 use serde_json::{Map, Value, json};
@@ -137,10 +136,7 @@ impl GearboxState {
         let indicators = self.indicators(recording().ok().as_ref(), signal.unit);
         // What is kept while a control moves is too short for averages.
         let bearing = self.bearing.as_ref().filter(|_| self.options.detail == Detail::Full);
-        // A simulation has no noise: the most impulsive band is one in which there is next to nothing.
-        let band = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * channels.sampling_rate_hz };
-        let bearing =
-            bearing.map(|bearing| bearing.json(recording(), EnvelopeBand::Stated(band), &mut packet));
+        let bearing = bearing.map(|bearing| bearing.json(recording(), &mut packet));
         let wheel = &self.gearbox.wheels[self.wheel];
         let average = average.map(
             |(values, revolutions)| json!({ "values": packet.array(values), "revolutions": revolutions }),

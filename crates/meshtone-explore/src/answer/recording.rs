@@ -6,8 +6,8 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone::signal::{
-    EnvelopeBand, GearTrain, ShaftPhase, StatedTurning, Tachometer, TrainRecording, TrainSettings,
-    TrainTurning, tachometer_pulses,
+    GearTrain, ShaftPhase, StatedTurning, Tachometer, TrainRecording, TrainSettings, TrainTurning,
+    tachometer_pulses,
 };
 use meshtone_io::recording::{Channel, Recording, RecordingOptions, read_recording};
 use serde_json::{Value, json};
@@ -117,7 +117,7 @@ pub fn recording(
         let all = Spectrum::of(&channel.samples, recording.sampling_rate_hz);
         spectrum = all.json(&Tones::of(&train, machine.operation.pinion_speed_hz), &mut packet);
         let of = LookedAtBearing::of(machine, &train, question.bearing.as_deref());
-        bearing = of.map_or(Value::Null, |of| of.json(Ok(looked_at), EnvelopeBand::default(), &mut packet));
+        bearing = of.map_or(Value::Null, |of| of.json(Ok(looked_at), &mut packet));
     }
     let said = json!({
         "name": question.name,
@@ -195,8 +195,11 @@ pub(super) fn turned(
     scenario: &Scenario,
     otherwise: impl FnOnce(&GearTrain) -> Result<(&'static str, StatedTurning, ShaftPhase), Refusal>,
 ) -> Result<Turned, Refusal> {
-    let names = |scenario: &Scenario| -> Vec<String> {
-        scenario.wheels.iter().map(|wheel| wheel.name.clone()).collect()
+    // A pair has the names of any pair: its wheels are those of the file.
+    let names = |of: &Scenario| -> Vec<String> {
+        let teeth =
+            |teeth: u32| if of.rig().is_some() { String::new() } else { format!(" of {teeth} teeth") };
+        of.wheels.iter().map(|wheel| wheel.name.clone() + &teeth(wheel.teeth)).collect()
     };
     if let Some(simulated) = simulated.filter(|simulated| names(simulated) != names(scenario)) {
         let [own, pages] = [simulated, scenario].map(|of| names(of).join(", "));

@@ -444,6 +444,8 @@ export class Controls {
       const { key, kind } = description;
       const [table, ...inside] = key.split(".");
       if (kind === "value" || kind === "file") continue;
+      // What is inside a list of tables is in the scenario as text.
+      if (inside.length && keys.some((other) => other.key === table && other.kind === "value")) continue;
       if (kind === "profile") {
         fields.push(this.#add([...base, key], description, Profile));
         continue;

@@ -18,11 +18,17 @@ class GearboxView {
   #held = null;
   #recording = null;
   #look;
+  #process;
+  /** The bearing that the recording was asked for last. */
+  #askedAgain = null;
   asked = { channel: null, wheel: null, mesh: null, bearing: null };
 
-  /** @param look is told that another channel, wheel, mesh or bearing is looked at, and whether it is a bearing */
-  constructor(look) {
-    this.#look = look;
+  /**
+   * @param look is told that another channel, wheel, mesh or bearing is looked at
+   * @param process is told that the recording is to be looked at again, for another bearing
+   */
+  constructor(look, process) {
+    [this.#look, this.#process] = [look, process];
     const plot = (id, options) => new Plot(byId(id), options);
     this.#plots = {
       waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "signal (g)" }),
@@ -66,13 +72,13 @@ class GearboxView {
 
   #chosen(key, name) {
     this.asked[key] = name;
-    this.#look(key === "bearing");
+    this.#look();
   }
 
   show(answer) {
     this.#now = answer;
     const { signal, wheel, mesh, train: parts } = answer;
-    Object.assign(this.asked, { channel: signal.name, wheel: wheel.name, mesh: mesh.name });
+    Object.assign(this.asked, { channel: signal.name, wheel: wheel.name, mesh: mesh.name, bearing: answer.bearing?.name ?? this.asked.bearing });
     select("channel", answer.channels, signal.name);
     select("wheel", parts.wheels.map(({ name }) => name), wheel.name);
     select("mesh", parts.meshes.map(({ name }) => name), mesh.name);
@@ -139,9 +145,11 @@ class GearboxView {
   }
 
   /** The indicators of the wheel that is looked at, beside those that are held and the recording's. */
-  #indicators({ wheel }) {
+  #indicators({ signal, wheel }) {
     const values = (rows) => new Map((rows ?? []).map(([name, , value]) => [name, value]));
-    const others = [["held", this.#held?.wheel], ["recording", this.#recordedWheel(wheel)]].filter(([, of]) => of).map(([label, of]) => [label, values(of.indicators)]);
+    const recorded = this.#recording?.signal.channel.unit;
+    const title = recorded === signal.unit ? "recording" : `recording, ${recorded || "no unit"}`;
+    const others = [["held", this.#held?.wheel], [title, this.#recordedWheel(wheel)]].filter(([, of]) => of).map(([label, of]) => [label, values(of.indicators)]);
     const rows = (wheel.indicators ?? []).map(([name, unit, value]) => [`${name.replaceAll("_", " ")}${unit === "-" ? "" : `, ${unit}`}`, shown(value), ...others.map(([, known]) => shown(known.get(name)))]);
     table("indicators", ["indicator", "now", ...others.map(([label]) => label)], rows);
   }
@@ -151,15 +159,18 @@ class GearboxView {
     byId("bearing-card").hidden = !bearing;
     if (!bearing) return;
     select("bearing", bearings.filter(({ rolling }) => rolling).map(({ name }) => name), bearing.name);
-    const recorded = this.#recording?.bearing;
+    const named = this.#recording?.bearing;
+    const recorded = named?.name === bearing.name ? named : undefined;
+    // Once: what the recording is of may have no such bearing.
+    if (named && !recorded && this.#askedAgain !== bearing.name) this.#process();
+    this.#askedAgain = bearing.name;
     const looked = recorded ?? bearing;
-    const unit = /^\p{L}+$/u.test(signal.unit) ? `${signal.unit}²` : `(${signal.unit})²`;
+    const squared = (unit) => (/^\p{L}+$/u.test(unit) ? `${unit}²` : `(${unit})²`);
+    const unit = squared(recorded ? this.#recording.signal.channel.unit : signal.unit);
     const lines = looked.lines ?? [];
-    const drawn = bearing.spectrum ? this.#beside(signal, line(bearing.name, bearing.spectrum, 0, bearing.step), (answer, isRecorded) => {
-      const of = isRecorded && answer.bearing;
-      return of?.spectrum ? [of.spectrum, 0, of.step] : null;
-    }) : [];
-    this.#plots.envelope.set(drawn, { x: `order of shaft ${bearing.shaft}`, y: `amplitude (${unit})`, title: `Squared envelope of ${signal.name}`,
+    const drawn = bearing.spectrum ? this.#beside(signal, line(bearing.name, bearing.spectrum, 0, bearing.step), ({ bearing: of }) =>
+      (of?.spectrum && of.name === bearing.name ? [of.spectrum, 0, of.step] : null)) : [];
+    this.#plots.envelope.set(drawn, { x: `order of shaft ${bearing.shaft}`, y: `amplitude (${squared(signal.unit)})`, title: `Squared envelope of ${signal.name}`,
       labels: lines.map(([name, order]) => [order, name]), empty: bearing.problem ?? "" });
     const rows = lines.map(([name, ...numbers]) => [name, ...numbers.map((number) => shown(number))]);
     table("defect-lines", [recorded ? "line of the recording" : "line", "order", "found at", `amplitude, ${unit}`, "over the median"], rows,
@@ -186,10 +197,7 @@ function table(id, heads, rows, choose = null) {
 }
 
 begin((catalogue) => {
-  const view = new GearboxView((isBearing) => {
-    page.change("full");
-    if (isBearing) page.process();
-  });
+  const view = new GearboxView(() => page.change("full"), () => page.process());
   const controls = new GearboxControls(byId("controls"), catalogue, view.asked, (detail) => page.change(detail));
   const page = new Page("gearbox", catalogue, controls, view, "a quarter of a second");
 });

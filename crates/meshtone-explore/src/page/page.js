@@ -32,9 +32,9 @@ export class Page {
     [this.#path, this.#controls, this.#view, this.#coarse] = [path, controls, view, coarse];
     this.#answers = new Answers((answer, asked) => this.#show(answer, asked), (error) => this.refuse(error), path);
     this.#diagnosis = new Diagnosis(() => this.#question("full"), catalogue.records);
-    const opened = (processed, recording) => {
+    const opened = (processed, recording, isSame = false) => {
       view.setRecording(processed);
-      this.#diagnosis.setRecording(recording);
+      if (!isSame) this.#diagnosis.setRecording(recording);
     };
     this.#recording = new OpenedRecording(() => this.#question("full"), opened, (error) => this.refuse(error), status);
     this.#listen(catalogue);
@@ -54,7 +54,7 @@ export class Page {
 
   /** Something else is looked at in the recording too. */
   process() {
-    this.#recording.process();
+    this.#recording.process(true);
   }
 
   open(tree) {

@@ -15,7 +15,7 @@ export class OpenedRecording {
 
   /**
    * @param question gives the page's scenario, and what of it is looked at, as a request has it
-   * @param show is given what the recording shows with what was opened, or null where it is removed
+   * @param show is given what the recording shows with what was opened, or null where it is removed, and whether that is as it was
    * @param refuse is told where it cannot be read
    * @param status is told what is under way
    */
@@ -28,8 +28,8 @@ export class OpenedRecording {
     await this.process();
   }
 
-  /** Processes it, again where another bearing is looked at. */
-  async process() {
+  /** Processes it. @param isSame whether it is as it was, and another bearing is looked at: a diagnosis of it still holds */
+  async process(isSame = false) {
     if (!this.#opened) return;
     const { file, settings } = this.#opened;
     this.#status("reading…");
@@ -37,7 +37,7 @@ export class OpenedRecording {
       const buffer = await this.#newest.ask({ ...this.#question(), channel: settings.channel, ...settings }, file);
       if (!buffer) return;
       const processed = unpacked(buffer);
-      this.#show(processed, this.#opened);
+      this.#show(processed, this.#opened, isSame);
       this.#describe(processed);
       this.#refuse(null);
       this.#status(`${processed.name}: ${processed.warnings.length ? "read, with warnings" : "read"}`);

@@ -14,7 +14,7 @@ impl Operation {
         let (sign, rule) = if self.overruns() {
             (-1.0, "must be 0 N m or less, as operation.brake_torque_nm is")
         } else {
-            (1.0, "must be 0 N m or more")
+            (1.0, "must be 0 N m or more, as operation.brake_torque_nm is")
         };
         values(torques, "operation.torque_profile_nm", |torque| sign * torque >= 0.0, rule)?;
         // The wander may reach five standard deviations.

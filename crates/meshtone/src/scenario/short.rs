@@ -124,7 +124,7 @@ pub(super) fn top() -> Section {
 pub(super) fn gears() -> Section {
     type Of = ScenarioWheel;
     let material = |key| {
-        row(key, "", "its material", field!(in Of: material))
+        row(key, "", "the material of this wheel alone, its body and teeth", field!(in Of: material))
             .otherwise("gears.material")
             .alternative("\"bronze\"")
     };
@@ -165,15 +165,6 @@ pub(super) fn gears() -> Section {
         both(flank_reduction_row(field!(in Of: uniform_flank_reduction_mm))),
         points_row(field!(in ScenarioMesh: points_per_tooth)).of(MESH),
         foundation_row(field!(in ScenarioMesh: foundation)).of(MESH),
-        row(
-            "phase",
-            "base pitches",
-            "where on its path of contact the first pair of teeth is at the start",
-            field!(in ScenarioMesh: phase),
-        )
-        .otherwise("0")
-        .alternative("0.0")
-        .of(MESH),
     ];
     Section { name: "gears", rows }
 }

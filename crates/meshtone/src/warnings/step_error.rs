@@ -246,7 +246,7 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
 /// which it began. It needs no motion that lasts.
 ///
 /// Single hits come at another time at any other step, and the most violent tenth is less so there. Where it changes, the whole is therefore simulated
-/// again.
+/// again, which takes twice as long as the first time, unless speed or load pass along a profile.
 pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
     let Simulation { stages, channels, states, .. } = simulation;
     let (signals, outputs) = judged_signals(simulation);
@@ -268,7 +268,14 @@ pub(super) fn step_error_of_part(simulation: &Simulation) -> Option<StepError> {
         return Some(StepError::Suspected(1.0));
     }
     let coarse = SquareSums::of_signals(&signals, samples).varying();
-    let changed = largest(coarse.iter().zip(squares.varying()).map(|(&coarse, finer)| gain(coarse, finer)));
+    let finer_part = squares.varying();
+    let changed = largest(coarse.iter().zip(&finer_part).map(|(&coarse, &finer)| gain(coarse, finer)));
+    let operation = &stages.scenario.operation;
+    if operation.speed_profile_hz.is_some() || operation.torque_profile_nm.is_some() {
+        // What passes once, as a resonance of a run-up, would be diluted in the whole.
+        let rate_hz = 2.0 * stages.time.sampling_rate_hz;
+        return judged(changed.abs(), StepJudgement::Repeated, &coarse, || Ok((rate_hz, finer_part)));
+    }
     let whole = SquareSums::of_signals(&signals, 0..channels.len()).varying();
     judged(changed.abs(), StepJudgement::Repeated, &whole, || {
         finer(stages, &outputs).map(|(rate_hz, squares)| (rate_hz, squares.varying()))

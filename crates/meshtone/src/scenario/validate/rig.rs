@@ -39,6 +39,7 @@ impl Scenario {
         let mut warnings = NamedGears::of_pair(&gears).warnings();
         warnings.extend(speed.warnings());
         warnings.extend(honoured.quality().warnings());
+        warnings.extend(honoured.operation.reversed_torque());
         warnings.extend(honoured.rig().into_iter().flat_map(|rig| rig.support.former_defaults()));
         Ok(warnings)
     }
@@ -84,8 +85,27 @@ fn check_values(scenario: &Scenario, rig: &Rig) -> Check {
     check(short::rig())?;
     check_rig(scenario, rig, &gears)?;
     scenario.check_ripple(&WheelName::BOTH.map(WheelName::name))?;
+    check_is_written(scenario)?;
     check_sensors(&scenario.sensors, scenario.model)?;
     check(short::solver())
+}
+
+/// What the file of a pair cannot state would be lost in it, and in all that is made from it.
+fn check_is_written(scenario: &Scenario) -> Check {
+    let start = Scenario::start_of_rig();
+    let ([mesh, ..], [plain, ..]) = (&scenario.meshes[..], &start.meshes[..]) else { return Ok(()) };
+    let lost = [
+        ("mesh.phase", mesh.phase.is_some()),
+        ("mesh.friction", mesh.friction != plain.friction),
+        ("mesh.random_force", mesh.random_force != plain.random_force),
+        ("wheel.helix_wobble_um", scenario.wheels.iter().any(|wheel| wheel.helix_wobble_um != 0.0)),
+    ];
+    match lost.into_iter().find(|(_, is_given)| *is_given) {
+        Some((key, _)) => {
+            Err(ScenarioError::new(key, "", "is a key of gearboxes, and not of one pair in a rig"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The rig with the wheels that run in it.

@@ -85,8 +85,10 @@ impl RecordedDrive {
         if scenario.rig().is_some() && !has_random_force {
             return Ok(drive);
         }
-        drive.needed_s = (FEWEST_CYCLES as f64 + 0.1) * cycle as f64 / speed_hz;
         if cycles < FEWEST_CYCLES {
+            let needed_s = (FEWEST_CYCLES as f64 + 0.1) * cycle as f64 / speed_hz;
+            // Of slower trains too much would have to be simulated.
+            drive.needed_s = if needed_s <= LONGEST_S { needed_s } else { 0.0 };
             return Ok(drive);
         }
         let mut simulated = at_steady_speed(scenario, speed_hz, length_s);

@@ -3,7 +3,7 @@
 use meshtone_fourier::real_spectrum;
 
 use super::drive::factor_of;
-use crate::scenario::{Ripple, Scenario};
+use crate::scenario::{Coupled, GearboxShaft, Ripple, Scenario};
 use crate::signal::{AngularSignal, GearTrain, SignalError, synchronous_average, synchronous_part};
 
 /// Orders of a shaft that are looked at.
@@ -150,8 +150,12 @@ pub(super) fn compared(
     draws: &[RepeatedLines],
 ) -> Vec<RecordedSidebands> {
     let ripple_order = |ripple: &Ripple| {
-        let named = train.shafts.iter().find(|shaft| Some(&shaft.name) == ripple.shaft.as_ref());
-        named.or(train.shafts.last()).map_or(0.0, |shaft| ripple.order * shaft.speed_ratio.value())
+        let named = train.shafts.iter().position(|shaft| Some(&shaft.name) == ripple.shaft.as_ref());
+        // Without a name it is the brake's: of a rig the gear's.
+        let is_brakes = |shaft: &GearboxShaft| shaft.couples_to == Coupled::Brake;
+        let of_brake = || scenario.shafts().iter().position(is_brakes).or(train.shafts.len().checked_sub(1));
+        let shaft = named.or_else(of_brake).and_then(|shaft| train.shafts.get(shaft));
+        shaft.map_or(0.0, |shaft| ripple.order * shaft.speed_ratio.value())
     };
     let ripples: Vec<f64> = scenario.operation.torque_ripple.iter().map(ripple_order).collect();
     let all = sideband_orders(train).into_iter().enumerate();
