@@ -188,6 +188,8 @@ def test_misaligned_shafts_of_a_gearbox_load_the_face_as_those_of_a_pair() -> No
     straight, gearbox = (mt.simulate(one_stage(40.0, mesh={"misalignment_um": of_um, "foundation": {"rotation": "tooth"}}).copy(solver={"duration_s": 0.1})) for of_um in (0.0, 30.0))
     pair = mt.simulate(mt.Scenario(**SLOW, pinion_speed_hz=40, misalignment_um=30, sampling_rate_hz=1e4, duration_s=0.1))
     at_rest = [of.static_mesh(500).transmission_error_um for of in (gearbox, pair, straight)]
-    # The wheels tilt a little differently under the uneven load: on beams in bearings, and in a rig.
-    assert at_rest[0] == pytest.approx(at_rest[1], rel=0.01)
-    assert np.mean(at_rest[0] - at_rest[2]) > 5.0
+    # The nearer end touches 15 µm before the middle, and yields. The wheels tilt a little differently under the uneven load: on beams in
+    # bearings, and in a rig.
+    shift_um = np.mean(at_rest[0] - at_rest[2])
+    assert -15.0 < shift_um < -4.0
+    assert at_rest[0] == pytest.approx(at_rest[1], abs=0.01 * abs(shift_um))
