@@ -103,8 +103,11 @@ pub fn recording(
         wanted(is_wanted)?;
         let records = looked_at.process_one(number, &TrainSettings::default());
         let Some(record) = records.map(|of| of.records.into_iter().next()).transpose() else { continue };
-        if let Ok(record) = &record {
-            warnings.extend(record.warnings.iter().map(ToString::to_string));
+        for warning in record.iter().flat_map(|record| &record.warnings).map(ToString::to_string) {
+            // Wheels on one shaft have one average.
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
         }
         let signals = WheelSignals { record, teeth: wheel.teeth, damaged: Vec::new() };
         let mut said = signals.json(unit, &mut packet);

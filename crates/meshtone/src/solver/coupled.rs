@@ -1165,12 +1165,7 @@ mod tests {
             }
             (equations.count, equations.first_tilt) = (count, meshes);
             let free: OfUnknowns = from_fn(|_| draws.uniform(0.0, 3.0));
-            for row in 0..count {
-                for column in 0..count {
-                    equations.compliance[row][column] =
-                        strength * (0..MOST_MESHES).map(|k| a[row][k] * a[column][k]).sum::<f64>();
-                }
-            }
+            equations.compliance = products(&a, strength, count);
             for start in [-10.0, 0.0, 10.0] {
                 let mut deflection = [start; MOST_UNKNOWNS];
                 let found = equations.solve(&law, &free, &mut deflection, &mut Search::new());
@@ -1186,6 +1181,16 @@ mod tests {
             }
         }
         println!("most iterations {}, searched along the line in {}", most[0], most[1]);
+    }
+
+    /// `s A Aᵀ` of the first unknowns, and 0 of the others.
+    fn products(a: &Matrix, strength: f64, count: usize) -> [[f64; MOST_UNKNOWNS]; MOST_UNKNOWNS] {
+        let product =
+            |row: usize, column: usize| (0..MOST_MESHES).map(|k| a[row][k] * a[column][k]).sum::<f64>();
+        let of = |row: usize, column: usize| {
+            if row.max(column) < count { strength * product(row, column) } else { 0.0 }
+        };
+        from_fn(|row| from_fn(|column| of(row, column)))
     }
 
     /// Springs that push from given deflections on, and coast flanks: 2 000 drawn problems of one to eight meshes, also of such as are
@@ -1211,12 +1216,7 @@ mod tests {
             let mut equations =
                 Equations::without_tilts([count, count], [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS]);
             let free: OfUnknowns = from_fn(|_| draws.uniform(0.0, 3.0));
-            for row in 0..count {
-                for column in 0..count {
-                    equations.compliance[row][column] =
-                        strength * (0..MOST_MESHES).map(|k| a[row][k] * a[column][k]).sum::<f64>();
-                }
-            }
+            equations.compliance = products(&a, strength, count);
             for start in [-10.0, 0.0, 10.0] {
                 let mut deflection = [start; MOST_UNKNOWNS];
                 equations.solve(&Function(law), &free, &mut deflection, &mut Search::new());

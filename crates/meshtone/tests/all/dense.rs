@@ -45,13 +45,14 @@ pub fn coordinates(machine: &Machine, derivative: usize) -> impl Iterator<Item =
     (0..machine.coordinates()).map(move |number| Output::Coordinate { number, derivative })
 }
 
-/// The deviations of the flanks of a simulation.
-pub fn deviations_of(stages: &Stages) -> PairDeviations<'_> {
+/// The deviations of the flanks of a mesh of a simulation.
+pub fn deviations_of(stages: &Stages, mesh: usize) -> PairDeviations<'_> {
+    let pair = &stages.pairs[mesh];
     PairDeviations {
-        teeth: &stages.pairs[0].teeth,
-        errors: stages.pairs[0].profile_errors.as_ref(),
-        eccentricity_m: stages.pairs[0].eccentricity_mm.map(|of_wheel_mm| of_wheel_mm * 1e-3),
-        run_out: stages.pairs[0].run_out,
+        teeth: &pair.teeth,
+        errors: pair.profile_errors.as_ref(),
+        eccentricity_m: pair.eccentricity_mm.map(|of_wheel_mm| of_wheel_mm * 1e-3),
+        run_out: pair.run_out,
     }
 }
 
@@ -436,7 +437,9 @@ impl<'a> Dense<'a> {
         Self {
             machine,
             modes,
-            meshes: stages.meshes.iter().map(|mesh| DenseMesh::new(mesh, deviations_of(stages))).collect(),
+            meshes: (stages.meshes.iter().enumerate())
+                .map(|(number, mesh)| DenseMesh::new(mesh, deviations_of(stages, number)))
+                .collect(),
             time: &stages.time,
             motion: stages.motion().take(samples).collect(),
             is_steady: stages.is_steady(),

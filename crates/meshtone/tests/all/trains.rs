@@ -189,7 +189,7 @@ fn check_pairs_side_by_side(scenarios: &[Scenario; 2], first_pitch: [f64; 2]) ->
         time,
         nominal,
         0,
-        meshes.iter().zip(pairs.each_ref().map(deviations_of)),
+        meshes.iter().zip(pairs.each_ref().map(|stages| deviations_of(stages, 0))),
     );
     let first_speed_hz = operation.speed_profile_hz.as_ref().map_or(nominal[0], |profile| profile.value[0]);
     let start = InitialMotion {
@@ -516,7 +516,7 @@ fn against_dense(pairs: &[Stages; 2]) -> (f64, Vec<Vec<f64>>) {
     let modes = Modes::damped_by_springs(&machine);
     let meshes = pairs.each_ref().map(|stages| stages.meshes[0].clone());
     let motion = || pairs[0].scenario.motion(&time);
-    let deviations = || pairs.each_ref().map(deviations_of);
+    let deviations = || pairs.each_ref().map(|stages| deviations_of(stages, 0));
     let forcing = Forcing::new(motion(), &time, [INPUT_HZ, BRAKE_NM], 0, meshes.iter().zip(deviations()));
     let velocity = &machine.rigid_rotation * (TAU * INPUT_HZ) + DVector::from_column_slice(&PUSH);
     let start = start(Some(velocity.as_slice()));

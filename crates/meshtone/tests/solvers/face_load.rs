@@ -2,16 +2,13 @@
 //! with two unknowns a mesh.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::f64::consts::TAU;
-
 use meshtone::machine::{Drive, Machine};
-use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
-use meshtone::solver::{InitialMotion, Output};
+use meshtone::solver::Output;
 use meshtone::{Stages, stages};
 use nalgebra::{DMatrix, DVector};
 
-use crate::dense::{Dense, DenseMesh, coordinates, outputs_from};
+use crate::dense::{Dense, coordinates, outputs_from};
 use crate::plain::plain;
 
 /// Springs along each face.
@@ -243,30 +240,8 @@ fn leaning_faces_move_as_with_dense_matrices() {
         gearbox.faults = faults;
         let stages = stages(&gearbox).unwrap();
         assert!(stages.meshes.iter().all(|mesh| mesh.two_unknowns().is_some()), "{name}");
-        let (machine, modes) = stages.machine_and_modes().unwrap();
-        let nominal_rad_per_s = TAU * gearbox.operation.pinion_speed_hz;
-        let deviations = |mesh: usize| PairDeviations {
-            teeth: &stages.pairs[mesh].teeth,
-            errors: stages.pairs[mesh].profile_errors.as_ref(),
-            eccentricity_m: [0.0; 2],
-            run_out: stages.pairs[mesh].run_out,
-        };
-        let dense = Dense {
-            machine,
-            modes,
-            meshes: (stages.meshes.iter().enumerate())
-                .map(|(n, mesh)| DenseMesh::new(mesh, deviations(n)))
-                .collect(),
-            time: &stages.time,
-            motion: stages.motion().take(stages.time.samples).collect(),
-            is_steady: true,
-            start: InitialMotion {
-                nominal_rad_per_s,
-                brake_torque_nm: gearbox.operation.brake_torque_nm,
-                motor_rad_per_s: nominal_rad_per_s,
-                velocity: None,
-            },
-        };
+        let (machine, _) = stages.machine_and_modes().unwrap();
+        let dense = Dense::of(&stages, stages.time.samples);
         let theirs = dense.accelerations();
         let outputs: Vec<Output> = coordinates(machine, 2).collect();
         let ours = outputs_from(0, &stages, &outputs);

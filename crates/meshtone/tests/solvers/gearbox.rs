@@ -4,12 +4,10 @@
 use meshtone::sensor::{NamedSignal, SignalSource};
 use std::f64::consts::TAU;
 
-use crate::dense::{Dense, DenseMesh};
+use crate::dense::Dense;
 use crate::plain::plain;
 use meshtone::batch::{Control, KeepOf, simulate_many};
-use meshtone::mesh::PairDeviations;
 use meshtone::scenario::*;
-use meshtone::solver::InitialMotion;
 use meshtone::wheel::ErrorTable;
 use meshtone::{MeshedPair, Simulation, Stages, StepJudgement, stages, stages_within};
 
@@ -140,34 +138,9 @@ fn gearbox_moves_as_with_dense_matrices() {
     gearbox.solver.duration_s = Some(0.003);
     let simulation = simulate(&gearbox);
     let stages = &simulation.stages;
-    let (machine, modes) = stages.machine_and_modes().unwrap();
+    let (machine, _) = stages.machine_and_modes().unwrap();
     let time = &stages.time;
-    let nominal_rad_per_s = TAU * gearbox.operation.pinion_speed_hz;
-    let deviations = |mesh: usize| PairDeviations {
-        teeth: &stages.pairs[mesh].teeth,
-        errors: stages.pairs[mesh].profile_errors.as_ref(),
-        eccentricity_m: [0.0; 2],
-        run_out: stages.pairs[mesh].run_out,
-    };
-    let dense = Dense {
-        machine,
-        modes,
-        meshes: stages
-            .meshes
-            .iter()
-            .enumerate()
-            .map(|(n, mesh)| DenseMesh::new(mesh, deviations(n)))
-            .collect(),
-        time,
-        motion: stages.motion().take(time.samples).collect(),
-        is_steady: true,
-        start: InitialMotion {
-            nominal_rad_per_s,
-            brake_torque_nm: gearbox.operation.brake_torque_nm,
-            motor_rad_per_s: nominal_rad_per_s,
-            velocity: None,
-        },
-    };
+    let dense = Dense::of(stages, time.samples);
     let accelerations = dense.accelerations();
     for (sensor, signal) in stages.sensors.iter().zip(&simulation.channels.signals) {
         let weights = machine.weights(&sensor.name(), meshtone::machine::Axis::Y);

@@ -92,12 +92,11 @@ fn check_values(scenario: &Scenario, rig: &Rig) -> Check {
 
 /// What the file of a pair cannot state would be lost in it, and in all that is made from it.
 fn check_is_written(scenario: &Scenario) -> Check {
-    let start = Scenario::start_of_rig();
-    let ([mesh, ..], [plain, ..]) = (&scenario.meshes[..], &start.meshes[..]) else { return Ok(()) };
+    let meshes = || scenario.meshes.iter();
     let lost = [
-        ("mesh.phase", mesh.phase.is_some()),
-        ("mesh.friction", mesh.friction != plain.friction),
-        ("mesh.random_force", mesh.random_force != plain.random_force),
+        ("mesh.phase", meshes().any(|mesh| mesh.phase.is_some())),
+        ("mesh.friction", meshes().any(|mesh| mesh.friction != 0.0)),
+        ("mesh.random_force", meshes().any(|mesh| mesh.random_force != 0.0)),
         ("wheel.helix_wobble_um", scenario.wheels.iter().any(|wheel| wheel.helix_wobble_um != 0.0)),
     ];
     match lost.into_iter().find(|(_, is_given)| *is_given) {
