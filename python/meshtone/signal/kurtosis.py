@@ -114,7 +114,7 @@ def spectral_kurtosis(signal: npt.ArrayLike, block_samples: int) -> Array:
     Returns
     -------
     array, shape (block_samples // 2 + 1,)
-        From frequency 0 to half the sampling rate; NaN where there is nothing.
+        From frequency 0 to half the sampling rate; 0 where there is nothing, which is not impulsive.
 
     Raises
     ------

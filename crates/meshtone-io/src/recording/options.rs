@@ -1,5 +1,7 @@
 //! What is to be read, and what the file does not say itself.
 
+use meshtone::signal::SAMPLING_RATES_HZ;
+
 use super::RecordingFormat;
 use super::error::Problem;
 
@@ -142,9 +144,8 @@ pub struct RecordingOptions {
 impl RecordingOptions {
     /// Checks the numbers, which the types do not rule out.
     pub(super) fn check(&self) -> Result<(), Problem> {
-        let positive = |rate: &f64| rate.is_finite() && *rate > 0.0;
-        if let Some(rate) = self.sampling_rate_hz.filter(|rate| !positive(rate)) {
-            let problem = format!("sampling_rate_hz is {rate}; must be a finite number above 0");
+        if let Some(rate) = self.sampling_rate_hz.filter(|rate| !SAMPLING_RATES_HZ.contains(rate)) {
+            let problem = format!("sampling_rate_hz is {rate:e}; must be from 1e-6 to 1e12 S/s");
             return Err(Problem::Option(problem));
         }
         for calibration in &self.calibrations {

@@ -1,5 +1,7 @@
 //! Sampling rates that a file states.
 
+use meshtone::signal::SAMPLING_RATES_HZ;
+
 use super::RecordingOptions;
 use super::error::{Problem, names};
 use super::time::Timing;
@@ -53,6 +55,19 @@ impl StatedRate {
 /// * `options` - of the recording
 /// * `present` - the columns of the file, for messages
 pub(super) fn decide(
+    stated: &[StatedRate],
+    timing: Option<(&str, Timing)>,
+    options: &RecordingOptions,
+    present: impl Fn() -> Vec<String>,
+) -> Result<(f64, f64), Problem> {
+    let (rate_hz, start_s) = stated_or_timed(stated, timing, options, present)?;
+    if SAMPLING_RATES_HZ.contains(&rate_hz) {
+        return Ok((rate_hz, start_s));
+    }
+    Err(Problem::rate(&format!("a sampling rate of {rate_hz:e} S/s; must be from 1e-6 to 1e12 S/s")))
+}
+
+fn stated_or_timed(
     stated: &[StatedRate],
     timing: Option<(&str, Timing)>,
     options: &RecordingOptions,

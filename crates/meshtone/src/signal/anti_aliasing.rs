@@ -141,11 +141,11 @@ impl AntiAliasing {
 fn rate_of(from_hz: f64, to_hz: f64) -> Result<f64, SignalError> {
     check_positive("from_hz", from_hz)?;
     check_positive("to_hz", to_hz)?;
-    let rate = (from_hz / to_hz).max(1.0);
-    if rate > 1e5 {
-        return Err(SignalError::parameter("to_hz", to_hz, "at least 1e-5 of from_hz"));
+    let rate = from_hz / to_hz;
+    if !(1e-5..=1e5).contains(&rate) {
+        return Err(SignalError::parameter("to_hz", to_hz, "from 1e-5 to 1e5 of from_hz"));
     }
-    Ok(rate)
+    Ok(rate.max(1.0))
 }
 
 #[cfg(test)]

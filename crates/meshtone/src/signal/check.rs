@@ -1,6 +1,16 @@
 //! A check that a channel can be processed.
 
-use super::SignalError;
+use std::ops::RangeInclusive;
+
+use super::{SignalError, peak};
+
+/// Size up to which all powers of a sample that indicators take are numbers; no unit makes more of a vibration.
+const LARGEST: f64 = 1e35;
+/// Size of the largest sample from which they are.
+const LEAST_PEAK: f64 = 1e-35;
+
+/// (S/s) Sampling rates that a recording may have.
+pub const SAMPLING_RATES_HZ: RangeInclusive<f64> = 1e-6..=1e12;
 
 /// Checks that a channel holds a vibration.
 ///
@@ -8,7 +18,7 @@ use super::SignalError;
 /// * `signal` - the channel
 ///
 /// # Errors
-/// NaN or infinity, with the first position; a constant channel; fewer than two samples.
+/// NaN or infinity, with the first position; a constant channel; fewer than two samples; a largest sample below 1e-35 or above 1e35.
 ///
 /// ```
 /// use meshtone::signal::{SignalError, check_channel};
@@ -22,7 +32,18 @@ pub fn check_channel(signal: &[f64]) -> Result<(), SignalError> {
     if signal.iter().all(|&x| x == signal[0]) {
         return Err(SignalError::Constant { value: signal[0], samples: signal.len() });
     }
-    Ok(())
+    match peak(signal) {
+        peak if peak >= LEAST_PEAK => Ok(()),
+        peak => Err(SignalError::parameter("the largest sample", peak, "at least 1e-35: use another unit")),
+    }
+}
+
+/// Checks that a sampling rate is one of a recording.
+pub(super) fn check_rate(rate_hz: f64) -> Result<(), SignalError> {
+    match SAMPLING_RATES_HZ.contains(&rate_hz) {
+        true => Ok(()),
+        false => Err(SignalError::parameter("sampling_rate_hz", rate_hz, "from 1e-6 to 1e12 S/s")),
+    }
 }
 
 /// Checks that there are enough of something.
@@ -47,13 +68,19 @@ pub(super) fn check_mesh_order(teeth: usize, nyquist_order: f64) -> Result<(), S
     Ok(())
 }
 
-/// Checks that every value is a number.
+/// Checks that every value is a number, and none beyond all units.
 pub(super) fn check_finite(signal: &[f64]) -> Result<(), SignalError> {
     // All of them first, many at a time: hardly any signal has to be searched.
-    if signal.iter().fold(true, |finite, x| finite & x.is_finite()) {
+    if signal.iter().fold(true, |small, x| small & (x.abs() <= LARGEST)) {
         return Ok(());
     }
-    let sample = signal.iter().position(|x| !x.is_finite()).unwrap_or(0);
+    let Some(sample) = signal.iter().position(|x| !x.is_finite()) else {
+        return Err(SignalError::parameter(
+            "the largest sample",
+            peak(signal),
+            "at most 1e35: use another unit",
+        ));
+    };
     let count = signal.iter().filter(|x| !x.is_finite()).count();
     Err(SignalError::NotFinite { sample, value: signal[sample], count, samples: signal.len() })
 }

@@ -6,7 +6,7 @@ use meshtone_fourier::{
     Complex64, convenient_count, convenient_length, hann_window, inverse_complex, real_spectrum,
 };
 
-use super::check::{check_channel, check_count, check_positive};
+use super::check::{check_channel, check_count, check_rate};
 use super::{FrequencyBand, SignalError};
 
 /// Fewest lines of the spectrum in a band.
@@ -15,6 +15,8 @@ const FEWEST_LINES: usize = 256;
 const TRANSITION: f64 = 0.125;
 /// (-) Part of a signal's power below which a band holds nothing but what a recorder, a filter, or the end of a simulation's modes leaves.
 const NOTHING: f64 = 1e-5;
+/// (-) Part of the power at the strongest line below which a line is what rounding leaves.
+const ROUNDING: f64 = 1e-24;
 /// Blocks that begin within the length of one.
 const OVERLAPPING: usize = 4;
 
@@ -98,7 +100,7 @@ impl Kurtogram {
 /// ```
 pub fn kurtogram(signal: &[f64], sampling_rate_hz: f64, most_levels: u32) -> Result<Kurtogram, SignalError> {
     check_channel(signal)?;
-    check_positive("sampling_rate_hz", sampling_rate_hz)?;
+    check_rate(sampling_rate_hz)?;
     check_count("samples", signal.len(), 2 * FEWEST_LINES)?;
     let mut spectrum = real_spectrum(&signal[..convenient_count(signal.len())]);
     spectrum[0] = Complex64::default();
@@ -158,7 +160,7 @@ fn kurtosis_in_bands(spectrum: &[Complex64], bands: usize) -> Vec<f64> {
 /// * `signal` - (any unit) the signal, at least two blocks long
 /// * `block_samples` - (at least 4) length of a block: longer than a burst, shorter than the distance of two
 ///
-/// Returns `block_samples/2 + 1` values, from frequency 0 to half the sampling rate; NaN where there is nothing.
+/// Returns `block_samples/2 + 1` values, from frequency 0 to half the sampling rate; 0 where there is nothing, which is not impulsive.
 ///
 /// # Errors
 /// NaN; a constant signal; blocks that are too short or too long.
@@ -192,7 +194,11 @@ pub fn spectral_kurtosis(signal: &[f64], block_samples: usize) -> Result<Vec<f64
         }
         blocks += 1.0;
     }
+    let strongest = moments.iter().map(|[second, _]| *second).fold(0.0, f64::max);
     let value = |(line, [second, fourth]): (usize, [f64; 2])| {
+        if second <= ROUNDING * strongest {
+            return 0.0;
+        }
         let of_noise = if line == 0 || 2 * line == block_samples { 3.0 } else { 2.0 };
         fourth * blocks / (second * second) - of_noise
     };

@@ -62,7 +62,7 @@ pub use bearing::{
     BearingDefects, BearingRecords, BearingSeparation, BearingSettings, BearingVerdict, CannotTell,
     DefectKind, DefectLine, EnvelopeBand, RaceTest, TrainBearing, UnexplainedComb, defect_lines,
 };
-pub use check::check_channel;
+pub use check::{SAMPLING_RATES_HZ, check_channel};
 pub use check_recording::check_recording;
 pub use edge::Edge;
 pub use envelope::{analytic_signal, envelope, envelope_spectrum};

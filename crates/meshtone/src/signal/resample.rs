@@ -30,7 +30,7 @@ const RATIO_TOLERANCE: f64 = 1e-12;
 /// Returns `⌈n to/from⌉` samples; sample m lies at `m from/to` of the signal.
 ///
 /// # Errors
-/// An empty signal; a rate that is not positive, or below 1e-5 of the other.
+/// An empty signal; a rate that is not positive, or above 1e5 of the other.
 ///
 /// ```
 /// use meshtone::signal::{Edge, resample_to};

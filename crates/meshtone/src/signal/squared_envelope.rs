@@ -2,7 +2,7 @@
 
 use meshtone_fourier::{Complex64, hann_window, inverse_complex, real_spectrum};
 
-use super::check::{check_channel, check_positive};
+use super::check::{check_channel, check_rate};
 use super::{AngularSettings, ShaftPhase, SignalError, angular_resample};
 
 /// A band of frequencies.
@@ -54,7 +54,7 @@ pub fn squared_envelope(
     band: Option<FrequencyBand>,
 ) -> Result<Vec<f64>, SignalError> {
     check_channel(signal)?;
-    check_positive("sampling_rate_hz", sampling_rate_hz)?;
+    check_rate(sampling_rate_hz)?;
     let len = signal.len();
     let band = band.unwrap_or(FrequencyBand { from_hz: 0.0, to_hz: 0.5 * sampling_rate_hz });
     // What is not a number is refused too.

@@ -227,7 +227,8 @@ pub fn standard_deviation(signal: &[f64]) -> f64 {
 /// * `signal` - the signal
 /// * `order` - k
 ///
-/// None where the signal is constant (to rounding) or empty, and so has no shape. Without a correction for small
+/// None where the signal is constant (to rounding) or empty, and so has no shape, or where the moments are no numbers, which they are of
+/// what [`check_channel`](super::check_channel) accepts. Without a correction for small
 /// samples.
 ///
 /// ```
@@ -245,7 +246,7 @@ pub fn standardised_moment(signal: &[f64], order: i32) -> Option<f64> {
     let rounding = 4.0 * f64::EPSILON * sums.peak;
     // Without the root where there is none, as in NA4 of a single record.
     let scale = if order % 2 == 0 { variance.powi(order / 2) } else { deviation.powi(order) };
-    (deviation > rounding).then(|| moment / scale)
+    (deviation > rounding && scale.is_normal()).then(|| moment / scale)
 }
 
 /// Skewness `µ₃/µ₂^1.5`: 0 for what is as often so far above as below its mean.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use meshtone_fourier::{hann_window, real_spectrum};
 
-use super::check::{check_channel, check_positive};
+use super::check::{check_channel, check_rate};
 use super::{FrequencyBand, SignalError};
 
 /// The frequencies of [`velocity_rms`].
@@ -41,7 +41,7 @@ const SHORTEST_S: f64 = 1.0;
 /// ```
 pub fn velocity_rms(acceleration_m_per_s2: &[f64], sampling_rate_hz: f64) -> Result<f64, SignalError> {
     check_channel(acceleration_m_per_s2)?;
-    check_positive("sampling_rate_hz", sampling_rate_hz)?;
+    check_rate(sampling_rate_hz)?;
     let FrequencyBand { from_hz, to_hz } = VELOCITY_BAND;
     if sampling_rate_hz <= 2.0 * to_hz {
         return Err(SignalError::parameter("sampling_rate_hz", sampling_rate_hz, "more than 2000"));

@@ -123,6 +123,23 @@ fn kurtosis_of_bursts_is_the_closed_form() {
     assert!((found / expected - 1.0).abs() < 0.1, "{found} {expected}");
 }
 
+/// A signal that only its size or its emptiness makes odd gives numbers or an error, whatever it is.
+#[test]
+fn spectral_kurtosis_of_odd_signals_is_a_number_or_refused() {
+    let impulse = |at: usize, size: f64| (0..512).map(|i| if i == at { size } else { 0.0 }).collect();
+    let tone = |size: f64| (0..512).map(|i| size * f64::from(i).sin()).collect();
+    let good: [Vec<f64>; 5] =
+        [impulse(0, 1.0), impulse(300, -1e30), impulse(511, 1e-30), tone(1e35), tone(1e-34)];
+    for signal in good {
+        assert!(spectral_kurtosis(&signal, 64).unwrap().iter().all(|value| value.is_finite()));
+    }
+    let odd: [Vec<f64>; 6] =
+        [vec![0.0; 512], vec![3.0; 512], impulse(9, 1e200), impulse(9, 5e-324), tone(f64::NAN), tone(1e-200)];
+    for signal in odd {
+        assert!(spectral_kurtosis(&signal, 64).is_err());
+    }
+}
+
 #[test]
 fn spectral_kurtosis_is_zero_in_noise_and_finds_the_resonance_of_bursts() {
     let noise = noise(5, 200_000);

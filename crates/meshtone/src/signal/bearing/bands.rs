@@ -2,7 +2,7 @@
 
 use meshtone_fourier::{Complex64, convenient_length, hann_window, inverse_complex, real_spectrum};
 
-use crate::signal::check::{check_channel, check_positive};
+use crate::signal::check::{check_channel, check_rate};
 use crate::signal::{FrequencyBand, ShaftPhase, SignalError};
 
 /// Equal parts of all frequencies that are looked at, each part as a band: nobody knows which resonance a defect rings in.
@@ -82,7 +82,7 @@ pub(super) fn band_spectra(
     least_width_hz: f64,
 ) -> Result<Vec<BandSpectra>, SignalError> {
     check_channel(signal)?;
-    check_positive("sampling_rate_hz", sampling_rate_hz)?;
+    check_rate(sampling_rate_hz)?;
     phases.iter().try_for_each(ShaftPhase::check)?;
     let spectrum = real_spectrum(signal);
     let per_hz = signal.len() as f64 / sampling_rate_hz;

@@ -2,7 +2,7 @@
 
 use super::{AngleZero, ShaftPhase};
 use crate::signal::SignalError;
-use crate::signal::check::check_positive;
+use crate::signal::check::{check_positive, check_rate};
 
 impl ShaftPhase {
     /// A shaft of constant speed, at angle 0 at the first sample.
@@ -22,7 +22,7 @@ impl ShaftPhase {
     /// ```
     pub fn constant(speed_hz: f64, sampling_rate_hz: f64, samples: usize) -> Result<Self, SignalError> {
         check_positive("speed_hz", speed_hz)?;
-        check_positive("sampling_rate_hz", sampling_rate_hz)?;
+        check_rate(sampling_rate_hz)?;
         let step_rev = speed_hz / sampling_rate_hz;
         let revolutions = (0..samples).map(|i| i as f64 * step_rev).collect();
         Ok(Self::new(0, revolutions)?.with_zero(AngleZero::FirstSample))

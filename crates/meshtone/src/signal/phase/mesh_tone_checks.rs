@@ -3,7 +3,7 @@
 use meshtone_fourier::Complex64;
 
 use super::mesh_tone::{Band, MeshTone};
-use crate::signal::check::{check_channel, check_count, check_positive};
+use crate::signal::check::{check_channel, check_count, check_positive, check_rate};
 use crate::signal::{SignalError, SignalWarning};
 
 /// Least mean power in the band over the median around it.
@@ -21,7 +21,7 @@ const FADED: f64 = 0.1;
 
 /// Checks whether the tone and its band make sense for the recording.
 pub(super) fn check(signal: &[f64], sampling_rate_hz: f64, tone: &MeshTone) -> Result<(), SignalError> {
-    check_positive("sampling_rate_hz", sampling_rate_hz)?;
+    check_rate(sampling_rate_hz)?;
     check_positive("teeth", f64::from(tone.teeth))?;
     check_positive("harmonic", f64::from(tone.harmonic))?;
     check_positive("shaft_hz", tone.shaft_hz)?;

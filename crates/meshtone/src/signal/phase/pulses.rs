@@ -3,7 +3,7 @@
 use super::{AngleZero, PulseTrain, ShaftPhase, repair_pulses};
 use crate::interpolation::PchipThrough;
 use crate::signal::SignalError;
-use crate::signal::check::check_positive;
+use crate::signal::check::{check_positive, check_rate};
 
 /// Relative deviation of the stated from the found speed that is no mistake.
 const SPEED_TOLERANCE: f64 = 0.05;
@@ -45,7 +45,7 @@ impl ShaftPhase {
         samples: usize,
     ) -> Result<Self, SignalError> {
         check_positive("pulses_per_revolution", f64::from(pulses_per_revolution))?;
-        check_positive("sampling_rate_hz", sampling_rate_hz)?;
+        check_rate(sampling_rate_hz)?;
         let PulseTrain { time_s, warnings } = repair_pulses(time_s)?;
         let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
         let per_pulse = 1.0 / f64::from(pulses_per_revolution);

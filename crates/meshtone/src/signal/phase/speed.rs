@@ -1,7 +1,7 @@
 //! Phase by integration of the speed.
 
 use super::{AngleZero, ShaftPhase};
-use crate::signal::check::{check_count, check_finite, check_length, check_positive};
+use crate::signal::check::{check_count, check_finite, check_length, check_positive, check_rate};
 use crate::signal::{SignalError, SignalWarning};
 
 impl ShaftPhase {
@@ -35,7 +35,7 @@ impl ShaftPhase {
         samples: usize,
     ) -> Result<Self, SignalError> {
         check_profile(time_s, speed_hz)?;
-        check_positive("sampling_rate_hz", sampling_rate_hz)?;
+        check_rate(sampling_rate_hz)?;
         // Angle at the profile's own times, relative to the first of them.
         let mut at_knots = vec![0.0; time_s.len()];
         for i in 1..time_s.len() {
@@ -83,7 +83,7 @@ impl ShaftPhase {
     /// # Ok::<(), meshtone::signal::SignalError>(())
     /// ```
     pub fn from_speed_samples(speed_hz: &[f64], sampling_rate_hz: f64) -> Result<Self, SignalError> {
-        check_positive("sampling_rate_hz", sampling_rate_hz)?;
+        check_rate(sampling_rate_hz)?;
         check_finite(speed_hz)?;
         let mut sum = 0.0;
         let first = speed_hz.first().map(|_| 0.0);

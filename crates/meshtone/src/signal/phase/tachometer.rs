@@ -1,7 +1,7 @@
 //! Pulses in a tachometer's waveform.
 
 use crate::signal::SignalError;
-use crate::signal::check::{check_channel, check_positive};
+use crate::signal::check::{check_channel, check_positive, check_rate};
 
 /// Parts of the sorted waveform that stand for its low and high level: neither spikes nor short pulses decide.
 const LOW_LEVEL: f64 = 0.005;
@@ -59,7 +59,7 @@ pub fn tachometer_pulses(
     tachometer: &Tachometer,
 ) -> Result<Vec<f64>, SignalError> {
     check_channel(waveform)?;
-    check_positive("sampling_rate_hz", sampling_rate_hz)?;
+    check_rate(sampling_rate_hz)?;
     let (low, high) = levels(waveform);
     let threshold = tachometer.threshold.unwrap_or(0.5 * (low + high));
     let hysteresis = tachometer.hysteresis.unwrap_or(HYSTERESIS * (high - low));
