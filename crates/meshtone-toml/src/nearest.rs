@@ -3,6 +3,9 @@
 /// Similarity below which two names are rather different words than one word misspelt.
 const LEAST_SIMILARITY: f64 = 0.7;
 
+/// (bytes) Length from which a text is no name misspelt: comparing takes time by the product of the lengths.
+const LONGEST_NAME: usize = 100;
+
 /// The candidate that a misspelt name most probably means, if any is near.
 ///
 /// # Arguments
@@ -16,8 +19,8 @@ const LEAST_SIMILARITY: f64 = 0.7;
 /// assert_eq!(nearest_name("colour", ["module_mm", "pinion_teeth"]), None);
 /// ```
 pub fn nearest_name<'n>(written: &str, candidates: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    let candidates = candidates.into_iter().take_while(|_| written.len() < LONGEST_NAME);
     candidates
-        .into_iter()
         .map(|candidate| (similarity(written, candidate), candidate))
         .filter(|(similarity, _)| *similarity >= LEAST_SIMILARITY)
         .max_by(|(left, _), (right, _)| left.total_cmp(right))
@@ -26,7 +29,9 @@ pub fn nearest_name<'n>(written: &str, candidates: impl IntoIterator<Item = &'n 
 
 /// Returns whether one of the two names is surely the other one misspelt: one or two letters differ, or the unit at its end does.
 pub(crate) fn is_misspelling(written: &str, name: &str) -> bool {
-    name.len() >= 4 && (strsim::damerau_levenshtein(written, name) <= 2 || has_another_unit(written, name))
+    name.len() >= 4
+        && written.len() < LONGEST_NAME
+        && (strsim::damerau_levenshtein(written, name) <= 2 || has_another_unit(written, name))
 }
 
 /// Returns whether the two names are of the same quantity in two units, which stand behind the last underscore: `speed_rpm` and

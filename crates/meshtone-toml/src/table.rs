@@ -19,7 +19,8 @@ const MOST_OWNERS: usize = 3;
 pub struct TomlTable<'a> {
     text: &'a str,
     path: String,
-    line: Option<usize>,
+    /// Byte position, whose line errors about what the table lacks name: it is counted only then.
+    position: Option<usize>,
     /// None where the text leaves the table out: every key is then at its default.
     table: Option<&'a DeTable<'a>>,
     /// The table that this one is a section of, where that is known.
@@ -31,10 +32,10 @@ impl<'a> TomlTable<'a> {
     pub(crate) fn new(
         text: &'a str,
         path: String,
-        line: Option<usize>,
+        position: Option<usize>,
         table: Option<&'a DeTable<'a>>,
     ) -> Self {
-        Self { text, path, line, table, around: None, asked: RefCell::default() }
+        Self { text, path, position, table, around: None, asked: RefCell::default() }
     }
 
     /// The dotted key of this table, empty for the top level.
@@ -125,7 +126,10 @@ impl<'a> TomlTable<'a> {
             Some(value) => Ok(Self { around: self.table, ..value.table()? }),
             None => {
                 self.refuse_misspelling_of(key)?;
-                Ok(Self { around: self.table, ..Self::new(self.text, self.path_of(key), self.line, None) })
+                Ok(Self {
+                    around: self.table,
+                    ..Self::new(self.text, self.path_of(key), self.position, None)
+                })
             }
         }
     }
@@ -202,7 +206,8 @@ impl<'a> TomlTable<'a> {
     pub fn error(&self, key: &str, problem: impl Into<String>) -> TomlError {
         let entry = self.table.and_then(|table| table.get_key_value(key));
         let value = entry.map(|(_, value)| written(self.text, value)).unwrap_or_default();
-        let line = entry.map(|(key, _)| line_at(self.text, key.span().start)).or(self.line);
+        let position = entry.map(|(key, _)| key.span().start).or(self.position);
+        let line = position.map(|position| line_at(self.text, position));
         TomlError::new(self.path_of(key), value, problem).at_line(line)
     }
 

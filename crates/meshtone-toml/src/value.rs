@@ -8,6 +8,9 @@ use toml::de::DeValue;
 use crate::document::{line_at, written};
 use crate::{ErrorKind, ReadResult, TomlError, TomlTable, nearest_name};
 
+/// Most tables of a list: what compares each with all others takes no time then.
+const MOST_TABLES: usize = 1000;
+
 /// One value of a TOML text, with its key and line.
 #[derive(Debug, Clone)]
 pub struct TomlValue<'a> {
@@ -152,11 +155,15 @@ impl<'a> TomlValue<'a> {
     /// The entries of an array; entry n has the key `name[n]`, counted from 0.
     ///
     /// # Errors
-    /// The value is of another type.
+    /// The value is of another type, or a list of more than a thousand tables.
     pub fn array(&self) -> ReadResult<Vec<TomlValue<'a>>> {
         let DeValue::Array(entries) = self.value.get_ref() else {
             return Err(self.wrong_type("an array, [ … ]"));
         };
+        let count = entries.len();
+        if count > MOST_TABLES && entries.first().is_some_and(|entry| entry.get_ref().is_table()) {
+            return Err(self.error(format!("has {count} entries; must have {MOST_TABLES} at most")));
+        }
         let entry = |(index, value): (usize, &'a Spanned<DeValue<'a>>)| {
             TomlValue::new(self.text, format!("{}[{index}]", self.path), value.span().start, value)
         };
@@ -192,7 +199,7 @@ impl<'a> TomlValue<'a> {
     pub(crate) fn table_at(&self, path: &str) -> ReadResult<TomlTable<'a>> {
         match self.value.get_ref() {
             DeValue::Table(table) => {
-                Ok(TomlTable::new(self.text, path.to_string(), Some(self.line()), Some(table)))
+                Ok(TomlTable::new(self.text, path.to_string(), Some(self.position), Some(table)))
             }
             _ => Err(self.wrong_type("a table, { key = value, … } or a [section]")),
         }

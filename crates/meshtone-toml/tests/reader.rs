@@ -248,3 +248,13 @@ fn a_key_that_says_not_whose_it_is_means_any_of_them() {
     assert_eq!(error.key, "gears.addendum");
     assert_eq!(error.help.as_deref(), Some("did you mean `pinion_addendum` or `gear_addendum`?"));
 }
+
+/// What a text of two megabytes may hold: each took seconds, by the square of its length.
+#[test]
+fn long_texts_are_refused_at_once() {
+    let many = "[[motor]]\nname = 1\n".repeat(100_000);
+    let document = TomlDocument::parse(&many).unwrap();
+    let error = document.root().tables("motor").unwrap_err();
+    assert_eq!(error.problem, "has 100000 entries; must have 1000 at most");
+    assert_eq!(meshtone_toml::nearest_name(&"module_mm".repeat(50), ["module_mm"]), None);
+}
