@@ -31,7 +31,7 @@ pub(super) fn assemble(
     for (index, column) in selection.wanted.iter().zip(&samples) {
         check_finite(&labels[*index], column)?;
     }
-    let slot = |index: usize| selection.wanted.iter().position(|wanted| *wanted == index);
+    let slot = |index: usize| selection.wanted.binary_search(&index).ok();
     let timing = match selection.time {
         Some((index, unit_s)) => {
             let times = slot(index).map(|slot| &samples[slot][..]).unwrap_or_default();

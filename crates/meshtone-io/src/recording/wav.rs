@@ -61,7 +61,8 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
     };
     let selection = select(&labels, options)?;
     memory_need::check(memory::limit(), options, &selection, |_| layout.samples, 0)?;
-    let wanted: Vec<bool> = (0..channels).map(|channel| selection.wanted.contains(&channel)).collect();
+    let wanted: Vec<bool> =
+        (0..channels).map(|channel| selection.wanted.binary_search(&channel).is_ok()).collect();
     let mut samples = read_channels(&mut from, layout, format.numbers, &wanted, bytes)?;
     if format.full_scale != 1.0 {
         let scaled = samples.iter_mut().flatten();
