@@ -36,7 +36,8 @@ pub fn na4<R: AsRef<[f64]>>(residuals: &[R]) -> Result<Vec<Option<f64>>, SignalE
         check_finite(residual)?;
         sum += central_moment(residual, 2);
         let mean: f64 = sum / (record + 1) as f64;
-        Ok((mean > 0.0).then(|| central_moment(residual, 4) / (mean * mean)))
+        // Of what is below all units the square is no number.
+        Ok((mean * mean).is_normal().then(|| central_moment(residual, 4) / (mean * mean)))
     };
     residuals.iter().enumerate().map(&mut value).collect()
 }
