@@ -158,6 +158,25 @@ proptest! {
     }
 }
 
+/// The inputs with which fuzzing begins, among them those that it has found.
+#[test]
+fn seeds_of_fuzzing_are_read_or_refused() {
+    let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
+    for (target, ending) in [
+        ("text", "csv"),
+        ("parquet", "parquet"),
+        ("npy", "npy"),
+        ("npz", "npz"),
+        ("mat", "mat"),
+        ("hdf5", "h5"),
+        ("wav", "wav"),
+    ] {
+        for seed in fs::read_dir(seeds.join(target)).unwrap() {
+            check_both(&format!("a.{ending}"), &fs::read(seed.unwrap().path()).unwrap());
+        }
+    }
+}
+
 /// Every single byte of a whole file, set to what makes lengths large.
 #[test]
 fn every_byte_may_be_wrong() {

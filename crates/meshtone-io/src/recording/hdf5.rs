@@ -29,11 +29,11 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     file.seek(SeekFrom::Start(0))?;
     let source = ReadSeekSource::new(file).map_err(Problem::broken)?;
     let opened = hdf5_pure::File::from_source(source).map_err(Problem::broken)?;
-    let mut arrays = Arrays { of_matlab: head == MATLAB, found: Vec::new(), groups: 0 };
+    let mut arrays = Arrays { of_matlab: head == MATLAB, file_bytes, found: Vec::new(), groups: 0 };
     arrays.collect(&opened.root(), "", 0)?;
     let (entries, data_sets): (Vec<ArrayEntry>, Vec<Dataset>) = arrays.found.into_iter().unzip();
     read_arrays(&entries, options, true, |index, layout, numbers, wanted| {
-        let mut rows = Rows::new(&data_sets[index])?;
+        let mut rows = Rows::new(&data_sets[index], file_bytes)?;
         let present = file_bytes.saturating_mul(USUAL_COMPRESSION);
         Ok(read_channels(&mut rows, layout, numbers, wanted, present)?)
     })
@@ -42,6 +42,7 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
 /// The arrays of a file that have been found.
 struct Arrays {
     of_matlab: bool,
+    file_bytes: u64,
     found: Vec<(ArrayEntry, Dataset)>,
     groups: usize,
 }
@@ -84,7 +85,7 @@ impl Arrays {
         let mut shape = data_set.shape().map_err(Problem::broken)?;
         let mut numbers = numbers_of(data_set)?;
         let mut single = None;
-        let rows = Rows::new(data_set);
+        let rows = Rows::new(data_set, self.file_bytes);
         let beside_bytes = rows.as_ref().map_or(0, |rows| rows.block_bytes);
         if let (Ok(kind), true) = (&numbers, shape.iter().all(|length| *length == 1)) {
             match rows.and_then(|mut rows| Ok(kind.read_one(&mut rows)?)) {
@@ -154,6 +155,7 @@ fn numbers_of(data_set: &Dataset) -> Result<Result<Numbers, String>, Problem> {
 /// The bytes of a data set, rows of its first dimension at a time.
 struct Rows<'d> {
     data_set: &'d Dataset,
+    file_bytes: u64,
     rows: u64,
     at_once: u64,
     /// (bytes) The largest block.
@@ -164,7 +166,7 @@ struct Rows<'d> {
 }
 
 impl<'d> Rows<'d> {
-    fn new(data_set: &'d Dataset) -> Result<Self, Problem> {
+    fn new(data_set: &'d Dataset, file_bytes: u64) -> Result<Self, Problem> {
         let shape = data_set.shape().map_err(Problem::broken)?;
         let element = data_set.element_size().map_err(Problem::broken)?;
         let row_bytes = shape.iter().skip(1).fold(element, |bytes, length| bytes.saturating_mul(*length));
@@ -173,13 +175,25 @@ impl<'d> Rows<'d> {
         let at_once = (BLOCK_BYTES / row_bytes.max(1)).max(chunk.unwrap_or(1)).max(1);
         let rows = shape.first().copied().unwrap_or(1);
         let block_bytes = row_bytes.saturating_mul(at_once.min(rows));
-        Ok(Self { data_set, rows, at_once, block_bytes, next_row: 0, block: Vec::new(), at: 0 })
+        Ok(Self { data_set, file_bytes, rows, at_once, block_bytes, next_row: 0, block: Vec::new(), at: 0 })
+    }
+
+    /// hdf5-pure 0.47 makes room for chunks that adjoin before it looks whether the file is so long.
+    fn check_chunks(&self) -> io::Result<()> {
+        let chunks = self.data_set.chunks().unwrap_or_default();
+        match chunks.iter().map(|chunk| chunk.storage_size).find(|bytes| *bytes > self.file_bytes) {
+            None => Ok(()),
+            Some(bytes) => Err(io::Error::other(format!("a chunk of {bytes} bytes is longer than the file"))),
+        }
     }
 }
 
 impl Read for Rows<'_> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         if self.at == self.block.len() && self.next_row < self.rows {
+            if self.next_row == 0 {
+                self.check_chunks()?;
+            }
             self.block =
                 self.data_set.read_raw_rows(self.next_row, self.at_once).map_err(io::Error::other)?;
             self.next_row = self.next_row.saturating_add(self.at_once);

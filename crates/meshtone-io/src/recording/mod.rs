@@ -22,7 +22,7 @@ mod memory_need;
 pub(crate) mod number;
 pub(crate) mod numpy;
 mod options;
-mod parquet_check;
+pub(crate) mod parquet_check;
 mod parquet_file;
 mod rate;
 mod selection;

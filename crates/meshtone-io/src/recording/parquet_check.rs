@@ -1,7 +1,7 @@
 //! Checks of a Parquet file's metadata, where the `parquet` crate would panic or end the stack rather than refuse.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 
@@ -58,31 +58,37 @@ fn is_inside(column: &ColumnChunkMetaData, file_bytes: u64) -> bool {
     end.is_some_and(|end| end <= file_bytes) && column.data_page_offset() >= 0 && column.num_values() >= 0
 }
 
-/// Refuses columns that are nested too deeply, or whose list cannot be looked through; a file that is broken otherwise is left to
+/// Refuses columns that are nested too deeply, and metadata that cannot be looked through; a file that is broken otherwise is left to
 /// the `parquet` crate. The file is at its start afterwards.
 ///
 /// The crate builds the tree of columns recursively, so that a hostile file of a megabyte ends the stack, which cannot be
-/// caught. The list of columns is therefore looked through first: it stands at the start of the metadata, in Thrift's compact
-/// protocol, each group before its members.
+/// caught; and a list of truth values that it does not know it skips entry by entry, without a look whether they are there, which takes
+/// seconds of two thousand million in a file of a kilobyte. The metadata is therefore looked through first, in Thrift's compact protocol:
+/// the list of columns, each group before its members, stands at its start.
 pub(super) fn check_depth(file: &mut File, file_bytes: u64) -> Result<(), Problem> {
-    let Some(end) = file_bytes.checked_sub(END_BYTES) else { return Ok(()) };
+    match is_sound(file, file_bytes)? {
+        false => Err(Problem::broken("its list of columns is damaged, or nested more than 64 deep")),
+        true => Ok(()),
+    }
+}
+
+/// Whether [`check_depth`] finds nothing.
+pub(crate) fn is_sound(file: &mut File, file_bytes: u64) -> io::Result<bool> {
+    let Some(end) = file_bytes.checked_sub(END_BYTES) else { return Ok(true) };
     file.seek(SeekFrom::Start(end))?;
     let (mut length, mut mark) = ([0; 4], [0; 4]);
     file.read_exact(&mut length)?;
     file.read_exact(&mut mark)?;
     let start = end.checked_sub(u64::from(u32::from_le_bytes(length))).filter(|_| mark == MARK);
-    let mut is_too_deep = false;
+    let mut is_sound = true;
     if let Some(start) = start {
         let mut metadata = Vec::new();
         file.seek(SeekFrom::Start(start))?;
         file.take(end - start).read_to_end(&mut metadata)?;
-        is_too_deep = Scan(&metadata).schema_depth().is_none_or(|depth| depth > MAX_DEPTH);
+        is_sound = Scan(&metadata).schema_depth().is_some_and(|depth| depth <= MAX_DEPTH);
     }
     file.rewind()?;
-    match is_too_deep {
-        true => Err(Problem::broken("its list of columns is damaged, or nested more than 64 deep")),
-        false => Ok(()),
-    }
+    Ok(is_sound)
 }
 
 /// Bytes of Thrift's compact protocol that are still to be read; `None` is given where they are broken.
@@ -101,7 +107,7 @@ impl<'b> Scan<'b> {
             self.skip(kind, 0)?;
         }
         let Some(head) = schema else { return Some(0) };
-        let count = if head >> 4 == 15 { self.unsigned()? } else { u64::from(head >> 4) };
+        let count = self.count(head)?;
         if head & 0xf != STRUCT {
             return None;
         }
@@ -118,13 +124,21 @@ impl<'b> Scan<'b> {
             }
             deepest = deepest.max(open.len());
             if deepest > MAX_DEPTH {
-                break;
+                return Some(deepest);
             }
             while open.last() == Some(&0) {
                 open.pop();
             }
         }
+        while let Some((_, kind)) = self.field(&mut last)? {
+            self.skip(kind, 0)?;
+        }
         Some(deepest)
+    }
+
+    /// The entries of a list whose first byte is given.
+    fn count(&mut self, head: u8) -> Option<u64> {
+        if head >> 4 == 15 { self.unsigned() } else { Some(u64::from(head >> 4)) }
     }
 
     /// The members of the next column; 0 if it is no group.
@@ -153,8 +167,7 @@ impl<'b> Scan<'b> {
         Some(Some((*last, head & 0xf)))
     }
 
-    /// Skips a value of a type that stands before or in the list of columns: a truth value, which stands in the type, a number,
-    /// text, or a struct of these.
+    /// Skips a value of a type that metadata have: a truth value, which stands in the type, a number, text, or a list or struct of these.
     fn skip(&mut self, kind: u8, depth: usize) -> Option<()> {
         match kind {
             1 | 2 => Some(()),
@@ -164,6 +177,16 @@ impl<'b> Scan<'b> {
             8 => {
                 let length = self.unsigned()?;
                 self.bytes(usize::try_from(length).ok()?).map(drop)
+            }
+            LIST if depth <= MAX_DEPTH => {
+                let head = self.byte()?;
+                let count = self.count(head)?;
+                for _ in 0..count {
+                    // In a list a truth value is a byte.
+                    let kind = if head & 0xf <= 2 { 3 } else { head & 0xf };
+                    self.skip(kind, depth + 1)?;
+                }
+                Some(())
             }
             STRUCT if depth <= MAX_DEPTH => {
                 let mut last = 0;

@@ -9,6 +9,7 @@ use meshtone::sensor::Channels;
 use crate::ReadResultsError;
 use crate::input_file::open_ordinary;
 use crate::memory;
+use crate::recording::parquet_check::is_sound;
 use crate::run_identity::RunIdentity;
 use crate::table::{FoundType, NumberType, TableReader};
 
@@ -58,8 +59,13 @@ fn missing(key: &str) -> String {
 
 /// Opens a file of signals that fits into the memory.
 fn open(path: &Path) -> Result<TableReader<File>, ReadResultsError> {
-    let file = open_ordinary(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
+    let unreadable = |source| ReadResultsError::unreadable(path, source);
+    let mut file = open_ordinary(path).map_err(unreadable)?;
     let foreign = |problem: String| ReadResultsError::foreign(path, problem);
+    let file_bytes = file.metadata().map_err(unreadable)?.len();
+    if !is_sound(&mut file, file_bytes).map_err(unreadable)? {
+        return Err(foreign("is not a whole Parquet file: its metadata are damaged".to_owned()));
+    }
     let table =
         TableReader::new(file).map_err(|error| foreign(format!("is not a whole Parquet file: {error}")))?;
     let rows = u64::try_from(table.metadata().file_metadata().num_rows()).unwrap_or(u64::MAX);
