@@ -1,5 +1,7 @@
 //! Simulations of what may be.
 
+use std::sync::atomic::Ordering;
+
 use meshtone::batch::{Control, Keep, KeepChannels, Output, SignalRecorder, Signals, simulate_many};
 use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone::sensor::Channel;
@@ -71,7 +73,10 @@ pub fn build_reference(
     let drawn: Vec<(u64, Drawn)> = {
         use rayon::prelude::*;
         let kinds = prior.kinds();
-        let draw = |number| Some((number, prior.draw_among(&kinds, number).ok()?));
+        let is_wanted = || !control.cancelled.load(Ordering::Relaxed);
+        let draw = |number| {
+            is_wanted().then(|| prior.draw_among(&kinds, number).ok()).flatten().map(|drawn| (number, drawn))
+        };
         numbers.into_par_iter().filter_map(draw).collect()
     };
     let mut records = Vec::with_capacity(drawn.len());
