@@ -158,7 +158,7 @@ pub enum SignalError {
         needed: f64,
     },
     /// A parameter has a value that makes no sense.
-    #[error("{name} is {value}, but must be {allowed}")]
+    #[error("{name} is {}, but must be {allowed}", short(*value))]
     Parameter {
         /// Name of the parameter.
         name: &'static str,
@@ -179,6 +179,12 @@ impl SignalError {
     pub(crate) fn parameter(name: &'static str, value: f64, allowed: &'static str) -> Self {
         Self::Parameter { name, value, allowed }
     }
+}
+
+/// A number without hundreds of zeros.
+fn short(value: f64) -> String {
+    let is_short = value == 0.0 || !value.is_finite() || (1e-5..1e15).contains(&value.abs());
+    if is_short { value.to_string() } else { format!("{value:e}") }
 }
 
 /// A number of revolutions in words, whole ones as they were counted.
