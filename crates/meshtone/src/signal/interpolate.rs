@@ -43,6 +43,7 @@ const PCHIP_REACH: isize = 2;
 /// ```
 pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<Vec<f64>, SignalError> {
     check_count("samples", signal.len(), 2)?;
+    check_finite(signal)?;
     check_places(places)?;
     Ok(pchip(signal, places.iter().copied(), edge))
 }
@@ -75,7 +76,7 @@ pub(super) fn pchip(signal: &[f64], places: impl Iterator<Item = f64>, edge: Edg
 /// * `edge` - how the signal goes on beyond its ends
 ///
 /// # Errors
-/// No samples; a place that is no number.
+/// No samples; a sample or a place that is no number.
 ///
 /// Source: J. O. Smith, P. Gossett, "A flexible sampling-rate conversion method", Proc. IEEE ICASSP (1984) 19.4.1–4.
 ///
@@ -90,6 +91,7 @@ pub(super) fn pchip(signal: &[f64], places: impl Iterator<Item = f64>, edge: Edg
 /// ```
 pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> Result<Vec<f64>, SignalError> {
     check_count("samples", signal.len(), 1)?;
+    check_finite(signal)?;
     check_places(places)?;
     Ok(band_limited(signal, places.iter().copied(), edge))
 }

@@ -1,7 +1,7 @@
 //! Another sampling rate.
 
 use super::anti_aliasing::AntiAliasing;
-use super::check::{check_count, check_positive};
+use super::check::{check_count, check_finite, check_positive};
 use super::filter_bank::{BankPosition, FilterBank};
 use super::kaiser::windowed_sinc;
 use super::{Edge, SignalError};
@@ -30,7 +30,7 @@ const RATIO_TOLERANCE: f64 = 1e-12;
 /// Returns `⌈n to/from⌉` samples; sample m lies at `m from/to` of the signal.
 ///
 /// # Errors
-/// An empty signal; a rate that is not positive, or above 1e5 of the other.
+/// An empty signal; a sample that is no number; a rate that is not positive, or above 1e5 of the other.
 ///
 /// ```
 /// use meshtone::signal::{Edge, resample_to};
@@ -46,6 +46,7 @@ pub fn resample_to(signal: &[f64], from_hz: f64, to_hz: f64, edge: Edge) -> Resu
         return resample(signal, up, down, edge);
     }
     check_count("samples", signal.len(), 1)?;
+    check_finite(signal)?;
     let step = from_hz / to_hz;
     let samples = (signal.len() as f64 / step).ceil() as usize;
     let places = (0..samples).map(|m| m as f64 * step);
@@ -66,7 +67,7 @@ pub fn resample_to(signal: &[f64], from_hz: f64, to_hz: f64, edge: Edge) -> Resu
 /// Returns `⌈n up/down⌉` samples.
 ///
 /// # Errors
-/// An empty signal; a factor of 0 or beyond 100 000.
+/// An empty signal; a sample that is no number; a factor of 0 or beyond 100 000.
 ///
 /// ```
 /// use meshtone::signal::{Edge, resample};
@@ -81,6 +82,7 @@ pub fn resample_to(signal: &[f64], from_hz: f64, to_hz: f64, edge: Edge) -> Resu
 pub fn resample(signal: &[f64], up: usize, down: usize, edge: Edge) -> Result<Vec<f64>, SignalError> {
     let (up, down) = reduced(up, down)?;
     if up == down {
+        check_finite(signal)?;
         return Ok(signal.to_vec());
     }
     resample_with(signal, up, down, &resampling_taps(up, down)?, edge)
@@ -118,6 +120,7 @@ pub fn resample_with(
 ) -> Result<Vec<f64>, SignalError> {
     check_factors(up, down)?;
     check_count("samples", signal.len(), 1)?;
+    check_finite(signal)?;
     if taps.len().is_multiple_of(2) {
         return Err(SignalError::parameter("number of taps", taps.len() as f64, "odd"));
     }
