@@ -2,22 +2,22 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::process::Output;
 
 use crate::files;
 use crate::step::cargo;
 
 /// Folders of the sources.
-const SOURCES: [&str; 2] = ["crates", "xtask"];
+const SOURCES: [&str; 4] = ["crates", "xtask", "fuzz/src", "fuzz/fuzz_targets"];
 
 /// What is not formatted, and the sources that the formatter has not read: those that no module declares in a way that it follows.
 ///
 /// # Errors
 /// The formatter cannot be started, or a folder cannot be read.
 pub fn problems(root: &Path) -> Result<Vec<String>, String> {
-    let mut cargo = cargo();
-    let output = cargo.args(["fmt", "--all", "--check", "--", "--verbose"]).current_dir(root).output();
-    let output = output.map_err(|error| format!("cannot start cargo: {error}"))?;
-    let said = String::from_utf8_lossy(&output.stdout);
+    let of_workspace = checked(root, &["--all"])?;
+    let of_targets = checked(root, &["--manifest-path", "fuzz/Cargo.toml"])?;
+    let said = [&of_workspace, &of_targets].map(|output| String::from_utf8_lossy(&output.stdout)).concat();
     // As rustfmt names them: without links.
     let root = &root.canonicalize().map_err(|error| format!("{}: {error}", root.display()))?;
     let mut sources = BTreeSet::new();
@@ -28,14 +28,22 @@ pub fn problems(root: &Path) -> Result<Vec<String>, String> {
         format!("{path}: the formatter has not read it: declare it by a plain `mod` of a file that it reads")
     });
     let mut problems: Vec<String> = unread.collect();
-    if !output.status.success() {
+    for output in [of_workspace, of_targets].iter().filter(|output| !output.status.success()) {
+        let said = String::from_utf8_lossy(&output.stdout);
         let said = said.lines().filter(|line| !is_remark(line)).collect::<Vec<_>>().join("\n");
         problems.push(format!(
-            "not formatted (`cargo fmt --all`):\n{said}{}",
+            "not formatted (`cargo fmt --all`, in the folder fuzz `cargo fmt`):\n{said}{}",
             String::from_utf8_lossy(&output.stderr)
         ));
     }
     Ok(problems)
+}
+
+/// What the formatter says of a workspace or a package.
+fn checked(root: &Path, of: &[&str]) -> Result<Output, String> {
+    let mut cargo = cargo();
+    let output = cargo.arg("fmt").args(of).args(["--check", "--", "--verbose"]).current_dir(root).output();
+    output.map_err(|error| format!("cannot start cargo: {error}"))
 }
 
 /// The beginning of the line with which rustfmt names a file that it reads.

@@ -224,7 +224,8 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
             return Err(wrong());
         }
     }
-    if archive.floats(DIGEST, 32)?.numbers != digest(hash) {
+    // Fuzz targets look behind the digest, which no changed input passes.
+    if !cfg!(fuzzing) && archive.floats(DIGEST, 32)?.numbers != digest(hash) {
         return Err(wrong());
     }
     let record = |(row, wheels): (&[f64], Vec<WheelLines>)| {

@@ -18,4 +18,6 @@ pub use answer::{AnswerOptions, Detail, State, answer};
 pub use packet::Packet;
 pub use presets::{Preset, presets};
 pub use refusal::Refusal;
+#[cfg(fuzzing)]
+pub use server::read_request;
 pub use server::{Embedding, Server, ServerSettings};

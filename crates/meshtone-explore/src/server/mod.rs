@@ -13,6 +13,9 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+#[cfg(fuzzing)]
+pub use requests::read_request;
+
 use axum::Router;
 use meshtone::scenario::Scenario;
 use meshtone_diagnose::ReferenceStore;

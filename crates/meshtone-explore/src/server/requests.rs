@@ -242,6 +242,22 @@ pub(super) fn framed(body: &Bytes) -> Result<(Bytes, Bytes), Refusal> {
     Ok((body.slice(LENGTH_BYTES..LENGTH_BYTES + length), body.slice(LENGTH_BYTES + length..)))
 }
 
+/// Reads a request of any kind, as the fuzz targets do, and its recording.
+#[cfg(fuzzing)]
+pub fn read_request(body: &[u8]) -> Result<(), String> {
+    let body = Bytes::copy_from_slice(body);
+    let (said, files) = framed(&body).unwrap_or((body, Bytes::new()));
+    let read = || {
+        let asked = AskedRequest::of(&said)?;
+        let scenario = question::scenario(&asked.fields)?;
+        if !files.is_empty() {
+            recording(&files, &RecordingQuestion::of(&asked.fields), &scenario, &|| true)?;
+        }
+        Ok::<_, Refusal>(())
+    };
+    read().map_err(|refusal| refusal.json().to_string())
+}
+
 /// A recording that was dropped on the page.
 async fn of_recording(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
     let (said, file) = framed(&body)?;

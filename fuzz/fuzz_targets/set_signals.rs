@@ -1,0 +1,6 @@
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| meshtone_fuzz::readers::signal_set(
+    "signals/part-float32.parquet",
+    bytes
+));
