@@ -10,14 +10,19 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
+import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _core
 
 if TYPE_CHECKING:
+    import pyarrow
+    import pyarrow.parquet
+
     from .datasets import Dataset
 
 SIGNAL_FILE = "part-float32.parquet"
@@ -133,7 +138,6 @@ def write_bearing_datasets(dataset: Dataset, folder: Path) -> None:
         As of :meth:`meshtone.Dataset.to_bearing_datasets`.
     """
     import pyarrow
-    import pyarrow.parquet
 
     base = Base((dataset._beside("scenario.toml") or b"").decode())
     channels = [name for name in dataset.signal_columns if _meaning(dataset, name).startswith("raw channel")]
@@ -146,7 +150,7 @@ def write_bearing_datasets(dataset: Dataset, folder: Path) -> None:
     rows: list[list[Any]] = []
     digests: dict[str, str] = {}
     schema = pyarrow.schema({"signal_id": pyarrow.string(), "signal": pyarrow.list_(pyarrow.float32())})
-    with pyarrow.parquet.ParquetWriter(folder / "signals" / SIGNAL_FILE, schema, compression="zstd") as signals:
+    with _table(folder / "signals" / SIGNAL_FILE, schema) as signals:
         records, groups = dataset.records([*dataset.scalar_columns, *channels]), itertools.count()
         while batch := list(itertools.islice(records, 64)):
             group, samples = next(groups), []
@@ -161,7 +165,8 @@ def write_bearing_datasets(dataset: Dataset, folder: Path) -> None:
                     samples.append(signal)
             signals.write_table(pyarrow.table([names, pyarrow.array(samples, schema.field("signal").type)], schema))
     table = pyarrow.table({name: [row[place] for row in rows] for place, (name, _, _) in enumerate(columns)})
-    pyarrow.parquet.write_table(table, folder / "metadata.parquet", compression="zstd")
+    with _table(folder / "metadata.parquet", table.schema) as metadata:
+        metadata.write_table(table)
     about = {
         "dataset": folder.absolute().name,
         "title": dataset.manifest["title"],
@@ -178,6 +183,24 @@ def write_bearing_datasets(dataset: Dataset, folder: Path) -> None:
     (folder / "manifest.json").write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
 
 
+@contextmanager
+def _table(path: Path, schema: pyarrow.Schema) -> Iterator[pyarrow.parquet.ParquetWriter]:
+    """A table with checksums, and the SHA-256 of its metadata as the compiled module has it: its own digits count as zeros."""
+    import pyarrow.parquet
+
+    zeros = "0" * 64
+    with pyarrow.parquet.ParquetWriter(path, schema, compression="zstd", write_page_checksum=True) as table:
+        table.add_key_value_metadata({"meshtone.metadata_sha256": zeros})
+        yield table
+    with path.open("r+b") as file:
+        file.seek(-8, os.SEEK_END)
+        length = int.from_bytes(file.read(4), "little")
+        start = file.seek(-8 - length, os.SEEK_END)
+        metadata = file.read(length)
+        file.seek(start)
+        file.write(metadata.replace(zeros.encode(), hashlib.sha256(metadata).hexdigest().encode()))
+
+
 def _check(dataset: Dataset, folder: Path, base: Base, channels: list[str]) -> None:
     """Refuse what cannot be written."""
     if not dataset.is_complete:
@@ -186,7 +209,9 @@ def _check(dataset: Dataset, folder: Path, base: Base, channels: list[str]) -> N
         raise ValueError(f"{dataset.place} keeps no raw channels, which are the signals of this schema: name some in keep.channels of the plan")
     if not folder.absolute().name:
         raise ValueError(f"the folder {folder} has no name, which is the name of the data set")
-    if folder.exists() and any(folder.iterdir()):
+    signals = folder / "signals"
+    # What was interrupted has no manifest, and is written again.
+    if not {signals, signals / SIGNAL_FILE, folder / "metadata.parquet"}.issuperset(folder.rglob("*")):
         raise ValueError(f"{folder} has files in it: name a folder that is empty or does not exist")
     base.check_healthy()
 

@@ -252,7 +252,7 @@ def verify_dataset(path: str | PathLike[str]) -> dict[str, str]:
 
 
 def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
-    """Open a data set. Nothing but the names and sizes of its files is read before it is asked for.
+    """Open a data set. Nothing but the names, sizes and metadata of its files is read before it is asked for.
 
     Parameters
     ----------
@@ -375,7 +375,9 @@ def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
     if names:
         filesystem, folder = _filesystem(place)
         files = [f"{folder}/{name}" for name in names]
-        return Dataset(place, pyarrow.dataset.dataset(files, format="parquet", filesystem=filesystem), None)
+        checked = pyarrow.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
+        parquet = pyarrow.dataset.ParquetFileFormat(default_fragment_scan_options=checked)
+        return Dataset(place, pyarrow.dataset.dataset(files, format=parquet, filesystem=filesystem), None)
     # A part that has no shard of its own, the first there.
     schema = pyarrow.schema([("label", pyarrow.string()), ("split", pyarrow.string())])
     return Dataset(place, pyarrow.dataset.dataset(schema.empty_table()), None)

@@ -18,7 +18,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas
+import polars
 import pyarrow.dataset
+import pyarrow.parquet
 import pytest
 import scipy.io
 
@@ -329,6 +332,31 @@ def test_every_flipped_bit_is_found(gears: datasets.Dataset, tmp_path: Path) -> 
     with pytest.warns(UserWarning, match=r"1 files were made again; data/train-000001.parquet: its bytes"):
         datasets.generate_dataset(write_plan(tmp_path), path)
     assert digests(path) == digests(gears.path)
+
+
+def test_a_flipped_bit_is_refused_or_changes_nothing(gears: datasets.Dataset, tmp_path: Path) -> None:
+    path = tmp_path / "set"
+    shutil.copytree(gears.path, path)
+    file = path / "data" / "train-000001.parquet"
+    whole, refused = file.read_bytes(), 0
+    for number in range(1, 81):
+        flip(file, number)
+        try:
+            read = datasets.load_dataset(path).to_arrow()
+        except (OSError, ValueError):
+            refused += 1
+        else:
+            assert read.equals(gears.to_arrow()), number
+        file.write_bytes(whole)
+    assert refused > 70
+
+
+def test_other_programs_read_the_files(gears: datasets.Dataset) -> None:
+    files = [gears.path / "data" / name for name in ("test-000002.parquet", "train-000000.parquet")]
+    for file in filter(Path.exists, files):
+        table = pyarrow.parquet.read_table(file, page_checksum_verification=True)
+        assert polars.read_parquet(file).to_dicts() == table.to_pylist()
+        assert list(pandas.read_parquet(file)["label"]) == table["label"].to_pylist()
 
 
 def test_names_and_sizes_are_always_looked_at(gears: datasets.Dataset, tmp_path: Path) -> None:
@@ -654,8 +682,10 @@ def test_the_schema_of_bearing_datasets(tmp_path: Path, gears: datasets.Dataset)
         assert (row["fault_severity_level"] > 0) == (record["label"] != "healthy")
     recording = meshtone.read_recording(tmp_path / "sets/gears", variable="record-1")
     assert list(recording) == ["horizontal_g", "vertical_g"] and recording.units["vertical_g"] == "g"
-    # A filter leaves its records; nothing is written over what is there.
+    # A filter leaves its records; nothing is written over what is there but what was interrupted.
     part = gears.split("test")
+    (tmp_path / "sets/part/signals").mkdir(parents=True)
+    (tmp_path / "sets/part/signals/part-float32.parquet").write_bytes(b"PAR1")
     part.to_bearing_datasets(tmp_path / "sets/part")
     assert len(bd.open("part", tmp_path / "sets").metadata()) == 2 * len(part)
     with pytest.raises(ValueError, match="part has files in it"):

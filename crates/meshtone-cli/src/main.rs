@@ -30,6 +30,7 @@ use meshtone::scenario::MemoryLimit;
 use meshtone_io::memory::parse_bytes;
 
 use crate::commands::Command;
+use crate::failure::Failure;
 
 /// Simulates the vibration of gears, healthy or with damaged teeth, and computes indicators of
 /// recordings.
@@ -41,6 +42,13 @@ struct Arguments {
     memory_limit: Option<u64>,
     #[command(subcommand)]
     command: Command,
+}
+
+impl Arguments {
+    fn run(&self) -> Result<(), Failure> {
+        MemoryLimit::set(self.memory_limit);
+        self.command.run()
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -63,11 +71,15 @@ fn examples() -> String {
 
 fn main() -> ExitCode {
     let arguments = Arguments::try_parse();
-    let arguments =
-        arguments.unwrap_or_else(|error| other_option::with_tip(error, std::env::args_os()).exit());
+    let arguments = arguments.or_else(|error| -> Result<_, Failure> {
+        // Help and the version are printed.
+        if error.exit_code() == 0 {
+            terminal::check_output()?;
+        }
+        other_option::with_tip(error, std::env::args_os()).exit()
+    });
     termination::remove_unfinished_files_at_end();
-    MemoryLimit::set(arguments.memory_limit);
-    match arguments.command.run() {
+    match arguments.and_then(|arguments| arguments.run()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let code = ExitCode::from(failure.exit_code);

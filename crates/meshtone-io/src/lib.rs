@@ -11,6 +11,7 @@ pub mod memory;
 pub mod npz;
 pub mod own_file;
 pub mod path_csv;
+pub mod printable;
 mod read_results;
 pub mod recording;
 pub mod run_identity;

@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use meshtone::scenario::ScenarioError;
+use meshtone_io::printable::printable;
 use meshtone_io::scenario_file::ReadScenarioError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
@@ -14,7 +15,7 @@ const NOT_FOUND: i32 = 2;
 
 /// Bad input.
 pub fn value_error(error: impl Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
+    PyValueError::new_err(printable(error, &['\n']))
 }
 
 /// Bad input: the problem, and below it what to do about it.
@@ -73,6 +74,6 @@ pub fn os_error(doing: &str, name: String, source: &io::Error) -> PyErr {
             let words = reason.strip_suffix(&format!(" (os error {number})")).unwrap_or(&reason);
             PyOSError::new_err((number, format!("cannot {doing}: {words}"), name))
         }
-        None => PyOSError::new_err(format!("cannot {doing} {name}: {source}")),
+        None => PyOSError::new_err(printable(format_args!("cannot {doing} {name}: {source}"), &[])),
     }
 }

@@ -90,7 +90,7 @@ struct Verify {
     /// Directory or URL of the data set, or of a part of one
     #[arg(value_name = "DIR")]
     place: String,
-    /// Check only names, sizes and counts
+    /// Check only names, sizes, counts and the footers of shards
     #[arg(long)]
     sizes_only: bool,
     /// Print no summary; what is wrong is still printed
@@ -218,7 +218,7 @@ impl Verify {
 }
 
 fn report(found: &Verified, place: &Destination, sizes_only: bool) -> String {
-    let what = if sizes_only { "names, sizes and counts are" } else { "every byte is" };
+    let what = if sizes_only { "names, sizes, counts and footers are" } else { "every byte is" };
     format!(
         "  {} in {}, {:.1} MB: {what} as written\n\n{place}\n",
         counted(found.rows, "record"),

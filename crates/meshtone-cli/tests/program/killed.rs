@@ -4,7 +4,7 @@
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::support::{FAST, Workplace, fast_with, program, stderr};
+use crate::support::{FAST, Workplace, fast_and, fast_with, program, stderr};
 use meshtone_io::signals::read_signals;
 use meshtone_io::summary::read_run;
 
@@ -193,7 +193,11 @@ fn two_at_once_and_what_the_killed_left() {
     workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
     assert_eq!(workplace.names("out"), ["signals.parquet", "summary.json"]);
     // Files that are written one by one clear up where they are written.
-    workplace.write(".meshtone-unfinished", "half a file");
-    workplace.succeeds(&["init", "healthy", "-o", "healthy.toml"]);
-    assert!(!workplace.path(".meshtone-unfinished").exists());
+    workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 7"));
+    for arguments in [["init", "healthy", "-o", "healthy.toml"], ["wheels", "worn.toml", "-o", "wheels.npz"]]
+    {
+        workplace.write(".meshtone-unfinished", "half a file");
+        workplace.succeeds(&arguments);
+        assert!(!workplace.path(".meshtone-unfinished").exists(), "{arguments:?}");
+    }
 }

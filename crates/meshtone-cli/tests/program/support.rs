@@ -7,7 +7,7 @@ use assert_cmd::Command;
 use assert_cmd::assert::Assert;
 use tempfile::{TempDir, tempdir};
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_meshtone");
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_meshtone");
 
 /// A scenario that takes milliseconds: tooth counts with a large common factor need few samples a revolution.
 /// `[gears]` is line 1; `[quality]` and its grade are the last two lines, 10 and 11.

@@ -188,3 +188,21 @@ fn a_reader_that_goes_away_is_no_error() {
         assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(0), ""));
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_closed_standard_output() {
+    let workplace = Workplace::new();
+    let printing = [vec!["init", "healthy"], vec!["--help"], vec!["simulate", "fast.toml", "-o", "out"]];
+    for arguments in printing {
+        let mut shell = std::process::Command::new("sh");
+        let closed = shell.args(["-c", "exec \"$0\" \"$@\" >&-", crate::support::PROGRAM]).args(&arguments);
+        let output = closed.current_dir(workplace.directory.path()).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains("cannot write to standard output: it is closed"), "{message}");
+    }
+    // Who reads nothing has not closed it.
+    let null = program().args(["init", "healthy"]).stdout(std::process::Stdio::null()).status().unwrap();
+    assert!(null.success());
+}

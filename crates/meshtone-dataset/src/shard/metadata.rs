@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use meshtone_io::table::{FoundColumn, FoundType, TableReader, into_io};
+use meshtone_io::table::{FoundColumn, FoundType, SEAL, TableReader, UNKNOWN_HASH, into_io};
 use parquet::file::metadata::KeyValue;
 use parquet::file::reader::ChunkReader;
 use serde::{Deserialize, Serialize};
-
-use super::seal::{KEY, UNSEALED};
 
 const PLAN: &str = "meshtone.plan_sha256";
 const VERSION: &str = "meshtone.version";
@@ -46,7 +44,7 @@ impl ShardMetadata {
             (FIRST, self.first.to_string()),
             (RECORDS, self.records.to_string()),
             (FAILURES, serde_json::to_string(&self.failures)?),
-            (KEY, UNSEALED.to_owned()),
+            (SEAL, UNKNOWN_HASH.to_owned()),
         ];
         Ok(values.map(|(key, value)| (key.to_owned(), value)).to_vec())
     }
@@ -60,7 +58,7 @@ impl ShardMetadata {
             records: text(RECORDS)?.parse().ok()?,
             failures: serde_json::from_str(text(FAILURES)?).ok()?,
         };
-        Some((metadata, text(KEY)?.to_owned()))
+        Some((metadata, text(SEAL)?.to_owned()))
     }
 
     /// Returns whether a shard is the one that was to be made, whatever failed in it.

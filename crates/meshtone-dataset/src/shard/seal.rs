@@ -6,16 +6,12 @@
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use meshtone_io::table::{SEAL, UNKNOWN_HASH, place_of_hash};
+
 use crate::digest::{Digest, Hashing};
 
-/// Key of the seal, the last one of the footer's.
-pub(super) const KEY: &str = "meshtone.seal";
-/// What stands there until the file is sealed.
-pub(super) const UNSEALED: &str = "0000000000000000000000000000000000000000000000000000000000000000";
-/// (bytes) The end of a file in which its seal lies: behind it stands nothing but two bytes a column.
+/// (bytes) The end of a file in which its seal lies: behind it stand the hash of the metadata and two bytes a column.
 const TAIL: usize = 1 << 16;
-/// (bytes) Of Thrift between key and value: the value's type and its length.
-const BETWEEN: usize = 2;
 /// (bytes) Size of the pieces in which a file is read.
 const READ_BYTES: u64 = 1 << 20;
 
@@ -29,8 +25,9 @@ pub(crate) fn seal(file: &mut File, hash: &str) -> io::Result<()> {
     let from = file.seek(SeekFrom::Start(end.saturating_sub(TAIL as u64)))?;
     let mut tail = Vec::new();
     file.read_to_end(&mut tail)?;
-    let place = place(&tail).ok_or_else(|| io::Error::other("the footer has no place for a seal"))?;
-    file.seek(SeekFrom::Start(from + place as u64))?;
+    let place =
+        place_of_hash(&tail, SEAL).ok_or_else(|| io::Error::other("the footer has no place for a seal"))?;
+    file.seek(SeekFrom::Start(from + place.start as u64))?;
     file.write_all(hash.as_bytes())?;
     file.seek(SeekFrom::End(0)).map(drop)
 }
@@ -44,17 +41,10 @@ pub(crate) fn proven(mut from: impl Read) -> io::Result<Option<Digest>> {
         hashing.write_all(&tail[..settled])?;
         tail.drain(..settled);
     }
-    let Some(place) = place(&tail) else { return Ok(None) };
-    let digits = &mut tail[place..place + UNSEALED.len()];
+    let Some(place) = place_of_hash(&tail, SEAL) else { return Ok(None) };
+    let digits = &mut tail[place];
     let stated = String::from_utf8_lossy(digits).into_owned();
-    digits.copy_from_slice(UNSEALED.as_bytes());
+    digits.copy_from_slice(UNKNOWN_HASH.as_bytes());
     hashing.write_all(&tail)?;
     Ok(Some(hashing.digest()).filter(|found| found.sha256 == stated))
-}
-
-/// Where the digits of the seal lie.
-fn place(tail: &[u8]) -> Option<usize> {
-    let key = tail.windows(KEY.len()).rposition(|window| window == KEY.as_bytes())?;
-    let place = key + KEY.len() + BETWEEN;
-    (place + UNSEALED.len() <= tail.len()).then_some(place)
 }

@@ -201,10 +201,9 @@ impl Destination {
     /// # Errors
     /// In words, what is wrong with it.
     pub(crate) fn proven_shard(&self, name: &str, wanted: Wanted) -> Result<ReadShard, String> {
-        let unreadable = |error: io::Error| format!("it cannot be read: {error}");
-        let proven = self.storage.open(name).and_then(shard::proven).map_err(unreadable)?;
+        let proven = self.storage.open(name).and_then(shard::proven).map_err(|error| unreadable(&error))?;
         proven.ok_or(WRONG_BYTES)?;
-        self.read_shard(name, wanted).map_err(unreadable)
+        self.read_shard(name, wanted).map_err(|error| unreadable(&error))
     }
 
     /// Copies a shard from another place if it is as it was written. Returns whether it is.
@@ -261,6 +260,11 @@ impl fmt::Display for Destination {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.storage.fmt(formatter)
     }
+}
+
+/// The problem of a file that cannot be read, in words.
+pub(crate) fn unreadable(error: &io::Error) -> String {
+    format!("it cannot be read: {error}")
 }
 
 fn without_cloud(url: &str) -> DatasetError {

@@ -46,7 +46,9 @@ fn every_flipped_bit_of_a_shard_is_found_and_the_shard_made_again() {
     for number in 1..=60 {
         let name = SHARDS[number as usize % SHARDS.len()].to_owned();
         flip(&directory.path().join(&name), number);
-        assert!(verify(&to, Check::Sizes).unwrap().is_good());
+        // Of a shard its metadata are always read.
+        let quickly = verify(&to, Check::Sizes).unwrap();
+        assert!(quickly.is_good() || quickly.problems.keys().eq([&name]), "{quickly:?}");
         assert_only(&bytes_of(&to), &name, "SHA-256 differs");
         if number % 6 == 0 {
             let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();

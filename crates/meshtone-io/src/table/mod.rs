@@ -6,13 +6,17 @@
 //! Meshtone.
 
 mod arrow_schema;
+mod chunk_checksum;
 mod flat_buffer;
 mod found_type;
+mod metadata_hash;
+mod page_checksum;
 mod read;
 mod split_signal;
 mod write;
 
 pub use found_type::{FoundType, NumberType};
+pub use metadata_hash::{SEAL, UNKNOWN_HASH, place_of_hash};
 pub use read::{FoundColumn, Numbers, TableReader};
 pub(crate) use write::write_compressed;
 pub use write::{CellType, Cells, TableColumn, TableWriter};

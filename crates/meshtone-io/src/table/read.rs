@@ -1,21 +1,26 @@
 //! Reading a table.
 
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use std::sync::Arc;
+
+use parquet::column::page::PageReader;
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
-use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, SerializedPageReader};
 use parquet::schema::types::Type;
 
 use super::arrow_schema::{self, ArrowField};
-use super::{FoundType, NumberType};
+use super::chunk_checksum::{self, Chunk};
+use super::{FoundType, NumberType, metadata_hash};
 
 /// Rows that are decoded at once.
 const ROWS_AT_ONCE: usize = 1 << 14;
 
 /// A table that is read.
 pub struct TableReader<R: ChunkReader + 'static> {
-    file: SerializedFileReader<R>,
+    file: Arc<R>,
+    metadata: ParquetMetaData,
     columns: Vec<FoundColumn>,
 }
 
@@ -50,10 +55,10 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     /// * `file` - the Parquet file
     ///
     /// # Errors
-    /// The file cannot be read, or is no Parquet file.
+    /// The file cannot be read, is no Parquet file, or has other metadata than were written.
     pub fn new(file: R) -> Result<Self> {
-        let file = SerializedFileReader::new(file)?;
-        let mut table = Self { file, columns: Vec::new() };
+        let metadata = metadata_hash::read(&file)?;
+        let mut table = Self { file: Arc::new(file), metadata, columns: Vec::new() };
         let arrow = table.text_of(arrow_schema::KEY).and_then(arrow_schema::decode).unwrap_or_default();
         table.columns = columns(table.metadata().file_metadata().schema(), &arrow);
         Ok(table)
@@ -70,7 +75,7 @@ impl<R: ChunkReader + 'static> TableReader<R> {
 
     /// What the file says about itself.
     pub fn metadata(&self) -> &ParquetMetaData {
-        self.file.metadata()
+        &self.metadata
     }
 
     /// The columns, in the file's order.
@@ -92,7 +97,7 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     /// * `column` - of this table
     pub fn chunks(&self, column: &FoundColumn) -> impl Iterator<Item = &ColumnChunkMetaData> {
         let leaf = column.leaf;
-        self.file.metadata().row_groups().iter().filter_map(move |group| group.columns().get(leaf))
+        self.metadata.row_groups().iter().filter_map(move |group| group.columns().get(leaf))
     }
 
     /// Reads a column of numbers, or of moments as seconds since the first.
@@ -162,7 +167,7 @@ impl<R: ChunkReader + 'static> TableReader<R> {
 
     /// Number of groups of rows.
     pub fn groups(&self) -> usize {
-        self.file.num_row_groups()
+        self.metadata.num_row_groups()
     }
 
     /// Reads the lists of numbers in a group of rows.
@@ -181,9 +186,8 @@ impl<R: ChunkReader + 'static> TableReader<R> {
                 group + 1
             )));
         }
-        let group = self.file.get_row_group(group)?;
-        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        match group.get_column_reader(column.leaf)? {
+        let rows = usize::try_from(self.metadata.row_group(group).num_rows()).unwrap_or(0);
+        match self.column_reader(column, group)? {
             ColumnReader::FloatColumnReader(reader) => lists_of(reader, rows, |&number| f64::from(number)),
             ColumnReader::DoubleColumnReader(reader) => lists_of(reader, rows, |&number| number),
             ColumnReader::Int32ColumnReader(reader) => lists_of(reader, rows, |&number| f64::from(number)),
@@ -219,9 +223,8 @@ impl<R: ChunkReader + 'static> TableReader<R> {
         column: &FoundColumn,
         mut read: impl FnMut(ColumnReader) -> Result<usize>,
     ) -> Result<()> {
-        for number in 0..self.file.num_row_groups() {
-            let group = self.file.get_row_group(number)?;
-            let (stated, found) = (group.metadata().num_rows(), read(group.get_column_reader(column.leaf)?)?);
+        for (number, group) in self.metadata.row_groups().iter().enumerate() {
+            let (stated, found) = (group.num_rows(), read(self.column_reader(column, number)?)?);
             if usize::try_from(stated) != Ok(found) {
                 return Err(ParquetError::General(format!(
                     "column {} has {found} rows in row group {}, not {stated}",
@@ -231,6 +234,23 @@ impl<R: ChunkReader + 'static> TableReader<R> {
             }
         }
         Ok(())
+    }
+
+    /// A reader of a column's part of a group of rows. Its bytes are compared with its checksum, and those of pages with theirs.
+    fn column_reader(&self, column: &FoundColumn, number: usize) -> Result<ColumnReader> {
+        let group = self.metadata.row_group(number);
+        let chunk = group.column(column.leaf);
+        let rows = usize::try_from(group.num_rows())?;
+        let checksums = self.text_of(chunk_checksum::KEY).unwrap_or_default();
+        let checksum = chunk_checksum::stated(checksums, number * group.num_columns() + column.leaf);
+        let pages: Box<dyn PageReader> = match checksum {
+            Some(checksum) => {
+                let read = Chunk::read(&*self.file, chunk.byte_range(), checksum)?;
+                Box::new(SerializedPageReader::new(Arc::new(read), chunk, rows, None)?)
+            }
+            None => Box::new(SerializedPageReader::new(Arc::clone(&self.file), chunk, rows, None)?),
+        };
+        Ok(get_column_reader(chunk.column_descr_ptr(), pages))
     }
 }
 

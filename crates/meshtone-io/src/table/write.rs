@@ -4,8 +4,9 @@ use std::collections::HashSet;
 use std::io::{self, Write};
 use std::sync::Arc;
 
+use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
-use parquet::column::writer::{ColumnWriter, get_typed_column_writer_mut};
+use parquet::column::writer::{ColumnWriter, get_column_writer, get_typed_column_writer_mut};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
@@ -13,7 +14,9 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 
-use super::{arrow_schema, into_io, split_signal};
+use super::metadata_hash::{self, HashedMetadata, UNKNOWN_HASH};
+use super::page_checksum::ChecksummedPages;
+use super::{arrow_schema, chunk_checksum, into_io, split_signal};
 
 /// Name of the table itself, as Arrow's writers give it.
 const TABLE: &str = "arrow_schema";
@@ -132,8 +135,10 @@ impl TableColumn {
 
 /// A table that is written, one group of rows after the other.
 pub struct TableWriter<W: Write + Send> {
-    file: SerializedFileWriter<W>,
+    file: SerializedFileWriter<HashedMetadata<W>>,
     columns: Vec<TableColumn>,
+    /// Of what has been written of the columns.
+    checksums: String,
 }
 
 impl<W: Write + Send> TableWriter<W> {
@@ -157,10 +162,10 @@ impl<W: Write + Send> TableWriter<W> {
         }
         let fields = columns.iter().map(TableColumn::schema).collect::<Result<_>>()?;
         let schema = Arc::new(Type::group_type_builder(TABLE).with_fields(fields).build()?);
-        let mut file = SerializedFileWriter::new(to, schema, Arc::new(properties))?;
+        let mut file = SerializedFileWriter::new(HashedMetadata::new(to), schema, Arc::new(properties))?;
         let arrow = arrow_schema::encode(&columns);
         file.append_key_value_metadata(KeyValue::new(arrow_schema::KEY.to_owned(), arrow));
-        Ok(Self { file, columns })
+        Ok(Self { file, columns, checksums: String::new() })
     }
 
     /// Writes rows as a group of their own.
@@ -183,23 +188,24 @@ impl<W: Write + Send> TableWriter<W> {
         let leaves = self.file.schema_descr().columns().to_vec();
         let mut group = self.file.next_row_group()?;
         for ((column, leaf), cells) in self.columns.iter().zip(leaves).zip(cells) {
-            match cells {
+            let mut bytes = Vec::new();
+            let pages = ChecksummedPages { to: &mut bytes };
+            let closed = match cells {
                 Cells::Signal(signal)
                     if !signal.is_empty()
                         && column.holds_signals()
                         && split_signal::applies_to(&properties, leaf.path()) =>
                 {
-                    let (pages, closed) = split_signal::encode(leaf, signal)?;
-                    group.append_column(&pages, closed)?;
+                    split_signal::encode(leaf, signal, pages)?
                 }
                 cells => {
-                    let writer = group.next_column()?;
-                    let mut writer =
-                        writer.ok_or_else(|| ParquetError::General("a column too many".to_owned()))?;
-                    write_cells(writer.untyped(), column, cells)?;
-                    writer.close()?;
+                    let mut writer = get_column_writer(leaf, Arc::clone(&properties), Box::new(pages));
+                    write_cells(&mut writer, column, cells)?;
+                    writer.close()?
                 }
-            }
+            };
+            chunk_checksum::push(&mut self.checksums, &bytes);
+            group.append_column(&Bytes::from(bytes), closed)?;
         }
         group.close().map(drop)
     }
@@ -218,8 +224,12 @@ impl<W: Write + Send> TableWriter<W> {
     ///
     /// # Errors
     /// Those of the file.
-    pub fn close(self) -> io::Result<()> {
-        self.file.close().map(drop).map_err(into_io)
+    pub fn close(mut self) -> io::Result<()> {
+        let checksums = std::mem::take(&mut self.checksums);
+        self.add_metadata([(chunk_checksum::KEY, checksums), (metadata_hash::KEY, UNKNOWN_HASH.to_owned())]);
+        self.file.flush()?;
+        self.file.inner_mut().begin_end();
+        self.file.into_inner().map_err(into_io)?.finish()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The library, used as its users use it. One test program, because each is linked with all libraries.
 
 mod atomic_file;
+mod integrity;
 mod parquet_help;
 mod recording_binary;
 mod recording_help;
