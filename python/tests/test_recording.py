@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow
+import pyarrow.parquet
 import pytest
 from scipy import io
 
@@ -175,3 +177,18 @@ def test_a_recording_of_a_set_that_bearing_datasets_built(tmp_path: Path) -> Non
     table.to_parquet(tmp_path / "metadata.parquet")
     with pytest.raises(ValueError, match="acc has 500 samples, and metadata.parquet says 7; build the data set again"):
         read_recording(tmp_path, variable="run 1")
+
+
+def test_checksums_of_other_programs_are_compared(tmp_path: Path) -> None:
+    time_s, file = np.arange(20_000) / 10_000, tmp_path / "run.parquet"
+    table = pyarrow.table({"time_s": time_s, "vertical_g": np.random.default_rng(5).normal(size=time_s.size)})
+    pyarrow.parquet.write_table(table, file, use_dictionary=False, write_page_checksum=True)
+    whole = file.read_bytes()
+    assert np.array_equal(read_recording(file)["vertical_g"], table["vertical_g"])
+    for number in range(1, 31):
+        changed = bytearray(whole)
+        # Pages take all of the file but some hundred bytes at its ends.
+        changed[1000 + int(number * 0.618033988749895 % 1 * (len(whole) - 4000))] ^= 1 << number % 8
+        file.write_bytes(changed)
+        with pytest.raises(ValueError, match="is not a whole Parquet file: .*checksum"):
+            read_recording(file)
