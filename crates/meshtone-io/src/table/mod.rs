@@ -6,7 +6,6 @@
 //! Meshtone.
 
 mod arrow_schema;
-mod chunk_checksum;
 mod flat_buffer;
 mod found_type;
 mod metadata_hash;

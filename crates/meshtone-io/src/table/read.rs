@@ -11,7 +11,7 @@ use parquet::file::reader::{ChunkReader, SerializedPageReader};
 use parquet::schema::types::Type;
 
 use super::arrow_schema::{self, ArrowField};
-use super::chunk_checksum::{self, Chunk};
+use super::page_checksum::{self, CheckedPages};
 use super::{FoundType, NumberType, metadata_hash};
 
 /// Rows that are decoded at once.
@@ -22,6 +22,8 @@ pub struct TableReader<R: ChunkReader + 'static> {
     file: Arc<R>,
     metadata: ParquetMetaData,
     columns: Vec<FoundColumn>,
+    /// Checksums of the headers of pages, by columns in groups of rows.
+    headers: Vec<Vec<u32>>,
 }
 
 /// A column of a table that is read.
@@ -58,8 +60,9 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     /// The file cannot be read, is no Parquet file, or has other metadata than were written.
     pub fn new(file: R) -> Result<Self> {
         let metadata = metadata_hash::read(&file)?;
-        let mut table = Self { file: Arc::new(file), metadata, columns: Vec::new() };
+        let mut table = Self { file: Arc::new(file), metadata, columns: Vec::new(), headers: Vec::new() };
         let arrow = table.text_of(arrow_schema::KEY).and_then(arrow_schema::decode).unwrap_or_default();
+        table.headers = table.text_of(page_checksum::KEY).map(page_checksum::of_headers).unwrap_or_default();
         table.columns = columns(table.metadata().file_metadata().schema(), &arrow);
         Ok(table)
     }
@@ -236,19 +239,18 @@ impl<R: ChunkReader + 'static> TableReader<R> {
         Ok(())
     }
 
-    /// A reader of a column's part of a group of rows. Its bytes are compared with its checksum, and those of pages with theirs.
+    /// A reader of a column's part of a group of rows, which compares the checksums.
     fn column_reader(&self, column: &FoundColumn, number: usize) -> Result<ColumnReader> {
         let group = self.metadata.row_group(number);
         let chunk = group.column(column.leaf);
         let rows = usize::try_from(group.num_rows())?;
-        let checksums = self.text_of(chunk_checksum::KEY).unwrap_or_default();
-        let checksum = chunk_checksum::stated(checksums, number * group.num_columns() + column.leaf);
-        let pages: Box<dyn PageReader> = match checksum {
-            Some(checksum) => {
-                let read = Chunk::read(&*self.file, chunk.byte_range(), checksum)?;
-                Box::new(SerializedPageReader::new(Arc::new(read), chunk, rows, None)?)
+        let file = Arc::clone(&self.file);
+        let pages: Box<dyn PageReader> = match self.headers.get(number * group.num_columns() + column.leaf) {
+            Some(headers) => {
+                let file = CheckedPages::new(file, headers.clone());
+                Box::new(SerializedPageReader::new(Arc::new(file), chunk, rows, None)?)
             }
-            None => Box::new(SerializedPageReader::new(Arc::clone(&self.file), chunk, rows, None)?),
+            None => Box::new(SerializedPageReader::new(file, chunk, rows, None)?),
         };
         Ok(get_column_reader(chunk.column_descr_ptr(), pages))
     }
@@ -323,6 +325,9 @@ fn lists_of<T: DataType>(
     let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
     let (found, ..) =
         reader.read_records(rows, Some(&mut definitions), Some(&mut repetitions), &mut values)?;
+    if found != rows {
+        return Err(ParquetError::General(format!("it has {found} lists in a row group of {rows}")));
+    }
     let (mut values, mut lists) = (values.iter().map(number), Vec::with_capacity(found));
     // A value is there where its definition level is the highest one, and a list begins where the repetition level is 0.
     let there = definitions.iter().copied().max().unwrap_or(0);

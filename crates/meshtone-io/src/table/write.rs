@@ -15,8 +15,8 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 
 use super::metadata_hash::{self, HashedMetadata, UNKNOWN_HASH};
-use super::page_checksum::ChecksummedPages;
-use super::{arrow_schema, chunk_checksum, into_io, split_signal};
+use super::page_checksum::{self, ChecksummedPages};
+use super::{arrow_schema, into_io, split_signal};
 
 /// Name of the table itself, as Arrow's writers give it.
 const TABLE: &str = "arrow_schema";
@@ -137,8 +137,10 @@ impl TableColumn {
 pub struct TableWriter<W: Write + Send> {
     file: SerializedFileWriter<HashedMetadata<W>>,
     columns: Vec<TableColumn>,
-    /// Of what has been written of the columns.
-    checksums: String,
+    /// Checksums of the headers of pages.
+    headers: String,
+    /// What the file says about itself besides.
+    metadata: Vec<KeyValue>,
 }
 
 impl<W: Write + Send> TableWriter<W> {
@@ -165,7 +167,7 @@ impl<W: Write + Send> TableWriter<W> {
         let mut file = SerializedFileWriter::new(HashedMetadata::new(to), schema, Arc::new(properties))?;
         let arrow = arrow_schema::encode(&columns);
         file.append_key_value_metadata(KeyValue::new(arrow_schema::KEY.to_owned(), arrow));
-        Ok(Self { file, columns, checksums: String::new() })
+        Ok(Self { file, columns, headers: String::new(), metadata: Vec::new() })
     }
 
     /// Writes rows as a group of their own.
@@ -189,7 +191,7 @@ impl<W: Write + Send> TableWriter<W> {
         let mut group = self.file.next_row_group()?;
         for ((column, leaf), cells) in self.columns.iter().zip(leaves).zip(cells) {
             let mut bytes = Vec::new();
-            let pages = ChecksummedPages { to: &mut bytes };
+            let pages = ChecksummedPages { to: &mut bytes, headers: &mut self.headers };
             let closed = match cells {
                 Cells::Signal(signal)
                     if !signal.is_empty()
@@ -204,7 +206,7 @@ impl<W: Write + Send> TableWriter<W> {
                     writer.close()?
                 }
             };
-            chunk_checksum::push(&mut self.checksums, &bytes);
+            self.headers.push(page_checksum::BETWEEN_COLUMNS);
             group.append_column(&Bytes::from(bytes), closed)?;
         }
         group.close().map(drop)
@@ -215,21 +217,23 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Arguments
     /// * `entries` - keys and values
     pub fn add_metadata(&mut self, entries: impl IntoIterator<Item = (impl Into<String>, String)>) {
-        for (key, value) in entries {
-            self.file.append_key_value_metadata(KeyValue::new(key.into(), value));
-        }
+        self.metadata.extend(entries.into_iter().map(|(key, value)| KeyValue::new(key.into(), value)));
     }
 
     /// Ends the table.
     ///
     /// # Errors
     /// Those of the file.
-    pub fn close(mut self) -> io::Result<()> {
-        let checksums = std::mem::take(&mut self.checksums);
-        self.add_metadata([(chunk_checksum::KEY, checksums), (metadata_hash::KEY, UNKNOWN_HASH.to_owned())]);
-        self.file.flush()?;
-        self.file.inner_mut().begin_end();
-        self.file.into_inner().map_err(into_io)?.finish()
+    pub fn close(self) -> io::Result<()> {
+        let Self { mut file, headers, metadata, .. } = self;
+        let headers = KeyValue::new(page_checksum::KEY.to_owned(), headers);
+        // Last, so that hashes lie near the file's end.
+        let hash = KeyValue::new(metadata_hash::KEY.to_owned(), UNKNOWN_HASH.to_owned());
+        let entries = std::iter::once(headers).chain(metadata).chain([hash]);
+        entries.for_each(|entry| file.append_key_value_metadata(entry));
+        file.flush()?;
+        file.inner_mut().begin_end();
+        file.into_inner().map_err(into_io)?.finish()
     }
 }
 
