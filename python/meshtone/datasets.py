@@ -1142,7 +1142,7 @@ class Dataset:
         Parameters
         ----------
         folder : str or path
-            The folder, which must be empty or not exist; its name is that of the written data set.
+            The folder, which must not exist or be empty but for an export that was interrupted; its name is that of the written data set.
 
         Raises
         ------

@@ -215,7 +215,7 @@ fn very_many_shards_are_scanned() {
         println!("{what}: {:.1} s", start.elapsed().as_secs_f64());
     };
     seconds("made", &mut || assert!(run(&plan, &to, Part::WHOLE, 2).unwrap().complete));
-    seconds("names and sizes", &mut || assert!(verify(&to, Check::Sizes).unwrap().is_good()));
+    seconds("names, sizes and footers", &mut || assert!(verify(&to, Check::Sizes).unwrap().is_good()));
     seconds("every byte", &mut || assert!(bytes_of(&to).is_good()));
     seconds("merged in place: every footer", &mut || {
         assert_eq!(merge(std::slice::from_ref(&to), &to, Check::Sizes).unwrap().kept_shards, count);
