@@ -26,6 +26,7 @@ mod warnings;
 use std::process::ExitCode;
 
 use clap::Parser;
+use meshtone::InstructionSet;
 use meshtone::scenario::MemoryLimit;
 use meshtone_io::memory::parse_bytes;
 
@@ -47,6 +48,7 @@ struct Arguments {
 impl Arguments {
     fn run(&self) -> Result<(), Failure> {
         MemoryLimit::set(self.memory_limit);
+        InstructionSet::from_environment().map_err(|error| Failure::bad_input(error.to_string()))?;
         self.command.run()
     }
 }

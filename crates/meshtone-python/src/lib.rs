@@ -58,11 +58,14 @@ mod _core {
         simulation::{Simulation, process_simulated, simulate, trace},
     };
 
+    use pyo3::exceptions::PyImportError;
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        meshtone::InstructionSet::from_environment()
+            .map_err(|error| PyImportError::new_err(error.to_string()))?;
         module.add("ORDER_MAP_MESH_ORDERS", meshtone::signal::OrderMapSettings::MESH_ORDERS)?;
         let indicators = meshtone::signal::Indicators::default().table("");
         module.add("INDICATORS", PyTuple::new(module.py(), indicators.into_iter().map(|of| of.name))?)?;

@@ -92,7 +92,7 @@ pub fn written_out(toml: &str) -> String {
 }
 
 pub use error::Error;
-pub use simd::InstructionSet;
+pub use simd::{InstructionSet, NoSuchInstructionSet};
 #[cfg(feature = "internals")]
 pub use simulate::{AssembledMachine, Equations};
 pub use simulate::{MeshedPair, Simulation, StageTime, Stages, simulate, stages, stages_within};

@@ -579,7 +579,7 @@ impl Stages {
         first_sample: usize,
         recorder: &mut dyn Recorder,
     ) -> Result<(), Error> {
-        self.integrate_with(InstructionSet::fastest(), outputs, first_sample, recorder)
+        self.integrate_with(InstructionSet::in_use(), outputs, first_sample, recorder)
     }
 
     /// The error that a solution without bound is.

@@ -3,6 +3,7 @@
 use std::fs::File;
 
 use crate::support::{Workplace, fast_and, fast_with, stderr, stdout};
+use meshtone::InstructionSet;
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::read_scenario;
@@ -28,6 +29,45 @@ fn signals_are_those_of_the_library() {
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     assert_eq!(recorded.scenario, scenario.clone());
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
+}
+
+/// All sets with fused multiply-add give the same bits; products that are rounded before they are added differ by rounding, which grows
+/// with no number of samples while the mesh is linear.
+#[test]
+fn the_variable_chooses_the_instructions() {
+    let workplace = Workplace::new();
+    let run = |instructions: &str| {
+        let arguments = ["simulate", "fast.toml", "--model", "linear", "-o", "out", "--no-panel"];
+        workplace.command(&arguments).env("MESHTONE_INSTRUCTIONS", instructions).assert().success();
+        let channels = read_signals(&workplace.path("out/signals.parquet")).unwrap().channels;
+        ["vertical_g", "mesh_force_n"].map(|name| channels[name].to_vec())
+    };
+    let [plain, fastest] = ["plain", ""].map(run);
+    for set in InstructionSet::available() {
+        if set != InstructionSet::Plain {
+            assert_eq!(run(set.name()), fastest, "{}", set.name());
+        }
+    }
+    for (plain, fused) in plain.iter().zip(&fastest) {
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, x: f64| x.abs().max(most));
+        let difference = largest(&mut plain.iter().zip(fused).map(|(a, b)| a - b));
+        assert!(difference < 1e-9 * largest(&mut fused.iter().copied()), "{difference:e}");
+    }
+    if InstructionSet::in_use() != InstructionSet::Plain {
+        assert_ne!(plain, fastest, "nothing was chosen");
+    }
+    let refused = workplace
+        .command(&["init", "healthy"])
+        .env("MESHTONE_INSTRUCTIONS", "sse")
+        .assert()
+        .code(2)
+        .stdout("");
+    assert!(
+        stderr(&refused).contains("MESHTONE_INSTRUCTIONS = \"sse\": must be one of "),
+        "{}",
+        stderr(&refused)
+    );
 }
 
 /// Signals in other formats take the place of Parquet, and a later run leaves none of an earlier one's.

@@ -65,7 +65,7 @@ const FEWEST_LANES: usize = 2;
 type Placed<'a> = (usize, &'a Stages, &'a [Output], &'a mut dyn Recorder);
 
 /// Integrates the simulations of a group: side by side those that can be, and the others one after the other, as all where they are too
-/// few.
+/// few or the processor has no vector registers.
 fn integrate_ready<R: Recorder>(
     ready: &mut [Ready<R>],
     instructions: InstructionSet,
@@ -85,19 +85,19 @@ fn integrate_ready<R: Recorder>(
         let (stages, outputs) = (*stages, *outputs);
         problems.extend((problems.len()..LANES).filter_map(|_| stages.lane(outputs).ok()));
     }
-    match <[Problem; LANES]>::try_from(problems) {
-        Ok(problems) => {
+    match (instructions.registers(), <[Problem; LANES]>::try_from(problems)) {
+        (Some(registers), Ok(problems)) => {
             let (placed, recorders): (Vec<_>, Vec<_>) = (together.into_iter())
                 .map(|(place, stages, _, recorder)| ((place, stages), recorder))
                 .unzip();
-            let each = integrate_side_by_side(problems, instructions, recorders).into_iter().zip(placed);
+            let each = integrate_side_by_side(problems, registers, recorders).into_iter().zip(placed);
             results.extend(
                 each.map(|(result, (place, stages))| {
                     (place, result.map_err(|error| stages.divergence(error)))
                 }),
             );
         }
-        Err(_) => alone.extend(together),
+        _ => alone.extend(together),
     }
     results.extend(alone.into_iter().map(|(place, stages, outputs, recorder)| {
         let first_sample = stages.time.first_kept_sample;

@@ -35,7 +35,7 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 impl Default for Control<'_> {
     /// No progress, no end before the last, the fastest instructions.
     fn default() -> Self {
-        Self { progress: &|_| {}, cancelled: &NEVER, instructions: InstructionSet::fastest() }
+        Self { progress: &|_| {}, cancelled: &NEVER, instructions: InstructionSet::in_use() }
     }
 }
 

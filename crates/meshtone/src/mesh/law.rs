@@ -1130,7 +1130,7 @@ const FIRST_PRESSED_M: f64 = 1e-6;
 mod tests {
     use super::*;
     use crate::mesh::PAIRS;
-    use crate::simd::{InstructionSet, Task};
+    use crate::simd::{Dispatch, InstructionSet, Task};
 
     /// Flanks that push, without damping and with coast flanks out of reach.
     const UNDAMPED: MeshLaw = MeshLaw {
@@ -1201,7 +1201,7 @@ mod tests {
             at,
             law: MeshLaw { backlash_m: Some(1.0), back_stiffness_n_per_m: 1.0, ..UNDAMPED },
         };
-        let states = InstructionSet::fastest().run(oscillator);
+        let states = InstructionSet::in_use().run(oscillator);
         let last = &states[60 * per_period..];
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| last.iter().map(of).sum::<f64>() / last.len() as f64;
         let centre = mean(&|state| state[0]);
@@ -1231,7 +1231,7 @@ mod tests {
             at: |t: f64| ([100.0, 0.0, 0.0], [0.0; PAIRS], if t < 0.1 { -1.0 } else { 0.0 }),
             law: MeshLaw { backlash_m: Some(0.5), back_stiffness_n_per_m: 100.0, ..UNDAMPED },
         };
-        let states = InstructionSet::fastest().run(oscillator(5e-4, 40_000));
+        let states = InstructionSet::in_use().run(oscillator(5e-4, 40_000));
         let (least, most) = states.iter().fold((0.0f64, 0.0f64), |(a, b), s| (a.min(s[0]), b.max(s[0])));
         // Speed 0.1 behind stiffness 100: 0.01 deep on either side.
         assert!((least + 0.51).abs() < 2e-4 && (most - 0.01).abs() < 2e-4, "{least} {most}");
@@ -1371,7 +1371,7 @@ mod tests {
                 compliance: gamma.map(|row| row.map(lanes)),
                 pairs: &one,
             };
-            let [force, moment] = InstructionSet::fastest().run(solve).map(|lanes| lanes.0[0]);
+            let [force, moment] = InstructionSet::in_use().run(solve).map(|lanes| lanes.0[0]);
             let carried = [300.0 - force, -moment];
             // Both unknowns follow from what is carried, and make it again.
             let unknowns =
@@ -1401,7 +1401,7 @@ mod tests {
                 compliance[row][column].0[1] = 0.0;
             }
             let solve = Solve { law: &two, free: of_both, compliance, pairs: &pairs };
-            let together = InstructionSet::fastest().run(solve);
+            let together = InstructionSet::in_use().run(solve);
             assert_eq!([together[0].0[0], together[1].0[0]], [force, moment]);
             let plain = LawLanes::new([law], [300.0], [None]);
             let solve = Solve {
@@ -1410,7 +1410,7 @@ mod tests {
                 compliance: [[Lanes([own]), Lanes([0.0])], [Lanes([0.0]); 2]],
                 pairs: &one,
             };
-            let of_one = InstructionSet::fastest().run(solve);
+            let of_one = InstructionSet::in_use().run(solve);
             assert_eq!([together[0].0[1], together[1].0[1]], [of_one[0].0[0], 0.0]);
         }
         assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
@@ -1470,7 +1470,7 @@ mod tests {
             let lanes = LawLanes::new([law], [300.0], [None]);
             let pairs = sample(stiffness, offset);
             let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
-            let force = 300.0 - InstructionSet::fastest().run(solve);
+            let force = 300.0 - InstructionSet::in_use().run(solve);
             let springs = Springs::frictionless(&stiffness, &offset, &[], &[]);
             let of = |d: f64| law.force_and_slope(springs, d)[0];
             let relative = |d: f64| 300.0 - of(d);

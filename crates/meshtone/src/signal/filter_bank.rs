@@ -2,7 +2,7 @@
 
 use super::Edge;
 use super::kaiser::windowed_sinc;
-use crate::simd::{InstructionSet, Instructions, Lanes, Task};
+use crate::simd::{Dispatch, InstructionSet, Instructions, Lanes, Task};
 
 /// Sums that run side by side, so that none waits for the one before.
 const LANES: usize = 16;
@@ -171,7 +171,7 @@ impl FilterBank {
     ) {
         let mut read = [[0.0; N]; BLOCK];
         let read = &mut read[..places.len()];
-        InstructionSet::fastest().run(BankReading { bank: self, signals, places, edge, beyond, read });
+        InstructionSet::in_use().run(BankReading { bank: self, signals, places, edge, beyond, read });
         for (n, values) in values.iter_mut().enumerate() {
             values.extend(read.iter().map(|value| rounded(value[n])));
         }

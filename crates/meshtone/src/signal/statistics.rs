@@ -1,6 +1,6 @@
 //! Numbers that sum up a signal.
 
-use crate::simd::{InstructionSet, Instructions, Lanes, Task};
+use crate::simd::{Dispatch, InstructionSet, Instructions, Lanes, Task};
 
 /// Partial results that are formed side by side, every eighth value going to the same one: in a single one every addition
 /// would wait for the one before. They are taken together at the end, always in the same order, and nothing is fused: the
@@ -19,7 +19,7 @@ struct Sums {
 
 impl Sums {
     fn of(signal: &[f64]) -> Self {
-        InstructionSet::fastest().run(SumsOf(signal))
+        InstructionSet::in_use().run(SumsOf(signal))
     }
 
     /// The mean, from the first value.
@@ -107,7 +107,7 @@ impl<const ORDER: i32> Task for Powers<'_, ORDER> {
 /// `Σ(x − x̄)²` and `Σ(x − x̄)ᵏ`.
 fn central_sums(signal: &[f64], mean: f64, order: i32) -> [f64; 2] {
     let first = signal.first().copied().unwrap_or(f64::NAN);
-    let instructions = InstructionSet::fastest();
+    let instructions = InstructionSet::in_use();
     match order {
         2 => instructions.run(Powers::<2> { signal, first, mean }),
         3 => instructions.run(Powers::<3> { signal, first, mean }),

@@ -1,5 +1,8 @@
 //! Vector instructions that the time loop may use, chosen at run time.
 
+use std::fmt;
+use std::sync::OnceLock;
+
 /// A set of vector instructions.
 ///
 /// All sets with fused multiply-add give the same bits; [`Self::Plain`] rounds products apart and differs by rounding.
@@ -29,49 +32,132 @@ impl InstructionSet {
         Self::ALL.into_iter().filter(|set| set.is_available()).collect()
     }
 
+    /// The name of the environment variable that chooses a set in place of the fastest one.
+    pub const VARIABLE: &'static str = "MESHTONE_INSTRUCTIONS";
+
+    /// The set that [`Self::VARIABLE`] names, or the fastest that this machine can run where the variable is unset or empty.
+    ///
+    /// # Errors
+    /// The variable names no set, or one that this machine cannot run.
+    pub fn from_environment() -> Result<Self, NoSuchInstructionSet> {
+        let named = std::env::var_os(Self::VARIABLE).filter(|name| !name.is_empty());
+        let Some(name) = named else { return Ok(Self::fastest()) };
+        (Self::available().into_iter().find(|set| name == set.name()))
+            .ok_or_else(|| NoSuchInstructionSet { name: name.to_string_lossy().into_owned() })
+    }
+
+    /// That of [`Self::from_environment`], which is read once; the fastest set where it is an error, which programs report at their start.
+    pub fn in_use() -> Self {
+        static IN_USE: OnceLock<InstructionSet> = OnceLock::new();
+        *IN_USE.get_or_init(|| Self::from_environment().unwrap_or_else(|_| Self::fastest()))
+    }
+
     /// The fastest set that this machine can run.
-    pub fn fastest() -> Self {
+    fn fastest() -> Self {
         Self::ALL.into_iter().find(|set| set.is_available()).unwrap_or(Self::Plain)
     }
 
-    fn is_available(self) -> bool {
+    /// What [`Self::VARIABLE`] calls it.
+    pub fn name(self) -> &'static str {
         match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => pulp::x86::V4::try_new().is_some(),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => pulp::x86::V3::try_new().is_some(),
-            #[cfg(target_arch = "aarch64")]
-            Self::Neon => pulp::aarch64::Neon::try_new().is_some(),
-            Self::Plain => true,
-            #[allow(unreachable_patterns)]
-            _ => false,
+            Self::Avx512 => "avx512",
+            Self::Avx2 => "avx2",
+            Self::Neon => "neon",
+            Self::Plain => "plain",
         }
     }
 
-    /// Runs a task with this set's instructions, or plainly where the machine has not got them.
-    pub(crate) fn run<T: Task>(self, task: T) -> T::Output {
+    fn is_available(self) -> bool {
+        self == Self::Plain || self.registers().is_some()
+    }
+
+    /// The vector registers of this set; none of the plain one, nor where the machine has not got them.
+    pub(crate) fn registers(self) -> Option<Registers> {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => {
-                if let Some(simd) = pulp::x86::V4::try_new() {
-                    return pulp::Simd::vectorize(simd, Vectorized(task));
-                }
-            }
+            Self::Avx512 => pulp::x86::V4::try_new().map(Registers::Avx512),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => {
-                if let Some(simd) = pulp::x86::V3::try_new() {
-                    return pulp::Simd::vectorize(simd, Vectorized(task));
-                }
-            }
+            Self::Avx2 => pulp::x86::V3::try_new().map(Registers::Avx2),
             #[cfg(target_arch = "aarch64")]
-            Self::Neon => {
-                if let Some(simd) = pulp::aarch64::Neon::try_new() {
-                    return pulp::Simd::vectorize(simd, Vectorized(task));
-                }
-            }
-            _ => {}
+            Self::Neon => pulp::aarch64::Neon::try_new().map(Registers::Neon),
+            _ => None,
         }
-        task.run(Plain)
+    }
+}
+
+/// [`InstructionSet::VARIABLE`] names a set that there is not on this machine.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoSuchInstructionSet {
+    /// What it says.
+    pub name: String,
+}
+
+impl std::error::Error for NoSuchInstructionSet {}
+
+impl fmt::Display for NoSuchInstructionSet {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let allowed: Vec<&str> = InstructionSet::available().into_iter().map(InstructionSet::name).collect();
+        let (variable, name) = (InstructionSet::VARIABLE, &self.name);
+        write!(formatter, "{variable} = {name:?}: must be one of {} on this machine", allowed.join(", "))
+    }
+}
+
+/// Vector registers that the machine is known to have.
+#[derive(Clone, Copy)]
+pub(crate) enum Registers {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(pulp::x86::V4),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(pulp::x86::V3),
+    #[cfg(target_arch = "aarch64")]
+    Neon(pulp::aarch64::Neon),
+}
+
+/// Runs tasks with instructions that are chosen at run time. Each implementation says for which sets a task is compiled: that of a large
+/// task takes seconds for every set.
+pub(crate) trait Dispatch: Copy {
+    /// Runs a task.
+    fn run<T: Task>(self, task: T) -> T::Output;
+}
+
+impl Dispatch for Registers {
+    fn run<T: Task>(self, task: T) -> T::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(simd) => pulp::Simd::vectorize(simd, Vectorized(task)),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(simd) => pulp::Simd::vectorize(simd, Vectorized(task)),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon(simd) => pulp::Simd::vectorize(simd, Vectorized(task)),
+        }
+    }
+}
+
+impl Dispatch for InstructionSet {
+    fn run<T: Task>(self, task: T) -> T::Output {
+        match self.registers() {
+            Some(registers) => registers.run(task),
+            None => task.run(Plain),
+        }
+    }
+}
+
+/// For tasks of one number at a time, of which no register is full: they are compiled for one set with fused multiply-add, which gives the
+/// bits of every other, and plainly.
+#[derive(Clone, Copy)]
+pub(crate) struct OneByOne(pub(crate) InstructionSet);
+
+impl Dispatch for OneByOne {
+    fn run<T: Task>(self, task: T) -> T::Output {
+        match self.0.registers() {
+            #[cfg(target_arch = "x86_64")]
+            Some(Registers::Avx512(simd)) => pulp::Simd::vectorize(*simd, Vectorized(task)),
+            #[cfg(target_arch = "x86_64")]
+            Some(Registers::Avx2(simd)) => pulp::Simd::vectorize(simd, Vectorized(task)),
+            #[cfg(target_arch = "aarch64")]
+            Some(Registers::Neon(simd)) => pulp::Simd::vectorize(simd, Vectorized(task)),
+            None => task.run(Plain),
+        }
     }
 }
 

@@ -3,6 +3,6 @@
 mod instruction_set;
 mod lanes;
 
-pub use instruction_set::InstructionSet;
-pub(crate) use instruction_set::{Instructions, Task};
+pub(crate) use instruction_set::{Dispatch, Instructions, OneByOne, Registers, Task};
+pub use instruction_set::{InstructionSet, NoSuchInstructionSet};
 pub(crate) use lanes::{Chains, Lanes};

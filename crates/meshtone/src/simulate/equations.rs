@@ -262,7 +262,7 @@ impl Stages {
         };
         let mut problem = self.problem(machine, modal, &time, outputs, time.first_simulated_sample);
         problem.hunting_period_samples = None;
-        let finer = resume(problem, state, InstructionSet::fastest(), recorder);
+        let finer = resume(problem, state, InstructionSet::in_use(), recorder);
         finer.map_err(|diverged| self.divergence(diverged))
     }
 

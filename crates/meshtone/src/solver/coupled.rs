@@ -27,7 +27,7 @@ use super::outputs::{EXTERNALS, OutputWeights, dot};
 use super::prepare::{FirstState, Prepared};
 use crate::bearing::{BearingLoad, RollingBearing};
 use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples, TANGENT_M, TANGENT_PART, TiltedLoad};
-use crate::simd::{InstructionSet, Instructions, Lanes, Task};
+use crate::simd::{Dispatch, InstructionSet, Instructions, Lanes, Task};
 
 /// Most meshes that one machine has.
 pub(crate) const MOST_MESHES: usize = 8;

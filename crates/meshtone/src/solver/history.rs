@@ -2,7 +2,7 @@
 
 use super::outputs::OutputWeights;
 use super::step::State;
-use crate::simd::{InstructionSet, Instructions, Lanes, Task};
+use crate::simd::{Dispatch, Instructions, Lanes, Task};
 
 /// Samples that are forced, solved and handed out at a time: the states of eight simulations stay in the second-level cache.
 pub(super) const BLOCK: usize = 256;
@@ -112,7 +112,7 @@ impl<const L: usize> OutputTerms<L> {
     /// * `output` - set, one per sample
     pub(super) fn evaluate<const N: usize, const R: usize>(
         &self,
-        instructions: InstructionSet,
+        instructions: impl Dispatch,
         history: &History<L, N, R>,
         first: usize,
         output: &mut [Lanes<L>],

@@ -20,7 +20,7 @@ use crate::mesh::{
     SpringSamples, line_up,
 };
 use crate::operation::TimeGrid;
-use crate::simd::{InstructionSet, Lanes};
+use crate::simd::{Dispatch, InstructionSet, Lanes, OneByOne, Registers};
 
 /// Simulations that are solved side by side.
 pub const LANES: usize = 8;
@@ -262,7 +262,7 @@ pub fn integrate(
     if problem.stepped_alone().is_some() {
         return coupled::integrate(problem, None, instructions, recorder);
     }
-    let [result] = of_size([problem], [None], instructions, vec![recorder]);
+    let [result] = of_size([problem], [None], OneByOne(instructions), vec![recorder]);
     result
 }
 
@@ -285,7 +285,7 @@ pub(crate) fn resume(
     if problem.stepped_alone().is_some() {
         return coupled::integrate(problem, Some(state), instructions, recorder);
     }
-    let [result] = of_size([problem], [Some(state)], instructions, vec![recorder]);
+    let [result] = of_size([problem], [Some(state)], OneByOne(instructions), vec![recorder]);
     result
 }
 
@@ -293,25 +293,26 @@ pub(crate) fn resume(
 ///
 /// # Arguments
 /// * `problems` - as many lanes
+/// * `registers` - what the processor has
 /// * `recorders` - take the outputs of the first lanes; the others repeat a simulation
 ///
 /// # Errors
 /// As [`integrate`], of each on its own.
-pub fn integrate_side_by_side(
+pub(crate) fn integrate_side_by_side(
     problems: [Problem; LANES],
-    instructions: InstructionSet,
+    registers: Registers,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; LANES] {
     let mut repeating: Vec<Repeating> =
         problems.iter().zip(recorders).map(|(problem, recorder)| Repeating::new(problem, recorder)).collect();
     let recorders = repeating.iter_mut().map(|recorder| recorder as &mut dyn Recorder).collect();
-    of_size(problems, [None; LANES], instructions, recorders)
+    of_size(problems, [None; LANES], registers, recorders)
 }
 
 fn of_size<const L: usize>(
     problems: [Problem; L],
     from: [Option<&MotionState>; L],
-    instructions: InstructionSet,
+    instructions: impl Dispatch,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
     match Size::of(&problems) {
@@ -350,7 +351,7 @@ fn of_size<const L: usize>(
 fn run<const L: usize, const N: usize, const M: usize, const R: usize, const P: usize, const C: usize>(
     mut problems: [Problem; L],
     from: [Option<&MotionState>; L],
-    instructions: InstructionSet,
+    instructions: impl Dispatch,
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; L] {
     let prepared: [Prepared; L] = problems.each_ref().map(|problem| Prepared::new(problem, 1.0));
@@ -525,9 +526,9 @@ mod tests {
         let outputs = ChannelKind::ALL.map(ChannelKind::output);
         let problem = || stages.lane(&outputs).unwrap();
         assert_eq!(Size::of(&[problem()]), expected, "{name}");
-        let instructions = InstructionSet::fastest();
+        let instructions = InstructionSet::in_use();
         let [mut side_by_side, mut alone] = [All::default(), All::default()];
-        let [result] = of_size([problem()], [None], instructions, vec![&mut side_by_side]);
+        let [result] = of_size([problem()], [None], OneByOne(instructions), vec![&mut side_by_side]);
         result.unwrap();
         coupled::integrate(problem(), None, instructions, &mut alone).unwrap();
         assert_eq!((side_by_side.0.len(), alone.0.len()), (outputs.len(), outputs.len()), "{name}");

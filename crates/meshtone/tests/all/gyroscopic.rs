@@ -128,7 +128,7 @@ fn error_of_steps(rate_hz: f64) -> f64 {
         outputs: &outputs,
         first_sample: 0,
     };
-    integrate(problem, InstructionSet::fastest(), &mut signals).unwrap();
+    integrate(problem, InstructionSet::in_use(), &mut signals).unwrap();
     let exact = exact_tilts(&lonely, modes, (&stepped, nominal_rad_per_s), (wheel, highest), &time);
     let largest =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));

@@ -41,7 +41,7 @@ fn solve(
         outputs: &outputs,
         first_sample: 0,
     };
-    integrate(problem, InstructionSet::fastest(), &mut signals).unwrap();
+    integrate(problem, InstructionSet::in_use(), &mut signals).unwrap();
     signals.0
 }
 
