@@ -5,7 +5,7 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 
@@ -57,7 +57,7 @@ impl Guard {
 
 async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Response {
     let rules = &guard.0;
-    let mut response = match rules.objection(request.method(), request.uri().path(), request.headers()) {
+    let mut response = match rules.objection(request.method(), request.uri(), request.headers()) {
         Some(words) => (StatusCode::FORBIDDEN, words).into_response(),
         None => next.run(request).await,
     };
@@ -66,12 +66,20 @@ async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Resp
 }
 
 impl Rules {
-    fn objection(&self, method: &Method, path: &str, headers: &HeaderMap) -> Option<&'static str> {
+    fn objection(&self, method: &Method, uri: &Uri, headers: &HeaderMap) -> Option<&'static str> {
         let is_host = |text: &str| self.hosts.iter().any(|host| host == text);
         let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
-        // A name that leads to this machine, but that another page has chosen, is no name of it.
-        if !text(header::HOST).is_some_and(is_host) {
+        // A name that leads to this machine, but that another page has chosen, is no name of it; neither is one of two that a request
+        // states at once, or of a whole address in its first line.
+        let is_stated_once = headers.get_all(header::HOST).iter().count() == 1;
+        let is_own_address = uri.authority().is_none_or(|authority| is_host(authority.as_str()));
+        if !is_stated_once || !is_own_address || !text(header::HOST).is_some_and(is_host) {
             return Some("this page answers to 127.0.0.1 and localhost at its own port only");
+        }
+        // Browsers say for whom they ask. Whoever follows a link, or shows the page in a notebook, navigates.
+        let is_foreign = text(HeaderName::from_static("sec-fetch-site")) == Some("cross-site");
+        if is_foreign && text(HeaderName::from_static("sec-fetch-mode")) != Some("navigate") {
+            return Some("only this page itself may ask");
         }
         let is_own = |origin: &str| origin.strip_prefix("http://").is_some_and(is_host);
         let origin = text(header::ORIGIN);
@@ -79,7 +87,7 @@ impl Rules {
         if origin.map_or(!is_reading, |origin| !is_own(origin)) {
             return Some("only this page itself may ask");
         }
-        let token = path.split('/').nth(1).unwrap_or_default();
+        let token = uri.path().split('/').nth(1).unwrap_or_default();
         if !is_equal(token.as_bytes(), self.token.as_bytes()) {
             return Some(
                 "the address lacks the token of this run: open the address that was printed when it started",
@@ -115,11 +123,13 @@ pub(super) fn respond(status: StatusCode, media_type: &'static str, body: impl I
 mod tests {
     use super::*;
 
-    fn is_refused(method: Method, path: &str, headers: &[(HeaderName, &'static str)]) -> bool {
+    fn is_refused(method: Method, uri: &'static str, headers: &[(HeaderName, &'static str)]) -> bool {
         let guard = Guard::new(8000, "abc", Embedding::Refused);
-        let headers =
-            headers.iter().map(|(name, value)| (name.clone(), HeaderValue::from_static(value))).collect();
-        guard.0.objection(&method, path, &headers).is_some()
+        let mut stated = HeaderMap::new();
+        for (name, value) in headers {
+            stated.append(name.clone(), HeaderValue::from_static(value));
+        }
+        guard.0.objection(&method, &Uri::from_static(uri), &stated).is_some()
     }
 
     #[test]
@@ -131,6 +141,22 @@ mod tests {
         assert!(is_refused(Method::GET, "/abc/", &[]));
         assert!(is_refused(Method::GET, "/abd/", std::slice::from_ref(&here)));
         assert!(is_refused(Method::GET, "/", std::slice::from_ref(&here)));
+        assert!(is_refused(Method::GET, "/abc/", &[here.clone(), (header::HOST, "evil.example")]));
+        assert!(!is_refused(Method::GET, "http://127.0.0.1:8000/abc/", std::slice::from_ref(&here)));
+        assert!(is_refused(Method::GET, "http://evil.example/abc/", std::slice::from_ref(&here)));
+        let fetch = |name, value| (HeaderName::from_static(name), value);
+        let foreign = fetch("sec-fetch-site", "cross-site");
+        assert!(is_refused(Method::GET, "/abc/main.js", &[here.clone(), foreign.clone()]));
+        assert!(is_refused(
+            Method::GET,
+            "/abc/",
+            &[here.clone(), foreign.clone(), fetch("sec-fetch-mode", "no-cors")]
+        ));
+        assert!(!is_refused(
+            Method::GET,
+            "/abc/",
+            &[here.clone(), foreign, fetch("sec-fetch-mode", "navigate")]
+        ));
         let own = (header::ORIGIN, "http://127.0.0.1:8000");
         assert!(!is_refused(Method::POST, "/abc/answer", &[here.clone(), own]));
         assert!(is_refused(Method::POST, "/abc/answer", std::slice::from_ref(&here)));
