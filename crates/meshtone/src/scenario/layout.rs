@@ -66,6 +66,11 @@ impl Ratio {
         Self { numerator: fits(sign * n / divisor), denominator: fits(d.abs() / divisor) }
     }
 
+    /// Whether it is what it was computed to be, and not the largest that fits in its place.
+    fn is_exact(self) -> bool {
+        self.numerator.unsigned_abs().max(self.denominator.unsigned_abs()) < i64::MAX.unsigned_abs()
+    }
+
     /// As a number.
     pub fn value(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
@@ -292,12 +297,16 @@ impl Layout {
             let key = entry_key("mesh", mesh, meshes, "wheels");
             let written = format!("{:?}", scenario.meshes[mesh].wheels);
             let name = |shaft: usize| scenario.shafts()[shaft].name.as_str();
-            match (ratios[driving], ratios[driven]) {
-                (Some(ratio), None) => {
-                    ratios[driven] = Some(ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth)));
-                }
-                (Some(ratio), Some(known)) => {
-                    let other = ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth));
+            let through = ratios[driving].map(|of| of.times(-i64::from(pinion_teeth), i64::from(gear_teeth)));
+            if through.is_some_and(|ratio| !ratio.is_exact()) {
+                let problem =
+                    format!("makes the ratio of shaft {:?} a fraction of too many digits", name(driven));
+                return Err(ScenarioError::new(key, written, problem)
+                    .with_help("choose fewer stages, or tooth counts with common factors"));
+            }
+            match (through, ratios[driven]) {
+                (Some(ratio), None) => ratios[driven] = Some(ratio),
+                (Some(other), Some(known)) => {
                     if other != known {
                         let problem = format!(
                             "locks the train: through this mesh shaft {:?} would turn {other} times as fast \

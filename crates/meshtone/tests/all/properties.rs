@@ -3,11 +3,14 @@
 
 use crate::dense::outputs_from;
 use crate::physics::*;
+use meshtone::damage::damaged_teeth;
+use meshtone::mesh::{PairKind, PairSequence};
 use meshtone::operation::CycleGrid;
 use meshtone::published::machine::coordinates::{COORDINATES, CoordinateMatrix, Y_GEAR, Y_PINION};
 use meshtone::scenario::*;
 use meshtone::sensor::{ChannelKind, Channels, GRAVITY_M_PER_S2};
 use meshtone::solver::Output;
+use meshtone::wheel;
 use meshtone::{AssembledMachine, Equations, Stages, simulate, stages};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -567,5 +570,61 @@ proptest! {
         let scale = rms(&channels["vertical_g"]);
         prop_assert!(scale > 1e-3);
         prop_assert!(largest(across) < 1e-10 * scale);
+    }
+}
+
+/// The greatest common divisor of two numbers by division through every factor, without Euclid's algorithm.
+fn common_factor(mut a: u32, mut b: u32) -> u32 {
+    let mut common = 1;
+    for factor in 2..=a.min(b) {
+        while a.is_multiple_of(factor) && b.is_multiple_of(factor) {
+            (a, b, common) = (a / factor, b / factor, common * factor);
+        }
+    }
+    common
+}
+
+/// Ratios, hunting-tooth periods, which teeth meet and the samples of a pitch, of all tooth counts to 400.
+#[test]
+fn every_pair_of_tooth_counts() {
+    let healthy = wheel::teeth(&Gears::new(3.0, 17, 38, 15.0), [10.0; 2]);
+    let faults = [WheelName::Pinion, WheelName::Gear].map(|wheel| Fault::new(wheel, 1, MissingTooth));
+    let mut damaged = damaged_teeth(&faults, &healthy, 1).unwrap();
+    let mut scenario = Scenario::new(GearPair::example());
+    for pinion in 1..=400_u32 {
+        for gear in 1..=400_u32 {
+            let common = common_factor(pinion, gear);
+            let (z1, z2, divisor) = (i64::from(pinion), i64::from(gear), i64::from(common));
+            let ratio = Ratio::ONE.times(-z1, z2);
+            assert_eq!((ratio.numerator, ratio.denominator), (-z1 / divisor, z2 / divisor));
+            assert_eq!(ratio.times(z2, -z1), Ratio::ONE);
+            let measure = Ratio::ONE.times(1, z1).common_measure(Ratio::ONE.times(1, z2));
+            assert_eq!((measure.numerator, measure.denominator), (1, z1 * z2 / divisor));
+
+            // The last teeth of both wheels meet, once a cycle, where their numbers are congruent.
+            damaged.iter_mut().zip([pinion, gear]).for_each(|(tooth, z)| tooth.teeth = vec![z as usize - 1]);
+            let sequence = PairSequence::new(pinion, gear, &damaged).unwrap();
+            assert_eq!(sequence.cycle() as i64, z1 * z2 / divisor);
+            let pairs = |of: fn(&PairKind) -> bool| -> usize {
+                sequence.classes().iter().filter(|kind| of(kind)).map(|kind| kind.pairs_per_cycle).sum()
+            };
+            assert_eq!(pairs(|_| true), sequence.cycle());
+            assert_eq!(pairs(|kind| kind.pinion.is_some()) as i64, z2 / divisor);
+            assert_eq!(pairs(|kind| kind.gear.is_some()) as i64, z1 / divisor);
+            let meet = (z1 - z2) % divisor == 0;
+            assert_eq!(pairs(|kind| kind.pinion.is_some() && kind.gear.is_some()), usize::from(meet));
+
+            // At least the rate that was asked for, and no more than a sample a pitch beyond it.
+            scenario.wheels[0].teeth = pinion;
+            scenario.wheels[1].teeth = gear;
+            let time = scenario.time_grid();
+            let per_pitch = time.samples_per_pinion_revolution / pinion as usize;
+            assert_eq!(time.samples_per_pinion_revolution, per_pitch * pinion as usize);
+            assert_eq!(time.hunting_period_samples(&scenario.gears()), per_pitch * sequence.cycle());
+            let mesh_hz = f64::from(pinion) * scenario.operation.pinion_speed_hz;
+            let beyond = time.sampling_rate_hz - scenario.solver.sampling_rate_hz;
+            assert!((-1e-6..mesh_hz).contains(&beyond), "{pinion}/{gear}: {beyond}");
+            assert!(time.first_kept_sample < time.samples, "{pinion}/{gear}");
+        }
     }
 }
