@@ -15,6 +15,8 @@ use meshtone_io::experiment;
 
 use crate::experiment_files;
 use crate::failure::Failure;
+use crate::progress;
+use crate::recording_files;
 use crate::replacement::stage_text;
 use crate::terminal;
 
@@ -25,12 +27,16 @@ const GEARBOX: &str = "gearbox";
 /// The kind that is an experiment.
 const EXPERIMENT: &str = "experiment";
 
-/// Print a commented scenario file to start from, a gearbox, a data set's plan, or an experiment to tune by
+/// The kind that is a folder of recordings.
+const RECORDINGS: &str = "recordings";
+
+/// Print a commented scenario file to start from, a gearbox, a data set's plan, or an experiment to tune by; or write recordings to try
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Init {
-    /// A healthy pair, or a kind of damage, on the gear's first tooth; a gearbox; the plan of a data set; or an experiment
-    #[arg(default_value = "healthy", value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT])))]
+    /// A healthy pair, or a kind of damage, on the gear's first tooth; a gearbox; the plan of a data set; an experiment; or recordings of
+    /// simulated machines, to try the other commands on
+    #[arg(default_value = "healthy", value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT, RECORDINGS])))]
     kind: String,
     /// Print every key of a scenario with its meaning, unit and default, instead of those that matter
     #[arg(long)]
@@ -44,11 +50,11 @@ pub struct Init {
     /// Write the files that an experiment names beside it: its scenario, and recordings of a simulated rig
     #[arg(long, requires = "output")]
     files: bool,
-    /// File to write, instead of standard output
+    /// File to write, instead of standard output; of recordings the folder [default: recordings]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
-    #[arg(long, requires = "output")]
+    #[arg(long)]
     force: bool,
 }
 
@@ -62,12 +68,16 @@ Examples:
   meshtone init gearbox --all
   meshtone init dataset -o plan.toml
   meshtone init dataset --gearbox -o plan.toml
-  meshtone init experiment --files -o experiment.toml   with recordings, for `meshtone tune experiment.toml`";
+  meshtone init experiment --files -o experiment.toml   with recordings, for `meshtone tune experiment.toml`
+  meshtone init recordings                              a folder of recordings, with a list of what is in them";
 
 impl Init {
     pub fn run(&self) -> Result<(), Failure> {
         let unknown = || Failure::bad_input(format!("there is no template {}", self.kind));
         self.refuse_needless()?;
+        if self.kind == RECORDINGS {
+            return self.write_recordings();
+        }
         let rig = GearboxRig::ALL.into_iter().find(|rig| self.rig.as_deref() == Some(rig.name()));
         let text = match self.kind.as_str() {
             GEARBOX if self.all => {
@@ -88,8 +98,10 @@ impl Init {
 
     /// Refuses options that belong to another kind.
     fn refuse_needless(&self) -> Result<(), Failure> {
-        let is_scenario = ![DATASET, EXPERIMENT].contains(&self.kind.as_str());
+        let is_scenario = ![DATASET, EXPERIMENT, RECORDINGS].contains(&self.kind.as_str());
+        let is_written = self.output.is_some() || self.kind == RECORDINGS;
         let options = [
+            ("--force", self.force, is_written, "only a file that is written with -o is replaced"),
             ("--rig", self.rig.is_some(), self.kind == GEARBOX, "only a gearbox has published rigs"),
             ("--files", self.files, self.kind == EXPERIMENT, "only an experiment names files"),
             ("--gearbox", self.gearbox, self.kind == DATASET, "only a data set is of a pair or of a gearbox"),
@@ -122,6 +134,27 @@ impl Init {
         }
         let mut staged = directory.map(experiment_files::stage).transpose()?.unwrap_or_default();
         staged.push(stage_text(path, text)?);
+        self.commit(staged)
+    }
+
+    /// Simulates the recordings and writes them into their folder: all or none.
+    fn write_recordings(&self) -> Result<(), Failure> {
+        let directory = self.output.as_deref().unwrap_or(Path::new(RECORDINGS));
+        let list = directory.join(recording_files::LIST);
+        if !self.force && list.exists() {
+            return Err(already_exists(&list));
+        }
+        std::fs::create_dir_all(directory).map_err(|error| {
+            Failure::of_writing(error.kind(), format!("{}: {error}", directory.display()))
+        })?;
+        let message = format!("simulating recordings for {}", directory.display());
+        let staged = progress::with_spinner(message, true, || recording_files::stage(directory))?;
+        self.commit(staged)?;
+        terminal::print(&format!("{}: what is in the recordings beside it\n", list.display()))
+    }
+
+    /// Gives staged files their names; without `--force` none that another file has.
+    fn commit(&self, staged: Vec<StagedFile>) -> Result<(), Failure> {
         if self.force {
             return Ok(staged.into_iter().try_for_each(StagedFile::commit)?);
         }

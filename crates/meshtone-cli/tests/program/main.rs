@@ -9,6 +9,7 @@ mod examples;
 #[cfg(feature = "explore")]
 mod explore;
 mod gearbox;
+mod guide;
 mod indicators;
 mod indicators_refused;
 mod init;
