@@ -93,3 +93,36 @@ fn wheels_without_a_tooth_are_refused() {
         assert!(meshtone::stages(&scenario).is_ok());
     }
 }
+
+/// Eight stages of 397/401 teeth have a ratio of twenty-one digits, which no fraction of ours holds; seven have one of eighteen.
+#[test]
+fn a_train_of_too_many_prime_tooth_counts_is_refused() {
+    let refused = |stages: usize| {
+        let mut text = String::new();
+        for shaft in 0..=stages {
+            let end = match shaft {
+                0 => "couples_to = \"motor\"\n",
+                _ if shaft == stages => "couples_to = \"brake\"\n",
+                _ => "",
+            };
+            text += &format!("[[shaft]]\nname = \"s{shaft}\"\nlength_mm = 200.0\nradius_mm = 20.0\n{end}");
+            text += &format!(
+                "[[bearing]]\nshaft = \"s{shaft}\"\nat = 0.0\n[[bearing]]\nshaft = \"s{shaft}\"\nat = 1.0\n"
+            );
+        }
+        for stage in 0..stages {
+            for (name, shaft, teeth) in [("a", stage, 397), ("b", stage + 1, 401)] {
+                text += &format!(
+                    "[[wheel]]\nname = \"{name}{stage}\"\nshaft = \"s{shaft}\"\nat = {}\nteeth = {teeth}\nface_width_mm = 10.0\n",
+                    0.1 + 0.1 * stage as f64
+                );
+            }
+            text += &format!("[[mesh]]\nwheels = [\"a{stage}\", \"b{stage}\"]\nmodule_mm = 1.0\n");
+        }
+        text += "[housing]\nmass_kg = 30.0\n[operation]\ninput_speed_hz = 10.0\nbrake_torque_nm = 50.0\n";
+        Scenario::from_toml(&text).err().map(|error| error.to_string())
+    };
+    assert_eq!(refused(7), None);
+    let error = refused(8).unwrap();
+    assert!(error.contains("makes the ratio of shaft \"s8\" a fraction of too many digits"), "{error}");
+}
