@@ -1,4 +1,4 @@
-"""Recordings of a rig, or what ``meshtone simulate`` wrote: CSV, TSV, Parquet, NPY, NPZ, MAT, HDF5, WAV."""
+"""Recordings of a rig, or what ``meshtone simulate`` wrote: CSV, TSV, Parquet, NPY, NPZ, MAT, HDF5, WAV, universal files."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ const PRINTED: usize = 5;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Indicators {
-    /// Recordings, in the order of time: CSV and other text, Parquet, NPY, NPZ, MAT, HDF5, WAV, or directories that
+    /// Recordings, in the order of time: CSV and other text, Parquet, NPY, NPZ, MAT, HDF5, WAV, universal files, or directories that
     /// `meshtone simulate` wrote or that are sets of the Python package bearing-datasets
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,

@@ -10,6 +10,8 @@ use super::time::timing;
 use super::unit::{conversion, volts_in};
 use super::{Channel, Recording, RecordingOptions};
 
+/// (S/s) Rate below which times without a unit are hardly seconds.
+const LEAST_RATE_HZ: f64 = 100.0;
 /// Samples of a block that is checked as a whole.
 const CHECKED_TOGETHER: usize = 1024;
 
@@ -36,7 +38,16 @@ pub(super) fn assemble(
         Some((index, unit_s)) => {
             let times = slot(index).map(|slot| &samples[slot][..]).unwrap_or_default();
             let column = &labels[index].raw;
-            Some((&column[..], timing(column, times, unit_s)?))
+            let timing = timing(column, times, unit_s)?;
+            if timing.rate_hz < LEAST_RATE_HZ && !labels[index].states_time_unit() {
+                let (rate_hz, of_ms_hz) = (timing.rate_hz, 1e3 * timing.rate_hz);
+                let problem = format!(
+                    "states no unit, and as seconds it gives {rate_hz} S/s, too few for a gear; name it `{column} [ms]` if it is in ms \
+                     ({of_ms_hz} S/s) or `{column} [s]`"
+                );
+                return Err(Problem::time(column, &problem));
+            }
+            Some((&column[..], timing))
         }
         None => None,
     };

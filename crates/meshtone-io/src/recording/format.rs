@@ -5,6 +5,7 @@ use std::io::{Read, Seek};
 use std::path::Path;
 
 use super::error::Problem;
+use super::universal::is_universal;
 use crate::scenario_file::{FileKind, read_text};
 
 /// Bytes that are looked at: those of a MATLAB header, and the mark of HDF5 behind it.
@@ -32,10 +33,12 @@ pub enum RecordingFormat {
     Wav,
     /// HDF5, which MATLAB's MAT-file of version 7.3 is too.
     Hdf5,
+    /// Universal file with data sets 58, as text or in binary.
+    Universal,
 }
 
 /// Each format with its name in messages and the endings of its files.
-const FORMATS: [(RecordingFormat, &str, &[&str]); 7] = [
+const FORMATS: [(RecordingFormat, &str, &[&str]); 8] = [
     (RecordingFormat::Text, "text", &["csv", "tsv", "tab", "txt", "dat", "asc"]),
     (RecordingFormat::Parquet, "Parquet", &["parquet", "pq"]),
     (RecordingFormat::Npy, "NPY", &["npy"]),
@@ -43,6 +46,7 @@ const FORMATS: [(RecordingFormat, &str, &[&str]); 7] = [
     (RecordingFormat::Mat, "MAT", &["mat"]),
     (RecordingFormat::Wav, "WAV", &["wav"]),
     (RecordingFormat::Hdf5, "HDF5", &["h5", "hdf5", "hdf", "he5"]),
+    (RecordingFormat::Universal, "universal", &["uff", "unv", "uf"]),
 ];
 
 /// First bytes that only files of one format have.
@@ -56,13 +60,7 @@ const MARKS: [(&[u8], RecordingFormat); 6] = [
 ];
 
 /// First bytes of known formats that are not read: what they are, and how to convert them.
-const TO_CONVERT: [(&[&[u8]], &str, &str); 5] = [
-    (
-        &[b"\xff\xfe", b"\xfe\xff"],
-        "text in UTF-16",
-        "save it as UTF-8, for instance with `iconv -f UTF-16 -t UTF-8`",
-    ),
-    (&[b"\x1f\x8b"], "a file compressed with gzip", "uncompress it with `gunzip`"),
+const TO_CONVERT: [(&[&[u8]], &str, &str); 4] = [
     (
         &[b"RF64", b"riff"],
         "a WAV file of more than 4 GiB (RF64 or Wave64)",
@@ -74,6 +72,7 @@ const TO_CONVERT: [(&[&[u8]], &str, &str); 5] = [
         "save it in Python with `nptdms.TdmsFile(…).as_dataframe().to_parquet(…)`",
     ),
     (&[b"\xd0\xcf\x11\xe0"], "an Excel file (.xls)", "save it as CSV"),
+    (&[b"MDF     "], "an MDF file", "save it in Python with `asammdf.MDF(…).export(\"parquet\")`"),
 ];
 
 impl RecordingFormat {
@@ -111,7 +110,10 @@ pub(super) fn detect(
     }
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     let binary = head.contains(&0);
-    match RecordingFormat::of_ending(&ending) {
+    // Loggers write numbers into files without an ending.
+    let of_ending = RecordingFormat::of_ending(&ending);
+    let of_ending = of_ending.or_else(|| ending.is_empty().then_some(RecordingFormat::Text));
+    match of_ending {
         Some(format) if format != RecordingFormat::Text || !binary => Ok(format),
         _ => {
             let kind = if binary { "binary" } else { "text" };
@@ -143,6 +145,7 @@ fn by_content(head: &[u8]) -> Option<RecordingFormat> {
     marked
         .or_else(|| is_mat5(head).then_some(RecordingFormat::Mat))
         .or_else(|| of_matlab().then_some(RecordingFormat::Hdf5))
+        .or_else(|| is_universal(head).then_some(RecordingFormat::Universal))
 }
 
 fn is_mat5(head: &[u8]) -> bool {

@@ -51,8 +51,8 @@ impl Label {
         let (word, suffix) = self.time_word();
         match word.as_str() {
             "time" | "times" | "t" | "zeit" | "temps" | "tempo" | "tiempo" | "tijd" | "tid" | "czas"
-            | "timestamp" | "time_stamp" | "elapsed_time" | "seconds" | "sec" | "zeitstempel"
-            | "relative_time" => {}
+            | "timestamp" | "timestamps" | "time_stamp" | "elapsed_time" | "elapsed" | "seconds" | "sec"
+            | "zeitstempel" | "relative_time" | "sample_time" | "x_value" | "x_values" => {}
             _ => return None,
         }
         // `T` is rather a temperature or a torque.
@@ -66,6 +66,11 @@ impl Label {
     pub(super) fn chosen_time_unit_s(&self) -> Option<f64> {
         let unit = self.unit.clone().or(self.time_word().1);
         unit.map_or(Some(1.0), |unit| seconds_in(&unit))
+    }
+
+    /// Whether the unit of the column's times is stated.
+    pub(super) fn states_time_unit(&self) -> bool {
+        self.unit.is_some() || self.time_word().1.is_some()
     }
 
     /// The last part of a dotted path.
@@ -138,9 +143,20 @@ mod tests {
     #[test]
     fn time_is_known_by_its_name() {
         let unit = |header: &str| Label::from_header(header).time_unit_s();
-        for seconds in
-            ["time", "t", "time_s", "Time [s]", "Zeit", "TIME (s)", "run.t", "Elapsed time", "t [s]", "T [s]"]
-        {
+        for seconds in [
+            "time",
+            "t",
+            "time_s",
+            "Time [s]",
+            "Zeit",
+            "TIME (s)",
+            "run.t",
+            "Elapsed time",
+            "t [s]",
+            "T [s]",
+            "X_Value",
+            "elapsed_s",
+        ] {
             assert_eq!(unit(seconds), Some(1.0), "{seconds}");
         }
         assert_eq!(unit("time_ms"), Some(1e-3));

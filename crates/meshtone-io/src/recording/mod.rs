@@ -1,7 +1,7 @@
 //! Recordings: measured or simulated signals, out of whatever file they came in.
 //!
 //! [`read_recording`] opens CSV and other separated text, Parquet (also the one that `meshtone simulate`
-//! writes), NumPy's NPY and NPZ, MATLAB's MAT (version 5 and 7.3), HDF5 and WAV, and gives one [`Recording`] whatever the
+//! writes), NumPy's NPY and NPZ, MATLAB's MAT (version 5 and 7.3), HDF5, WAV and universal files, also compressed by gzip or ZIP, and gives one [`Recording`] whatever the
 //! format: channels with name, unit and samples, at one sampling rate. What is to be read, and what the file
 //! does not say itself, stands in [`RecordingOptions`].
 //!
@@ -22,6 +22,7 @@ mod memory_need;
 pub(crate) mod number;
 pub(crate) mod numpy;
 mod options;
+mod packed;
 pub(crate) mod parquet_check;
 mod parquet_file;
 mod rate;
@@ -30,6 +31,7 @@ mod signal_set;
 mod text;
 mod time;
 mod unit;
+mod universal;
 mod warning;
 mod wav;
 
@@ -193,6 +195,7 @@ pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recordi
         RecordingFormat::Mat => mat::read(file, options),
         RecordingFormat::Wav => wav::read(file, options),
         RecordingFormat::Hdf5 => decoded(|| hdf5::read(file, options)),
+        RecordingFormat::Universal => universal::read(file, options),
     };
     let recording = recording.map_err(|problem| problem.of_file(path, format.name()))?;
     Ok(Recording { source: path.to_path_buf(), ..recording })
@@ -219,8 +222,8 @@ pub fn signals_in(directory: &Path) -> Option<PathBuf> {
 
 /// Opens a file and finds its format.
 fn open(path: &Path, options: &RecordingOptions) -> Result<(File, RecordingFormat), Problem> {
-    let mut file = open_ordinary(path)?;
-    let format = format::detect(path, &mut file, options.format)?;
+    let (inside, mut file) = packed::unpacked(path, open_ordinary(path)?)?;
+    let format = format::detect(&inside, &mut file, options.format)?;
     match &options.variable {
         Some(variable)
             if !matches!(format, RecordingFormat::Npz | RecordingFormat::Mat | RecordingFormat::Hdf5) =>

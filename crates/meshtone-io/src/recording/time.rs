@@ -228,7 +228,7 @@ fn single_precision_step(times: &[f64], largest: f64) -> f64 {
 }
 
 /// The number of fewest digits that differs by no more than a part of it.
-fn shortest_within(value: f64, part: f64) -> f64 {
+pub(super) fn shortest_within(value: f64, part: f64) -> f64 {
     let rounded = |digits: usize| format!("{value:.digits$e}").parse().unwrap_or(value);
     (0..16).map(rounded).find(|short: &f64| (short / value - 1.0).abs() <= part).unwrap_or(value)
 }

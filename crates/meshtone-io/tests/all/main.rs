@@ -8,6 +8,7 @@ mod recording_help;
 mod recording_mat;
 mod recording_parquet;
 mod recording_text;
+mod recording_universal;
 mod scenario_file;
 mod signals;
 mod tuned;

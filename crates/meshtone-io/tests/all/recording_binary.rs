@@ -202,7 +202,7 @@ fn changed_numbers_in_an_archive_are_noticed() {
 
 #[test]
 fn the_fields_of_a_structured_array_are_columns() {
-    let header = "{'descr': [('time', '<f8'), ('note', '|S2'), ('a [g]', '<f4')], 'fortran_order': False, \
+    let header = "{'descr': [('time_s', '<f8'), ('note', '|S2'), ('a [g]', '<f4')], 'fortran_order': False, \
                   'shape': (3,), }\n";
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend((header.len() as u16).to_le_bytes());

@@ -43,7 +43,7 @@ fn every_separator_and_decimal_sign_is_found() {
 
 #[test]
 fn quotes_hold_separators_and_decimal_commas() {
-    let recording = text("\"time\",\"left, outer [g]\"\n\"0,0\",\"1,5\"\n\"0,5\",\"-2\"\n");
+    let recording = text("\"time_s\",\"left, outer [g]\"\n\"0,0\",\"1,5\"\n\"0,5\",\"-2\"\n");
     assert_eq!(described(&recording), [("left, outer", Some("g"), &[1.5, -2.0][..])]);
     assert_eq!(recording.sampling_rate_hz, 2.0);
 }
@@ -60,7 +60,7 @@ fn names_units_and_comments_are_optional() {
         read("l.csv", b"t [\xb5s];Schwingung [m/s\xb2]\n0;1\n20;2\n40;3\n", &RecordingOptions::default());
     let latin = latin.unwrap();
     assert_eq!((latin.sampling_rate_hz, latin.channels[0].unit.as_deref()), (50_000.0, Some("m/s²")));
-    let savetxt = read("a.txt", b"# made by us\n# t a b\n0.0 1 2\n0.1 3 4\n", &RecordingOptions::default());
+    let savetxt = read("a.txt", b"# made by us\n# time_s a b\n0.0 1 2\n0.1 3 4\n", &RecordingOptions::default());
     assert_eq!(described(&savetxt.unwrap())[1], ("b", None, &[2.0, 4.0][..]));
     let trailing = read("a.csv", b"a;b;\n1;2;\n3;4;\n", &rate).unwrap();
     assert_eq!(described(&trailing).len(), 2);
@@ -98,10 +98,10 @@ fn a_stated_unit_converts_or_is_refused() {
 
 #[test]
 fn columns_are_chosen_and_calibrated() {
-    let content = b"when,note,a [mV],b,c\n0.0,start,100,5,x\n0.1,,-200,6,y\n0.2,end,50,7,z\n";
+    let content = b"when_s,note,a [mV],b,c\n0.0,start,100,5,x\n0.1,,-200,6,y\n0.2,end,50,7,z\n";
     let options = RecordingOptions {
         channels: vec!["b".into(), 3.into()],
-        time: TimeColumn::Chosen("when".into()),
+        time: TimeColumn::Chosen("when_s".into()),
         calibrations: vec![Calibration {
             channel: "a".into(),
             sensitivity_v_per_unit: Some(0.1),
@@ -119,7 +119,7 @@ fn columns_are_chosen_and_calibrated() {
         refused("run.csv", content, &RecordingOptions { channels: vec!["nota".into()], ..rate(1.0) });
     assert_eq!(
         message,
-        "run.csv: has no column `nota` (did you mean `note`?); it has when, note, a [mV], b, c"
+        "run.csv: has no column `nota` (did you mean `note`?); it has when_s, note, a [mV], b, c"
     );
     // Time is no channel, whether its times are needed or not.
     for options in [rate(1.0), RecordingOptions::default()] {
@@ -136,7 +136,7 @@ fn columns_are_chosen_and_calibrated() {
         }
     }
     let message = refused("run.csv", content, &RecordingOptions { channels: vec![9.into()], ..rate(1.0) });
-    assert!(message.contains("has no column number 9; it has when, note"), "{message}");
+    assert!(message.contains("has no column number 9; it has when_s, note"), "{message}");
     let message = refused("run.csv", content, &RecordingOptions { channels: vec!["c".into()], ..rate(1.0) });
     assert!(message.contains("line 2, column c: `x` is not a number"), "{message}");
 }
@@ -220,7 +220,7 @@ fn a_last_number_that_may_be_cut_off_is_warned_about() {
     let cut = |line: u64, column: &str, text: &str| {
         [RecordingWarning::MayBeCut { line, column: column.to_string(), text: text.to_string() }]
     };
-    let head = "time,a [g]\n0.0,0.125\n0.1,-1.125\n";
+    let head = "time_s,a [g]\n0.0,0.125\n0.1,-1.125\n";
     for (end, text) in [("0.2,2.12", "2.12"), ("0.2,2.", "2."), ("0.2,2", "2"), ("0.2,2.1255", "2.1255")] {
         assert_eq!(warned(&format!("{head}{end}")), cut(4, "a [g]", text), "{end}");
         assert_eq!(warned(&format!("{head}{end}\n")), []);
@@ -229,19 +229,19 @@ fn a_last_number_that_may_be_cut_off_is_warned_about() {
     }
     // Written like the others, it is whole.
     assert_eq!(warned(&format!("{head}0.2,17.625")), []);
-    assert_eq!(warned("time;a\n0,0;1,25e-03\n0,1;-1,75e+00\n0,2;-2,25e+01"), []);
-    assert_eq!(warned("time;a\n0,0;1,25e-03\n0,1;-1,75e+00\n0,2;-2,25e+0"), cut(4, "a", "-2,25e+0"));
-    assert_eq!(warned("time,tacho\n0.0,5\n0.1,0\n0.2,5"), []);
-    assert_eq!(warned("time,rpm\n0.0,1200\n0.1,1200\n0.2,120"), cut(4, "rpm", "120"));
+    assert_eq!(warned("time_s;a\n0,0;1,25e-03\n0,1;-1,75e+00\n0,2;-2,25e+01"), []);
+    assert_eq!(warned("time_s;a\n0,0;1,25e-03\n0,1;-1,75e+00\n0,2;-2,25e+0"), cut(4, "a", "-2,25e+0"));
+    assert_eq!(warned("time_s,tacho\n0.0,5\n0.1,0\n0.2,5"), []);
+    assert_eq!(warned("time_s,rpm\n0.0,1200\n0.1,1200\n0.2,120"), cut(4, "rpm", "120"));
     // Another sign ends the number.
-    assert_eq!(warned("time,a,\n0.0,1.25,\n0.1,1.25,\n0.2,1.2,"), []);
-    assert_eq!(warned("\"time\",\"a\"\n\"0,0\",\"1,5\"\n\"0,1\",\"1,55\""), []);
-    assert_eq!(warned("time,a\n0.0,1.25\n0.1,1.25\n# the end"), []);
+    assert_eq!(warned("time_s,a,\n0.0,1.25,\n0.1,1.25,\n0.2,1.2,"), []);
+    assert_eq!(warned("\"time_s\",\"a\"\n\"0,0\",\"1,5\"\n\"0,1\",\"1,55\""), []);
+    assert_eq!(warned("time_s,a\n0.0,1.25\n0.1,1.25\n# the end"), []);
     // A column that is not read does no harm.
     let first = RecordingOptions { channels: vec!["a".into()], ..rate(10.0) };
     assert_eq!(read("run.csv", b"a,b\n1.25,2.25\n1.25,2.2", &first).unwrap().warnings, []);
     // Longer than one block.
-    let long = "time,a\n".to_string() + &(0..200_000).map(|i| format!("{i},1.250\n")).collect::<String>();
+    let long = "time_s,a\n".to_string() + &(0..200_000).map(|i| format!("{i},1.250\n")).collect::<String>();
     assert_eq!(warned(&long), []);
     assert_eq!(warned(&long[..long.len() - 2]), cut(200_001, "a", "1.25"));
 }

@@ -97,10 +97,10 @@ const NO_COLUMNS: &str = "its first lines hold no columns of numbers; if they ar
                           text.skip_lines) or begin them with #; if separator or decimal sign are unusual, \
                           state them (options text.separator and text.decimal_sign)";
 
-/// Whether a line is passed over: blank, or a comment.
+/// Whether a line is passed over: blank, a comment, or Excel's `sep=;`.
 pub(super) fn is_passed(line: &[u8]) -> bool {
     let line = line.trim_ascii();
-    line.is_empty() || is_comment(line)
+    line.is_empty() || is_comment(line) || (line.len() <= 5 && line.starts_with(b"sep="))
 }
 
 pub(super) fn is_comment(line: &[u8]) -> bool {

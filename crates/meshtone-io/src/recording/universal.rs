@@ -1,0 +1,258 @@
+//! Universal files: data sets 58, functions at nodal points, as text and in binary (58b).
+//!
+//! Source: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Datasets Summary", data set 58.
+
+use std::fs::File;
+use std::io::Read;
+
+use super::assemble::assemble;
+use super::error::Problem;
+use super::label::Label;
+use super::number::{NumberKind, Numbers};
+use super::rate::StatedRate;
+use super::selection::select;
+use super::time::shortest_within;
+use super::{Recording, RecordingOptions, memory_need};
+use crate::memory;
+
+/// The line before and behind a data set.
+const DELIMITER: &[u8] = b"-1";
+/// Lines of text that a data set 58 begins with, behind its number.
+const HEADER_LINES: usize = 11;
+/// Part by which an increment of six digits is uncertain.
+const INCREMENT_UNCERTAINTY: f64 = 5e-6;
+/// Functions that are samples over time, and abscissas that are time; 0 says nothing.
+const TIME_RESPONSE: [i64; 2] = [0, 1];
+const TIME: [i64; 2] = [0, 17];
+
+/// Whether a file begins as universal files do: with a delimiter and the number of a data set.
+///
+/// # Arguments
+/// * `head` - first bytes of the file
+pub(super) fn is_universal(head: &[u8]) -> bool {
+    let mut lines = head.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty());
+    lines.next() == Some(DELIMITER)
+        && lines.next().is_some_and(|line| line.first().is_some_and(u8::is_ascii_digit) && line != b"0")
+}
+
+/// Reads a recording: a channel for each data set 58 that is samples over time.
+pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let (limit, bytes) = (memory::limit(), file.metadata()?.len());
+    if let Some(objection) = limit.objection(bytes) {
+        return Err(Problem::Refused(format!("has {bytes} bytes, which {objection}")));
+    }
+    let mut content = Vec::new();
+    file.read_to_end(&mut content)?;
+    let functions = functions(&content)?;
+    let labels: Vec<Label> = functions.iter().map(|function| function.label.clone()).collect();
+    let selection = select(&labels, options)?;
+    memory_need::check(limit, options, &selection, |column| functions[column].count as u64, bytes)?;
+    let wanted = || selection.wanted.iter().map(|column| &functions[*column]);
+    let samples = wanted().map(Function::samples).collect::<Result<Vec<_>, _>>()?;
+    let stated: Vec<StatedRate> = wanted()
+        .map(|function| StatedRate {
+            by: format!("the abscissa of {}", function.label.raw),
+            rate_hz: shortest_within(1.0 / function.increment_s, INCREMENT_UNCERTAINTY),
+        })
+        .collect();
+    let start_s = wanted().next().map_or(0.0, |function| function.start_s);
+    let recording = assemble(&labels, &selection, samples, &stated, options)?;
+    Ok(Recording { start_s, ..recording })
+}
+
+/// A data set 58, before its numbers are read.
+struct Function<'a> {
+    label: Label,
+    count: usize,
+    start_s: f64,
+    increment_s: f64,
+    is_double: bool,
+    /// Of binary numbers whether the most significant byte comes first; none of text.
+    big_endian: Option<bool>,
+    data: &'a [u8],
+    /// For messages: which data set of the file it is, from 1.
+    number: usize,
+}
+
+/// What is left of the file, line by line.
+struct Lines<'a>(&'a [u8]);
+
+impl<'a> Lines<'a> {
+    fn next(&mut self) -> Option<&'a [u8]> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let end = self.0.iter().position(|byte| *byte == b'\n').map_or(self.0.len(), |end| end + 1);
+        let (line, rest) = self.0.split_at(end);
+        self.0 = rest;
+        Some(line)
+    }
+
+    /// Goes behind the next delimiter, and returns what stands before it.
+    fn up_to_delimiter(&mut self) -> &'a [u8] {
+        let start = self.0;
+        while let Some(line) = self.next() {
+            if line.trim_ascii() == DELIMITER {
+                return &start[..start.len() - self.0.len() - line.len()];
+            }
+        }
+        start
+    }
+}
+
+fn functions(content: &[u8]) -> Result<Vec<Function<'_>>, Problem> {
+    let mut lines = Lines(content);
+    let (mut found, mut number, mut others) = (Vec::new(), 0, 0);
+    lines.up_to_delimiter();
+    while let Some(first) = lines.next() {
+        let first = first.trim_ascii();
+        if first.is_empty() {
+            continue;
+        }
+        let is_58 = first.starts_with(b"58") && first.get(2).is_none_or(|next| !next.is_ascii_digit());
+        if is_58 {
+            number += 1;
+            found.push(Function::of(first, &mut lines, number)?);
+        } else {
+            others += 1;
+        }
+        lines.up_to_delimiter();
+        // The delimiter before the next data set; files end without one.
+        lines.up_to_delimiter();
+    }
+    if found.is_empty() {
+        let problem = format!("is a universal file without a data set 58 ({others} of other kinds)");
+        return Err(Problem::Refused(problem));
+    }
+    Ok(found)
+}
+
+impl<'a> Function<'a> {
+    fn of(first: &[u8], lines: &mut Lines<'a>, number: usize) -> Result<Self, Problem> {
+        let broken = |what: &str| Problem::Broken(format!("data set 58 number {number}: {what}"));
+        let records: Vec<&[u8]> = (0..HEADER_LINES).map_while(|_| lines.next()).collect();
+        let [id, .., place, form, abscissa, ordinate, _, _] = records.as_slice() else {
+            return Err(broken("it ends within its header"));
+        };
+        let whole = |line: &[u8], from: usize, to: usize| field(line, from, to).parse::<i64>().ok();
+        let real =
+            |line: &[u8], from: usize, to: usize| fast_float2::parse::<f64, _>(field(line, from, to)).ok();
+        let (Some(kind), Some(axis)) = (whole(place, 0, 5), whole(abscissa, 0, 10)) else {
+            return Err(broken("record 6 or 8 begins with no whole number"));
+        };
+        if !TIME_RESPONSE.contains(&kind) || !TIME.contains(&axis) {
+            return Err(Problem::Refused(format!(
+                "holds a function that is no time response (data set 58 number {number}: function type {kind}, abscissa type {axis}); \
+                 export the time signals"
+            )));
+        }
+        let (Some(form_of_numbers), Some(count), Some(spacing)) =
+            (whole(form, 0, 10), whole(form, 10, 20), whole(form, 20, 30))
+        else {
+            return Err(broken("record 7 does not state type, number and spacing"));
+        };
+        let (Some(start_s), Some(increment_s)) = (real(form, 30, 43), real(form, 43, 56)) else {
+            return Err(broken("record 7 does not state start and increment"));
+        };
+        if !matches!(form_of_numbers, 2 | 4) || spacing != 1 {
+            return Err(Problem::Refused(format!(
+                "holds complex numbers or uneven times (data set 58 number {number}); export real numbers at a constant rate"
+            )));
+        }
+        let count = usize::try_from(count).map_err(|_| broken("its number of values is negative"))?;
+        let mut function = Function {
+            label: label(id, place, ordinate, number),
+            count,
+            start_s,
+            increment_s,
+            is_double: form_of_numbers == 4,
+            big_endian: None,
+            data: &[],
+            number,
+        };
+        if first.get(2).is_some_and(|mark| mark.eq_ignore_ascii_case(&b'b')) {
+            let text = String::from_utf8_lossy(&first[3..]);
+            let numbers: Vec<usize> =
+                text.split_whitespace().map_while(|number| number.parse().ok()).collect();
+            let [order @ (1 | 2), 2, HEADER_LINES, bytes, ..] = numbers[..] else {
+                return Err(broken("its binary numbers are not in the format of IEEE 754"));
+            };
+            function.big_endian = Some(order == 2);
+            let (data, rest) =
+                lines.0.split_at_checked(bytes).ok_or_else(|| broken("it ends within its numbers"))?;
+            (function.data, lines.0) = (data, rest);
+        } else {
+            // Only this much is passed over: the delimiter behind it is looked for by the caller.
+            let mut ahead = Lines(lines.0);
+            function.data = ahead.up_to_delimiter();
+            lines.0 = &lines.0[function.data.len()..];
+        }
+        Ok(function)
+    }
+
+    fn samples(&self) -> Result<Vec<f64>, Problem> {
+        let samples = match self.big_endian {
+            Some(big_endian) => {
+                let kind = if self.is_double { NumberKind::F64 } else { NumberKind::F32 };
+                let bytes = &self.data[..self.data.len().min(self.count.saturating_mul(kind.size()))];
+                let mut samples = Vec::new();
+                Numbers::plain(kind, big_endian).append(bytes, 1, 0, &mut samples);
+                samples
+            }
+            None => self.numbers_in_text()?,
+        };
+        if samples.len() == self.count {
+            return Ok(samples);
+        }
+        let problem = format!("{} states {} values and has {}", self.label.raw, self.count, samples.len());
+        Err(Problem::Broken(problem))
+    }
+
+    /// Numbers of a fixed width, which need no blanks between them; those of writers that do not keep to it stand apart by blanks.
+    fn numbers_in_text(&self) -> Result<Vec<f64>, Problem> {
+        let width = if self.is_double { 20 } else { 13 };
+        let mut samples = Vec::new();
+        for line in self.data.split(|byte| *byte == b'\n') {
+            let line = line.trim_ascii_end();
+            let fixed: Option<Vec<f64>> =
+                line.chunks(width).map(|cell| fast_float2::parse(cell.trim_ascii()).ok()).collect();
+            let apart = || {
+                let cells = line.split(u8::is_ascii_whitespace).filter(|cell| !cell.is_empty());
+                cells.map(|cell| fast_float2::parse(cell).ok()).collect()
+            };
+            samples.extend(fixed.or_else(apart).ok_or_else(|| {
+                let (number, line) = (self.number, String::from_utf8_lossy(line));
+                Problem::Broken(format!("data set 58 number {number}: {line:?} are no numbers"))
+            })?);
+        }
+        samples.truncate(self.count);
+        Ok(samples)
+    }
+}
+
+/// Columns of a line.
+fn field(line: &[u8], from: usize, to: usize) -> &str {
+    let cell = line.get(from..to.min(line.len())).unwrap_or_default();
+    std::str::from_utf8(cell).unwrap_or_default().trim()
+}
+
+/// The name of a channel: that of the response, or else of the function, with node and direction.
+fn label(id: &[u8], place: &[u8], ordinate: &[u8], number: usize) -> Label {
+    let named = |text: &str| Some(text.to_owned()).filter(|text| !matches!(text.as_str(), "" | "NONE"));
+    let name = named(field(place, 31, 41)).or_else(|| named(field(id, 0, 80)));
+    let node = named(field(place, 41, 51)).filter(|node| node != "0");
+    let direction = match field(place, 51, 55).parse() {
+        Ok(direction @ (1 | 2 | 3 | -1 | -2 | -3)) => {
+            let axis = ["X", "Y", "Z"][i32::unsigned_abs(direction) as usize - 1];
+            format!("{}{axis}", if direction > 0 { '+' } else { '-' })
+        }
+        _ => String::new(),
+    };
+    let place = node.map(|node| format!("{node}{direction}"));
+    let name = match (name, place) {
+        (Some(name), Some(place)) => format!("{name} {place}"),
+        (Some(one), None) | (None, Some(one)) => one,
+        (None, None) => format!("channel {number}"),
+    };
+    Label { unit: named(field(ordinate, 47, 67)), ..Label::plain(&name) }
+}
