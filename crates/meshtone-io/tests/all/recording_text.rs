@@ -60,7 +60,8 @@ fn names_units_and_comments_are_optional() {
         read("l.csv", b"t [\xb5s];Schwingung [m/s\xb2]\n0;1\n20;2\n40;3\n", &RecordingOptions::default());
     let latin = latin.unwrap();
     assert_eq!((latin.sampling_rate_hz, latin.channels[0].unit.as_deref()), (50_000.0, Some("m/s²")));
-    let savetxt = read("a.txt", b"# made by us\n# time_s a b\n0.0 1 2\n0.1 3 4\n", &RecordingOptions::default());
+    let savetxt =
+        read("a.txt", b"# made by us\n# time_s a b\n0.0 1 2\n0.1 3 4\n", &RecordingOptions::default());
     assert_eq!(described(&savetxt.unwrap())[1], ("b", None, &[2.0, 4.0][..]));
     let trailing = read("a.csv", b"a;b;\n1;2;\n3;4;\n", &rate).unwrap();
     assert_eq!(described(&trailing).len(), 2);
