@@ -210,8 +210,9 @@ def _check(dataset: Dataset, folder: Path, base: Base, channels: list[str]) -> N
     if not folder.absolute().name:
         raise ValueError(f"the folder {folder} has no name, which is the name of the data set")
     signals = folder / "signals"
-    # What was interrupted has no manifest, and is written again.
-    if not {signals, signals / SIGNAL_FILE, folder / "metadata.parquet"}.issuperset(folder.rglob("*")):
+    # What was interrupted has signals or nothing, and is written again; a table alone is somebody's.
+    there = set(folder.rglob("*"))
+    if not {signals, signals / SIGNAL_FILE, folder / "metadata.parquet"}.issuperset(there) or there == {folder / "metadata.parquet"}:
         raise ValueError(f"{folder} has files in it: name a folder that is empty or does not exist")
     base.check_healthy()
 

@@ -6,6 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use meshtone_io::printable::printable;
 
 /// Time after which a bar is drawn: shorter work needs none.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -61,7 +62,7 @@ fn show(message: String, stopped: &Receiver<()>) {
     if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
         return;
     }
-    let spinner = ProgressBar::new_spinner().with_message(message).with_elapsed(PATIENCE);
+    let spinner = ProgressBar::new_spinner().with_message(printable(message, &[])).with_elapsed(PATIENCE);
     if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
         spinner.set_style(style);
     }

@@ -20,7 +20,7 @@ const SAMPLING_RATE_HZ: f64 = 20e3;
 const LAST_BEARING: &str = "shaft = \"output\"\nat = 1.0\n";
 const BALLS: &str = "kind = \"ball\"\nelements = 9\nelement_mm = 12.0\npitch_mm = 60.0\n";
 const SPALL: &str = "defect = [{ race = \"outer\", width_mm = 2.0 }]\n";
-/// The sensor of the pair.
+/// The sensor of the pair, whose template has none.
 const SENSOR: &str = "\n[[sensor]]\nat = \"support\"\n";
 /// (1/g, 1/V, 1/(rev/s)) Steps of the recordings' resolution.
 const STEPS_PER_UNIT: f64 = 1e4;
@@ -35,60 +35,77 @@ const DAYS: [f64; 12] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.15, 0.25, 0.35, 0.5, 0.
 ///
 /// # Arguments
 /// * `directory` - of all
+///
+/// # Errors
+/// A file cannot be written, or a template is not what it was.
 pub fn stage(directory: &Path) -> Result<Vec<StagedFile>, Failure> {
     let rig = template("healthy").ok_or_else(|| Failure::failed("there is no scenario of the pair"))?;
-    let gearbox = gearbox_template(None).replacen(LAST_BEARING, &[LAST_BEARING, BALLS].concat(), 1);
-    let mut shop = Shop { directory, staged: Vec::new(), contents: String::new() };
-    shop.add("rig.toml", "what is known of the pair: no sensor, no noise, no damage", rig.as_bytes())?;
-    shop.add(
+    let gearbox = with_behind(&gearbox_template(None), LAST_BEARING, BALLS)?;
+    let mut folder = RecordingFolder { directory, staged: Vec::new(), contents: String::new() };
+    folder.add("rig.toml", "what is known of the pair: no sensor, no noise, no damage", rig.as_bytes())?;
+    folder.add(
         "gearbox.toml",
         "what is known of the gearbox; a ball bearing at the end of its output",
         gearbox.as_bytes(),
     )?;
 
     let pair = |severity: f64| [&rig, fault("gear", severity).as_str(), SENSOR].concat();
-    shop.record("first.csv", "the healthy pair, its pinion at 40 rev/s", &pair(0.0), Run::steady(4.0))?;
+    folder.record("first.csv", "the healthy pair, its pinion at 40 rev/s", &pair(0.0), Run::steady(4.0))?;
     let broken =
-        shop.record("run.csv", "the pair with a broken tooth on the gear", &pair(0.7), Run::steady(4.0))?;
-    for (name, format) in
-        [("run.mat", SignalFormat::Mat), ("run.wav", SignalFormat::Wav), ("run.npz", SignalFormat::Npz)]
-    {
-        shop.add(name, "the same", &file_of(name, &broken, format)?)?;
+        folder.record("run.csv", "the pair with a broken tooth on the gear", &pair(0.7), Run::steady(4.0))?;
+    for (name, format) in [("run.mat", SignalFormat::Mat), ("run.wav", SignalFormat::Wav)] {
+        folder.add(name, "the same", &file_of(name, &broken, format)?)?;
     }
-    shop.add(
+    folder.add(
         "pulses.txt",
         "instants of one pulse a revolution of the gear in run.csv, in s",
         pulses(&broken).as_bytes(),
     )?;
-    shop.add(
+    folder.add(
         "speed.csv",
         "time and speed of the gear in run.csv, ten times a second",
         speeds(&broken).as_bytes(),
     )?;
     let run_up = Run { run_up_hz: Some([15.0, 45.0]), ..Run::steady(6.0) };
-    shop.record("run_up.csv", "the healthy pair, its pinion from 15 to 45 rev/s", &pair(0.0), run_up)?;
+    folder.record("run_up.csv", "the healthy pair, its pinion from 15 to 45 rev/s", &pair(0.0), run_up)?;
     for (day, severity) in DAYS.iter().enumerate() {
         // No two days are alike: load and noise differ.
         let torque_nm = 10.0 + 0.2 * ((7 * day) % 5) as f64;
         let run = Run { torque_nm: Some(torque_nm), noise_seed: day as u64, ..Run::steady(1.0) };
-        shop.record(&format!("day{:02}.csv", day + 1), "", &pair(*severity), run)?;
+        folder.record(&format!("day{:02}.csv", day + 1), "", &pair(*severity), run)?;
     }
-    shop.say(
-        "day01.csv` to `day12.csv",
+    folder.describe(
+        "`day01.csv` to `day12.csv`",
         "twelve days of the pair; from the seventh on a tooth of the gear breaks further",
     );
 
-    let spalled = gearbox.replacen(BALLS, &[BALLS, SPALL].concat(), 1);
+    let spalled = with_behind(&gearbox, BALLS, SPALL)?;
     let broken = [&gearbox, fault("z2", 0.8).as_str()].concat();
-    shop.record("gearbox_first.csv", "the healthy gearbox", &gearbox, Run::steady(4.0))?;
-    shop.record("gearbox.csv", "the gearbox with a broken tooth on the wheel z2", &broken, Run::steady(4.0))?;
-    shop.record(
+    folder.record("gearbox_first.csv", "the healthy gearbox", &gearbox, Run::steady(4.0))?;
+    folder.record(
+        "gearbox.csv",
+        "the gearbox with a broken tooth on the wheel z2",
+        &broken,
+        Run::steady(4.0),
+    )?;
+    folder.record(
         "bearing.csv",
         "the gearbox with a spall on the outer race of its ball bearing",
         &spalled,
         Run::steady(8.0),
     )?;
-    shop.finish()
+    folder.finish()
+}
+
+/// A text with a part more.
+///
+/// # Errors
+/// The place behind which it belongs is not there.
+fn with_behind(text: &str, place: &str, part: &str) -> Result<String, Failure> {
+    let (before, after) = text
+        .split_once(place)
+        .ok_or_else(|| Failure::failed(format!("the template of a gearbox has no {place:?}")))?;
+    Ok([before, place, part, after].concat())
 }
 
 /// A broken tooth, as a scenario has it; nothing without severity.
@@ -116,25 +133,26 @@ impl Run {
 }
 
 /// The files so far.
-struct Shop<'a> {
+struct RecordingFolder<'a> {
     directory: &'a Path,
     staged: Vec<StagedFile>,
     /// A line a file.
     contents: String,
 }
 
-impl Shop<'_> {
+impl RecordingFolder<'_> {
+    /// Adds a file, and a line to the list unless it is described elsewhere.
     fn add(&mut self, name: &str, contents: &str, bytes: &[u8]) -> Result<(), Failure> {
-        self.say(name, contents);
+        if !contents.is_empty() {
+            self.describe(&format!("`{name}`"), contents);
+        }
         self.staged.push(StagedFile::write(&self.directory.join(name), |file| file.write_all(bytes))?);
         Ok(())
     }
 
-    /// A line of the list; none without contents.
-    fn say(&mut self, name: &str, contents: &str) {
-        if !contents.is_empty() {
-            self.contents.push_str(&format!("* `{name}`: {contents}\n"));
-        }
+    /// Adds a line to the list.
+    fn describe(&mut self, names: &str, contents: &str) {
+        self.contents.push_str(&format!("* {names}: {contents}\n"));
     }
 
     /// Simulates a recording and adds it as text.

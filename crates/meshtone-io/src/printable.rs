@@ -16,7 +16,10 @@ use std::fmt::Display;
 pub fn printable(text: impl Display, kept: &[char]) -> String {
     let mut shown = String::new();
     for character in text.to_string().chars() {
-        if character.is_control() && !kept.contains(&character) {
+        // Marks of direction make a terminal show text in another order.
+        let is_obeyed =
+            character.is_control() || matches!(character, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        if is_obeyed && !kept.contains(&character) {
             shown.extend(character.escape_default());
         } else {
             shown.push(character);

@@ -141,12 +141,17 @@ impl Init {
     fn write_recordings(&self) -> Result<(), Failure> {
         let directory = self.output.as_deref().unwrap_or(Path::new(RECORDINGS));
         let list = directory.join(recording_files::LIST);
-        if !self.force && list.exists() {
-            return Err(already_exists(&list));
+        let cannot = |error: std::io::Error| {
+            let problem = format!("cannot use {} as a folder: {error}", directory.display());
+            Failure::of_writing(error.kind(), problem).with_help("name another folder with -o")
+        };
+        std::fs::create_dir_all(directory).map_err(cannot)?;
+        if !self.force && std::fs::read_dir(directory).map_err(cannot)?.next().is_some() {
+            return Failure::refuse(
+                format!("{} has files in it", directory.display()),
+                "name another folder with -o, or replace files of these names with --force",
+            );
         }
-        std::fs::create_dir_all(directory).map_err(|error| {
-            Failure::of_writing(error.kind(), format!("{}: {error}", directory.display()))
-        })?;
         let message = format!("simulating recordings for {}", directory.display());
         let staged = progress::with_spinner(message, true, || recording_files::stage(directory))?;
         self.commit(staged)?;

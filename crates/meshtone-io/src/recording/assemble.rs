@@ -42,8 +42,8 @@ pub(super) fn assemble(
             if timing.rate_hz < LEAST_RATE_HZ && !labels[index].states_time_unit() {
                 let (rate_hz, of_ms_hz) = (timing.rate_hz, 1e3 * timing.rate_hz);
                 let problem = format!(
-                    "states no unit, and as seconds it gives {rate_hz} S/s, too few for a gear; name it `{column} [ms]` if it is in ms \
-                     ({of_ms_hz} S/s) or `{column} [s]`"
+                    "states no unit, and as seconds it gives {rate_hz} S/s, too few for a gear; name it `{column}_ms` if it is in ms \
+                     ({of_ms_hz} S/s), or `{column}_s`"
                 );
                 return Err(Problem::time(column, &problem));
             }

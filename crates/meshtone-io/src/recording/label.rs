@@ -3,6 +3,7 @@
 use meshtone::sensor::Channel;
 
 use super::unit::{is_unit, seconds_in};
+use crate::printable::printable;
 
 /// What a file says about a column before its samples are read.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,16 +27,18 @@ const TIME_SUFFIXES: [&str; 7] = ["s", "sec", "ms", "us", "µs", "ns", "min"];
 impl Label {
     /// From a header such as `acceleration [g]`, `voltage (mV)` or `time_s`.
     pub(super) fn from_header(header: &str) -> Label {
-        let raw = header.trim().to_string();
-        let plain = Label::plain(&raw);
+        let plain = Label::plain(header.trim());
+        let raw = plain.raw.clone();
         match split_unit(&raw) {
             Some((name, unit)) => Label { name: name.to_string(), unit: unit.map(str::to_string), ..plain },
             None => plain,
         }
     }
 
-    /// From a name without a unit in brackets; that of a [channel](meshtone::sensor::Channel) of Meshtone ends with its unit.
+    /// From a name without a unit in brackets; that of a [channel](meshtone::sensor::Channel) of Meshtone ends with its unit. Control
+    /// characters, which no recorder writes, would forge lines of messages and are escaped.
     pub(super) fn plain(name: &str) -> Label {
+        let name = &printable(name, &[]);
         let unit = Channel::named(name).map(|channel| channel.unit().to_owned());
         let (raw, name) = (name.to_string(), name.to_string());
         Label { raw, name, unit, array: None, not_numeric: None, is_zero_twin: false }
@@ -52,7 +55,7 @@ impl Label {
         match word.as_str() {
             "time" | "times" | "t" | "zeit" | "temps" | "tempo" | "tiempo" | "tijd" | "tid" | "czas"
             | "timestamp" | "timestamps" | "time_stamp" | "elapsed_time" | "elapsed" | "seconds" | "sec"
-            | "zeitstempel" | "relative_time" | "sample_time" | "x_value" | "x_values" => {}
+            | "zeitstempel" | "relative_time" | "sample_time" | "x_value" => {}
             _ => return None,
         }
         // `T` is rather a temperature or a torque.
@@ -70,7 +73,13 @@ impl Label {
 
     /// Whether the unit of the column's times is stated.
     pub(super) fn states_time_unit(&self) -> bool {
-        self.unit.is_some() || self.time_word().1.is_some()
+        let (word, suffix) = self.time_word();
+        self.unit.is_some() || suffix.is_some() || matches!(word.as_str(), "seconds" | "sec")
+    }
+
+    /// Whether it is the value over an axis, as LabVIEW names columns: `X_Value`.
+    pub(super) fn is_value_of(&self, axis: &str) -> bool {
+        self.time_word().0.strip_suffix("_value") == Some(axis)
     }
 
     /// The last part of a dotted path.

@@ -1,13 +1,14 @@
 //! Files that hold another one: compressed by gzip or ZIP, or text in UTF-16.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
+use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 use zip::ZipArchive;
+use zip::result::ZipError;
 
-use super::error::Problem;
+use super::error::{Problem, names};
 use crate::memory;
 
 const GZIP: &[u8] = b"\x1f\x8b";
@@ -16,59 +17,104 @@ const LITTLE_ENDIAN: [u8; 2] = *b"\xff\xfe";
 const BIG_ENDIAN: [u8; 2] = *b"\xfe\xff";
 /// Bytes by which text in UTF-16 without a mark is known.
 const LOOKED_AT: usize = 64;
+/// Files inside one another: text in UTF-16 in a file of gzip in an archive.
+const LAYERS: usize = 3;
+/// Times as large as it is that a file may become; text of a recorder becomes some ten times as large.
+const MOST_EXPANSION: u64 = 200;
+/// (bytes) What any file may become.
+const ALWAYS_ALLOWED: u64 = 1 << 20;
 
 /// The file that is inside, and its name; the file itself where it is no such.
-pub(super) fn unpacked(path: &Path, mut file: File) -> Result<(PathBuf, File), Problem> {
-    let mut head = [0; LOOKED_AT];
-    let length = file.read(&mut head)?;
-    let head = &head[..length];
-    file.rewind()?;
-    if head.starts_with(GZIP) {
-        let inside = written(MultiGzDecoder::new(BufReader::new(file)))?;
-        return Ok((path.with_extension(""), inside));
+pub(super) fn unpacked(path: &Path, file: File) -> Result<(PathBuf, File), Problem> {
+    let most = (file.metadata()?.len().saturating_mul(MOST_EXPANSION)).max(ALWAYS_ALLOWED);
+    let most = most.min(memory::limit().bytes());
+    let (mut path, mut file) = (path.to_owned(), file);
+    for _ in 0..LAYERS {
+        match layer(&path, &mut file, most)? {
+            Some((inner_path, inner)) => (path, file) = (inner_path, inner),
+            None => break,
+        }
     }
-    if head.starts_with(ZIP) {
-        return only_one(path, file);
-    }
-    match byte_order(head) {
-        Some(from_bytes) => Ok((path.to_owned(), written(Utf8::new(BufReader::new(file), from_bytes))?)),
-        None => Ok((path.to_owned(), file)),
-    }
+    Ok((path, file))
 }
 
-/// The only file of an archive that is none of NumPy's.
-fn only_one(path: &Path, mut file: File) -> Result<(PathBuf, File), Problem> {
-    let opened = ZipArchive::new(BufReader::new(file.try_clone()?));
-    // The clone has moved the file's own place.
+/// What is inside of one; none of a file that holds no other. The file is left at its start.
+fn layer(path: &Path, file: &mut File, most: u64) -> Result<Option<(PathBuf, File)>, Problem> {
+    let mut head = Vec::new();
+    file.take(LOOKED_AT as u64).read_to_end(&mut head)?;
     file.rewind()?;
-    let mut archive = match opened {
-        Ok(archive) if archive.len() == 1 => archive,
-        // What else it is, its reader says.
-        _ => return Ok((path.to_owned(), file)),
+    let inside = if head.starts_with(GZIP) {
+        Some((path.with_extension(""), written(MultiGzDecoder::new(BufReader::new(&*file)), most)?))
+    } else if head.starts_with(ZIP) {
+        of_archive(path, file, most)?
+    } else {
+        let utf8 =
+            byte_order(&head).map(|from_bytes| Utf8 { from: BufReader::new(&*file), from_bytes, half: None });
+        utf8.map(|utf8| Ok::<_, Problem>((path.to_owned(), written(utf8, most)?))).transpose()?
     };
-    let broken = |error: zip::result::ZipError| Problem::Broken(error.to_string());
-    let inside = archive.by_index(0).map_err(broken)?;
-    let name = inside.name().map_err(broken)?.into_owned();
-    if name.ends_with(".npy") {
-        drop(inside);
-        file.rewind()?;
-        return Ok((path.to_owned(), file));
-    }
-    Ok((path.with_file_name(Path::new(&name).file_name().unwrap_or_default()), written(inside)?))
+    file.rewind()?;
+    Ok(inside)
 }
 
-/// A file without a name that holds what is read, as far as memory for it would be allowed.
-fn written(from: impl Read) -> Result<File, Problem> {
-    let most = memory::limit().bytes();
-    let mut to = BufWriter::new(tempfile::tempfile()?);
-    if io::copy(&mut from.take(most.saturating_add(1)), &mut to)? > most {
-        let problem =
-            format!("unpacked it has more than {most} bytes, all that is allowed; unpack it by hand");
-        return Err(Problem::Refused(problem));
+/// The only file of an archive; none of one of NumPy's arrays. Folders, and what macOS adds, do not count.
+fn of_archive(path: &Path, file: &File, most: u64) -> Result<Option<(PathBuf, File)>, Problem> {
+    let broken = |error: ZipError| Problem::Broken(error.to_string());
+    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(broken)?;
+    let mut files: Vec<(usize, String)> = Vec::new();
+    for index in 0..archive.len() {
+        let inside = archive.by_index(index).map_err(broken)?;
+        let name = inside.name().map_err(broken)?.into_owned();
+        if name.ends_with(".npy") {
+            return Ok(None);
+        }
+        if inside.is_file() && !name.starts_with("__MACOSX/") {
+            files.push((index, name));
+        }
     }
-    to.flush()?;
-    let mut file = to.into_inner().map_err(io::IntoInnerError::into_error)?;
-    file.rewind()?;
+    match files.as_slice() {
+        [(index, name)] => {
+            let inside = written(archive.by_index(*index).map_err(broken)?, most)?;
+            Ok(Some((path.with_file_name(Path::new(name).file_name().unwrap_or_default()), inside)))
+        }
+        _ if files.iter().any(|(_, name)| name == "[Content_Types].xml") => {
+            Err(Problem::convert("an Office document, such as a table of Excel's (.xlsx)", "save it as CSV"))
+        }
+        _ => {
+            let all: Vec<String> = files.into_iter().map(|(_, name)| name).collect();
+            Err(Problem::Refused(format!(
+                "is a ZIP archive of {} files; unpack it: {}",
+                all.len(),
+                names(&all)
+            )))
+        }
+    }
+}
+
+/// A file without a name that holds what is read, up to a size.
+fn written(from: impl Read, most: u64) -> Result<File, Problem> {
+    let folder = std::env::temp_dir();
+    // What goes wrong with the temporary file is not said of the recording.
+    let elsewhere =
+        |error: io::Error| Problem::Refused(format!("cannot be unpacked into {}: {error}", folder.display()));
+    let mut to = BufWriter::new(tempfile::tempfile_in(&folder).map_err(elsewhere)?);
+    let mut from = BufReader::new(from.take(most.saturating_add(1)));
+    let mut bytes = 0;
+    loop {
+        let block = io::BufRead::fill_buf(&mut from)?;
+        if block.is_empty() {
+            break;
+        }
+        bytes += block.len() as u64;
+        if bytes > most {
+            let problem = format!("unpacked it has more than {} MiB; unpack it first", most >> 20);
+            return Err(Problem::Refused(problem));
+        }
+        to.write_all(block).map_err(elsewhere)?;
+        let length = block.len();
+        io::BufRead::consume(&mut from, length);
+    }
+    let mut file = to.into_inner().map_err(|error| elsewhere(error.into_error()))?;
+    file.rewind().map_err(elsewhere)?;
     Ok(file)
 }
 
@@ -93,28 +139,24 @@ struct Utf8<R> {
     half: Option<u16>,
 }
 
-impl<R: Read> Utf8<R> {
-    fn new(from: R, from_bytes: fn([u8; 2]) -> u16) -> Self {
-        Self { from, from_bytes, half: None }
-    }
-}
-
 impl<R: Read> Read for Utf8<R> {
-    /// As many characters as fit: one of two bytes becomes three at most.
+    /// As many characters as fit: one of two bytes becomes three at most. A buffer that does not hold one is an error.
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         let mut bytes = Vec::new();
-        let most = (to.len() / 4 * 2).max(2) as u64;
+        let most = (to.len().saturating_sub(4) / 4 * 2) as u64;
         self.from.by_ref().take(most).read_to_end(&mut bytes)?;
-        let units =
-            bytes.chunks(2).map(|pair| (self.from_bytes)([pair[0], pair.get(1).copied().unwrap_or(0)]));
+        let (pairs, rest) = bytes.as_chunks::<2>();
+        if !rest.is_empty() {
+            return Err(io::Error::new(ErrorKind::UnexpectedEof, "half a character"));
+        }
+        let units = pairs.iter().map(|pair| (self.from_bytes)(*pair));
         let mut units: Vec<u16> = self.half.take().into_iter().chain(units).collect();
         // The other half comes with the next bytes.
         if bytes.len() as u64 == most && units.last().is_some_and(|unit| (0xd800..0xdc00).contains(unit)) {
             self.half = units.pop();
         }
         let text = String::from_utf16_lossy(&units);
-        let length = text.len().min(to.len());
-        to[..length].copy_from_slice(&text.as_bytes()[..length]);
-        Ok(length)
+        to.get_mut(..text.len()).ok_or(ErrorKind::InvalidInput)?.copy_from_slice(text.as_bytes());
+        Ok(text.len())
     }
 }

@@ -53,6 +53,9 @@ fn time_columns(labels: &[Label], options: &RecordingOptions) -> Result<Vec<(usi
         }
         TimeColumn::ByName => {
             let named = labels.iter().enumerate().filter(|(_, label)| label.not_numeric.is_none());
+            // LabVIEW's time is the X_Value; beside a y_value it is a direction.
+            let has_directions = labels.iter().any(|label| label.is_value_of("y"));
+            let named = named.filter(|(_, label)| !(has_directions && label.is_value_of("x")));
             let named: Vec<_> =
                 named.filter_map(|(index, label)| Some((index, label.time_unit_s()?))).collect();
             if named.len() > 1 && options.sampling_rate_hz.is_none() {

@@ -11,7 +11,9 @@ use super::label::Label;
 use super::number::{NumberKind, Numbers};
 use super::rate::StatedRate;
 use super::selection::select;
+use super::text::decoded;
 use super::time::shortest_within;
+use super::unit::seconds_in;
 use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
 
@@ -25,17 +27,26 @@ const INCREMENT_UNCERTAINTY: f64 = 5e-6;
 const TIME_RESPONSE: [i64; 2] = [0, 1];
 const TIME: [i64; 2] = [0, 17];
 
-/// Whether a file begins as universal files do: with a delimiter and the number of a data set.
+/// Whether a file begins as universal files do: with a delimiter and the number of a data set, each at the end of six columns. A column of
+/// numbers may begin with -1, but is not written so.
 ///
 /// # Arguments
 /// * `head` - first bytes of the file
 pub(super) fn is_universal(head: &[u8]) -> bool {
-    let mut lines = head.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty());
-    lines.next() == Some(DELIMITER)
-        && lines.next().is_some_and(|line| line.first().is_some_and(u8::is_ascii_digit) && line != b"0")
+    let lines = head.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii_end);
+    let mut lines = lines.filter(|line| !line.is_empty());
+    let is_set = |line: &[u8]| {
+        let (number, rest) = line.split_at(line.len().min(6));
+        let digits = number.trim_ascii_start();
+        number.len() == 6
+            && !digits.is_empty()
+            && digits.iter().all(u8::is_ascii_digit)
+            && matches!(rest.first(), None | Some(b'b' | b'B' | b' '))
+    };
+    lines.next() == Some(b"    -1") && lines.next().is_some_and(is_set)
 }
 
-/// Reads a recording: a channel for each data set 58 that is samples over time.
+/// Reads a recording: a channel for each data set 58 that is samples over time; others are left out.
 pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
     let (limit, bytes) = (memory::limit(), file.metadata()?.len());
     if let Some(objection) = limit.objection(bytes) {
@@ -48,6 +59,14 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     let selection = select(&labels, options)?;
     memory_need::check(limit, options, &selection, |column| functions[column].count as u64, bytes)?;
     let wanted = || selection.wanted.iter().map(|column| &functions[*column]);
+    let start_s = wanted().next().map_or(0.0, |function| function.start_s);
+    if let Some(Function { label, start_s: other_s, .. }) = wanted().find(|other| other.start_s != start_s) {
+        let problem = format!(
+            "{} starts at {other_s} s, another channel at {start_s} s; choose channels that start together",
+            label.raw
+        );
+        return Err(Problem::Refused(problem));
+    }
     let samples = wanted().map(Function::samples).collect::<Result<Vec<_>, _>>()?;
     let stated: Vec<StatedRate> = wanted()
         .map(|function| StatedRate {
@@ -55,12 +74,11 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
             rate_hz: shortest_within(1.0 / function.increment_s, INCREMENT_UNCERTAINTY),
         })
         .collect();
-    let start_s = wanted().next().map_or(0.0, |function| function.start_s);
     let recording = assemble(&labels, &selection, samples, &stated, options)?;
     Ok(Recording { start_s, ..recording })
 }
 
-/// A data set 58, before its numbers are read.
+/// A data set 58 of samples over time, before its numbers are read.
 struct Function<'a> {
     label: Label,
     count: usize,
@@ -70,7 +88,7 @@ struct Function<'a> {
     /// Of binary numbers whether the most significant byte comes first; none of text.
     big_endian: Option<bool>,
     data: &'a [u8],
-    /// For messages: which data set of the file it is, from 1.
+    /// For messages: which data set 58 of the file it is, from 1.
     number: usize,
 }
 
@@ -88,115 +106,99 @@ impl<'a> Lines<'a> {
         Some(line)
     }
 
-    /// Goes behind the next delimiter, and returns what stands before it.
-    fn up_to_delimiter(&mut self) -> &'a [u8] {
+    /// Goes behind the next delimiter, and returns what stands before it; none where the file ends without one.
+    fn up_to_delimiter(&mut self) -> Option<&'a [u8]> {
         let start = self.0;
         while let Some(line) = self.next() {
             if line.trim_ascii() == DELIMITER {
-                return &start[..start.len() - self.0.len() - line.len()];
+                return Some(&start[..start.len() - self.0.len() - line.len()]);
             }
         }
-        start
+        None
     }
 }
 
 fn functions(content: &[u8]) -> Result<Vec<Function<'_>>, Problem> {
     let mut lines = Lines(content);
     let (mut found, mut number, mut others) = (Vec::new(), 0, 0);
-    lines.up_to_delimiter();
-    while let Some(first) = lines.next() {
-        let first = first.trim_ascii();
-        if first.is_empty() {
-            continue;
-        }
+    // Each data set stands between two delimiters.
+    while lines.up_to_delimiter().is_some() {
+        let Some(first) = lines.next().map(<[u8]>::trim_ascii) else { break };
         let is_58 = first.starts_with(b"58") && first.get(2).is_none_or(|next| !next.is_ascii_digit());
-        if is_58 {
-            number += 1;
-            found.push(Function::of(first, &mut lines, number)?);
-        } else {
-            others += 1;
+        number += usize::from(is_58);
+        match if is_58 { Function::of(first, &mut lines, number)? } else { None } {
+            Some(function) => found.push(function),
+            None => others += 1,
         }
-        lines.up_to_delimiter();
-        // The delimiter before the next data set; files end without one.
-        lines.up_to_delimiter();
+        if lines.up_to_delimiter().is_none() {
+            return Err(Problem::broken("it ends within a data set, before its delimiter"));
+        }
     }
     if found.is_empty() {
-        let problem = format!("is a universal file without a data set 58 ({others} of other kinds)");
+        let problem = format!(
+            "is a universal file without a time response (data set 58); it has {others} data sets of other kinds, such as spectra; export \
+             the time signals"
+        );
         return Err(Problem::Refused(problem));
     }
     Ok(found)
 }
 
 impl<'a> Function<'a> {
-    fn of(first: &[u8], lines: &mut Lines<'a>, number: usize) -> Result<Self, Problem> {
+    /// Reads all but the numbers of a data set 58, and goes behind these; none of a function that is not over time.
+    fn of(first: &[u8], lines: &mut Lines<'a>, number: usize) -> Result<Option<Self>, Problem> {
         let broken = |what: &str| Problem::Broken(format!("data set 58 number {number}: {what}"));
         let records: Vec<&[u8]> = (0..HEADER_LINES).map_while(|_| lines.next()).collect();
         let [id, .., place, form, abscissa, ordinate, _, _] = records.as_slice() else {
             return Err(broken("it ends within its header"));
         };
         let whole = |line: &[u8], from: usize, to: usize| field(line, from, to).parse::<i64>().ok();
-        let real =
-            |line: &[u8], from: usize, to: usize| fast_float2::parse::<f64, _>(field(line, from, to)).ok();
+        let real = |line: &[u8], from: usize, to: usize| {
+            fast_float2::parse(field(line, from, to)).ok().filter(|value: &f64| value.is_finite())
+        };
         let (Some(kind), Some(axis)) = (whole(place, 0, 5), whole(abscissa, 0, 10)) else {
             return Err(broken("record 6 or 8 begins with no whole number"));
         };
-        if !TIME_RESPONSE.contains(&kind) || !TIME.contains(&axis) {
-            return Err(Problem::Refused(format!(
-                "holds a function that is no time response (data set 58 number {number}: function type {kind}, abscissa type {axis}); \
-                 export the time signals"
-            )));
-        }
-        let (Some(form_of_numbers), Some(count), Some(spacing)) =
+        let (Some(values), Some(count), Some(spacing)) =
             (whole(form, 0, 10), whole(form, 10, 20), whole(form, 20, 30))
         else {
             return Err(broken("record 7 does not state type, number and spacing"));
         };
-        let (Some(start_s), Some(increment_s)) = (real(form, 30, 43), real(form, 43, 56)) else {
+        let (Some(start), Some(increment)) = (real(form, 30, 43), real(form, 43, 56)) else {
             return Err(broken("record 7 does not state start and increment"));
         };
-        if !matches!(form_of_numbers, 2 | 4) || spacing != 1 {
+        let count = usize::try_from(count).map_err(|_| broken("its number of values is negative"))?;
+        let is_binary = first.get(2).is_some_and(|mark| mark.eq_ignore_ascii_case(&b'b'));
+        let (big_endian, data) =
+            if is_binary { binary(&first[3..], lines) } else { text(lines) }.map_err(|what| broken(what))?;
+        if !TIME_RESPONSE.contains(&kind) || !TIME.contains(&axis) {
+            return Ok(None);
+        }
+        if !matches!(values, 2 | 4) || spacing != 1 {
             return Err(Problem::Refused(format!(
                 "holds complex numbers or uneven times (data set 58 number {number}); export real numbers at a constant rate"
             )));
         }
-        let count = usize::try_from(count).map_err(|_| broken("its number of values is negative"))?;
-        let mut function = Function {
-            label: label(id, place, ordinate, number),
-            count,
-            start_s,
-            increment_s,
-            is_double: form_of_numbers == 4,
-            big_endian: None,
-            data: &[],
-            number,
-        };
-        if first.get(2).is_some_and(|mark| mark.eq_ignore_ascii_case(&b'b')) {
-            let text = String::from_utf8_lossy(&first[3..]);
-            let numbers: Vec<usize> =
-                text.split_whitespace().map_while(|number| number.parse().ok()).collect();
-            let [order @ (1 | 2), 2, HEADER_LINES, bytes, ..] = numbers[..] else {
-                return Err(broken("its binary numbers are not in the format of IEEE 754"));
-            };
-            function.big_endian = Some(order == 2);
-            let (data, rest) =
-                lines.0.split_at_checked(bytes).ok_or_else(|| broken("it ends within its numbers"))?;
-            (function.data, lines.0) = (data, rest);
-        } else {
-            // Only this much is passed over: the delimiter behind it is looked for by the caller.
-            let mut ahead = Lines(lines.0);
-            function.data = ahead.up_to_delimiter();
-            lines.0 = &lines.0[function.data.len()..];
+        let is_double = values == 4;
+        let size = if is_double { size_of::<f64>() } else { size_of::<f32>() };
+        if is_binary && count.checked_mul(size) != Some(data.len()) {
+            let bytes = data.len();
+            return Err(broken(&format!("it has {bytes} bytes for {count} values of {size} bytes")));
         }
-        Ok(function)
+        let unit = field(abscissa, 47, 67);
+        let unit_s = if matches!(&*unit, "" | "NONE") { Some(1.0) } else { seconds_in(&unit) };
+        let unit_s = unit_s.ok_or_else(|| broken(&format!("its abscissa is in {unit}, no unit of time")))?;
+        let label = label(id, place, ordinate, number);
+        let (start_s, increment_s) = (start * unit_s, increment * unit_s);
+        Ok(Some(Self { label, count, start_s, increment_s, is_double, big_endian, data, number }))
     }
 
     fn samples(&self) -> Result<Vec<f64>, Problem> {
         let samples = match self.big_endian {
             Some(big_endian) => {
                 let kind = if self.is_double { NumberKind::F64 } else { NumberKind::F32 };
-                let bytes = &self.data[..self.data.len().min(self.count.saturating_mul(kind.size()))];
                 let mut samples = Vec::new();
-                Numbers::plain(kind, big_endian).append(bytes, 1, 0, &mut samples);
+                Numbers::plain(kind, big_endian).append(self.data, 1, 0, &mut samples);
                 samples
             }
             None => self.numbers_in_text()?,
@@ -225,20 +227,42 @@ impl<'a> Function<'a> {
                 Problem::Broken(format!("data set 58 number {number}: {line:?} are no numbers"))
             })?);
         }
-        samples.truncate(self.count);
         Ok(samples)
     }
 }
 
+/// Whether numbers of a data set have the most significant byte first, none of text, and their bytes.
+type Stored<'a> = Result<(Option<bool>, &'a [u8]), &'static str>;
+
+/// Binary numbers, whose order and length the data set's first line states behind `58b`.
+fn binary<'a>(first: &[u8], lines: &mut Lines<'a>) -> Stored<'a> {
+    let text = String::from_utf8_lossy(first);
+    let numbers: Vec<usize> = text.split_whitespace().map_while(|number| number.parse().ok()).collect();
+    let [order @ (1 | 2), 2, HEADER_LINES, bytes, ..] = numbers[..] else {
+        return Err(
+            "its first line does not state byte order (1, 2), IEEE 754 (2), 11 lines and a number of bytes",
+        );
+    };
+    let (data, rest) = lines.0.split_at_checked(bytes).ok_or("it ends within its numbers")?;
+    lines.0 = rest;
+    Ok((Some(order == 2), data))
+}
+
+/// Numbers as text, up to the delimiter.
+fn text<'a>(lines: &mut Lines<'a>) -> Stored<'a> {
+    let data = Lines(lines.0).up_to_delimiter().ok_or("it ends within its numbers, before its delimiter")?;
+    lines.0 = &lines.0[data.len()..];
+    Ok((None, data))
+}
+
 /// Columns of a line.
-fn field(line: &[u8], from: usize, to: usize) -> &str {
-    let cell = line.get(from..to.min(line.len())).unwrap_or_default();
-    std::str::from_utf8(cell).unwrap_or_default().trim()
+fn field(line: &[u8], from: usize, to: usize) -> String {
+    decoded(line.get(from..to.min(line.len())).unwrap_or_default()).trim().to_owned()
 }
 
 /// The name of a channel: that of the response, or else of the function, with node and direction.
 fn label(id: &[u8], place: &[u8], ordinate: &[u8], number: usize) -> Label {
-    let named = |text: &str| Some(text.to_owned()).filter(|text| !matches!(text.as_str(), "" | "NONE"));
+    let named = |text: String| Some(text).filter(|text| !matches!(text.as_str(), "" | "NONE"));
     let name = named(field(place, 31, 41)).or_else(|| named(field(id, 0, 80)));
     let node = named(field(place, 41, 51)).filter(|node| node != "0");
     let direction = match field(place, 51, 55).parse() {

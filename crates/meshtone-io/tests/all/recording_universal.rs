@@ -123,25 +123,79 @@ fn numbers_of_a_universal_file_may_touch() {
 }
 
 #[test]
-fn what_is_no_time_signal_is_refused() {
+fn what_is_no_time_signal_is_left_out_or_refused() {
     let text = String::from_utf8(set(false).text()).unwrap();
     let spectrum = text.replacen("\n    1  ", "\n    2  ", 1);
     assert!(
         problem("run.uff", spectrum.as_bytes())
-            .contains("no time response (data set 58 number 1: function type 2, abscissa type 17)")
+            .contains("without a time response (data set 58); it has 1 data sets of other kinds")
     );
-    let complex = text.replacen("         2         7", "         5         7", 1);
-    assert!(problem("run.uff", complex.as_bytes()).contains("complex numbers or uneven times"));
-    assert!(problem("run.uff", OTHER).contains("without a data set 58 (1 of other kinds)"));
-    let short = text.replacen("         2         7", "         2         9", 1);
-    assert!(problem("run.uff", short.as_bytes()).contains("states 9 values and has 7"));
-    let spoiled = text.replacen("3.00000E+00", "3.0x000E+00", 1);
-    assert!(problem("run.uff", spoiled.as_bytes()).contains("are no numbers"));
-    for binary in [set(true).binary(false), set(true).text()] {
-        for length in (20..binary.len() - 10).step_by(7) {
-            // A file that ends early gives an error, or what was whole; never a panic.
-            let _ = recording_help::read("run.uff", &binary[..length], &RecordingOptions::default());
+    let mut binary = set(false).binary(false);
+    let function = binary.windows(7).position(|part| part == b"\n    1 ").unwrap() + 5;
+    binary[function] = b'2';
+    assert_eq!(read("run.uff", &[&binary, text.as_bytes()].concat()).channels.len(), 1);
+    assert_eq!(read("run.uff", &[spectrum.as_bytes(), text.as_bytes()].concat()).channels.len(), 1);
+    assert!(problem("run.uff", OTHER).contains("without a time response"));
+    let replaced = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        problem("run.uff", text.replacen(from, to, 1).as_bytes())
+    };
+    assert!(
+        replaced("         2         7", "         5         7").contains("complex numbers or uneven times")
+    );
+    for count in ["9", "5"] {
+        assert!(
+            replaced("         7         1", &format!("         {count}         1"))
+                .contains(&format!("states {count} values and has 7"))
+        );
+    }
+    assert!(replaced("3.00000E+00", "3.0x000E+00").contains("are no numbers"));
+    assert!(
+        replaced("Time                 s ", "Time                 Hz").contains("in Hz, no unit of time")
+    );
+    assert!(
+        replaced("  0.00000E+00  1.95313E-05", "          NaN  1.95313E-05")
+            .contains("does not state start and increment")
+    );
+    let later = text.replacen("  0.00000E+00  1.95313E-05", "  5.00000E-01  1.95313E-05", 1);
+    assert!(
+        problem("run.uff", &[text.as_bytes(), later.as_bytes()].concat())
+            .contains("starts at 0.5 s, another channel at 0 s")
+    );
+    let in_ms = text.replacen("Time                 s ", "Time                 ms", 1).replacen(
+        "1.95313E-05",
+        "1.95313E-02",
+        1,
+    );
+    assert_eq!(read("run.uff", in_ms.as_bytes()).sampling_rate_hz, 51_200.0);
+    let of_floats = String::from_utf8_lossy(&set(true).binary(false)).replacen(
+        "         4         7",
+        "         2         7",
+        1,
+    );
+    assert!(problem("run.uff", of_floats.as_bytes()).contains("bytes for 7 values of 4 bytes"));
+}
+
+#[test]
+fn universal_files_that_end_early_are_refused() {
+    for whole in [set(true).binary(false), set(true).text()] {
+        let delimiter = whole.len() - b"    -1\n".len();
+        for length in (20..delimiter).step_by(7).chain([delimiter - 1, delimiter]) {
+            let problem = problem("run.uff", &whole[..length]);
+            assert!(problem.contains("it ends"), "{length}: {problem}");
         }
+    }
+}
+
+/// A column of counts may begin with -1 and a digit.
+#[test]
+fn numbers_are_no_universal_file() {
+    let rate = RecordingOptions { sampling_rate_hz: Some(1000.0), ..RecordingOptions::default() };
+    for text in ["-1\n5\n3\n", "-1\n58\n3\n", " -1\n 58\n  3\n"] {
+        assert_eq!(
+            recording_help::read("run.csv", text.as_bytes(), &rate).unwrap().channels[0].samples[0],
+            -1.0
+        );
     }
 }
 
@@ -162,20 +216,40 @@ fn compressed_files_and_other_encodings() {
     is_the_csv("run.csv", CSV.as_bytes());
     is_the_csv("run", CSV.as_bytes());
     is_the_csv("run.csv", format!("sep=,\r\n{CSV}").as_bytes());
-    let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
-    gzip.write_all(CSV.as_bytes()).unwrap();
-    let gzip = gzip.finish().unwrap();
-    is_the_csv("run.csv.gz", &gzip);
-    assert!(problem("run.csv.gz", &gzip[..gzip.len() - 9]).contains("ends"), "a file that ends early");
-    let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    zip.start_file("inner/run.csv", zip::write::SimpleFileOptions::default()).unwrap();
-    zip.write_all(CSV.as_bytes()).unwrap();
-    is_the_csv("run.zip", &zip.finish().unwrap().into_inner());
+    let gzip = |content: &[u8]| {
+        let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+        gzip.write_all(content).unwrap();
+        gzip.finish().unwrap()
+    };
+    let zip = |files: &[(&str, &[u8])]| {
+        let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        for (name, content) in files {
+            zip.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
+            zip.write_all(content).unwrap();
+        }
+        zip.finish().unwrap().into_inner()
+    };
+    let packed = gzip(CSV.as_bytes());
+    is_the_csv("run.csv.gz", &packed);
+    assert!(problem("run.csv.gz", &packed[..packed.len() - 9]).contains("it ends too early"));
+    is_the_csv("run.zip", &zip(&[("inner/run.csv", CSV.as_bytes()), ("__MACOSX/inner/._run.csv", b"x")]));
+    is_the_csv("run.zip", &zip(&[("run.csv.gz", &packed)]));
+    let two = zip(&[("a.csv", CSV.as_bytes()), ("b.csv", CSV.as_bytes())]);
+    assert!(problem("run.zip", &two).contains("is a ZIP archive of 2 files; unpack it: a.csv, b.csv"));
+    let table = zip(&[("[Content_Types].xml", b"x"), ("xl/workbook.xml", b"x")]);
+    assert!(problem("run.xlsx", &table).contains(
+        "an Office document, such as a table of Excel's (.xlsx), which is not read; save it as CSV"
+    ));
+    let bomb = problem("run.csv.gz", &gzip(&vec![b'0'; 4 << 20]));
+    assert!(bomb.contains("unpacked it has more than 1 MiB; unpack it first"), "{bomb}");
     let utf16 = |mark: &[u8], bytes: fn(u16) -> [u8; 2], text: &str| {
         [mark, &text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>()].concat()
     };
     is_the_csv("run.csv", &utf16(b"\xff\xfe", u16::to_le_bytes, CSV));
     is_the_csv("run.csv", &utf16(b"\xfe\xff", u16::to_be_bytes, CSV));
+    is_the_csv("run.zip", &zip(&[("run.csv", &utf16(b"\xff\xfe", u16::to_le_bytes, CSV))]));
+    let odd = utf16(b"\xff\xfe", u16::to_le_bytes, CSV);
+    assert!(problem("run.csv", &odd[..odd.len() - 1]).contains("it ends too early"));
     // Without a mark the first characters must be Latin, as names are.
     is_the_csv(
         "run.txt",
@@ -200,7 +274,13 @@ fn long_text_in_utf16_is_whole() {
 fn slow_times_without_a_unit_are_doubted() {
     let rows = |name: &str| format!("{name},acc\n0,1\n0.05,2\n0.1,3\n0.15,4\n");
     let said = problem("run.csv", rows("elapsed").as_bytes());
-    assert!(said.contains("as seconds it gives 20 S/s, too few for a gear; name it `elapsed [ms]` if it is in ms (20000 S/s)"), "{said}");
+    assert!(
+        said.contains(
+            "as seconds it gives 20 S/s, too few for a gear; name it `elapsed_ms` if it is in ms (20000 S/s)"
+        ),
+        "{said}"
+    );
+    assert_eq!(read("run.csv", rows("seconds").as_bytes()).sampling_rate_hz, 20.0);
     assert_eq!(read("run.csv", rows("elapsed [ms]").as_bytes()).sampling_rate_hz, 20_000.0);
     assert_eq!(read("run.csv", rows("elapsed [s]").as_bytes()).sampling_rate_hz, 20.0);
 }

@@ -91,6 +91,11 @@ fn greatest_common_divisor(a: i128, b: i128) -> i128 {
     a
 }
 
+/// The part of a revolution of the input of which the revolutions of all shafts are whole multiples.
+fn cycle(ratios: &[Ratio]) -> Ratio {
+    ratios.iter().copied().fold(Ratio::ONE, Ratio::common_measure)
+}
+
 /// How the parts of a machine stand and turn, by their numbers, names resolved. A rig has no bearings here.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -340,7 +345,15 @@ impl Layout {
             )
             .with_help("add a [[mesh]] of a wheel on it, or remove the shaft"));
         }
-        Ok(ratios.into_iter().flatten().collect())
+        let ratios: Vec<Ratio> = ratios.into_iter().flatten().collect();
+        if !cycle(&ratios).is_exact() {
+            let key = entry_key("mesh", 0, meshes, "wheels");
+            let problem =
+                "is one of a train whose teeth all meet again only after more revolutions than are counted";
+            return Err(ScenarioError::new(key, format!("{:?}", scenario.meshes[0].wheels), problem)
+                .with_help("choose fewer stages, or tooth counts with common factors"));
+        }
+        Ok(ratios)
     }
 
     /// (m) Where the shafts stand: as given, or beside the shaft that they mesh with.
@@ -574,7 +587,7 @@ impl Layout {
 
     /// Revolutions of the input after which all teeth and shafts stand again as at the start.
     pub fn cycle_revolutions(&self) -> i64 {
-        self.ratios.iter().copied().fold(Ratio::ONE, Ratio::common_measure).denominator
+        cycle(&self.ratios).denominator
     }
 
     /// The faults of a mesh's wheels as of a pair, each with its number in the scenario.

@@ -122,7 +122,7 @@ fn unquoted(cell: &[u8]) -> &[u8] {
 }
 
 /// Text in UTF-8, or else in Latin-1, which spreadsheets of Western Europe still write.
-pub(super) fn decoded(bytes: &[u8]) -> String {
+pub(in crate::recording) fn decoded(bytes: &[u8]) -> String {
     let utf8 = std::str::from_utf8(bytes).map(str::to_string);
     utf8.unwrap_or_else(|_| bytes.iter().map(|byte| char::from(*byte)).collect())
 }
