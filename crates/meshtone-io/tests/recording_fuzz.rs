@@ -170,6 +170,8 @@ fn seeds_of_fuzzing_are_read_or_refused() {
         ("mat", "mat"),
         ("hdf5", "h5"),
         ("wav", "wav"),
+        ("universal", "uff"),
+        ("packed", "csv.gz"),
     ] {
         for seed in fs::read_dir(seeds.join(target)).unwrap() {
             check_both(&format!("a.{ending}"), &fs::read(seed.unwrap().path()).unwrap());
