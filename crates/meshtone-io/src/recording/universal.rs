@@ -170,7 +170,7 @@ impl<'a> Function<'a> {
         let count = usize::try_from(count).map_err(|_| broken("its number of values is negative"))?;
         let is_binary = first.get(2).is_some_and(|mark| mark.eq_ignore_ascii_case(&b'b'));
         let (big_endian, data) =
-            if is_binary { binary(&first[3..], lines) } else { text(lines) }.map_err(|what| broken(what))?;
+            if is_binary { binary(&first[3..], lines) } else { text(lines) }.map_err(broken)?;
         if !TIME_RESPONSE.contains(&kind) || !TIME.contains(&axis) {
             return Ok(None);
         }

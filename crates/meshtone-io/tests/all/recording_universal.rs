@@ -182,7 +182,7 @@ fn universal_files_that_end_early_are_refused() {
         let delimiter = whole.len() - b"    -1\n".len();
         for length in (20..delimiter).step_by(7).chain([delimiter - 1, delimiter]) {
             let problem = problem("run.uff", &whole[..length]);
-            assert!(problem.contains("it ends"), "{length}: {problem}");
+            assert!(problem.contains("is not a whole universal file"), "{length}: {problem}");
         }
     }
 }
