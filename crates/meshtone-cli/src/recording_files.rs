@@ -29,7 +29,7 @@ const SIMULATED_RATE_HZ: f64 = 50e3;
 /// (g/√Hz) Noise of every sensor.
 const NOISE_G_PER_RTHZ: f64 = 5e-4;
 /// Twelve days of the pair, by the severity of its broken tooth.
-const DAYS: [f64; 12] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.15, 0.25, 0.35, 0.5, 0.65, 0.8];
+const DAYS: [f64; 12] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.55, 0.58, 0.61, 0.65, 0.7, 0.8];
 
 /// Writes the files beside one another, where they appear once they are committed.
 ///
@@ -90,7 +90,7 @@ pub fn stage(directory: &Path) -> Result<Vec<StagedFile>, Failure> {
     )?;
     folder.record(
         "bearing.csv",
-        "the gearbox with a spall on the outer race of its ball bearing",
+        "the gearbox with a spall on the outer race of its ball bearing, 9,12,60",
         &spalled,
         Run::steady(8.0),
     )?;
@@ -165,9 +165,11 @@ impl RecordingFolder<'_> {
 
     fn finish(mut self) -> Result<Vec<StagedFile>, Failure> {
         let text = format!(
-            "Recordings of simulated machines, made by Meshtone. The channels are `bearing`, an acceleration in g; `tacho`, the voltage of a\n\
-             sensor that sees one mark a revolution of the pinion, or of the gearbox's input; and `speed`, the revolutions per second of the\n\
-             gear, or of the gearbox's output. All have {SAMPLING_RATE_HZ} samples a second.\n\n{}",
+            "Recordings of simulated machines, made by Meshtone: of a pair of 17 and 38 teeth whose pinion turns at 40 rev/s, and of a gearbox of\n\
+             two stages, 32/96 and 48/80 teeth, whose input turns at 30 rev/s. The channels are `bearing`, an acceleration in g; `tacho`, the\n\
+             voltage of a sensor that sees one mark a revolution of the pinion, or of the gearbox's input; and `speed`, the revolutions per\n\
+             second of the gear, or of the gearbox's output. All have {SAMPLING_RATE_HZ} samples a second. To begin with:\n\n    \
+             meshtone indicators run.csv -c bearing --tach tacho --teeth 17 --mate-teeth 38\n\n{}",
             self.contents
         );
         self.add(LIST, "", text.as_bytes())?;

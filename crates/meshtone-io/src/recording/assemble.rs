@@ -40,10 +40,12 @@ pub(super) fn assemble(
             let column = &labels[index].raw;
             let timing = timing(column, times, unit_s)?;
             if timing.rate_hz < LEAST_RATE_HZ && !labels[index].states_time_unit() {
-                let (rate_hz, of_ms_hz) = (timing.rate_hz, 1e3 * timing.rate_hz);
+                let rate_hz = timing.rate_hz;
+                let (unit, of_unit_hz) =
+                    if rate_hz < 1.0 { ("us", 1e6 * rate_hz) } else { ("ms", 1e3 * rate_hz) };
                 let problem = format!(
-                    "states no unit, and as seconds it gives {rate_hz} S/s, too few for a gear; name it `{column}_ms` if it is in ms \
-                     ({of_ms_hz} S/s), or `{column}_s`"
+                    "states no unit, and as seconds it gives {rate_hz} S/s, too few for a gear; name it `{column}_{unit}` if it is in {unit} \
+                     ({of_unit_hz} S/s), or `{column}_s`"
                 );
                 return Err(Problem::time(column, &problem));
             }

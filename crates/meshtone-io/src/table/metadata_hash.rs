@@ -11,6 +11,10 @@ use parquet::file::metadata::{FooterTail, ParquetMetaData, ParquetMetaDataReader
 use parquet::file::reader::ChunkReader;
 use sha2::{Digest, Sha256};
 
+use super::page_checksum;
+
+/// What a file begins with.
+const MARK: &[u8] = b"PAR1";
 /// Key of the hash.
 pub(super) const KEY: &str = "meshtone.metadata_sha256";
 /// Key of the hash of a whole file.
@@ -55,8 +59,14 @@ pub(super) fn read(file: &impl ChunkReader) -> Result<ParquetMetaData> {
     };
     let tail = file.get_bytes(start, length + FOOTER_SIZE)?;
     let metadata = &tail[..length];
-    let is_changed = place_of_hash(metadata, KEY)
-        .is_some_and(|digits| metadata[digits] != *hash(metadata.to_vec()).as_bytes());
+    let is_changed = match place_of_hash(metadata, KEY) {
+        Some(digits) => metadata[digits] != *hash(metadata.to_vec()).as_bytes(),
+        // Whoever writes checksums of headers writes the hash: its key has been changed.
+        None => place_of_hash(metadata, page_checksum::KEY).is_some(),
+    };
+    if file.get_bytes(0, MARK.len())? != *MARK {
+        return Err(ParquetError::General("it does not begin as Parquet files do".to_owned()));
+    }
     if is_changed {
         return Err(ParquetError::General(
             "its metadata are not those that were written: the SHA-256 differs".to_owned(),

@@ -280,6 +280,8 @@ fn slow_times_without_a_unit_are_doubted() {
         ),
         "{said}"
     );
+    let said = problem("run.csv", b"t,acc\n0,1\n50,2\n100,3\n150,4\n");
+    assert!(said.contains("name it `t_us` if it is in us (20000 S/s)"), "{said}");
     assert_eq!(read("run.csv", rows("seconds").as_bytes()).sampling_rate_hz, 20.0);
     assert_eq!(read("run.csv", rows("elapsed [ms]").as_bytes()).sampling_rate_hz, 20_000.0);
     assert_eq!(read("run.csv", rows("elapsed [s]").as_bytes()).sampling_rate_hz, 20.0);
