@@ -50,6 +50,8 @@ pub fn all(root: &Path) -> Result<(), u8> {
     let [rust, python] = StepRunner::pair(root, &logs, &linted())?;
     sources(&rust)?;
     rust.cargo(&["fetch", "--locked"], &[])?;
+    // The fuzzing targets are not compiled here; at least their lock must fit the packages that they take.
+    rust.cargo(&["fetch", "--locked", "--manifest-path", "fuzz/Cargo.toml"], &[])?;
     rust.check("nothing is compiled twice", compilations::problems)?;
     let (ready, prepared) = channel();
     in_parallel(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))?;
