@@ -1,4 +1,4 @@
-"""Recordings of a rig, or what ``meshtone simulate`` wrote: CSV, TSV, Parquet, NPY, NPZ, MAT, HDF5, WAV, universal files."""
+"""Recordings of a rig, or what ``meshtone simulate`` wrote: CSV, TSV, Parquet, NPY, NPZ, MAT, HDF5, WAV, universal files, TDMS, MDF 4, Excel."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._names import hint
+from ._warnings import warn
 from .scenario import Scenario
 from .signal._arguments import positive, whole
 
@@ -134,6 +135,7 @@ def read_recording(
     rate_hz = None if sampling_rate_hz is None else positive("sampling_rate_hz", sampling_rate_hz)
     time = None if time is None else _column("time", time)
     read = _core.read_recording(path, chosen, rate_hz, variable, time, calibrations)
+    warn([message for message, _ in read["warnings"]], [code for _, code in read["warnings"]])
     text = read["scenario_toml"]
     return Recording(
         sampling_rate_hz=read["sampling_rate_hz"],

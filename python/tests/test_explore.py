@@ -325,8 +325,17 @@ def test_a_recording_is_dropped(page: Page) -> None:
     times = np.arange(8000) / 8000
     samples = np.sin(2 * np.pi * 800 * times) + 0.1 * np.random.default_rng(1).normal(size=8000)
     csv = "time_s,bearing [g]\n" + "\n".join(f"{t:.6f},{x:.5f}" for t, x in zip(times, samples))
-    page.drop("rig.csv", csv.encode())
-    page.wait(lambda: page.run("return document.getElementById('recording').textContent.includes('rig.csv')"), "the recording")
+    page.drop("rig.csv", csv.replace("time_s", "first").encode())
+    page.wait(lambda: "in the field Sampling rate" in text_of(page, "desk"), "what the file does not say")
+    page.run("""
+        const rate = document.querySelector('#desk [data-field=sampling_rate_hz]');
+        rate.value = 8000;
+        rate.dispatchEvent(new Event('change', { bubbles: true }));
+    """)
+    page.wait(lambda: "8000 S/s" in text_of(page, "desk"), "the desk")
+    page.run("document.getElementById('desk-cancel').click()")
+    assert text_of(page, "desk") == ""
+    open_recording(page, "rig.csv", csv.encode())
     page.wait(lambda: "recording" in page.described("average"), "its average")
     table = "const s = document.querySelector('.scroll'); return s.textContent.includes('recording') && s.scrollWidth <= s.clientWidth"
     page.wait(lambda: page.run(table), "a table of which nothing is cut off")
@@ -361,6 +370,8 @@ def text_of(page: Page, name: str) -> str:
 def open_recording(page: Page, name: str, content: bytes) -> None:
     """Drop a recording, and wait until it is read."""
     page.drop(name, content)
+    page.wait(lambda: name in text_of(page, "desk") or name in text_of(page, "recording"), f"{name} on the desk")
+    page.run("if (!document.getElementById('desk').hidden) document.getElementById('desk-use').click()")
     page.wait(lambda: name in text_of(page, "recording"), f"{name} to be read")
 
 

@@ -43,6 +43,17 @@ def test_csv(tmp_path: Path) -> None:
         read_recording(tmp_path / "absent.csv")
 
 
+
+def test_what_is_doubtful_about_a_file_is_warned_of(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("time [s],bearing [g],again [g]\n" + "".join(f"{k / 1000},{k % 7},{k % 7}\n" for k in range(50)))
+    with pytest.warns(meshtone.MeshtoneWarning, match="again has the samples of bearing") as caught:
+        read_recording(path)
+    with pytest.warns(meshtone.MeshtoneWarning, match="stated as 900 S/s, but time column time .s. says 1000 S/s") as other:
+        read_recording(path, channels=["bearing"], sampling_rate_hz=900)
+    assert [warning.message.code for warning in [*caught, *other]] == ["copied-channel", "other-rate"]  # type: ignore[union-attr]
+
+
 def test_npz(tmp_path: Path) -> None:
     path = tmp_path / "run.npz"
     np.savez(path, vibration=np.sin(np.arange(100.0)), fs=np.array(1000.0))

@@ -209,11 +209,8 @@ fn recording(scenario: &str, run: Run) -> Result<Channels, Box<dyn std::error::E
     let kept = |signal: &[f64]| -> Vec<f64> {
         (0..values.len()).filter_map(|k| signal.get((k as f64 * step).round() as usize)).copied().collect()
     };
-    let turned = motor.values.iter().scan(0.0, |revolutions, speed_hz| {
-        *revolutions += speed_hz / channels.sampling_rate_hz;
-        Some(tachometer_v(*revolutions))
-    });
-    let (tacho, speed) = (kept(&turned.collect::<Vec<f64>>()), kept(&brake.values));
+    let turned: Vec<f64> = revolutions(&motor.values, channels.sampling_rate_hz).map(tachometer_v).collect();
+    let (tacho, speed) = (kept(&turned), kept(&brake.values));
     let samples = values.len().min(tacho.len());
     let named = |name: &'static str, source: SignalSource, mut values: Vec<f64>| {
         values.truncate(samples);
@@ -229,6 +226,14 @@ fn recording(scenario: &str, run: Run) -> Result<Channels, Box<dyn std::error::E
         named("speed", SignalSource::ShaftSpeed(1), speed),
     ];
     Ok(Channels::new(SAMPLING_RATE_HZ, 0.0, signals))
+}
+
+/// (rev) The angle of a shaft at the end of each sample, from 0 before the first.
+fn revolutions(speed_hz: &[f64], sampling_rate_hz: f64) -> impl Iterator<Item = f64> {
+    speed_hz.iter().scan(0.0, move |revolutions, speed_hz| {
+        *revolutions += speed_hz / sampling_rate_hz;
+        Some(*revolutions)
+    })
 }
 
 /// (V) What the tachometer shows at an angle of its shaft in revolutions: a mark with flanks, so that instants between samples can be read.
@@ -254,15 +259,14 @@ fn file_of(name: &str, recording: &Channels, format: SignalFormat) -> Result<Vec
 
 /// Instants at which the last shaft has made one revolution more.
 fn pulses(recording: &Channels) -> String {
-    let mut revolutions = 0.0_f64;
+    let mut before = 0.0_f64;
     let mut text = String::new();
-    for (sample, speed_hz) in recording["speed"].iter().enumerate() {
-        let before = revolutions;
-        revolutions += speed_hz / SAMPLING_RATE_HZ;
-        if revolutions.floor() > before.floor() {
-            let part = (revolutions.floor() - before) / (revolutions - before);
+    for (sample, turned) in revolutions(&recording["speed"], SAMPLING_RATE_HZ).enumerate() {
+        if turned.floor() > before.floor() {
+            let part = (turned.floor() - before) / (turned - before);
             text.push_str(&format!("{:.7}\n", (sample as f64 + part) / SAMPLING_RATE_HZ));
         }
+        before = turned;
     }
     text
 }

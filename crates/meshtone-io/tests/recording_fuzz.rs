@@ -28,13 +28,15 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// Memory that reading a small file may take: buffers, and what compression makes of some kilobytes.
 const MOST_BYTES: usize = 64 << 20;
 
-const FORMATS: [(&str, RecordingFormat); 6] = [
+const FORMATS: [(&str, RecordingFormat); 8] = [
     ("a.csv", RecordingFormat::Text),
     ("a.parquet", RecordingFormat::Parquet),
     ("a.npy", RecordingFormat::Npy),
     ("a.npz", RecordingFormat::Npz),
     ("a.mat", RecordingFormat::Mat),
     ("a.wav", RecordingFormat::Wav),
+    ("a.tdms", RecordingFormat::Tdms),
+    ("a.mf4", RecordingFormat::Mdf),
 ];
 
 fn table() -> Array2<f64> {
@@ -70,7 +72,17 @@ fn whole() -> &'static [(&'static str, Vec<u8>)] {
             let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshtone-io/tests/recordings");
             fs::read(folder.join(name)).unwrap()
         };
+        let format = |name| mat(&format!("formats/{name}"));
+        let lvm = "LabVIEW Measurement\nX_Columns\tOne\n***End_of_Header***\nY_Unit_Label\tg\nX0\t0\nDelta_X\t0.01\n***End_of_Header***\n";
         vec![
+            ("a.lvm", format!("{lvm}X_Value\ta\tComment\n0\t1.5\n0.01\t2\n0.02\t0\n").into_bytes()),
+            ("a.tdms", format("segments.tdms")),
+            ("a.tdms", format("interleaved.tdms")),
+            ("a.tdms", format("scaled.tdms")),
+            ("a.mf4", format("rates.mf4")),
+            ("a.mf4", format("transposed.mf4")),
+            ("a.xlsx", format("units.xlsx")),
+            ("a.mat", format("version4.mat")),
             ("a.csv", csv.into_bytes()),
             ("a.parquet", parquet),
             ("a.npy", npy),
@@ -124,14 +136,14 @@ proptest! {
     }
 
     #[test]
-    fn cut_files(file in 0..7_usize, part in 0.0..1.0) {
+    fn cut_files(file in 0..15_usize, part in 0.0..1.0) {
         let (name, bytes) = &whole()[file];
         check_both(name, &bytes[..(part * bytes.len() as f64) as usize]);
     }
 
     #[test]
     fn changed_files(
-        file in 0..7_usize,
+        file in 0..15_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         run in prop::option::of((any::<prop::sample::Index>(), 1..16_usize, prop::sample::select(vec![0_u8, 0x7f, 0xff]))),
     ) {
@@ -151,7 +163,7 @@ proptest! {
     }
 
     #[test]
-    fn cut_and_joined_files(file in 0..7_usize, from in 0.0..1.0, to in 0.0..1.0) {
+    fn cut_and_joined_files(file in 0..15_usize, from in 0.0..1.0, to in 0.0..1.0) {
         let (name, bytes) = &whole()[file];
         let at = |part: f64| (part * bytes.len() as f64) as usize;
         check_both(name, &[&bytes[..at(from)], &bytes[at(to)..]].concat());
@@ -172,6 +184,9 @@ fn seeds_of_fuzzing_are_read_or_refused() {
         ("wav", "wav"),
         ("universal", "uff"),
         ("packed", "csv.gz"),
+        ("tdms", "tdms"),
+        ("mdf", "mf4"),
+        ("workbook", "xlsx"),
     ] {
         for seed in fs::read_dir(seeds.join(target)).unwrap() {
             check_both(&format!("a.{ending}"), &fs::read(seed.unwrap().path()).unwrap());

@@ -32,6 +32,11 @@ const STROKES: [Stroke; 6] = [
     Stroke::solid(colour::INK, 1.5),
 ];
 
+/// Recordings with a line of the grid each; of more every second or third has one.
+const MOST_TICKS: usize = 50;
+/// (px) Dashes of a limit, and gaps between them.
+const DASH: &[f64] = &[6.0, 4.0];
+
 /// Content of the figure.
 #[derive(Debug, Clone)]
 pub struct TrendFigure<'a> {
@@ -40,7 +45,7 @@ pub struct TrendFigure<'a> {
     /// Facts in the line below it.
     pub facts: &'a [String],
     /// Quantity of the horizontal axis.
-    pub along: Along,
+    pub along: Along<'a>,
     /// Names of the wheels.
     pub wheels: &'a [String],
     /// For each wheel where its records lie along that axis, record by record.
@@ -51,11 +56,11 @@ pub struct TrendFigure<'a> {
 
 /// Quantity along which records lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Along {
-    /// Recordings by their numbers from 1; what is cut from one lies within half a number of it.
+pub enum Along<'a> {
+    /// Recordings, at whole numbers from 1; what is cut from one lies within half a number of it.
     Recordings {
-        /// The number.
-        count: usize,
+        /// Their names or dates.
+        names: &'a [String],
     },
     /// The time of one recording.
     Time {
@@ -66,13 +71,12 @@ pub enum Along {
     },
 }
 
-impl Along {
+impl Along<'_> {
     /// Range, ticks and name of the horizontal axis.
     fn axis(self) -> ([f64; 2], Ticks, &'static str) {
         match self {
-            Self::Recordings { count } => {
-                let [from, to] = [0.5, count.max(1) as f64 + 0.5];
-                ([from, to], Ticks::whole(from, to, 12), "Recording")
+            Self::Recordings { names } => {
+                ([0.5, names.len().max(1) as f64 + 0.5], Ticks::named(names).thinned(MOST_TICKS), "Recording")
             }
             Self::Time { start_s, end_s } => ([start_s, end_s], Ticks::nice(start_s, end_s, 8), "Time (s)"),
         }
@@ -88,6 +92,8 @@ pub struct Trend {
     pub unit: String,
     /// For each wheel its values, record by record; none where it is not defined.
     pub values: Vec<Vec<Option<f64>>>,
+    /// For each wheel the limit above which it is unusual, where there is one.
+    pub limits: Vec<Option<f64>>,
 }
 
 /// Draws indicators over the records of a series.
@@ -98,11 +104,11 @@ pub struct Trend {
 /// ```
 /// use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 ///
-/// let fm4 = Trend { name: "FM4".to_owned(), unit: String::new(), values: vec![vec![Some(3.0), None, Some(5.0)]] };
+/// let fm4 = Trend { name: "FM4".to_owned(), unit: String::new(), values: vec![vec![Some(3.0), None, Some(5.0)]], limits: Vec::new() };
 /// let figure = TrendFigure {
 ///     title: "bearing",
 ///     facts: &["3 recordings".to_owned()],
-///     along: Along::Recordings { count: 3 },
+///     along: Along::Recordings { names: &["may", "june", "july"].map(str::to_owned) },
 ///     wheels: &["wheel".to_owned()],
 ///     places: &[vec![1.0, 2.0, 3.0]],
 ///     indicators: vec![fm4],
@@ -124,7 +130,8 @@ pub fn draw(figure: &TrendFigure) -> Figure {
 }
 
 fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigure) {
-    let y = axes::range(trend.values.iter().flatten().filter_map(|value| *value), MARGIN);
+    let limits = trend.limits.iter().copied().flatten();
+    let y = axes::range(trend.values.iter().flatten().filter_map(|value| *value).chain(limits), MARGIN);
     let (x, ticks, along) = figure.along.axis();
     let unit = if trend.unit.is_empty() { "–" } else { &trend.unit };
     let axes = Axes::titled(canvas, area, x, y, &format!("{} ({unit})", trend.name));
@@ -132,6 +139,11 @@ fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigur
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "", NAME_LEFT);
     if trend.values.iter().flatten().all(Option::is_none) {
         axes.note(canvas, "not defined for these records");
+    }
+    for (limit, stroke) in trend.limits.iter().zip(STROKES.into_iter().cycle()) {
+        limit
+            .iter()
+            .for_each(|limit| axes.horizontal(canvas, *limit, Stroke::dashed(stroke.colour, 1.0, DASH)));
     }
     let is_marked = trend.values.iter().all(|values| values.len() <= MARKED);
     for ((values, places), stroke) in trend.values.iter().zip(figure.places).zip(STROKES.into_iter().cycle())

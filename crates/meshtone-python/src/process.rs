@@ -249,6 +249,7 @@ pub fn check_recording(
     let found: Result<_, SignalError> = py.detach(|| {
         let angular = signal::angular_resample(signal, &phase.0, &AngularSettings::default())?;
         let mut found = phase.0.warnings.clone();
+        found.extend(signal::sensor_faults(signal).into_iter().map(SignalWarning::SensorFault));
         found.extend(signal::check_recording(&angular, &stated, &phase.0, sampling_rate_hz));
         let part = signal::synchronous_average(&angular)
             .ok()

@@ -68,6 +68,8 @@ pub fn read_recording<'py>(
     all.set_item("sampling_rate_hz", read.sampling_rate_hz)?;
     all.set_item("start_s", read.start_s)?;
     all.set_item("scenario_toml", read.scenario_toml)?;
+    let doubtful = read.warnings.iter().map(|warning| (warning.to_string(), warning.code()));
+    all.set_item("warnings", doubtful.collect::<Vec<_>>())?;
     let channels = read.channels.into_iter();
     let channels = channels.map(|channel| (channel.name, channel.unit, array(py, channel.samples)));
     all.set_item("channels", channels.collect::<Vec<_>>())?;

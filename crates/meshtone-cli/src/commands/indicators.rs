@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::scenario_file::ScenarioFile;
+use meshtone_plot::trend::Trend;
 
 use crate::failure::Failure;
 use crate::indicators::bearings::BearingOptions;
@@ -12,7 +13,7 @@ use crate::indicators::options::{PhaseOptions, ProcessingOptions, ReadingOptions
 use crate::indicators::process::process;
 use crate::indicators::reading::Input;
 use crate::indicators::results::{Series, settings};
-use crate::indicators::{figures, files, table};
+use crate::indicators::{figures, files, limits, table};
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_spinner;
 use crate::terminal::{print_unless, warn};
@@ -24,14 +25,15 @@ const PRINTED: usize = 5;
 /// Condition indicators of recordings, simulated or measured
 ///
 /// Averages a channel over the revolutions of a shaft, separates the average into its parts, and writes indicators.json,
-/// indicators.parquet and a figure of the recording, or of the last one (indicators.svg, .png). Several recordings, or
+/// indicators.parquet, averages and spectra of the recording, or of the last one (averages.parquet, spectra.parquet), and its figure
+/// (indicators.svg, .png). Several recordings, or
 /// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png). Of a
 /// run-up the amplitudes over order and time are drawn too (order_map.svg, .png), and of bearings that are named or that the
 /// scenario has the defect lines (bearings.parquet, .svg, .png). Nothing is written unless all recordings are valid.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Indicators {
-    /// Recordings, in the order of time: CSV and other text, Parquet, NPY, NPZ, MAT, HDF5, WAV, universal files, or directories that
+    /// Recordings, in the order of time: CSV and other text, Parquet, NPY, NPZ, MAT, HDF5, WAV, universal files, TDMS, MDF 4, LVM, Excel, or directories that
     /// `meshtone simulate` wrote or that are sets of the Python package bearing-datasets
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
@@ -42,6 +44,9 @@ pub struct Indicators {
     /// Print no table and no progress; warnings and errors are still printed
     #[arg(short, long)]
     quiet: bool,
+    /// Write the tables as CSV too
+    #[arg(long)]
+    csv: bool,
     /// Draw no figures
     #[arg(long)]
     no_figure: bool,
@@ -86,10 +91,14 @@ impl Indicators {
                     help: self.reading.in_kilohertz().or(failure.help),
                     ..failure
                 })?;
-                series.add(input, processed, self.processing.revolutions.is_some())
+                series.add(input, processed, &self.processing)
             })?;
         }
         series.finish()?;
+        let mut trends = figures::trends(&series);
+        if let Some(first) = self.processing.sound_records {
+            series.results.limits = limits::set(&series, &mut trends, first as usize);
+        }
         let scenario = self.scenario.as_deref();
         series.results.settings = settings(
             &self.phase,
@@ -106,13 +115,14 @@ impl Indicators {
         let recordings = self.recordings.iter().map(PathBuf::as_path);
         let read: Vec<&Path> = recordings.chain(self.phase.files()).chain(sources).collect();
         let output = OutputDirectory::for_files(&directory, &files::FILES, &read)?;
-        self.write(&output.path, &series)?;
+        self.write(&output.path, &series, trends)?;
         print_warnings(&series.results.warnings);
         let from = match &self.recordings[..] {
             [only] => only.display().to_string(),
             several => format!("{} recordings", several.len()),
         };
-        print_unless(self.quiet, &format!("{from} -> {}\n{}", directory.display(), table::table(&series)))
+        let shown = table::table(&series, self.processing.iso_20816);
+        print_unless(self.quiet, &format!("{from} -> {}\n{shown}", directory.display()))
     }
 
     fn directory(&self) -> PathBuf {
@@ -123,19 +133,19 @@ impl Indicators {
         }
     }
 
-    fn write(&self, directory: &Path, series: &Series) -> Result<(), Failure> {
+    fn write(&self, directory: &Path, series: &Series, trends: Vec<Trend>) -> Result<(), Failure> {
         let figures = match series.latest.as_ref().filter(|_| !self.no_figure) {
             None => files::Figures::default(),
             Some(latest) => files::Figures {
                 record: figures::of_record(series, latest, &self.processing),
                 trend: series
                     .is_series()
-                    .then(|| figures::of_trend(series, &latest.turned.source, &self.processing)),
+                    .then(|| figures::of_trend(series, trends, &latest.turned.source, &self.processing)),
                 order_map: figures::of_order_map(series, latest),
                 bearings: figures::of_bearings(series, latest, self.bearings.separation()),
             },
         };
-        files::write(directory, &series.results, &figures)
+        files::write(directory, series, &figures, self.csv)
     }
 }
 

@@ -145,32 +145,40 @@ pub fn of_bearings(series: &Series, latest: &LatestRecords, separation: Option<&
 }
 
 /// The figure of the indicators over the series.
-pub fn of_trend(series: &Series, source: &str, processing: &ProcessingOptions) -> Figure {
+pub fn of_trend(
+    series: &Series,
+    indicators: Vec<Trend>,
+    source: &str,
+    processing: &ProcessingOptions,
+) -> Figure {
     let paths: Vec<PathBuf> =
         series.results.recordings.iter().map(|recording| recording.source.clone()).collect();
     let counted_records = match processing.revolutions {
         None => format!("{} recordings", counted(series)),
         Some(revolutions) => format!("{} segments of {revolutions} revolutions", counted(series)),
     };
-    let facts = [counted_records, format!("phase from the {source}"), MESHTONE.to_owned()];
+    let mut facts = vec![counted_records, format!("phase from the {source}")];
+    facts.extend(processing.sound_records.map(|first| format!("limits: mean + 3 σ of the first {first}")));
+    facts.push(MESHTONE.to_owned());
     let wheels: Vec<String> =
         series.wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
-    let (along, places) = places(series, processing.revolutions.is_some());
+    let names: Vec<String> = paths.iter().map(|path| stem(path)).collect();
+    let (along, places) = places(series, &names, processing.revolutions.is_some());
     let figure = TrendFigure {
         title: &title(&paths, series),
         facts: &facts,
         along,
         wheels: &wheels,
         places: &places,
-        indicators: trends(series),
+        indicators,
     };
     trend::draw(&figure)
 }
 
 /// Abscissas of the records of each wheel: at the number of their recording, or at their time in it.
-fn places(series: &Series, in_segments: bool) -> (Along, Vec<Vec<f64>>) {
+fn places<'n>(series: &Series, names: &'n [String], in_segments: bool) -> (Along<'n>, Vec<Vec<f64>>) {
     let recordings = &series.results.recordings;
-    let along = Along::Recordings { count: recordings.len() };
+    let along = Along::Recordings { names };
     let at = |place: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
         series.middles.iter().map(|middles| middles.iter().map(|middle| place(*middle)).collect()).collect()
     };
@@ -182,6 +190,25 @@ fn places(series: &Series, in_segments: bool) -> (Along, Vec<Vec<f64>>) {
         }
         _ if in_segments => (along, at(&|middle| middle + 0.5)),
         _ => (along, at(&|middle| middle.floor() + 1.0)),
+    }
+}
+
+/// The date in the name of a file, or else the name without its ending, shortened to what an axis has room for.
+fn stem(path: &Path) -> String {
+    const DATE: usize = "2026-11-29".len();
+    const LONGEST: usize = 12;
+    let name = path.file_stem().map_or_else(|| name(path), |stem| stem.to_string_lossy().into_owned());
+    let letters: Vec<char> = name.chars().collect();
+    let is_date = |part: &&[char]| {
+        part.iter().enumerate().all(|(place, letter)| match place {
+            4 | 7 => matches!(letter, '-' | '_' | '.'),
+            _ => letter.is_ascii_digit(),
+        })
+    };
+    match letters.windows(DATE).find(is_date) {
+        Some(date) => date.iter().collect(),
+        // The ends of names differ.
+        None => letters[letters.len().saturating_sub(LONGEST)..].iter().collect(),
     }
 }
 
@@ -203,7 +230,8 @@ fn title(paths: &[PathBuf], series: &Series) -> String {
     format!("{}: {}", several_names(paths), series.results.channel)
 }
 
-fn trends(series: &Series) -> Vec<Trend> {
+/// The indicators that the figure of the trend shows.
+pub fn trends(series: &Series) -> Vec<Trend> {
     type Value = fn(&RecordEntry) -> Option<f64>;
     let unit = series.results.unit.as_deref().unwrap_or("unit not stated");
     let shown: [(&str, &str, Value); 9] = [
@@ -221,6 +249,7 @@ fn trends(series: &Series) -> Vec<Trend> {
         name: name.to_string(),
         unit: unit.to_string(),
         values: series.wheels.iter().map(|wheel| series.of(wheel).map(value).collect()).collect(),
+        limits: Vec::new(),
     };
     shown.map(trend).to_vec()
 }

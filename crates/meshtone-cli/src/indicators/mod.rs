@@ -3,6 +3,7 @@
 pub mod bearings;
 pub mod figures;
 pub mod files;
+pub mod limits;
 pub mod options;
 pub mod phase;
 mod phase_files;

@@ -7,6 +7,7 @@ use meshtone::scenario::Scenario;
 use meshtone::signal::{Interpolation, PulseEdge};
 use meshtone_io::recording::{DecimalSign, Separator};
 
+use super::limits::{ISO_20816, Iso20816};
 use crate::choice::{Choice, one_of};
 use crate::terminal::print_error_line;
 
@@ -81,7 +82,7 @@ pub struct PhaseOptions {
     /// Channel with a tachometer's waveform, by its name or number
     #[arg(long, value_name = "CHANNEL", group = "pulses", group = "source")]
     pub tach: Option<String>,
-    /// File with the times of a tachometer's pulses, in s, on the recording's own time
+    /// File with the times of a tachometer's pulses, in s, on the recording's own time; or array of the recording's file with them
     #[arg(long, value_name = "FILE", group = "pulses", group = "source")]
     pub pulse_times: Option<PathBuf>,
     /// Channel with the shaft's speed in Hz or rpm, by its name or number
@@ -134,6 +135,12 @@ pub struct ProcessingOptions {
     /// Cut each recording into segments of M revolutions (of each wheel), at least 2, and make a series of them
     #[arg(long, value_name = "M", value_parser = several)]
     pub revolutions: Option<u32>,
+    /// The first N records are sound: mean and three standard deviations over them are the limit of each indicator of the trend
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=1_000_000))]
+    pub sound_records: Option<u32>,
+    /// Class and mounting of the machine, to put the velocity into a zone of ISO 20816-3; compare the printed boundaries with your edition
+    #[arg(long, value_name = "MACHINE", value_parser = one_of(&ISO_20816))]
+    pub iso_20816: Option<Iso20816>,
     /// Interpolation of the signal between its samples for the averages; the order map is always band-limited
     #[arg(long, default_value = "band-limited", value_parser = one_of(&INTERPOLATIONS))]
     pub interpolation: Interpolation,

@@ -8,7 +8,7 @@ use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
 
 use super::options::PhaseOptions;
-use super::phase_files::{columns, hertz, times_s};
+use super::phase_files::{columns, hertz, pulse_times, times_s};
 use super::reading::Input;
 use super::refuse::{RefusedInput, refuse};
 use crate::failure::Failure;
@@ -25,7 +25,9 @@ impl PhaseOptions {
 
     /// The files that are read for the phase.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
-        self.pulse_times.iter().chain(&self.speed_profile).map(PathBuf::as_path)
+        let all = self.pulse_times.iter().chain(&self.speed_profile).map(PathBuf::as_path);
+        // A name of pulses that is no file's is that of an array.
+        all.filter(|path| self.speed_profile.as_deref() == Some(path) || path.exists())
     }
 
     /// The channel that is read for the phase, behind the option that names it.
@@ -36,7 +38,10 @@ impl PhaseOptions {
 
     /// Returns whether it is said how far the shaft has turned.
     pub fn states_shaft_angle(&self) -> bool {
-        self.channel().is_some() || self.files().next().is_some() || self.shaft_hz.is_some()
+        self.channel().is_some()
+            || self.pulse_times.is_some()
+            || self.speed_profile.is_some()
+            || self.shaft_hz.is_some()
     }
 
     /// Refuses a measured recording whose wheel is not known.
@@ -130,7 +135,7 @@ impl PhaseOptions {
             ShaftPhase::from_pulses(times, self.pulses_per_rev, self.shaft_hz, rate_hz, samples)
         };
         if let Some(path) = &self.pulse_times {
-            let ([times], warnings) = columns(path, "--pulse-times", "one, the times of the pulses in s")?;
+            let (times, warnings) = pulse_times(&input.source, path)?;
             let what = format!("--pulse-times {}", path.display());
             let phase = pulses(&times_s(times, input.start_s)).map_err(of(what, RefusedInput::PulseTimes))?;
             return Ok((phase, warnings));

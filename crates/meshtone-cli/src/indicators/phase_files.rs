@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use meshtone_io::indicators::WarningEntry;
-use meshtone_io::recording::{Channel, RecordingOptions, TimeColumn, read_recording};
+use meshtone_io::recording::{
+    Channel, ColumnChoice, ReadRecordingError, Recording, RecordingOptions, RecordingWarning, TimeColumn,
+    read_recording,
+};
 
 use super::reading::warnings_of;
 use crate::failure::Failure;
@@ -19,9 +22,7 @@ pub fn columns<const N: usize>(
     option: &str,
     expected: &str,
 ) -> Result<([Channel; N], Vec<WarningEntry>), Failure> {
-    let time = TimeColumn::Absent;
-    let options = RecordingOptions { time, sampling_rate_hz: Some(1.0), ..RecordingOptions::default() };
-    let recording = read_recording(path, &options).map_err(|error| {
+    let recording = numbers(path, Vec::new()).map_err(|error| {
         let mut failure = Failure::from(error);
         // There are none to choose from.
         failure.message = failure.message.replace(", or choose other columns (--channel)", "");
@@ -34,6 +35,36 @@ pub fn columns<const N: usize>(
         Failure::bad_input(problem)
     })?;
     Ok((columns, warnings))
+}
+
+/// The pulses of a file of its own, or where there is none of such a name, of an array of the recording's file.
+///
+/// # Arguments
+/// * `source` - the recording
+/// * `choice` - the name of a file or an array
+pub fn pulse_times(source: &Path, choice: &Path) -> Result<(Channel, Vec<WarningEntry>), Failure> {
+    if !choice.exists() {
+        let array = ColumnChoice::parse(&choice.to_string_lossy());
+        if let Ok(mut recording) = numbers(source, vec![array])
+            && recording.channels.len() == 1
+        {
+            let warnings = warnings_of(&recording);
+            return Ok((recording.channels.swap_remove(0), warnings));
+        }
+    }
+    let ([times], warnings) = columns(choice, "--pulse-times", "one, the times of the pulses in s")?;
+    Ok((times, warnings))
+}
+
+/// Numbers that are no samples.
+fn numbers(path: &Path, channels: Vec<ColumnChoice>) -> Result<Recording, ReadRecordingError> {
+    let time = TimeColumn::Absent;
+    let options =
+        RecordingOptions { channels, time, sampling_rate_hz: Some(1.0), ..RecordingOptions::default() };
+    let mut recording = read_recording(path, &options)?;
+    // No rate is stated in truth.
+    recording.warnings.retain(|warning| !matches!(warning, RecordingWarning::OtherRate { .. }));
+    Ok(recording)
 }
 
 /// (s) Times since the recording's first sample.

@@ -6,7 +6,8 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::{ChannelKind, Channels};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
-    Channel, ColumnChoice, Recording, RecordingOptions, TextOptions, TimeColumn, names, read_recording,
+    Channel, ColumnChoice, Recording, RecordingOptions, RecordingWarning, TextOptions, TimeColumn, names,
+    read_recording,
 };
 
 use super::options::ReadingOptions;
@@ -61,10 +62,23 @@ impl Input {
     ) -> Result<Self, Failure> {
         // The tachometer comes by itself: only so is it known which of the columns it is.
         let turning = turning.map(|(option, choice)| read_one(path, options, option, choice)).transpose()?;
-        let (turning, mut warnings) =
-            turning.map_or((None, Vec::new()), |(channel, warnings)| (Some(channel), warnings));
-        warnings.extend(options.in_kilohertz().map(|message| about(path, message)));
         let mut recording = read_recording(path, &columns(options, options.channel.as_deref()))?;
+        let clock = |of: &Recording| [of.sampling_rate_hz, of.start_s];
+        let turning = match turning {
+            Some(turning) if clock(&turning) != clock(&recording) => {
+                if !turning.covers(&recording) {
+                    let name = &turning.channels[0].name;
+                    let problem =
+                        format!("{}: channel {name} was recorded over another time", path.display());
+                    return Failure::refuse(problem, "name channels that were recorded together");
+                }
+                Some(turning.at_samples_of(&recording))
+            }
+            same => same,
+        };
+        let mut warnings: Vec<WarningEntry> = turning.iter().flat_map(warnings_of).collect();
+        let turning = turning.and_then(|mut turning| turning.channels.pop());
+        warnings.extend(options.in_kilohertz().map(|message| about(path, message)));
         warnings.extend(warnings_of(&recording));
         warnings.dedup();
         let simulated = recording.scenario_toml.as_deref().map(leading_of);
@@ -114,6 +128,7 @@ pub fn read_revolution(
         ..columns(options, options.channel.as_deref())
     };
     let mut recording = read_recording(path, &chosen)?;
+    recording.warnings.retain(|warning| !matches!(warning, RecordingWarning::OtherRate { .. }));
     let warnings = warnings_of(&recording);
     if options.channel.is_none() && recording.channels.len() > 1 {
         recording.channels.retain(|channel| {
@@ -141,16 +156,11 @@ pub fn warnings_of(recording: &Recording) -> Vec<WarningEntry> {
     recording.warnings.iter().map(|warning| about(&recording.source, warning)).collect()
 }
 
-fn read_one(
-    path: &Path,
-    options: &ReadingOptions,
-    option: &str,
-    choice: &str,
-) -> Result<(Channel, Vec<WarningEntry>), Failure> {
+fn read_one(path: &Path, options: &ReadingOptions, option: &str, choice: &str) -> Result<Recording, Failure> {
     let recording = read_recording(path, &columns(options, Some(choice)));
     let recording = recording.map_err(|error| unreadable(error, option))?;
-    let warnings = warnings_of(&recording);
-    Ok((one(path, recording.channels, Some(choice))?, warnings))
+    let channels = vec![one(path, recording.channels, Some(choice))?];
+    Ok(Recording { channels, ..recording })
 }
 
 /// Refuses a channel that gives the phase and is the vibration too, or has another number of samples.
@@ -164,7 +174,7 @@ fn check_turning(
     // Two columns may have one name; without a sensitivity the same one has the same samples.
     if let Some(choice) = options.channel.as_deref()
         && turning.name == *name
-        && read_one(path, options, "--channel", choice)?.0.samples == turning.samples
+        && read_one(path, options, "--channel", choice)?.channels[0].samples == turning.samples
     {
         let problem = format!("{shown}: channel {name} is both processed and what gives the phase");
         let help =

@@ -8,6 +8,7 @@ use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry};
 use serde_json::{Map, Value, json};
 
 use super::bearings::{BearingOptions, FoundBearings};
+use super::limits::ISO_20816;
 use super::options::{EDGES, INTERPOLATIONS, PhaseOptions, ProcessingOptions, ShaftOptions};
 use super::process::{Processed, Wheel};
 use super::reading::Input;
@@ -45,15 +46,26 @@ pub struct Series {
 
 impl Series {
     /// Adds the next recording.
-    pub fn add(&mut self, input: Input, processed: Processed, in_segments: bool) -> Result<(), Failure> {
+    pub fn add(
+        &mut self,
+        input: Input,
+        processed: Processed,
+        processing: &ProcessingOptions,
+    ) -> Result<(), Failure> {
         self.check(&input, &processed)?;
+        let in_segments = processing.revolutions.is_some();
+        let velocity = velocity_rms_mm_per_s(&input);
         let Processed { turned, records, bearings, warnings } = processed;
         self.results.recordings.push(RecordingEntry {
             source: input.source.clone(),
             sampling_rate_hz: input.sampling_rate_hz,
             samples: input.channel.samples.len(),
             start_s: input.start_s,
-            velocity_rms_mm_per_s: velocity_rms_mm_per_s(&input),
+            velocity_rms_mm_per_s: velocity,
+            velocity_zone: processing
+                .iso_20816
+                .zip(velocity)
+                .map(|(machine, velocity)| machine.zone(velocity)),
             own_orders_part: records.foreign.as_ref().map(|found| found.own_part),
             foreign_lines: records.foreign.map(|found| found.tones),
         });
@@ -203,6 +215,8 @@ pub fn settings(
         ("sidebands", json!(processing.sidebands)),
         ("low_orders", json!(processing.low_orders)),
         ("revolutions_of_a_segment", json!(processing.revolutions)),
+        ("sound_records", json!(processing.sound_records)),
+        ("iso_20816", json!(processing.iso_20816.and_then(|machine| name_of(&ISO_20816, machine)))),
         ("interpolation", json!(name_of(&INTERPOLATIONS, processing.interpolation))),
         ("bearings", json!(looked_for)),
         ("band_hz", bearings.stated_band()),

@@ -3,8 +3,9 @@
 use std::fmt::Display;
 
 use meshtone::signal::ShapeIndicators;
-use meshtone_io::indicators::{BearingEntry, RecordEntry, RecordingEntry};
+use meshtone_io::indicators::{BearingEntry, LimitEntry, RecordEntry, RecordingEntry};
 
+use super::limits::Iso20816;
 use super::process::Wheel;
 use super::results::Series;
 use crate::table::short;
@@ -19,7 +20,11 @@ const MOST_OWN: f64 = 0.5;
 const ALL_OWN: f64 = 0.95;
 
 /// The table of one record or of a series.
-pub fn table(series: &Series) -> String {
+///
+/// # Arguments
+/// * `series` - all records
+/// * `machine` - its class and mounting, where they were stated
+pub fn table(series: &Series, machine: Option<Iso20816>) -> String {
     let unit = series.results.unit.as_deref().unwrap_or("unit not stated");
     let mut text = format!("  channel {}, {unit}\n", series.results.channel);
     if series.is_series() {
@@ -36,7 +41,8 @@ pub fn table(series: &Series) -> String {
     }
     text += &foreign_lines(series, unit);
     text += &series.results.bearings.iter().map(|entry| bearing(series, entry)).collect::<String>();
-    text + &velocities(series)
+    text += &limits(series);
+    text + &velocities(series, machine)
 }
 
 /// The verdict about a bearing in a recording, and its lines.
@@ -73,14 +79,38 @@ fn bearing(series: &Series, entry: &BearingEntry) -> String {
 }
 
 /// Rms of the velocity of each recording, where the channel is an acceleration.
-fn velocities(series: &Series) -> String {
+fn velocities(series: &Series, machine: Option<Iso20816>) -> String {
     let recordings = series.results.recordings.iter();
-    let values: Vec<String> =
-        recordings.filter_map(|recording| recording.velocity_rms_mm_per_s).map(short).collect();
+    let values: Vec<String> = recordings
+        .filter_map(|recording| {
+            let zone = recording.velocity_zone.map_or_else(String::new, |zone| format!(" (zone {zone})"));
+            recording.velocity_rms_mm_per_s.map(|velocity| short(velocity) + &zone)
+        })
+        .collect();
     if values.is_empty() {
         return String::new();
     }
-    format!("\n  velocity from 10 to 1000 Hz, rms: {} mm/s\n", values.join(", "))
+    let zones = machine.map_or_else(String::new, |machine| format!("    zones of {}\n", machine.in_words()));
+    format!("\n  velocity from 10 to 1000 Hz, rms in mm/s: {}\n{zones}", values.join(", "))
+}
+
+/// Which limits of the trend were crossed, and where first.
+fn limits(series: &Series) -> String {
+    let limits = &series.results.limits;
+    if limits.is_empty() {
+        return String::new();
+    }
+    let crossed = limits.iter().filter_map(|of| {
+        let (recording, segment) = of.crossed_at?;
+        let source =
+            series.results.recordings.get(recording - 1).map(|entry| super::figures::name(&entry.source));
+        let segment = segment.map_or_else(String::new, |segment| format!(", segment {segment}"));
+        let LimitEntry { wheel, indicator, limit, .. } = of;
+        Some(format!("    {indicator} of {wheel}: above {} from {}{segment} on\n", short(*limit), source?))
+    });
+    let crossed: String = crossed.collect();
+    let none = if crossed.is_empty() { "    none was crossed\n" } else { "" };
+    format!("\n  limits of the trend (mean + 3 σ of the first records)\n{none}{crossed}")
 }
 
 /// The lines of the last recording that belong to no shaft and no mesh, where they were looked for.

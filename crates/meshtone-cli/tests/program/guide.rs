@@ -51,8 +51,11 @@ fn run_blocks(marks: &[&str]) {
     let workplace = Workplace::new();
     fs::remove_file(workplace.path("fast.toml")).unwrap();
     let own = tempfile::tempdir().unwrap();
-    std::os::unix::fs::symlink(PROGRAM, own.path().join("meshtone")).unwrap();
-    let path = format!("{}:{}", own.path().display(), std::env::var("PATH").unwrap());
+    // The program has a cache of its name beside other programs' caches, so the link to it has a folder of its own.
+    let programs = own.path().join("programs");
+    fs::create_dir(&programs).unwrap();
+    std::os::unix::fs::symlink(PROGRAM, programs.join("meshtone")).unwrap();
+    let path = format!("{}:{}", programs.display(), std::env::var("PATH").unwrap());
     for Block { chapter, line, mark, commands } in blocks() {
         if mark.is_some_and(|mark| !marks.contains(&mark.as_str())) {
             continue;
@@ -79,11 +82,11 @@ fn every_block_runs() {
     run_blocks(&["slow"]);
 }
 
-/// A block that is `unrun` installs something, opens a browser, or needs a cluster, a release or the repository: whoever adds one counts it
-/// here.
+/// A block that is `unrun` installs something, opens a browser, takes far over a quarter of an hour, or needs a cluster, a release or the
+/// repository: whoever adds one counts it here.
 #[test]
 fn blocks_are_counted_by_their_marks() {
     let count = |mark: Option<&str>| blocks().iter().filter(|block| block.mark.as_deref() == mark).count();
-    assert_eq!([None, Some("slow"), Some("unrun")].map(count), [10, 5, 7]);
+    assert_eq!([None, Some("slow"), Some("unrun")].map(count), [10, 4, 8]);
     assert_eq!(blocks().len(), 22, "a mark is not known");
 }

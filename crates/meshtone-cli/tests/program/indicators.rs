@@ -15,7 +15,7 @@ use crate::support::{Workplace, fast_with, stderr, stdout};
 pub const RATE_HZ: f64 = 5000.0;
 const FIGURES: [&str; 2] = ["indicators.png", "indicators.svg"];
 const TREND: [&str; 2] = ["trend.png", "trend.svg"];
-const DATA: [&str; 2] = ["indicators.json", "indicators.parquet"];
+const DATA: [&str; 4] = ["averages.parquet", "indicators.json", "indicators.parquet", "spectra.parquet"];
 
 /// A wheel of 19 teeth at 20 Hz, one of which is heard once a revolution.
 pub fn vibration(samples: usize, fault: f64) -> Vec<f64> {
@@ -140,7 +140,10 @@ fn a_simulation_and_the_same_signal_from_other_files() {
     for words in ["gone -> gone_indicators", "vertical_g, g", "gear, 40 teeth", "kurtosis", "FM4"] {
         assert!(stdout(&assert).contains(words), "{words}");
     }
-    assert_eq!(workplace.names("gone_indicators"), [DATA[0], DATA[1], FIGURES[0], FIGURES[1]]);
+    assert_eq!(
+        workplace.names("gone_indicators"),
+        [DATA[0], DATA[1], DATA[2], FIGURES[0], FIGURES[1], DATA[3]]
+    );
     let simulated = results(&workplace, "gone_indicators");
     let [pinion, gear] = [0, 1].map(|place| &simulated["records"][place]);
     assert_eq!((&gear["wheel"], &gear["revolutions"]), (&Value::from("gear"), &Value::from(20)));
@@ -200,7 +203,7 @@ fn a_series_with_a_growing_fault() {
     for words in ["5 recordings -> trend", "day0.npy", "day4.npy", "NA4"] {
         assert!(stdout(&assert).contains(words), "{words}");
     }
-    assert_eq!(workplace.names("trend").len(), 6);
+    assert_eq!(workplace.names("trend").len(), 8);
 
     let phase = ShaftPhase::constant(20.0, RATE_HZ, 10_000).unwrap();
     let recordings: Vec<_> = signals.iter().map(|signal| Recording { signal, phase: &phase }).collect();
@@ -231,6 +234,158 @@ fn a_series_with_a_growing_fault() {
 }
 
 #[test]
+fn limits_zones_and_tables_as_text() {
+    let workplace = Workplace::new();
+    let faults = [0.0, 0.03, 0.06, 0.02, 2.0, 3.0];
+    let mut arguments: Vec<String> = vec!["indicators".to_owned()];
+    for (day, fault) in faults.iter().enumerate() {
+        let name = format!("rig_2026-11-0{}.csv", day + 1);
+        workplace.write(&name, csv(RATE_HZ, &vibration(10_000, *fault), tacho(20.0, RATE_HZ)));
+        arguments.push(name);
+    }
+    let options =
+        ["-c", "bearing", "--tach", "tacho", "--teeth", "19", "-o", "out", "--csv", "--sound-records", "3"];
+    arguments.extend(options.map(str::to_owned));
+    arguments.extend(["--iso-20816", "medium-rigid"].map(str::to_owned));
+    let assert = workplace.succeeds(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    let said = stdout(&assert);
+    for words in [
+        "RMS of the difference of wheel: above",
+        "from rig_2026-11-05.csv on",
+        "(zone ",
+        "ISO 20816-3, medium-rigid: A/B 1.4, B/C 2.8, C/D 4.5 mm/s",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let found = results(&workplace, "out");
+    let limits = found["limits"].as_array().unwrap();
+    let limit = limits.iter().find(|limit| limit["indicator"] == "RMS of the difference").unwrap();
+    let first: Vec<f64> = (0..3).map(|record| value(&found["records"][record], "difference_rms")).collect();
+    let mean = first.iter().sum::<f64>() / 3.0;
+    let deviation = (first.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
+    assert!((limit["limit"].as_f64().unwrap() / (mean + 3.0 * deviation) - 1.0).abs() < 1e-12);
+    assert_eq!(limit["crossed_at"], serde_json::json!([5, null]));
+    // The axis of the trend has the dates in the names.
+    let trend = String::from_utf8(workplace.read("out/trend.svg")).unwrap();
+    assert!(trend.contains("2026-11-01") && trend.contains("mean + 3 σ of the first 3"));
+    // Tables as text have what those in Parquet have.
+    let text = String::from_utf8(workplace.read("out/indicators.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let place = rows[0].iter().position(|name| *name == "difference_rms").unwrap();
+    assert!((rows[1][place].parse::<f64>().unwrap() - first[0]).abs() < 1e-12 && rows.len() == 7);
+    let averages = String::from_utf8(workplace.read("out/averages.csv")).unwrap();
+    assert!(averages.starts_with("wheel,revolution,average,regular,difference,envelope\nwheel,0,"));
+    let spectra = TableReader::new(File::open(workplace.path("out/spectra.parquet")).unwrap()).unwrap();
+    let amplitude = spectra.numbers(spectra.column("amplitude").unwrap(), 0).unwrap().values;
+    // The mesh tone of 19 teeth has an amplitude of 1.
+    assert!((amplitude[19] - 1.0).abs() < 0.05, "{}", amplitude[19]);
+    // Without limits there are none, and no text.
+    workplace.succeeds(&[
+        "indicators",
+        "rig_2026-11-01.csv",
+        "-c",
+        "bearing",
+        "--tach",
+        "tacho",
+        "--teeth",
+        "19",
+        "-o",
+        "out",
+    ]);
+    assert_eq!(results(&workplace, "out")["limits"], serde_json::json!([]));
+    assert!(!workplace.names("out").iter().any(|name| name.ends_with(".csv")));
+}
+
+/// Speed and pulses of the recording's own file, at another rate than the vibration.
+#[test]
+fn the_phase_may_be_of_another_rate_in_the_same_file() {
+    let workplace = Workplace::new();
+    let mut archive = ndarray_npy::NpzWriter::new(File::create(workplace.path("run.npz")).unwrap());
+    let samples = 20_000;
+    let times = |count: usize, rate_hz: f64| Array1::from_shape_fn(count, |i| i as f64 / rate_hz);
+    archive.add_array("t", &times(samples, RATE_HZ)).unwrap();
+    archive.add_array("acc", &Array1::from(vibration(samples, 1.0))).unwrap();
+    archive.add_array("t_speed", &times(400, 100.0)).unwrap();
+    archive.add_array("speed", &Array1::from_elem(400, 20.0)).unwrap();
+    archive.add_array("pulses", &times(80, 20.0)).unwrap();
+    archive.finish().unwrap();
+    let of = |phase: [&str; 2]| {
+        let assert = workplace.succeeds(&[
+            "indicators",
+            "run.npz",
+            "-c",
+            "acc",
+            "--teeth",
+            "19",
+            "-o",
+            "out",
+            phase[0],
+            phase[1],
+        ]);
+        (value(&results(&workplace, "out")["records"][0], "fm4"), stderr(&assert))
+    };
+    let (by_constant, _) = of(["--shaft-hz", "20"]);
+    let (by_speed, said) = of(["--speed-channel", "speed"]);
+    assert!((by_speed / by_constant - 1.0).abs() < 1e-6, "{by_speed} {by_constant}");
+    assert!(said.contains("speed was recorded at 100 S/s and is interpolated to 5000 S/s"), "{said}");
+    let (by_pulses, _) = of(["--pulse-times", "pulses"]);
+    assert!((by_pulses / by_constant - 1.0).abs() < 1e-3, "{by_pulses} {by_constant}");
+}
+
+/// What a sensor did wrong is said with its code; the recordings of `meshtone init recordings` have nothing of it.
+#[test]
+fn faults_of_sensors_are_said() {
+    let workplace = Workplace::new();
+    let sound = vibration(20_000, 1.0);
+    let clipped = sound.iter().map(|x| x.clamp(-0.9, 0.9)).collect();
+    let biased = sound.iter().map(|x| 0.01 * x + 11.8).collect();
+    for (name, signal, code) in [
+        ("sound", sound.clone(), None),
+        ("clipped", clipped, Some("clipped")),
+        ("biased", biased, Some("biased")),
+    ] {
+        let file = format!("{name}.csv");
+        workplace.write(&file, csv(RATE_HZ, &signal, tacho(20.0, RATE_HZ)));
+        workplace.succeeds(&[
+            "indicators",
+            &file,
+            "-c",
+            "bearing",
+            "--tach",
+            "tacho",
+            "--teeth",
+            "19",
+            "-o",
+            "out",
+        ]);
+        let warnings = results(&workplace, "out")["warnings"].clone();
+        let codes: Vec<Option<&str>> =
+            warnings.as_array().unwrap().iter().map(|warning| warning["code"].as_str()).collect();
+        assert_eq!(codes, code.map_or(Vec::new(), |code| vec![Some(code)]), "{name}: {warnings}");
+    }
+    workplace.succeeds(&["init", "recordings"]);
+    let codes = ["clipped", "biased", "dropped-out", "repeated-block", "coarse-steps"];
+    for name in ["first", "run", "run_up", "day01", "day07", "day12", "bearing", "gearbox"] {
+        let file = format!("recordings/{name}.csv");
+        workplace.succeeds(&[
+            "indicators",
+            &file,
+            "-c",
+            "bearing",
+            "--tach",
+            "tacho",
+            "--teeth",
+            "17",
+            "-o",
+            "out",
+            "--no-figure",
+        ]);
+        let warnings = results(&workplace, "out")["warnings"].to_string();
+        assert!(!codes.iter().any(|code| warnings.contains(code)), "{name}: {warnings}");
+    }
+}
+
+#[test]
 fn segments_of_one_recording_are_a_series() {
     let workplace = Workplace::new();
     workplace.write("run.csv", csv(RATE_HZ, &vibration(20_000, 1.0), tacho(20.0, RATE_HZ)));
@@ -245,7 +400,7 @@ fn segments_of_one_recording_are_a_series() {
     assert!(workplace.names("out").contains(&TREND[0].to_string()));
     // What no longer belongs there goes.
     workplace.succeeds(&base);
-    assert_eq!(workplace.names("out").len(), 4);
+    assert_eq!(workplace.names("out").len(), 6);
     workplace.succeeds(&[&base[..], &["--no-figure"]].concat());
     assert_eq!(workplace.names("out"), DATA);
 }

@@ -137,14 +137,14 @@ fn of_recording(
     rig: &Scenario,
 ) -> Result<(Observation, Vec<String>), Refusal> {
     let (simulated, channel) = chosen(recording, question)?;
-    let mut channel = channel.clone();
+    let mut channel = channel.into_owned();
     if !channel.convert_to_g() {
         let unit = channel.unit.filter(|unit| !unit.trim().is_empty());
         let is = unit.map_or_else(|| "has no stated unit".to_owned(), |unit| format!("is in {unit}"));
         let problem = format!("channel {} {is}; must be g or m/s²", channel.name);
-        return Err(Refusal::unfit(problem).with_help(
-            "write the unit behind the channel's name, as in `bearing [g]`, or use `meshtone diagnose` with --unit",
-        ));
+        return Err(
+            Refusal::unfit(problem).with_help("state it in the field Unit, where the recording is opened")
+        );
     }
     let (rate_hz, samples) = (recording.sampling_rate_hz, &channel.samples);
     let mut doubts = Vec::new();
@@ -164,7 +164,13 @@ fn of_recording(
         let phase = ShaftPhase::from_mesh_tone(samples, rate_hz, &tone)?;
         Ok(("mesh tone", StatedTurning::MeshTone { nominal_hz }, phase))
     };
-    let Turned { train, turning, .. } = turned(recording, tachometer, simulated.as_ref(), rig, by_mesh_tone)?;
+    let Turned { train, turning, .. } = turned(
+        recording,
+        tachometer.map(|name| (name, question.pulses_per_revolution)),
+        simulated.as_ref(),
+        rig,
+        by_mesh_tone,
+    )?;
     if let TrainTurning::Shaft { phase, .. } = &turning {
         doubts.extend(phase.warnings.iter().map(ToString::to_string));
     }

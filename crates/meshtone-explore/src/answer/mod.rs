@@ -1,6 +1,7 @@
 //! From a scenario to everything that the page draws.
 
 mod bearing;
+mod desk;
 mod diagnosis;
 mod gearbox;
 mod healthy;
@@ -19,6 +20,7 @@ use meshtone::{Simulation, StageTime, Stages, StepJudgement};
 use meshtone_plot::DamagedTooth;
 use serde_json::{Map, Value, json};
 
+pub use desk::desk;
 pub use diagnosis::{DiagnosisQuestion, diagnosis};
 pub use gearbox::{gearbox_answer, gearbox_sections_json};
 pub use healthy::{HealthyIndicators, healthy_indicators, healthy_json};

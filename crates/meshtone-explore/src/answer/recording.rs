@@ -1,5 +1,6 @@
 //! A recording that was dropped on the page, through the same chain as the simulation.
 
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
 
@@ -9,10 +10,13 @@ use meshtone::signal::{
     GearTrain, ShaftPhase, StatedTurning, Tachometer, TrainRecording, TrainSettings, TrainTurning,
     tachometer_pulses,
 };
-use meshtone_io::recording::{Channel, Recording, RecordingOptions, read_recording};
+use meshtone_io::recording::{
+    Channel, ColumnChoice, Recording, RecordingOptions, TextOptions, TimeColumn, read_recording,
+};
 use serde_json::{Value, json};
 
 use super::bearing::LookedAtBearing;
+use super::desk::in_words_of_the_page;
 use super::lines::{Spectrum, Tones};
 use super::wanted;
 use super::wheel_signals::WheelSignals;
@@ -21,6 +25,8 @@ use crate::refusal::Refusal;
 
 /// Numbers that processing holds for each sample beside the recording, at most.
 const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
+/// Most pulses in a revolution.
+const MOST_PULSES: u64 = 1_000_000;
 
 /// What the file does not say itself.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,9 +37,18 @@ pub struct RecordingQuestion {
     pub channel: Option<String>,
     /// (S/s) Sampling rate, where the file does not say it.
     pub sampling_rate_hz: Option<f64>,
-    /// Channel with a tachometer's pulses, one a revolution of the shaft that the motor turns; the scenario's speed, constant, where
-    /// none is named.
+    /// Channel with a tachometer's pulses on the shaft that the motor turns; the scenario's speed, constant, where none is named.
     pub tachometer: Option<String>,
+    /// Pulses in a revolution.
+    pub pulses_per_revolution: u32,
+    /// The time column, by its name or number; the one that is named as time, where none is stated.
+    pub time: Option<String>,
+    /// The variable or recording of a file that holds several.
+    pub variable: Option<String>,
+    /// Lines of text that are skipped.
+    pub skip_lines: usize,
+    /// Unit of the channel, where the file does not say it; another one is converted.
+    pub unit: Option<String>,
     /// The rolling bearing that is looked at, by the name of its seat.
     pub bearing: Option<String>,
 }
@@ -45,11 +60,18 @@ impl RecordingQuestion {
     /// * `fields` - the fields by their names
     pub fn of(fields: &Value) -> Self {
         let text = |name: &str| fields.get(name).and_then(Value::as_str).map(str::to_owned);
+        let count = |name: &str| fields.get(name).and_then(Value::as_u64);
         Self {
             name: text("name").unwrap_or_else(|| "the recording".to_owned()),
             channel: text("channel"),
             sampling_rate_hz: fields.get("sampling_rate_hz").and_then(Value::as_f64),
             tachometer: text("tachometer"),
+            pulses_per_revolution: count("pulses_per_revolution")
+                .map_or(1, |pulses| pulses.clamp(1, MOST_PULSES) as u32),
+            time: text("time"),
+            variable: text("variable"),
+            skip_lines: count("skip_lines").and_then(|lines| lines.try_into().ok()).unwrap_or(0),
+            unit: text("unit"),
             bearing: text("bearing"),
         }
     }
@@ -81,7 +103,7 @@ pub fn recording(
         Ok(("constant speed", StatedTurning::ConstantSpeed { speed_hz }, phase))
     };
     let machine = simulated.as_ref().unwrap_or(scenario);
-    let tachometer = question.tachometer.as_deref();
+    let tachometer = question.tachometer.as_deref().map(|name| (name, question.pulses_per_revolution));
     let Turned { source, train, turning } =
         turned(&recording, tachometer, simulated.as_ref(), scenario, constant)?;
     let looked_at = TrainRecording {
@@ -126,7 +148,7 @@ pub fn recording(
         "name": question.name,
         "channels": recording.channels.iter().map(|channel| &channel.name).collect::<Vec<_>>(),
         "turning": source,
-        "warnings": warnings,
+        "warnings": warnings.iter().map(|warning| in_words_of_the_page(warning)).collect::<Vec<_>>(),
         "signal": {
             "channel": { "name": channel.name, "unit": unit },
             "sampling_rate_hz": recording.sampling_rate_hz,
@@ -150,23 +172,34 @@ pub(super) fn read(bytes: &[u8], question: &RecordingQuestion) -> Result<Recordi
     file.write_all(bytes).and_then(|()| file.flush()).map_err(failed)?;
     let options = RecordingOptions {
         sampling_rate_hz: question.sampling_rate_hz,
+        time: question
+            .time
+            .as_deref()
+            .map_or(TimeColumn::ByName, |time| TimeColumn::Chosen(ColumnChoice::parse(time))),
+        variable: question.variable.clone(),
+        text: TextOptions { skip_lines: question.skip_lines, ..TextOptions::default() },
         numbers_beside_each_sample: NUMBERS_BESIDE_EACH_SAMPLE,
         ..RecordingOptions::default()
     };
     let kept_at = file.path().display().to_string();
-    read_recording(file.path(), &options)
-        .map_err(|error| Refusal::unfit(error.to_string().replace(&kept_at, &question.name)))
+    let read = read_recording(file.path(), &options)
+        .map_err(|error| error.to_string().replace(&kept_at, &question.name));
+    read.map_err(|problem| Refusal::unfit(in_words_of_the_page(&problem)))
 }
 
-/// The scenario of a file that `meshtone simulate` wrote, and the channel that is processed: the one that is asked for, or the leading one.
+/// The scenario of a file that `meshtone simulate` wrote, and the channel that is processed, in the stated unit: the one that is asked for, or the
+/// leading one.
 pub(super) fn chosen<'r>(
     recording: &'r Recording,
     question: &RecordingQuestion,
-) -> Result<(Option<Scenario>, &'r Channel), Refusal> {
+) -> Result<(Option<Scenario>, Cow<'r, Channel>), Refusal> {
     let simulated = recording.scenario_toml.as_deref().and_then(|toml| Scenario::from_toml(toml).ok());
     let leading =
         simulated.as_ref().map(|scenario| SimulatedChannel::leading(&scenario.sensors).name().into_owned());
-    let channel = named(recording, question.channel.as_deref().or(leading.as_deref()))?;
+    let mut channel = Cow::Borrowed(named(recording, question.channel.as_deref().or(leading.as_deref()))?);
+    if question.unit.is_some() {
+        channel.to_mut().calibrate(None, question.unit.as_deref()).map_err(Refusal::unfit)?;
+    }
     Ok((simulated, channel))
 }
 
@@ -184,7 +217,7 @@ pub(super) struct Turned {
 ///
 /// # Arguments
 /// * `recording` - the recording
-/// * `tachometer` - the channel of the tachometer, which has one pulse a revolution of the input
+/// * `tachometer` - the channel of the tachometer, and its pulses in a revolution of the input
 /// * `simulated` - what was simulated, where the recording is a simulation
 /// * `scenario` - the page's
 /// * `otherwise` - the phase of the input where nothing else says it: its source, what is stated, itself
@@ -193,7 +226,7 @@ pub(super) struct Turned {
 /// A simulation of a machine with other wheels; a channel that is not there, or that has no pulses.
 pub(super) fn turned(
     recording: &Recording,
-    tachometer: Option<&str>,
+    tachometer: Option<(&str, u32)>,
     simulated: Option<&Scenario>,
     scenario: &Scenario,
     otherwise: impl FnOnce(&GearTrain) -> Result<(&'static str, StatedTurning, ShaftPhase), Refusal>,
@@ -212,11 +245,11 @@ pub(super) fn turned(
     let rate_hz = recording.sampling_rate_hz;
     let train = GearTrain::of_scenario(scenario)?;
     let (source, stated, phase) = match (tachometer, simulated) {
-        (Some(name), _) => {
+        (Some((name, per_revolution)), _) => {
             let pulses = &named(recording, Some(name))?.samples;
             let times = tachometer_pulses(pulses, rate_hz, &Tachometer::default())?;
-            let phase = ShaftPhase::from_pulses(&times, 1, None, rate_hz, recording.len())?;
-            ("tachometer", StatedTurning::Pulses { per_revolution: 1 }, phase)
+            let phase = ShaftPhase::from_pulses(&times, per_revolution, None, rate_hz, recording.len())?;
+            ("tachometer", StatedTurning::Pulses { per_revolution }, phase)
         }
         (None, Some(simulated)) => {
             let turning = TrainTurning::of_simulated(simulated, recording.start_s, recording.len())?;

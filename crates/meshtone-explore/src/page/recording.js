@@ -1,6 +1,7 @@
 // A recording that was opened on the page: what is asked about it, and what can be said of it.
 
 import { Newest, unpacked } from "./ask.js";
+import { Desk } from "./desk.js";
 
 const byId = (id) => document.getElementById(id);
 const CONSTANT_SPEED = "constant speed";
@@ -12,6 +13,7 @@ export class OpenedRecording {
   #status;
   #opened = null;
   #newest = new Newest("recording");
+  #desk;
 
   /**
    * @param question gives the page's scenario, and what of it is looked at, as a request has it
@@ -21,10 +23,18 @@ export class OpenedRecording {
    */
   constructor(question, show, refuse, status) {
     [this.#question, this.#show, this.#refuse, this.#status] = [question, show, refuse, status];
+    this.#desk = new Desk(question, refuse, status);
   }
 
   async open(file) {
-    this.#opened = { file, settings: { name: file.name } };
+    try {
+      const settings = await this.#desk.open(file);
+      if (!settings) return;
+      this.#opened = { file, settings };
+    } catch (error) {
+      this.#refuse(error);
+      return;
+    }
     await this.process();
   }
 

@@ -39,6 +39,7 @@ files! {
     "/style.css" "text/css; charset=utf-8" "style.css";
     "/page.js" "text/javascript; charset=utf-8" "page.js";
     "/recording.js" "text/javascript; charset=utf-8" "recording.js";
+    "/desk.js" "text/javascript; charset=utf-8" "desk.js";
     "/gearbox_controls.js" "text/javascript; charset=utf-8" "gearbox_controls.js";
     "/gearbox.js" "text/javascript; charset=utf-8" "gearbox.js";
     "/train.js" "text/javascript; charset=utf-8" "train.js";

@@ -12,11 +12,15 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 #[cfg(fuzzing)]
 pub use requests::read_request;
 
 use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
 use meshtone::scenario::Scenario;
 use meshtone_diagnose::ReferenceStore;
 use tokio::net::TcpListener;
@@ -30,6 +34,11 @@ use latest::NewestRequests;
 const AT_ONCE: usize = 2;
 /// Bytes of the token in the address.
 const TOKEN_BYTES: usize = 16;
+
+/// How long a connection may wait for the head of its next request.
+const IDLE: Duration = if cfg!(test) { Duration::from_millis(500) } else { Duration::from_secs(30) };
+/// How long nothing is accepted once that has failed.
+const AFTER_FAILURE: Duration = Duration::from_millis(100);
 
 /// Whether another page may show this one in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -171,11 +180,24 @@ impl Drop for Server {
 }
 
 async fn serve(listener: TcpListener, router: Router, stopped: oneshot::Receiver<()>) {
-    let served = async { axum::serve(listener, router).await };
     tokio::select! {
-        // Serving ends by no error: what a connection suffers is its own.
-        _ = served => {}
+        never = accept(listener, router) => never,
         _ = stopped => {}
+    }
+}
+
+/// Serves connections, each by itself: what one suffers is its own. `axum::serve` sets no time after which idle ones are closed.
+async fn accept(listener: TcpListener, router: Router) {
+    loop {
+        let Ok((stream, _)) = listener.accept().await else {
+            // As where there are too many files open: some will be closed.
+            tokio::time::sleep(AFTER_FAILURE).await;
+            continue;
+        };
+        let service = TowerToHyperService::new(router.clone());
+        let mut connection = http1::Builder::new();
+        connection.timer(TokioTimer::new()).header_read_timeout(IDLE);
+        tokio::spawn(connection.serve_connection(TokioIo::new(stream), service));
     }
 }
 

@@ -17,7 +17,7 @@ use super::diagnosis::of_diagnosis;
 use super::guard::respond;
 use super::latest::RequestTurn;
 use crate::answer::{
-    AnswerOptions, Detail, HealthyIndicators, RecordingQuestion, State, answer, gearbox_answer,
+    AnswerOptions, Detail, HealthyIndicators, RecordingQuestion, State, answer, desk, gearbox_answer,
     gearbox_sections_json, healthy_indicators, healthy_json, recording, severity_curve,
 };
 use crate::controls::{controls, gearbox_controls};
@@ -37,8 +37,10 @@ const LENGTH_BYTES: usize = 4;
 
 /// Addresses of the requests of the page.
 pub(super) fn router(shared: Arc<Shared>) -> Router {
-    let about_recordings =
-        Router::new().route("/recording", post(of_recording)).layer(DefaultBodyLimit::max(MOST_OF_RECORDING));
+    let about_recordings = Router::new()
+        .route("/recording", post(of_recording))
+        .route("/desk", post(of_desk))
+        .layer(DefaultBodyLimit::max(MOST_OF_RECORDING));
     let diagnoses = Router::new()
         .route("/diagnosis", post(of_diagnosis))
         .layer(DefaultBodyLimit::max(MOST_OF_SCENARIO + 2 * MOST_OF_RECORDING));
@@ -251,6 +253,7 @@ pub fn read_request(body: &[u8]) -> Result<(), String> {
         let asked = AskedRequest::of(&said)?;
         let scenario = question::scenario(&asked.fields)?;
         if !files.is_empty() {
+            desk(&files, &RecordingQuestion::of(&asked.fields), &scenario)?;
             recording(&files, &RecordingQuestion::of(&asked.fields), &scenario, &|| true)?;
         }
         Ok::<_, Refusal>(())
@@ -263,6 +266,15 @@ async fn of_recording(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Resul
     let (said, file) = framed(&body)?;
     let bytes = compute_of(&shared, "recording", &said, question::scenario, move |asked, scenario, turn| {
         recording(&file, &RecordingQuestion::of(&asked.fields), scenario, &|| turn.is_wanted())
+    });
+    Ok(respond(StatusCode::OK, PACKET, bytes.await?))
+}
+
+/// A recording that was opened on the page, before it is processed.
+async fn of_desk(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+    let (said, file) = framed(&body)?;
+    let bytes = compute_of(&shared, "recording", &said, question::scenario, move |asked, scenario, _| {
+        desk(&file, &RecordingQuestion::of(&asked.fields), scenario)
     });
     Ok(respond(StatusCode::OK, PACKET, bytes.await?))
 }

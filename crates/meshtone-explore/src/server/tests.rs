@@ -108,6 +108,79 @@ fn the_page_comes_with_a_strict_policy_and_all_that_it_names() {
     assert_eq!(server.ask("GET", "start", b"").json()["scenario"]["gears"]["pinion_teeth"], 20);
 }
 
+/// A connection that asks for nothing, or not to the end, is closed; one that waits for an answer is not.
+#[test]
+fn idle_connections_are_closed() {
+    let server = server();
+    for said in [&b""[..], b"GET / HTTP/1.1\r\nHost: "] {
+        let mut idle = TcpStream::connect(server.address).unwrap();
+        idle.write_all(said).unwrap();
+        idle.set_read_timeout(Some(std::time::Duration::from_secs(20))).unwrap();
+        let mut answer = Vec::new();
+        idle.read_to_end(&mut answer).unwrap();
+        assert!(answer.is_empty() || answer.starts_with(b"HTTP/1.1 4"), "{answer:?}");
+    }
+    assert_eq!(server.ask("GET", "", b"").status, 200);
+}
+
+/// What the desk shows of a recording, and what it guesses; where a field of the page helps, it says which.
+#[test]
+fn a_recording_is_looked_at_before_it_is_processed() {
+    let server = server();
+    let rows = |time: &str| {
+        let row = |i: u32| {
+            let wave = (0.7 * f64::from(i)).sin() + 0.1 * f64::from(i * i % 7);
+            // The pinion turns 40 times a second, with two pulses each time.
+            format!("{:.6},{},{wave:.4},,\n", f64::from(i) / 8000.0, if i % 100 < 9 { 5 } else { 0 })
+        };
+        format!("{time},marks [V],bearing [g]\n")
+            + &(0..12_000).map(row).map(|row| row.replace(",,", "")).collect::<String>()
+    };
+    let asked = |settings: Value| {
+        let mut scenario = fast();
+        scenario.operation.pinion_speed_hz = 40.0;
+        let mut asked = question(&scenario, 1);
+        asked["name"] = json!("run.csv");
+        settings.as_object().unwrap().iter().for_each(|(name, value)| asked[name] = value.clone());
+        asked.to_string().into_bytes()
+    };
+    let desk =
+        |settings: Value, file: &str| server.ask("POST", "desk", &framed(asked(settings), file.as_bytes()));
+    let (said, numbers) = desk(json!({}), &rows("time_s")).packet();
+    assert_eq!(
+        said["guess"],
+        json!({ "channel": "bearing", "tachometer": "marks", "pulses_per_revolution": 2 })
+    );
+    assert_eq!((&said["sampling_rate_hz"], &said["duration_s"]), (&json!(8000.0), &json!(1.5)));
+    assert_eq!((said["signal"]["values"]["length"].as_u64(), numbers > 8000), (Some(8000), true));
+    assert_eq!(said["teeth"][0]["teeth"], 20);
+    let problem = |settings: Value, file: &str| {
+        desk(settings, file).packet().0["problem"].as_str().unwrap_or_default().to_owned()
+    };
+    let no_rate = problem(json!({}), &rows("first"));
+    assert!(
+        no_rate.contains("in the field Sampling rate") && no_rate.contains("in the field Time column"),
+        "{no_rate}"
+    );
+    assert_eq!(problem(json!({ "time": "first" }), &rows("first")), "");
+    let head = format!("Recorder: X3\n{}", rows("time_s"));
+    assert!(
+        problem(json!({}), &head).contains("in the field Lines to skip"),
+        "{}",
+        problem(json!({}), &head)
+    );
+    let (skipped, _) = desk(json!({ "skip_lines": 1, "unit": "m/s²" }), &head).packet();
+    assert_eq!(skipped["guess"]["channel"], "bearing");
+    // No message names an option, which the page has not.
+    for file in
+        ["1,5\n2,5\n", "a;b\n1;x\n2;3\n", "t,a\n0,1\n1,\n2,3\n", "t,a\n0,1\n0.5,2\n7,3\n", "a\n1\n2\n"]
+    {
+        let answered = desk(json!({}), file);
+        let text = String::from_utf8_lossy(&answered.body).into_owned();
+        assert!(!text.contains("option") && !text.contains("--"), "{text}");
+    }
+}
+
 #[test]
 fn an_answer_has_all_that_is_drawn() {
     let server = server();

@@ -1,16 +1,13 @@
 //! The lines of bearings' defects, as JSON and as a table in Parquet.
 
-use std::io::{self, Write};
-
 use meshtone::bearing::NamedBearing;
 use meshtone::signal::{DefectKind, DefectLine, FrequencyBand, RaceTest, TrainBearing, UnexplainedComb};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
-use super::parquet_file::{Column, column};
-use super::{IndicatorResults, SETTINGS_KEY};
-use crate::signals::VERSION_KEY;
-use crate::table::{CellType, Cells, write_compressed};
+use super::IndicatorResults;
+use super::parquet_file::{Column, ResultTable, column};
+use crate::table::{CellType, Cells};
 
 /// What one recording shows about one bearing.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,14 +109,8 @@ impl Serialize for BearingEntry {
 }
 
 impl IndicatorResults {
-    /// Writes the lines of the bearings' defects as Parquet, one row for each line.
-    ///
-    /// # Arguments
-    /// * `to` - where the file is written to; it needs no buffer
-    ///
-    /// # Errors
-    /// Those of `to`.
-    pub fn write_bearings_parquet(&self, to: impl Write + Send) -> io::Result<()> {
+    /// The lines of the bearings' defects, one row for each.
+    pub fn bearing_table(&self) -> ResultTable {
         type Line<'a> = (&'a BearingEntry, &'a DefectLine);
         let lines: Vec<Line> =
             self.bearings.iter().flat_map(|of| of.lines.iter().map(move |line| (of, line))).collect();
@@ -148,11 +139,6 @@ impl IndicatorResults {
             number("amplitude", &squared, &|(_, line)| line.amplitude),
             number("over_median", "", &|(_, line)| line.over_median),
         ];
-        let (columns, cells) = columns.into_iter().unzip();
-        let metadata = [
-            (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
-            (SETTINGS_KEY, Value::from(self.settings.clone()).to_string()),
-        ];
-        write_compressed(to, columns, lines.len(), cells, metadata)
+        ResultTable::new(columns.into(), lines.len(), &self.settings)
     }
 }

@@ -47,6 +47,7 @@ impl IndicatorResults {
             "recordings": self.recordings,
             "records": self.records,
             "bearings": self.bearings,
+            "limits": self.limits,
             "warnings": warnings.collect::<Vec<_>>(),
         });
         to.write_all(format!("{all:#}\n").as_bytes())

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 pub use bearings::BearingEntry;
 use meshtone::signal::{ForeignTone, Indicators, SignalWarning};
+pub use parquet_file::ResultTable;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
@@ -36,8 +37,23 @@ pub struct IndicatorResults {
     pub records: Vec<RecordEntry>,
     /// What each recording shows about each bearing.
     pub bearings: Vec<BearingEntry>,
+    /// The limits of the trend, where the first records are stated to be sound.
+    pub limits: Vec<LimitEntry>,
     /// What is doubtful.
     pub warnings: Vec<WarningEntry>,
+}
+
+/// The limit of an indicator of a wheel: mean and three standard deviations over the first records.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LimitEntry {
+    /// Name of the wheel.
+    pub wheel: String,
+    /// The indicator, as the figure of the trend names it.
+    pub indicator: String,
+    /// (unit of the indicator) The limit.
+    pub limit: f64,
+    /// Recording, from 1, and segment of the first record above it.
+    pub crossed_at: Option<(usize, Option<usize>)>,
 }
 
 /// One recording.
@@ -54,6 +70,8 @@ pub struct RecordingEntry {
     pub start_s: f64,
     /// (mm/s) Rms of the channel's velocity from 10 to 1000 Hz; none where it is no acceleration, or shorter than 1 s, or sampled too slowly.
     pub velocity_rms_mm_per_s: Option<f64>,
+    /// The zone of ISO 20816-3, A to D, in which that velocity lies, where class and mounting of the machine were stated.
+    pub velocity_zone: Option<char>,
     /// Its tones that belong to no shaft and no mesh; none where they were not looked for.
     #[serde(serialize_with = "json::foreign_lines")]
     pub foreign_lines: Option<Vec<ForeignTone>>,

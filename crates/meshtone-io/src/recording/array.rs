@@ -113,7 +113,7 @@ pub(crate) fn read_records(
     count: u64,
     mut take: impl FnMut(&[u8]),
 ) -> io::Result<()> {
-    let at_once = (BLOCK_BYTES / record).max(1);
+    let at_once = ((BLOCK_BYTES / record).max(1) as u64).min(count) as usize;
     let mut block = vec![0; at_once * record];
     let mut left = count;
     while left > 0 {

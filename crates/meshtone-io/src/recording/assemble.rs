@@ -2,13 +2,15 @@
 
 use std::path::PathBuf;
 
+use meshtone::signal::copies;
+
 use super::error::{Problem, names};
 use super::label::Label;
 use super::rate::{self, StatedRate};
 use super::selection::{Selection, matching, present};
 use super::time::timing;
 use super::unit::{conversion, volts_in};
-use super::{Channel, Recording, RecordingOptions};
+use super::{Channel, Recording, RecordingOptions, RecordingWarning};
 
 /// (S/s) Rate below which times without a unit are hardly seconds.
 const LEAST_RATE_HZ: f64 = 100.0;
@@ -61,14 +63,32 @@ pub(super) fn assemble(
     };
     let mut channels: Vec<Channel> = selection.channels.iter().map(channel).collect();
     calibrate(labels, selection, &mut channels, options)?;
+    let mut warnings: Vec<RecordingWarning> = rate::other_than_stated(stated, options).into_iter().collect();
+    // As spreadsheets and data frames write before the others; one without a name only beside names.
+    let first = selection.channels.first().filter(|_| options.channels.is_empty() && channels.len() > 1);
+    let is_counter = |label: &Label| label.is_named_as_counter() && channels[1].name != "column 2";
+    if first.is_some_and(|first| is_counter(&labels[*first])) && counts(&channels[0].samples) {
+        warnings.push(RecordingWarning::Counter { name: channels.remove(0).name });
+    }
+    let samples: Vec<&[f64]> = channels.iter().map(|channel| &channel.samples[..]).collect();
+    let copy = |[of, copy]: [usize; 2]| RecordingWarning::Copy {
+        name: channels[copy].name.clone(),
+        of: channels[of].name.clone(),
+    };
+    warnings.extend(copies(&samples).into_iter().map(copy));
     Ok(Recording {
         sampling_rate_hz,
         start_s,
         channels,
         source: PathBuf::new(),
         scenario_toml: None,
-        warnings: Vec::new(),
+        warnings,
     })
+}
+
+/// Whether samples are whole numbers, each by one more than the one before.
+fn counts(samples: &[f64]) -> bool {
+    samples.len() > 2 && samples[0].fract() == 0.0 && samples.windows(2).all(|pair| pair[1] == pair[0] + 1.0)
 }
 
 fn check_lengths(labels: &[Label], selection: &Selection, samples: &[Vec<f64>]) -> Result<(), Problem> {

@@ -7,7 +7,7 @@ use super::assemble::assemble;
 use super::error::Problem;
 use super::label::Label;
 use super::number::Numbers;
-use super::rate::StatedRate;
+use super::rate::{self, StatedRate};
 use super::selection::{Selection, select};
 use super::{Recording, RecordingOptions, RecordingWarning, memory_need};
 use crate::memory;
@@ -67,7 +67,7 @@ pub(super) fn read_arrays(
     entries: &[ArrayEntry],
     options: &RecordingOptions,
     units_in_names: bool,
-    read: impl FnMut(usize, ArrayLayout, Numbers, &[bool]) -> Result<Vec<Vec<f64>>, Problem>,
+    mut read: impl FnMut(usize, ArrayLayout, Numbers, &[bool]) -> Result<Vec<Vec<f64>>, Problem>,
 ) -> Result<Recording, Problem> {
     let catalogue = Catalogue::new(entries, options, units_in_names)?;
     let Catalogue { labels, stated, .. } = &catalogue;
@@ -76,12 +76,17 @@ pub(super) fn read_arrays(
     let of_wanted = selection.wanted.iter().filter_map(|column| catalogue.places.get(*column));
     let beside_bytes = of_wanted.map(|(array, _)| entries[*array].beside_bytes).max().unwrap_or_default();
     memory_need::check(memory::limit(), options, &selection, samples, beside_bytes)?;
-    let samples = catalogue.read(&selection.wanted, read)?;
+    let samples = catalogue.read(&selection.wanted, &mut read)?;
     let single = |entry: &ArrayEntry| Some(format!("{} = {}", entry.name, entry.single?));
     let singles: Vec<String> = entries.iter().filter_map(single).collect();
     let recording = assemble(labels, &selection, samples, stated, options);
     let mut recording = recording.map_err(|problem| problem.with_numbers(&singles))?;
     recording.warnings.extend(zero_twins(labels, &selection));
+    if let Some((time, unit_s)) = selection.own_time {
+        // It is compared only: where it cannot be read, the stated rate counts all the same.
+        let times = catalogue.read(&[time], &mut read).unwrap_or_default();
+        recording.warnings.extend(rate::other_than_timed(&labels[time], times.first(), unit_s, options));
+    }
     Ok(recording)
 }
 
@@ -127,12 +132,13 @@ impl<'e> Catalogue<'e> {
 
     fn add(&mut self, index: usize, entry: &ArrayEntry, variable: Option<&str>, units_in_names: bool) {
         let name = short_name(&entry.name, variable);
-        let plain = |name: &str| Label { is_zero_twin: entry.is_zero_twin, ..Label::plain(name) };
+        let samples = entry.layout().ok().map(|layout| layout.samples);
+        let plain = |name: &str| Label { is_zero_twin: entry.is_zero_twin, samples, ..Label::plain(name) };
         let labels = match entry.numbers.clone().and_then(|_| entry.layout()) {
             Err(kind) => vec![Label { not_numeric: Some(kind), ..plain(name) }],
             Ok(ArrayLayout { channels, .. }) => match (name, channels) {
                 ("", _) => (1..=channels).map(|number| Label::numbered("channel", number)).collect(),
-                (_, 1) if units_in_names => vec![Label::from_header(name)],
+                (_, 1) if units_in_names => vec![Label { samples, ..Label::from_header(name) }],
                 (_, 1) => vec![plain(name)],
                 _ => {
                     let of_array = |number| plain(&format!("{name} {number}"));

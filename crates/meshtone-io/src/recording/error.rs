@@ -22,8 +22,8 @@ pub enum ReadRecordingError {
     /// Neither the first bytes nor the ending of the file belong to a format that is read.
     #[error(
         "{}: has no known format ({found}); known are CSV, TSV and other separated text (.csv, .tsv, .txt, \
-         .dat, .asc), Parquet (.parquet), NumPy (.npy, .npz), MATLAB (.mat), HDF5 (.h5), WAV (.wav) and \
-         universal files (.uff), also in gzip or ZIP",
+         .dat, .asc, .lvm), Parquet (.parquet), NumPy (.npy, .npz), MATLAB (.mat), HDF5 (.h5), WAV (.wav), \
+         universal files (.uff), TDMS (.tdms), MDF 4 (.mf4) and Excel (.xlsx), also in gzip or ZIP",
         path.display()
     )]
     UnknownFormat {

@@ -35,11 +35,15 @@ pub enum RecordingFormat {
     Hdf5,
     /// Universal file with data sets 58, as text or in binary.
     Universal,
+    /// TDMS, of LabVIEW.
+    Tdms,
+    /// ASAM's measurement data format, MDF 4.
+    Mdf,
 }
 
 /// Each format with its name in messages and the endings of its files.
-const FORMATS: [(RecordingFormat, &str, &[&str]); 8] = [
-    (RecordingFormat::Text, "text", &["csv", "tsv", "tab", "txt", "dat", "asc"]),
+const FORMATS: [(RecordingFormat, &str, &[&str]); 10] = [
+    (RecordingFormat::Text, "text", &["csv", "tsv", "tab", "txt", "dat", "asc", "lvm"]),
     (RecordingFormat::Parquet, "Parquet", &["parquet", "pq"]),
     (RecordingFormat::Npy, "NPY", &["npy"]),
     (RecordingFormat::Npz, "NPZ", &["npz"]),
@@ -47,32 +51,31 @@ const FORMATS: [(RecordingFormat, &str, &[&str]); 8] = [
     (RecordingFormat::Wav, "WAV", &["wav"]),
     (RecordingFormat::Hdf5, "HDF5", &["h5", "hdf5", "hdf", "he5"]),
     (RecordingFormat::Universal, "universal", &["uff", "unv", "uf"]),
+    (RecordingFormat::Tdms, "TDMS", &["tdms"]),
+    (RecordingFormat::Mdf, "MDF", &["mf4", "mdf"]),
 ];
 
 /// First bytes that only files of one format have.
-const MARKS: [(&[u8], RecordingFormat); 6] = [
+const MARKS: [(&[u8], RecordingFormat); 9] = [
     (b"PAR1", RecordingFormat::Parquet),
     (b"\x93NUMPY", RecordingFormat::Npy),
     (b"PK\x03\x04", RecordingFormat::Npz),
     (b"PK\x05\x06", RecordingFormat::Npz),
     (b"RIFF", RecordingFormat::Wav),
     (HDF5, RecordingFormat::Hdf5),
+    (b"TDSm", RecordingFormat::Tdms),
+    (b"MDF     ", RecordingFormat::Mdf),
+    (b"UnFinMF ", RecordingFormat::Mdf),
 ];
 
 /// First bytes of known formats that are not read: what they are, and how to convert them.
-const TO_CONVERT: [(&[&[u8]], &str, &str); 4] = [
+const TO_CONVERT: [(&[&[u8]], &str, &str); 2] = [
     (
         &[b"RF64", b"riff"],
         "a WAV file of more than 4 GiB (RF64 or Wave64)",
         "cut it, for instance with `sox` or `ffmpeg`",
     ),
-    (
-        &[b"TDSm"],
-        "a LabVIEW TDMS file",
-        "save it in Python with `nptdms.TdmsFile(…).as_dataframe().to_parquet(…)`",
-    ),
     (&[b"\xd0\xcf\x11\xe0"], "an Excel file (.xls)", "save it as CSV"),
-    (&[b"MDF     "], "an MDF file", "save it in Python with `asammdf.MDF(…).export(\"parquet\")`"),
 ];
 
 impl RecordingFormat {

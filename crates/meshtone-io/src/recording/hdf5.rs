@@ -18,6 +18,8 @@ use super::{Recording, RecordingOptions};
 const OWN_OF_MATLAB: char = '#';
 /// Bytes that are read at once, where a row of the array is not longer.
 const BLOCK_BYTES: u64 = 1 << 18;
+/// Bits of the exponent of a number of half precision; others of two bytes have more.
+const HALF_EXPONENT: u8 = 5;
 /// What begins a file that MATLAB wrote.
 const MATLAB: &[u8] = b"MATLAB";
 
@@ -30,13 +32,31 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     let source = ReadSeekSource::new(file).map_err(Problem::broken)?;
     let opened = hdf5_pure::File::from_source(source).map_err(Problem::broken)?;
     let mut arrays = Arrays { of_matlab: head == MATLAB, file_bytes, found: Vec::new(), groups: 0 };
-    arrays.collect(&opened.root(), "", 0)?;
+    arrays.collect(&opened.root(), "", &mut Vec::new())?;
     let (entries, data_sets): (Vec<ArrayEntry>, Vec<Dataset>) = arrays.found.into_iter().unzip();
     read_arrays(&entries, options, true, |index, layout, numbers, wanted| {
         let mut rows = Rows::new(&data_sets[index], file_bytes)?;
         let present = file_bytes.saturating_mul(USUAL_COMPRESSION);
         Ok(read_channels(&mut rows, layout, numbers, wanted, present)?)
     })
+}
+
+/// Names of the arrays and groups in a group.
+type Members = [Vec<String>; 2];
+
+fn names_of<T>(members: &[(String, T)]) -> Vec<String> {
+    members.iter().map(|(name, _)| name.clone()).collect()
+}
+
+/// Why the members of a group cannot be listed. In groups of the old format hdf5-pure 0.47 takes a soft link for an object behind the end.
+fn links(error: hdf5_pure::Error) -> Problem {
+    if error.to_string().contains("offset arithmetic overflow") {
+        return Problem::convert(
+            "an HDF5 file with soft links",
+            "copy it without them by `h5repack --latest FILE NEW`",
+        );
+    }
+    Problem::broken(error)
 }
 
 /// The arrays of a file that have been found.
@@ -48,26 +68,33 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Collects the arrays of a group and of those in it.
-    fn collect(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), Problem> {
+    /// Collects the arrays of a group and of those in it. One whose members are those of a group around it is that group, to which a link
+    /// leads back.
+    fn collect(&mut self, group: &Group, path: &str, around: &mut Vec<Members>) -> Result<(), Problem> {
         self.groups += 1;
         let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         let is_sparse =
             self.of_matlab && group.attrs().map_err(Problem::broken)?.contains_key("MATLAB_sparse");
-        for (name, data_set) in group.iter_datasets().map_err(Problem::broken)? {
+        let data_sets: Vec<(String, Dataset)> = group.iter_datasets().map_err(links)?.collect();
+        let groups: Vec<(String, Group)> = group.iter_groups().map_err(links)?.collect();
+        let members = [names_of(&data_sets), names_of(&groups)];
+        if !groups.is_empty() && around.contains(&members) {
+            return Ok(());
+        }
+        for (name, data_set) in data_sets {
             let mut entry = self.entry(within(&name), &data_set)?;
             if is_sparse {
                 entry.numbers = Err("a sparse array; save it with full(…)".to_owned());
             }
             self.found.push((entry, data_set));
-            self.check_size(depth)?;
+            self.check_size(around.len())?;
         }
-        for (name, inner) in group.iter_groups().map_err(Problem::broken)? {
-            if !name.starts_with(OWN_OF_MATLAB) {
-                self.check_size(depth + 1)?;
-                self.collect(&inner, &within(&name), depth + 1)?;
-            }
+        around.push(members);
+        for (name, inner) in groups.into_iter().filter(|(name, _)| !name.starts_with(OWN_OF_MATLAB)) {
+            self.check_size(around.len())?;
+            self.collect(&inner, &within(&name), around)?;
         }
+        around.pop();
         Ok(())
     }
 
@@ -137,6 +164,9 @@ fn numbers_of(data_set: &Dataset) -> Result<Result<Numbers, String>, Problem> {
                 _ => return Ok(Err(format!("integers of {size} bytes"))),
             };
             Some((kind, byte_order))
+        }
+        Datatype::FloatingPoint { size: 2, byte_order, layout } if layout.exponent_size == HALF_EXPONENT => {
+            Some((NumberKind::F16, byte_order))
         }
         Datatype::FloatingPoint { size: 4, byte_order, .. } => Some((NumberKind::F32, byte_order)),
         Datatype::FloatingPoint { size: 8, byte_order, .. } => Some((NumberKind::F64, byte_order)),

@@ -6,7 +6,7 @@ use super::unit::{is_unit, seconds_in};
 use crate::printable::printable;
 
 /// What a file says about a column before its samples are read.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Label {
     /// As the file has it.
     pub raw: String,
@@ -19,8 +19,15 @@ pub(super) struct Label {
     pub not_numeric: Option<String>,
     /// Whether it is 0 throughout and another column has its name: only its number chooses it.
     pub is_zero_twin: bool,
+    /// Whether it holds times of the clock, which are read as seconds.
+    pub is_clock: bool,
+    /// Of an array, its samples.
+    pub samples: Option<u64>,
 }
 
+/// Names of columns that count samples.
+const COUNTERS: [&str; 10] =
+    ["index", "sample", "samples", "sample_no", "sample_number", "n", "no", "nr", "#", "column_1"];
 /// Unit suffixes of a time's name.
 const TIME_SUFFIXES: [&str; 7] = ["s", "sec", "ms", "us", "µs", "ns", "min"];
 
@@ -41,7 +48,7 @@ impl Label {
         let name = &printable(name, &[]);
         let unit = Channel::named(name).map(|channel| channel.unit().to_owned());
         let (raw, name) = (name.to_string(), name.to_string());
-        Label { raw, name, unit, array: None, not_numeric: None, is_zero_twin: false }
+        Label { raw, name, unit, ..Label::default() }
     }
 
     /// Of a column that has no name: a word and its number, counted from 1.
@@ -51,6 +58,9 @@ impl Label {
 
     /// (s) One unit of the column's times, if its name says that it holds time.
     pub(super) fn time_unit_s(&self) -> Option<f64> {
+        if self.is_clock {
+            return Some(1.0);
+        }
         let (word, suffix) = self.time_word();
         match word.as_str() {
             "time" | "times" | "t" | "zeit" | "temps" | "tempo" | "tiempo" | "tijd" | "tid" | "czas"
@@ -74,7 +84,24 @@ impl Label {
     /// Whether the unit of the column's times is stated.
     pub(super) fn states_time_unit(&self) -> bool {
         let (word, suffix) = self.time_word();
-        self.unit.is_some() || suffix.is_some() || matches!(word.as_str(), "seconds" | "sec")
+        self.is_clock || self.unit.is_some() || suffix.is_some() || matches!(word.as_str(), "seconds" | "sec")
+    }
+
+    /// Whether it holds the times of another column by its name: `t_speed` or `speed_time` those of `speed`.
+    pub(super) fn is_time_of(&self, other: &Label) -> bool {
+        let (own, other) = (self.last_part().to_lowercase(), other.last_part().to_lowercase());
+        let rest = own.strip_prefix(&other).or_else(|| own.strip_suffix(&other));
+        matches!(rest, Some("_t" | "_time" | "t_" | "time_"))
+    }
+
+    /// The path before the last part.
+    pub(super) fn parent(&self) -> &str {
+        self.name.rsplit_once('.').map_or("", |(parent, _)| parent)
+    }
+
+    /// Whether its name is that of a column that counts samples.
+    pub(super) fn is_named_as_counter(&self) -> bool {
+        COUNTERS.contains(&self.time_word().0.as_str())
     }
 
     /// Whether it is the value over an axis, as LabVIEW names columns: `X_Value`.

@@ -1,7 +1,7 @@
 //! Recordings: measured or simulated signals, out of whatever file they came in.
 //!
 //! [`read_recording`] opens CSV and other separated text, Parquet (also the one that `meshtone simulate`
-//! writes), NumPy's NPY and NPZ, MATLAB's MAT (version 5 and 7.3), HDF5, WAV and universal files, also compressed by gzip or ZIP, and gives one [`Recording`] whatever the
+//! writes), NumPy's NPY and NPZ, MATLAB's MAT (version 4, 5 and 7.3), HDF5, WAV, universal files, TDMS, MDF 4 and tables of Excel's, also compressed by gzip or ZIP, and gives one [`Recording`] whatever the
 //! format: channels with name, unit and samples, at one sampling rate. What is to be read, and what the file
 //! does not say itself, stands in [`RecordingOptions`].
 //!
@@ -14,10 +14,12 @@ pub(crate) mod array;
 mod assemble;
 mod catalogue;
 mod error;
+mod fields;
 mod format;
 mod hdf5;
 mod label;
 mod mat;
+mod mdf;
 mod memory_need;
 pub(crate) mod number;
 pub(crate) mod numpy;
@@ -28,12 +30,15 @@ mod parquet_file;
 mod rate;
 mod selection;
 mod signal_set;
+mod tdms;
 mod text;
 mod time;
+mod time_base;
 mod unit;
 mod universal;
 mod warning;
 mod wav;
+mod workbook;
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -196,6 +201,8 @@ pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recordi
         RecordingFormat::Wav => wav::read(file, options),
         RecordingFormat::Hdf5 => decoded(|| hdf5::read(file, options)),
         RecordingFormat::Universal => universal::read(file, options),
+        RecordingFormat::Tdms => tdms::read(file, options),
+        RecordingFormat::Mdf => mdf::read(file, options),
     };
     let recording = recording.map_err(|problem| problem.of_file(path, format.name()))?;
     Ok(Recording { source: path.to_path_buf(), ..recording })

@@ -14,12 +14,13 @@ pub(crate) enum NumberKind {
     U32,
     I64,
     U64,
+    F16,
     F32,
     F64,
 }
 
 /// Name and bytes of each kind, in their order.
-const NAMES_AND_SIZES: [(&str, usize); 11] = [
+const NAMES_AND_SIZES: [(&str, usize); 12] = [
     ("int8", 1),
     ("uint8", 1),
     ("int16", 2),
@@ -29,6 +30,7 @@ const NAMES_AND_SIZES: [(&str, usize); 11] = [
     ("uint32", 4),
     ("int64", 8),
     ("uint64", 8),
+    ("float16", 2),
     ("float32", 4),
     ("float64", 8),
 ];
@@ -101,10 +103,24 @@ impl Numbers {
             NumberKind::U32 => position.append(bytes, to, |number| u32::from_le_bytes(number).into()),
             NumberKind::I64 => position.append(bytes, to, |number| i64::from_le_bytes(number) as f64),
             NumberKind::U64 => position.append(bytes, to, |number| u64::from_le_bytes(number) as f64),
+            NumberKind::F16 => position.append(bytes, to, half),
             NumberKind::F32 => position.append(bytes, to, |number| f32::from_le_bytes(number).into()),
             NumberKind::F64 => position.append(bytes, to, f64::from_le_bytes),
         }
     }
+}
+
+/// A number of half precision.
+fn half(bytes: [u8; 2]) -> f64 {
+    let bits = u16::from_le_bytes(bytes);
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff) / 1024.0);
+    let size = match exponent {
+        0 => fraction * 2.0_f64.powi(-14),
+        0x1f if fraction == 0.0 => f64::INFINITY,
+        0x1f => f64::NAN,
+        _ => (1.0 + fraction) * 2.0_f64.powi(exponent - 15),
+    };
+    if bits >> 15 == 1 { -size } else { size }
 }
 
 /// Where a number stands in each record.

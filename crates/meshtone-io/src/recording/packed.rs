@@ -1,4 +1,4 @@
-//! Files that hold another one: compressed by gzip or ZIP, or text in UTF-16.
+//! Files that hold another one: compressed by gzip or ZIP, a table of Excel's, or text in UTF-16.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Seek, Write};
@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 use zip::ZipArchive;
-use zip::result::ZipError;
 
 use super::error::{Problem, names};
+use super::numpy::zip_failed;
+use super::workbook::sheet;
 use crate::memory;
 
 const GZIP: &[u8] = b"\x1f\x8b";
@@ -58,12 +59,11 @@ fn layer(path: &Path, file: &mut File, most: u64) -> Result<Option<(PathBuf, Fil
 
 /// The only file of an archive; none of one of NumPy's arrays. Folders, and what macOS adds, do not count.
 fn of_archive(path: &Path, file: &File, most: u64) -> Result<Option<(PathBuf, File)>, Problem> {
-    let broken = |error: ZipError| Problem::Broken(error.to_string());
-    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(broken)?;
+    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(zip_failed)?;
     let mut files: Vec<(usize, String)> = Vec::new();
     for index in 0..archive.len() {
-        let inside = archive.by_index(index).map_err(broken)?;
-        let name = inside.name().map_err(broken)?.into_owned();
+        let inside = archive.by_index(index).map_err(zip_failed)?;
+        let name = inside.name().map_err(zip_failed)?.into_owned();
         if name.ends_with(".npy") {
             return Ok(None);
         }
@@ -73,11 +73,12 @@ fn of_archive(path: &Path, file: &File, most: u64) -> Result<Option<(PathBuf, Fi
     }
     match files.as_slice() {
         [(index, name)] => {
-            let inside = written(archive.by_index(*index).map_err(broken)?, most)?;
+            let inside = written(archive.by_index(*index).map_err(zip_failed)?, most)?;
             Ok(Some((path.with_file_name(Path::new(name).file_name().unwrap_or_default()), inside)))
         }
+        // Of a table of Excel's the text has no ending that says otherwise.
         _ if files.iter().any(|(_, name)| name == "[Content_Types].xml") => {
-            Err(Problem::convert("an Office document, such as a table of Excel's (.xlsx)", "save it as CSV"))
+            Ok(Some((path.with_extension("txt"), sheet(&mut archive, most)?)))
         }
         _ => {
             let all: Vec<String> = files.into_iter().map(|(_, name)| name).collect();
@@ -92,30 +93,51 @@ fn of_archive(path: &Path, file: &File, most: u64) -> Result<Option<(PathBuf, Fi
 
 /// A file without a name that holds what is read, up to a size.
 fn written(from: impl Read, most: u64) -> Result<File, Problem> {
-    let folder = std::env::temp_dir();
-    // What goes wrong with the temporary file is not said of the recording.
-    let elsewhere =
-        |error: io::Error| Problem::Refused(format!("cannot be unpacked into {}: {error}", folder.display()));
-    let mut to = BufWriter::new(tempfile::tempfile_in(&folder).map_err(elsewhere)?);
-    let mut from = BufReader::new(from.take(most.saturating_add(1)));
-    let mut bytes = 0;
+    let mut from = BufReader::new(from);
+    let mut to = Unpacked::new(most)?;
     loop {
         let block = io::BufRead::fill_buf(&mut from)?;
         if block.is_empty() {
-            break;
+            return to.finish();
         }
-        bytes += block.len() as u64;
-        if bytes > most {
-            let problem = format!("unpacked it has more than {} MiB; unpack it first", most >> 20);
-            return Err(Problem::Refused(problem));
-        }
-        to.write_all(block).map_err(elsewhere)?;
+        to.write(block)?;
         let length = block.len();
         io::BufRead::consume(&mut from, length);
     }
-    let mut file = to.into_inner().map_err(|error| elsewhere(error.into_error()))?;
-    file.rewind().map_err(elsewhere)?;
-    Ok(file)
+}
+
+/// A file without a name that is written, up to a size.
+pub(super) struct Unpacked {
+    to: BufWriter<File>,
+    pub(super) left: u64,
+    most: u64,
+}
+
+impl Unpacked {
+    /// * `most` - (bytes) the size
+    pub(super) fn new(most: u64) -> Result<Self, Problem> {
+        let file = tempfile::tempfile_in(std::env::temp_dir()).map_err(elsewhere)?;
+        Ok(Self { to: BufWriter::new(file), left: most, most })
+    }
+
+    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<(), Problem> {
+        self.left = self.left.checked_sub(bytes.len() as u64).ok_or_else(|| {
+            Problem::Refused(format!("unpacked it has more than {} MiB; unpack it first", self.most >> 20))
+        })?;
+        self.to.write_all(bytes).map_err(elsewhere)
+    }
+
+    /// The file, at its start.
+    pub(super) fn finish(self) -> Result<File, Problem> {
+        let mut file = self.to.into_inner().map_err(|error| elsewhere(error.into_error()))?;
+        file.rewind().map_err(elsewhere)?;
+        Ok(file)
+    }
+}
+
+/// What goes wrong with the temporary file is not said of the recording.
+fn elsewhere(error: io::Error) -> Problem {
+    Problem::Refused(format!("cannot be unpacked into {}: {error}", std::env::temp_dir().display()))
 }
 
 /// How text in UTF-16 makes a number of two bytes: by its mark, or by the zeros of its first characters, which are Latin.

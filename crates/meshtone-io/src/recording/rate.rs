@@ -2,9 +2,10 @@
 
 use meshtone::signal::SAMPLING_RATES_HZ;
 
-use super::RecordingOptions;
 use super::error::{Problem, names};
-use super::time::Timing;
+use super::label::Label;
+use super::time::{Timing, timing};
+use super::{RecordingOptions, RecordingWarning};
 
 /// Two statements of one rate may differ by this part, for instance by the digits that were written.
 const AGREEMENT: f64 = 1e-6;
@@ -94,6 +95,41 @@ fn stated_or_timed(
         return Err(contradiction(first, &format!("time column {column}"), timing.rate_hz));
     }
     Ok((first.rate_hz, timing.start_s))
+}
+
+/// The warning that the file states another rate than the options.
+pub(super) fn other_than_stated(
+    stated: &[StatedRate],
+    options: &RecordingOptions,
+) -> Option<RecordingWarning> {
+    let own = stated.iter().find(|own| own.rate_hz.is_finite() && own.rate_hz > 0.0)?;
+    other(&own.by, own.rate_hz, AGREEMENT, options)
+}
+
+/// The warning that a time column gives another rate than the options. Without a unit it may be in ms or µs.
+///
+/// # Arguments
+/// * `label`, `times`, `unit_s` - the column, as far as it could be read
+/// * `options` - of the recording
+pub(super) fn other_than_timed(
+    label: &Label,
+    times: Option<&Vec<f64>>,
+    unit_s: f64,
+    options: &RecordingOptions,
+) -> Option<RecordingWarning> {
+    let times = times.filter(|times| times.iter().all(|time| time.is_finite()))?;
+    let timing = timing(&label.raw, times, unit_s).ok()?;
+    let units = if label.states_time_unit() { &[1.0][..] } else { &[1.0, 1e3, 1e6] };
+    let by = format!("time column {}", label.raw);
+    let own =
+        units.iter().map(|unit| other(&by, timing.rate_hz * unit, timing.uncertainty + AGREEMENT, options));
+    own.collect::<Option<Vec<_>>>()?.into_iter().next()
+}
+
+fn other(by: &str, own_hz: f64, uncertainty: f64, options: &RecordingOptions) -> Option<RecordingWarning> {
+    let stated_hz = options.sampling_rate_hz?;
+    let differs = (own_hz / stated_hz - 1.0).abs() > uncertainty;
+    differs.then(|| RecordingWarning::OtherRate { stated_hz, own_hz, by: by.to_owned() })
 }
 
 fn contradiction(first: &StatedRate, other: &str, other_hz: f64) -> Problem {

@@ -13,6 +13,8 @@ pub(super) struct Selection {
     pub channels: Vec<usize>,
     /// The time column, if its times are needed, and (s) its unit.
     pub time: Option<(usize, f64)>,
+    /// The time column and its unit where the options state the rate, to be compared with it.
+    pub own_time: Option<(usize, f64)>,
     /// Channels and time column, rising.
     pub wanted: Vec<usize>,
 }
@@ -24,12 +26,16 @@ pub(super) fn select(labels: &[Label], options: &RecordingOptions) -> Result<Sel
     for index in channels.iter().copied().chain(times.iter().map(|(index, _)| *index)) {
         check_numeric(&labels[index])?;
     }
-    let time = if options.sampling_rate_hz.is_some() { None } else { times.first().copied() };
+    let (time, own_time) = match (options.sampling_rate_hz, &times[..]) {
+        (None, times) => (times.first().copied(), None),
+        (Some(_), [only]) => (None, Some(*only)),
+        (Some(_), _) => (None, None),
+    };
     let mut wanted = channels.clone();
     wanted.extend(time.map(|(index, _)| index));
     wanted.sort_unstable();
     wanted.dedup();
-    Ok(Selection { channels, time, wanted })
+    Ok(Selection { channels, time, own_time, wanted })
 }
 
 fn check_numeric(label: &Label) -> Result<(), Problem> {
@@ -56,8 +62,23 @@ fn time_columns(labels: &[Label], options: &RecordingOptions) -> Result<Vec<(usi
             // LabVIEW's time is the X_Value; beside a y_value it is a direction.
             let has_directions = labels.iter().any(|label| label.is_value_of("y"));
             let named = named.filter(|(_, label)| !(has_directions && label.is_value_of("x")));
-            let named: Vec<_> =
-                named.filter_map(|(index, label)| Some((index, label.time_unit_s()?))).collect();
+            // Arrays of one file may have been sampled together or not: times belong to channels that are as long as they are.
+            let lead =
+                options.channels.first().and_then(|choice| matching(labels, choice).ok()?.first().copied());
+            let lead = lead.map(|index| &labels[index]);
+            let unit_s = |label: &Label| match lead {
+                Some(lead) if label.samples != lead.samples => None,
+                Some(lead) if label.samples.is_some() && label.is_time_of(lead) => label.chosen_time_unit_s(),
+                _ => label.time_unit_s(),
+            };
+            let mut named: Vec<_> =
+                named.filter_map(|(index, label)| Some((index, unit_s(label)?))).collect();
+            if let (Some(lead), 2..) = (lead, named.len()) {
+                let is_near = |label: &Label| label.is_time_of(lead) || label.parent() == lead.parent();
+                let near: Vec<_> =
+                    named.iter().copied().filter(|(index, _)| is_near(&labels[*index])).collect();
+                named = if near.is_empty() { named } else { near };
+            }
             if named.len() > 1 && options.sampling_rate_hz.is_none() {
                 let problem = "has several columns that are named as time; choose one (option time)";
                 return Err(ambiguous(labels, problem));

@@ -5,7 +5,6 @@
 use std::fs::File;
 use std::io::Read;
 
-use super::assemble::assemble;
 use super::error::Problem;
 use super::label::Label;
 use super::number::{NumberKind, Numbers};
@@ -13,6 +12,7 @@ use super::rate::StatedRate;
 use super::selection::select;
 use super::text::decoded;
 use super::time::shortest_within;
+use super::time_base::{TimeBase, assemble_bases};
 use super::unit::seconds_in;
 use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
@@ -59,23 +59,15 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     let selection = select(&labels, options)?;
     memory_need::check(limit, options, &selection, |column| functions[column].count as u64, bytes)?;
     let wanted = || selection.wanted.iter().map(|column| &functions[*column]);
-    let start_s = wanted().next().map_or(0.0, |function| function.start_s);
-    if let Some(Function { label, start_s: other_s, .. }) = wanted().find(|other| other.start_s != start_s) {
-        let problem = format!(
-            "{} starts at {other_s} s, another channel at {start_s} s; choose channels that start together",
-            label.raw
-        );
-        return Err(Problem::Refused(problem));
-    }
     let samples = wanted().map(Function::samples).collect::<Result<Vec<_>, _>>()?;
-    let stated: Vec<StatedRate> = wanted()
-        .map(|function| StatedRate {
-            by: format!("the abscissa of {}", function.label.raw),
-            rate_hz: shortest_within(1.0 / function.increment_s, INCREMENT_UNCERTAINTY),
+    let bases: Vec<TimeBase> = wanted()
+        .map(|function| {
+            let by = format!("the abscissa of {}", function.label.raw);
+            let rate_hz = shortest_within(1.0 / function.increment_s, INCREMENT_UNCERTAINTY);
+            TimeBase::Uniform { stated: StatedRate { by, rate_hz }, start_s: function.start_s }
         })
         .collect();
-    let recording = assemble(&labels, &selection, samples, &stated, options)?;
-    Ok(Recording { start_s, ..recording })
+    assemble_bases(&labels, &selection, samples, &bases, options)
 }
 
 /// A data set 58 of samples over time, before its numbers are read.

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 /// Something about a file that was read, but that its user should know.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingWarning {
     /// The last line of a text file has no end, and its last number is not written like those above it: the file may be cut
@@ -30,4 +30,59 @@ pub enum RecordingWarning {
         /// The column that was left out, counted from 1.
         number: usize,
     },
+    /// A channel has another rate than the others, and was brought to theirs.
+    #[error(
+        "{name} was recorded at {own_hz} S/s and is interpolated to {rate_hz} S/s, which is right for a speed or a torque; read a \
+         vibration by itself"
+    )]
+    Interpolated {
+        /// The channel.
+        name: String,
+        /// (S/s) The rate at which it was recorded, or its mean.
+        own_hz: f64,
+        /// (S/s) That of the recording.
+        rate_hz: f64,
+    },
+    /// The rate that the options state is not the file's.
+    #[error(
+        "the sampling rate is stated as {stated_hz} S/s, but {by} says {own_hz} S/s: the stated one counts"
+    )]
+    OtherRate {
+        /// (S/s) The rate of the options.
+        stated_hz: f64,
+        /// (S/s) That of the file.
+        own_hz: f64,
+        /// What of the file says it.
+        by: String,
+    },
+    /// A column counts the samples.
+    #[error("column {name} counts the samples and is left out")]
+    Counter {
+        /// The column.
+        name: String,
+    },
+    /// A channel has the samples of another.
+    #[error(
+        "{name} has the samples of {of}: one input may have been recorded twice; check the cables and the recorder's channels"
+    )]
+    Copy {
+        /// The channel.
+        name: String,
+        /// The one before it.
+        of: String,
+    },
+}
+
+impl RecordingWarning {
+    /// The name of what it is about, for programs to distinguish.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::MayBeCut { .. } => "may-be-cut",
+            Self::ZeroTwin { .. } => "zero-twin",
+            Self::Interpolated { .. } => "interpolated",
+            Self::OtherRate { .. } => "other-rate",
+            Self::Counter { .. } => "counter",
+            Self::Copy { .. } => "copied-channel",
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod atomic_file;
 mod integrity;
 mod parquet_help;
 mod recording_binary;
+mod recording_formats;
 mod recording_help;
 mod recording_mat;
 mod recording_parquet;

@@ -80,9 +80,11 @@ fn what_is_no_recording_is_named() {
 }
 
 #[test]
-fn other_versions_are_answered_with_how_to_convert() {
+fn version_4_is_read_and_no_version_refused() {
     let version_4 = refused("old.mat", &bytes("version4.mat"), &RecordingOptions::default());
-    assert!(version_4.contains("another version than 5") && version_4.contains("'-v7'"), "{version_4}");
+    assert!(version_4.contains("has one column alone"), "{version_4}");
+    let no_version = refused("old.mat", &[b'x'; 200], &RecordingOptions::default());
+    assert!(no_version.contains("its head is that of no version of MATLAB"), "{no_version}");
 }
 
 #[test]

@@ -160,7 +160,7 @@ fn what_is_no_time_signal_is_left_out_or_refused() {
     let later = text.replacen("  0.00000E+00  1.95313E-05", "  5.00000E-01  1.95313E-05", 1);
     assert!(
         problem("run.uff", &[text.as_bytes(), later.as_bytes()].concat())
-            .contains("starts at 0.5 s, another channel at 0 s")
+            .contains("starts at 0.5 s, another channel at 0 s; choose channels that start together")
     );
     let in_ms = text.replacen("Time                 s ", "Time                 ms", 1).replacen(
         "1.95313E-05",
@@ -236,10 +236,12 @@ fn compressed_files_and_other_encodings() {
     is_the_csv("run.zip", &zip(&[("run.csv.gz", &packed)]));
     let two = zip(&[("a.csv", CSV.as_bytes()), ("b.csv", CSV.as_bytes())]);
     assert!(problem("run.zip", &two).contains("is a ZIP archive of 2 files; unpack it: a.csv, b.csv"));
-    let table = zip(&[("[Content_Types].xml", b"x"), ("xl/workbook.xml", b"x")]);
-    assert!(problem("run.xlsx", &table).contains(
-        "an Office document, such as a table of Excel's (.xlsx), which is not read; save it as CSV"
-    ));
+    let letter = zip(&[("[Content_Types].xml", b"x"), ("word/document.xml", b"x")]);
+    assert!(
+        problem("run.docx", &letter).contains(
+            "an Office document without a sheet of numbers, which is not read; save its table as CSV"
+        )
+    );
     let bomb = problem("run.csv.gz", &gzip(&vec![b'0'; 4 << 20]));
     assert!(bomb.contains("unpacked it has more than 1 MiB; unpack it first"), "{bomb}");
     let utf16 = |mark: &[u8], bytes: fn(u16) -> [u8; 2], text: &str| {

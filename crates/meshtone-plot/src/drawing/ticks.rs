@@ -6,6 +6,8 @@ pub(crate) struct Ticks {
     pub(crate) values: Vec<f64>,
     step: f64,
     scale: Scale,
+    /// In place of the numbers.
+    names: Vec<String>,
 }
 
 /// How the numbers at an axis follow from the values.
@@ -59,7 +61,12 @@ impl Ticks {
     }
 
     fn linear(values: Vec<f64>, step: f64) -> Self {
-        Self { values, step, scale: Scale::Linear }
+        Self { values, step, scale: Scale::Linear, names: Vec::new() }
+    }
+
+    /// Names in place of the whole numbers from 1 on.
+    pub(crate) fn named(names: &[String]) -> Self {
+        Self { names: names.to_vec(), ..Self::every(1.0, 1.0, names.len() as f64) }
     }
 
     /// Powers of 10, for a logarithmic axis between decadic logarithms.
@@ -85,7 +92,7 @@ impl Ticks {
             let ticks = Self::nice(10f64.powf(low), 10f64.powf(high), 5);
             ticks.values.iter().map(|value| value.log10()).collect()
         };
-        Self { values: values.unwrap_or_else(even), step: 1.0, scale: Scale::Logarithmic }
+        Self { values: values.unwrap_or_else(even), step: 1.0, scale: Scale::Logarithmic, names: Vec::new() }
     }
 
     /// Whole numbers only, at most `most` of them.
@@ -105,6 +112,9 @@ impl Ticks {
 
     /// The number as it stands at the axis.
     pub(crate) fn text(&self, value: f64) -> String {
+        if let Some(name) = self.names.get((value.round() as usize).wrapping_sub(1)) {
+            return name.clone();
+        }
         match self.scale {
             Scale::Linear => {}
             Scale::Logarithmic => return number(10f64.powf(value)),

@@ -215,24 +215,31 @@ fn trends_of_any_length_with_gaps() {
                 name: name.to_owned(),
                 unit: "m/s²".to_owned(),
                 values: vec![values(0), values(1)],
+                limits: vec![Some(1.0), None],
             };
             let mut indicators: Vec<Trend> = ["a", "b", "c", "d", "e", "f", "g", "h"].map(trend).to_vec();
             let none = vec![vec![None; records]; 2];
-            indicators.push(Trend { name: "NA4".to_owned(), unit: String::new(), values: none });
+            indicators.push(Trend {
+                name: "NA4".to_owned(),
+                unit: String::new(),
+                values: none,
+                limits: Vec::new(),
+            });
             let wheels = ["pinion, 17 teeth".to_owned(), "gear, 38 teeth".to_owned()];
             let facts = ["12 recordings".to_owned()];
             let places = vec![(1..=records).map(|k| k as f64).collect::<Vec<_>>(); 2];
+            let names: Vec<String> = (1..=records).map(|day| format!("day{day:02}")).collect();
             let figure = TrendFigure {
                 title: "day01.csv … day12.csv",
                 facts: &facts,
-                along: Along::Recordings { count: records },
+                along: Along::Recordings { names: &names },
                 wheels: &wheels,
                 places: &places,
                 indicators,
             };
             let figure = trend::draw(&figure);
             check(&figure, LARGEST);
-            shown(&figure, &["not defined", "gear, 38 teeth", "Recording", "(m/s²)"]);
+            shown(&figure, &["not defined", "gear, 38 teeth", "Recording", "day01", "(m/s²)"]);
         }
     }
 }
@@ -251,7 +258,7 @@ fn segments_of_both_wheels_lie_at_their_times() {
         along: Along::Time { start_s: 0.0, end_s: 2.0 },
         wheels: &["wheel".to_owned(), "mate".to_owned()],
         places: &places,
-        indicators: vec![Trend { name: "FM4".to_owned(), unit: String::new(), values }],
+        indicators: vec![Trend { name: "FM4".to_owned(), unit: String::new(), values, limits: Vec::new() }],
     });
     check(&figure, LARGEST);
     shown(&figure, &["Time (s)"]);

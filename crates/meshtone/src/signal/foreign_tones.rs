@@ -83,7 +83,9 @@ impl ForeignTones {
     /// * `tones` - all of a recording, the strongest first
     pub fn of(tones: &[ForeignTone]) -> Option<Self> {
         let part: f64 = tones.iter().map(|tone| tone.part).sum();
-        (!tones.is_empty()).then(|| Self { part, strongest: tones.iter().take(NAMED).copied().collect() })
+        // Neighbouring tones share the lines between them.
+        (!tones.is_empty())
+            .then(|| Self { part: part.min(1.0), strongest: tones.iter().take(NAMED).copied().collect() })
     }
 
     /// Returns whether they make a fifth of the energy or more.
@@ -192,7 +194,7 @@ pub fn foreign_tones(
             frequency_hz: order * mean_speed_hz,
             order: order * to_input,
             amplitude: 2.0 * (lobe / mean_square_of_window).sqrt() / points as f64,
-            part: lobe / energy,
+            part: (lobe / energy).min(1.0),
             may_be_mains: is_of_mains(order * mean_speed_hz, mean_speed_hz / revolutions as f64),
         })
     };

@@ -12,6 +12,7 @@
 //! | spectra and envelope | [`order_spectrum`], over time [`order_map`], [`envelope`], [`envelope_spectrum`] |
 //! | every shaft of a pair or a gearbox | [`GearTrain`], [`TrainRecording`], [`foreign_tones`] |
 //! | whether it fits what the user stated | [`check_recording`], of [`find_mismatch`] and [`lines_off_shafts`]; [`synchronous_part`] |
+//! | whether sensor and recorder worked | [`sensor_faults`], [`copies`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
 //! | bearings | [`TrainRecording::bearing_defects`]; for people who look [`TrainRecording::bearings`], [`BearingGeometry`](crate::bearing::BearingGeometry), [`defect_lines`] of [`squared_envelope_spectrum`] and [`squared_envelope_order_spectrum`] |
 //! | bands that are impulsive | [`kurtogram`], [`spectral_kurtosis`] |
@@ -43,6 +44,7 @@ mod prewhitening;
 mod random_part;
 mod record;
 mod resample;
+mod sensor_faults;
 mod separation;
 mod simulated;
 mod spectrum;
@@ -96,6 +98,7 @@ pub use record::{
 };
 pub(crate) use resample::whole_ratio;
 pub use resample::{resample, resample_to, resample_with, resampling_ratio, resampling_taps};
+pub use sensor_faults::{SensorFault, copies, sensor_faults};
 pub use separation::{MeanPart, Separation, SeparationSettings, separate};
 pub use simulated::SimulatedShafts;
 pub use spectrum::order_spectrum;

@@ -7,7 +7,7 @@ use super::record::{process_angular, process_angular_segments};
 use super::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, ForeignSearch, GearTrain, Interpolation,
     Record, SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
-    angular_resample, check_channel,
+    angular_resample, check_channel, sensor_faults,
 };
 use crate::scenario::Scenario;
 use crate::wheel::WheelName;
@@ -235,7 +235,8 @@ impl TrainRecording<'_> {
         let TrainTurning::Shaft { shaft, phase, .. } = self.turning else { return Ok(Vec::new()) };
         check_channel(self.signal)?;
         let angular = angular_resample(self.signal, phase, &AngularSettings::default())?;
-        Ok(self.check_over(&angular, *shaft).warnings)
+        let faults = sensor_faults(self.signal).into_iter().map(SignalWarning::SensorFault);
+        Ok(faults.chain(self.check_over(&angular, *shaft).warnings).collect())
     }
 
     /// Looks for what does not fit, and for foreign tones, over the angle of a shaft; for nothing where its phase follows from that of another.
@@ -263,6 +264,7 @@ impl TrainRecording<'_> {
         let mut found = TrainRecords { wheels: Vec::new(), foreign: None, warnings: Vec::new() };
         if let TrainTurning::Shaft { phase, .. } = self.turning {
             found.warnings.clone_from(&phase.warnings);
+            found.warnings.extend(sensor_faults(self.signal).into_iter().map(SignalWarning::SensorFault));
         }
         let mut first_without = None;
         for (number, of) in self.train.wheels.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{ForeignTone, ForeignTones, Mismatch, SignalError, SynchronousPart, WheelError};
+use super::{ForeignTone, ForeignTones, Mismatch, SensorFault, SignalError, SynchronousPart, WheelError};
 
 /// Something about a recording that leaves the result right but that its user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -106,6 +106,9 @@ pub enum SignalWarning {
     /// Tones that belong to neither shaft make much of the recording.
     #[error("{0}")]
     ForeignTones(ForeignTones),
+    /// Sensor or recorder did not work as they should.
+    #[error("{0}")]
+    SensorFault(SensorFault),
 }
 
 impl SignalWarning {
@@ -123,6 +126,7 @@ impl SignalWarning {
             Self::NotAveraged { .. } => "not-averaged",
             Self::WheelWithoutAverage(_) => "wheel-without-average",
             Self::ForeignTones(_) => "foreign-tones",
+            Self::SensorFault(fault) => fault.code(),
         }
     }
 
@@ -170,6 +174,7 @@ impl SignalWarning {
                 }
                 values
             }
+            Self::SensorFault(fault) => of(&fault.values()),
             Self::ForeignTones(tones) => {
                 let of_tone = |(index, tone): (usize, &ForeignTone)| {
                     let named = |name: &str, value: f64| (format!("{name}_{}", index + 1), value);

@@ -1,4 +1,4 @@
-//! MATLAB's MAT-files of version 5 (which `save` calls v6 and v7).
+//! MATLAB's MAT-files of version 5 (which `save` calls v6 and v7), and of version 4.
 //!
 //! A file is a list of elements, each a type, a length and as many bytes; an array is an element of elements, and
 //! so are structs and cell arrays of arrays. Each variable may be compressed. The file is walked twice: first for
@@ -6,11 +6,12 @@
 //! else is ever held in memory.
 
 mod source;
+mod version4;
 mod walk;
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Seek};
 
 use self::source::{Source, Variable, invalid, padding};
 use self::walk::{ArrayLocation, MATRIX, Walk};
@@ -25,7 +26,14 @@ const TAG_BYTES: u64 = 8;
 const COMPRESSED: u32 = 15;
 
 /// Reads a recording from a MAT-file.
-pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let mut head = Vec::new();
+    file.by_ref().take(HEADER_BYTES).read_to_end(&mut head)?;
+    file.rewind()?;
+    // Its first four bytes state a type, and those of version 5 are letters.
+    if version4::is_version4(&head) {
+        return version4::read(&file, options);
+    }
     let Walk { big_endian, arrays, .. } = walk(&file)?;
     let (mut entries, places): (Vec<ArrayEntry>, Vec<ArrayLocation>) = arrays.into_iter().unzip();
     mark_zero_twins(&file, big_endian, &mut entries, &places)?;
@@ -105,10 +113,8 @@ fn walk(mut file: &File) -> Result<Walk, Problem> {
         [.., 0, 1, b'I', b'M'] => false,
         [.., 1, 0, b'M', b'I'] => true,
         _ => {
-            return Err(Problem::convert(
-                "a MATLAB file of another version than 5 (version 4, perhaps)",
-                "save it again in MATLAB with `s = load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, or in Python with \
-                 scipy.io.savemat(…, format='5')",
+            return Err(Problem::broken(
+                "its head is that of no version of MATLAB; it may be text or of another program",
             ));
         }
     };

@@ -156,7 +156,8 @@ fn in_array(name: &str, error: io::Error) -> Problem {
     Problem::Broken(format!("array {name}: {problem}"))
 }
 
-fn zip_failed(error: ZipError) -> Problem {
+/// The problem of an archive that cannot be read.
+pub(super) fn zip_failed(error: ZipError) -> Problem {
     match error {
         ZipError::Io(error) => Problem::Io(error),
         // Its table of contents stands at the end.

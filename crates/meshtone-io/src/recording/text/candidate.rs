@@ -1,6 +1,6 @@
 //! Ways to read the first lines of a text file, and which of them does best.
 
-use super::cells::{Cell, Dialect, decoded};
+use super::cells::{Cell, Dialect, clock_s, day_number, decoded};
 use super::head::{Line, is_comment, label};
 use crate::recording::label::Label;
 use crate::recording::{DecimalSign, Separator, TextOptions};
@@ -100,6 +100,24 @@ impl Candidate {
             && !is_sample
             && !all_missing
             && (texts > numbers || kinds.first() == Some(&Cell::Text))
+    }
+
+    /// Notes which columns hold times of the clock, and which dates, beside which such times stand.
+    ///
+    /// # Arguments
+    /// * `data` - the first lines of numbers
+    /// * `labels` - of the columns
+    pub(super) fn note_clocks(&self, data: &[Line], labels: &mut [Label]) {
+        let rows: Vec<Vec<&[u8]>> = data.iter().take(JUDGED).map(|line| self.cells(line.text)).collect();
+        for (column, label) in labels.iter_mut().enumerate() {
+            let all = |is: &dyn Fn(&[u8]) -> bool| {
+                rows.iter().all(|row| row.get(column).is_some_and(|cell| is(cell)))
+            };
+            label.is_clock = all(&|cell| clock_s(cell).is_some());
+            if all(&|cell| day_number(cell).is_some()) {
+                label.not_numeric = Some("dates".to_owned());
+            }
+        }
     }
 
     /// Whether two columns may as well be one with a decimal comma.

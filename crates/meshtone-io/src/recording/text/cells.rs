@@ -53,13 +53,14 @@ impl Dialect {
             return Cell::Empty;
         }
         let with_point = match (self.decimal_comma, cell.contains(&b','), cell.contains(&b'.')) {
-            (true, _, true) | (false, true, _) => return Cell::Text,
+            (true, _, true) | (false, true, _) => return clock_s(cell).map_or(Cell::Text, Cell::Number),
             (true, true, false) => {
                 Cow::Owned(cell.iter().map(|byte| if *byte == b',' { b'.' } else { *byte }).collect())
             }
             _ => Cow::Borrowed(cell),
         };
-        fast_float2::parse(with_point).map_or(Cell::Text, Cell::Number)
+        let number = fast_float2::parse(with_point).ok();
+        number.or_else(|| clock_s(cell)).map_or(Cell::Text, Cell::Number)
     }
 
     /// Whether a cell holds a number.
@@ -87,6 +88,42 @@ impl Dialect {
         let cut_exponent = matches!(rest, [b'e' | b'E'] | [b'e' | b'E', b'+' | b'-']);
         is_word && (mixed || cut_exponent || rest.first() == Some(&sign) && fraction.first() == Some(&sign))
     }
+}
+
+/// (s) A time of the clock, since midnight or, with a date, since 1970: `12:30:00.5`, `2026-11-29T12:30:00,5Z`, `29.11.2026 12:30:00`.
+pub(super) fn clock_s(cell: &[u8]) -> Option<f64> {
+    let text = std::str::from_utf8(cell).ok().filter(|text| text.contains(':'))?;
+    let (date, clock) = match text.split_once(['T', ' ', '_']) {
+        Some((date, clock)) => (Some(date), clock.trim()),
+        None => (None, text),
+    };
+    // A zone is the same in all lines.
+    let clock = clock.split(['Z', '+', '-']).next()?;
+    let mut parts = clock.split(':');
+    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
+    let whole = |text: &str| (text.len() <= 2).then(|| text.parse::<u8>().ok()).flatten().map(f64::from);
+    let starts_with_digit = seconds.starts_with(|letter: char| letter.is_ascii_digit());
+    let seconds: f64 =
+        seconds.replace(',', ".").parse().ok().filter(|_| starts_with_digit && parts.next().is_none())?;
+    let days = date.map_or(Some(0), |date| day_number(date.as_bytes()))?;
+    Some(86_400.0 * days as f64 + 3600.0 * whole(hours)? + 60.0 * whole(minutes)? + seconds)
+}
+
+/// Days from the first of 1970 to a date, such as `2026-11-29`, `2026/11/29` or `29.11.2026`.
+pub(super) fn day_number(date: &[u8]) -> Option<i64> {
+    let parts = std::str::from_utf8(date).ok()?.split(['-', '/', '.']).map(|part| part.parse::<i64>().ok());
+    let parts: Vec<i64> = parts.collect::<Option<_>>()?;
+    let [year, month, day] = match parts[..] {
+        [year @ 1000..=9999, month, day] => [year, month, day],
+        [day, month, year @ 1000..=9999] if date.contains(&b'.') => [year, month, day],
+        _ => return None,
+    };
+    if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
+        return None;
+    }
+    // Years that begin in March end with the leap day.
+    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    Some(365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + day - 1 - 719_468)
 }
 
 pub(super) fn byte_of(separator: Separator) -> u8 {

@@ -2,6 +2,7 @@
 
 use super::candidate::best;
 use super::cells::{Dialect, decoded};
+use super::lvm::LvmHead;
 use crate::recording::TextOptions;
 use crate::recording::error::Problem;
 use crate::recording::label::{Label, unit_of_cell};
@@ -31,6 +32,8 @@ pub(super) struct Head {
     pub data_offset: u64,
     /// Mean bytes of a line of numbers.
     pub line_bytes: f64,
+    /// What the head of LabVIEW's states.
+    pub lvm: Option<LvmHead>,
 }
 
 impl Head {
@@ -80,6 +83,7 @@ impl Head {
         }
         let data = &content[usize::from(named) + usize::from(units.is_some())..];
         let data_start = data.first().ok_or_else(no_samples)?;
+        candidate.note_clocks(data, &mut labels);
         let bytes: usize = data.iter().map(|line| line.text.len()).sum();
         Ok(Head {
             dialect: candidate.dialect,
@@ -88,6 +92,7 @@ impl Head {
             data_line: data_start.number,
             data_offset: data_start.offset,
             line_bytes: bytes as f64 / data.len() as f64,
+            lvm: None,
         })
     }
 }

@@ -9,6 +9,7 @@ mod candidate;
 mod cells;
 mod end;
 mod head;
+mod lvm;
 mod numbers;
 
 use std::fs::File;
@@ -18,9 +19,11 @@ use self::blocks::Blocks;
 pub(super) use self::cells::decoded;
 use self::end::doubtful_end;
 use self::head::{Head, Line};
+use self::lvm::LvmHead;
 use self::numbers::Numbers;
 use super::assemble::assemble;
 use super::error::Problem;
+use super::rate::{self, StatedRate};
 use super::selection::select;
 use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
@@ -53,10 +56,26 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     }
     let last_line = numbers.line - 1;
     let samples = numbers.finish()?;
-    let recording = assemble(&head.labels, &selection, samples, &[], options)?;
+    let stated: Vec<StatedRate> = head.lvm.iter().map(|lvm| lvm.stated.clone()).collect();
+    let mut recording = assemble(&head.labels, &selection, samples, &stated, options)?;
+    if let (Some(lvm), None) = (&head.lvm, options.sampling_rate_hz) {
+        recording.start_s = lvm.start_s;
+    }
     let reads_last = selection.wanted.last().is_some_and(|column| column + 1 == head.labels.len());
     let doubtful = if reads_last { doubtful_end(&mut file, &head, last_line)? } else { None };
-    Ok(Recording { warnings: doubtful.into_iter().collect(), ..recording })
+    let own_time = match selection.own_time {
+        Some((time, unit_s)) => {
+            // The first block tells the rate. It is compared only: where it cannot be read, the stated rate counts all the same.
+            file.seek(SeekFrom::Start(head.data_offset))?;
+            let mut numbers = Numbers::new(&head, &[time], 0);
+            let times =
+                numbers.read(Blocks::new(&file).next()?).and_then(|()| numbers.finish()).unwrap_or_default();
+            rate::other_than_timed(&head.labels[time], times.first(), unit_s, options)
+        }
+        None => None,
+    };
+    recording.warnings.extend(doubtful.into_iter().chain(own_time));
+    Ok(recording)
 }
 
 /// Reads the first lines.
@@ -81,7 +100,20 @@ fn read_head(file: &mut File, options: &RecordingOptions) -> Result<Head, Proble
         }
         // Lines that are skipped or comments may fill a whole block.
         if end || lines.iter().any(|line| !head::is_passed(line.text)) {
-            return Head::of(&lines, &options.text);
+            return Ok(match LvmHead::of(&lines)? {
+                None => Head::of(&lines, &options.text)?,
+                Some((lvm, length)) => {
+                    let mut lines = lines.split_off(length);
+                    // Rows have no cell for the remarks that the line of names announces.
+                    if let Some(names) = lines.iter_mut().find(|line| !head::is_passed(line.text)) {
+                        let text = names.text.trim_ascii_end();
+                        names.text = text.strip_suffix(b"Comment").map_or(text, <[u8]>::trim_ascii_end);
+                    }
+                    let mut head = Head::of(&lines, &options.text)?;
+                    lvm.complete(&mut head.labels);
+                    Head { lvm: Some(lvm), ..head }
+                }
+            });
         }
     }
 }

@@ -1,0 +1,3 @@
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| meshtone_fuzz::readers::recording("a.mf4", bytes));
