@@ -83,12 +83,16 @@ class MissingTooth:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "missing-tooth"
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -114,6 +118,9 @@ class ToothBreakage:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "tooth-breakage"
@@ -123,6 +130,7 @@ class ToothBreakage:
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -147,6 +155,9 @@ class RootCrack:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "root-crack"
@@ -156,6 +167,7 @@ class RootCrack:
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -187,6 +199,9 @@ class PartialFace:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "partial-face"
@@ -198,6 +213,7 @@ class PartialFace:
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -226,6 +242,9 @@ class ThroughFace:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "through-face"
@@ -236,6 +255,7 @@ class ThroughFace:
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -267,6 +287,9 @@ class Pits:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "pits"
@@ -279,6 +302,7 @@ class Pits:
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -309,6 +333,9 @@ class ToothDestruction:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "tooth-destruction"
@@ -320,6 +347,7 @@ class ToothDestruction:
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -339,6 +367,9 @@ class Wear:
     severity : float, optional
         (-) The severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
         0…1; 1 for a missing tooth. Default: that of the sizes.
+    flank : {'sun', 'ring', 'both'}, optional
+        The flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring. Default:
+        both.
     """
 
     kind: ClassVar[str] = "wear"
@@ -346,6 +377,7 @@ class Wear:
     wheel: str = "gear"
     tooth: int | Sequence[int] | Literal["all"] = "all"
     severity: float | None = None
+    flank: Literal["sun", "ring", "both"] | None = None
 
 
 Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, Pits, ToothDestruction, Wear]

@@ -407,6 +407,265 @@ class GearboxMesh(TypedDict, total=False):
     random_force: float
 
 
+class Teeth(TypedDict, total=False):
+    """The table ``teeth`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    sun : int
+        The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is not
+        simulated, with a warning.
+    planet : int
+        The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is not
+        simulated, with a warning.
+    ring : int
+        The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is not
+        simulated, with a warning.
+    """
+
+    sun: int
+    planet: int
+    ring: int
+
+
+class ProfileShift(TypedDict, total=False):
+    """The table ``profile_shift`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    sun : float
+        (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip.
+    planet : float
+        (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip.
+    ring : float
+        (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip.
+    """
+
+    sun: float
+    planet: float
+    ring: float
+
+
+class Pin(TypedDict, total=False):
+    """The table ``pin`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    stiffness_n_per_m : float
+        (N/m) The stiffness of each pin with the planet's bearing. Allowed: > 0, ≤ 1e15.
+    error_um : sequence of floats
+        (µm) How far each pin stands ahead of its place, positive as the carrier turns about positive z. Allowed:
+        −1000…1000; one a planet.
+    """
+
+    stiffness_n_per_m: float
+    error_um: Sequence[float]
+
+
+class Rim(TypedDict, total=False):
+    """The table ``rim`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    thickness_mm : float
+        (mm) The rim's thickness below the root circle. Allowed: > 0, ≤ 10000.
+    support_n_per_m : float
+        (N/m) The stiffness that holds the ring across its axis. Allowed: > 0, ≤ 1e15.
+    rotation_support_n_per_m : float
+        (N/m) The stiffness against its rotation, along its base circle. Allowed: > 0, ≤ 1e15.
+    waves : int
+        The largest number of waves around the rim with which it bends. Allowed: whole number 2…20.
+    """
+
+    thickness_mm: float
+    support_n_per_m: float
+    rotation_support_n_per_m: float
+    waves: int
+
+
+class SunInertia(TypedDict, total=False):
+    """The table ``sun_inertia`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    mass_kg : float
+        (kg) The mass. Allowed: > 0, ≤ 1e9.
+    polar_inertia_kgm2 : float
+        (kg m²) The moment of inertia about the shaft. Allowed: > 0, ≤ 1e9.
+    transverse_inertia_kgm2 : float
+        (kg m²) The moment of inertia about a diameter. Allowed: > 0, ≤ 1e9.
+    """
+
+    mass_kg: float
+    polar_inertia_kgm2: float
+    transverse_inertia_kgm2: float
+
+
+class PlanetInertia(TypedDict, total=False):
+    """The table ``planet_inertia`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    mass_kg : float
+        (kg) The mass. Allowed: > 0, ≤ 1e9.
+    polar_inertia_kgm2 : float
+        (kg m²) The moment of inertia about the shaft. Allowed: > 0, ≤ 1e9.
+    transverse_inertia_kgm2 : float
+        (kg m²) The moment of inertia about a diameter. Allowed: > 0, ≤ 1e9.
+    """
+
+    mass_kg: float
+    polar_inertia_kgm2: float
+    transverse_inertia_kgm2: float
+
+
+class RingInertia(TypedDict, total=False):
+    """The table ``ring_inertia`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    mass_kg : float
+        (kg) The mass. Allowed: > 0, ≤ 1e9.
+    polar_inertia_kgm2 : float
+        (kg m²) The moment of inertia about the shaft. Allowed: > 0, ≤ 1e9.
+    transverse_inertia_kgm2 : float
+        (kg m²) The moment of inertia about a diameter. Allowed: > 0, ≤ 1e9.
+    """
+
+    mass_kg: float
+    polar_inertia_kgm2: float
+    transverse_inertia_kgm2: float
+
+
+class CarrierInertia(TypedDict, total=False):
+    """The table ``carrier_inertia`` of an entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    mass_kg : float
+        (kg) The mass. Allowed: > 0, ≤ 1e9.
+    polar_inertia_kgm2 : float
+        (kg m²) The moment of inertia about the shaft. Allowed: > 0, ≤ 1e9.
+    transverse_inertia_kgm2 : float
+        (kg m²) The moment of inertia about a diameter. Allowed: > 0, ≤ 1e9.
+    """
+
+    mass_kg: float
+    polar_inertia_kgm2: float
+    transverse_inertia_kgm2: float
+
+
+class GearboxPlanetary(TypedDict, total=False):
+    """An entry ``[[planetary]]`` of a gearbox.
+
+    Attributes
+    ----------
+    name : str
+        The set's name; its wheels are called NAME.sun, NAME.planet1, NAME.ring. Allowed: no other set's.
+    sun : str
+        The name of the sun's shaft, or "fixed".
+    carrier : str
+        The name of the carrier's shaft, or "fixed".
+    ring : str
+        The name of the ring's shaft, or "fixed". Allowed: one member at most is fixed.
+    teeth : Teeth
+        The tooth counts of sun, planets and ring. Allowed: teeth that fit one another at one centre distance.
+    planets : int
+        The number of planets, equally spaced, the first along x. Allowed: whole number 1…8; teeth that fit; room beside
+        one another.
+    planet_angles_deg : sequence of floats
+        (°) Where the planets stand instead, from x towards y. Allowed: −360…360; one a planet; teeth that fit.
+    module_mm : float
+        (mm) The module of both wheels, of helical ones in the normal section. Allowed: > 0, ≤ 100.
+    pressure_angle_deg : float
+        (°) The pressure angle at the pitch circle, of helical wheels in the normal section. Allowed: 10…35; no teeth
+        pointed below full height.
+    face_width_mm : float
+        (mm) The face width of all wheels. Allowed: > 0, ≤ 10000.
+    profile_shift : ProfileShift
+        (-) The profile shift coefficients of sun, planets and ring.
+    tip_chamfer_mm : float
+        (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module.
+    active_profile_shortening : float
+        (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
+        end. Allowed: 0…0.5.
+    flank_relief : FlankRelief
+        The relief of the flanks near all tips, as a gap in µm.
+    backlash_mm : float
+        (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least that of a given centre
+        distance.
+    foundation : Foundation
+        The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
+        Duverger (2004).
+    din_grade : int
+        The grade of DIN 3961 of the deviations of all wheels, 1 (best) to 12; 0: ideal teeth. Allowed: whole number
+        0…12.
+    iso_class : int
+        The class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none. Allowed: whole
+        number 0…11; not beside din_grade.
+    damping_ratio : float
+        (-) The damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh
+        stiffness. Allowed: ≥ 0, < 1.
+    friction : float
+        (-) The coefficient of friction of the flanks; 0 for frictionless ones. Allowed: 0…0.5.
+    random_force : float
+        (-) The size of the random force across the line of action of every mesh; 0 for none. Allowed: 0…10.
+    pin : Pin
+        The pins that hold the planets.
+    rim : Rim
+        The rim of the ring and its support.
+    sun_support_n_per_m : float
+        (N/m) The stiffness that holds the sun across its axis; a floating sun has 1e3. Allowed: > 0, ≤ 1e15.
+    carrier_support_n_per_m : float
+        (N/m) The stiffness that holds the carrier across its axis. Allowed: > 0, ≤ 1e15.
+    coupling_stiffness_nm_per_rad : float
+        (N m/rad) The torsional stiffness between a member and its shaft, or the ground where sun or carrier is fixed.
+        Allowed: > 0, ≤ 1e15.
+    support_damping_ratio : float
+        (-) The damping ratio of pins, supports, rim and couplings. Allowed: ≥ 0, < 1.
+    sun_inertia : SunInertia
+        The sun's mass and inertia.
+    planet_inertia : PlanetInertia
+        The mass and inertia of each planet.
+    ring_inertia : RingInertia
+        The ring's mass and inertia.
+    carrier_inertia : CarrierInertia
+        The carrier's mass and inertia without planets.
+    """
+
+    name: str
+    sun: str
+    carrier: str
+    ring: str
+    teeth: Teeth
+    planets: int
+    planet_angles_deg: Sequence[float]
+    module_mm: float
+    pressure_angle_deg: float
+    face_width_mm: float
+    profile_shift: ProfileShift
+    tip_chamfer_mm: float
+    active_profile_shortening: float
+    flank_relief: FlankRelief
+    backlash_mm: float
+    foundation: Foundation
+    din_grade: int
+    iso_class: int
+    damping_ratio: float
+    friction: float
+    random_force: float
+    pin: Pin
+    rim: Rim
+    sun_support_n_per_m: float
+    carrier_support_n_per_m: float
+    coupling_stiffness_nm_per_rad: float
+    support_damping_ratio: float
+    sun_inertia: SunInertia
+    planet_inertia: PlanetInertia
+    ring_inertia: RingInertia
+    carrier_inertia: CarrierInertia
+
+
 class BearingDefect(TypedDict, total=False):
     """An entry of ``defect`` of an entry ``[[bearing]]`` of a gearbox.
 
@@ -661,11 +920,12 @@ class GearboxSensor(TypedDict, total=False):
     ----------
     at : str
         Where it sits: "SHAFT:AT" on the seat of the bearing there, "shaft:SHAFT:AT" on the shaft itself, "housing:[x,
-        y, z]" in mm on the housing. Ignored by linear, published.
+        y, z]" in mm on the housing, "ring:SET:DEGREES" on the ring of a planetary set, with ":far" behind it away from
+        the rim. Ignored by linear, published.
     name : str
         The sensor's name; its signal is the channel ``NAME_g``. Allowed: a letter, then letters, digits and ``_``; no
         other channel's.
-    direction : {'vertical', 'horizontal', 'axial'}
+    direction : {'radial', 'tangential', 'vertical', 'horizontal', 'axial'}
         The direction it measures in.
     resonance_hz : float
         (Hz) The natural frequency of the sensor on its mount. Allowed: > 0, ≤ 10000000.
@@ -691,7 +951,7 @@ class GearboxSensor(TypedDict, total=False):
 
     at: str
     name: str
-    direction: Literal["vertical", "horizontal", "axial"]
+    direction: Literal["radial", "tangential", "vertical", "horizontal", "axial"]
     resonance_hz: float
     resonance_damping_ratio: float
     noise_density_g_per_rthz: float

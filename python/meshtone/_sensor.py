@@ -50,7 +50,7 @@ class Sensor:
     at : {'support', 'pinion-support', 'gear-support', 'wheels'}, optional
         Where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the wheels under
         linear and published. Default: "pinion-support". Ignored by linear, published.
-    direction : {'vertical', 'horizontal', 'axial'}, optional
+    direction : {'radial', 'tangential', 'vertical', 'horizontal', 'axial'}, optional
         The direction it measures in; under contact axial only at the wheels. Default: "vertical".
     resonance_hz : float, optional
         (Hz) The natural frequency of the sensor on its mount. Allowed: > 0, ≤ 10000000. Default: none.
@@ -86,7 +86,7 @@ class Sensor:
 
     name: str | None = None
     at: Literal["support", "pinion-support", "gear-support", "wheels"] | None = None
-    direction: Literal["vertical", "horizontal", "axial"] | None = None
+    direction: Literal["radial", "tangential", "vertical", "horizontal", "axial"] | None = None
     resonance_hz: float | None = None
     resonance_damping_ratio: float | None = None
     noise_density_g_per_rthz: float | None = None

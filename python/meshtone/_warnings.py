@@ -21,7 +21,7 @@ class SignalWarning:
     ----------
     code : str
         What it is about: ``nothing-synchronous``, ``foreign-tones``, ``missing-pulses``, ``doubled-pulse``, ``profile-ends-early``,
-        ``mesh-tone-fades``, ``stronger-neighbour``, ``mesh-order-near-nyquist``, ``not-averaged``, ``wheel-without-average``, of sensor and recorder ``clipped``,
+        ``mesh-tone-fades``, ``stronger-neighbour``, ``mesh-order-near-nyquist``, ``not-averaged``, ``wheel-without-average``, ``planets-found``, of sensor and recorder ``clipped``,
         ``biased``, ``dropped-out``, ``repeated-block`` and ``coarse-steps``, or a quantity that is stated wrongly, as
         :class:`~meshtone.signal.Mismatch` names it; of a diagnosis ``outside``, ``mismatch`` and others.
     message : str

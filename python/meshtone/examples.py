@@ -4,7 +4,7 @@ Examples
 --------
 >>> from meshtone import examples
 >>> examples.tooth_breakage().fault
-ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=3.0, wheel='gear', tooth=1, severity=None)
+ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=3.0, wheel='gear', tooth=1, severity=None, flank=None)
 >>> sorted(examples.all())
 ['healthy', 'missing-tooth', 'partial-face', 'pits', 'root-crack', 'through-face', 'tooth-breakage', 'tooth-destruction', 'wear']
 """

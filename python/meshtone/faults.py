@@ -6,11 +6,11 @@ may have ``severity``, from 0, none, to 1, the largest that the tooth allows: :m
 
 >>> from meshtone import MissingTooth, RootCrack, ToothBreakage
 >>> MissingTooth(wheel="pinion", tooth=3)
-MissingTooth(wheel='pinion', tooth=3, severity=None)
+MissingTooth(wheel='pinion', tooth=3, severity=None, flank=None)
 >>> RootCrack(depth_mm=1.0, tooth=[1, 2])
-RootCrack(depth_mm=1.0, angle_deg=None, length_mm=None, wheel='gear', tooth=[1, 2], severity=None)
+RootCrack(depth_mm=1.0, angle_deg=None, length_mm=None, wheel='gear', tooth=[1, 2], severity=None, flank=None)
 >>> ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0)
-ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None, wheel='gear', tooth=1, severity=None)
+ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None, wheel='gear', tooth=1, severity=None, flank=None)
 """
 
 from __future__ import annotations

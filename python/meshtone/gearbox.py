@@ -11,6 +11,7 @@ from ._keys import (
     GearboxHousing,
     GearboxMesh,
     GearboxOperation,
+    GearboxPlanetary,
     GearboxSensor,
     GearboxShaft,
     GearboxSolver,
@@ -28,10 +29,11 @@ _Table = Mapping[str, Any]
 def Gearbox(
     *,
     shafts: Sequence[GearboxShaft],
-    wheels: Sequence[GearboxWheel],
-    meshes: Sequence[GearboxMesh],
     bearings: Sequence[GearboxBearing],
     operation: GearboxOperation,
+    wheels: Sequence[GearboxWheel] = (),
+    meshes: Sequence[GearboxMesh] = (),
+    planetary: Sequence[GearboxPlanetary] = (),
     housing: GearboxHousing | None = None,
     faults: Sequence[Union[Fault, _Table]] = (),
     sensors: Sequence[Union[Sensor, GearboxSensor]] = (),
@@ -52,6 +54,8 @@ def Gearbox(
         ``name``, ``shaft``, ``at``, ``teeth``, ``face_width_mm`` and so on of each.
     meshes : sequence of dict
         ``wheels``, the names of the driving and of the driven one, ``module_mm`` and so on of each.
+    planetary : sequence of dict
+        ``name``, ``sun``, ``carrier``, ``ring``, ``teeth`` and so on of each planetary set.
     bearings : sequence of dict
         ``shaft``, ``at`` and so on of each.
     operation : dict
@@ -99,12 +103,12 @@ def Gearbox(
     return Scenario._wrap(gearbox_of(dict(locals()), {}))
 
 
-def gearbox_template(rig: Literal["phm2009-spur", "phm2009-helical", "uconn", "tecnalia"] | None = None) -> str:
+def gearbox_template(rig: Literal["phm2009-spur", "phm2009-helical", "uconn", "tecnalia", "nrel-grc", "planetary-lab"] | None = None) -> str:
     """A commented gearbox to start from, as a scenario file: :meth:`Scenario.from_toml` reads it.
 
     Parameters
     ----------
-    rig : {'phm2009-spur', 'phm2009-helical', 'uconn', 'tecnalia'}, optional
+    rig : {'phm2009-spur', 'phm2009-helical', 'uconn', 'tecnalia', 'nrel-grc', 'planetary-lab'}, optional
         A rig of which what is published stands in the file, with what has to be assumed marked so; an example by default.
     """
     return _core.gearbox_template(rig)

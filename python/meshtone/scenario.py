@@ -85,7 +85,7 @@ pinion_speed_hz=40.0, din_grade=7)
         --------
         >>> from meshtone import Scenario, gearbox_template, template
         >>> Scenario.from_toml(template("missing-tooth")).fault
-        MissingTooth(wheel='gear', tooth=1, severity=None)
+        MissingTooth(wheel='gear', tooth=1, severity=None, flank=None)
         >>> Scenario.from_toml(gearbox_template("phm2009-spur"))
         <Gearbox of 3 shafts and meshes z1-z2, z3-z4>
         """
@@ -165,7 +165,7 @@ pinion_speed_hz=40.0, din_grade=7)
         25.0
         >>> gearbox = Scenario.from_toml(gearbox_template())
         >>> gearbox.copy(fault=MissingTooth(wheel="z3"), solver={"duration_s": 0.5}).fault
-        MissingTooth(wheel='z3', tooth=1, severity=None)
+        MissingTooth(wheel='z3', tooth=1, severity=None, flank=None)
         """
         if not self._native.is_pair:
             return Scenario._wrap(gearbox_of(dict(changes), self.sections))
@@ -222,7 +222,7 @@ pinion_speed_hz=40.0, din_grade=7)
         >>> cracked = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40,
         ...                    brake_torque_nm=10, fault=RootCrack(severity=0.5))
         >>> cracked.with_own_sizes().fault  # doctest: +ELLIPSIS
-        RootCrack(depth_mm=2.128..., angle_deg=45.0, length_mm=None, wheel='gear', tooth=1, severity=None)
+        RootCrack(depth_mm=2.128..., angle_deg=45.0, length_mm=None, wheel='gear', tooth=1, severity=None, flank=None)
         """
         return Scenario._wrap(self._native.with_own_sizes())
 
@@ -392,7 +392,7 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
     return sections
 
 
-GEARBOX_LISTS = {"shafts": "shaft", "wheels": "wheel", "meshes": "mesh", "bearings": "bearing"}
+GEARBOX_LISTS = {"shafts": "shaft", "wheels": "wheel", "meshes": "mesh", "planetary": "planetary", "bearings": "bearing"}
 """The arguments that are the lists of a gearbox, with the names of their sections."""
 GEARBOX_TABLES = ("operation", "housing", "solver")
 """The arguments that are its tables."""
@@ -429,7 +429,7 @@ def gearbox_of(arguments: Mapping[str, Any], sections: dict[str, Any]) -> _core.
         given = arguments["sensors"] or ()
         sections["sensor"] = [_plain(one) if isinstance(one, Mapping) else _plain(sections_of([one])[0]) for one in given]
     # What is left out is at its default: a file states no empty lists of these.
-    optional = {name: sections.pop(name) for name in ("fault", "sensor") if name in sections}
+    optional = {name: sections.pop(name) for name in ("fault", "sensor", "planetary", "wheel", "mesh") if name in sections}
     return _core.Scenario({**sections, **{name: entries for name, entries in optional.items() if entries}})
 
 

@@ -590,7 +590,7 @@ class Simulation:
         """
         channel = chosen_channel(self.scenario, channel)
         bands, _ = regular_part(sidebands, None)
-        parts = _core.process_simulated(native_scenario(self.scenario), self[channel], None, self.start_s, bands)
+        parts = _core.process_simulated(native_scenario(self.scenario), self[channel], channel, None, self.start_s, bands)
         return train_record(parts, channel)
 
     def plot(self) -> Figure:
@@ -955,7 +955,7 @@ def _process(
     of = wheel_of(scenario, wheel)
     bands, _ = regular_part(sidebands, None)
     values = np.ascontiguousarray(signal, dtype=np.float64)
-    parts = _core.process_simulated(scenario._native, values, of.name, start_s, bands)
+    parts = _core.process_simulated(scenario._native, values, channel, of.name, start_s, bands)
     warn_of_signal(typed(parts["warnings"]))
     return Record(parts, teeth=of.teeth, name=channel)
 

@@ -66,8 +66,13 @@ pub fn controls() -> Value {
         let scenario = Scenario::from_toml(toml).ok()?;
         Some(json!({ "name": name, "title": title, "scenario": Value::Object(without_defaults(&scenario)) }))
     };
+    // A pair has no planets.
+    let of_pair = |mut section: SectionDescription| {
+        section.keys.retain(|key| section.name != "fault" || key.key != "flank");
+        section
+    };
     json!({
-        "sections": sections().iter().map(section_json).collect::<Vec<_>>(),
+        "sections": sections().into_iter().map(of_pair).map(|section| section_json(&section)).collect::<Vec<_>>(),
         "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
         "presets": presets().into_iter().filter_map(preset).collect::<Vec<_>>(),
         "version": env!("CARGO_PKG_VERSION"),

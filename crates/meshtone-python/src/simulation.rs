@@ -319,16 +319,17 @@ fn no_meshes() -> PyErr {
 /// A simulated signal, taken to the average over a revolution of a wheel's shaft and to indicators; or, without the name of a wheel, to those
 /// of all.
 #[pyfunction]
-#[pyo3(signature = (scenario, signal, wheel, start_s, sidebands=None))]
+#[pyo3(signature = (scenario, signal, channel, wheel, start_s, sidebands=None))]
 pub fn process_simulated<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     signal: Signal<'py>,
+    channel: &str,
     wheel: Option<&str>,
     start_s: f64,
     sidebands: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (signal, train) = (samples(&signal)?, train(scenario)?);
+    let (signal, train) = (samples(&signal)?, train(scenario)?.at_sensor(&scenario.0, channel));
     let turning = TrainTurning::of_simulated(&scenario.0, start_s, signal.len()).map_err(value_error)?;
     let sampling_rate_hz = scenario.0.time_grid().sampling_rate_hz;
     let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };

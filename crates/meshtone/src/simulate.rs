@@ -6,6 +6,7 @@ mod laws;
 mod machine;
 mod measured;
 mod meshes;
+mod on_ring;
 pub(crate) mod random_force;
 mod severities;
 mod wheels;
@@ -181,6 +182,7 @@ pub(crate) fn stages_with(
     known: &KnownModes,
 ) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
+    let scenario = scenario.with_members();
     let mut warnings_of_scenario = scenario.validate_within(memory_limit)?;
     warnings_of_scenario.extend(scenario.ignored_by_model());
     let scenario = scenario.without_ignored_keys();

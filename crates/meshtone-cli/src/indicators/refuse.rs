@@ -106,7 +106,9 @@ pub fn refuse(path: &Path, what: &str, subject: RefusedInput, error: &SignalErro
 /// help depends on both. It names options of the program, which the library's errors cannot.
 fn help(subject: RefusedInput, error: &SignalError) -> Option<String> {
     use RefusedInput::{Measured, PulseTimes, Simulated, Tachometer};
-    use SignalError::{Constant, MeshOrderBeyondNyquist, PulseGap, SpeedMismatch, TooFew, TooFewRevolutions};
+    use SignalError::{
+        Constant, MeshOrderBeyondNyquist, PulseGap, SpeedMismatch, TooFew, TooFewPassages, TooFewRevolutions,
+    };
 
     let help = match (error, subject) {
         (Constant { .. }, Tachometer) => {
@@ -120,10 +122,11 @@ fn help(subject: RefusedInput, error: &SignalError) -> Option<String> {
         (TooFewRevolutions { .. }, Simulated { in_segments: true }) => {
             "state fewer --revolutions: a simulation keeps as many revolutions of a wheel as its mate has teeth, or less"
         }
-        (TooFewRevolutions { .. }, Simulated { in_segments: false }) => {
+        (TooFewRevolutions { .. } | TooFewPassages { .. }, Simulated { in_segments: false }) => {
             "simulate for longer: raise solver.duration_s, or the revolutions under [solver], in the scenario"
         }
-        (TooFewRevolutions { .. }, _) => {
+        (TooFewPassages { .. }, Simulated { .. }) => "state more --revolutions, or none",
+        (TooFewRevolutions { .. } | TooFewPassages { .. }, _) => {
             "record for longer, or check --shaft-hz, --pulses-per-rev, --revolutions and the sampling rate"
         }
         (MeshOrderBeyondNyquist { .. }, Measured { speed_hz, by }) => {

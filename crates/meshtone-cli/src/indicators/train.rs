@@ -80,7 +80,7 @@ impl Turned {
     /// Takes shafts and angles from the scenario of what was simulated.
     fn simulated(input: &Input, scenario_toml: &str) -> Result<Self, Failure> {
         let form = simulated_form(input, scenario_toml)?;
-        let train = train_of(&form)?;
+        let train = train_of(&form)?.at_sensor(&form, &input.channel.name);
         let samples = input.channel.samples.len();
         check_rate(input, form.time_grid().sampling_rate_hz)?;
         let turning = TrainTurning::of_simulated(&form, input.start_s, samples)

@@ -135,6 +135,43 @@ fn faults_of_templates_show() {
     }
 }
 
+/// Every wheel of a planetary set has an average: the simulation says where the planets stand; by the speed of a shaft it is found, and said.
+#[test]
+fn indicators_of_a_planetary_set() {
+    let workplace = Workplace::new();
+    workplace.succeeds(&["init", "gearbox", "--rig", "planetary-lab", "-o", "set.toml"]);
+    let text = String::from_utf8(workplace.read("set.toml")).unwrap();
+    let changes = [
+        ("teeth = { sun = 31, planet = 31, ring = 95 }", "teeth = { sun = 20, planet = 25, ring = 70 }"),
+        ("profile_shift = { sun = 0.32, planet = 0.32, ring = -0.0611 }", ""),
+        ("50_000.0", "10_000.0"),
+        ("speed_wander_percent = 0.03", ""),
+    ];
+    let text = changes.iter().fold(text, |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    });
+    workplace.write("set.toml", text);
+    workplace.succeeds(&["simulate", "set.toml", "-o", "out", "--no-panel", "-q"]);
+    let by_speed = ["--scenario", "set.toml", "--shaft", "output", "--shaft-hz", "4.4444444444"];
+    for options in [&[][..], &by_speed] {
+        let command = ["indicators", "out", "-o", "shown", "--no-figure", "-q"];
+        workplace.succeeds(&[&command[..], options].concat());
+        let shown: Value = serde_json::from_slice(&workplace.read("shown/indicators.json")).unwrap();
+        let of = |list: &str, key: &str| -> Vec<String> {
+            shown[list]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|of| of[key].as_str().unwrap_or_default().to_owned())
+                .collect()
+        };
+        assert_eq!(of("records", "wheel"), ["p.sun", "p.planet1", "p.planet2", "p.planet3", "p.ring"]);
+        let is_found = of("warnings", "code").iter().any(|code| code == "planets-found");
+        assert_eq!(is_found, !options.is_empty(), "{}", shown["warnings"]);
+    }
+}
+
 /// Every shaft of a simulation, and of a recording with a tachometer on one shaft and a bearing's tone.
 #[test]
 fn indicators_of_every_shaft() {

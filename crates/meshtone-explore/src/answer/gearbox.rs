@@ -218,6 +218,7 @@ impl GearboxState {
                 "name": shaft.name,
                 "x_mm": layout.positions_m[number][0] * 1e3,
                 "y_mm": layout.positions_m[number][1] * 1e3,
+                "start_mm": shaft.start_mm,
                 "length_mm": shaft.length_mm,
                 "radius_mm": shaft.radius_at_mm(0.5),
                 "speed_hz": tones.shafts[number].1,
@@ -232,7 +233,10 @@ impl GearboxState {
             json!({
                 "name": wheel.name,
                 "shaft": of,
-                "z_mm": wheel.at * gearbox.shafts()[of].length_mm,
+                "x_mm": layout.positions_m[of][0] * 1e3,
+                "y_mm": layout.positions_m[of][1] * 1e3,
+                "z_mm": layout.z_mm(gearbox, number),
+                "internal": layout.is_ring(number),
                 "pitch_radius_mm": module_mm * f64::from(wheel.teeth) / 2.0,
                 "face_width_mm": wheel.face_width_mm,
                 "teeth": wheel.teeth,
@@ -244,7 +248,7 @@ impl GearboxState {
             json!({
                 "name": bearing.seat_name(),
                 "shaft": shaft,
-                "z_mm": bearing.at * gearbox.shafts()[shaft].length_mm,
+                "z_mm": gearbox.shafts()[shaft].z_mm(bearing.at),
                 "rolling": bearing.element().is_some(),
                 "damaged": !bearing.defect.is_empty(),
             })

@@ -4,9 +4,9 @@ import { Control, at, element, keyOf, words } from "./controls.js";
 
 const byId = (id) => document.getElementById(id);
 /** Sections in the order in which they are shown. */
-const SECTIONS = [["operation", "Operation", true], ["fault", "Damage", true], ["wheel", "Wheels"], ["mesh", "Meshes"], ["shaft", "Shafts"],
+const SECTIONS = [["operation", "Operation", true], ["fault", "Damage", true], ["wheel", "Wheels"], ["mesh", "Meshes"], ["planetary", "Planetary sets"], ["shaft", "Shafts"],
   ["bearing", "Bearings"], ["housing", "Housing"], ["sensor", "Sensors"], ["solver", "Solver"], ["", "Seed and material"]];
-const LISTS = ["shaft", "wheel", "mesh", "bearing", "fault", "sensor"];
+const LISTS = ["shaft", "wheel", "mesh", "planetary", "bearing", "fault", "sensor"];
 /** Kinds of keys that have a control; the rest is in the scenario as text. */
 const SHOWN_KINDS = ["number", "whole", "name", "text", "teeth"];
 /** Keys of a bearing that state its size, and all that only rolling bearings have. */
@@ -203,7 +203,9 @@ export class GearboxControls {
       select.addEventListener("change", () => set(select.value));
       return select;
     };
-    const wheels = full.wheel.map(({ name }) => name);
+    const ofSet = ({ name, planets, planet_angles_deg: angles = [] }) =>
+      ["sun", ...Array.from({ length: angles.length || planets }, (_, index) => `planet${index + 1}`), "ring"].map((member) => `${name}.${member}`);
+    const wheels = [...full.wheel.map(({ name }) => name), ...full.planetary.flatMap(ofSet)];
     const kinds = this.#catalogue.kinds.map(({ name }) => name);
     const kindOf = (name) => this.#catalogue.kinds.find((kind) => kind.name === name);
     const example = (wheel, kind) => ({ wheel, kind, tooth: kindOf(kind).example.tooth ?? 1, ...(kindOf(kind).sizes.length ? { severity: 0.5 } : {}) });
@@ -216,7 +218,7 @@ export class GearboxControls {
       const remove = element("button", { type: "button", "aria-label": `Remove damage ${index + 1}` }, "Remove");
       remove.addEventListener("click", () => put(index, null));
       const ofKind = fault.severity === undefined ? kind.keys : [];
-      const keys = [...places.filter(({ key }) => key === "tooth" || (key === "severity" && fault.severity !== undefined)), ...ofKind];
+      const keys = [...places.filter(({ key }) => key === "tooth" || (key === "severity" && fault.severity !== undefined) || (key === "flank" && /\.planet\d+$/.test(fault.wheel))), ...ofKind];
       return element("fieldset", {}, element("legend", {}, `Damage ${index + 1}`), element("div", { className: "row" },
         choice(`Wheel of damage ${index + 1}`, wheels, fault.wheel, (wheel) => this.set(["fault", index, "wheel"], wheel, "full")),
         choice(`Kind of damage ${index + 1}`, kinds, fault.kind, (name) => put(index, example(fault.wheel, name))), remove),

@@ -56,7 +56,7 @@ export class Train {
   }
 
   #fromTheFront({ shafts, wheels, meshes }, chosen, chosenMesh) {
-    const centre = ({ shaft }) => [shafts[shaft].x_mm, -shafts[shaft].y_mm];
+    const centre = ({ x_mm: x, y_mm: y }) => [x, -y];
     const size = Math.max(...wheels.map(({ pitch_radius_mm: radius }) => radius));
     const circles = wheels.map((wheel) => {
       const { name, teeth, damaged, pitch_radius_mm: radius } = wheel;
@@ -81,7 +81,8 @@ export class Train {
     });
     const points = meshes.map(({ name, wheels: [a, b], frequency_hz: hz }) => {
       const [from, to] = [centre(wheels[a]), centre(wheels[b])];
-      const part = wheels[a].pitch_radius_mm / (wheels[a].pitch_radius_mm + wheels[b].pitch_radius_mm);
+      const mate = (wheels[b].internal ? -1 : 1) * wheels[b].pitch_radius_mm;
+      const part = wheels[a].pitch_radius_mm / (wheels[a].pitch_radius_mm + mate);
       const [x, y] = [0, 1].map((axis) => from[axis] + part * (to[axis] - from[axis]));
       return choosable("mesh", name === chosenMesh, `mesh ${name}, ${Number(hz.toPrecision(4))} Hz`, () => this.#chooseMesh(name),
         made("circle", { cx: x, cy: y, r: size * 0.08 }));
@@ -91,21 +92,22 @@ export class Train {
   }
 
   #fromAbove({ shafts, wheels, bearings }, chosen, chosenBearing) {
-    const size = Math.max(...shafts.map(({ length_mm: length }) => length));
-    const lines = shafts.map(({ name, x_mm: x, radius_mm: radius, length_mm: length }) =>
-      made("g", { class: "shaft" }, made("rect", { x: 0, y: x - radius, width: length, height: 2 * radius }), textAt(length / 2, x, size * 0.035, name)));
+    const first = Math.min(...shafts.map(({ start_mm: start }) => start));
+    const last = Math.max(...shafts.map(({ start_mm: start, length_mm: length }) => start + length));
+    const size = last - first;
+    const lines = shafts.map(({ name, x_mm: x, radius_mm: radius, start_mm: start, length_mm: length }) =>
+      made("g", { class: "shaft" }, made("rect", { x: start, y: x - radius, width: length, height: 2 * radius }), textAt(start + length / 2, x, size * 0.035, name)));
     const supports = bearings.map(({ name, shaft, z_mm: z, rolling, damaged }) => {
       const { x_mm: x, radius_mm: radius } = shafts[shaft];
       const square = made("rect", { class: "bearing", x: z - radius * 0.5, y: x - radius * 1.6, width: radius, height: radius * 3.2 });
       if (!rolling) return square;
       return choosable(`rolling${damaged ? " damaged" : ""}`, name === chosenBearing, `rolling bearing ${name}${damaged ? ", damaged" : ""}`, () => this.#chooseBearing(name), square);
     });
-    const faces = wheels.map(({ name, shaft, damaged, teeth, z_mm: z, face_width_mm: width, pitch_radius_mm: radius }) => {
-      const x = shafts[shaft].x_mm;
+    const faces = wheels.map(({ name, damaged, teeth, x_mm: x, z_mm: z, face_width_mm: width, pitch_radius_mm: radius }) => {
       return choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name} from above, ${teeth} teeth`, () => this.#chooseWheel(name),
         made("rect", { class: "body", x: z - width / 2, y: x - radius, width, height: 2 * radius }), textAt(z, x - radius * 0.6, size * 0.045, name));
     });
-    const corners = [[0, 0], [size, 0], ...wheels.flatMap(({ shaft, pitch_radius_mm: radius }) => [-1, 1].map((sign) => [0, shafts[shaft].x_mm + sign * radius]))];
+    const corners = [[first, 0], [last, 0], ...wheels.flatMap(({ x_mm: x, pitch_radius_mm: radius }) => [-1, 1].map((sign) => [first, x + sign * radius]))];
     fit(this.#above, corners, [...lines, ...faces, ...supports]);
   }
 }

@@ -131,11 +131,11 @@ struct DrawnWheel<'a> {
 fn drawn_wheels<'a>(gearbox: &'a Scenario, stages: &Stages) -> Vec<DrawnWheel<'a>> {
     let layout = &stages.layout;
     let drawn = |(number, wheel): (usize, &'a ScenarioWheel)| {
-        let ScenarioWheel { name, at, teeth, face_width_mm, .. } = wheel;
+        let ScenarioWheel { name, teeth, face_width_mm, .. } = wheel;
         let (mesh, _) = layout.mesh_of(number)?;
         let shaft = layout.shaft_of_wheel[number];
         let [x, y] = layout.positions_m[shaft].map(|m| m * 1e3);
-        let z = at * gearbox.shafts()[shaft].length_mm;
+        let z = layout.z_mm(gearbox, number);
         let radius = layout.gears[mesh].transverse_module_mm() * f64::from(*teeth) / 2.0;
         let is_damaged = gearbox.faults.iter().any(|fault| fault.wheel == *name);
         Some(DrawnWheel { name, x, y, z, radius, width: *face_width_mm, is_damaged })
@@ -192,23 +192,27 @@ fn draw_above(
     wheels: &[DrawnWheel],
 ) {
     let layout = &stages.layout;
-    let longest = gearbox.shafts().iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
+    let ends_mm = |at: f64| gearbox.shafts().iter().map(move |shaft| shaft.z_mm(at));
+    let (first, last) =
+        (ends_mm(0.0).fold(f64::INFINITY, f64::min), ends_mm(1.0).fold(f64::NEG_INFINITY, f64::max));
+    let longest = last - first;
     let [low, high] = extent(wheels, |wheel| wheel.x);
     let margin = 0.05 * (high - low);
-    let (z, x) = ([-0.12 * longest, 1.12 * longest], [low - margin, high + margin]);
+    let (z, x) = ([first - 0.12 * longest, last + 0.12 * longest], [low - margin, high + margin]);
     let axes = Axes::titled(canvas, area, z, x, "From above");
     axes.x_axis(canvas, &Ticks::nice(z[0], z[1], 10), "z (mm)");
     axes.y_axis(canvas, &Ticks::nice(x[0], x[1], 6), "x (mm)", NAME_LEFT);
     for (shaft, [x_m, _]) in gearbox.shafts().iter().zip(&layout.positions_m) {
         let (x, radius, half) = (x_m * 1e3, shaft.radius_at_mm(0.5), shaft.length_mm / 2.0);
-        canvas.outlined(&rectangle(&axes, (half, x), (half, radius)), SHAFT, Fill::solid(colour::WHITE));
+        let middle = shaft.z_mm(0.5);
+        canvas.outlined(&rectangle(&axes, (middle, x), (half, radius)), SHAFT, Fill::solid(colour::WHITE));
         let coupled = match shaft.couples_to.name() {
             "nothing" => String::new(),
             to => format!(", {to}"),
         };
         let style = TextStyle::NOTE.coloured(colour::MUTED).with_halo();
         // Above the bearings.
-        let at = (axes.px(-0.11 * longest), axes.py(x) - BEARING_PX - 5.0);
+        let at = (axes.px(shaft.start_mm - 0.11 * longest), axes.py(x) - BEARING_PX - 5.0);
         canvas.text(at, &format!("{}{coupled}", shaft.name), style);
     }
     for wheel in wheels {
@@ -220,7 +224,7 @@ fn draw_above(
     }
     for (bearing, shaft) in gearbox.bearings().iter().zip(&layout.shaft_of_bearing) {
         let (shaft, [x_m, _]) = (&gearbox.shafts()[*shaft], layout.positions_m[*shaft]);
-        let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
+        let (x, y) = axes.at(shaft.z_mm(bearing.at), x_m * 1e3);
         let (top, bottom) = (y - BEARING_PX, y + BEARING_PX);
         let corners = [(x - 5.0, top), (x + 5.0, top), (x + 5.0, bottom), (x - 5.0, bottom)];
         canvas.outlined(&corners, OUTLINE, Fill::hatch(colour::INK));

@@ -8,8 +8,8 @@ use super::severity::SoundTooth;
 use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyDescription, KeyKind, Keys, NoFiles, Range, check_keys, commented_rows, describe,
-    describe_from, keys, read_keys, read_rows, require, rows_but, write_keys, write_rows,
+    Check, KeyDescription, KeyKind, Keys, NoFiles, Range, by_name, check_keys, commented_rows, describe,
+    describe_from, keys, read_rows, require, rows_but, write_keys, write_rows,
 };
 use crate::wheel::{NamedGears, Teeth, WheelName};
 
@@ -26,7 +26,23 @@ pub struct Fault {
     /// (-) How severe that is, from 0, none, to 1, the largest that the tooth allows: where it is given, the sizes follow from
     /// it, and those in [`Self::damage`] do not count. None where they do.
     pub severity: Option<f64>,
+    /// Of a planet, in which of its two meshes the damage is; none for both, and on any other wheel.
+    pub flank: Option<FaultFlank>,
 }
+
+/// In which mesh a planet's tooth is damaged: one of its flanks meets the sun, the other one the ring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FaultFlank {
+    /// On the flank that meets the sun.
+    Sun,
+    /// On the flank that meets the ring.
+    Ring,
+    /// On both, alike.
+    #[default]
+    Both,
+}
+
+by_name!(FaultFlank, ["sun" => FaultFlank::Sun, "ring" => FaultFlank::Ring, "both" => FaultFlank::Both]);
 
 impl Fault {
     /// Damage to a tooth, or to several alike.
@@ -44,7 +60,7 @@ impl Fault {
     /// assert_eq!(Fault::new(WheelName::Gear, vec![5, 6], MissingTooth).tooth.numbers(38), [5, 6]);
     /// ```
     pub fn new(wheel: impl Into<String>, tooth: impl Into<FaultyTeeth>, damage: impl Into<Damage>) -> Self {
-        Self { wheel: wheel.into(), tooth: tooth.into(), damage: damage.into(), severity: None }
+        Self { wheel: wheel.into(), tooth: tooth.into(), damage: damage.into(), severity: None, flank: None }
     }
 
     /// The same fault with a severity in place of its sizes.
@@ -135,7 +151,12 @@ keys! {
     severity "-" "the severity of the damage, instead of its sizes: 0 is none, 1 the largest that the tooth allows"
         .otherwise("that of the sizes").range(Range::from_to(0.0, 1.0)).rule("1 for a missing tooth")
         .alternative("0.4");
+    flank "" "the flank of a planet's tooth that is damaged, that which meets the sun or that which meets the ring"
+        .otherwise("both").rule("for planets alone").alternative("\"sun\"");
 }
+
+/// The key that a pair's fault does not have: the one for planets.
+const OF_PLANETS: &[&str] = &["flank"];
 
 impl Fault {
     /// Reads the faults of a file, as the scenario file of a pair has them: `[fault]`, or any number of `[[fault]]`.
@@ -172,7 +193,7 @@ impl Fault {
     /// As [`Self::list_from_table`].
     pub fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
         let mut fault = Self::at_usual_place(Damage::start_of(table)?);
-        read_keys(&mut fault, table, &NoFiles)?;
+        read_rows(&rows_but(OF_PLANETS), &mut fault, table, &NoFiles)?;
         fault.read_damage(table)
     }
 
@@ -206,14 +227,11 @@ impl Fault {
 
     /// The lines of its section with a comment for every key, without the header.
     pub(crate) fn commented(&self) -> String {
+        let rows = rows_but(if self.flank.is_none() { OF_PLANETS } else { &[] });
         let kind = format!("# {}\nkind = \"{}\"\n", self.damage.summary(), self.damage.kind());
         let keys = self.damage.commented(self.left_out());
-        [
-            kind,
-            keys,
-            commented_rows(&Self::rows(), self, &Self::at_usual_place(self.damage.clone()), Self::SECTION),
-        ]
-        .concat()
+        [kind, keys, commented_rows(&rows, self, &Self::at_usual_place(self.damage.clone()), Self::SECTION)]
+            .concat()
     }
 
     /// The lines of its section that matter, without the header.

@@ -70,6 +70,25 @@ impl FaultyTeeth {
         }
     }
 
+    /// The same teeth where another one is the first.
+    ///
+    /// # Arguments
+    /// * `first` - number of that tooth, from 0
+    /// * `teeth` - how many teeth the wheel has
+    pub(crate) fn counted_from(&self, first: usize, teeth: u32) -> Self {
+        let first = u32::try_from(first).unwrap_or(0) % teeth.max(1);
+        // A number that no tooth has stays, and is refused.
+        let counted = |tooth: &u32| match tooth {
+            1.. if *tooth <= teeth => (tooth - 1 + teeth - first) % teeth + 1,
+            _ => *tooth,
+        };
+        match self {
+            Self::One(tooth) => Self::One(counted(tooth)),
+            Self::These(named) => Self::These(named.iter().map(counted).collect()),
+            Self::All => Self::All,
+        }
+    }
+
     /// The number of the tooth, where it is one.
     pub fn only(&self) -> Option<u32> {
         match self {

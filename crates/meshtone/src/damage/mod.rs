@@ -28,7 +28,7 @@ pub use damaged_tooth::{DamagedTooth, damaged_teeth};
 pub(crate) use description::DamageResult;
 pub use description::{DamageDescription, FacePatch, QuantityValue, damages_of_fault};
 pub(crate) use fault::check_faults;
-pub use fault::{Fault, keys_of_every_fault};
+pub use fault::{Fault, FaultFlank, keys_of_every_fault};
 pub use faulty_teeth::FaultyTeeth;
 pub use flank_pits::FlankPits;
 pub(crate) use flank_pits::united;

@@ -106,6 +106,7 @@ impl PitCircle {
         match *self {
             Self::Fractions { start, end, .. } => end - start,
             Self::Circle { x_mm, y_mm, radius_mm } => {
+                let x_mm = on_wheel_mm(x_mm, tooth.profile);
                 let points = tooth.profile.x_mm.iter().zip(&tooth.profile.y_mm).skip(tooth.first_contact);
                 let inside = points.filter(|(x, y)| (*x - x_mm).hypot(*y - y_mm) < radius_mm).count();
                 inside as f64 / tooth.contact_steps()
@@ -255,7 +256,7 @@ pub(crate) fn cut_flank(
             return Err(refuse(format!(
                 "must be less deep than the tooth, which is {:.3} mm thick at x = {:.3} mm",
                 2.0 * profile.y_mm[i],
-                profile.x_mm[i]
+                profile.x_mm[i].abs()
             )));
         }
     }
@@ -281,9 +282,9 @@ fn misses_flank(profile: &ToothProfile, initial_contact: usize) -> String {
         "must cut the contact part of the flank in two points, with its half nearer to the tooth's centre line; the flank \
          runs from x = {:.3}, y = {:.3} mm to \
          x = {:.3}, y = {:.3} mm",
-        profile.x_mm[initial_contact],
+        profile.x_mm[initial_contact].abs(),
         profile.y_mm[initial_contact],
-        profile.tip_x_mm(),
+        profile.tip_x_mm().abs(),
         profile.y_mm[profile.len() - 1]
     )
 }
@@ -291,7 +292,9 @@ fn misses_flank(profile: &ToothProfile, initial_contact: usize) -> String {
 /// Centre and radius, where the pit is given by fractions of the flank.
 fn resolve(circle: &PitCircle, profile: &ToothProfile, initial_contact: usize) -> Circle {
     match *circle {
-        PitCircle::Circle { x_mm, y_mm, radius_mm } => Circle { x_mm, y_mm, radius_mm },
+        PitCircle::Circle { x_mm, y_mm, radius_mm } => {
+            Circle { x_mm: on_wheel_mm(x_mm, profile), y_mm, radius_mm }
+        }
         PitCircle::Fractions { start, end, depth } => {
             let point = |fraction: f64| {
                 let i = flank_index(fraction, profile, initial_contact);
@@ -310,6 +313,11 @@ fn resolve(circle: &PitCircle, profile: &ToothProfile, initial_contact: usize) -
             }
         }
     }
+}
+
+/// (mm) A distance from the wheel's centre, counted as the profile's x are: less than 0 of a ring.
+fn on_wheel_mm(x_mm: f64, profile: &ToothProfile) -> f64 {
+    x_mm.copysign(profile.x_mm[0])
 }
 
 /// Profile index at a fraction of the flank's contact part, from its root side.

@@ -28,7 +28,7 @@ impl<'a> SoundTooth<'a> {
             profile: teeth.profile(wheel),
             first_contact: teeth.initial_contact_index(wheel),
             face_width_mm: of_wheel.face_width_mm,
-            height_mm: of_wheel.tip_radius_mm - of_wheel.root_radius_mm,
+            height_mm: (of_wheel.tip_radius_mm - of_wheel.root_radius_mm).abs(),
         }
     }
 
@@ -46,6 +46,11 @@ impl<'a> SoundTooth<'a> {
     /// (mm) Half the thickness of the tooth where it is thinnest in contact.
     pub(super) fn least_half_thickness_mm(&self) -> f64 {
         self.profile.y_mm[self.first_contact..].iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether it is a tooth of a ring, whose flank is concave and whose x are less than 0.
+    pub(super) fn is_concave(&self) -> bool {
+        self.profile.tip_x_mm() < 0.0
     }
 
     /// Number of steps between the profile's points along the part in contact.

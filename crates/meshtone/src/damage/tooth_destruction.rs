@@ -90,9 +90,18 @@ impl Kind for ToothDestruction {
         Self { start: 0.2143, line: DestructionLine::End(0.9286), offset_mm: 0.0, noise_mm: 0.0 }
     }
 
-    /// The flank's chord up to the tip, the longer the more severe.
+    /// The flank's chord up to the tip, the longer the more severe; of a ring, whose concave flank no chord cuts, the tangent.
     fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
-        let ground = Self { start: 1.0 - severity, line: DestructionLine::End(1.0), offset_mm: 0.0, ..*self };
+        let start = 1.0 - severity;
+        let line = if tooth.is_concave() {
+            let (at, ToothProfile { x_mm, y_mm, .. }) =
+                (flank_index(start, tooth.profile, tooth.first_contact), tooth.profile);
+            let next = (at + 1).min(x_mm.len() - 1);
+            DestructionLine::SlopeDeg((y_mm[at] - y_mm[next]).atan2(x_mm[next] - x_mm[at]).to_degrees())
+        } else {
+            DestructionLine::End(1.0)
+        };
+        let ground = Self { start, line, offset_mm: 0.0, ..*self };
         (tooth.shows(severity) && ground.last_below(tooth.profile, tooth.first_contact).is_some())
             .then_some(ground)
     }

@@ -157,8 +157,8 @@ pub fn slide_factor(teeth: &Teeth, wheel: WheelName, position: f64) -> f64 {
 /// (-) The same where the involutes are known to begin.
 fn slide(teeth: &Teeth, begin_mm: [f64; 2], wheel: WheelName, position: f64) -> f64 {
     let speed = |wheel: WheelName| {
-        let curvature_mm = teeth.path.curvature_mm(wheel, position).max(begin_mm[wheel as usize]);
-        curvature_mm / f64::from(teeth.wheel(wheel).teeth)
+        let (own, curvature_mm) = (teeth.wheel(wheel), teeth.path.curvature_mm(wheel, position));
+        (own.sign() * curvature_mm).max(begin_mm[wheel as usize]) / f64::from(own.teeth)
     };
     (1.0 - speed(wheel.mate()) / speed(wheel)).abs()
 }

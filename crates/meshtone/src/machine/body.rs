@@ -39,6 +39,25 @@ impl WheelBody {
     }
 }
 
+impl WheelBody {
+    /// A flat ring, `J = m (r² + R²)/2` and half of it about a diameter; what the user gives replaces it.
+    ///
+    /// # Arguments
+    /// * `solid_kg` - (kg) its mass
+    /// * `radii_m` - (m) r and R
+    /// * `given` - values of the user
+    pub(crate) fn of_annulus(solid_kg: f64, radii_m: [f64; 2], given: &WheelInertia) -> Self {
+        let mass_kg = given.mass_kg.unwrap_or(solid_kg);
+        let polar_kgm2 =
+            given.polar_inertia_kgm2.unwrap_or(mass_kg * (radii_m[0].powi(2) + radii_m[1].powi(2)) / 2.0);
+        Self {
+            mass_kg,
+            polar_kgm2,
+            transverse_kgm2: given.transverse_inertia_kgm2.unwrap_or(polar_kgm2 / 2.0),
+        }
+    }
+}
+
 /// (N m/rad) Torsional stiffness of a wheel's body between bore and root circle, `4π G W/(1/r_i² − 1/r_f²)`: of a plane ring that is clamped
 /// at its bore. None where the rotation is left in the teeth.
 ///

@@ -18,7 +18,8 @@ pub use body::WheelBody;
 pub(crate) use body::body_stiffness_nm_per_rad;
 pub use gearbox::{
     Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft,
-    Housing, HousingModes, MeshLine, PlacedUnbalance, Seat, SeatedBearing,
+    Housing, HousingModes, MeshLine, PlacedUnbalance, RimParts, RimShape, Seat, SeatedBearing,
+    SetCoordinates, SetParts,
 };
 pub use gyroscopic::Spinning;
 pub(crate) use modes::KnownModes;

@@ -13,7 +13,7 @@ use crate::wheel::Wheel;
 /// The corner of one tooth's tip and the flank of its mate.
 ///
 /// With the line of action as x axis, the tangent point of the mate's base circle at 0 and that of the corner's own wheel at
-/// `L`, the corner lies at `ρ₂ = L − ρ₁`, `ρ₁ = √(Ra₁² − Rb₁²)`, where it leaves the path.
+/// `L`, the corner lies at `ρ₂ = L − ρ₁`, `ρ₁ = √(Ra₁² − Rb₁²)`, where it leaves the path. Radii and curvature of a ring are less than 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Corner {
     own_base_mm: f64,
@@ -33,8 +33,8 @@ impl Corner {
     /// * `tip_radius_mm` - (mm) radius of the corner, at least the base radius
     pub(crate) fn new(own: &Wheel, mate: &Wheel, line_mm: f64, tip_radius_mm: f64) -> Self {
         Self {
-            own_base_mm: own.base_radius_mm,
-            mate_base_mm: mate.base_radius_mm,
+            own_base_mm: own.sign() * own.base_radius_mm,
+            mate_base_mm: mate.sign() * mate.base_radius_mm,
             line_mm,
             own_curvature_mm: own.curvature_mm(tip_radius_mm),
         }
@@ -60,9 +60,11 @@ impl Corner {
         // From the mate's centre at (0, −Rb₂).
         let height = y + self.mate_base_mm;
         // Turned back from the line of action the corner moves away from the mate's base circle.
-        let tangent = (x * x + height * height - self.mate_base_mm * self.mate_base_mm).max(0.0).sqrt();
+        let squared = (x * x + height * height - self.mate_base_mm * self.mate_base_mm).max(0.0);
+        let tangent = squared.sqrt().copysign(self.mate_base_mm);
         // The tangent point lies ahead of the corner by the angle whose tangent is ρ_T/Rb₂.
-        let turned = (tangent / self.mate_base_mm).atan() - x.atan2(height);
+        let side = self.mate_base_mm.signum();
+        let turned = (tangent / self.mate_base_mm).atan() - (side * x).atan2(side * height);
         tangent - self.mate_base_mm * turned - mate_curvature + outside_mm
     }
 }

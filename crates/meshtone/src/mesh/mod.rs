@@ -40,3 +40,6 @@ pub use static_mesh::StaticMesh;
 pub use uneven_face::LoadAlongFace;
 pub(crate) use uneven_face::{FacesAtRest, UnevenFace};
 pub(crate) use window::{is_slanted, place_on_face};
+
+#[cfg(test)]
+mod tests;

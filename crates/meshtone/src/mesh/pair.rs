@@ -33,6 +33,8 @@ pub struct Pairs<'a> {
     foundation: FoundationCoefficients,
     /// (-) Cosine of the base helix angle, by which a stiffness across the teeth is less in the transverse section.
     base_cos: f64,
+    /// Whether a ring drives.
+    ring_drives: bool,
 }
 
 /// One of a pair's two teeth where it is touched.
@@ -63,6 +65,7 @@ impl<'a> Pairs<'a> {
             materials,
             foundation: *foundation,
             base_cos: teeth.pinion.base_helix_angle_rad().cos(),
+            ring_drives: gears.ring_drives,
         }
     }
 
@@ -162,6 +165,11 @@ impl<'a> Pairs<'a> {
             // The sections' z runs the other way.
             Bearing { width_mm, z_mm: -face_centre_m * 1e3, face_centre_m }
         })
+    }
+
+    /// Whether a ring drives, so that pairs go through their path from its end.
+    pub(crate) fn ring_drives(&self) -> bool {
+        self.ring_drives
     }
 
     /// The wheels' sound teeth.

@@ -79,7 +79,7 @@ impl<'a> PairTables<'a> {
     fn tooth(&self, wheel: WheelName, damage: Option<&DamagedTooth>) -> Tooth {
         let teeth = self.pairs.teeth();
         let (own, profile) = (teeth.wheel(wheel), teeth.profile(wheel));
-        let chamfered = own.tip_radius_mm - self.shape.chamfer_mm;
+        let chamfered = own.tip_radius_mm - own.sign() * self.shape.chamfer_mm;
         let left = damage.map(|damage| damage.gone_from_index).filter(|&index| index < profile.len());
         let broken_mm = left.map_or(f64::INFINITY, |index| {
             let curvature_mm = teeth.flank(wheel).curvature_mm(index.saturating_sub(1));
@@ -87,7 +87,9 @@ impl<'a> PairTables<'a> {
         });
         let shortening = self.shape.active_profile_shortening;
         let active = own.curvature_mm(chamfered) - shortening / 2.0 * teeth.path.base_pitch_mm;
-        let tip_curvature_mm = active.min(broken_mm).max(0.0);
+        // What is left of a ring's tooth ends at its root, and another one's flank on the base circle.
+        let least_mm = if own.is_internal { own.curvature_mm(own.root_radius_mm) } else { 0.0 };
+        let tip_curvature_mm = active.min(broken_mm).max(least_mm);
         Tooth { tip_radius_mm: tip_curvature_mm.hypot(own.base_radius_mm), tip_curvature_mm }
     }
 
@@ -95,8 +97,9 @@ impl<'a> PairTables<'a> {
     /// whole teeth.
     pub(crate) fn path_of_sound_teeth(&self) -> [f64; 2] {
         let path = &self.pairs.teeth().path;
-        [WheelName::Gear, WheelName::Pinion]
-            .map(|wheel| path.position(wheel, self.tooth(wheel, None).tip_curvature_mm))
+        let [begins, ends] = [WheelName::Gear, WheelName::Pinion]
+            .map(|wheel| path.position(wheel, self.tooth(wheel, None).tip_curvature_mm));
+        if self.pairs.ring_drives() { [ends, begins].map(|end| path.from_end(end)) } else { [begins, ends] }
     }
 
     /// Where the pairs of a class leave their path; none where a tooth is missing.
@@ -117,7 +120,24 @@ impl<'a> PairTables<'a> {
         Some(Ends { places: [begins.0, ends.0], corners: [begins.1, ends.1] })
     }
 
-    /// A class of pairs at uniform positions.
+    /// A class of pairs at uniform positions. Where a ring drives they go through the path from its other end.
+    ///
+    /// # Arguments
+    /// * `kind` - the class
+    /// * `positions` - (base pitches) since the start of the path of whole teeth, rising
+    /// * `step` - (base pitches) between two of them
+    pub(crate) fn tabulate(&self, kind: &PairKind, positions: &[f64], step: f64) -> Vec<PairState> {
+        if !self.pairs.ring_drives() {
+            return self.tabulate_from_tip_of_gear(kind, positions, step);
+        }
+        let path = &self.pairs.teeth().path;
+        let from_end: Vec<f64> = positions.iter().rev().map(|position| path.from_end(*position)).collect();
+        let mut states = self.tabulate_from_tip_of_gear(kind, &from_end, step);
+        states.reverse();
+        states
+    }
+
+    /// A class of pairs at uniform positions, counted from where the tip of the driven wheel's tooth touches.
     ///
     /// On its path a pair touches with its flanks, apart by what damage and relief take from them. Outside of it the corner of a tip
     /// touches the mate's flank, at the stiffness of the path's end and a growing distance.
@@ -126,7 +146,7 @@ impl<'a> PairTables<'a> {
     /// * `kind` - the class
     /// * `positions` - (base pitches) since the start of the path of whole teeth, rising
     /// * `step` - (base pitches) between two of them
-    pub(crate) fn tabulate(&self, kind: &PairKind, positions: &[f64], step: f64) -> Vec<PairState> {
+    fn tabulate_from_tip_of_gear(&self, kind: &PairKind, positions: &[f64], step: f64) -> Vec<PairState> {
         let Some(Ends { places: [begins, ends], corners: [gear_corner, pinion_corner] }) = self.ends_of(kind)
         else {
             return vec![PairState::APART; positions.len()];

@@ -3,7 +3,7 @@
 //! The flanks roll on one another at the pitch point and slide elsewhere, at a speed in proportion to the distance d from it and with a sense
 //! that changes there. Coulomb friction pushes the driving wheel across the line of action with `μ f tanh(d/δ)`, and the driven one
 //! against it, both at the contact point: beside the force at the pitch point, the moment of either wheel is `μ f d tanh(d/δ)` more. That
-//! moment is the loss: its power is the moment times the sum of both wheels' speeds.
+//! moment is the loss: its power is the moment times the sum of both wheels' speeds, in a ring their difference.
 //!
 //! Source: S. He, R. Gunda, R. Singh, "Effect of sliding friction on the dynamics of spur gear pair with realistic time-varying stiffness",
 //! Journal of Sound and Vibration 301 (2007) 927-949. Here its sense changes smoothly.

@@ -377,8 +377,8 @@ fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[us
         Output::Velocity { factor, .. } => motion(1, &[(THETA_PINION, *factor)]),
         &Output::Coordinate { number, derivative } => motion(derivative, &[(number, 1.0)]),
         Output::MeshForce { .. } => OutputRow::MeshForce,
-        // Its flanks do not rub.
-        Output::FrictionLoss { .. } => motion(0, &[]),
+        // Its flanks do not rub, and it has no ring.
+        Output::FrictionLoss { .. } | Output::OnRing(_) => motion(0, &[]),
     }
 }
 

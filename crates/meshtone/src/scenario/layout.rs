@@ -1,13 +1,17 @@
 //! How the shafts, wheels and meshes stand and turn: what their names refer to, centres, speed ratios, phases.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
+use super::planetary::OfSet;
+use super::planetary_layout::SetLayout;
+use super::turning::Turning;
 use super::{Scenario, ScenarioMesh, ScenarioWheel, Shafts};
-use crate::damage::Fault;
+use crate::damage::{Fault, FaultFlank};
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::{Coupled, Rig};
 use crate::wheel::{
-    ERROR_POINTS, ErrorTable, Gears, Hand, Mounting, NamedGears, ProfileErrors, Quality, WheelName,
+    ERROR_POINTS, ErrorTable, Gears, Hand, Mounting, NamedGears, NamedWheel, PathOfContact, ProfileErrors,
+    Quality, Wheel, WheelName,
 };
 
 /// A ratio of two whole numbers, reduced; its sign is the numerator's.
@@ -58,6 +62,27 @@ impl Ratio {
         Self::reduced(greatest_common_divisor(p * s, r * q), q * s)
     }
 
+    /// A whole number.
+    pub(super) fn whole(number: i64) -> Self {
+        Self { numerator: number, denominator: 1 }
+    }
+
+    /// The sum with another ratio; one that would not fit is the largest that does.
+    pub(super) fn plus(self, other: Self) -> Self {
+        let [(p, q), (r, s)] =
+            [self, other].map(|ratio| (i128::from(ratio.numerator), i128::from(ratio.denominator)));
+        Self::reduced((p * s).saturating_add(r * q), q * s)
+    }
+
+    /// The ratio over another one, which is not 0.
+    pub(super) fn over(self, other: Self) -> Self {
+        self.times(other.denominator, other.numerator)
+    }
+
+    pub(super) fn is_zero(self) -> bool {
+        self.numerator == 0
+    }
+
     fn reduced(n: i128, d: i128) -> Self {
         let divisor = greatest_common_divisor(n, d).max(1);
         let sign = if d < 0 { -1 } else { 1 };
@@ -67,7 +92,7 @@ impl Ratio {
     }
 
     /// Whether it is what it was computed to be, and not the largest that fits in its place.
-    fn is_exact(self) -> bool {
+    pub(super) fn is_exact(self) -> bool {
         self.numerator.unsigned_abs().max(self.denominator.unsigned_abs()) < i64::MAX.unsigned_abs()
     }
 
@@ -122,10 +147,14 @@ pub struct Layout {
     pub ratios: Vec<Ratio>,
     /// (base pitches) Position of the first pair of each mesh at the start.
     pub phases: Vec<f64>,
+    /// Number of the tooth of each mesh's driven wheel in the first pair: not 0 where a ring meets several planets.
+    pub first_teeth: Vec<usize>,
+    /// The planetary sets.
+    pub sets: Vec<SetLayout>,
 }
 
 /// (mm) By how much shafts may stand nearer or farther than the centre distance of their mesh.
-const CENTRE_TOLERANCE_MM: f64 = 0.01;
+pub(super) const CENTRE_TOLERANCE_MM: f64 = 0.01;
 
 impl Layout {
     /// Resolves the names of shafts of beams and finds how everything stands and turns.
@@ -138,24 +167,26 @@ impl Layout {
     pub(super) fn of_shafts(scenario: &Scenario, of: &Shafts) -> Result<Self, ScenarioError> {
         let shafts: Vec<&str> = of.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
         let wheels: Vec<&str> = scenario.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
+        let own_wheels = scenario.own_wheels();
         unique("shaft", &shafts)?;
-        unique("wheel", &wheels)?;
+        unique("wheel", &wheels[..own_wheels])?;
         let shaft_of = |list: &str, index: usize, entries: usize, name: &str| {
             find(&shafts, name, "shaft")
                 .map_err(|error| error.with_key(entry_key(list, index, entries, "shaft")))
         };
-        let shaft_of_wheel: Vec<usize> = (scenario.wheels.iter().enumerate())
-            .map(|(index, wheel)| shaft_of("wheel", index, wheels.len(), &wheel.shaft))
+        let shaft_of_wheel: Vec<usize> = (scenario.wheels.iter().take(own_wheels).enumerate())
+            .map(|(index, wheel)| shaft_of("wheel", index, own_wheels, &wheel.shaft))
             .collect::<Result<_, _>>()?;
         let shaft_of_bearing: Vec<usize> = (scenario.bearings().iter().enumerate())
             .map(|(index, bearing)| shaft_of("bearing", index, scenario.bearings().len(), &bearing.shaft))
             .collect::<Result<_, _>>()?;
-        let meshes = scenario.meshes.len();
+        let meshes = scenario.own_meshes();
         let wheels_of_mesh: Vec<[usize; 2]> = (scenario.meshes.iter().enumerate())
             .map(|(index, mesh)| {
                 let number = |side: usize| {
                     let key = entry_key("mesh", index, meshes, &format!("wheels[{side}]"));
-                    find(&wheels, &mesh.wheels[side], "wheel").map_err(|error| error.with_key(key))
+                    let known = if mesh.is_of_set { &wheels[..] } else { &wheels[..own_wheels] };
+                    find(known, &mesh.wheels[side], "wheel").map_err(|error| error.with_key(key))
                 };
                 Ok([number(0)?, number(1)?])
             })
@@ -171,11 +202,13 @@ impl Layout {
             positions_m: Vec::new(),
             ratios: Vec::new(),
             phases: Vec::new(),
+            first_teeth: vec![0; scenario.meshes.len()],
+            sets: Vec::new(),
             shaft_of_wheel,
             wheels_of_mesh,
             shaft_of_bearing,
         };
-        for (index, mesh) in scenario.meshes.iter().enumerate() {
+        for (index, mesh) in scenario.meshes.iter().take(meshes).enumerate() {
             let gears = this.gears_of(scenario, index, mesh)?;
             this.named(&gears, scenario, index).check()?;
             this.gears.push(gears);
@@ -183,9 +216,12 @@ impl Layout {
         this.check_helices(scenario)?;
         let [motor, brake] = this.ends(scenario)?;
         this.input = motor;
-        this.ratios = this.turn(scenario, [motor, brake])?;
+        let Turning { ratios, sun_drives } = this.turn(scenario, [motor, brake])?;
+        this.ratios = ratios;
         this.positions_m = this.place(scenario)?;
         this.check_room(scenario)?;
+        this.add_sets(scenario, &sun_drives)?;
+        this.check_cycle(scenario)?;
         this.phases = this.find_phases(scenario);
         Ok(this)
     }
@@ -211,6 +247,8 @@ impl Layout {
                 Ratio::ONE.times(-i64::from(gears.pinion_teeth), i64::from(gears.gear_teeth)),
             ],
             phases: vec![scenario.meshes.first().and_then(|mesh| mesh.phase).unwrap_or(0.0)],
+            first_teeth: vec![0],
+            sets: Vec::new(),
             gears: vec![gears],
         }
     }
@@ -234,7 +272,7 @@ impl Layout {
             let gears = &self.gears[mesh];
             side.choose(1.0, -1.0) * gears.hand.sign() * gears.helix_angle_deg
         };
-        for (wheel, of_file) in scenario.wheels.iter().enumerate() {
+        for (wheel, of_file) in scenario.wheels.iter().take(scenario.own_wheels()).enumerate() {
             let mut meshes = self.meshes_of(wheel);
             let Some(first) = meshes.next() else { continue };
             let Some(other) = meshes.find(|mesh| helix(*mesh) != helix(first)) else { continue };
@@ -286,74 +324,19 @@ impl Layout {
         Ok([end(Coupled::Motor, "motor")?, end(Coupled::Brake, "brake")?])
     }
 
-    /// Speed ratios: from the motor's shaft, mesh by mesh. What is reached twice must turn the same by both ways.
-    fn turn(&self, scenario: &Scenario, [motor, brake]: [usize; 2]) -> Result<Vec<Ratio>, ScenarioError> {
-        let mut ratios: Vec<Option<Ratio>> = vec![None; scenario.shafts().len()];
-        ratios[motor] = Some(Ratio::ONE);
-        let shafts_of = |mesh: usize| self.wheels_of_mesh[mesh].map(|wheel| self.shaft_of_wheel[wheel]);
-        let meshes = scenario.meshes.len();
-        let mut reached = vec![false; meshes];
-        while let Some(mesh) = (0..meshes)
-            .find(|&mesh| !reached[mesh] && shafts_of(mesh).iter().any(|&shaft| ratios[shaft].is_some()))
-        {
-            reached[mesh] = true;
-            let [driving, driven] = shafts_of(mesh);
-            let Gears { pinion_teeth, gear_teeth, .. } = self.gears[mesh];
-            let key = entry_key("mesh", mesh, meshes, "wheels");
-            let written = format!("{:?}", scenario.meshes[mesh].wheels);
-            let name = |shaft: usize| scenario.shafts()[shaft].name.as_str();
-            let through = ratios[driving].map(|of| of.times(-i64::from(pinion_teeth), i64::from(gear_teeth)));
-            if through.is_some_and(|ratio| !ratio.is_exact()) {
-                let problem =
-                    format!("makes the ratio of shaft {:?} a fraction of too many digits", name(driven));
-                return Err(ScenarioError::new(key, written, problem)
-                    .with_help("choose fewer stages, or tooth counts with common factors"));
-            }
-            match (through, ratios[driven]) {
-                (Some(ratio), None) => ratios[driven] = Some(ratio),
-                (Some(other), Some(known)) => {
-                    if other != known {
-                        let problem = format!(
-                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast \
-                             as the input, by the other path it turns {known} times",
-                            name(driven)
-                        );
-                        return Err(ScenarioError::new(key, written, problem).with_help(
-                            "change the tooth counts so that both paths have the same ratio, or remove a mesh",
-                        ));
-                    }
-                }
-                _ => {
-                    let problem = format!(
-                        "names the driven wheel first: shaft {:?} is nearer to the motor than shaft {:?}",
-                        name(driven),
-                        name(driving)
-                    );
-                    return Err(ScenarioError::new(key, written, problem).with_help("swap the two names"));
-                }
-            }
+    /// All teeth meet again after a number of revolutions that can be counted.
+    fn check_cycle(&self, scenario: &Scenario) -> Result<(), ScenarioError> {
+        if cycle(&self.ratios).is_exact() {
+            return Ok(());
         }
-        let lost = ratios.iter().position(Option::is_none);
-        if let Some(shaft) = lost {
-            let name = &scenario.shafts()[shaft].name;
-            let to = if shaft == brake { "the motor" } else { "motor or brake" };
-            let problem = format!("has no path of meshes to {to}");
-            return Err(ScenarioError::new(
-                entry_key("shaft", shaft, scenario.shafts().len(), "name"),
-                format!("{name:?}"),
-                problem,
-            )
-            .with_help("add a [[mesh]] of a wheel on it, or remove the shaft"));
-        }
-        let ratios: Vec<Ratio> = ratios.into_iter().flatten().collect();
-        if !cycle(&ratios).is_exact() {
-            let key = entry_key("mesh", 0, meshes, "wheels");
-            let problem =
-                "is one of a train whose teeth all meet again only after more revolutions than are counted";
-            return Err(ScenarioError::new(key, format!("{:?}", scenario.meshes[0].wheels), problem)
-                .with_help("choose fewer stages, or tooth counts with common factors"));
-        }
-        Ok(ratios)
+        let problem =
+            "is one of a train whose teeth all meet again only after more revolutions than are counted";
+        let (key, value) = match scenario.own_meshes() {
+            0 => (entry_key("planetary", 0, scenario.planetary().len(), "teeth"), String::new()),
+            meshes => (entry_key("mesh", 0, meshes, "wheels"), format!("{:?}", scenario.meshes[0].wheels)),
+        };
+        Err(ScenarioError::new(key, value, problem)
+            .with_help("choose fewer stages, or tooth counts with common factors"))
     }
 
     /// (m) Where the shafts stand: as given, or beside the shaft that they mesh with.
@@ -371,7 +354,15 @@ impl Layout {
             let [driving, driven] = shafts_of(mesh);
             places[driving].is_some() != places[driven].is_some()
         };
-        while let Some(mesh) = (0..distances_mm.len()).find(|&mesh| known_on_one_side(mesh, &places)) {
+        let axes = scenario.shafts_on_one_axis();
+        loop {
+            // The members of a planetary set turn about one axis.
+            for of_set in &axes {
+                let known = of_set.iter().find_map(|&shaft| places[shaft]);
+                of_set.iter().for_each(|&shaft| places[shaft] = places[shaft].or(known));
+            }
+            let next = (0..distances_mm.len()).find(|&mesh| known_on_one_side(mesh, &places));
+            let Some(mesh) = next else { break };
             let [driving, driven] = shafts_of(mesh);
             if let Some([x, y]) = places[driving] {
                 places[driven] = Some([x + distances_mm[mesh], y]);
@@ -380,6 +371,22 @@ impl Layout {
             }
         }
         let places: Vec<[f64; 2]> = places.into_iter().map(Option::unwrap_or_default).collect();
+        for of_set in &axes {
+            let first = places[of_set[0]];
+            let apart = |&&shaft: &&usize| {
+                (places[shaft][0] - first[0]).hypot(places[shaft][1] - first[1]) > CENTRE_TOLERANCE_MM
+            };
+            if let Some(&shaft) = of_set.iter().find(apart) {
+                let key = entry_key("shaft", shaft, scenario.shafts().len(), "position_mm");
+                let [x, y] = places[shaft];
+                let problem = format!(
+                    "is not on the axis of shaft {:?}, with which it is in a planetary set",
+                    scenario.shafts()[of_set[0]].name
+                );
+                return Err(ScenarioError::new(key, format!("[{x:?}, {y:?}]"), problem)
+                    .with_help("give both the same position_mm, or leave it out"));
+            }
+        }
         for (mesh, &distance_mm) in distances_mm.iter().enumerate() {
             let [driving, driven] = shafts_of(mesh);
             let [a, b] = [places[driving], places[driven]];
@@ -475,8 +482,20 @@ impl Layout {
         })
     }
 
-    /// (mm) z of a wheel's middle plane.
-    pub(super) fn z_mm(&self, scenario: &Scenario, wheel: usize) -> f64 {
+    /// Number of the shafts that have speeds of their own; the axes of planetary sets come after them.
+    pub fn own_shafts(&self) -> usize {
+        self.shaft_names.len() - self.sets.iter().map(|set| set.planets() + 2).sum::<usize>()
+    }
+
+    /// (mm) z of a wheel's middle plane. A planetary set is where the ends of its shafts meet.
+    ///
+    /// # Arguments
+    /// * `scenario` - whose layout this is, of shafts of beams
+    /// * `wheel` - its number
+    pub fn z_mm(&self, scenario: &Scenario, wheel: usize) -> f64 {
+        if let Some(OfSet { set, .. }) = scenario.wheels[wheel].of_set {
+            return scenario.z_of_set_mm(&scenario.planetary()[set]);
+        }
         scenario.shafts()[self.shaft_of_wheel[wheel]].z_mm(scenario.wheels[wheel].at)
     }
 
@@ -495,9 +514,17 @@ impl Layout {
         self.named(&self.gears[mesh], scenario, mesh)
     }
 
-    fn named<'a>(&self, gears: &'a Gears, scenario: &'a Scenario, mesh: usize) -> NamedGears<'a> {
-        let wheels = self.wheels_of_mesh[mesh].map(|wheel| (wheel, scenario.wheels[wheel].name.as_str()));
-        NamedGears::of_mesh(gears, section("mesh", mesh, scenario.meshes.len()), wheels)
+    pub(super) fn named<'a>(&self, gears: &'a Gears, scenario: &'a Scenario, mesh: usize) -> NamedGears<'a> {
+        let mut section_of_mesh = section("mesh", mesh, scenario.own_meshes());
+        let wheels = self.wheels_of_mesh[mesh].map(|wheel| {
+            let ScenarioWheel { name, of_set, .. } = &scenario.wheels[wheel];
+            let Some(OfSet { set, member }) = of_set else {
+                return NamedWheel { name, section: format!("wheel[{wheel}]"), member: None };
+            };
+            section_of_mesh = section("planetary", *set, scenario.planetary().len());
+            NamedWheel { name, section: section_of_mesh.clone(), member: Some(member.name()) }
+        });
+        NamedGears::of_mesh(gears, section_of_mesh, wheels)
     }
 
     /// (-) Rotation of a mesh's driving wheel over that of the input; negative where it turns against the input.
@@ -537,7 +564,7 @@ impl Layout {
     /// in one mesh and drives in the other, its flanks there are opposite ones, a tooth thickness apart.
     fn find_phases(&self, scenario: &Scenario) -> Vec<f64> {
         let mut phases: Vec<Option<f64>> = scenario.meshes.iter().map(|mesh| mesh.phase).collect();
-        for mesh in 0..phases.len() {
+        for mesh in 0..scenario.own_meshes() {
             if phases[mesh].is_some() {
                 continue;
             }
@@ -551,6 +578,7 @@ impl Layout {
                 .and_then(|(other, wheel)| Some(phases[other]? + self.shift_of_phase(wheel, other, mesh)));
             phases[mesh] = Some(shifted.unwrap_or(0.0));
         }
+        self.sets.iter().for_each(|set| set.phases(self, &mut phases));
         phases.into_iter().map(Option::unwrap_or_default).collect()
     }
 
@@ -566,23 +594,33 @@ impl Layout {
         let teeth = f64::from(self.gears[to].teeth(side(to)));
         let sense = self.ratios[shaft].value().signum();
         let travelled = (sense * (direction(to) - direction(from))).rem_euclid(TAU) / TAU * teeth;
-        let thickness = if side(from) == side(to) {
-            0.0
-        } else {
-            let gears = &self.gears[to];
-            0.5 + 2.0 * gears.profile_shift(side(to)) * gears.pressure_angle_deg.to_radians().tan() / PI
-        };
+        let thickness =
+            if side(from) == side(to) { 0.0 } else { self.thickness([(from, side(from)), (to, side(to))]) };
         self.pitch_point(to) - self.pitch_point(from) - travelled + thickness
     }
 
+    /// (base pitches) From where one flank of a tooth of a wheel passes the pitch point of one mesh to where the other flank passes that of
+    /// another one: half the tooth's angle on the circle that rolls in either.
+    pub(super) fn thickness(&self, meshes: [(usize, WheelName); 2]) -> f64 {
+        let half = |(mesh, side): (usize, WheelName)| {
+            let wheel = Wheel::new(&self.gears[mesh], side, 0.0);
+            wheel.half_thickness_angle_at_rad(wheel.working_pitch_radius_mm) * f64::from(wheel.teeth) / TAU
+        };
+        meshes.map(half).iter().sum()
+    }
+
     /// (base pitches) Position of the pitch point on the path of contact.
-    fn pitch_point(&self, mesh: usize) -> f64 {
+    pub(super) fn pitch_point(&self, mesh: usize) -> f64 {
         let gears = &self.gears[mesh];
-        let wheel = crate::wheel::Wheel::new(gears, WheelName::Gear, 0.0);
-        let base_mm = wheel.base_radius_mm;
-        let from_tip_mm = (wheel.tip_radius_mm.powi(2) - base_mm.powi(2)).sqrt();
-        let at_pitch_mm = base_mm * wheel.working_pressure_angle_rad.tan();
-        (from_tip_mm - at_pitch_mm) * f64::from(gears.gear_teeth) / (TAU * base_mm)
+        let [pinion, gear] = WheelName::BOTH.map(|side| Wheel::new(gears, side, 0.0));
+        let path = PathOfContact::new(&pinion, &gear);
+        let at = path.position(WheelName::Gear, gear.curvature_mm(gear.working_pitch_radius_mm));
+        if gears.ring_drives { path.from_end(at) } else { at }
+    }
+
+    /// Revolutions of the input after which all shafts stand again as at the start.
+    pub(super) fn cycle_of_shafts(&self) -> i64 {
+        cycle(&self.ratios[..self.own_shafts()]).denominator
     }
 
     /// Revolutions of the input after which all teeth and shafts stand again as at the start.
@@ -597,8 +635,18 @@ impl Layout {
     /// * `mesh` - number of the mesh
     pub fn faults_of_mesh(&self, faults: &[(usize, &Fault)], mesh: usize) -> Vec<(usize, Fault)> {
         let of_mesh = |(number, &(wheel, fault)): (usize, &(usize, &Fault))| {
-            let side = self.wheels_of_mesh[mesh].iter().position(|of| *of == wheel)?;
-            Some((number, Fault { wheel: WheelName::BOTH[side].into(), ..fault.clone() }))
+            let side = WheelName::BOTH[self.wheels_of_mesh[mesh].iter().position(|of| *of == wheel)?];
+            let is_elsewhere = match fault.flank {
+                Some(FaultFlank::Sun) => self.gears[mesh].internal,
+                Some(FaultFlank::Ring) => !self.gears[mesh].internal,
+                Some(FaultFlank::Both) | None => false,
+            };
+            if is_elsewhere {
+                return None;
+            }
+            let first_tooth = if side == WheelName::Gear { self.first_teeth[mesh] } else { 0 };
+            let tooth = fault.tooth.counted_from(first_tooth, self.gears[mesh].teeth(side));
+            Some((number, Fault { wheel: side.into(), tooth, ..fault.clone() }))
         };
         faults.iter().enumerate().filter_map(of_mesh).collect()
     }
@@ -649,7 +697,7 @@ pub(super) fn entry_key(list: &str, index: usize, entries: usize, key: &str) -> 
     format!("{}.{key}", section(list, index, entries))
 }
 
-fn unique(list: &str, names: &[&str]) -> Result<(), ScenarioError> {
+pub(super) fn unique(list: &str, names: &[&str]) -> Result<(), ScenarioError> {
     for (index, name) in names.iter().enumerate() {
         let key = entry_key(list, index, names.len(), "name");
         let valid =

@@ -5,14 +5,14 @@ use meshtone_toml::{ReadResult, TomlError, TomlTable};
 use super::short::Section;
 use super::to_toml::Style;
 use super::{
-    Fault, Material, Model, Operation, Scenario, ScenarioMesh, ScenarioWheel, SectionDescription, Sensor,
-    Shafts, Solver, Structure,
+    Fault, Material, Model, Operation, PlanetarySet, Scenario, ScenarioMesh, ScenarioWheel,
+    SectionDescription, Sensor, SensorDirection, Shafts, Solver, Structure,
 };
 use crate::keys::{KeyRow, Keys, NumberFiles, describe, describe_rows, field, read_keys, read_rows, rows};
 use crate::machine::{Bearing, GearboxShaft, Housing};
 
 /// Names of the sections that only shafts of beams have.
-const OF_SHAFTS: [&str; 5] = ["shaft", "wheel", "mesh", "bearing", "housing"];
+const OF_SHAFTS: [&str; 6] = ["shaft", "wheel", "mesh", "planetary", "bearing", "housing"];
 /// Names of the sections that only a rig has.
 const OF_RIG: [&str; 3] = ["gears", "rig", "quality"];
 
@@ -70,19 +70,24 @@ pub(super) fn read(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<
     if let Some(housing) = &mut housing {
         root.table_or_empty("housing")?.read(|table| read_keys(housing, table, files))?;
     }
-    scenario.structure = Structure::Shafts(Shafts { shafts, bearings, housing });
+    let planetary = list(root, "planetary", files)?;
+    scenario.structure = Structure::Shafts(Shafts { shafts, bearings, housing, planetary });
     operation().read(&mut scenario, root, files)?;
     scenario.operation.complete();
     let faults = root.tables("fault")?.into_iter().map(|table| table.read(Fault::on_named_wheel));
     scenario.faults = faults.collect::<ReadResult<_>>()?;
     let sensor = |table: &TomlTable<'_>| {
         let mut sensor = Sensor::at_place("");
+        // On a ring that is what most sensors measure.
+        if table.optional("at").is_some_and(|at| at.string().is_ok_and(|at| at.starts_with("ring:"))) {
+            sensor.direction = SensorDirection::Radial;
+        }
         read_rows(&Sensor::rows_of_shafts(), &mut sensor, table, files).map(|()| sensor)
     };
     scenario.sensors =
         root.tables("sensor")?.into_iter().map(|table| table.read(sensor)).collect::<ReadResult<_>>()?;
     solver().read(&mut scenario, root, files)?;
-    Ok(scenario)
+    Ok(scenario.with_members())
 }
 
 impl Scenario {
@@ -116,7 +121,7 @@ impl Scenario {
     /// The text of a file, each section in its own style.
     pub(super) fn in_long_sections(
         &self,
-        Shafts { shafts, bearings, housing }: &Shafts,
+        Shafts { shafts, bearings, housing, planetary }: &Shafts,
         style: &impl Style,
     ) -> String {
         fn entries<S: Keys>(entries: &[S], style: &impl Style) -> Vec<String> {
@@ -138,8 +143,9 @@ impl Scenario {
         [
             vec![keys(top())],
             entries(shafts, style),
-            entries(&self.wheels, style),
-            entries(&self.meshes, style),
+            entries(&self.wheels[..self.own_wheels()], style),
+            entries(&self.meshes[..self.own_meshes()], style),
+            entries(planetary, style),
             entries(bearings, style),
             housing.collect(),
             vec![section(operation())],
@@ -171,6 +177,7 @@ pub fn gearbox_sections() -> Vec<SectionDescription> {
         section("shaft", describe::<GearboxShaft>()),
         section("wheel", describe::<ScenarioWheel>()),
         section("mesh", describe::<ScenarioMesh>()),
+        section("planetary", describe::<PlanetarySet>()),
         section("bearing", describe::<Bearing>()),
         section("housing", describe::<Housing>()),
         of(operation()),

@@ -46,6 +46,10 @@ pub struct ScenarioMesh {
     pub friction: f64,
     /// (-) Size of the random force across the line of action, `c` of [its density](crate::simulate). Default 0.055, in a rig 0.
     pub random_force: f64,
+    /// Whether the driven wheel is a ring with internal teeth.
+    pub is_internal: bool,
+    /// Whether it follows from a planetary set, and has no section of its own.
+    pub is_of_set: bool,
 }
 
 impl ScenarioMesh {
@@ -78,6 +82,7 @@ impl ScenarioMesh {
         (gears.pinion_addendum, gears.gear_addendum) = (pinion.addendum, gear.addendum);
         (gears.pinion_dedendum, gears.gear_dedendum) = (pinion.dedendum, gear.dedendum);
         gears.centre_distance_mm = self.centre_distance_mm;
+        gears.internal = self.is_internal;
         gears.backlash_mm = self.backlash_mm;
         gears.material = material;
         (gears.pinion_material, gears.gear_material) = (pinion.material, gear.material);
@@ -141,6 +146,8 @@ impl Keys for ScenarioMesh {
             damping_ratio: 0.08,
             friction: 0.05,
             random_force: 0.055,
+            is_internal: false,
+            is_of_set: false,
         }
     }
 

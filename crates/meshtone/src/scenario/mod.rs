@@ -13,19 +13,25 @@ mod layout;
 mod long;
 mod mesh;
 mod places;
+mod planetary;
+mod planetary_layout;
+mod planetary_template;
 mod room;
 mod serialise;
 mod short;
 mod structure;
 mod template;
 mod to_toml;
+mod turning;
 mod uncertainty;
 mod validate;
 mod wheel;
 
 pub use crate::bearing::{BearingDefect, DefectPlace};
 pub use crate::damage::kinds::*;
-pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth, PitCircle, damage_kinds};
+pub use crate::damage::{
+    Damage, DamageKind, DestructionLine, Fault, FaultFlank, FaultyTeeth, PitCircle, damage_kinds,
+};
 pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{
@@ -46,6 +52,8 @@ pub use layout::{Layout, Ratio};
 pub use long::gearbox_sections;
 pub use mesh::ScenarioMesh;
 pub use meshtone_toml::ErrorKind;
+pub use planetary::{Member, MemberShifts, MemberTeeth, OfSet, Pin, PlanetarySet, Rim};
+pub use planetary_layout::SetLayout;
 pub use short::{SectionDescription, sections};
 pub use structure::{Shafts, Structure};
 pub use template::{template, template_kinds, template_of_all_keys};
@@ -172,7 +180,7 @@ impl Scenario {
         bearings: Vec<Bearing>,
         operation: Operation,
     ) -> Self {
-        let structure = Structure::Shafts(Shafts { shafts, bearings, housing: None });
+        let structure = Structure::Shafts(Shafts { shafts, bearings, ..Shafts::default() });
         Self { structure, wheels, meshes, operation, ..Self::start_of_shafts() }
     }
 

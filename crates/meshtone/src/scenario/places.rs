@@ -4,19 +4,20 @@ use super::layout::entry_key;
 use super::{Layout, Scenario};
 use crate::error::ScenarioError;
 use crate::machine::GearboxPlace;
+use crate::sensor::{RingPlace, SensorDirection};
 
 /// (-) How far from a bearing's place, as a part of the shaft's length, a sensor that names it may be.
 const SAME_PLACE: f64 = 1e-6;
 
 impl Scenario {
-    /// Where each of [`Self::all_sensors`] sits.
+    /// Where each of [`Self::all_sensors`] sits; none of those on the ring of a planetary set, which turns in the coordinates of its set.
     ///
     /// # Arguments
     /// * `layout` - of this scenario
     ///
     /// # Errors
     /// A place that there is not; a name that two sensors have.
-    pub fn places(&self, layout: &Layout) -> Result<Vec<GearboxPlace>, ScenarioError> {
+    pub fn places(&self, layout: &Layout) -> Result<Vec<Option<GearboxPlace>>, ScenarioError> {
         let sensors = self.all_sensors();
         let entries = sensors.len();
         let mut places = Vec::with_capacity(entries);
@@ -28,7 +29,14 @@ impl Scenario {
                 let error = ScenarioError::new(key, format!("{name:?}"), problem);
                 return Err(error.with_help("give it a name of its own"));
             }
-            let place = self.place(sensor.at.name(), layout);
+            let place = match RingPlace::of(sensor.at.name()) {
+                Some(on_ring) => self.check_ring(&on_ring).map(|()| None),
+                None if matches!(sensor.direction, SensorDirection::Radial | SensorDirection::Tangential) => {
+                    Err("is measured radially, which only a place on a ring is: \"ring:SET:DEGREES\""
+                        .to_owned())
+                }
+                None => self.place(sensor.at.name(), layout).map(Some),
+            };
             places.push(place.map_err(|problem| {
                 let at = entry_key("sensor", index, entries, "at");
                 ScenarioError::new(at, format!("{:?}", sensor.at.name()), problem)
@@ -36,6 +44,18 @@ impl Scenario {
             })?);
         }
         Ok(places)
+    }
+
+    /// A place on a ring is on one that stands still.
+    fn check_ring(&self, on: &RingPlace) -> Result<(), String> {
+        let set = self.planetary().iter().find(|set| set.name == on.set);
+        let set = set.ok_or_else(|| format!("names {:?}, which is no [[planetary]] set", on.set))?;
+        match set.shafts()[2] {
+            None => Ok(()),
+            Some(shaft) => {
+                Err(format!("is on a ring that turns with shaft {shaft:?}; only a fixed ring bears a sensor"))
+            }
+        }
     }
 
     fn place(&self, at: &str, layout: &Layout) -> Result<GearboxPlace, String> {
@@ -77,6 +97,9 @@ impl Scenario {
     fn known_places(&self) -> String {
         let seats: Vec<String> =
             self.bearings().iter().map(|bearing| format!("{:?}", bearing.seat_name())).collect();
-        format!("the bearings' seats are {}", seats.join(", "))
+        let sets: Vec<String> =
+            self.planetary().iter().map(|set| format!("\"ring:{}:90\"", set.name)).collect();
+        let rings = if sets.is_empty() { String::new() } else { format!("; rings {}", sets.join(", ")) };
+        format!("the bearings' seats are {}{rings}", seats.join(", "))
     }
 }

@@ -31,7 +31,7 @@ impl Layout {
                 .with_help("add a [[bearing]] with this shaft and another at"));
             }
         }
-        for (index, wheel) in scenario.wheels.iter().enumerate() {
+        for (index, wheel) in scenario.wheels.iter().enumerate().take(scenario.own_wheels()) {
             let shaft = &scenario.shafts()[self.shaft_of_wheel[index]];
             let bore_mm = shaft.radius_at_mm(wheel.at);
             let Some((mesh, _)) = self.mesh_of(index) else {
@@ -73,6 +73,11 @@ impl Layout {
             let [a, b] = [number, other].map(|number| self.positions_m[number]);
             let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
             let radii_mm = both.map(|shaft| shaft.largest_radius_mm([from_mm, until_mm]));
+            let is_inside =
+                |inner: usize, outer: usize| apart_mm + radii_mm[inner] <= both[outer].bore_radius_mm;
+            if is_inside(0, 1) || is_inside(1, 0) {
+                continue;
+            }
             if until_mm > from_mm + ROUNDING_MM && apart_mm < radii_mm[0] + radii_mm[1] {
                 let problem = format!(
                     "runs into shaft {:?} from z = {from_mm:.3} to {until_mm:.3} mm: their axes are {apart_mm:.3} mm apart, and their radii \

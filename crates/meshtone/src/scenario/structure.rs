@@ -1,12 +1,12 @@
 //! How the machine around the wheels is made, and what depends on it.
 
 use super::to_toml::Plain;
-use super::{Layout, MemoryLimit, Scenario, ScenarioError, ScenarioWheel};
+use super::{Layout, MemoryLimit, PlanetarySet, Scenario, ScenarioError, ScenarioWheel};
 use crate::damage::Fault;
 use crate::machine::{Bearing, Coupled, GearboxShaft, Housing, Rig, RigParts};
 use crate::operation::{TimeGrid, samples_per_pitch, samples_per_pitch_of_published};
 use crate::random::{Draws, Purpose};
-use crate::sensor::{Sensor, SensorPlace};
+use crate::sensor::{Sensor, SensorDirection, SensorPlace};
 use crate::wheel::{Gears, NamedGears, WheelName};
 
 /// How the machine around the wheels is made.
@@ -27,6 +27,8 @@ pub struct Shafts {
     pub bearings: Vec<Bearing>,
     /// The housing; none where the bearings' seats stand on the ground.
     pub housing: Option<Housing>,
+    /// The planetary sets.
+    pub planetary: Vec<PlanetarySet>,
 }
 
 /// What a structure is called, and where its keys stand.
@@ -331,12 +333,19 @@ impl Scenario {
         }
     }
 
-    /// The sensors: the listed ones, or among shafts of beams without any a vertical one on every bearing's seat.
+    /// The sensors: the listed ones, or among shafts of beams without any a radial one on top of every fixed ring and a vertical one on every
+    /// bearing's seat.
     pub fn all_sensors(&self) -> Vec<Sensor> {
         if !self.sensors.is_empty() {
             return self.sensors.clone();
         }
-        self.bearings().iter().map(|bearing| Sensor::at_place(&bearing.seat_name())).collect()
+        let rings = self.planetary().iter().filter(|set| set.shafts()[2].is_none());
+        let on_rings = rings.map(|set| Sensor {
+            direction: SensorDirection::Radial,
+            ..Sensor::at_place(&format!("ring:{}:90", set.name))
+        });
+        let on_seats = self.bearings().iter().map(|bearing| Sensor::at_place(&bearing.seat_name()));
+        on_rings.chain(on_seats).collect()
     }
 
     /// Whether all deviations of some wheel are none.

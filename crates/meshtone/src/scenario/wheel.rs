@@ -11,7 +11,7 @@ use crate::wheel::quality::{file_deviations, ignored_shares};
 use crate::wheel::rows::*;
 use crate::wheel::{ErrorTable, FlankRelief, Material, WheelDeviations, WheelName};
 
-use super::ScenarioMesh;
+use super::{OfSet, ScenarioMesh};
 
 /// A wheel on a shaft: of a rig the pinion or the gear.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +72,8 @@ pub struct ScenarioWheel {
     pub profile_errors_mm: Option<ErrorTable>,
     /// Deviations that are given instead of drawn.
     pub deviations: WheelDeviations,
+    /// Which wheel of a planetary set it is; none of a wheel with a section of its own.
+    pub of_set: Option<OfSet>,
 }
 
 impl ScenarioWheel {
@@ -164,6 +166,7 @@ keys! {
         helix_wobble_um: 0.0,
         profile_errors_mm: None,
         deviations: WheelDeviations::default(),
+        of_set: None,
     };
     name "" "the wheel's name" .required().rule("no other wheel's");
     shaft "" "the name of its shaft" .required();

@@ -21,17 +21,17 @@ pub use contact_figures::ContactFigures;
 pub use frequency_response::FrequencyResponse;
 pub use measure::{Measurement, measure};
 pub use noise::{add_recorded_noise, add_white_noise, standard_deviation_of_channel};
-pub(crate) use parameters::check_sensors;
 pub use parameters::{ResponseInput, Sensor, SensorDirection, SensorPlace};
+pub(crate) use parameters::{RingPlace, check_sensors};
 pub use passage::Passage;
 pub use path::SensorPath;
 pub use path_ripple::PathRipple;
 
 use std::borrow::Cow;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::machine::{Axis, GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SUPPORTS, WHEELS};
-use crate::solver::Output;
+use crate::solver::{OnRing, Output};
 
 /// (m/s²) One g, as the published model has it.
 pub const GRAVITY_M_PER_S2: f64 = 9.81;
@@ -152,6 +152,19 @@ impl SensorDirection {
             Self::Horizontal => Axis::X,
             Self::Vertical => Axis::Y,
             Self::Axial => Axis::Z,
+            // Of a place on a ring, which no axis measures.
+            Self::Radial | Self::Tangential => Axis::Rotation,
+        }
+    }
+
+    /// (rad) The direction at a place on a ring, from x towards y; none along the shafts.
+    fn on_ring_rad(self, angle_rad: f64) -> Option<f64> {
+        match self {
+            Self::Radial => Some(angle_rad),
+            Self::Tangential => Some(angle_rad + FRAC_PI_2),
+            Self::Horizontal => Some(0.0),
+            Self::Vertical => Some(FRAC_PI_2),
+            Self::Axial => None,
         }
     }
 }
@@ -159,9 +172,18 @@ impl SensorDirection {
 impl Sensor {
     /// The output that it shows: the acceleration of its place over g, or the force that goes through its frequency response. Where
     /// a model has no supports that move, every place is that of both wheels.
-    pub fn output(&self) -> Output {
+    ///
+    /// # Arguments
+    /// * `sets` - names of the planetary sets
+    pub fn output(&self, sets: &[&str]) -> Output {
         if self.response_input == ResponseInput::Force {
             return Output::MeshForce { mesh: 0 };
+        }
+        if let Some(RingPlace { set, angle_rad, is_far }) = RingPlace::of(self.at.name())
+            && let Some(set) = sets.iter().position(|name| *name == set)
+            && let Some(direction_rad) = self.direction.on_ring_rad(angle_rad)
+        {
+            return Output::OnRing(OnRing { set, angle_rad, direction_rad, is_far, factor: PER_G });
         }
         let (place, axis) = self.place();
         acceleration_g(place, axis)

@@ -70,7 +70,7 @@ pub enum SensorPlace {
     /// On the wheels themselves: the sum of both, as published.
     Wheels,
     /// Among shafts of beams: `SHAFT:AT` for the seat of the bearing there, `shaft:SHAFT:AT` for the shaft itself, `housing:[x, y, z]` in mm
-    /// for a point of the housing.
+    /// for a point of the housing, `ring:SET:DEGREES` for a place on the ring of a planetary set, `ring:SET:DEGREES:far` for one away from its rim.
     Of(String),
 }
 
@@ -118,9 +118,15 @@ pub enum SensorDirection {
     Horizontal,
     /// Along the shafts.
     Axial,
+    /// On a ring, outwards from its axis.
+    Radial,
+    /// On a ring, around its axis in the sense of positive rotation.
+    Tangential,
 }
 
 by_name!(SensorDirection, [
+    "radial" => SensorDirection::Radial,
+    "tangential" => SensorDirection::Tangential,
     "vertical" => SensorDirection::Vertical,
     "horizontal" => SensorDirection::Horizontal,
     "axial" => SensorDirection::Axial,
@@ -183,6 +189,31 @@ keys! {
         .rule("\"force\" with frequency_response");
 }
 
+/// A place on the ring of a planetary set.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RingPlace {
+    /// Name of the set.
+    pub(crate) set: String,
+    /// (rad) Where on the ring, from x towards y.
+    pub(crate) angle_rad: f64,
+    /// Whether it is away from the rim.
+    pub(crate) is_far: bool,
+}
+
+impl RingPlace {
+    /// The place that a text names: `ring:p:90`, `ring:p:90:far`.
+    pub(crate) fn of(at: &str) -> Option<Self> {
+        let parts: Vec<&str> = at.strip_prefix("ring:")?.split(':').collect();
+        let (set, angle, is_far) = match parts[..] {
+            [set, angle] => (set, angle, false),
+            [set, angle, "far"] => (set, angle, true),
+            _ => return None,
+        };
+        let angle_deg: f64 = angle.trim().parse().ok().filter(|angle: &f64| angle.is_finite())?;
+        Some(Self { set: set.to_owned(), angle_rad: angle_deg.to_radians(), is_far })
+    }
+}
+
 impl Sensor {
     /// A vertical sensor at a place among shafts of beams. Seats and housing move by themselves: no wall bends between them and the sensor.
     ///
@@ -195,7 +226,7 @@ impl Sensor {
     /// The rows among shafts of beams.
     pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
         rows! {
-            at "" "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \"housing:[x, y, z]\" in mm on the housing"
+            at "" "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \"housing:[x, y, z]\" in mm on the housing, \"ring:SET:DEGREES\" on the ring of a planetary set, with \":far\" behind it away from the rim"
                 .required();
             name "" "the sensor's name; its signal is the channel `NAME_g`"
                 .otherwise("place and direction, such as `input_0_vertical`")

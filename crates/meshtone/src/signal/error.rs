@@ -66,6 +66,28 @@ pub enum SignalError {
         /// The requirement.
         needed: usize,
     },
+    /// The carrier turns too little for every tooth of a wheel to mesh in front of the sensor.
+    #[error(
+        "the planets pass the sensor in {revolutions} whole revolutions of the carrier, but at least {needed} are needed until every tooth has \
+         been in front of it"
+    )]
+    TooFewPassages {
+        /// (rev) Revolutions of the carrier whose passage the recording holds.
+        revolutions: usize,
+        /// (rev) The requirement.
+        needed: usize,
+    },
+    /// The teeth that come to mesh in front of the sensor are so few that its windows leave gaps between them.
+    #[error(
+        "only {seen} of {teeth} teeth come to mesh in front of the sensor, however long the recording is, and others are never near it: the tooth \
+         counts have a common factor"
+    )]
+    TeethNotSeen {
+        /// Number of teeth that do.
+        seen: usize,
+        /// Teeth of the wheel.
+        teeth: u32,
+    },
     /// A recording that is to be continued periodically does not hold whole revolutions.
     #[error(
         "a recording can be continued periodically only if it spans whole revolutions, but this one spans {revolutions:.6}"

@@ -1,6 +1,6 @@
 //! The shafts of a machine by their tooth counts: what turns how fast, and which lines its wheels make.
 
-use super::{SeparationSettings, ShaftPhase, SignalError, TrainBearing};
+use super::{SeparationSettings, ShaftPhase, SignalError, TrainBearing, TrainSet};
 use crate::error::ScenarioError;
 use crate::scenario::{Bearing, Layout, Ratio, Scenario};
 use crate::simulate::Stages;
@@ -50,6 +50,8 @@ pub struct GearTrain {
     pub meshes: Vec<[usize; 2]>,
     /// The ball and roller bearings, each with its name: shaft and place, such as `input:0`.
     pub bearings: Vec<(String, TrainBearing)>,
+    /// The planetary sets whose carriers turn.
+    pub sets: Vec<TrainSet>,
     /// Number of the shaft that the ratios are of: the pinion's, or the one that the motor turns.
     input: usize,
 }
@@ -76,6 +78,7 @@ impl GearTrain {
             wheels: wheels.iter().enumerate().map(wheel).collect(),
             meshes: (1..N).map(|mate| [0, mate]).collect(),
             bearings: Vec::new(),
+            sets: Vec::new(),
             input: 0,
         }
     }
@@ -136,6 +139,7 @@ impl GearTrain {
             shafts: shafts.collect(),
             wheels: wheels.collect(),
             meshes: layout.wheels_of_mesh.clone(),
+            sets: TrainSet::all(scenario, layout),
             bearings: scenario.bearings().iter().zip(&layout.shaft_of_bearing).filter_map(bearing).collect(),
         }
     }

@@ -8,6 +8,7 @@
 //! | phase of the shaft | [`ShaftPhase`], [`tachometer_pulses`], [`repair_pulses`] |
 //! | over the angle | [`angular_resample`], [`interpolate_pchip`], [`interpolate_band_limited`] |
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
+//! | average of a planet or a sun | [`planetary_average`] |
 //! | separation | [`separate`] |
 //! | spectra and envelope | [`order_spectrum`], over time [`order_map`], [`envelope`], [`envelope_spectrum`] |
 //! | every shaft of a pair or a gearbox | [`GearTrain`], [`TrainRecording`], [`foreign_tones`] |
@@ -40,6 +41,8 @@ mod mismatch;
 mod octaves;
 mod order_map;
 mod phase;
+mod planetary_average;
+mod planetary_recording;
 mod prewhitening;
 mod random_part;
 mod record;
@@ -88,6 +91,8 @@ pub use order_map::{OrderMap, OrderMapSettings, order_map};
 pub use phase::{
     AngleZero, MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses,
 };
+pub use planetary_average::{Passages, PassingSignal, PlanetaryAverage, planetary_average};
+pub use planetary_recording::TrainSet;
 pub use prewhitening::cepstral_prewhitening;
 pub use random_part::{
     DiscreteRandomParts, SynchronousResidual, discrete_random_separation, synchronous_residual,

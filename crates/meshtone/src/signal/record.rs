@@ -239,7 +239,7 @@ pub fn process_average(
 }
 
 /// Gives every record the NA4 that it has in the series.
-fn as_series(records: Result<Vec<Record>, SignalError>) -> Result<Vec<Record>, SignalError> {
+pub(super) fn as_series(records: Result<Vec<Record>, SignalError>) -> Result<Vec<Record>, SignalError> {
     let mut records = records?;
     let residuals: Vec<&[f64]> = records.iter().map(|record| record.parts.residual.as_slice()).collect();
     let values = na4(&residuals)?;

@@ -217,7 +217,7 @@ impl TrainRecording<'_> {
     }
 
     /// The phase of a wheel, whose first tooth enters contact at angle 0 where that is known.
-    fn wheel_phase(&self, wheel: usize) -> Result<ShaftPhase, SignalError> {
+    pub(super) fn wheel_phase(&self, wheel: usize) -> Result<ShaftPhase, SignalError> {
         let of = &self.train.wheels[wheel];
         let mut phase = self.phase(of.shaft)?;
         if phase.zero == AngleZero::Simulated {
@@ -282,7 +282,11 @@ impl TrainRecording<'_> {
                     warnings.extend(wheel.records.iter().flat_map(|record| &record.warnings).cloned());
                     found.wheels.push(wheel);
                 }
-                Err(error @ SignalError::TooFewRevolutions { .. }) => {
+                Err(
+                    error @ (SignalError::TooFewRevolutions { .. }
+                    | SignalError::TooFewPassages { .. }
+                    | SignalError::TeethNotSeen { .. }),
+                ) => {
                     warnings.push(SignalWarning::WheelWithoutAverage(without(error.clone())));
                     first_without.get_or_insert(without(error));
                 }
@@ -338,20 +342,17 @@ impl TrainRecording<'_> {
                 (shafts.mean_speed_hz(WheelName::BOTH[wheel.min(1)]), None)
             }
         };
-        let records = match settings.revolutions {
-            None => vec![process_angular(angular, of.teeth, &chain)?],
-            Some(count) => process_angular_segments(angular, of.teeth, &chain, count)?,
+        let records = match (self.passing(wheel, &settings.angular)?, settings.revolutions) {
+            (Some(passing), revolutions) => passing.records(&chain, revolutions)?,
+            (None, None) => vec![process_angular(angular, of.teeth, &chain)?],
+            (None, Some(count)) => process_angular_segments(angular, of.teeth, &chain, count)?,
         };
         let second = |turned_rev: f64| match &phase {
             Some(phase) => phase.sample_at(angular.start_rev + turned_rev) / self.sampling_rate_hz,
             None => turned_rev / mean_speed_hz,
         };
-        let middles = records.iter().scan(0.0, |from_rev, record| {
-            let count = record.average.revolutions as f64;
-            *from_rev += count;
-            Some(second(*from_rev - 0.5 * count))
-        });
-        let middles_s = middles.collect();
+        let count = settings.revolutions.unwrap_or(angular.revolutions()) as f64;
+        let middles_s = (0..records.len()).map(|record| second((record as f64 + 0.5) * count)).collect();
         Ok(WheelRecords { wheel, mean_speed_hz, records, middles_s })
     }
 }

@@ -100,6 +100,17 @@ pub enum SignalWarning {
         /// (rev) Fewest revolutions that are averaged.
         needed: f64,
     },
+    /// Where the planets of a set stand is not known but taken from the recording.
+    #[error(
+        "the recording does not say where the planets of {set} stand: planet 1 is taken to pass the sensor where the carrier has turned {carrier_deg:.0}° \
+         (or any whole planets more), at which the mesh is loudest"
+    )]
+    PlanetsFound {
+        /// The set.
+        set: String,
+        /// (°) Angle of the carrier, in its sense, from where its phase is 0.
+        carrier_deg: f64,
+    },
     /// A wheel turns too little for an average; others have one.
     #[error("there is no result of {0}")]
     WheelWithoutAverage(WheelError),
@@ -124,6 +135,7 @@ impl SignalWarning {
             Self::DoesNotFit(mismatch) => mismatch.alternative.code(),
             Self::NothingSynchronous { .. } => "nothing-synchronous",
             Self::NotAveraged { .. } => "not-averaged",
+            Self::PlanetsFound { .. } => "planets-found",
             Self::WheelWithoutAverage(_) => "wheel-without-average",
             Self::ForeignTones(_) => "foreign-tones",
             Self::SensorFault(fault) => fault.code(),
@@ -167,10 +179,18 @@ impl SignalWarning {
                 let all = std::iter::once(("needed".to_owned(), *needed));
                 all.chain(shafts.iter().enumerate().map(of_shaft)).collect()
             }
+            Self::PlanetsFound { carrier_deg, .. } => of(&[("carrier_deg", *carrier_deg)]),
             Self::WheelWithoutAverage(WheelError { teeth, error, .. }) => {
                 let mut values = of(&[("teeth", f64::from(*teeth))]);
-                if let SignalError::TooFewRevolutions { revolutions, needed } = error {
-                    values.extend(of(&[("revolutions", *revolutions), ("needed", *needed as f64)]));
+                let counts = match error {
+                    SignalError::TooFewRevolutions { revolutions, needed } => Some((*revolutions, *needed)),
+                    SignalError::TooFewPassages { revolutions, needed } => {
+                        Some((*revolutions as f64, *needed))
+                    }
+                    _ => None,
+                };
+                if let Some((revolutions, needed)) = counts {
+                    values.extend(of(&[("revolutions", revolutions), ("needed", needed as f64)]));
                 }
                 values
             }

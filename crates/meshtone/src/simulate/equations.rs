@@ -204,10 +204,15 @@ impl Stages {
         recorder: &mut dyn Recorder,
     ) -> Result<(), Error> {
         let result = match &self.equations {
-            Equations::Machine(machine, modal) => {
-                let problem = self.problem(machine, modal, &self.time, outputs, first_sample);
-                integrate(problem, instructions, recorder)
-            }
+            Equations::Machine(machine, modal) => self.with_rings(
+                (machine, &self.time),
+                (outputs, first_sample),
+                recorder,
+                |outputs, recorder| {
+                    let problem = self.problem(machine, modal, &self.time, outputs, first_sample);
+                    integrate(problem, instructions, recorder)
+                },
+            ),
             Equations::Published(published) => {
                 published::integrate(published, outputs, first_sample, recorder)
             }
@@ -260,14 +265,18 @@ impl Stages {
             first_kept_sample: 2 * self.time.first_kept_sample,
             samples_per_pinion_revolution: 2 * self.time.samples_per_pinion_revolution,
         };
-        let mut problem = self.problem(machine, modal, &time, outputs, time.first_simulated_sample);
-        problem.hunting_period_samples = None;
-        let finer = resume(problem, state, InstructionSet::in_use(), recorder);
+        let first_sample = time.first_simulated_sample;
+        let finer =
+            self.with_rings((machine, &time), (outputs, first_sample), recorder, |outputs, recorder| {
+                let mut problem = self.problem(machine, modal, &time, outputs, first_sample);
+                problem.hunting_period_samples = None;
+                resume(problem, state, InstructionSet::in_use(), recorder)
+            });
         finer.map_err(|diverged| self.divergence(diverged))
     }
 
     /// Motion of motor and brake from a sample of a division of time on.
-    fn motion_from(&self, sample: usize, time: &TimeGrid) -> Motion<'_> {
+    pub(super) fn motion_from(&self, sample: usize, time: &TimeGrid) -> Motion<'_> {
         let motion = self.motion_in(time);
         if self.is_steady() || sample == 0 {
             return motion;

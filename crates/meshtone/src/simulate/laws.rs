@@ -41,9 +41,7 @@ impl Stages {
         let of = |source| SignalFigures::of(channels.of(source).iter().copied());
         Figures {
             forces: (0..self.meshes.len()).map(|mesh| of(SignalSource::MeshForce(mesh))).collect(),
-            speeds: (0..self.layout.shaft_names.len())
-                .map(|shaft| of(SignalSource::ShaftSpeed(shaft)))
-                .collect(),
+            speeds: (0..self.layout.own_shafts()).map(|shaft| of(SignalSource::ShaftSpeed(shaft))).collect(),
         }
     }
 

@@ -1,15 +1,16 @@
 //! The machine around the meshes, of the maker for its structure.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use crate::bearing::{RollingBearing, RollingParts};
 use crate::error::ScenarioError;
 use crate::machine::{
     Disc, GearboxMachine, GearboxParts, GearboxShaft, KnownModes, Machine, MeshLine, Modes, PlacedUnbalance,
-    RigMachine, RigParts, SeatedBearing, Spinning, Supports, WheelBody, body_stiffness_nm_per_rad,
+    RigMachine, RigParts, RimParts, SeatedBearing, SetCoordinates, SetParts, Spinning, Supports, WheelBody,
+    WheelInertia, body_stiffness_nm_per_rad,
 };
-use crate::scenario::{Layout, Scenario};
+use crate::scenario::{Layout, PlanetarySet, Scenario, SetLayout};
 use crate::solver::{InitialMotion, ModalMachine};
 use crate::wheel::{Teeth, WheelName};
 
@@ -36,6 +37,10 @@ pub struct AssembledMachine {
     pub stepped_up_to_hz: f64,
     /// (Hz) Natural frequency above which modes decay faster than those below.
     pub highest_of_slow_hz: f64,
+    /// The coordinates of each planetary set.
+    pub sets: Vec<SetCoordinates>,
+    /// (m) Radius of the middle of the rim of each set's ring.
+    pub rim_radii_m: Vec<f64>,
 }
 
 /// (Hz) Natural frequency above which modes of shafts of beams decay faster than those below.
@@ -84,6 +89,8 @@ fn rig(scenario: &Scenario, parts: RigParts, teeth: &Teeth) -> AssembledMachine 
         mesh_mass_kg: vec![mesh_mass_kg],
         mesh_damping_ratio: scenario.meshes.iter().map(|mesh| mesh.damping_ratio).collect(),
         highest_of_slow_hz: f64::INFINITY,
+        sets: Vec::new(),
+        rim_radii_m: Vec::new(),
         stepped_up_to_hz: f64::INFINITY,
         machine,
     }
@@ -108,6 +115,7 @@ struct Beams {
     discs: Vec<Disc>,
     mesh_mass_kg: Vec<f64>,
     bearings: Bearings,
+    rim_radii_m: Vec<f64>,
 }
 
 /// Shafts of beams in bearings: wheels become discs, meshes lines of action, and all unbalances are placed on their shafts.
@@ -116,7 +124,8 @@ struct Beams {
 /// places.
 fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams, ScenarioError> {
     let shafts: Vec<_> = scenario.shafts().iter().zip(layout.positions_m.iter().copied()).collect();
-    let discs: Vec<Disc> = (scenario.wheels.iter().enumerate())
+    let (own_wheels, own_meshes) = (scenario.own_wheels(), scenario.own_meshes());
+    let discs: Vec<Disc> = (scenario.wheels.iter().take(own_wheels).enumerate())
         .map(|(number, wheel)| {
             // Every wheel is in a mesh, as the layout has checked.
             let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
@@ -133,7 +142,9 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         .collect();
     let overruns = scenario.operation.overruns();
     let has_forces_across = scenario.meshes.iter().any(|mesh| mesh.friction > 0.0 || mesh.random_force > 0.0);
-    let lines: Vec<MeshLine> = (teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears).enumerate())
+    let of_meshes = teeth.iter().zip(&layout.wheels_of_mesh).zip(&layout.gears).take(own_meshes);
+    let lines: Vec<MeshLine> = of_meshes
+        .enumerate()
         .map(|(mesh, ((teeth, &wheels), gears))| {
             let line = MeshLine {
                 wheels,
@@ -150,11 +161,14 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         let both = line.wheels.iter().zip(line.base_radii_m);
         1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
     });
+    let sets: Vec<SetParts> = (scenario.planetary().iter().zip(&layout.sets))
+        .map(|(set, of_set)| set_parts(scenario, layout, teeth, set, of_set))
+        .collect();
     let linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(scenario.bearings()))
         .map(|(&shaft, bearing)| SeatedBearing::linear(shaft, bearing))
         .collect();
     let rolling: Vec<(usize, RollingParts)> = scenario.rolling_bearings()?;
-    let ratios: Vec<f64> = layout.ratios.iter().map(|ratio| ratio.value()).collect();
+    let ratios: Vec<f64> = layout.ratios.iter().take(shafts.len()).map(|ratio| ratio.value()).collect();
     let of_wheels = (scenario.wheels.iter().zip(&layout.shaft_of_wheel))
         .map(|(wheel, &shaft)| PlacedUnbalance { shaft, at: wheel.at, unbalance: &wheel.unbalance });
     let of_shafts = (scenario.shafts().iter().enumerate()).map(|(shaft, of)| PlacedUnbalance {
@@ -173,6 +187,7 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         material: scenario.material,
         unbalances: &unbalances,
         brake_inertia_kgm2: scenario.operation.brake_inertia_kgm2,
+        sets: &sets,
     };
     let mut machine = GearboxMachine::new(&parts);
     let (mut seated, mut bearings) = (linear.clone(), Vec::new());
@@ -186,9 +201,93 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         parts.bearings = &seated;
         machine = GearboxMachine::new(&parts);
     }
-    let mesh_mass_kg = mass_kg.collect();
+    let mesh_mass_kg = mass_kg.chain(sets.iter().flat_map(SetParts::mesh_masses_kg)).collect();
     let spinning = machine.spinning(&parts);
-    Ok(Beams { machine, discs, spinning, mesh_mass_kg, bearings })
+    let rim_radii_m = sets.iter().map(|set| set.rim.radius_m).collect();
+    Ok(Beams { machine, discs, spinning, mesh_mass_kg, bearings, rim_radii_m })
+}
+
+/// What a planetary set is made of.
+fn set_parts(
+    scenario: &Scenario,
+    layout: &Layout,
+    teeth: &[Teeth],
+    set: &PlanetarySet,
+    of_set: &SetLayout,
+) -> SetParts {
+    let planets = of_set.planets();
+    let first_meshes = [of_set.first_mesh, of_set.first_mesh + planets];
+    let [at_sun, at_ring] = first_meshes.map(|mesh| &teeth[mesh]);
+    let (sun_side, planet_side) = match of_set.sun_drives {
+        true => (WheelName::Pinion, WheelName::Gear),
+        false => (WheelName::Gear, WheelName::Pinion),
+    };
+    let (sun, planet) = (at_sun.wheel(sun_side), at_sun.wheel(planet_side));
+    let ring = &at_ring.gear;
+    let material = scenario.material;
+    let rim_m = set.rim_thickness_mm() * 1e-3;
+    let (root_m, width_m) = (ring.root_radius_mm * 1e-3, set.face_width_mm * 1e-3);
+    let [density, elasticity_pa] = [material.density_kg_per_m3(), material.youngs_modulus_mpa() * 1e6];
+    let arm_m = of_set.centre_distance_mm * 1e-3;
+    // A ring from r to R.
+    let annulus = |inner_m: f64, outer_m: f64, given: &WheelInertia| {
+        let solid_kg = density * PI * (outer_m.powi(2) - inner_m.powi(2)) * width_m;
+        WheelBody::of_annulus(solid_kg, [inner_m, outer_m], given)
+    };
+    let ring_m = [ring.tip_radius_mm * 1e-3, root_m + rim_m];
+    let carrier_m = arm_m + planet.pitch_radius_mm * 1e-3;
+    let sun_body = WheelBody::new(sun, material, &set.sun_inertia);
+    let coupling = set.coupling_stiffness_nm_per_rad;
+    // The body of the sun yields between its bore and its teeth; planets turn freely on their pins.
+    let sun_yields = body_stiffness_nm_per_rad(sun, sun_side, &layout.gears[first_meshes[0]]);
+    let to_sun = sun_yields.map_or(coupling, |body| 1.0 / (1.0 / coupling + 1.0 / body));
+    let ring_base_m = ring.base_radius_mm * 1e-3;
+    let [support, around] = [set.rim.support_n_per_m, set.rim.rotation_support_n_per_m];
+    let to_ring = match set.shafts()[2] {
+        Some(_) => coupling,
+        None => around * ring_base_m * ring_base_m,
+    };
+    SetParts {
+        name: set.name.clone(),
+        angles_rad: of_set.angles_rad.clone(),
+        centre_distance_m: arm_m,
+        ratios: of_set.ratios.map(|ratio| ratio.value()),
+        planet_ratio: layout.ratios[layout.shaft_of_wheel[of_set.first_wheel + 1]].value(),
+        shafts: set
+            .shafts()
+            .map(|name| Some((scenario.shaft_number(name?)?, scenario.is_at_end(set, name?)))),
+        bodies: [
+            sun_body,
+            WheelBody::new(planet, material, &set.planet_inertia),
+            annulus(ring_m[0], ring_m[1], &set.ring_inertia),
+            annulus(0.0, carrier_m, &set.carrier_inertia),
+        ],
+        supports_n_per_m: [set.sun_support_n_per_m, set.carrier_support_n_per_m, support],
+        couplings_nm_per_rad: [to_sun, coupling, to_ring],
+        pin_n_per_m: set.pin.stiffness_n_per_m,
+        pin_errors_m: set.pin.error_um.iter().map(|um| um * 1e-6).collect(),
+        rim: RimParts {
+            radius_m: root_m + rim_m / 2.0,
+            thickness_m: rim_m,
+            width_m,
+            elasticity_pa,
+            density_kg_per_m3: density,
+            support_n_per_m: [support, around],
+            waves: set.rim.waves as usize,
+        },
+        damping_ratio: set.support_damping_ratio,
+        first_meshes,
+        sun_drives: of_set.sun_drives,
+        base_radii_m: [
+            sun.base_radius_mm,
+            planet.base_radius_mm,
+            at_ring.pinion.base_radius_mm,
+            ring.base_radius_mm,
+        ]
+        .map(|mm| mm * 1e-3),
+        working_pressure_angles_rad: [at_sun, at_ring].map(|teeth| teeth.gear.working_pressure_angle_rad),
+        has_forces_across: set.friction > 0.0 || set.random_force > 0.0,
+    }
 }
 
 /// The machine of [`beams`] with its modes. Places that outputs read are added to the finished machine, as they need its nodes.
@@ -198,10 +297,13 @@ fn shafts_of_beams(
     teeth: &[Teeth],
     known: &KnownModes,
 ) -> Result<(AssembledMachine, Bearings), ScenarioError> {
-    let Beams { mut machine, discs, spinning, mesh_mass_kg, bearings } = beams(scenario, layout, teeth)?;
+    let Beams { mut machine, discs, spinning, mesh_mass_kg, bearings, rim_radii_m } =
+        beams(scenario, layout, teeth)?;
     let sensors = scenario.all_sensors();
     for (sensor, place) in sensors.iter().zip(scenario.places(layout)?) {
-        machine.add_place(sensor.name(), place);
+        if let Some(place) = place {
+            machine.add_place(sensor.name(), place);
+        }
     }
     for (number, shaft) in scenario.shafts().iter().enumerate() {
         machine.add_rotation(speed_name(&shaft.name), number);
@@ -220,6 +322,8 @@ fn shafts_of_beams(
         spinning,
         mesh_mass_kg,
         highest_of_slow_hz: HIGHEST_OF_SLOW_HZ,
+        sets: machine.sets,
+        rim_radii_m,
         stepped_up_to_hz,
         modes,
         machine: machine.machine,

@@ -24,8 +24,9 @@ impl Scenario {
     /// The signals of a simulation, each with what it is of the solution: those of the sensors, and of a rig those of a pair, of shafts of beams
     /// those of each mesh and of each shaft.
     pub(crate) fn signals_and_outputs(&self) -> Vec<(NamedSignal, Output)> {
+        let sets = self.set_names();
         let of_sensor = |(number, sensor): (usize, Sensor)| {
-            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), sensor.output())
+            (NamedSignal::new(sensor.channel(), SignalSource::Sensor(number)), sensor.output(&sets))
         };
         let sensors = self.all_sensors().into_iter().enumerate().map(of_sensor);
         if self.rig().is_some() {

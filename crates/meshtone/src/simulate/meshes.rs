@@ -245,7 +245,11 @@ impl MeshOf<'_> {
         (self.friction > 0.0).then(|| Friction {
             // The force across the teeth is larger than that in the transverse section.
             coefficient: self.friction / self.gears.base_helix_angle_rad().cos(),
-            pitch_point: teeth.pitch_point(),
+            pitch_point: if self.gears.ring_drives {
+                teeth.path.from_end(teeth.pitch_point())
+            } else {
+                teeth.pitch_point()
+            },
             base_pitch_m: teeth.path.base_pitch_mm * 1e-3,
         })
     }

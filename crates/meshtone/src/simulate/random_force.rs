@@ -15,10 +15,11 @@
 use std::f64::consts::TAU;
 
 use meshtone_fourier::{Complex64, convenient_length, from_real_spectrum, real_spectrum};
+use nalgebra::DVector;
 
 use super::Stages;
 use crate::random::{Draws, Purpose};
-use crate::sensor::{Channel, Channels, Sensor, SignalSource};
+use crate::sensor::{Channel, Channels, SignalSource};
 use crate::solver::{Block, LateralResponse, ModalMachine, Output, Recorder, StepCounts};
 
 /// (-) How the density grows with the mean force, with the speed of sliding, and with the force while it varies.
@@ -93,7 +94,8 @@ impl Stages {
             }
             spectrum
         };
-        let places: Vec<_> = self.sensors.iter().map(Sensor::place).collect();
+        let places: Vec<DVector<f64>> =
+            (0..self.sensors.len()).flat_map(|sensor| self.weights_of(modal, sensor)).collect();
         let response = LateralResponse::new(modal, &self.closed_meshes(), &places, rate_hz / 2.0);
         RandomForces { spectra: mesh_force_n.iter().enumerate().map(spectrum).collect(), length, response }
     }
@@ -138,7 +140,7 @@ impl Stages {
         let mean = (before * before + after * after) / (2.0 * (before + after));
         let driving_rad_per_s =
             TAU * self.scenario.operation.pinion_speed_hz * self.layout.driving_ratio(mesh).abs();
-        let ratio = f64::from(teeth.pinion.teeth) / f64::from(teeth.gear.teeth);
+        let ratio = teeth.gear.sign() * f64::from(teeth.pinion.teeth) / f64::from(teeth.gear.teeth);
         mean * path.base_pitch_mm * 1e-3 * driving_rad_per_s * (1.0 + ratio)
     }
 
@@ -148,19 +150,55 @@ impl Stages {
     /// * `sensor` - its number
     /// * `motion` - is added to
     pub(crate) fn add_random_part(&self, sensor: usize, motion: &mut [f64]) {
-        let Some(RandomForces { spectra, length, response }) = &self.random_forces else { return };
-        let Output::Acceleration { factor, .. } = self.sensors[sensor].output() else { return };
-        let rate_hz = self.time.sampling_rate_hz;
+        let (Some(random), Some((_, modal))) = (&self.random_forces, self.machine()) else { return };
+        let places = |sensor: usize| self.weights_of(modal, sensor).len();
+        let first: usize = (0..sensor).map(places).sum();
+        match self.sensors[sensor].output(&self.scenario.set_names()) {
+            Output::Acceleration { factor, .. } => {
+                let added = self.moved_by_chance(random, first);
+                motion.iter_mut().zip(added).for_each(|(motion, added)| *motion += factor * added);
+            }
+            Output::OnRing(on) => {
+                let (terms, angles_rad) = (self.terms_of(&on), self.kept_angles_rad(&on));
+                for (number, term) in terms.iter().enumerate() {
+                    let added = self.moved_by_chance(random, first + number);
+                    for ((motion, added), angle_rad) in motion.iter_mut().zip(added).zip(&angles_rad) {
+                        *motion += term.weight(&on, *angle_rad) * added;
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The coordinates' weights in each place whose acceleration a sensor's depends on: its own, or those of the ring on which it sits.
+    fn weights_of(&self, modal: &ModalMachine, sensor: usize) -> Vec<DVector<f64>> {
+        match self.sensors[sensor].output(&self.scenario.set_names()) {
+            Output::Acceleration { place, axis, .. } => vec![modal.weights(&place, axis)],
+            Output::OnRing(on) => {
+                let unit = |number| {
+                    let mut weights = DVector::zeros(modal.rigid_rotation.len());
+                    weights[number] = 1.0;
+                    weights
+                };
+                self.terms_of(&on).iter().map(|term| unit(term.coordinate)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// (m/s²) The acceleration of a place by the random forces of all meshes.
+    fn moved_by_chance(&self, random: &RandomForces, place: usize) -> Vec<f64> {
+        let RandomForces { spectra, length, response } = random;
         let lines = length / 2 + 1;
         let mut sum = vec![Complex64::ZERO; lines];
         for (mesh, spectrum) in spectra.iter().enumerate() {
-            let gains = response.at(sensor, mesh, rate_hz / *length as f64, lines);
+            let gains = response.at(place, mesh, self.time.sampling_rate_hz / *length as f64, lines);
             for ((sum, gain), line) in sum.iter_mut().zip(gains).zip(spectrum) {
-                *sum += gain * line * factor;
+                *sum += gain * line;
             }
         }
-        let added = from_real_spectrum(sum, *length);
-        motion.iter_mut().zip(added).for_each(|(motion, added)| *motion += added);
+        from_real_spectrum(sum, *length)
     }
 
     /// Number of the sensor of a channel.

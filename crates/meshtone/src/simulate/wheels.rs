@@ -76,7 +76,8 @@ pub(super) fn sound_pair(
         // The published code knows profile errors only.
         let flanks = profile_errors(&scenario.quality(), &teeth, scenario.seed);
         Deviations { flanks, ..Deviations::default() }
-    };
+    }
+    .counted_from(layout.first_teeth[mesh]);
     let faults = layout.faults_of_mesh(&scenario.placed_faults(), mesh).into_iter();
     MeshedPair {
         cycle: CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz),

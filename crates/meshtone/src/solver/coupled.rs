@@ -30,7 +30,7 @@ use crate::mesh::{ForcingBlock, MeshLaw, SpringSamples, TANGENT_M, TANGENT_PART,
 use crate::simd::{Dispatch, InstructionSet, Instructions, Lanes, Task};
 
 /// Most meshes that one machine has.
-pub(crate) const MOST_MESHES: usize = 8;
+pub(crate) const MOST_MESHES: usize = 16;
 
 /// Most rolling bearings that one machine has.
 pub(crate) const MOST_ROLLING_BEARINGS: usize = 12;
@@ -1183,10 +1183,13 @@ mod tests {
         println!("most iterations {}, searched along the line in {}", most[0], most[1]);
     }
 
+    /// Number of columns of A, by which the coupling of drawn equations grows.
+    const COUPLINGS: usize = 8;
+
     /// `s A Aᵀ` of the first unknowns, and 0 of the others.
     fn products(a: &Matrix, strength: f64, count: usize) -> [[f64; MOST_UNKNOWNS]; MOST_UNKNOWNS] {
         let product =
-            |row: usize, column: usize| (0..MOST_MESHES).map(|k| a[row][k] * a[column][k]).sum::<f64>();
+            |row: usize, column: usize| (0..COUPLINGS).map(|k| a[row][k] * a[column][k]).sum::<f64>();
         let of = |row: usize, column: usize| {
             if row.max(column) < count { strength * product(row, column) } else { 0.0 }
         };

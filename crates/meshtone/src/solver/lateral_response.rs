@@ -1,13 +1,12 @@
 //! What forces across the lines of action make of a machine whose meshes stay closed: transfer functions to its sensors.
 
-use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use meshtone_fourier::Complex64;
 use nalgebra::{DMatrix, DVector};
 
 use super::ModalMachine;
-use crate::machine::{Axis, ClosedMesh};
+use crate::machine::ClosedMesh;
 
 /// (-) Steps from one frequency to the next, as a part of the frequency: a third of the least damping ratio resolves a resonance within 2 %.
 const STEPS: [f64; 2] = [0.002, 0.02];
@@ -19,7 +18,7 @@ const LOWEST_HZ: f64 = 1.0;
 pub(crate) struct LateralResponse {
     /// (Hz) Frequencies, rising.
     frequency_hz: Vec<f64>,
-    /// (m/s²/N) At each: a row for each sensor, a column for each mesh.
+    /// (m/s²/N) At each: a row for each place, a column for each mesh.
     gains: Vec<DMatrix<Complex64>>,
 }
 
@@ -32,12 +31,12 @@ impl LateralResponse {
     /// # Arguments
     /// * `model` - the machine
     /// * `meshes` - closed
-    /// * `sensors` - place and axis of the accelerations
+    /// * `places` - weights of the machine's coordinates in each acceleration
     /// * `highest_hz` - (Hz) the highest frequency
     pub(crate) fn new(
         model: &ModalMachine,
         meshes: &[ClosedMesh],
-        sensors: &[(Cow<'static, str>, Axis)],
+        places: &[DVector<f64>],
         highest_hz: f64,
     ) -> Self {
         let damping_ratio = |(stiffness, damping): (&f64, &f64)| damping / (2.0 * stiffness.sqrt());
@@ -47,22 +46,20 @@ impl LateralResponse {
         let count = ((highest_hz / LOWEST_HZ).ln() / step.ln_1p()).ceil() as usize;
         let frequency_hz: Vec<f64> =
             (0..=count).map(|n| LOWEST_HZ * (n as f64 * step.ln_1p()).exp()).collect();
-        let sensors: Vec<Vec<f64>> = (sensors.iter())
-            .map(|(place, axis)| model.of_coordinates(&model.weights(place, *axis)).0)
-            .collect();
-        let gains = frequency_hz.iter().map(|hz| gains_at(model, meshes, &sensors, TAU * hz)).collect();
+        let places: Vec<Vec<f64>> = places.iter().map(|weights| model.of_coordinates(weights).0).collect();
+        let gains = frequency_hz.iter().map(|hz| gains_at(model, meshes, &places, TAU * hz)).collect();
         Self { frequency_hz, gains }
     }
 
-    /// (m/s²/N) The transfer function from a mesh to a sensor at equally spaced frequencies from 0 on, straight between those computed.
+    /// (m/s²/N) The transfer function from a mesh to a place at equally spaced frequencies from 0 on, straight between those computed.
     ///
     /// # Arguments
-    /// * `sensor`, `mesh` - their numbers
+    /// * `place`, `mesh` - their numbers
     /// * `step_hz` - (Hz) from one frequency to the next
     /// * `count` - how many
-    pub(crate) fn at(&self, sensor: usize, mesh: usize, step_hz: f64, count: usize) -> Vec<Complex64> {
+    pub(crate) fn at(&self, place: usize, mesh: usize, step_hz: f64, count: usize) -> Vec<Complex64> {
         let mut next = 1;
-        let gain = |n: usize| self.gains[n][(sensor, mesh)];
+        let gain = |n: usize| self.gains[n][(place, mesh)];
         let last = self.frequency_hz.len() - 1;
         let between = |line: usize| {
             let hz = line as f64 * step_hz;

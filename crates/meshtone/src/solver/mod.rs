@@ -30,5 +30,5 @@ pub use modal::ModalLine;
 #[cfg(feature = "internals")]
 pub use modal::Residual;
 pub use modal::{InitialMotion, ModalMachine};
-pub use outputs::Output;
+pub use outputs::{OnRing, Output};
 pub(crate) use steady_sine::MeanMachine;

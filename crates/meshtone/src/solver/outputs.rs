@@ -51,11 +51,29 @@ pub enum Output {
         /// The mesh's number.
         mesh: usize,
     },
+    /// (m/s²) Acceleration of a place on the ring of a planetary set, times a factor. It depends on where the carrier stands, and so is made of
+    /// coordinates after the solution.
+    OnRing(OnRing),
     /// (W) Power that the friction of a mesh's flanks takes, at the nominal speed; only of a mesh with friction.
     FrictionLoss {
         /// The mesh's number.
         mesh: usize,
     },
+}
+
+/// A place on the ring of a planetary set, and the direction that is measured there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnRing {
+    /// Number of the set.
+    pub set: usize,
+    /// (rad) Where it is, from x towards y.
+    pub angle_rad: f64,
+    /// (rad) The direction, from x towards y.
+    pub direction_rad: f64,
+    /// Whether it is far from the rim, and so feels the ring's mean motion alone: shapes of no wave and of one.
+    pub is_far: bool,
+    /// The factor of the acceleration in m/s².
+    pub factor: f64,
 }
 
 /// A linear combination of what a step has of a sample ([`State`](super::step::State)): `constant + sample·per_sample + Σ weights`. An
@@ -102,6 +120,7 @@ impl Output {
                 let unit = |n: usize, _| f64::from(n == number);
                 (DVector::from_fn(model.rigid_rotation.len(), unit), derivative)
             }
+            Self::OnRing(_) => return OutputWeights::default(),
             Self::MeshForce { mesh } => return mesh_force(model, *mesh),
             Self::FrictionLoss { mesh } => return friction_loss(model, *mesh),
         };

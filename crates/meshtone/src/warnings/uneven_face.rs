@@ -27,12 +27,15 @@ impl Stages {
             let name = self.layout.mesh_names[mesh].as_ref();
             let of_mesh = name.map_or_else(String::new, |name| format!(" of mesh {name}"));
             let [thicker, key] = self.thicker_shaft(mesh);
-            let centred = self.factor_of(&self.centred(mesh), mesh);
+            // Where others are in the way the wheels cannot sit there.
+            let centred = Some(self.factor_of(&self.centred(mesh), mesh)).filter(|factor| factor.is_finite());
+            let centred = centred.map_or_else(String::new, |factor| {
+                format!("wheels midway between their bearings would make it {factor:.1}, and ")
+            });
             let [crowning_um, crowned] = self.best_crowning(mesh);
             let message = format!(
                 "the load{of_mesh} is at one end of the face: its face load factor is {:.1}, as the shafts lean by {:.1} µm over the \
-                 face; {thicker}wheels midway between their bearings would make it {centred:.1}, and a crowning of {crowning_um:.1} µm \
-                 would make it {crowned:.1}",
+                 face; {thicker}{centred}a crowning of {crowning_um:.1} µm would make it {crowned:.1}",
                 load.face_load_factor,
                 load.lean_m.abs() * 1e6
             );

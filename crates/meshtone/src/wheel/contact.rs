@@ -1,5 +1,6 @@
 //! The points at which two teeth touch.
 
+use super::mounting_rules::touched_curvature_mm;
 use super::profile::ToothProfile;
 use super::radii::Wheel;
 
@@ -36,7 +37,7 @@ pub struct ContactLine {
 /// assert!((ratio - 1.789_779_866_833_045_8).abs() < 1e-12);
 /// ```
 pub fn contact_ratio(teeth1: u32, teeth2: u32, pressure_angle_rad: f64) -> f64 {
-    path_over_base_pitch([teeth1, teeth2], [1.0; 2], pressure_angle_rad, pressure_angle_rad)
+    path_over_base_pitch([teeth1, teeth2].map(f64::from), [1.0; 2], pressure_angle_rad, pressure_angle_rad)
 }
 
 /// (-) Contact ratio of any two wheels.
@@ -44,34 +45,34 @@ pub(super) fn contact_ratio_of(pinion: &Wheel, gear: &Wheel) -> f64 {
     let Wheel { pressure_angle_rad, working_pressure_angle_rad, .. } = *pinion;
     let tip_heights = [pinion.tip_height, gear.tip_height];
     path_over_base_pitch(
-        [pinion.teeth, gear.teeth],
+        [pinion, gear].map(|wheel| wheel.sign() * f64::from(wheel.teeth)),
         tip_heights,
         pressure_angle_rad,
         working_pressure_angle_rad,
     )
 }
 
-/// (-) Length of the path in base pitches, all in halves of a module.
+/// (-) Length of the path in base pitches, all in halves of a module; a ring has a negative number of teeth.
 fn path_over_base_pitch(
-    teeth: [u32; 2],
+    [z1, z2]: [f64; 2],
     tip_heights: [f64; 2],
     pressure_angle_rad: f64,
     working_pressure_angle_rad: f64,
 ) -> f64 {
     let cos = pressure_angle_rad.cos();
     let (working_sin, working_cos) = working_pressure_angle_rad.sin_cos();
-    let [z1, z2] = teeth.map(f64::from);
-    let reach = |z: f64, tip: f64| ((z + 2.0 * tip).powi(2) - (z * cos).powi(2)).max(0.0).sqrt();
+    let reach = |z: f64, tip: f64| {
+        let squared = (z + 2.0 * tip).powi(2) - (z * cos).powi(2);
+        squared.max(0.0).sqrt() * z.signum()
+    };
     let line = (z1 + z2) * (cos / working_cos) * working_sin;
     (reach(z1, tip_heights[0]) + reach(z2, tip_heights[1]) - line) / (2.0 * std::f64::consts::PI * cos)
 }
 
 /// (mm) Radius of `wheel` that the tip of `mate` touches first.
 pub(crate) fn initial_contact_radius_mm(wheel: &Wheel, mate: &Wheel) -> f64 {
-    let mate_reach = (mate.tip_radius_mm.powi(2) - mate.base_radius_mm.powi(2)).sqrt();
-    let centre_distance = wheel.working_pitch_radius_mm + mate.working_pitch_radius_mm;
-    let line = mate_reach - centre_distance * wheel.working_pressure_angle_rad.sin();
-    (line * line + wheel.base_radius_mm.powi(2)).sqrt()
+    let curvature_mm = touched_curvature_mm(wheel, mate);
+    (curvature_mm * curvature_mm + wheel.base_radius_mm.powi(2)).sqrt()
 }
 
 /// Finds the contact part of both profiles as they are.

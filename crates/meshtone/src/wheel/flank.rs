@@ -9,7 +9,7 @@ pub struct FlankPoint {
     pub index: usize,
     /// (-) How far it lies from that point towards the next, in \[0, 1\].
     pub fraction: f64,
-    /// (mm) Along the tooth's centre line, from the wheel's centre.
+    /// (mm) Along the tooth's centre line, from the wheel's centre; less than 0 of a ring.
     pub x_mm: f64,
     /// (mm) Distance from the tooth's centre line.
     pub y_mm: f64,
@@ -55,8 +55,8 @@ impl Flank<'_> {
     /// # Arguments
     /// * `curvature_mm` - (mm) radius of curvature of the involute, before relief
     pub fn at_curvature(&self, curvature_mm: f64) -> FlankPoint {
-        let base = self.wheel.base_radius_mm;
-        let roll = curvature_mm.max(0.0) / base;
+        let base = self.wheel.sign() * self.wheel.base_radius_mm;
+        let roll = (curvature_mm / base).max(0.0);
         let (sin, cos) = (self.wheel.foot_angle_rad() - roll).sin_cos();
         let involute_x = base * (cos - roll * sin);
         let x = &self.profile.x_mm;

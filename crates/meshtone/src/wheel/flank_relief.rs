@@ -22,7 +22,8 @@ impl FlankRelief {
     /// * `curvature_mm` - (mm) radius of curvature of the involute there
     pub fn gap_mm(&self, wheel: &Wheel, curvature_mm: f64) -> f64 {
         let radius_mm = curvature_mm.hypot(wheel.base_radius_mm);
-        let part = (1.0 - (wheel.tip_radius_mm - radius_mm) / self.length_mm).clamp(0.0, 1.0);
+        let below_tip_mm = wheel.sign() * (wheel.tip_radius_mm - radius_mm);
+        let part = (1.0 - below_tip_mm / self.length_mm).clamp(0.0, 1.0);
         let shape = match self.shape {
             ReliefShape::Parabolic => part * part,
             ReliefShape::Linear => part,

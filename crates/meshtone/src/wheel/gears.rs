@@ -40,7 +40,8 @@ pub struct Gears {
     pub pinion_dedendum: f64,
     /// (-) Dedendum coefficient of the gear's basic rack. Default 1.25.
     pub gear_dedendum: f64,
-    /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
+    /// (mm) Distance between the axes; none for the one at which the teeth have no backlash. In a ring it may be shorter, and otherwise
+    /// longer.
     pub centre_distance_mm: Option<f64>,
     /// Material of the shafts, and of a wheel that has none of its own. Default steel.
     pub material: Material,
@@ -64,6 +65,11 @@ pub struct Gears {
     pub points_per_tooth: usize,
     /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004.
     pub foundation: FoundationCoefficients,
+    /// Whether the second wheel is a ring with internal teeth, which the first one drives from inside. Default false.
+    pub internal: bool,
+    /// Whether that ring pushes the first wheel instead of being pushed: the other flanks work, and a pair goes through its path from the other
+    /// end. Default false.
+    pub ring_drives: bool,
 }
 
 /// Coefficients of the standard basic rack.
@@ -109,6 +115,8 @@ impl Gears {
             uniform_flank_reduction_mm: 0.0,
             points_per_tooth: 10_000,
             foundation: FoundationCoefficients::default(),
+            internal: false,
+            ring_drives: false,
         }
     }
 }
@@ -119,8 +127,9 @@ impl Gears {
         self.tip_chamfer_mm.unwrap_or(0.23 * self.module_mm)
     }
 
-    /// The same wheels where the gear drives the pinion.
+    /// The same wheels where the gear drives the pinion; not of a ring, which is always the second wheel.
     pub(crate) fn exchanged(mut self) -> Self {
+        debug_assert!(!self.internal, "a ring is always the second wheel");
         std::mem::swap(&mut self.pinion_teeth, &mut self.gear_teeth);
         std::mem::swap(&mut self.pinion_profile_shift, &mut self.gear_profile_shift);
         std::mem::swap(&mut self.pinion_addendum, &mut self.gear_addendum);
@@ -128,6 +137,14 @@ impl Gears {
         std::mem::swap(&mut self.pinion_material, &mut self.gear_material);
         self.hand = self.hand.other();
         self
+    }
+
+    /// (-) −1 of a ring, else 1: see [`Wheel::sign`](super::Wheel::sign).
+    ///
+    /// # Arguments
+    /// * `wheel` - which of the two
+    pub(super) fn sign(&self, wheel: WheelName) -> f64 {
+        if self.internal { wheel.choose(1.0, -1.0) } else { 1.0 }
     }
 
     /// Material of a wheel.

@@ -5,6 +5,7 @@ mod flank;
 mod flank_relief;
 mod gears;
 mod helix;
+mod internal_rules;
 mod lead;
 mod material;
 mod mounting;
@@ -27,7 +28,7 @@ pub use lead::{EndRelief, Hand};
 pub use material::{Material, MaterialConstants};
 pub use mounting::Mounting;
 pub use name::WheelName;
-pub(crate) use named_gears::NamedGears;
+pub(crate) use named_gears::{NamedGears, NamedWheel};
 pub use path::PathOfContact;
 pub(crate) use profile::first_minimum;
 pub use profile::{Root, TipRelief, ToothProfile, tooth_profile};
@@ -132,7 +133,7 @@ impl Teeth {
     }
 
     /// (base pitches) Where on the path the flanks roll without sliding: the pitch point.
-    pub(crate) fn pitch_point(&self) -> f64 {
+    pub fn pitch_point(&self) -> f64 {
         let on_flank_mm = self.gear.curvature_mm(self.gear.working_pitch_radius_mm);
         self.path.position(WheelName::Gear, on_flank_mm)
     }

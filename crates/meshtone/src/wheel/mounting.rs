@@ -51,8 +51,9 @@ impl Mounting {
         Self {
             working_pressure_angle_rad,
             centre_distance_mm,
-            // Across the teeth, not across the axes.
-            opened_backlash_mm: (2.0 * base_mm * turned).max(0.0) * gears.base_helix_angle_rad().cos(),
+            // Across the teeth, not across the axes. In a ring the teeth come apart where the axes come closer.
+            opened_backlash_mm: (gears.sign(WheelName::Gear) * 2.0 * base_mm * turned).max(0.0)
+                * gears.base_helix_angle_rad().cos(),
         }
     }
 
@@ -78,16 +79,24 @@ impl Mounting {
 }
 
 impl Gears {
-    /// (mm) Distance of the axes at which the pitch circles touch, `a₀ = m_t (z₁ + z₂)/2`.
+    /// (mm) Distance of the axes at which the pitch circles touch, `a₀ = m_t (z₁ + z₂)/2`, in a ring `m_t (z₂ − z₁)/2`.
     pub fn reference_centre_distance_mm(&self) -> f64 {
-        self.transverse_module_mm() * f64::from(self.pinion_teeth + self.gear_teeth) / 2.0
+        self.transverse_module_mm() * self.of_both(|wheel| f64::from(self.teeth(wheel))).abs() / 2.0
+    }
+
+    /// A quantity of the pinion, and that of the gear added to it, or that of a ring taken from it.
+    fn of_both(&self, of: impl Fn(WheelName) -> f64) -> f64 {
+        of(WheelName::Pinion) + self.sign(WheelName::Gear) * of(WheelName::Gear)
     }
 
     /// (-) Tip alteration coefficient k: by how many modules both wheels' tips are set off, so that they clear their mates' roots
-    /// by as much as without shift. 0 or less.
+    /// by as much as without shift. 0 or less; 0 in a ring.
     ///
     /// `k = (a − a₀)/m − x₁ − x₂` with the distance a without backlash.
     pub fn tip_alteration(&self) -> f64 {
+        if self.internal {
+            return 0.0;
+        }
         let distance_mm = Mounting::without_backlash(self).centre_distance_mm;
         (distance_mm - self.reference_centre_distance_mm()) / self.module_mm
             - (self.pinion_profile_shift + self.gear_profile_shift)
@@ -126,19 +135,19 @@ impl Gears {
     }
 }
 
-/// (rad) `inv α_wt = inv α_t + 2 tan α_n (x₁ + x₂)/(z₁ + z₂)`, by Newton's method from above, where the involute function is convex; 0
-/// where the right side is not positive, which the rules of the scenario refuse.
+/// (rad) `inv α_wt = inv α_t + 2 tan α_n (x₁ + x₂)/(z₁ + z₂)`, in a ring `(x₂ − x₁)/(z₂ − z₁)`, by Newton's method from above, where the
+/// involute function is convex; 0 where the right side is not positive, which the rules of the scenario refuse.
 fn working_pressure_angle_rad(gears: &Gears) -> f64 {
     let reference_rad = gears.transverse_pressure_angle_rad();
-    let shifts = gears.pinion_profile_shift + gears.gear_profile_shift;
-    let teeth = f64::from(gears.pinion_teeth + gears.gear_teeth);
+    let shifts = gears.of_both(|wheel| gears.profile_shift(wheel));
+    let teeth = gears.of_both(|wheel| f64::from(gears.teeth(wheel)));
     let normal_tan = gears.pressure_angle_deg.to_radians().tan();
     let target = involute(reference_rad) + 2.0 * normal_tan * shifts / teeth;
     if target <= 0.0 {
         return 0.0;
     }
     // inv α is more than α³/3. Without shift the start is the solution, to the last bit.
-    let mut angle_rad = if shifts > 0.0 { (3.0 * target).cbrt() } else { reference_rad };
+    let mut angle_rad = if shifts / teeth > 0.0 { (3.0 * target).cbrt() } else { reference_rad };
     for _ in 0..MAX_NEWTON_STEPS {
         let step = (involute(angle_rad) - target) / angle_rad.tan().powi(2);
         angle_rad -= step;

@@ -226,9 +226,10 @@ fn interference(gears: &NamedGears, wheel: WheelName) -> Check {
 }
 
 /// (mm) Radius of curvature of a wheel's flank where the mate's tip touches it first; less than 0 where the tip reaches beyond
-/// its base circle.
+/// its base circle, and of a ring.
 pub(super) fn touched_curvature_mm(wheel: &Wheel, mate: &Wheel) -> f64 {
-    let distance_mm = wheel.working_pitch_radius_mm + mate.working_pitch_radius_mm;
+    let distance_mm =
+        wheel.sign() * wheel.working_pitch_radius_mm + mate.sign() * mate.working_pitch_radius_mm;
     distance_mm * wheel.working_pressure_angle_rad.sin() - mate.curvature_mm(mate.tip_radius_mm)
 }
 

@@ -7,9 +7,22 @@ use super::{Gears, WheelName};
 /// A pair of wheels with what messages call it.
 pub(crate) struct NamedGears<'a> {
     gears: &'a Gears,
-    /// Of a gearbox's mesh: the key of its section, number and name of the driving and of the driven wheel.
-    mesh: Option<(String, [(usize, &'a str); 2])>,
+    /// Of a gearbox's mesh: the key of its section, and the driving and the driven wheel.
+    mesh: Option<(String, [NamedWheel<'a>; 2])>,
 }
+
+/// What a wheel of a gearbox is called, and where its keys stand.
+pub(crate) struct NamedWheel<'a> {
+    /// Its name.
+    pub(crate) name: &'a str,
+    /// Key of its section, such as `wheel[1]`, or that of its planetary set.
+    pub(crate) section: String,
+    /// Which wheel of a planetary set it is: `sun`, `planet`, `ring`.
+    pub(crate) member: Option<&'static str>,
+}
+
+/// Keys of which each wheel of a planetary set has its own.
+const OF_MEMBER: [&str; 2] = ["teeth", "profile_shift"];
 
 impl<'a> NamedGears<'a> {
     /// The pinion and the gear of `[gears]`.
@@ -22,8 +35,8 @@ impl<'a> NamedGears<'a> {
     /// # Arguments
     /// * `gears` - the wheels
     /// * `section` - key of the mesh's section, such as `mesh[1]`
-    /// * `wheels` - number and name of the driving and of the driven wheel
-    pub(crate) fn of_mesh(gears: &'a Gears, section: String, wheels: [(usize, &'a str); 2]) -> Self {
+    /// * `wheels` - the driving and the driven wheel
+    pub(crate) fn of_mesh(gears: &'a Gears, section: String, wheels: [NamedWheel<'a>; 2]) -> Self {
         Self { gears, mesh: Some((section, wheels)) }
     }
 
@@ -31,7 +44,7 @@ impl<'a> NamedGears<'a> {
     pub(crate) fn name(&self, wheel: WheelName) -> String {
         match &self.mesh {
             None => format!("the {}", wheel.name()),
-            Some((_, wheels)) => wheels[wheel as usize].1.to_owned(),
+            Some((_, wheels)) => wheels[wheel as usize].name.to_owned(),
         }
     }
 
@@ -43,7 +56,12 @@ impl<'a> NamedGears<'a> {
     pub(crate) fn key_of(&self, wheel: WheelName, key: &str) -> String {
         match &self.mesh {
             None => format!("gears.{}_{key}", wheel.name()),
-            Some((_, wheels)) => format!("wheel[{}].{key}", wheels[wheel as usize].0),
+            Some((_, wheels)) => match &wheels[wheel as usize] {
+                NamedWheel { section, member: Some(member), .. } if OF_MEMBER.contains(&key) => {
+                    format!("{section}.{key}.{member}")
+                }
+                NamedWheel { section, .. } => format!("{section}.{key}"),
+            },
         }
     }
 
@@ -70,6 +88,7 @@ impl<'a> NamedGears<'a> {
     pub(crate) fn whole(&self) -> String {
         match &self.mesh {
             None => "gears".to_owned(),
+            Some((section, [NamedWheel { member: Some(_), .. }, _])) => format!("{section}.teeth"),
             Some((section, _)) => format!("{section}.wheels"),
         }
     }

@@ -12,14 +12,17 @@ use super::{Wheel, WheelName};
 ///
 /// Source: any textbook of involute gears, for example F. L. Litvin, A. Fuentes, *Gear Geometry and Applied Theory*,
 /// 2nd edition (2004), chapter 10.
+///
+/// In a ring both tangent points lie on the same side of the path. With the sign of [`Wheel::sign`] on the ring's radii, its own ρ and L are
+/// less than 0, and nothing else changes: the planet's ρ is `ρ_r − a sin α_w`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PathOfContact {
     /// (mm) Base pitch, `π m cos α`.
     pub base_pitch_mm: f64,
-    /// (mm) Length of the line of action between the two base circles, `L`.
+    /// (mm) Length of the line of action between the two base circles, `L`; `−a sin α_w` in a ring.
     pub line_mm: f64,
-    /// (mm) Radius of curvature of the gear's flank at its tip, where the path starts.
+    /// (mm) Radius of curvature of the gear's flank at its tip, where the path starts; less than 0 of a ring.
     pub gear_tip_curvature_mm: f64,
     /// (mm) Radius of curvature of the pinion's flank at its tip, where the path ends.
     pub pinion_tip_curvature_mm: f64,
@@ -46,7 +49,7 @@ impl PathOfContact {
     /// ```
     pub fn new(pinion: &Wheel, gear: &Wheel) -> Self {
         let base_pitch_mm = std::f64::consts::PI * gear.module_mm * gear.pressure_angle_rad.cos();
-        let centre_distance_mm = pinion.working_pitch_radius_mm + gear.working_pitch_radius_mm;
+        let centre_distance_mm = pinion.working_pitch_radius_mm + gear.sign() * gear.working_pitch_radius_mm;
         let line_mm = centre_distance_mm * gear.working_pressure_angle_rad.sin();
         let [pinion_tip, gear_tip] = [pinion, gear].map(|wheel| wheel.curvature_mm(wheel.tip_radius_mm));
         Self {
@@ -58,8 +61,16 @@ impl PathOfContact {
         }
     }
 
-    /// (mm) Radius of curvature of a wheel's flank where the pair touches at `position`. Less than 0 where the path would
-    /// reach beyond the wheel's base circle: the teeth then interfere.
+    /// (base pitches) The position of a pair that goes through the path from its end.
+    ///
+    /// # Arguments
+    /// * `position` - (base pitches) since the start of the path
+    pub fn from_end(&self, position: f64) -> f64 {
+        self.contact_ratio - position
+    }
+
+    /// (mm) Radius of curvature of a wheel's flank where the pair touches at `position`. Less than 0 of a ring; of another wheel
+    /// where the path would reach beyond its base circle: the teeth then interfere.
     ///
     /// # Arguments
     /// * `wheel` - which of the two

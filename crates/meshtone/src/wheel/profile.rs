@@ -4,7 +4,7 @@ use super::radii::Wheel;
 use crate::interpolation::NaturalSpline;
 
 /// Working flank of a tooth in its own plane: x along the tooth's centre line from the wheel's
-/// centre, y towards the flank. Points are uniform in x from root to tip.
+/// centre, y towards the flank. Points are uniform in x from root to tip. A ring's x is less than 0, so that it rises towards the tip too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToothProfile {
     /// (mm) Distance from the wheel's centre along the tooth's centre line, rising.
@@ -114,6 +114,7 @@ pub enum Root {
 /// With the roll angle `u = tan a` and `β = θ0 + inv α − u` the involute `r = Rb/cos a`,
 /// `θ = θ0 + inv α − inv a` reads `x = Rb (cos β − u sin β)`, `y = Rb (sin β + u cos β)`.
 struct Curve {
+    /// Less than 0 of a ring.
     base_radius_mm: f64,
     /// (rad) `θ0 + inv α`: polar angle of the involute's foot on the base circle.
     foot_angle_rad: f64,
@@ -166,8 +167,14 @@ impl Curve {
             Root::Published(bridge) => bridge,
             Root::Arc => None,
         };
-        let foot_angle_rad = wheel.foot_angle_rad();
-        Self { base_radius_mm: base, foot_angle_rad, first_roll, last_roll: tip_angle.tan(), fillet, bridge }
+        Self {
+            base_radius_mm: wheel.sign() * base,
+            foot_angle_rad: wheel.foot_angle_rad(),
+            first_roll,
+            last_roll: tip_angle.tan(),
+            fillet,
+            bridge,
+        }
     }
 
     fn involute_point_mm(&self, roll: f64) -> (f64, f64) {
@@ -197,7 +204,8 @@ impl Curve {
             return fillet.y_mm(x);
         }
         // dx/d(u²) = Rb cos β / 2 does not vanish at the base circle, dx/du does: solve for u².
-        let mut squared = roll.predicted().max(self.first_roll * self.first_roll);
+        let least_roll = self.first_roll.min(self.last_roll);
+        let mut squared = roll.predicted().max(least_roll * least_roll);
         let mut y = 0.0;
         for _ in 0..MAX_NEWTON_STEPS {
             let u = squared.sqrt();
@@ -278,8 +286,11 @@ impl RollAngle {
 const STRAIGHT: f64 = 1e-9;
 
 impl Fillet {
-    /// None where the flanks of two teeth meet above the root circle.
+    /// None where the flanks of two teeth meet above the root circle, and of a ring, whose root circle bends away from its teeth.
     fn new(wheel: &Wheel) -> Option<Self> {
+        if wheel.is_internal {
+            return None;
+        }
         let root = wheel.root_radius_mm;
         // Where the involute starts, and the angle from the middle of the space to it.
         let end = wheel.base_radius_mm.max(root);

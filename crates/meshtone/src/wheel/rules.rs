@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::contact::contact_ratio_of;
+use super::internal_rules;
 use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
 use super::{Gears, Hand, NamedGears, Wheel, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
@@ -32,11 +33,14 @@ impl Gears {
         self.half_thicknesses_mm().into_iter().fold(0.0, f64::max)
     }
 
-    /// (mm) Half a tooth's thickness at the pitch circle, of the pinion and of the gear: `m (π/4 + x tan α)`.
+    /// (mm) Half a tooth's thickness at the pitch circle, of the pinion and of the gear: `m (π/4 + x tan α)`, of a ring
+    /// `m (π/4 − x tan α)`.
     fn half_thicknesses_mm(&self) -> [f64; 2] {
         let tan = self.pressure_angle_deg.to_radians().tan();
-        WheelName::BOTH
-            .map(|wheel| PI * self.module_mm / 4.0 + self.module_mm * self.profile_shift(wheel) * tan)
+        WheelName::BOTH.map(|wheel| {
+            let outwards = self.sign(wheel) * self.profile_shift(wheel);
+            PI * self.module_mm / 4.0 + self.module_mm * outwards * tan
+        })
     }
 
     /// (mm) Half the thickness of a tooth at a distance from its tip, of the wheel whose teeth are thinner there.
@@ -62,7 +66,11 @@ impl Gears {
 impl NamedGears<'_> {
     /// The two wheels together, whose keys are each in their range.
     pub(crate) fn check(&self) -> Check {
-        mounting_rules::check(self)?;
+        if self.internal {
+            internal_rules::check(self)?;
+        } else {
+            mounting_rules::check(self)?;
+        }
         pressure_angle(self)?;
         contact_ratio(self)?;
         helix(self)?;
@@ -212,16 +220,18 @@ fn tip_thickness(gears: &NamedGears) -> Check {
 }
 
 /// (mm) Half thickness of an unrelieved tooth, `below_tip_mm` from the tip along its centre line; of its foot on the
-/// base circle where that is nearer.
+/// base circle, or of a ring's tooth on the root circle, where that is nearer.
 fn half_thickness_below_tip_mm(wheel: &Wheel, below_tip_mm: f64) -> f64 {
-    let (base, foot) = (wheel.base_radius_mm, wheel.foot_angle_rad());
+    let (base, foot) = (wheel.sign() * wheel.base_radius_mm, wheel.foot_angle_rad());
+    let roll_at = |radius_mm: f64| (wheel.base_radius_mm / radius_mm).acos().tan();
     let flank = |roll: f64| {
         let (sin, cos) = (foot - roll).sin_cos();
         (base * (cos - roll * sin), base * (sin + roll * cos))
     };
-    let tip_roll = (base / wheel.tip_radius_mm).acos().tan();
+    let tip_roll = roll_at(wheel.tip_radius_mm);
     let x = flank(tip_roll).0 - below_tip_mm;
-    let (mut low, mut high) = (0.0, tip_roll);
+    let foot_roll = if wheel.is_internal { roll_at(wheel.root_radius_mm) } else { 0.0 };
+    let (mut low, mut high) = (foot_roll, tip_roll);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
         if flank(middle).0 < x { low = middle } else { high = middle }

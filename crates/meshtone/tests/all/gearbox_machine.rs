@@ -112,6 +112,7 @@ impl TwoStages {
             material: steel(self.poisson_ratio),
             unbalances: &[],
             brake_inertia_kgm2: 0.02,
+            sets: &[],
         })
     }
 }

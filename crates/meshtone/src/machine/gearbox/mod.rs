@@ -6,6 +6,7 @@
 mod beam;
 mod housing_modes;
 mod parts;
+mod planetary;
 
 use std::borrow::Cow;
 
@@ -20,6 +21,7 @@ use beam::{Beam, PER_NODE};
 pub use housing_modes::HousingModes;
 use housing_modes::HousingPoint;
 pub use parts::{Bearing, BearingKind, Coupled, Foot, GearboxShaft, Housing, Seat};
+pub use planetary::{RimParts, RimShape, SetCoordinates, SetParts};
 
 /// What the machine is made of.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +44,8 @@ pub struct GearboxParts<'a> {
     pub unbalances: &'a [PlacedUnbalance<'a>],
     /// (kg m²) Inertia of the brake.
     pub brake_inertia_kgm2: f64,
+    /// The planetary sets, whose meshes come after the others.
+    pub sets: &'a [SetParts],
 }
 
 /// A wheel on a shaft.
@@ -147,6 +151,8 @@ pub struct GearboxMachine {
     rotations: Vec<usize>,
     /// Rotation of each shaft over that of the input.
     pub speed_ratios: Vec<f64>,
+    /// The coordinates of each planetary set.
+    pub sets: Vec<SetCoordinates>,
 }
 
 /// Least distance of two nodes, as a part of the shaft's length: what is closer is one node.
@@ -315,6 +321,8 @@ impl GearboxMachine {
             None => node_of(disc) + ABOUT_Z,
         };
         let rotations: Vec<usize> = parts.discs.iter().enumerate().map(rotation).collect();
+        let sets: Vec<SetCoordinates> =
+            parts.sets.iter().map(|set| SetCoordinates::new(set, &mut names)).collect();
         let coordinates = names.len();
         let mut assembly =
             Assembly { names, mass: DMatrix::zeros(coordinates, coordinates), springs: Vec::new() };
@@ -339,14 +347,24 @@ impl GearboxMachine {
             seats,
             rotations,
             speed_ratios: parts.speed_ratios.to_vec(),
+            sets,
         };
         this.add_shafts(parts, brake, &mut assembly);
         this.add_supports(parts, &mut assembly);
+        let end = |shaft: usize, is_at_end: bool| {
+            let nodes = &this.nodes[shaft];
+            if is_at_end { nodes[nodes.len() - 1].1 + ABOUT_Z } else { first_rotation(nodes) }
+        };
+        let sets = || this.sets.iter().zip(parts.sets);
+        sets().for_each(|(set, of)| set.add(of, end, &mut assembly));
         let Assembly { names, mass, springs } = assembly;
         let mut machine = Machine {
             names,
             springs,
-            lines: parts.meshes.iter().map(|mesh| this.line_of_action(parts, mesh, coordinates)).collect(),
+            lines: (parts.meshes.iter())
+                .map(|mesh| this.line_of_action(parts, mesh, coordinates))
+                .chain(sets().flat_map(|(set, of)| set.lines(of, coordinates)))
+                .collect(),
             bearings: this.rolling_bearings(parts, coordinates),
             turning_forces: this.turning_forces(parts, coordinates),
             drives: this.drives(parts, brake, &mass),
@@ -363,6 +381,7 @@ impl GearboxMachine {
         let ratio_of_brake =
             brakes.filter(|((shaft, _), _)| shaft.couples_to == Coupled::Brake).map(|(_, ratio)| *ratio);
         machine.rigid_rotation[brake] = ratio_of_brake.sum();
+        sets().for_each(|(set, of)| set.turn(of, &mut machine.rigid_rotation));
         Self { machine, ..this }
     }
 
@@ -501,7 +520,9 @@ impl GearboxMachine {
             TurningForce::new(parts.speed_ratios[number], false, forces, shaft.bow.angle_deg)
         };
         let bent = (0..parts.shafts.len()).filter(|&number| parts.shafts[number].0.bow.middle_um > 0.0);
-        parts.unbalances.iter().map(of_unbalance).chain(bent.map(of_bow)).collect()
+        let of_pins =
+            self.sets.iter().zip(parts.sets).filter_map(|(set, of)| set.pin_errors(of, coordinates));
+        parts.unbalances.iter().map(of_unbalance).chain(bent.map(of_bow)).chain(of_pins).collect()
     }
 
     /// Stretch of each rolling bearing along x and y.
@@ -695,7 +716,9 @@ impl GearboxMachine {
     /// * `mesh` - its number
     pub fn add_transmission_error(&mut self, name: String, mesh: usize) {
         let line = &self.machine.lines[mesh].at_middle;
-        let turned = self.rotations.iter().map(|&rotation| (rotation, line[rotation]));
+        // A planet is carried along by its carrier.
+        let of_sets = self.sets.iter().flat_map(SetCoordinates::rotations);
+        let turned = self.rotations.iter().copied().chain(of_sets).map(|rotation| (rotation, line[rotation]));
         let motion = turned.filter(|(_, weight)| *weight != 0.0).collect();
         self.machine.places.push(Place { name: name.into(), motion: vec![(Axis::Rotation, motion)] });
     }

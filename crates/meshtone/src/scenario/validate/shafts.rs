@@ -2,7 +2,8 @@
 
 use super::super::layout::{entry_key, find, section};
 use super::super::{
-    Fault, Layout, MemoryLimit, Scenario, ScenarioError, ScenarioWarning, Sensor, Shafts, WarningKind, long,
+    Fault, Layout, Member, MemoryLimit, OfSet, Scenario, ScenarioError, ScenarioWarning, Sensor, Shafts,
+    WarningKind, long,
 };
 use super::{DrivenSpeed, pitch_line_mm};
 use crate::bearing::RollingParts;
@@ -15,7 +16,7 @@ impl Scenario {
     /// Every value, alone and against the others. Returns warnings about what can be simulated.
     pub(in crate::scenario) fn check_shafts(
         &self,
-        Shafts { shafts, bearings, housing }: &Shafts,
+        Shafts { shafts, bearings, housing, planetary }: &Shafts,
         limit: MemoryLimit,
     ) -> Result<Vec<ScenarioWarning>, ScenarioError> {
         if !self.model.teeth_part() {
@@ -28,8 +29,10 @@ impl Scenario {
         }
         check_rows(&long::top().rows, self, "")?;
         check_list("shaft", shafts)?;
-        check_list("wheel", &self.wheels)?;
-        check_list("mesh", &self.meshes)?;
+        check_list("wheel", &self.wheels[..self.own_wheels()])?;
+        check_list("mesh", &self.meshes[..self.own_meshes()])?;
+        check_list("planetary", planetary)?;
+        self.check_sets()?;
         check_list("bearing", bearings)?;
         for (index, sensor) in self.sensors.iter().enumerate() {
             check_rows(&Sensor::rows_of_shafts(), sensor, "sensor")
@@ -187,9 +190,19 @@ impl Scenario {
 
     fn check_faults(&self, layout: &Layout) -> Result<(), ScenarioError> {
         let names: Vec<&str> = self.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
-        for (index, Fault { wheel, .. }) in self.faults.iter().enumerate() {
+        for (index, Fault { wheel, flank, .. }) in self.faults.iter().enumerate() {
             let key = entry_key("fault", index, self.faults.len(), "wheel");
-            find(&names, wheel, "wheel").map_err(|error| error.with_key(key))?;
+            let number = find(&names, wheel, "wheel").map_err(|error| error.with_key(key))?;
+            let is_planet =
+                matches!(self.wheels[number].of_set, Some(OfSet { member: Member::Planet(_), .. }));
+            if let (Some(flank), false) = (flank, is_planet) {
+                let key = entry_key("fault", index, self.faults.len(), "flank");
+                let problem =
+                    format!("given for {wheel:?}, which is no planet; only its teeth work on both flanks");
+                return Err(
+                    ScenarioError::new(key, format!("{:?}", flank.name()), problem).with_help("remove it")
+                );
+            }
         }
         for mesh in 0..self.meshes.len() {
             let (numbers, faults): (Vec<usize>, Vec<Fault>) =
@@ -229,7 +242,8 @@ impl Scenario {
         const LONG_CYCLE: i64 = 1000;
         let cycle = layout.cycle_revolutions();
         let time = self.time_grid();
-        let long = (cycle > LONG_CYCLE).then(|| {
+        // Planets come round again only after a long time in every set.
+        let long = (layout.cycle_of_shafts() > LONG_CYCLE).then(|| {
             let kept = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
             let message = format!(
                 "the hunting-tooth period is {cycle} revolutions of the input; the kept signal covers {:.1} % of them",
@@ -243,6 +257,7 @@ impl Scenario {
         let of_shares = (0..wheels).flat_map(of_wheel);
         let of_speed = self.driven_speed(layout).warnings();
         let of_teeth = of_teeth.into_iter().chain(layout.added_thrusts(self));
+        let of_teeth = of_teeth.chain(layout.warnings_of_sets(self, self.fastest_speed(layout).1));
         of_teeth
             .chain(of_shares)
             .chain(of_speed)

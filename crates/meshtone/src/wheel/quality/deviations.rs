@@ -20,6 +20,24 @@ pub struct Deviations {
     pub helix_slope_um: [f64; 2],
 }
 
+impl Deviations {
+    /// The same where another tooth of the gear is the first, as of a ring that meets a planet elsewhere.
+    ///
+    /// # Arguments
+    /// * `first` - number of that tooth, from 0
+    pub(crate) fn counted_from(mut self, first: usize) -> Self {
+        if let (Some(flanks), 1..) = (&mut self.flanks, first) {
+            let of_gear = &flanks.gear_profile_errors_mm;
+            let teeth = of_gear.teeth();
+            self.run_out[1].phase_rad += TAU * first as f64 / teeth as f64;
+            flanks.gear_profile_errors_mm = ErrorTable::from_fn(of_gear.points(), teeth, |point, tooth| {
+                of_gear[(point, (tooth + first) % teeth)]
+            });
+        }
+        self
+    }
+}
+
 /// Run-out of a wheel: its teeth sit on a circle beside its axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]

@@ -8,7 +8,8 @@ use meshtone::scenario::{KeyDescription, SectionDescription, gearbox_sections, s
 use super::both_wheels::of_both_wheels;
 
 /// The pages that have such lists.
-pub const PAGES: [&str; 2] = ["docs/src/guide/scenario-file.md", "docs/src/guide/gearboxes.md"];
+pub const PAGES: [&str; 3] =
+    ["docs/src/guide/scenario-file.md", "docs/src/guide/gearboxes.md", "docs/src/guide/planetary.md"];
 
 const START: &str = "<!--keys:";
 const END: &str = "<!--end-->";

@@ -1,0 +1,206 @@
+//! Averages of the wheels of planetary sets: damage shows on its own wheel.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::f64::consts::TAU;
+
+use meshtone::scenario::*;
+use meshtone::signal::*;
+use meshtone::simulate;
+
+const RIG_A: &str = include_str!("../planetary/rig_a.toml");
+const CHANNEL: &str = "ring_p_90_radial_g";
+const RATE_HZ: f64 = 10_000.0;
+/// A parallel stage before the set, so that its members turn in the negative sense.
+const STAGE: &str =
+    "[[shaft]]\nname = \"first\"\nlength_mm = 50.0\nradius_mm = 10.0\ncouples_to = \"motor\"\n
+[[wheel]]\nname = \"z1\"\nshaft = \"first\"\nat = 0.5\nteeth = 20\nface_width_mm = 20.0\n
+[[wheel]]\nname = \"z2\"\nshaft = \"input\"\nat = 0.5\nteeth = 20\nface_width_mm = 20.0\n
+[[mesh]]\nwheels = [\"z1\", \"z2\"]\nmodule_mm = 3.0\n
+[[bearing]]\nshaft = \"first\"\nat = 0.0\n[[bearing]]\nshaft = \"first\"\nat = 1.0\n\n";
+
+/// Rig A at 10 kS/s, over 34 revolutions of its carrier.
+fn rig_a() -> String {
+    let toml = RIG_A.replace(
+        "sampling_rate_hz = 161120.0\nduration_s = 5.0",
+        "sampling_rate_hz = 10000.0\nduration_s = 9.0",
+    );
+    assert_ne!(toml, RIG_A);
+    toml
+}
+
+/// The records of a signal of rig A, by its simulated phase or, turned by an unknown angle, by a stated one.
+fn process(scenario: &Scenario, signal: &[f64], start_s: f64, turned_rev: Option<f64>) -> TrainRecords {
+    let train = GearTrain::of_scenario(scenario).unwrap().at_sensor(scenario, CHANNEL);
+    let mut turning = TrainTurning::of_simulated(scenario, start_s, signal.len()).unwrap();
+    if let (TrainTurning::Shaft { phase, .. }, Some(turned_rev)) = (&mut turning, turned_rev) {
+        phase.revolutions.iter_mut().for_each(|angle| *angle += turned_rev);
+        phase.zero = AngleZero::Given;
+    }
+    let recording = TrainRecording { signal, sampling_rate_hz: RATE_HZ, train: &train, turning: &turning };
+    recording.process(&TrainSettings::default()).unwrap()
+}
+
+/// What a sensor at 90° hears of every mesh of the sun while its planet is at most half a window away, with a knock of one tooth of a wheel.
+fn heard(scenario: &Scenario, damaged: Option<&str>) -> Vec<f64> {
+    let layout = scenario.layout().unwrap();
+    let set = &layout.sets[0];
+    let teeth = f64::from(scenario.wheels[set.first_wheel].teeth);
+    let number = |name: &str| scenario.wheels.iter().position(|wheel| wheel.name == name).unwrap();
+    let damaged = damaged.map(number);
+    let phase = ShaftPhase::of_simulated_input(scenario, 0.0, (9.0 * RATE_HZ) as usize).unwrap();
+    let at = |input_rev: &f64| -> f64 {
+        let of_planet = |(planet, angle): (usize, &f64)| {
+            let away = (angle + TAU * set.ratios[1].value() * input_rev - TAU / 4.0) / TAU;
+            let away = (away - away.round()) * set.planets() as f64;
+            let loud = if away.abs() < 0.5 { (TAU * away / 2.0).cos().powi(2) } else { 0.0 };
+            let pitches = teeth * set.sun_against_carrier().value().abs() * input_rev
+                + layout.phases[set.first_mesh + planet];
+            let knock = |wheel: usize| {
+                let in_tooth = pitches.rem_euclid(f64::from(scenario.wheels[wheel].teeth)) - 5.0;
+                if (0.0..1.0).contains(&in_tooth) { (TAU * in_tooth / 2.0).sin().powi(2) } else { 0.0 }
+            };
+            let of_mesh = [set.first_wheel, set.first_wheel + 1 + planet];
+            let knock: f64 = damaged.filter(|wheel| of_mesh.contains(wheel)).map_or(0.0, knock);
+            loud * ((TAU * pitches).cos() + knock)
+        };
+        set.angles_rad.iter().enumerate().map(of_planet).sum()
+    };
+    phase.revolutions.iter().map(at).collect()
+}
+
+/// Of an ideal sensor, which hears only the planet before it, the average of the damaged wheel holds the knock, in its place, and no other wheel's
+/// does. That is also so where all turns in the other sense, and where the place is taken from the recording: then planets have other numbers.
+#[test]
+fn an_ideal_sensor_tells_all_wheels_apart() {
+    let rig_a = rig_a();
+    let negative = rig_a.replace("couples_to = \"motor\"\ncoupling_stiffness_nm_per_rad = 1.0\n", "");
+    let negative = negative.replacen("[[shaft]]", &format!("{STAGE}[[shaft]]"), 1);
+    for (toml, unknown) in
+        [(&*rig_a, None), (&*rig_a, Some(0.3)), (&*negative, None), (&*negative, Some(0.3))]
+    {
+        let scenario = Scenario::from_toml(toml).unwrap();
+        let first = scenario.layout().unwrap().sets[0].first_wheel;
+        let sound = process(&scenario, &heard(&scenario, None), 0.0, unknown);
+        let is_found = |warning: &SignalWarning| matches!(warning, SignalWarning::PlanetsFound { .. });
+        assert_eq!(sound.warnings.iter().any(is_found), unknown.is_some(), "{:?}", sound.warnings);
+        for wheel in ["p.sun", "p.planet2"] {
+            let damaged = process(&scenario, &heard(&scenario, Some(wheel)), 0.0, unknown);
+            let number = scenario.wheels.iter().position(|of| of.name == wheel).unwrap();
+            let mut energies = Vec::new();
+            for (of, sound) in damaged
+                .wheels
+                .iter()
+                .zip(&sound.wheels)
+                .filter(|(of, _)| (first..first + 5).contains(&of.wheel))
+            {
+                let change = Change::new(sound, of, scenario.wheels[of.wheel].teeth);
+                println!(
+                    "{wheel} on {}: {change:?}, kurtosis {:?}",
+                    of.wheel - first,
+                    of.records[0].indicators.difference.kurtosis
+                );
+                energies.push((change.energy, of.wheel, change));
+            }
+            let loudest = energies.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+            assert!(loudest.2.in_three_teeth > 0.999, "{:?}", loudest.2);
+            if unknown.is_none() {
+                assert_eq!(loudest.1, number);
+                assert!((loudest.2.tooth - 5.5).abs() < 0.01, "{:?}", loudest.2);
+            }
+            let fm4 = |of: usize| {
+                damaged.wheels.iter().find(|found| found.wheel == of).unwrap().records[0]
+                    .indicators
+                    .fm4
+                    .unwrap()
+            };
+            for (energy, of, change) in energies.iter().filter(|of| of.1 != loudest.1) {
+                // A tooth of the sun meets all teeth of a planet in turn, and a planet's those of the sun.
+                let part = if *of != first && loudest.1 != first { 1e-3 } else { 0.15 };
+                assert!(*energy < part * loudest.0, "wheel {of}: {change:?}");
+                assert!(fm4(loudest.1) > 4.0 * fm4(*of), "wheel {of}: {}", fm4(*of));
+            }
+        }
+    }
+}
+
+/// In a simulation, whose ring rings with every tooth, a cracked tooth of a planet lies in its place of its planet's average, and changes those of the
+/// others by a quarter as much at most; one of the sun makes the sun's difference signal impulsive, and no planet's.
+#[test]
+fn simulated_cracks_show_on_their_wheels() {
+    let tips = ("tip_chamfer_mm = 0.0\nactive_profile_shortening = 0.0", "support_damping_ratio = 0.2");
+    let toml = rig_a().replace(tips.0, tips.1);
+    let of_fault = |fault: &str| {
+        let scenario = Scenario::from_toml(&format!("{toml}\n{fault}")).unwrap();
+        let channels = simulate(scenario.clone()).unwrap().channels;
+        process(&scenario, &channels[CHANNEL], channels.start_s, None).wheels
+    };
+    let crack = |wheel: &str| {
+        format!("[[fault]]\nkind = \"root-crack\"\nwheel = \"{wheel}\"\ntooth = 6\nseverity = 0.9\n")
+    };
+    let sound = of_fault("");
+    let planet = of_fault(&format!("{}flank = \"ring\"", crack("p.planet1")));
+    let change = |of: usize| Change::new(&sound[of], &planet[of], 31);
+    println!("{:?}", [1, 2, 3, 4].map(change));
+    // Half a revolution after the sun's flank.
+    assert!(change(1).in_three_teeth > 0.95 && (change(1).tooth - 21.5).abs() < 1.0, "{:?}", change(1));
+    for other in 2..=4 {
+        assert!(change(other).energy < 0.25 * change(1).energy, "{other}: {:?}", change(other));
+    }
+    let sun = of_fault(&crack("p.sun"));
+    let rise = |of: usize| {
+        let [sound, damaged] = [&sound, &sun].map(|wheels| wheels[of].records[0].indicators.fm4.unwrap());
+        damaged / sound
+    };
+    println!("{:?}", [0, 1, 2, 3, 4].map(rise));
+    assert!(rise(0) > 2.0, "{}", rise(0));
+    assert!((1..=4).all(|planet| (rise(planet) - 1.0).abs() < 0.1));
+}
+
+/// With fewer revolutions than bring every tooth before the sensor, the error says how many are needed, and that no number is enough where tooth
+/// counts have a common factor.
+#[test]
+fn short_recordings_and_unseen_teeth_are_refused() {
+    let of = |period: Ratio, teeth: u32, revolutions: usize| {
+        let values = (0..100 * revolutions).map(|at| (at % 7) as f64).collect();
+        let angular =
+            AngularSignal { points_per_revolution: 100, start_rev: 0.0, nyquist_order: 50.0, values };
+        let passages = Passages { period, planets: 4, teeth };
+        planetary_average(&[PassingSignal { angular, passage_rev: 0.0 }], &passages)
+    };
+    let planet = Ratio::ONE.times(81, 31);
+    assert_eq!(of(planet, 31, 81).unwrap_err(), SignalError::TooFewPassages { revolutions: 30, needed: 31 });
+    assert_eq!(of(planet, 31, 84).unwrap().passages_of_each_tooth, 1);
+    assert_eq!(
+        of(Ratio::ONE.times(3, 1), 27, 100).unwrap_err(),
+        SignalError::TeethNotSeen { seen: 1, teeth: 27 }
+    );
+}
+
+/// What damage changes in an average.
+#[derive(Debug)]
+struct Change {
+    /// Its mean square.
+    energy: f64,
+    /// Its centre, in teeth.
+    tooth: f64,
+    /// The part of it within one and a half tooth spaces of the centre.
+    in_three_teeth: f64,
+}
+
+impl Change {
+    fn new(sound: &WheelRecords, damaged: &WheelRecords, teeth: u32) -> Self {
+        let [sound, damaged] = [sound, damaged].map(|of| &of.records[0].average.values);
+        let square: Vec<f64> = sound.iter().zip(damaged).map(|(a, b)| (a - b).powi(2)).collect();
+        let (points, teeth) = (square.len(), f64::from(teeth));
+        let turn = |at: usize| at as f64 / points as f64;
+        let [re, im] = [f64::cos, f64::sin].map(|part| {
+            square.iter().enumerate().map(|(at, square)| square * part(TAU * turn(at))).sum::<f64>()
+        });
+        let centre_rev = im.atan2(re).rem_euclid(TAU) / TAU;
+        let is_near =
+            |at: usize| (turn(at) - centre_rev - (turn(at) - centre_rev).round()).abs() * teeth < 1.5;
+        let near: f64 = (0..points).filter(|at| is_near(*at)).map(|at| square[at]).sum();
+        let all: f64 = square.iter().sum();
+        Self { energy: all / points as f64, tooth: centre_rev * teeth, in_three_teeth: near / all }
+    }
+}
