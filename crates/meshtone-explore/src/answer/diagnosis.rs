@@ -129,8 +129,8 @@ fn observe(
 
 /// Observes the rig's wheels in a recording that was read, and says what is doubtful about the angle of its shaft.
 ///
-/// The shafts turn as the scenario of a simulation says, or by the tachometer, which has one pulse a revolution of the input. Where there
-/// is none, the mesh tone makes the speed of the page's scenario exact.
+/// The shafts turn as the scenario of a simulation says, or by the tachometer. Where there is none, the mesh tone makes the speed of the
+/// page's scenario exact.
 fn of_recording(
     recording: &Recording,
     question: &RecordingQuestion,
@@ -147,16 +147,6 @@ fn of_recording(
         );
     }
     let (rate_hz, samples) = (recording.sampling_rate_hz, &channel.samples);
-    let mut doubts = Vec::new();
-    let tachometer = question.tachometer.as_deref().filter(|name| {
-        let is_there = recording.channel(name).is_some();
-        if !is_there {
-            doubts.push(format!(
-                "there is no channel {name}: its shafts are taken to turn as without a tachometer"
-            ));
-        }
-        is_there
-    });
     let by_mesh_tone = |train: &GearTrain| {
         let nominal_hz = rig.operation.pinion_speed_hz;
         let on_input = train.wheels.iter().find(|wheel| wheel.shaft == train.input());
@@ -166,14 +156,15 @@ fn of_recording(
     };
     let Turned { train, turning, .. } = turned(
         recording,
-        tachometer.map(|name| (name, question.pulses_per_revolution)),
+        question.tachometer.as_deref().map(|name| (name, question.pulses_per_revolution)),
         simulated.as_ref(),
         rig,
         by_mesh_tone,
     )?;
-    if let TrainTurning::Shaft { phase, .. } = &turning {
-        doubts.extend(phase.warnings.iter().map(ToString::to_string));
-    }
+    let doubts = match &turning {
+        TrainTurning::Shaft { phase, .. } => phase.warnings.iter().map(ToString::to_string).collect(),
+        TrainTurning::SimulatedPair(_) => Vec::new(),
+    };
     let recording =
         TrainRecording { signal: samples, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
     Ok((Observation::of_recording(&recording)?, doubts))

@@ -89,10 +89,14 @@ export class Desk {
     const wheels = teeth.map(({ wheel, teeth: count }) => `${wheel} ${count}`).join(", ");
     byId("desk-said").textContent = `${names.length} channels, ${shown(said.duration_s)} s at ${said.sampling_rate_hz} S/s; teeth of the scenario: ${wheels}`;
     byId("desk-warnings").replaceChildren(...warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
-    const plot = (id, options) => new Plot(byId(id), options);
+    const plot = (options) => {
+      const place = Object.assign(document.createElement("div"), { className: "plot" });
+      byId("desk-plots").append(place);
+      return new Plot(place, options);
+    };
     this.#plots ??= [
-      plot("desk-signal", { title: "First second", x: "time (s)", y: "signal" }),
-      plot("desk-spectrum", { title: "Spectrum", x: "frequency (Hz)", y: "amplitude" }),
+      plot({ title: "First second", x: "time (s)", y: "signal" }),
+      plot({ title: "Spectrum", x: "frequency (Hz)", y: "amplitude" }),
     ];
     const unit = signal.unit ?? "unit not stated";
     this.#plots[0].set([line(guess.channel, signal.values, signal.start_s, 1 / said.sampling_rate_hz, "recorded")], { y: `signal (${unit})` });

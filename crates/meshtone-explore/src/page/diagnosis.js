@@ -7,7 +7,9 @@ const element = (name, properties) => Object.assign(document.createElement(name)
 const paragraph = (textContent, className = "") => element("p", { textContent, className });
 
 export class Diagnosis {
+  #desk;
   #question;
+  #refused;
   #recording = null;
   #healthy = null;
   #abort = null;
@@ -15,16 +17,18 @@ export class Diagnosis {
   #diagnosed = null;
 
   /**
+   * @param desk asks what a file does not say itself
    * @param question gives the page's scenario, as a request has it
+   * @param refused is told where the healthy recording cannot be read
    * @param records least, usual and largest number of simulations
    */
-  constructor(question, [least, usual, most]) {
-    this.#question = question;
+  constructor(desk, question, refused, [least, usual, most]) {
+    [this.#desk, this.#question, this.#refused] = [desk, question, refused];
     Object.assign(byId("records"), { min: least, max: most, step: least, value: usual });
     byId("diagnose").addEventListener("click", () => this.#diagnose());
     byId("stop").addEventListener("click", () => this.#stop("stopped; the batches of simulations that are finished are kept"));
     byId("healthy-file").addEventListener("change", ({ target }) => {
-      this.#setHealthy(target.files[0] ?? null);
+      if (target.files[0]) this.#openHealthy(target.files[0]);
       target.value = "";
     });
     byId("healthy-file").parentElement.addEventListener("keydown", ({ key }) => ["Enter", " "].includes(key) && byId("healthy-file").click());
@@ -43,10 +47,20 @@ export class Diagnosis {
     byId("diagnosis-stale").hidden = this.#diagnosed === null || this.#diagnosed === rig(this.#question().scenario);
   }
 
-  #setHealthy(file) {
-    this.#healthy = file;
-    byId("healthy-name").textContent = file ? `Compared with ${file.name}, as healthy` : "Compared with no healthy recording";
-    byId("healthy-remove").hidden = !file;
+  /** It says less or more than the recording that is diagnosed, so that it is asked for itself. */
+  async #openHealthy(file) {
+    try {
+      const settings = await this.#desk.open(file);
+      if (settings) this.#setHealthy({ file, settings });
+    } catch (error) {
+      this.#refused(error);
+    }
+  }
+
+  #setHealthy(healthy) {
+    this.#healthy = healthy;
+    byId("healthy-name").textContent = healthy ? `Compared with ${healthy.file.name}, as healthy` : "Compared with no healthy recording";
+    byId("healthy-remove").hidden = !healthy;
     this.#forget();
   }
 
@@ -83,8 +97,8 @@ export class Diagnosis {
     const question = { ...this.#question(), records: Number(byId("records").value), recording: { ...settings, bytes: file.size } };
     const files = [file];
     if (this.#healthy) {
-      question.healthy = { ...settings, name: this.#healthy.name, bytes: this.#healthy.size };
-      files.push(this.#healthy);
+      question.healthy = { ...this.#healthy.settings, bytes: this.#healthy.file.size };
+      files.push(this.#healthy.file);
     }
     this.#diagnosed = rig(question.scenario);
     try {

@@ -2,6 +2,7 @@
 
 import { Answers, Newest, Refusal, start, unpacked } from "./ask.js";
 import { Diagnosis } from "./diagnosis.js";
+import { Desk } from "./desk.js";
 import { shown } from "./plots.js";
 import { OpenedRecording } from "./recording.js";
 import { held, linked, offer, ofAddress, said, saved } from "./taking.js";
@@ -30,15 +31,17 @@ export class Page {
    */
   constructor(path, catalogue, controls, view, coarse) {
     [this.#path, this.#controls, this.#view, this.#coarse] = [path, controls, view, coarse];
-    this.#answers = new Answers((answer, asked) => this.#show(answer, asked), (error) => this.refuse(error), path);
-    this.#diagnosis = new Diagnosis(() => this.#question("full"), catalogue.records);
+    const [question, refuse] = [() => this.#question("full"), (error) => this.refuse(error)];
+    this.#answers = new Answers((answer, asked) => this.#show(answer, asked), refuse, path);
+    const desk = new Desk(question, refuse, status);
+    this.#diagnosis = new Diagnosis(desk, question, refuse, catalogue.records);
     const opened = (processed, recording, isSame = false) => {
       view.setRecording(processed);
       if (!isSame) this.#diagnosis.setRecording(recording);
     };
-    this.#recording = new OpenedRecording(() => this.#question("full"), opened, (error) => this.refuse(error), status);
+    this.#recording = new OpenedRecording(desk, question, opened, refuse, status);
     this.#listen(catalogue);
-    this.open(ofAddress((error) => this.refuse(error)) ?? catalogue.scenario);
+    this.open(ofAddress(refuse) ?? catalogue.scenario);
   }
 
   #question(detail) {

@@ -1,7 +1,6 @@
 // A recording that was opened on the page: what is asked about it, and what can be said of it.
 
 import { Newest, unpacked } from "./ask.js";
-import { Desk } from "./desk.js";
 
 const byId = (id) => document.getElementById(id);
 const CONSTANT_SPEED = "constant speed";
@@ -16,14 +15,14 @@ export class OpenedRecording {
   #desk;
 
   /**
+   * @param desk asks what a file does not say itself
    * @param question gives the page's scenario, and what of it is looked at, as a request has it
    * @param show is given what the recording shows with what was opened, or null where it is removed, and whether that is as it was
    * @param refuse is told where it cannot be read
    * @param status is told what is under way
    */
-  constructor(question, show, refuse, status) {
-    [this.#question, this.#show, this.#refuse, this.#status] = [question, show, refuse, status];
-    this.#desk = new Desk(question, refuse, status);
+  constructor(desk, question, show, refuse, status) {
+    [this.#desk, this.#question, this.#show, this.#refuse, this.#status] = [desk, question, show, refuse, status];
   }
 
   async open(file) {
