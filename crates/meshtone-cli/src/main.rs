@@ -19,6 +19,7 @@ mod replacement;
 mod report;
 mod results;
 mod same_file;
+mod shown;
 mod table;
 mod terminal;
 mod termination;

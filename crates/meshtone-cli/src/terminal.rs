@@ -42,11 +42,6 @@ fn cannot_write(why: &dyn Display) -> Failure {
     Failure::failed(format!("cannot write to standard output: {why}"))
 }
 
-/// Prints as [`print`] does, unless the user has asked for warnings and errors only.
-pub fn print_unless(is_quiet: bool, text: &str) -> Result<(), Failure> {
-    if is_quiet { Ok(()) } else { print(text) }
-}
-
 /// Writes a line to standard error; where even that fails, there is nowhere left to report.
 pub fn print_error_line(text: impl Display) {
     print_colours(&printable(text, &[]));

@@ -63,7 +63,7 @@ pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -
     })?;
     let result = result.map_err(|error| value_error(format!("{}: {error}", path.display())))?;
     let tuned = write_tuned(&Tuned::of(experiment, &result), &path.display().to_string());
-    Ok((tuning_json(&file, &result), tuned))
+    Ok((tuning_json(&file, &result).to_string(), tuned))
 }
 
 /// Enhanced difference signals of a scenario, a row a draw, relative to the healthy rms; and that rms in g.

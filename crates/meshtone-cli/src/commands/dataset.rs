@@ -12,12 +12,14 @@ use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, Verified, verify};
 use meshtone_dataset::{DatasetError, counted};
 use meshtone_io::scenario_file::FileKind;
+use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::other_kind::{MANIFEST, or_other_kind};
 use crate::output_directory::named_after;
 use crate::progress::with_bar;
-use crate::terminal::{print, print_error_line, print_unless, warn};
+use crate::shown::Shown;
+use crate::terminal::{print, print_error_line, warn};
 
 /// Failed records that are reported one by one.
 const REPORTED: usize = 3;
@@ -30,12 +32,13 @@ const NAMED: usize = 20;
 /// interruption the same command continues; the result has the same bytes as an uninterrupted run, with any number of jobs and
 /// parts.
 #[derive(Debug, Args)]
-#[command(args_conflicts_with_subcommands = true, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(arg_required_else_help = true, after_help = EXAMPLES)]
 pub struct Dataset {
     #[command(subcommand)]
     action: Option<Action>,
     #[command(flatten)]
-    make: Option<Make>,
+    make: Make,
 }
 
 #[derive(Debug, Subcommand)]
@@ -48,8 +51,8 @@ enum Action {
 #[derive(Debug, Args)]
 struct Make {
     /// The plan; `meshtone init dataset` prints one
-    #[arg(value_name = "PLAN.toml")]
-    plan: PathBuf,
+    #[arg(value_name = "PLAN.toml", required = true)]
+    plan: Option<PathBuf>,
     /// Directory or URL (file:, s3:, …) to write to. [default: <file name without .toml>_dataset in the current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<String>,
@@ -59,9 +62,8 @@ struct Make {
     /// Only one part of the shards, such as 2/8; parts may be made at the same time, in one directory or apart
     #[arg(long, value_name = "I/N", value_parser = part)]
     part: Option<Part>,
-    /// Print no summary and no progress; warnings and errors are still printed
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
 }
 
 /// Merge the parts of a data set that were made separately
@@ -76,9 +78,8 @@ struct Merge {
     /// Read also the shards that are already in place, instead of checking only their sizes
     #[arg(long)]
     verify: bool,
-    /// Print no summary
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
 }
 
 /// Compare every byte of a data set with what was written
@@ -93,9 +94,8 @@ struct Verify {
     /// Check only names, sizes, counts and the footers of shards
     #[arg(long)]
     sizes_only: bool,
-    /// Print no summary; what is wrong is still printed
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
 }
 
 /// Print the scenario of one record, to simulate and look at it alone
@@ -131,38 +131,38 @@ fn part(text: &str) -> Result<Part, String> {
 
 impl Dataset {
     pub fn run(&self) -> Result<(), Failure> {
-        match (&self.action, &self.make) {
+        match (&self.action, &self.make.plan) {
             (Some(Action::Merge(arguments)), _) => arguments.run(),
             (Some(Action::Verify(arguments)), _) => arguments.run(),
             (Some(Action::Scenario(arguments)), _) => arguments.run(),
-            (None, Some(arguments)) => arguments.run(),
+            (None, Some(plan)) => self.make.run(plan),
             (None, None) => Failure::refuse("name a plan", "see meshtone dataset --help"),
         }
     }
 }
 
 impl Make {
-    fn run(&self) -> Result<(), Failure> {
-        let plan = read_plan(&self.plan)?;
-        warn_before_generating(&self.plan.display().to_string(), &plan);
-        let to = self.destination()?;
+    fn run(&self, path: &Path) -> Result<(), Failure> {
+        let plan = read_plan(path)?;
+        warn_before_generating(&path.display().to_string(), &plan);
+        let to = self.destination(path)?;
         let part = self.part.unwrap_or(Part::WHOLE);
         let threads = usize::from(self.jobs.unwrap_or(0));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Failure::failed(format!("cannot start threads: {error}")))?;
-        let generated = with_bar("records", !self.quiet, |progress| {
+        let generated = with_bar("records", !self.shown.quiet, |progress| {
             let control = GenerateControl { progress, cancelled: &AtomicBool::new(false) };
             pool.install(|| generate(&plan, &to, part, &control))
         })?;
         warn_after_generating(&generated);
-        print_unless(self.quiet, &summary(&plan, &generated, &to))?;
-        refuse_missing(&self.plan.display().to_string(), &generated)
+        self.shown.print(&to, || summary(&plan, &generated, &to), || numbers(&generated))?;
+        refuse_missing(&path.display().to_string(), &generated)
     }
 
-    fn destination(&self) -> Result<Destination, Failure> {
+    fn destination(&self, plan: &Path) -> Result<Destination, Failure> {
         match &self.output {
             Some(output) => Ok(Destination::parse(output)?),
-            None => Ok(Destination::directory(named_after(&self.plan, "dataset"))),
+            None => Ok(Destination::directory(named_after(plan, "dataset"))),
         }
     }
 }
@@ -174,7 +174,7 @@ impl Merge {
         let to = Destination::parse(&self.output)?;
         let merged = merge(&parts, &to, if self.verify { Check::Bytes } else { Check::Sizes })?;
         let shards = counted(merged.kept_shards + merged.written_shards, "shard");
-        print_unless(self.quiet, &format!("  {shards}\n\n{to}\n"))?;
+        self.shown.print(&to, || format!("  {shards}\n\n{to}\n"), || numbers(&merged))?;
         refuse_missing(&to.to_string(), &merged)
     }
 }
@@ -201,7 +201,10 @@ impl Verify {
                  is missing or differs. Move elsewhere what no manifest names",
             ));
         }
-        print_unless(self.quiet, &report(&found, &place, self.sizes_only))?;
+        let Verified { complete, shards, rows, bytes, .. } = &found;
+        let numbers =
+            || json!({ "complete": complete, "shards": shards.len(), "records": rows, "bytes": bytes });
+        self.shown.print(&place, || report(&found, &place, self.sizes_only), numbers)?;
         if found.complete {
             return Ok(());
         }
@@ -325,6 +328,17 @@ fn refuse_missing(of: &str, generated: &Generated) -> Result<(), Failure> {
     );
     let help = "manifest.json lists them with their reasons; narrow what the plan varies, or add a constraint, and none is missing";
     Failure::refuse(problem, help)
+}
+
+/// What was made, for programs.
+fn numbers(generated: &Generated) -> Value {
+    json!({
+        "complete": generated.complete,
+        "written_shards": generated.written_shards,
+        "kept_shards": generated.kept_shards,
+        "written_records": generated.written_records - generated.failures.len() as u64,
+        "failed_records": generated.missing().iter().map(|failed| failed.record).collect::<Vec<_>>(),
+    })
 }
 
 fn summary(plan: &Plan, generated: &Generated, to: &Destination) -> String {

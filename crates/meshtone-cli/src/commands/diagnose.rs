@@ -28,7 +28,8 @@ use crate::indicators::options::{PhaseOptions, ReadingOptions, ShaftOptions};
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_bar;
 use crate::replacement::{replace, stage_figure, stage_text};
-use crate::terminal::{print_error_line, print_unless, warn};
+use crate::shown::Shown;
+use crate::terminal::{print_error_line, warn};
 use crate::warnings;
 
 const JSON: &str = "diagnosis.json";
@@ -74,9 +75,8 @@ pub struct Diagnose {
     /// Directory to write to. [default: <name of the first recording>_diagnosis in the current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Print no table and no progress; warnings and errors are still printed
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
     /// Draw no figure
     #[arg(long)]
     no_figure: bool,
@@ -131,10 +131,8 @@ impl Diagnose {
         self.write(&output.path, &answer, &json, &prior.train.wheels)?;
         let unknown = answer.warnings.iter().filter(|warning| !known.contains(warning));
         unknown.map(|of| &of.message).for_each(warn);
-        print_unless(
-            self.quiet,
-            &format!("{} -> {}\n{}", self.title(), directory.display(), table::table(&answer)),
-        )
+        let to = directory.display();
+        self.shown.print(&to, || format!("{} -> {to}\n{}", self.title(), table::table(&answer)), || json)
     }
 
     /// The rig.
@@ -172,7 +170,7 @@ impl Diagnose {
     fn reference(&self, store: &ReferenceStore, prior: &Prior) -> Result<ReferenceSet, Failure> {
         let (folder, since) = (store.folder_of(prior), Instant::now());
         let kept = fs::read_dir(&folder).map_or(0, Iterator::count) as u64;
-        let shows_progress = !self.quiet && kept < self.records.div_ceil(ReferenceStore::BATCH);
+        let shows_progress = !self.shown.quiet && kept < self.records.div_ceil(ReferenceStore::BATCH);
         if shows_progress {
             // Also where no bar can be drawn.
             print_error_line(format_args!(
@@ -198,7 +196,7 @@ impl Diagnose {
 
     /// Simulates with a progress bar.
     fn with_bar<T>(&self, length: u64, counted: &str, simulate: impl FnOnce(&Control) -> T) -> T {
-        with_bar(counted, !self.quiet, |show| {
+        with_bar(counted, !self.shown.quiet, |show| {
             show(0, length);
             let progress = |finished: usize| show(finished as u64, length);
             simulate(&Control { progress: &progress, ..Control::default() })

@@ -7,11 +7,13 @@ use meshtone::scenario::Scenario;
 use meshtone_io::atomic_file::write_atomically;
 use meshtone_io::experiment::{EnhancedRecord, Tuned, enhance, read_tuned, write_enhanced};
 use meshtone_io::scenario_file::{FileKind, ScenarioFile};
+use serde_json::json;
 
 use crate::check::check;
 use crate::failure::Failure;
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::terminal::{print_unless, warn};
+use crate::shown::Shown;
+use crate::terminal::warn;
 use crate::warnings;
 
 const ENHANCED: &str = "enhanced.parquet";
@@ -40,9 +42,8 @@ pub struct Enhance {
     /// Directory to write to. [default: <file name without .toml>_enhanced in the current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Print nothing but warnings and errors
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
 }
 
 const EXAMPLES: &str = "\
@@ -74,16 +75,14 @@ impl Enhance {
         let records = &draws.records;
         let mean =
             |of: &dyn Fn(&EnhancedRecord) -> f64| records.iter().map(of).sum::<f64>() / records.len() as f64;
-        print_unless(
-            self.quiet,
-            &format!(
-                "  {} draws of {} values, mean rms {:.3} times the healthy one's, mean kurtosis {:.2}\n\n{}\n",
-                records.len(),
-                records[0].relative_difference.len(),
-                mean(&|record| record.relative_rms),
-                mean(&|record| record.kurtosis),
-                path.display()
-            ),
-        )
+        let (draws, values, to) = (records.len(), records[0].relative_difference.len(), path.display());
+        let [rms, kurtosis] = [mean(&|record| record.relative_rms), mean(&|record| record.kurtosis)];
+        let table = || {
+            format!(
+                "  {draws} draws of {values} values, mean rms {rms:.3} times the healthy one's, mean kurtosis {kurtosis:.2}\n\n{to}\n"
+            )
+        };
+        let numbers = || json!({ "draws": draws, "values": values, "mean_relative_rms": rms, "mean_kurtosis": kurtosis });
+        self.shown.print(&to, table, numbers)
     }
 }

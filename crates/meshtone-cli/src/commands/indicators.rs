@@ -16,7 +16,8 @@ use crate::indicators::results::{Series, settings};
 use crate::indicators::{figures, files, limits, table};
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_spinner;
-use crate::terminal::{print_unless, warn};
+use crate::shown::Shown;
+use crate::terminal::warn;
 use crate::warnings::in_words;
 
 /// Warnings of one recording that are printed; the others are counted.
@@ -41,9 +42,8 @@ pub struct Indicators {
     /// current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Print no table and no progress; warnings and errors are still printed
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
     /// Write the tables as CSV too
     #[arg(long)]
     csv: bool,
@@ -83,7 +83,7 @@ impl Indicators {
         let mut series = Series::default();
         for (number, path) in self.recordings.iter().enumerate() {
             let of = format!("({} of {})", number + 1, self.recordings.len());
-            with_spinner(format!("{} {of}", path.display()), !self.quiet, || {
+            with_spinner(format!("{} {of}", path.display()), !self.shown.quiet, || {
                 let input = Input::read(path, &self.reading, self.phase.channel())?;
                 let processed =
                     process(&input, &self.phase, &self.shafts, scenario, &self.processing, &self.bearings);
@@ -121,8 +121,9 @@ impl Indicators {
             [only] => only.display().to_string(),
             several => format!("{} recordings", several.len()),
         };
-        let shown = table::table(&series, self.processing.iso_20816);
-        print_unless(self.quiet, &format!("{from} -> {}\n{shown}", directory.display()))
+        let (to, limits) = (directory.display(), self.processing.iso_20816);
+        let table = || format!("{from} -> {to}\n{}", table::table(&series, limits));
+        self.shown.print(&to, table, || series.results.to_json())
     }
 
     fn directory(&self) -> PathBuf {

@@ -19,7 +19,7 @@ use crate::failure::Failure;
 use crate::other_kind::or_other_kind;
 use crate::output_directory::claim;
 use crate::results::{PANEL, SIGNALS, SUMMARY, finish_interrupted, stage_panel};
-use crate::terminal::{print_unless, warn};
+use crate::terminal::{print, warn};
 
 /// Description of the input of the panel.
 const WRITTEN: &str = "a directory that `meshtone simulate` wrote";
@@ -61,7 +61,7 @@ impl Panel {
         let files = self.panel_of(&path)?;
         undisturbed(|| files.into_iter().try_for_each(StagedFile::commit))?;
         let [svg, png] = PANEL.map(|name| self.directory.join(name));
-        print_unless(self.quiet, &format!("{}\n{}\n", svg.display(), png.display()))
+        if self.quiet { Ok(()) } else { print(&format!("{}\n{}\n", svg.display(), png.display())) }
     }
 
     /// The panel of what a file of signals is of.

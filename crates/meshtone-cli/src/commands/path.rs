@@ -16,6 +16,7 @@ use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::path_csv::path_csv;
 use meshtone_io::scenario_file::ScenarioFile;
+use serde_json::{Value, json};
 
 use crate::check::check;
 use crate::diagnose::observe::to_g;
@@ -27,7 +28,7 @@ use crate::indicators::train::Turned;
 use crate::progress::with_bar;
 use crate::replacement::stage_text;
 use crate::same_file::is_same_file;
-use crate::terminal::print_unless;
+use crate::shown::Shown;
 use crate::warnings::{self, about};
 
 /// Estimate the path to a sensor from recordings of the healthy machine
@@ -54,9 +55,8 @@ pub struct Path {
     /// Seed of the draws
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Print no progress and no summary; warnings and errors are still printed
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
     #[command(flatten)]
     reading: ReadingOptions,
     #[command(flatten)]
@@ -91,7 +91,7 @@ impl Path {
             healthy.push(recording);
         }
         let settings = PathSettings { draws: self.draws as usize, seed: self.seed };
-        let estimate = with_bar("simulations", !self.quiet, |show| {
+        let estimate = with_bar("simulations", !self.shown.quiet, |show| {
             let progress = |finished: usize, all: usize| show(finished as u64, all as u64);
             let cancelled = AtomicBool::new(false);
             estimate_path(
@@ -110,7 +110,7 @@ impl Path {
                 estimate.failed_draws, self.draws, estimate.drive.failed
             ));
         }
-        print_unless(self.quiet, &summary(&estimate, &self.output))
+        self.shown.print(&self.output.display(), || summary(&estimate, &self.output), || numbers(&estimate))
     }
 
     /// Reads a recording whole, with how its shafts turned, and what is doubtful about it.
@@ -181,6 +181,28 @@ impl Path {
 }
 
 /// The path at octaves.
+/// All that the estimate holds, for programs.
+fn numbers(estimate: &PathEstimate) -> Value {
+    let drive = &estimate.drive;
+    let sidebands = drive.sidebands.iter().map(|of| {
+        let is_unexplained = of.is_unexplained();
+        json!({ "shaft": of.shaft, "order": of.order, "level": of.level, "factor": of.factor, "is_unexplained": is_unexplained })
+    });
+    json!({
+        "frequency_hz": estimate.frequency_hz,
+        "magnitude_db": estimate.magnitude_db,
+        "low_db": estimate.low_db,
+        "high_db": estimate.high_db,
+        "phase_deg": estimate.phase_deg,
+        "compared_hz": estimate.compared_hz,
+        "misfit": estimate.misfit,
+        "speed_wander_percent": drive.speed_wander_percent,
+        "line_share": drive.line_share,
+        "random_force_factor": drive.random_force_factor,
+        "sidebands": sidebands.collect::<Vec<_>>(),
+    })
+}
+
 fn summary(estimate: &PathEstimate, output: &path::Path) -> String {
     let [from_hz, to_hz] = estimate.compared_hz;
     let mut text = format!("  {:>10}  {:>8}  {:>18}\n", "Hz", "dB", "90 %");

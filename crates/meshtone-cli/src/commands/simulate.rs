@@ -22,8 +22,9 @@ use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_spinner;
 use crate::results::{self, RESULTS, Results};
 use crate::same_file::is_same_file;
+use crate::shown::Shown;
 use crate::table::table;
-use crate::terminal::{print_unless, warn};
+use crate::terminal::warn;
 use crate::warnings;
 
 /// Simulate scenarios: signals, summary and results panel
@@ -57,9 +58,8 @@ pub struct Simulate {
     /// other commands take from it
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', default_value = "parquet", value_parser = one_of(&FORMATS))]
     format: Vec<SignalFormat>,
-    /// Print no table and no progress; warnings and errors are still printed
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
     /// Do not draw the results panel
     #[arg(long)]
     no_panel: bool,
@@ -260,10 +260,11 @@ impl Simulate {
     ) -> Result<(), Failure> {
         let from = file.path.display();
         let message = format!("{from} ({} of {})", number + 1, self.scenarios.len());
-        let (summary, by_signals, written) = with_spinner(message, !self.quiet, simulate)?;
+        let (summary, by_signals, written) = with_spinner(message, !self.shown.quiet, simulate)?;
         warnings::print(file, &by_signals);
         written?;
-        print_unless(self.quiet, &format!("{from} -> {}\n{}\n", directory.path.display(), table(&summary)))
+        let to = directory.path.display();
+        self.shown.print(&to, || format!("{from} -> {to}\n{}\n", table(&summary)), || json!(summary))
     }
 
     /// An error about a scenario, or about the errors file that the command line put in its place.

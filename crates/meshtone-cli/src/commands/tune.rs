@@ -15,7 +15,8 @@ use crate::other_kind::TUNED;
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_bar;
 use crate::replacement::{cannot_draw, replace, stage_figure, stage_text};
-use crate::terminal::{print_unless, warn};
+use crate::shown::Shown;
+use crate::terminal::warn;
 
 const TUNING: &str = "tuning.json";
 const FIGURE: [&str; 2] = ["tuning.svg", "tuning.png"];
@@ -34,9 +35,8 @@ pub struct Tune {
     /// Directory to write to. [default: <file name without .toml>_tuning in the current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Print no table and no progress; warnings and errors are still printed
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    shown: Shown,
     /// Do not draw the figure
     #[arg(long)]
     no_figure: bool,
@@ -54,7 +54,7 @@ impl Tune {
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.experiment, "tuning"));
         let read: Vec<&Path> = file.sources.iter().map(PathBuf::as_path).collect();
         let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
-        let result = with_bar("simulations", !self.quiet, |show| {
+        let result = with_bar("simulations", !self.shown.quiet, |show| {
             let progress = |finished: usize, all: usize| show(finished as u64, all as u64);
             let control = ExperimentControl { progress: &progress, cancelled: &AtomicBool::new(false) };
             run_experiment(&file.experiment, &control)
@@ -63,7 +63,8 @@ impl Tune {
             result.map_err(|error| Failure::bad_input(format!("{}: {error}", self.experiment.display())))?;
         self.write(&file, &result, &output.path)?;
         warnings(&file, &result).into_iter().for_each(warn);
-        print_unless(self.quiet, &table(&file.experiment, &result, &directory))
+        let table = || table(&file.experiment, &result, &directory);
+        self.shown.print(&directory.display(), table, || tuning_json(&file, &result))
     }
 
     fn write(
@@ -82,7 +83,7 @@ impl Tune {
         }
         let toml = write_tuned(&Tuned::of(experiment, result), &name);
         staged.push(stage_text(&directory.join(TUNED), &toml)?);
-        staged.push(stage_text(&directory.join(TUNING), &tuning_json(file, result))?);
+        staged.push(stage_text(&directory.join(TUNING), &format!("{:#}\n", tuning_json(file, result)))?);
         Ok(undisturbed(|| replace(directory, &FILES, &FILES, staged))?)
     }
 }

@@ -6,6 +6,7 @@ use std::thread;
 use meshtone::signal::Record;
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::own_file::undisturbed;
+use meshtone_io::summary::write_json;
 use meshtone_plot::Figure;
 
 use super::results::Series;
@@ -99,6 +100,6 @@ pub fn write(directory: &Path, series: &Series, figures: &Figures, csv: bool) ->
         }
         staged.push(StagedFile::write(&directory.join(name), |file| table.write_parquet(file))?);
     }
-    staged.push(StagedFile::write(&directory.join(JSON), |file| results.write_json(file))?);
+    staged.push(StagedFile::write(&directory.join(JSON), |file| write_json(&results.to_json(), file))?);
     Ok(undisturbed(|| replace(directory, &FILES, &FILES, staged))?)
 }

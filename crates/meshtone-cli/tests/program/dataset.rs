@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 #[cfg(unix)]
 use crate::support::program_with_small_files;
-use crate::support::{Workplace, program, stdout};
+use crate::support::{Workplace, printed_json, program, stdout};
 
 /// 96 records of some milliseconds each.
 const PLAN: &str = r#"
@@ -326,11 +326,14 @@ fn flip(path: &Path) {
 #[test]
 fn a_data_set_is_verified() {
     let workplace = workplace();
-    workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]);
+    let printed = printed_json(&workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "--json"]));
+    assert_eq!((&printed["written_records"], &printed["complete"]), (&96.into(), &true.into()));
     let whole = bytes(&workplace.path("set"));
     let good = stdout(&workplace.succeeds(&["dataset", "verify", "set"]));
     assert!(good.contains("96 records in 12 shards") && good.contains("every byte is as written"), "{good}");
     workplace.succeeds(&["dataset", "verify", "set", "--quiet"]).stdout("");
+    let printed = printed_json(&workplace.succeeds(&["dataset", "verify", "set", "--json"]));
+    assert_eq!((&printed["records"], &printed["output"]), (&96.into(), &"set".into()));
     flip(&workplace.path("set/data/train-000004.parquet"));
     std::fs::remove_file(workplace.path("set/data/train-000007.parquet")).unwrap();
     std::fs::remove_file(workplace.path("set/README.md")).unwrap();

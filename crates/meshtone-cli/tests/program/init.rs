@@ -1,7 +1,7 @@
 //! `meshtone init`, `--version` and `--help`
 #![allow(clippy::print_stdout)]
 
-use crate::support::{Workplace, stderr, stdout};
+use crate::support::{Workplace, printed_json, stderr, stdout};
 use meshtone::scenario::{template, template_kinds, template_of_all_keys};
 use meshtone_io::scenario_file::read_scenario;
 use serde_json::Value;
@@ -113,9 +113,11 @@ fn assert_is_tuned_to_its_files(workplace: &Workplace, candidates: u32) {
     let text = text.replace("#candidates = 160 ", &stated);
     assert!(text.contains(&stated), "{text}");
     workplace.write("experiment.toml", text);
-    let output = workplace.succeeds(&["tune", "experiment.toml", "-o", "out", "--no-figure"]);
+    let output = workplace.succeeds(&["tune", "experiment.toml", "-o", "out", "--no-figure", "--json"]);
     assert_eq!(stderr(&output), "");
-    let tuned: Value = serde_json::from_slice(&workplace.read("out/tuning.json")).unwrap();
+    let tuned = printed_json(&output);
+    let file: Value = serde_json::from_slice(&workplace.read("out/tuning.json")).unwrap();
+    assert_eq!((&tuned["parameters"], &tuned["output"]), (&file["parameters"], &"out".into()));
     let base_hz = tuned["scenario_keys"]["rig.support.base_hz"].as_f64().unwrap();
     println!("{candidates} candidates: base_hz = {base_hz} of 520");
     assert!((base_hz / 520.0 - 1.0).abs() < 0.03, "{tuned:#}");

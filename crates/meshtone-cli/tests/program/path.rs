@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::support::{Workplace, fast_with, stdout};
+use crate::support::{Workplace, fast_with, printed_json, stdout};
 
 fn workplace() -> Workplace {
     let workplace = Workplace::new();
@@ -22,6 +22,8 @@ fn a_path_is_what_a_scenario_takes() {
     let said = stdout(&workplace.succeeds(&arguments));
     assert!(said.contains("1000") && said.contains("frequency_response = { file = \"path.csv\" }"), "{said}");
     let text = fs::read_to_string(workplace.path("path.csv")).unwrap();
+    let printed = printed_json(&workplace.succeeds(&[&arguments[..], &["--json"]].concat()));
+    assert_eq!(printed["frequency_hz"].as_array().unwrap().len(), text.lines().count() - 1);
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("frequency_hz,magnitude,phase_deg,magnitude_db,low_db,high_db"));
     // The sensor of the recording shows three times the motion, 9.5 dB.

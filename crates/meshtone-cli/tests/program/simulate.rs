@@ -2,7 +2,7 @@
 
 use std::fs::File;
 
-use crate::support::{Workplace, fast_and, fast_with, stderr, stdout};
+use crate::support::{Workplace, fast_and, fast_with, printed_json, stderr, stdout};
 use meshtone::InstructionSet;
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
@@ -29,6 +29,33 @@ fn signals_are_those_of_the_library() {
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     assert_eq!(recorded.scenario, scenario.clone());
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
+}
+
+/// One line for each scenario, with the numbers of the file, and nothing else.
+#[test]
+fn numbers_are_printed_as_json() {
+    let workplace = Workplace::new();
+    let without = |mut numbers: Value, key: &str| {
+        let value = numbers.as_object_mut().unwrap().remove(key).unwrap();
+        (numbers, value)
+    };
+    let (simulated, output) =
+        without(printed_json(&workplace.succeeds(&["simulate", "fast.toml", "--json"])), "output");
+    assert_eq!(output, "fast_results");
+    assert_eq!(simulated, without(summary(&workplace, "fast_results"), "files").0);
+    let (indicators, output) =
+        without(printed_json(&workplace.succeeds(&["indicators", "fast_results", "--json"])), "output");
+    assert_eq!(output, "fast_results_indicators");
+    let file = workplace.read("fast_results_indicators/indicators.json");
+    assert_eq!(indicators, serde_json::from_slice::<Value>(&file).unwrap());
+    workplace.write("again.toml", fast_and("[quality]\ndin_grade = 7"));
+    let both = stdout(&workplace.succeeds(&["simulate", "fast.toml", "again.toml", "-o", "out", "--json"]));
+    let lines = both.lines().map(|line| serde_json::from_str(line).unwrap());
+    assert_eq!(
+        lines.map(|line: Value| line["output"].clone()).collect::<Vec<_>>(),
+        ["out/fast", "out/again"]
+    );
+    workplace.fails(2, &["simulate", "fast.toml", "--json", "--quiet"], &["--json", "--quiet"]);
 }
 
 /// All sets with fused multiply-add give the same bits; products that are rounded before they are added differ by rounding, which grows

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
+use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_meshtone");
@@ -101,6 +102,13 @@ pub fn names(directory: &Path) -> Vec<String> {
 
 pub fn stdout(assert: &Assert) -> String {
     String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+}
+
+/// What a command printed with `--json`: one line.
+pub fn printed_json(assert: &Assert) -> Value {
+    let text = stdout(assert);
+    assert_eq!(text.lines().count(), 1, "{text}");
+    serde_json::from_str(&text).unwrap()
 }
 
 pub fn stderr(assert: &Assert) -> String {

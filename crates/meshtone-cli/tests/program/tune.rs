@@ -7,7 +7,7 @@ use meshtone::signal::{Edge, kurtosis, resample};
 use meshtone::tuning::{DifferenceChain, difference_signals};
 use serde_json::Value;
 
-use crate::support::{FAST, Workplace, stderr, stdout};
+use crate::support::{FAST, Workplace, printed_json, stderr, stdout};
 
 const RMS: [f64; 3] = [0.0, 0.3, 0.8];
 const KURTOSIS: [f64; 3] = [0.5, 0.9, 1.2];
@@ -96,6 +96,7 @@ fn a_rig_is_tuned_and_signals_are_enhanced() {
     let enhance = ["enhance", "broken.toml", "--tuned", "out/tuned.toml", "--draws", "7", "-o", "enhanced"];
     assert!(stdout(&workplace.succeeds(&enhance)).contains("7 draws"));
     let first = workplace.read("enhanced/enhanced.parquet");
+    assert_eq!(printed_json(&workplace.succeeds(&[&enhance[..], &["--json"]].concat()))["draws"], 7);
     workplace.succeeds(&enhance);
     assert!(workplace.read("enhanced/enhanced.parquet") == first);
     // Every draw has the indicators that tuning promised, to their scatter.

@@ -85,7 +85,7 @@ impl Spectrum {
         json!({ "step_hz": self.step_hz, "values": packet.array(self.amplitudes.iter().copied().take(sent.max(2))) })
     }
 
-    /// The strongest lines by their frequencies, each with its name.
+    /// The strongest lines, the strongest first, each with its name.
     ///
     /// # Arguments
     /// * `tones` - of the train
@@ -99,7 +99,6 @@ impl Spectrum {
         let mut peaks: Vec<usize> = (2..values.len()).filter(is_peak).collect();
         peaks.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
         peaks.truncate(MOST_LINES);
-        peaks.sort_unstable();
         let line = |i: usize| {
             let frequency_hz = i as f64 * self.step_hz;
             let name = tones.name(frequency_hz, TOLERANCE * self.step_hz);
@@ -142,7 +141,9 @@ impl Tones {
             let beside = frequency_hz - nearest * mesh.frequency_hz;
             let harmonic = format!("{nearest} × mesh {}", mesh.name);
             if beside.abs() <= tolerance_hz {
-                found.push((0, harmonic));
+                let name = &mesh.name;
+                let is_fundamental = nearest == 1.0;
+                found.push((0, if is_fundamental { format!("mesh frequency of {name}") } else { harmonic }));
                 continue;
             }
             for shaft in mesh.shafts {
@@ -199,8 +200,8 @@ mod tests {
     #[test]
     fn every_kind_of_line_has_its_name() {
         for (frequency_hz, name) in [
-            (480.0, "1 × mesh z3-z4"),
-            (960.0, "1 × mesh z1-z2, 2 × mesh z3-z4"),
+            (480.0, "mesh frequency of z3-z4"),
+            (960.0, "mesh frequency of z1-z2, 2 × mesh z3-z4"),
             (990.0, "1 × mesh z1-z2 + 1 × shaft input"),
             (950.0, "1 × mesh z1-z2 − 1 × shaft middle, 2 × mesh z3-z4 − 1 × shaft middle"),
             (486.3, "1 × mesh z3-z4 + 1 × shaft output"),

@@ -2,6 +2,7 @@
 
 import { element } from "./controls.js";
 import { GearboxControls } from "./gearbox_controls.js";
+import { fold } from "./indicators.js";
 import { Page, begin } from "./page.js";
 import { Plot, forgetColours, line, shown } from "./plots.js";
 import { Train } from "./train.js";
@@ -41,6 +42,7 @@ class GearboxView {
     this.#train = new Train(byId("front"), byId("above"), choose("wheel"), choose("mesh"), choose("bearing"));
     for (const key of Object.keys(this.asked)) byId(key).addEventListener("change", ({ target }) => this.#chosen(key, target.value));
     byId("logarithmic").addEventListener("change", () => this.#now && this.#spectrum(this.#now));
+    byId("all-indicators").addEventListener("change", () => this.#full && this.#indicators(this.#full));
   }
 
   /** The answer that can be held. */
@@ -152,6 +154,7 @@ class GearboxView {
     const others = [["held", this.#held?.wheel], [title, this.#recordedWheel(wheel)]].filter(([, of]) => of).map(([label, of]) => [label, values(of.indicators)]);
     const rows = (wheel.indicators ?? []).map(([name, unit, value]) => [`${name.replaceAll("_", " ")}${unit === "-" ? "" : `, ${unit}`}`, shown(value), ...others.map(([, known]) => shown(known.get(name)))]);
     table("indicators", ["indicator", "now", ...others.map(([label]) => label)], rows);
+    fold(wheel.indicators ?? [], others[0]?.[1] ?? null);
   }
 
   /** The envelope of a rolling bearing; none where the gearbox has none of these. The lines are the recording's where one is open. */

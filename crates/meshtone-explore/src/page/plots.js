@@ -150,6 +150,7 @@ export class Plot {
     this.#range = range ?? (this.#lines.length && most > least ? [least, most] : [0, 1]);
     this.#empty.textContent = empty;
     this.#empty.hidden = this.#lines.length > 0 || !empty;
+    this.#legend();
     this.#draw();
   }
 
@@ -229,7 +230,7 @@ export class Plot {
     const axis = (label, size) => ({
       label, size, labelSize: 18, gap: 3, labelGap: 0, font: "12px system-ui", labelFont: "12px system-ui",
       stroke: () => colour("muted"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { stroke: () => colour("line"), width: 1 },
-      values: (_, splits) => splits.map((value) => (value === null ? "" : shown(value, 6))),
+      values: (_, splits) => splits.map((value) => (value === null ? "" : String(Number(value.toPrecision(6))))),
     });
     const isPoints = this.#options.kind === "points";
     const series = this.#lines.map(({ label, look, dash }) => ({
@@ -272,10 +273,20 @@ export class Plot {
   #hover(plot) {
     const { left } = plot.cursor;
     if (left === null || left === undefined || left < 0) {
-      this.#values.textContent = "";
+      this.#legend();
       return;
     }
     this.showAt(plot.posToVal(left, "x"));
+  }
+
+  /** The names of lines that lie over each other, in their colours. */
+  #legend() {
+    const names = this.#lines.length > 1 ? this.#lines : [];
+    this.#values.replaceChildren(...names.flatMap(({ label, look }) => {
+      const name = Object.assign(document.createElement("b"), { textContent: label });
+      name.style.color = colour(look);
+      return [name, document.createTextNode(" ")];
+    }));
   }
 
   showAt(x) {

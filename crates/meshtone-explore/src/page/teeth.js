@@ -248,6 +248,20 @@ export class Teeth {
     }
     this.#drawLine(context, seen, pixel);
     this.#drawContacts(context, pixel, module);
+    this.#drawNames(context, ratio, width);
+  }
+
+  /** Which wheel is which: the pinion stands on the left. */
+  #drawNames(context, ratio, width) {
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.fillStyle = colour("ink");
+    context.font = "13px system-ui";
+    context.textBaseline = "top";
+    for (const [index, side] of ["left", "right"].entries()) {
+      context.textAlign = side;
+      const { teeth } = this.#geometry.wheels[index];
+      context.fillText(`${index ? "gear" : "pinion"}, ${teeth} teeth`, index ? width - 8 : 8, 8);
+    }
   }
 
   /** What is lost of the damaged teeth, and their cracks. */

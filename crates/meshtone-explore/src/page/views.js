@@ -1,5 +1,6 @@
 // What is seen of an answer: figures, mesh cycle, signal, revolution, indicators.
 
+import { fold } from "./indicators.js";
 import { Plot, forgetColours, line, shown } from "./plots.js";
 import { Teeth } from "./teeth.js";
 
@@ -60,6 +61,7 @@ export class Views {
     byId("wheel").addEventListener("change", () => this.#revolution());
     byId("logarithmic").addEventListener("change", () => this.#revolution());
     byId("fault").addEventListener("change", () => this.#askSeverity());
+    byId("all-indicators").addEventListener("change", () => this.#indicators());
     this.#play(this.#teeth.playing);
   }
 
@@ -286,6 +288,8 @@ export class Views {
         setText(cells[index].cells[column + 1].firstChild, text);
       });
     });
+    // A held answer is compared with, else the healthy pair.
+    fold(rows, held ?? healthy, this.#indicator);
     this.#drawSeverity();
   }
 

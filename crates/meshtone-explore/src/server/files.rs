@@ -41,6 +41,7 @@ files! {
     "/recording.js" "text/javascript; charset=utf-8" "recording.js";
     "/desk.js" "text/javascript; charset=utf-8" "desk.js";
     "/gearbox_controls.js" "text/javascript; charset=utf-8" "gearbox_controls.js";
+    "/indicators.js" "text/javascript; charset=utf-8" "indicators.js";
     "/gearbox.js" "text/javascript; charset=utf-8" "gearbox.js";
     "/train.js" "text/javascript; charset=utf-8" "train.js";
     "/icon.svg" "image/svg+xml" "icon.svg";

@@ -13,7 +13,7 @@ use super::ExperimentFile;
 ///
 /// `parameters`, `intervals` and `error` are those of the best that was found; where keys of the scenario were tuned,
 /// `enhancement_alone` holds what the three parameters reach without them.
-pub fn tuning_json(file: &ExperimentFile, result: &ExperimentResult) -> String {
+pub fn tuning_json(file: &ExperimentFile, result: &ExperimentResult) -> Value {
     let experiment = &file.experiment;
     let mut all = tuning(experiment, result.tuning());
     all["warnings"] = json!(warnings(file, result));
@@ -31,8 +31,7 @@ pub fn tuning_json(file: &ExperimentFile, result: &ExperimentResult) -> String {
         });
         all["enhancement_alone"] = tuning(experiment, &result.enhancement_alone);
     }
-    // Alternate: indented.
-    format!("{all:#}\n")
+    all
 }
 
 /// What is doubtful about a tuning: about its recordings, then about what was found.

@@ -1,7 +1,5 @@
 //! The results as JSON.
 
-use std::io::{self, Write};
-
 use meshtone::signal::{ForeignTone, Indicators, SignalWarning};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
@@ -9,24 +7,15 @@ use serde_json::{Map, Value, json};
 use super::{FORMAT_VERSION, IndicatorResults};
 
 impl IndicatorResults {
-    /// Writes the results as indented JSON.
-    ///
-    /// # Arguments
-    /// * `to` - where they are written to
-    ///
-    /// # Errors
-    /// Those of `to`.
+    /// The results as JSON.
     ///
     /// ```
     /// use meshtone_io::indicators::IndicatorResults;
     ///
     /// let results = IndicatorResults { channel: "bearing".to_string(), ..IndicatorResults::default() };
-    /// let mut text = Vec::new();
-    /// results.write_json(&mut text)?;
-    /// assert!(String::from_utf8_lossy(&text).contains("\"channel\": \"bearing\""));
-    /// # Ok::<(), std::io::Error>(())
+    /// assert_eq!(results.to_json()["channel"], "bearing");
     /// ```
-    pub fn write_json(&self, mut to: impl Write) -> io::Result<()> {
+    pub fn to_json(&self) -> Value {
         let warnings = self.warnings.iter().map(|warning| {
             let recording = warning.source.as_ref().map(|source| source.display().to_string());
             let values = warning.kind.iter().flat_map(SignalWarning::values);
@@ -38,7 +27,7 @@ impl IndicatorResults {
                 "values": values,
             })
         });
-        let all = json!({
+        json!({
             "format_version": FORMAT_VERSION,
             "meshtone_version": env!("CARGO_PKG_VERSION"),
             "settings": self.settings,
@@ -49,8 +38,7 @@ impl IndicatorResults {
             "bearings": self.bearings,
             "limits": self.limits,
             "warnings": warnings.collect::<Vec<_>>(),
-        });
-        to.write_all(format!("{all:#}\n").as_bytes())
+        })
     }
 }
 

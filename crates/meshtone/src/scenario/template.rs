@@ -6,9 +6,10 @@ use crate::damage::{PaperRig, damage_kinds};
 use crate::keys::{KeyRow, Keys, comment, commented, commented_rows, essential_rows};
 
 const HEALTHY: &str = "healthy";
+const HELICAL: &str = "helical";
 
 const HEAD: &str = "\
-# A Meshtone scenario: a pair of spur gears, its operation, and its damage.
+# A Meshtone scenario: a pair of gears, its operation, and its damage.
 # The pinion, on the motor's shaft, drives the gear, on the brake's shaft.
 ";
 
@@ -31,9 +32,9 @@ const WITHOUT_FAULTS: &str = "\
 # [[fault]]
 ";
 
-/// The names that [`template`] knows: a healthy pair, and each kind of damage.
+/// The names that [`template`] knows: a healthy pair of spur gears, one of helical gears, and each kind of damage.
 pub fn template_kinds() -> Vec<&'static str> {
-    std::iter::once(HEALTHY).chain(damage_kinds().into_iter().map(|kind| kind.name)).collect()
+    [HEALTHY, HELICAL].into_iter().chain(damage_kinds().into_iter().map(|kind| kind.name)).collect()
 }
 
 /// A scenario file to start from: the keys that matter, each with its meaning. All others have their defaults.
@@ -78,8 +79,26 @@ fn scenario_of_kind(kind: &str) -> Option<Scenario> {
     if kind == HEALTHY {
         return Some(of_the_paper(PaperRig::Breakage));
     }
+    if kind == HELICAL {
+        return Some(helical());
+    }
     let kind = damage_kinds().into_iter().find(|known| known.name == kind)?;
     Some(Scenario { faults: vec![Fault::at_usual_place(kind.example)], ..of_the_paper(kind.rig) })
+}
+
+/// A pair of helical gears whose overlap ratio is 1.09, so that a tooth's load moves over the whole face.
+fn helical() -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 60,
+        face_width_mm: 30.0,
+        pinion_speed_hz: 30.0,
+        brake_torque_nm: 60.0,
+    });
+    scenario.meshes.iter_mut().for_each(|mesh| mesh.helix_angle_deg = 20.0);
+    scenario.wheels.iter_mut().for_each(|wheel| wheel.iso_class = 6);
+    scenario
 }
 
 /// The pairs of the paper's experiments.
