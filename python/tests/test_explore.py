@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 CHANGES = int(os.environ.get("MESHTONE_EXPLORE_CHANGES", "60"))
 """Random changes of the long test; ``MESHTONE_EXPLORE_CHANGES=1000 python -m pytest python/tests/test_explore.py`` for many."""
-PATIENCE_S = 30
+PATIENCE_S = 120
 
 
 def fast() -> mt.Scenario:
@@ -289,6 +289,13 @@ def test_a_preset_its_damage_and_severity(page: Page, explorer: mt.Explorer) -> 
     assert explorer.scenario.fault == mt.examples.tooth_breakage().fault
     page.wait(lambda: page.run("return document.querySelectorAll('#indicators tbody tr').length === 86"), "indicators")
     page.wait(lambda: "The line marks" in page.run("return document.getElementById('severity-note').textContent"), "severities")
+    # Those that moved most, with the chosen one; all where they are wanted.
+    seen = "return [...document.querySelectorAll('#indicators tbody tr')].filter((row) => !row.hidden).map((row) => row.cells[0].textContent)"
+    page.wait(lambda: 10 <= len(page.run(seen)) <= 11, "those that moved")
+    assert "difference kurtosis" in page.run(seen) and "average skewness" not in page.run(seen)
+    page.run("document.getElementById('all-indicators').click()")
+    assert len(page.run(seen)) == 86
+    page.run("document.getElementById('all-indicators').click()")
     page.enter("fault[0].severity", "0.3")
     fault = explorer.scenario.fault
     assert fault is not None
@@ -583,6 +590,8 @@ def test_every_line_of_a_gearboxs_spectrum_has_a_name(train_page: Page) -> None:
                 said += float(count) * (meshes if kind == "mesh" else speeds)[of]
             assert abs(said - float(frequency)) <= 1.0, (name, frequency)
     assert any("mesh z1-z2" in name for name, *_ in rows)
+    strengths = [float(amplitude) for *_, amplitude in rows]
+    assert strengths == sorted(strengths, reverse=True)
 
 
 def test_a_gearbox_is_held_exported_and_linked(train_page: Page, train: mt.Explorer) -> None:

@@ -1,5 +1,7 @@
 // The scenario's keys as controls: made from the program's own descriptions, with its units, ranges and words.
 
+/** On a phone the controls stand above what they change, and are folded at first. */
+export const isNarrow = matchMedia("(max-width: 800px)").matches;
 /** Sections in the order in which they are shown, with what is seen of them at first. */
 const SECTIONS = [
   { name: "gears", title: "Gears", open: true, first: ["module_mm", "pinion_teeth", "gear_teeth", "face_width_mm", "pressure_angle_deg"] },
@@ -416,7 +418,7 @@ export class Controls {
     this.#groups.clear();
     this.#form.replaceChildren(...SECTIONS.map((section) => {
       const listed = this.#catalogue.sections.find(({ name }) => name === section.name);
-      const group = element("details", { className: "group", open: open.get(section.name) ?? Boolean(section.open) },
+      const group = element("details", { className: "group", open: open.get(section.name) ?? (Boolean(section.open) && !isNarrow) },
         element("summary", {}, section.title));
       this.#groups.set(section.name, group);
       if (section.name === "fault") group.append(...this.#faults(full.fault));

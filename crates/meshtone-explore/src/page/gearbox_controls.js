@@ -1,6 +1,6 @@
 // Controls of a gearbox: the lists of its scenario, with what a bearing of a kind can have.
 
-import { Control, at, element, keyOf, words } from "./controls.js";
+import { Control, at, element, isNarrow, keyOf, words } from "./controls.js";
 
 const byId = (id) => document.getElementById(id);
 /** Sections in the order in which they are shown. */
@@ -128,7 +128,7 @@ export class GearboxControls {
 
   /** A group that stays open or closed when it is built anew. */
   #group(name, title, isOpen = false) {
-    const group = element("details", { className: "group", open: this.#open.get(name) ?? isOpen }, element("summary", {}, title));
+    const group = element("details", { className: "group", open: this.#open.get(name) ?? (isOpen && !isNarrow) }, element("summary", {}, title));
     group.addEventListener("toggle", () => this.#open.set(name, group.open));
     return group;
   }
