@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+import io
 import json
 import os
 import random
@@ -15,13 +17,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
+from pyarrow import parquet
+from scipy.io import loadmat, wavfile
 
 import meshtone as mt
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
+FORMATS = Path(__file__).parents[2] / "crates" / "meshtone-io" / "tests" / "recordings" / "formats"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 CHANGES = int(os.environ.get("MESHTONE_EXPLORE_CHANGES", "60"))
 """Random changes of the long test; ``MESHTONE_EXPLORE_CHANGES=1000 python -m pytest python/tests/test_explore.py`` for many."""
@@ -350,6 +356,53 @@ def test_a_recording_is_dropped(page: Page) -> None:
     page.wait(lambda: "rig.wav" in changes_words(page.browser), "the refusal")
 
 
+def every_kind() -> dict[str, bytes]:
+    """One recording of 400 pulses/s as a file of every kind, each with its unit and rate as far as the kind has them."""
+    recorded = loadmat(FORMATS / "version4.mat", squeeze_me=True)
+    acc, tacho = recorded["acc"], recorded["tacho"]
+    rows = "".join(f"{n / 25_600:.8f}\t{a}\t{t}\n" for n, (a, t) in enumerate(zip(acc, tacho)))
+    end = "***End_of_Header***\n"
+    lvm = f"LabVIEW Measurement\nSeparator\tTab\n{end}Channels\t2\nY_Unit_Label\tg\tV\nDelta_X\t3.90625E-5\t3.90625E-5\n{end}X_Value\tacc\ttacho\n"
+    csv = ("time [s]\tacc [g]\ttacho [V]\n" + rows).replace("\t", ",").encode()
+    npz, table, wav = io.BytesIO(), io.BytesIO(), io.BytesIO()
+    np.savez(npz, acc=acc, tacho=tacho, fs=25_600.0)
+    parquet.write_table(pa.table({"time_s": np.arange(len(acc)) / 25_600, "acc": acc, "tacho": tacho}), table)
+    wavfile.write(wav, 25_600, np.column_stack([acc, tacho]).astype(np.float32))
+    files = {"run.csv": csv, "run.csv.gz": gzip.compress(csv), "run.lvm": (lvm + rows).encode()}
+    files |= {"run.npz": npz.getvalue(), "run.parquet": table.getvalue(), "run.wav": wav.getvalue()}
+    written = ("plain.tdms", "plain.mf4", "plain.xlsx", "version4.mat", "half.h5", "text.uff")
+    return files | {name: (FORMATS / name).read_bytes() for name in written}
+
+
+def field(page: Page, name: str) -> str:
+    """What stands in a field of the desk."""
+    stands: str = page.run("return document.querySelector(`#desk [data-field=${arguments[0]}]`).value", name)
+    return stands
+
+
+def test_a_recording_of_every_kind_ends_at_indicators(page: Page) -> None:
+    rig = fast().copy(gear_teeth=20, pinion_speed_hz=400, sampling_rate_hz=1e5).to_toml()
+    page.settled(lambda: page.drop("rig.toml", rig.encode()), "the rig")
+    row = "return [...document.querySelectorAll('#indicators tbody tr')][0].innerText.split('\t').at(-1)"
+    seen = {}
+    for name, content in every_kind().items():
+        page.drop(name, content)
+        page.wait(lambda name=name: f"{name}: is this right?" in text_of(page, "desk"), name)  # type: ignore[misc]
+        assert "2 channels, 0.01 s at 25600 S/s by" in text_of(page, "desk"), name
+        assert "gives 400 pulses/s, so that the input turns at 400 Hz, and in the scenario at 400 Hz" in text_of(page, "desk"), name
+        assert field(page, "channel").startswith("channel 1" if name == "run.wav" else "acc"), name
+        assert field(page, "tachometer").startswith("channel 2" if name == "run.wav" else "tacho"), name
+        page.run("document.getElementById('desk-use').click()")
+        page.wait(lambda name=name: f"{name}, by tachometer" in text_of(page, "recording"), name)  # type: ignore[misc]
+        head = "return [...document.querySelectorAll('#indicators thead th')].at(-1).textContent"
+        page.wait(lambda: page.run(head) == "recording", "the recording's indicators")
+        seen[name] = page.run(row)
+        page.run("[...document.querySelectorAll('#recording button')].at(-1).click()")
+        page.wait(lambda: page.run(head) != "recording", "the removal")
+    assert float(seen["run.csv"]) > 0.1
+    assert set(seen.values()) == {seen["run.csv"]}, seen
+
+
 RIG = fast().copy(model="linear", din_grade=6, sampling_rate_hz=8000)
 """A rig whose simulations take milliseconds."""
 
@@ -646,6 +699,21 @@ def test_a_recording_of_a_gearbox_is_dropped(train_page: Page, train: mt.Explore
     page.run("[...document.querySelectorAll('#recording button')].at(-1).click()")
     page.wait(lambda: page.run(head) == ["indicator", "now"], "the removal")
     assert text_of(page, "diagnosis") == ""
+
+
+def test_a_foreign_recording_of_a_gearbox_and_a_bearing_is_dropped(train_page: Page, train: mt.Explorer) -> None:
+    page = train_page
+    assert page.enter("bearing[0].kind", "ball") == ""
+    times = np.arange(16_000) / 8000
+    samples = np.sin(2 * np.pi * 960 * times) + 0.1 * np.random.default_rng(1).normal(size=len(times))
+    rows = "".join(f"{t:.6f},{x:.5f},{int(t * 60 % 1 < 0.1)}\n" for t, x in zip(times, samples))
+    page.drop("box.csv", f"t_s,housing [g],pulses\n{rows}".encode())
+    page.wait(lambda: "box.csv: is this right?" in text_of(page, "desk"), "the desk")
+    assert (field(page, "channel"), field(page, "tachometer"), field(page, "pulses_per_revolution")) == ("housing", "pulses", "2")
+    page.run("document.getElementById('desk-use').click()")
+    page.wait(lambda: "Of the recording" in text_of(page, "bearing-verdict"), "the verdict about the bearing")
+    for plot in ("waveform", "spectrum", "average"):
+        page.wait(lambda plot=plot: "recording" in page.described(plot), plot)  # type: ignore[misc]
 
 
 def test_a_bearing_becomes_a_rolling_one_with_a_defect(train_page: Page, train: mt.Explorer) -> None:

@@ -26,7 +26,7 @@ const PRINTED: usize = 5;
 /// Condition indicators of recordings, simulated or measured
 ///
 /// Averages a channel over the revolutions of a shaft, separates the average into its parts, and writes indicators.json,
-/// indicators.parquet, averages and spectra of the recording, or of the last one (averages.parquet, spectra.parquet), and its figure
+/// indicators.parquet, average and spectra of each wheel's last record (averages.parquet, spectra.parquet), and their figure
 /// (indicators.svg, .png). Several recordings, or
 /// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png). Of a
 /// run-up the amplitudes over order and time are drawn too (order_map.svg, .png), and of bearings that are named or that the

@@ -5,6 +5,7 @@ use std::thread;
 
 use meshtone::signal::Record;
 use meshtone_io::atomic_file::StagedFile;
+use meshtone_io::indicators::RecordEntry;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::summary::write_json;
 use meshtone_plot::Figure;
@@ -84,8 +85,8 @@ pub fn write(directory: &Path, series: &Series, figures: &Figures, csv: bool) ->
     let mut staged = record?;
     staged.extend(others?);
     let latest = series.latest.iter().flat_map(|latest| &latest.wheels);
-    let records: Vec<(&str, &Record)> =
-        latest.map(|(wheel, _, record)| (wheel.name.as_str(), record)).collect();
+    let records: Vec<(&RecordEntry, &Record)> =
+        latest.filter_map(|(wheel, _, record)| Some((series.of(wheel).last()?, record))).collect();
     let [averages, spectra] = results.curve_tables(&records);
     let tables = [
         (TABLE, Some(results.record_table())),

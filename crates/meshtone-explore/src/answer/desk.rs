@@ -51,18 +51,25 @@ pub fn desk(bytes: &[u8], question: &RecordingQuestion, scenario: &Scenario) -> 
     let rate_hz = recording.sampling_rate_hz;
     let drawn = ((DRAWN_S * rate_hz) as usize).clamp(1, channel.samples.len());
     let spectrum = Spectrum::of(&channel.samples, rate_hz);
-    let pulses = named.and_then(|name| recording.channel(name)).and_then(|tachometer| {
-        pulses_per_revolution(tachometer, rate_hz, scenario.operation.pinion_speed_hz)
-    });
+    let speed_hz = scenario.operation.pinion_speed_hz;
+    let of_pulses = named.and_then(|name| recording.channel(name));
+    let pulses_hz = of_pulses.and_then(|tachometer| pulses_hz(tachometer, rate_hz));
     let teeth =
         |wheel: &meshtone::scenario::ScenarioWheel| json!({ "wheel": wheel.name, "teeth": wheel.teeth });
     let said = json!({
         "name": question.name,
         "channels": recording.channels.iter().map(|of| json!({ "name": of.name, "unit": of.unit })).collect::<Vec<_>>(),
         "sampling_rate_hz": rate_hz,
+        "rate_by": recording.rate_by,
+        "pulses_hz": pulses_hz,
+        "speed_hz": speed_hz,
         "duration_s": recording.len() as f64 / rate_hz,
         "is_simulated": simulated.is_some(),
-        "guess": { "channel": channel.name, "tachometer": named, "pulses_per_revolution": pulses.unwrap_or(1) },
+        "guess": {
+            "channel": channel.name,
+            "tachometer": named,
+            "pulses_per_revolution": pulses_hz.and_then(|hz| whole(hz / speed_hz)).unwrap_or(1),
+        },
         "teeth": scenario.wheels.iter().map(teeth).collect::<Vec<_>>(),
         "warnings": recording.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "signal": { "unit": channel.unit, "start_s": recording.start_s, "values": packet.array(channel.samples[..drawn].iter().copied()) },
@@ -110,18 +117,22 @@ fn rests_on_levels(channel: &Channel, rate_hz: f64) -> bool {
             .is_ok_and(|times| times.len() > 2)
 }
 
-/// Pulses in a revolution, by the speed of the scenario; none where that does not fit.
-fn pulses_per_revolution(channel: &Channel, rate_hz: f64, speed_hz: f64) -> Option<u32> {
+/// (1/s) The mean rate of a tachometer's pulses.
+fn pulses_hz(channel: &Channel, rate_hz: f64) -> Option<f64> {
     let times = tachometer_pulses(&channel.samples, rate_hz, &Tachometer::default()).ok()?;
     let [first, .., last] = times[..] else { return None };
-    let pulses = (times.len() - 1) as f64 / (last - first) / speed_hz;
+    Some((times.len() - 1) as f64 / (last - first))
+}
+
+/// The whole number of pulses in a revolution that a quotient of speeds nearly is.
+fn whole(pulses: f64) -> Option<u32> {
     let whole = pulses.round();
     (whole >= 1.0 && (pulses / whole - 1.0).abs() < SPEED_ERROR).then_some(whole as u32)
 }
 
 /// A message of a reader in the words of the page: its fields in place of options, and nothing of what it has not.
 pub(super) fn in_words_of_the_page(message: &str) -> String {
-    const WORDS: [(&str, &str); 16] = [
+    const WORDS: [(&str, &str); 18] = [
         (
             "choose those that belong together (option channels, or variable)",
             "name those that belong together in the field Variable",
@@ -129,6 +140,10 @@ pub(super) fn in_words_of_the_page(message: &str) -> String {
         (
             "; choose fewer channels (option channels), cut the recording, or raise the memory limit",
             "; cut the recording",
+        ),
+        (
+            "choose channels that were recorded together",
+            "save those that were recorded together in a file of their own",
         ),
         (", or choose other columns (option channels)", ""),
         ("; if the column holds no numbers, choose others (option channels)", ""),
@@ -146,6 +161,7 @@ pub(super) fn in_words_of_the_page(message: &str) -> String {
         ("(option sampling_rate_hz)", "in the field Sampling rate"),
         ("(option time)", "in the field Time column"),
         ("(option variable)", "in the field Variable"),
+        ("choose others (option channels)", "save the others in a file of their own"),
         ("(option channels)", "in the file"),
         (", or take another separation: discrete-random or prewhitening", ""),
         ("choose a variable", "name one in the field Variable"),

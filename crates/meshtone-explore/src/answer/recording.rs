@@ -115,11 +115,9 @@ pub fn recording(
     let mut packet = Packet::default();
     let unit = channel.unit.as_deref().unwrap_or("");
     let mut warnings: Vec<String> = recording.warnings.iter().map(ToString::to_string).collect();
-    if let TrainTurning::Shaft { phase, .. } = &turning {
-        // What cannot be resampled is a problem of its wheels.
-        let doubts = looked_at.check().unwrap_or_default();
-        warnings.extend(phase.warnings.iter().chain(&doubts).map(ToString::to_string));
-    }
+    // What cannot be resampled is a problem of its wheels.
+    let doubts = [looked_at.doubts(), looked_at.check().unwrap_or_default()].concat();
+    warnings.extend(doubts.iter().map(ToString::to_string));
     let mut wheels = Vec::new();
     for (number, wheel) in train.wheels.iter().enumerate() {
         wanted(is_wanted)?;

@@ -22,7 +22,11 @@ export class Desk {
    */
   constructor(question, refuse, status) {
     [this.#question, this.#status] = [question, status];
-    byId("desk").addEventListener("change", () => this.#look().catch(refuse));
+    byId("desk").addEventListener("change", ({ target }) => {
+      // Another tachometer has other pulses.
+      if (target === field("tachometer")) field("pulses_per_revolution").value = "";
+      this.#look().catch(refuse);
+    });
     byId("desk-use").addEventListener("click", () => this.#end(this.#stated()));
     byId("desk-cancel").addEventListener("click", () => this.#end(null));
   }
@@ -33,7 +37,7 @@ export class Desk {
     this.#file = file;
     for (const input of fields()) {
       if (input.tagName === "SELECT") input.replaceChildren();
-      input.value = "";
+      input.value = input.placeholder = "";
     }
     const said = await this.#look();
     if (!said) return null;
@@ -59,7 +63,8 @@ export class Desk {
   /** Asks what the file looks like with what is stated, and shows it. */
   async #look() {
     this.#status("reading…");
-    const buffer = await this.#newest.ask({ ...this.#question(), ...this.#stated() }, this.#file);
+    // What is looked at of the simulation has another channel.
+    const buffer = await this.#newest.ask({ ...this.#question(), channel: undefined, ...this.#stated() }, this.#file);
     if (!buffer) return null;
     const said = unpacked(buffer);
     if (!said.is_simulated) this.#show(said);
@@ -68,11 +73,14 @@ export class Desk {
   }
 
   #show(said) {
+    const wasHidden = byId("desk").hidden;
     byId("desk").hidden = false;
+    if (wasHidden) byId("desk").scrollIntoView({ block: "start" });
+    for (const name of ["channel", "tachometer", "pulses_per_revolution", "unit"]) field(name).parentElement.hidden = Boolean(said.problem);
     byId("desk-use").disabled = Boolean(said.problem);
     byId("desk-problem").textContent = said.problem ?? "";
     byId("desk-plots").hidden = Boolean(said.problem);
-    byId("desk-title").textContent = `${said.name}: is this right?`;
+    byId("desk-title").textContent = said.problem ? "A recording that does not say all" : `${said.name}: is this right?`;
     if (said.problem) {
       byId("desk-said").textContent = "";
       byId("desk-warnings").replaceChildren();
@@ -87,7 +95,10 @@ export class Desk {
     field("sampling_rate_hz").placeholder = said.sampling_rate_hz;
     field("unit").placeholder = signal.unit ?? "not stated";
     const wheels = teeth.map(({ wheel, teeth: count }) => `${wheel} ${count}`).join(", ");
-    byId("desk-said").textContent = `${names.length} channels, ${shown(said.duration_s)} s at ${said.sampling_rate_hz} S/s; teeth of the scenario: ${wheels}`;
+    const pulses = field("tachometer").value && said.pulses_hz ? `${field("tachometer").value} gives ${shown(said.pulses_hz)} pulses/s, so that the input turns at ${
+      shown(said.pulses_hz / field("pulses_per_revolution").value)} Hz, and in the scenario at ${shown(said.speed_hz)} Hz; ` : "";
+    byId("desk-said").textContent = `${names.length} channels, ${shown(said.duration_s)} s at ${said.sampling_rate_hz} S/s by ${said.rate_by}; ${
+      pulses}teeth of the scenario: ${wheels}`;
     byId("desk-warnings").replaceChildren(...warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
     const plot = (options) => {
       const place = Object.assign(document.createElement("div"), { className: "plot" });

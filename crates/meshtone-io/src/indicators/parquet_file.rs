@@ -83,21 +83,27 @@ impl IndicatorResults {
     /// envelope of the difference over the order.
     ///
     /// # Arguments
-    /// * `records` - with the names of their wheels
-    pub fn curve_tables(&self, records: &[(&str, &Record)]) -> [ResultTable; 2] {
+    /// * `records` - with their entries, which say what each is of
+    pub fn curve_tables(&self, records: &[(&RecordEntry, &Record)]) -> [ResultTable; 2] {
         type Curve = fn(&Record) -> &[f64];
         let unit = self.unit.as_deref().unwrap_or_default();
         let table = |place: &str, step: &dyn Fn(&Record) -> f64, curves: &[(&str, Curve)]| {
             let of = |curve: Curve| records.iter().map(move |(_, record)| curve(record).len());
             let rows: Vec<usize> = of(curves[0].1).collect();
-            let names =
-                records.iter().zip(&rows).flat_map(|((name, _), rows)| vec![Some((*name).to_owned()); *rows]);
+            let entries = || {
+                records.iter().zip(&rows).flat_map(|((entry, _), rows)| std::iter::repeat_n(*entry, *rows))
+            };
+            let recordings = entries().map(|entry| Some(entry.recording as i64));
+            let segments = entries().map(|entry| entry.segment.map(|segment| segment as i64));
+            let wheels = entries().map(|entry| Some(entry.wheel.clone()));
             let places = records.iter().zip(&rows).flat_map(|((_, record), rows)| {
                 let step = step(record);
                 (0..*rows).map(move |row| Some(row as f64 * step))
             });
             let mut columns = vec![
-                column("wheel", "", false, (CellType::Text, Cells::Text(names.collect()))),
+                column("recording", "", false, (CellType::Int64, Cells::Int64(recordings.collect()))),
+                column("segment", "", true, (CellType::Int64, Cells::Int64(segments.collect()))),
+                column("wheel", "", false, (CellType::Text, Cells::Text(wheels.collect()))),
                 column(place, "", false, (CellType::Float64, Cells::Float64(places.collect()))),
             ];
             columns.extend(curves.iter().map(|(name, curve)| {

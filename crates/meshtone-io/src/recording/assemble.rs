@@ -55,7 +55,8 @@ pub(super) fn assemble(
         }
         None => None,
     };
-    let (sampling_rate_hz, start_s) = rate::decide(stated, timing, options, || present(labels))?;
+    let (StatedRate { by: rate_by, rate_hz: sampling_rate_hz }, start_s) =
+        rate::decide(stated, timing, options, || present(labels))?;
     let channel = |index: &usize| Channel {
         name: labels[*index].name.clone(),
         unit: labels[*index].unit.clone(),
@@ -78,6 +79,7 @@ pub(super) fn assemble(
     warnings.extend(copies(&samples).into_iter().map(copy));
     Ok(Recording {
         sampling_rate_hz,
+        rate_by,
         start_s,
         channels,
         source: PathBuf::new(),

@@ -6,7 +6,7 @@
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
-use hdf5_pure::{AttrValue, Dataset, Datatype, DatatypeByteOrder, Group, ReadSeekSource};
+use hdf5_pure::{AttrValue, Dataset, Datatype, DatatypeByteOrder, Error, FormatError, Group, ReadSeekSource};
 
 use super::array::read_channels;
 use super::catalogue::{ArrayEntry, MAX_ARRAYS, MAX_DEPTH, USUAL_COMPRESSION, read_arrays};
@@ -48,9 +48,10 @@ fn names_of<T>(members: &[(String, T)]) -> Vec<String> {
     members.iter().map(|(name, _)| name.clone()).collect()
 }
 
-/// Why the members of a group cannot be listed. In groups of the old format hdf5-pure 0.47 takes a soft link for an object behind the end.
-fn links(error: hdf5_pure::Error) -> Problem {
-    if error.to_string().contains("offset arithmetic overflow") {
+/// Why the members of a group cannot be listed. In groups of the old format hdf5-pure 0.47 takes a soft link for an object at the largest
+/// address that there is.
+fn links(error: Error) -> Problem {
+    if matches!(error, Error::Format(FormatError::OffsetOverflow { .. })) {
         return Problem::convert(
             "an HDF5 file with soft links",
             "copy it without them by `h5repack --latest FILE NEW`",

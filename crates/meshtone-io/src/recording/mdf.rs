@@ -128,7 +128,10 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
         let group = &groups[of_group[0].group];
         let time = group.time.map(|time| &columns[time]);
         let time = time.ok_or_else(|| {
-            Problem::Refused(format!("channel {} has no times; choose others", of_group[0].label.raw))
+            Problem::Refused(format!(
+                "channel {} has no times; choose others (option channels)",
+                of_group[0].label.raw
+            ))
         })?;
         let is_virtual = time.kind == VIRTUAL_MASTER;
         let read: Vec<&Column> = of_group.iter().copied().chain((!is_virtual).then_some(time)).collect();

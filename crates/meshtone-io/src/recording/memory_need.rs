@@ -29,7 +29,12 @@ pub(super) fn check(
     let samples: Vec<u64> = selection.wanted.iter().map(|column| samples(*column)).collect();
     let longest = samples.iter().copied().max().unwrap_or(0);
     let later = longest.saturating_mul(options.numbers_beside_each_sample);
-    let of_time = if selection.time.is_some() { longest.saturating_mul(COPIES_OF_TIME) } else { 0 };
+    let copies = match (selection.time, selection.own_time) {
+        (Some(_), _) => COPIES_OF_TIME,
+        (None, Some(_)) => 1 + COPIES_OF_TIME,
+        (None, None) => 0,
+    };
+    let of_time = longest.saturating_mul(copies);
     let numbers =
         samples.iter().chain([&of_time, &later]).fold(0, |sum: u64, more| sum.saturating_add(*more));
     let needed = numbers.saturating_mul(NUMBER_BYTES).saturating_add(beside_bytes);

@@ -92,6 +92,8 @@ impl Channel {
 pub struct Recording {
     /// (S/s) Sampling rate of all channels.
     pub sampling_rate_hz: f64,
+    /// What says the rate: a time column, a number of the file, or the options.
+    pub rate_by: String,
     /// (s) Time of the first sample; 0 where no time column was read.
     pub start_s: f64,
     /// The channels, at least one, all equally long.

@@ -9,7 +9,7 @@ use super::assemble::assemble;
 use super::error::Problem;
 use super::label::Label;
 use super::parquet_check::{check_depth, check_metadata};
-use super::rate::StatedRate;
+use super::rate::{StatedRate, other_than_timed};
 use super::selection::select;
 use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
@@ -52,7 +52,12 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
         numbers.first_empty.map_or(Ok(numbers.values), |row| Err(gap(row)))
     };
     let samples = selection.wanted.iter().map(read).collect::<Result<_, _>>()?;
-    let recording = assemble(&labels, &selection, samples, &stated_rates(head), options)?;
+    let mut recording = assemble(&labels, &selection, samples, &stated_rates(head), options)?;
+    if let Some((time, unit_s)) = selection.own_time {
+        // It is compared only: where it cannot be read, the stated rate counts all the same.
+        let times = read(&time).ok();
+        recording.warnings.extend(other_than_timed(&labels[time], times.as_ref(), unit_s, options));
+    }
     let scenario_toml = table.text_of(SCENARIO_KEY).or_else(|| table.text_of(GEARBOX_KEY));
     Ok(Recording { scenario_toml: scenario_toml.map(str::to_owned), ..recording })
 }

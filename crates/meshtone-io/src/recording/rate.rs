@@ -48,7 +48,7 @@ impl StatedRate {
     }
 }
 
-/// The rate and the time of the first sample, from all statements about them.
+/// The rate, with what says it, and the time of the first sample, from all statements about them.
 ///
 /// # Arguments
 /// * `stated` - rates that the file states
@@ -60,12 +60,13 @@ pub(super) fn decide(
     timing: Option<(&str, Timing)>,
     options: &RecordingOptions,
     present: impl Fn() -> Vec<String>,
-) -> Result<(f64, f64), Problem> {
-    let (rate_hz, start_s) = stated_or_timed(stated, timing, options, present)?;
-    if SAMPLING_RATES_HZ.contains(&rate_hz) {
-        return Ok((rate_hz, start_s));
+) -> Result<(StatedRate, f64), Problem> {
+    let (rate, start_s) = stated_or_timed(stated, timing, options, present)?;
+    if SAMPLING_RATES_HZ.contains(&rate.rate_hz) {
+        return Ok((rate, start_s));
     }
-    Err(Problem::rate(&format!("a sampling rate of {rate_hz:e} S/s; must be from 1e-6 to 1e12 S/s")))
+    let problem = format!("a sampling rate of {:e} S/s; must be from 1e-6 to 1e12 S/s", rate.rate_hz);
+    Err(Problem::rate(&problem))
 }
 
 fn stated_or_timed(
@@ -73,13 +74,14 @@ fn stated_or_timed(
     timing: Option<(&str, Timing)>,
     options: &RecordingOptions,
     present: impl Fn() -> Vec<String>,
-) -> Result<(f64, f64), Problem> {
+) -> Result<(StatedRate, f64), Problem> {
     if let Some(rate_hz) = options.sampling_rate_hz {
-        return Ok((rate_hz, 0.0));
+        return Ok((StatedRate { by: "what is stated".to_owned(), rate_hz }, 0.0));
     }
+    let by_time = |column: &str| format!("time column {column}");
     let Some(first) = stated.first() else {
-        let timing = timing.map(|(_, timing)| (timing.rate_hz, timing.start_s));
-        return timing.ok_or_else(|| no_rate(&present()));
+        let (column, Timing { rate_hz, start_s, .. }) = timing.ok_or_else(|| no_rate(&present()))?;
+        return Ok((StatedRate { by: by_time(column), rate_hz }, start_s));
     };
     for StatedRate { by, rate_hz } in stated {
         if !(rate_hz.is_finite() && *rate_hz > 0.0) {
@@ -90,11 +92,11 @@ fn stated_or_timed(
             return Err(contradiction(first, by, *rate_hz));
         }
     }
-    let Some((column, timing)) = timing else { return Ok((first.rate_hz, 0.0)) };
+    let Some((column, timing)) = timing else { return Ok((first.clone(), 0.0)) };
     if (timing.rate_hz / first.rate_hz - 1.0).abs() > timing.uncertainty + AGREEMENT {
-        return Err(contradiction(first, &format!("time column {column}"), timing.rate_hz));
+        return Err(contradiction(first, &by_time(column), timing.rate_hz));
     }
-    Ok((first.rate_hz, timing.start_s))
+    Ok((first.clone(), timing.start_s))
 }
 
 /// The warning that the file states another rate than the options.

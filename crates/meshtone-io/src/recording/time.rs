@@ -234,7 +234,7 @@ pub(super) fn shortest_within(value: f64, part: f64) -> f64 {
 }
 
 /// A number for a message, to six digits.
-fn readable(value: f64) -> f64 {
+pub(super) fn readable(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 

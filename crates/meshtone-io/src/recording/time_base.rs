@@ -44,6 +44,16 @@ impl TimeBase {
         }
     }
 
+    /// (s) The longest time from one sample to the next.
+    fn apart_s(&self) -> f64 {
+        match self {
+            Self::Uniform { stated, .. } => 1.0 / stated.rate_hz,
+            Self::Times { times_s, .. } => {
+                times_s.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+            }
+        }
+    }
+
     /// As a constant rate, where it is one.
     fn uniform(&self) -> Result<(StatedRate, f64), Problem> {
         match self {
@@ -102,7 +112,7 @@ pub(super) fn assemble_bases(
         if base.rate_hz() == stated.rate_hz {
             let (other_s, raw) = (base.time_s(0), &label.raw);
             return Err(Problem::Refused(format!(
-                "{raw} starts at {other_s} s, another channel at {start_s} s; choose channels that start together"
+                "{raw} starts at {other_s} s, another channel at {start_s} s; choose channels that were recorded together"
             )));
         }
         let rises = match base {
@@ -127,6 +137,7 @@ pub(super) fn assemble_bases(
         warnings.push(RecordingWarning::Interpolated {
             name: label.name.clone(),
             own_hz: shortest_within(base.rate_hz(), STATED),
+            apart_s: base.apart_s(),
             rate_hz: stated.rate_hz,
         });
     }
@@ -181,6 +192,7 @@ impl Recording {
             warnings.push(RecordingWarning::Interpolated {
                 name: channel.name.clone(),
                 own_hz: self.sampling_rate_hz,
+                apart_s: 1.0 / self.sampling_rate_hz,
                 rate_hz: other.sampling_rate_hz,
             });
             let samples = interpolated(&channel.samples, &base, time_s, other.len());

@@ -2,6 +2,11 @@
 
 use thiserror::Error;
 
+use super::time::readable;
+
+/// Times as far apart as on average that samples are at uneven times.
+const UNEVEN: f64 = 1.5;
+
 /// Something about a file that was read, but that its user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -20,6 +25,15 @@ pub enum RecordingWarning {
         /// The cell.
         text: String,
     },
+    /// The last segment of a TDMS file has no end, as its recorder broke off.
+    #[error(
+        "the recorder broke off while it wrote the file: up to {samples} samples a channel in its last block, which is not whole, are left \
+         out, and what had not been written is missing"
+    )]
+    BrokenOff {
+        /// Samples of the channel that has most of them in the block.
+        samples: u64,
+    },
     /// Of two arrays of one name one is 0 throughout, and the other was read.
     #[error(
         "the file has `{name}` more than once; as column {number} it is 0 throughout and left out: choose it by that number"
@@ -32,14 +46,17 @@ pub enum RecordingWarning {
     },
     /// A channel has another rate than the others, and was brought to theirs.
     #[error(
-        "{name} was recorded at {own_hz} S/s and is interpolated to {rate_hz} S/s, which is right for a speed or a torque; read a \
-         vibration by itself"
+        "{name} was recorded at {own_hz} S/s{} and is interpolated to {rate_hz} S/s, which is right for a speed or a torque; read a \
+         vibration by itself",
+        unevenly(*own_hz, *apart_s)
     )]
     Interpolated {
         /// The channel.
         name: String,
         /// (S/s) The rate at which it was recorded, or its mean.
         own_hz: f64,
+        /// (s) The longest time from one of its samples to the next.
+        apart_s: f64,
         /// (S/s) That of the recording.
         rate_hz: f64,
     },
@@ -73,11 +90,20 @@ pub enum RecordingWarning {
     },
 }
 
+/// Words where samples are much further apart than on average.
+fn unevenly(own_hz: f64, apart_s: f64) -> String {
+    if apart_s * own_hz < UNEVEN {
+        return String::new();
+    }
+    format!(" on average, with up to {} s from one sample to the next,", readable(apart_s))
+}
+
 impl RecordingWarning {
     /// The name of what it is about, for programs to distinguish.
     pub fn code(&self) -> &'static str {
         match self {
             Self::MayBeCut { .. } => "may-be-cut",
+            Self::BrokenOff { .. } => "broken-off",
             Self::ZeroTwin { .. } => "zero-twin",
             Self::Interpolated { .. } => "interpolated",
             Self::OtherRate { .. } => "other-rate",

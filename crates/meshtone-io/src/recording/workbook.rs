@@ -1,6 +1,6 @@
 //! Tables of Excel's (.xlsx), as text: the sheet with the numbers, its cells between tabulators.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 
@@ -10,6 +10,7 @@ use zip::ZipArchive;
 use super::error::{Problem, names};
 use super::numpy::zip_failed;
 use super::packed::Unpacked;
+use super::text::date_of;
 
 const STRINGS: &str = "xl/sharedStrings.xml";
 const STYLES: &str = "xl/styles.xml";
@@ -21,8 +22,10 @@ const MOST_TEXTS: usize = 1 << 20;
 const MOST_ROWS: usize = 1 << 20;
 /// Times as many numbers as any other sheet has that the sheet of a recording has.
 const MANY: usize = 10;
-/// (s) One day, the unit of times in a sheet.
-const DAY_S: f64 = 86_400.0;
+/// Days from Excel's first one to the first of 1970.
+const EXCEL_TO_1970: i64 = 25_569;
+/// Days of Excel's calendar, which ends with the year 9999.
+const MOST_DAYS: f64 = 2_958_466.0;
 
 /// The sheet with the numbers, as a file of text.
 ///
@@ -41,7 +44,7 @@ pub(super) fn sheet(archive: &mut ZipArchive<impl Read + Seek>, most: u64) -> Re
     let mut sheets = Vec::new();
     let mut left = most;
     for name in all.iter().filter(|name| name.starts_with(SHEETS) && name.ends_with(".xml")) {
-        let mut sheet = Sheet::new(&texts.all, &styles.is_time, Unpacked::new(left)?);
+        let mut sheet = Sheet::new(&texts.all, &styles.shown, Unpacked::new(left)?);
         walk(archive.by_name(name).map_err(zip_failed)?, most, &mut sheet)?;
         left = sheet.to.left;
         sheets.push((sheet.numbers, name.clone(), sheet.to));
@@ -139,11 +142,21 @@ impl Part for Texts {
     }
 }
 
-/// Which styles of cells show a number of days as a date or a time.
+/// How a style of cells shows a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shown {
+    Plain,
+    Percent,
+    /// A number of days as a date, or as a time with or without one.
+    Date,
+    Time,
+}
+
+/// How the styles of cells show numbers.
 #[derive(Default)]
 struct Styles {
-    of_dates: HashSet<String>,
-    is_time: Vec<bool>,
+    of_formats: HashMap<String, Shown>,
+    shown: Vec<Shown>,
     is_within: bool,
 }
 
@@ -151,14 +164,19 @@ impl Part for Styles {
     fn start(&mut self, name: &[u8], element: &BytesStart) -> Result<(), Problem> {
         let id = attribute(element, "numFmtId");
         match name {
-            b"numFmt" if attribute(element, "formatCode").is_some_and(|code| is_of_time(&code)) => {
-                self.of_dates.extend(id)
+            b"numFmt" => {
+                let shown = attribute(element, "formatCode").map_or(Shown::Plain, |code| shown_by(&code));
+                self.of_formats.extend(id.map(|id| (id, shown)));
             }
             b"cellXfs" => self.is_within = true,
             b"xf" if self.is_within => {
                 let id = id.unwrap_or_default();
-                let is_built_in = matches!(id.parse(), Ok(14..=22 | 45..=47));
-                self.is_time.push(is_built_in || self.of_dates.contains(&id));
+                self.shown.push(match id.parse() {
+                    Ok(9 | 10) => Shown::Percent,
+                    Ok(14..=17) => Shown::Date,
+                    Ok(18..=22 | 45..=47) => Shown::Time,
+                    _ => self.of_formats.get(&id).copied().unwrap_or(Shown::Plain),
+                });
             }
             _ => {}
         }
@@ -173,8 +191,8 @@ impl Part for Styles {
     }
 }
 
-/// Whether a format such as `hh:mm:ss.000` or `[h]:mm` shows a time; words in quotes, letters behind `\`, and colours in brackets, do not.
-fn is_of_time(code: &str) -> bool {
+/// What a format such as `hh:mm:ss.000` or `[h]:mm` shows; words in quotes, letters behind `\`, and colours in brackets, say nothing of it.
+fn shown_by(code: &str) -> Shown {
     let mut plain = String::new();
     let code = code.replace("&quot;", "\"");
     let mut letters = code.chars();
@@ -194,19 +212,27 @@ fn is_of_time(code: &str) -> bool {
             part.split_once(']').map_or(part, |(inside, rest)| if inside.len() < 3 { part } else { rest })
         })
         .collect();
-    bare.to_lowercase().chars().any(|letter| "ydhs".contains(letter))
+    let bare = bare.to_lowercase();
+    match () {
+        () if bare.contains(['h', 's']) => Shown::Time,
+        () if bare.contains(['y', 'd']) => Shown::Date,
+        () if bare.contains('%') => Shown::Percent,
+        () => Shown::Plain,
+    }
 }
 
 /// A sheet, row by row.
 struct Sheet<'f> {
     texts: &'f [String],
-    styles: &'f [bool],
+    styles: &'f [Shown],
     to: Unpacked,
+    /// Columns that have `%` in a text.
+    of_percent: HashSet<usize>,
     /// The column of the next cell of the row.
     next: usize,
     rows: usize,
     kind: String,
-    is_time: bool,
+    shown: Shown,
     value: String,
     is_within: bool,
     /// Cells that hold one.
@@ -214,17 +240,17 @@ struct Sheet<'f> {
 }
 
 impl<'f> Sheet<'f> {
-    fn new(texts: &'f [String], styles: &'f [bool], to: Unpacked) -> Self {
-        let (kind, value) = (String::new(), String::new());
+    fn new(texts: &'f [String], styles: &'f [Shown], to: Unpacked) -> Self {
         Self {
             texts,
             styles,
             to,
+            of_percent: HashSet::new(),
             next: 0,
             rows: 0,
-            kind,
-            is_time: false,
-            value,
+            kind: String::new(),
+            shown: Shown::Plain,
+            value: String::new(),
             is_within: false,
             numbers: 0,
         }
@@ -233,17 +259,38 @@ impl<'f> Sheet<'f> {
     /// The text of the present cell.
     fn cell(&mut self) -> Result<String, Problem> {
         let value = std::mem::take(&mut self.value);
-        match self.kind.as_str() {
-            "s" => {
-                let text = value.trim().parse().ok().and_then(|number: usize| self.texts.get(number));
-                text.cloned().ok_or_else(|| Problem::broken("a cell refers to a text that is not there"))
+        let column = self.next.saturating_sub(1);
+        if matches!(self.kind.as_str(), "" | "n") && !value.is_empty() {
+            self.numbers += 1;
+            return Ok(self.as_shown(value, column));
+        }
+        let text = if self.kind == "s" {
+            let text = value.trim().parse().ok().and_then(|number: usize| self.texts.get(number));
+            text.cloned().ok_or_else(|| Problem::broken("a cell refers to a text that is not there"))?
+        } else {
+            value
+        };
+        if text.contains('%') {
+            self.of_percent.insert(column);
+        }
+        Ok(text)
+    }
+
+    /// A number as text: of percent where the column's name or unit says so, and times as those of the clock, so that no unit of the
+    /// column's is taken for theirs.
+    fn as_shown(&self, value: String, column: usize) -> String {
+        let Ok(number) = value.trim().parse::<f64>() else { return value };
+        match self.shown {
+            Shown::Percent if self.of_percent.contains(&column) => (100.0 * number).to_string(),
+            Shown::Date if number.fract() == 0.0 && (0.0..MOST_DAYS).contains(&number) => {
+                date_of(number as i64 - EXCEL_TO_1970)
             }
-            "" | "n" if !value.is_empty() => {
-                self.numbers += 1;
-                let days = value.trim().parse::<f64>().ok().filter(|_| self.is_time);
-                Ok(days.map_or(value, |days| format!("{:.7}", days * DAY_S)))
+            Shown::Date | Shown::Time if (0.0..MOST_DAYS).contains(&number) => {
+                let parts = (number * 864e9).round() as u64;
+                let (seconds, part) = (parts / 10_000_000, parts % 10_000_000);
+                format!("{}:{:02}:{:02}.{part:07}", seconds / 3600, seconds / 60 % 60, seconds % 60)
             }
-            _ => Ok(value),
+            _ => value,
         }
     }
 }
@@ -279,7 +326,7 @@ impl Part for Sheet<'_> {
                 self.next = place + 1;
                 self.kind = attribute(element, "t").unwrap_or_default();
                 let style = attribute(element, "s").and_then(|style| style.parse::<usize>().ok());
-                self.is_time = style.and_then(|style| self.styles.get(style)) == Some(&true);
+                self.shown = style.and_then(|style| self.styles.get(style)).copied().unwrap_or(Shown::Plain);
             }
             _ => {}
         }
@@ -318,15 +365,15 @@ fn column(place: &str) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::is_of_time;
+    use super::{Shown, shown_by};
 
     #[test]
     fn formats_of_times() {
         for code in ["hh:mm:ss.000", "[h]:mm", "[$-409]d/m/yyyy", "yyyy\\-mm\\-dd", "mm:ss.0;@"] {
-            assert!(is_of_time(code), "{code}");
+            assert!([Shown::Date, Shown::Time].contains(&shown_by(code)), "{code}");
         }
         for code in ["General", "0.00E+00", "0.0\\s", "0.0\\ &quot;days&quot;", "[Red]0.0", "_d0.0", "0%"] {
-            assert!(!is_of_time(code), "{code}");
+            assert_eq!(shown_by(code), if code == "0%" { Shown::Percent } else { Shown::Plain }, "{code}");
         }
     }
 }

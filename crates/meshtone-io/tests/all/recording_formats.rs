@@ -209,6 +209,34 @@ fn opened() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
+/// A segment of TDMS: its contents, where it ends, metadata and numbers.
+fn segment(contents: u32, end: Option<u64>, metadata: &[u8], numbers: &[u8]) -> Vec<u8> {
+    let length = end.unwrap_or((metadata.len() + numbers.len()) as u64);
+    let head = [&b"TDSm"[..], &contents.to_le_bytes(), &4713_u32.to_le_bytes(), &length.to_le_bytes()];
+    [&head.concat(), &(metadata.len() as u64).to_le_bytes()[..], metadata, numbers].concat()
+}
+
+/// A text of TDMS.
+fn text(words: &str) -> Vec<u8> {
+    [&(words.len() as u32).to_le_bytes()[..], words.as_bytes()].concat()
+}
+
+/// The object of a TDMS channel of doubles, with its interval and the unit of that.
+fn channel(name: &str, samples: u64, increment: f64, unit: &str) -> Vec<u8> {
+    let index = [20_u32, 10, 1].map(u32::to_le_bytes).concat();
+    let start = [text(&format!("/'run'/'{name}'")), index, samples.to_le_bytes().to_vec()].concat();
+    let interval = [text("wf_increment"), 10_u32.to_le_bytes().to_vec(), increment.to_le_bytes().to_vec()];
+    let unit = [text("wf_xunit_string"), 0x20_u32.to_le_bytes().to_vec(), text(unit)];
+    [start, 2_u32.to_le_bytes().to_vec(), interval.concat(), unit.concat()].concat()
+}
+
+/// A TDMS file of one segment.
+fn tdms(channels: &[Vec<u8>], numbers: &[f64], end: Option<u64>) -> Vec<u8> {
+    let metadata = [&(channels.len() as u32).to_le_bytes()[..], &channels.concat()].concat();
+    let numbers: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    segment(0b1110, end, &metadata, &numbers)
+}
+
 /// What is not opened, and what its message says.
 fn not_opened() -> Vec<(&'static str, Vec<u8>, &'static str)> {
     let numbers = rows(",", seconds);
@@ -281,6 +309,23 @@ fn channels_of_several_rates_become_one_recording() {
         assert_eq!((alone.len(), alone.warnings.len()), (10, 0));
         assert!((alone.sampling_rate_hz - 1000.0).abs() < 1e-6);
     }
+    // Times that are uneven are said to be.
+    let uneven = changed("rates.mf4", &0.004_f64.to_le_bytes(), &0.0048_f64.to_le_bytes());
+    let recording = read("uneven.mf4", &uneven, &RecordingOptions::default()).unwrap();
+    let said = recording.warnings[0].to_string();
+    assert!(said.contains("1000 S/s on average, with up to 0.0018 s from one sample"), "{said}");
+    // A channel that was recorded for a part of the time stands for no other.
+    let numbers: Vec<f64> = (0..130).map(f64::from).collect();
+    for (slow, is_read) in [(30, true), (26, false)] {
+        let channels = [channel("acc", 100, 1e-3, "s"), channel("speed", slow, 1.0 / 300.0, "s")];
+        let file = tdms(&channels, &numbers[..100 + slow as usize], None);
+        match read("covered.tdms", &file, &RecordingOptions::default()) {
+            Ok(recording) => assert!(is_read && recording.channels[1].samples[50] == 115.0),
+            Err(error) => {
+                assert!(!is_read && error.to_string().contains("speed has samples from"), "{error}")
+            }
+        }
+    }
     // The times of arrays are those that are as long.
     for (channel, samples, rate_hz) in [("acc", 256, RATE_HZ), ("speed", 10, 1000.0)] {
         let options = RecordingOptions { channels: vec![channel.into()], ..RecordingOptions::default() };
@@ -299,12 +344,16 @@ fn a_stated_rate_is_compared_with_the_files() {
         recording.warnings.iter().map(ToString::to_string).collect()
     };
     let table = csv("time [s],acc [g],tacho\n");
-    for (name, bytes) in
-        [("run.csv", table.as_bytes()), ("run.npz", &npz()), ("run.tdms", &written("plain.tdms"))]
-    {
+    for (name, bytes) in [
+        ("run.csv", table.as_bytes()),
+        ("run.npz", &npz()),
+        ("run.tdms", &written("plain.tdms")),
+        ("run.parquet", &table_of_parquet("time [s]")),
+    ] {
+        let by = read(name, bytes, &RecordingOptions::default()).unwrap().rate_by;
         let said = said(name, bytes, 20_000.0);
         assert!(
-            said.len() == 1 && said[0].contains("20000 S/s, but") && said[0].contains("25600 S/s"),
+            said.len() == 1 && said[0].contains(&format!("20000 S/s, but {by} says 25600 S/s")),
             "{name}: {said:?}"
         );
     }
@@ -360,6 +409,42 @@ fn scales_of_tdms_are_applied_or_refused() {
     assert!(said.contains("Linear without Slope"), "{said}");
 }
 
+/// The interval of a waveform of TDMS has a unit; what is not over time has no rate, and neither has LabVIEW's text.
+#[test]
+fn waveforms_are_over_time() {
+    let of = |unit: &str| tdms(&[channel("acc", 100, 0.5, unit)], &[1.5; 100], None);
+    assert_eq!(read("a.tdms", &of("ms"), &RecordingOptions::default()).unwrap().sampling_rate_hz, 2000.0);
+    let said = refused("a.tdms", &of("Hz"), &RecordingOptions::default());
+    assert!(said.contains("does not state its sampling rate"), "{said}");
+    let text = String::from_utf8(lvm("One", ".", &rows("\t", seconds))).unwrap();
+    let said = refused(
+        "a.lvm",
+        text.replace("Time\tTime", "Time\tFrequency").as_bytes(),
+        &RecordingOptions::default(),
+    );
+    assert!(said.contains("values over Frequency, not over time"), "{said}");
+}
+
+/// A file of TDMS that its recorder did not end says how much of it is left out; one in too many pieces is refused.
+#[test]
+fn broken_and_scattered_files_of_tdms_are_said() {
+    let channels = [channel("acc", 50, 1e-3, "s"), channel("tacho", 50, 1e-3, "s")];
+    let numbers: Vec<f64> = (0..130).map(f64::from).collect();
+    let recording = read("a.tdms", &tdms(&channels, &numbers, Some(u64::MAX)), &RecordingOptions::default());
+    let recording = recording.unwrap();
+    assert_eq!((recording.len(), recording.channels[1].samples[49]), (50, 99.0));
+    assert!(
+        matches!(recording.warnings[..], [RecordingWarning::BrokenOff { samples: 30 }]),
+        "{:?}",
+        recording.warnings
+    );
+    let many: Vec<Vec<u8>> = (0..1000).map(|number| channel(&number.to_string(), 1, 1e-3, "s")).collect();
+    let mut pieces = tdms(&many, &[0.0; 1000], None);
+    (0..2100).for_each(|_| pieces.extend(segment(0b1010, None, &[0; 4], &[])));
+    let said = refused("a.tdms", &pieces, &RecordingOptions::default());
+    assert!(said.contains("in pieces, more than 4000000"), "{said}");
+}
+
 /// Numbers of MDF that the recorder marked as invalid are no samples.
 #[test]
 fn invalid_numbers_of_mdf_are_refused() {
@@ -389,11 +474,32 @@ fn invalid_numbers_of_mdf_are_refused() {
 /// A workbook of one sheet.
 fn workbook(sheet: &str) -> Vec<u8> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, text) in [("[Content_Types].xml", "<Types/>"), ("xl/worksheets/sheet1.xml", sheet)] {
+    let styles = "<styleSheet><cellXfs><xf/><xf numFmtId=\"10\"/><xf numFmtId=\"47\"/><xf numFmtId=\"14\"/></cellXfs></styleSheet>";
+    let types = ("[Content_Types].xml", "<Types/>");
+    for (name, text) in [types, ("xl/styles.xml", styles), ("xl/worksheets/sheet1.xml", sheet)] {
         zip.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
         zip.write_all(text.as_bytes()).unwrap();
     }
     zip.finish().unwrap().into_inner()
+}
+
+/// Numbers are read as they are shown: times in seconds whatever their column's unit, percent where that is the unit, dates as none.
+#[test]
+fn cells_of_workbooks_are_read_as_shown() {
+    let names =
+        ["time [ms]", "day", "load [%]", "part"].map(|name| format!("<c t=\"str\"><v>{name}</v></c>"));
+    let row = |n: u32| {
+        let time_days = f64::from(n) / 1000.0 / 86_400.0;
+        let part = f64::from(n % 7) / 8.0;
+        format!(
+            "<row><c s=\"2\"><v>{time_days}</v></c><c s=\"3\"><v>46355</v></c><c s=\"1\"><v>{part}</v></c><c s=\"1\"><v>{part}</v></c></row>"
+        )
+    };
+    let rows: String = (0..400).map(row).collect();
+    let sheet = format!("<worksheet><sheetData><row>{}</row>{rows}</sheetData></worksheet>", names.concat());
+    let recording = read("a.xlsx", &workbook(&sheet), &RecordingOptions::default()).unwrap();
+    assert_eq!((recording.sampling_rate_hz, recording.channels.len()), (1000.0, 2));
+    assert_eq!([0, 1].map(|channel| recording.channels[channel].samples[3]), [37.5, 0.375]);
 }
 
 /// Cells that are not stored are empty ones; a place that there is not, and a sheet that ends too early, are refused.

@@ -188,7 +188,7 @@ fn bad_lines_are_named() {
         let message = refused("run.csv", content.as_bytes(), &rate(1.0));
         assert!(message.starts_with("run.csv: ") && message.contains(words), "{content:?}: {message}");
     }
-    let dates = b"timestamp,a\n10:00:00 AM,1\n10:00:01 AM,2\n10:00:02 AM,3\n";
+    let dates = b"timestamp,a\n10:00 AM,1\n10:01 AM,2\n10:02 AM,3\n";
     let message = refused("run.csv", dates, &RecordingOptions::default());
     assert!(
         message.contains("not a number; times of day are not read: state the sampling rate"),

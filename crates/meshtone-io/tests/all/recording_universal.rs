@@ -160,7 +160,7 @@ fn what_is_no_time_signal_is_left_out_or_refused() {
     let later = text.replacen("  0.00000E+00  1.95313E-05", "  5.00000E-01  1.95313E-05", 1);
     assert!(
         problem("run.uff", &[text.as_bytes(), later.as_bytes()].concat())
-            .contains("starts at 0.5 s, another channel at 0 s; choose channels that start together")
+            .contains("starts at 0.5 s, another channel at 0 s; choose channels that were recorded together")
     );
     let in_ms = text.replacen("Time                 s ", "Time                 ms", 1).replacen(
         "1.95313E-05",

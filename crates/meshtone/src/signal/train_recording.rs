@@ -235,8 +235,14 @@ impl TrainRecording<'_> {
         let TrainTurning::Shaft { shaft, phase, .. } = self.turning else { return Ok(Vec::new()) };
         check_channel(self.signal)?;
         let angular = angular_resample(self.signal, phase, &AngularSettings::default())?;
+        Ok(self.check_over(&angular, *shaft).warnings)
+    }
+
+    /// What is doubtful about the phase, and what the sensor did wrong; nothing in a simulation.
+    pub fn doubts(&self) -> Vec<SignalWarning> {
+        let TrainTurning::Shaft { phase, .. } = self.turning else { return Vec::new() };
         let faults = sensor_faults(self.signal).into_iter().map(SignalWarning::SensorFault);
-        Ok(faults.chain(self.check_over(&angular, *shaft).warnings).collect())
+        phase.warnings.iter().cloned().chain(faults).collect()
     }
 
     /// Looks for what does not fit, and for foreign tones, over the angle of a shaft; for nothing where its phase follows from that of another.
@@ -261,11 +267,7 @@ impl TrainRecording<'_> {
     /// Those of [`super::process_channel`] and [`super::process_segments`], with the first wheel that has one; that a wheel turns too little only
     /// where all do.
     pub fn process(&self, settings: &TrainSettings) -> Result<TrainRecords, WheelError> {
-        let mut found = TrainRecords { wheels: Vec::new(), foreign: None, warnings: Vec::new() };
-        if let TrainTurning::Shaft { phase, .. } = self.turning {
-            found.warnings.clone_from(&phase.warnings);
-            found.warnings.extend(sensor_faults(self.signal).into_iter().map(SignalWarning::SensorFault));
-        }
+        let mut found = TrainRecords { wheels: Vec::new(), foreign: None, warnings: self.doubts() };
         let mut first_without = None;
         for (number, of) in self.train.wheels.iter().enumerate() {
             let without = |error| WheelError { wheel: of.name.clone(), teeth: of.teeth, error };

@@ -21,7 +21,7 @@ use super::number::Numbers;
 use super::rate::StatedRate;
 use super::selection::select;
 use super::time_base::{TimeBase, assemble_bases};
-use super::{Recording, RecordingOptions, memory_need};
+use super::{Recording, RecordingOptions, RecordingWarning, memory_need};
 use crate::memory;
 
 const LEAD_IN_BYTES: u64 = 28;
@@ -76,6 +76,8 @@ struct Objects {
     indices: HashMap<usize, Place>,
     segments: Vec<Segment>,
     places: usize,
+    /// Samples of a channel, at most, in a last block that is not whole; none where the file has its end.
+    left_out: Option<u64>,
 }
 
 /// Reads a recording from TDMS: a channel for each of the file's that holds real numbers.
@@ -100,13 +102,15 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
     let first_s = starts.filter(|start_s| *start_s > CLOCK_S).reduce(f64::min).unwrap_or(0.0);
     let base = |column: &usize| objects.time_base(channels[*column], first_s);
     let bases: Option<Vec<TimeBase>> = selection.wanted.iter().map(base).collect();
-    match bases.filter(|_| selection.time.is_none()) {
+    let mut recording = match bases.filter(|_| selection.time.is_none()) {
         Some(bases) => assemble_bases(&labels, &selection, samples, &bases, options),
         None => {
             let stated = selection.channels.iter().find_map(|column| objects.stated(channels[*column]));
             assemble(&labels, &selection, samples, stated.as_slice(), options)
         }
-    }
+    }?;
+    recording.warnings.extend(objects.left_out.map(|samples| RecordingWarning::BrokenOff { samples }));
+    Ok(recording)
 }
 
 /// (s) Beyond it a start is a time of the clock, counted from the year 1904.
@@ -155,8 +159,15 @@ impl Objects {
                     _ => self.laid_out(&list, is_interleaved)?,
                 };
                 laid = Some((list.clone(), is_interleaved, (places.clone(), chunk)));
-                let chunks = (end - numbers_at).checked_div(chunk).unwrap_or(0);
-                if chunk > 0 && next != u64::MAX && (end - numbers_at) % chunk != 0 {
+                let bytes = end - numbers_at;
+                let chunks = bytes.checked_div(chunk).unwrap_or(0);
+                let rest = bytes - chunks * chunk;
+                if next == u64::MAX {
+                    let per_row =
+                        |place: &Place| if is_interleaved { chunk / place.count } else { place.kind.bytes };
+                    let samples = places.iter().map(|place| place.count.min(rest / per_row(place)));
+                    self.left_out = samples.max().or(Some(0));
+                } else if rest != 0 && chunk > 0 {
                     return Err(Problem::broken("a segment has no whole number of chunks"));
                 }
                 if chunks > 0 {

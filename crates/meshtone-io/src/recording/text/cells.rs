@@ -90,9 +90,13 @@ impl Dialect {
     }
 }
 
-/// (s) A time of the clock, since midnight or, with a date, since 1970: `12:30:00.5`, `2026-11-29T12:30:00,5Z`, `29.11.2026 12:30:00`.
+/// (s) A time of the clock, since midnight or, with a date, since 1970: `12:30:00.5`, `2026-11-29T12:30:00,5Z`, `29.11.2026 12:30:00`,
+/// `12:30:00 PM`; or a time that has passed, `123:30:00`.
 pub(super) fn clock_s(cell: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(cell).ok().filter(|text| text.contains(':'))?;
+    let half = text.len().checked_sub(2).filter(|at| text.is_char_boundary(*at)).map(|at| text.split_at(at));
+    let half = half.filter(|(_, half)| half.eq_ignore_ascii_case("am") || half.eq_ignore_ascii_case("pm"));
+    let (text, half) = half.map_or((text, None), |(text, half)| (text.trim_end(), Some(half)));
     let (date, clock) = match text.split_once(['T', ' ', '_']) {
         Some((date, clock)) => (Some(date), clock.trim()),
         None => (None, text),
@@ -101,13 +105,25 @@ pub(super) fn clock_s(cell: &[u8]) -> Option<f64> {
     let clock = clock.split(['Z', '+', '-']).next()?;
     let mut parts = clock.split(':');
     let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
-    let whole = |text: &str| (text.len() <= 2).then(|| text.parse::<u8>().ok()).flatten().map(f64::from);
+    let whole = |text: &str, digits: usize| {
+        (text.len() <= digits).then(|| text.parse::<u32>().ok()).flatten().map(f64::from)
+    };
+    let hours = whole(hours, LONGEST_HOURS)?;
+    let hours = match half {
+        Some(_) if !(1.0..=12.0).contains(&hours) => return None,
+        // Twelve stands before one.
+        Some(half) => hours % 12.0 + if half.eq_ignore_ascii_case("pm") { 12.0 } else { 0.0 },
+        None => hours,
+    };
     let starts_with_digit = seconds.starts_with(|letter: char| letter.is_ascii_digit());
     let seconds: f64 =
         seconds.replace(',', ".").parse().ok().filter(|_| starts_with_digit && parts.next().is_none())?;
     let days = date.map_or(Some(0), |date| day_number(date.as_bytes()))?;
-    Some(86_400.0 * days as f64 + 3600.0 * whole(hours)? + 60.0 * whole(minutes)? + seconds)
+    Some(86_400.0 * days as f64 + 3600.0 * hours + 60.0 * whole(minutes, 2)? + seconds)
 }
+
+/// Digits of hours since the year 1900, which a workbook's times may count from.
+const LONGEST_HOURS: usize = 8;
 
 /// Days from the first of 1970 to a date, such as `2026-11-29`, `2026/11/29` or `29.11.2026`.
 pub(super) fn day_number(date: &[u8]) -> Option<i64> {
@@ -124,6 +140,20 @@ pub(super) fn day_number(date: &[u8]) -> Option<i64> {
     // Years that begin in March end with the leap day.
     let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
     Some(365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + day - 1 - 719_468)
+}
+
+/// The date of a number of days from the first of 1970, as [`day_number`] counts them.
+pub(in crate::recording) fn date_of(day: i64) -> String {
+    // From the first of March of the year 0 on: the leap day ends a year of four, of a hundred, of four hundred.
+    let day = day + 719_468;
+    let (era, day) = (day.div_euclid(146_097), day.rem_euclid(146_097));
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (year, month) = (400 * era + year, month + 3);
+    let (year, month) = if month > 12 { (year + 1, month - 12) } else { (year, month) };
+    format!("{year:04}-{month:02}-{day:02}")
 }
 
 pub(super) fn byte_of(separator: Separator) -> u8 {
@@ -166,7 +196,7 @@ pub(in crate::recording) fn decoded(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cell, Dialect, Separator, decoded};
+    use super::{Cell, Dialect, Separator, clock_s, date_of, day_number, decoded};
 
     fn dialect(separator: Separator, decimal_comma: bool) -> Dialect {
         Dialect { separator: Some(separator), decimal_comma }
@@ -179,6 +209,28 @@ mod tests {
         assert_eq!(commas.cell(b"2,5"), Cell::Number(2.5));
         assert_eq!(dialect(Separator::Tab, false).cells(b"\t1\t\r\n"), [&b""[..], b"1", b""]);
         assert_eq!(dialect(Separator::Whitespace, false).cells(b"  1 \t 2\n"), [&b"1"[..], b"2"]);
+    }
+
+    #[test]
+    fn clocks_and_dates_are_read() {
+        for (text, seconds) in [
+            ("00:00:01.5", 1.5),
+            ("12:00:01 AM", 1.0),
+            ("12:00:01pm", 43_201.0),
+            ("1:00:00,5 PM", 46_800.5),
+            ("123:00:00", 442_800.0),
+            ("1970-01-02T00:00:01Z", 86_401.0),
+            ("02.01.1970 1:00:00 pm", 133_200.0),
+        ] {
+            assert_eq!(clock_s(text.as_bytes()), Some(seconds), "{text}");
+        }
+        for text in ["13:00:00 PM", "0:00:00 AM", "1:00 PM", "ä:m", "1:2:3m"] {
+            assert_eq!(clock_s(text.as_bytes()), None, "{text}");
+        }
+        for day in (-30_000..60_000).step_by(7) {
+            assert_eq!(day_number(date_of(day).as_bytes()), Some(day));
+        }
+        assert_eq!(date_of(11_016), "2000-02-29");
     }
 
     #[test]

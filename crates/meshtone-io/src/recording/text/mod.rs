@@ -16,7 +16,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
 use self::blocks::Blocks;
-pub(super) use self::cells::decoded;
+pub(super) use self::cells::{date_of, decoded};
 use self::end::doubtful_end;
 use self::head::{Head, Line};
 use self::lvm::LvmHead;
