@@ -152,6 +152,8 @@ fn a_recording_is_looked_at_before_it_is_processed() {
         json!({ "channel": "bearing", "tachometer": "marks", "pulses_per_revolution": 2 })
     );
     assert_eq!((&said["sampling_rate_hz"], &said["duration_s"]), (&json!(8000.0), &json!(1.5)));
+    assert_eq!((&said["rate_by"], &said["speed_hz"]), (&json!("time column time_s"), &json!(40.0)));
+    assert!((said["pulses_hz"].as_f64().unwrap() - 80.0).abs() < 1e-6);
     assert_eq!((said["signal"]["values"]["length"].as_u64(), numbers > 8000), (Some(8000), true));
     assert_eq!(said["teeth"][0]["teeth"], 20);
     let problem = |settings: Value, file: &str| {

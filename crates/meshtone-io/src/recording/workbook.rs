@@ -213,12 +213,9 @@ fn shown_by(code: &str) -> Shown {
         })
         .collect();
     let bare = bare.to_lowercase();
-    match () {
-        () if bare.contains(['h', 's']) => Shown::Time,
-        () if bare.contains(['y', 'd']) => Shown::Date,
-        () if bare.contains('%') => Shown::Percent,
-        () => Shown::Plain,
-    }
+    let signs: [(&[char], Shown); 3] =
+        [(&['h', 's'], Shown::Time), (&['y', 'd'], Shown::Date), (&['%'], Shown::Percent)];
+    signs.iter().find(|(letters, _)| bare.contains(*letters)).map_or(Shown::Plain, |(_, shown)| *shown)
 }
 
 /// A sheet, row by row.

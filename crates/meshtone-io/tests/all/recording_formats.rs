@@ -169,6 +169,7 @@ fn opened() -> Vec<(&'static str, Vec<u8>)> {
         ("x_value.csv", with("X_Value", &seconds)),
         ("zeit.csv", with("Zeit (s)", &seconds)),
         ("clock.csv", with("time", &clock)),
+        ("pm.csv", with("time", &|index| clock(index) + " PM")),
         ("iso.csv", with("timestamp", &iso)),
         ("german.csv", with("Zeitpunkt", &german)),
         ("dates.csv", dates.into_bytes()),
@@ -284,6 +285,7 @@ fn sixty_files_are_opened_or_say_what_to_do() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+    println!("{} files opened without an option, {} refused with what to do", opened.len(), not_opened.len());
     for (name, bytes, words) in not_opened {
         let said = refused(name, &bytes, &RecordingOptions::default());
         assert!(said.contains(words), "{said}");
