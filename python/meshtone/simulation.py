@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _display, _progress
+from ._extras import extra
 from ._names import hint
 from ._warnings import typed, warn, warn_of_signal
 from .faults import in_words
@@ -22,6 +23,7 @@ from .signal._arguments import positive, read_only, regular_part, whole
 from .signal.train import TrainRecord, train_record
 
 if TYPE_CHECKING:
+    import pandas
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -339,6 +341,26 @@ class Simulation:
         own = Signals(self.scenario, self.sampling_rate_hz, self.start_s, channels, self.warnings, self.warning_codes)
         return own if target_rate_hz is None else own.at_rate(target_rate_hz)
 
+    def to_pandas(self) -> pandas.DataFrame:
+        """All signals as a table of pandas, a column each, over ``time_s``, which is the index.
+
+        Needs pandas: ``pip install 'meshtone[tables]'``.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            pandas is not installed.
+
+        Examples
+        --------
+        >>> from meshtone import examples, simulate
+        >>> simulate(examples.healthy()).to_pandas().shape
+        (95608, 6)
+        """
+        with extra("tables"):
+            import pandas
+        return pandas.DataFrame(self.channels, index=pandas.Index(self.time_s, name="time_s"))
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write the signals; the file's ending says the format. :func:`read_recording` reads all of them.
 
@@ -398,7 +420,7 @@ class Simulation:
                 return self.fields[name]
             except KeyError:
                 _refuse_indicator(name, "a simulation has", "its", "simulation")
-                if name in ("to_pandas", "to_csv"):
+                if name == "to_csv":
                     raise AttributeError(f"a simulation has no '{name}'; {_SAVED}") from None
                 if name in CHANNELS:
                     raise AttributeError(f"a gearbox has no signal '{name}'; it has {', '.join(self.scenario.channels)}") from None
