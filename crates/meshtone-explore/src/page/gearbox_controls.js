@@ -198,8 +198,9 @@ export class GearboxControls {
   }
 
   #faults(full, places) {
-    const choice = (label, names, value, set) => {
-      const select = element("select", { "aria-label": label }, ...names.map((name) => element("option", { value: name, selected: name === value }, name)));
+    const spoken = (kind) => kind.replaceAll("-", " ");
+    const choice = (label, names, value, set, said = (name) => name) => {
+      const select = element("select", { "aria-label": label }, ...names.map((name) => element("option", { value: name, selected: name === value }, said(name))));
       select.addEventListener("change", () => set(select.value));
       return select;
     };
@@ -221,10 +222,10 @@ export class GearboxControls {
       const keys = [...places.filter(({ key }) => key === "tooth" || (key === "severity" && fault.severity !== undefined) || (key === "flank" && /\.planet\d+$/.test(fault.wheel))), ...ofKind];
       return element("fieldset", {}, element("legend", {}, `Damage ${index + 1}`), element("div", { className: "row" },
         choice(`Wheel of damage ${index + 1}`, wheels, fault.wheel, (wheel) => this.set(["fault", index, "wheel"], wheel, "full")),
-        choice(`Kind of damage ${index + 1}`, kinds, fault.kind, (name) => put(index, example(fault.wheel, name))), remove),
+        choice(`Kind of damage ${index + 1}`, kinds, fault.kind, (name) => put(index, example(fault.wheel, name)), spoken), remove),
         element("p", { className: "note" }, kind.summary), ...this.#fields(["fault", index], keys));
     });
-    const added = choice("Kind of damage to add", kinds, kinds[0], () => {});
+    const added = choice("Kind of damage to add", kinds, kinds[0], () => {}, spoken);
     const add = element("button", { type: "button", id: "add-fault" }, "Add damage");
     add.addEventListener("click", () => {
       this.tree.fault.push(example(this.#asked.wheel ?? wheels[0], added.value));
