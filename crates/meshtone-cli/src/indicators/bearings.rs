@@ -18,7 +18,8 @@ use crate::failure::Failure;
 #[command(next_help_heading = "Bearings")]
 pub struct BearingOptions {
     /// Rolling bearing that is judged, by what a sensor at its seat records, and the shaft in its inner ring: by its name, or by the number of its elements, their
-    /// diameter, the pitch diameter (mm) and the contact angle (°), such as 6205, ER-10K@output or 9,7.94,39.04,0@pinion. May be repeated.
+    /// diameter, the pitch diameter (mm) and the contact angle (°), such as 6205, ER-10K@output or 9,7.94,39.04,0@pinion; or by its row in a
+    /// list of yours, such as ours.csv:6308, whose first line names the columns designation, elements, element_mm, pitch_mm and contact_angle_deg. May be repeated.
     /// [default: the rolling bearings of the scenario; default shaft: the one that speed or pulses are of]
     #[arg(long = "bearing", value_name = "BEARING[@SHAFT]", value_parser = bearing)]
     pub bearings: Vec<NamedChoice>,
@@ -75,11 +76,33 @@ fn bearing(text: &str) -> Result<NamedChoice, String> {
         None => (text, None),
     };
     let known = |named: &NamedBearing| (named.name.to_owned(), named.geometry);
-    let (name, geometry) = match NamedBearing::find(name) {
-        Some(named) => known(named),
-        None => (name.to_owned(), geometry(name)?),
+    let (name, geometry) = match (NamedBearing::find(name), name.rsplit_once(".csv:")) {
+        (Some(named), _) => known(named),
+        (None, Some((file, designation))) => {
+            (designation.to_owned(), of_list(&format!("{file}.csv"), designation)?)
+        }
+        (None, None) => (name.to_owned(), geometry(name)?),
     };
     Ok(NamedChoice { name, geometry, shaft })
+}
+
+/// The geometry of a row in a user's list, whose first line names the columns.
+fn of_list(file: &str, designation: &str) -> Result<BearingGeometry, String> {
+    let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
+    let mut rows =
+        text.trim_start_matches('\u{feff}').lines().map(|line| line.split([',', ';']).map(str::trim));
+    let heads: Vec<&str> = rows.next().into_iter().flatten().collect();
+    let columns = ["designation", "elements", "element_mm", "pitch_mm", "contact_angle_deg"];
+    let places = columns.map(|column| heads.iter().position(|head| *head == column));
+    let [Some(name), Some(elements), Some(element_mm), Some(pitch_mm), Some(angle_deg)] = places else {
+        return Err(format!("the first line of {file} must name the columns {}", columns.join(", ")));
+    };
+    let mut rows = rows.map(Iterator::collect::<Vec<_>>);
+    let row = rows.find(|row| row.get(name) == Some(&designation));
+    let row = row.ok_or_else(|| format!("{file} has no bearing {designation} in its column designation"))?;
+    let numbers =
+        [elements, element_mm, pitch_mm, angle_deg].map(|place| row.get(place).copied().unwrap_or_default());
+    geometry(&numbers.join(",")).map_err(|error| format!("{file}, {designation}: {error}"))
 }
 
 /// A geometry in numbers.
@@ -91,7 +114,8 @@ fn geometry(text: &str) -> Result<BearingGeometry, String> {
         _ => {
             let names = NAMED_BEARINGS.map(|named| named.name).join(", ");
             return Err(format!(
-                "must be one of {names}, or the number of elements, their diameter and the pitch diameter in mm, as in 9,7.94,39.04"
+                "must be one of {names}, or the number of elements, their diameter and the pitch diameter in mm, as in 9,7.94,39.04, or a row of \
+                 a list, as in ours.csv:6308"
             ));
         }
     };

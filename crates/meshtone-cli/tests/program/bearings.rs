@@ -202,4 +202,14 @@ fn bearings_of_a_gearbox_are_on_its_shafts() {
     assert!(over_median(&all["bearings"][0], "BPFO") > 10.0, "{}", all["bearings"][0]);
     workplace.succeeds(&command(&["ER-16K"]));
     assert_eq!(results(&workplace)["settings"]["bearings"], serde_json::json!(["ER-16K"]));
+    // A list of the user's own, as a workbook exports it.
+    let head = "\u{feff}maker;designation;elements;element_mm;pitch_mm;contact_angle_deg";
+    workplace.write("ours.csv", format!("{head}\nSome Ltd;6308;8;15.08;65.0;0\nSome Ltd;6309;8;;72.5;0\n"));
+    workplace.succeeds(&command(&["ours.csv:6308@output"]));
+    assert_eq!(results(&workplace)["settings"]["bearings"], serde_json::json!(["6308@output"]));
+    workplace.fails(2, &command(&["ours.csv:6310"]), &["ours.csv has no bearing 6310"]);
+    workplace.fails(2, &command(&["ours.csv:6309"]), &["ours.csv, 6309: must be one of 6203"]);
+    workplace.fails(2, &command(&["absent.csv:6308"]), &["absent.csv: No such file"]);
+    workplace.write("short.csv", "designation,elements\n6308,8\n");
+    workplace.fails(2, &command(&["short.csv:6308"]), &["the first line of short.csv must name", "pitch_mm"]);
 }
