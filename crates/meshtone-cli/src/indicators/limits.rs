@@ -1,4 +1,4 @@
-//! What is usual: limits of a trend from its first records, and the zones of ISO 20816-3.
+//! This module says what is usual: limits of a trend from its first records, and the zones of ISO 20816-3.
 
 use meshtone_io::indicators::{LimitEntry, RecordEntry};
 use meshtone_plot::trend::Trend;

@@ -28,7 +28,7 @@ const SPEED_ERROR: f64 = 0.1;
 /// * `scenario` - the page's
 ///
 /// # Errors
-/// What no field of the page helps against.
+/// It returns a problem against which no field of the page helps.
 pub fn desk(bytes: &[u8], question: &RecordingQuestion, scenario: &Scenario) -> Result<Vec<u8>, Refusal> {
     let mut packet = Packet::default();
     let recording = match read(bytes, question) {
@@ -81,7 +81,7 @@ pub fn desk(bytes: &[u8], question: &RecordingQuestion, scenario: &Scenario) -> 
 /// Fields of the page, by which the program knows what to say of a recording.
 pub(super) const FIELDS: [&str; 4] = ["Sampling rate", "Time column", "Variable", "Lines to skip"];
 
-/// Whether a field of the page helps.
+/// Says whether a field of the page helps against a refusal.
 fn helps(refusal: &Refusal) -> bool {
     let text = refusal.json()["text"].as_str().unwrap_or_default().to_owned();
     FIELDS.iter().any(|field| text.contains(field))

@@ -25,7 +25,7 @@ use crate::refusal::Refusal;
 
 /// Numbers that processing holds for each sample beside the recording, at most.
 const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
-/// Most pulses in a revolution.
+/// A tachometer has at most so many pulses in a revolution.
 const MOST_PULSES: u64 = 1_000_000;
 
 /// What the file does not say itself.

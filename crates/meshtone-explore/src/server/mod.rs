@@ -35,9 +35,9 @@ const AT_ONCE: usize = 2;
 /// Bytes of the token in the address.
 const TOKEN_BYTES: usize = 16;
 
-/// How long a connection may wait for the head of its next request.
+/// A connection may wait so long for the head of its next request.
 const IDLE: Duration = if cfg!(test) { Duration::from_millis(500) } else { Duration::from_secs(30) };
-/// How long nothing is accepted once that has failed.
+/// Nothing is accepted for so long once accepting has failed.
 const AFTER_FAILURE: Duration = Duration::from_millis(100);
 
 /// Whether another page may show this one in a frame.

@@ -1,7 +1,7 @@
 //! Two wheels of a scenario in mesh.
 
 use super::ScenarioWheel;
-use crate::keys::{KeyRow, Keys, Range, field, rows};
+use crate::keys::{KeyRow, Keys, field, rows};
 use crate::wheel::rows::*;
 use crate::wheel::{BodyRotation, EndRelief, FoundationCoefficients, Gears, Hand, Material, WheelName};
 
@@ -169,13 +169,12 @@ impl Keys for ScenarioMesh {
             phase "base pitches" "where on its path of contact the first pair of teeth is at the start"
                 .otherwise("0; for a wheel in two meshes, the phase that follows from the other mesh")
                 .alternative("0.0");
-            damping_ratio "-"
-                "the damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh stiffness"
-                .range(Range::below_one().help("measured ratios are 0.03 to 0.17"));
-            friction "-" "the coefficient of friction of the flanks; 0 for frictionless ones"
-                .range(Range::from_to(0.0, 0.5).help("lubricated flanks have 0.02 to 0.1"));
-            random_force "-" "the size of the random force across the line of action, modulated by the load; 0 for none"
-                .range(Range::from_to(0.0, 10.0).help("0.02 to 0.2 sounds like recorded gearboxes"));
+            = { mesh_damping_row(field!(damping_ratio)) };
+            = { friction_row(field!(friction)) };
+            = { random_force_row(
+                "the size of the random force across the line of action, modulated by the load; 0 for none",
+                field!(random_force),
+            ) };
         }
     }
 }

@@ -4,7 +4,7 @@ use super::layout::entry_key;
 use super::{Layout, Scenario};
 use crate::error::ScenarioError;
 use crate::machine::GearboxPlace;
-use crate::sensor::{RingPlace, SensorDirection};
+use crate::sensor::RingPlace;
 
 /// (-) How far from a bearing's place, as a part of the shaft's length, a sensor that names it may be.
 const SAME_PLACE: f64 = 1e-6;
@@ -31,10 +31,6 @@ impl Scenario {
             }
             let place = match RingPlace::of(sensor.at.name()) {
                 Some(on_ring) => self.check_ring(&on_ring).map(|()| None),
-                None if matches!(sensor.direction, SensorDirection::Radial | SensorDirection::Tangential) => {
-                    Err("is measured radially, which only a place on a ring is: \"ring:SET:DEGREES\""
-                        .to_owned())
-                }
                 None => self.place(sensor.at.name(), layout).map(Some),
             };
             places.push(place.map_err(|problem| {

@@ -212,17 +212,14 @@ keys! {
     flank_relief "" "the relief of the flanks near all tips, as a gap in µm";
     = { backlash_row(field!(backlash_mm)) };
     = { foundation_row(field!(foundation)) };
-    din_grade "" "the grade of DIN 3961 of the deviations of all wheels, 1 (best) to 12; 0: ideal teeth"
-        .range(Range::from_to(0.0, 12.0));
-    iso_class "" "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none"
-        .range(Range::from_to(0.0, 11.0)).rule("not beside din_grade");
-    damping_ratio "-"
-        "the damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh stiffness"
-        .range(Range::below_one().help("measured ratios are 0.03 to 0.17"));
-    friction "-" "the coefficient of friction of the flanks; 0 for frictionless ones"
-        .range(Range::from_to(0.0, 0.5).help("lubricated flanks have 0.02 to 0.1"));
-    random_force "-" "the size of the random force across the line of action of every mesh; 0 for none"
-        .range(Range::from_to(0.0, 10.0).help("0.02 to 0.2 sounds like recorded gearboxes"));
+    = { din_grade_row("the grade of DIN 3961 of the deviations of all wheels, 1 (best) to 12; 0: ideal teeth", field!(din_grade)) };
+    = { iso_class_row(field!(iso_class)) };
+    = { mesh_damping_row(field!(damping_ratio)) };
+    = { friction_row(field!(friction)) };
+    = { random_force_row(
+        "the size of the random force across the line of action of every mesh; 0 for none",
+        field!(random_force),
+    ) };
     pin "" "the pins that hold the planets";
     rim "" "the rim of the ring and its support";
     sun_support_n_per_m "N/m" "the stiffness that holds the sun across its axis; a floating sun has 1e3" .range(STIFFNESS);

@@ -188,10 +188,8 @@ impl Layout {
             self.named(&self.gears[mesh], scenario, mesh).check()?;
         }
         self.check_planets(set, &of_set)?;
-        let axis_m = set.shafts().into_iter().flatten().find_map(|name| {
-            scenario.shafts().iter().position(|shaft| shaft.name == name).map(|shaft| self.positions_m[shaft])
-        });
-        let axis_m = axis_m.unwrap_or_default();
+        let shaft = set.shafts().into_iter().flatten().find_map(|name| scenario.shaft_number(name));
+        let axis_m = shaft.map_or_else(Default::default, |shaft| self.positions_m[shaft]);
         let sun = of_set.sun_against_carrier();
         let [of_sun, of_planet, of_ring] = [set.teeth.sun, set.teeth.planet, set.teeth.ring].map(i64::from);
         let arm_m = of_set.centre_distance_mm * 1e-3;
@@ -308,7 +306,7 @@ const FITS: f64 = 1e-3;
 impl Scenario {
     /// Numbers of the shafts that turn about one axis, of each planetary set.
     pub(super) fn shafts_on_one_axis(&self) -> Vec<Vec<usize>> {
-        let number = |name: &str| self.shafts().iter().position(|shaft| shaft.name == name);
+        let number = |name: &str| self.shaft_number(name);
         let of_set = |set: &PlanetarySet| set.shafts().into_iter().flatten().filter_map(number).collect();
         self.planetary().iter().map(of_set).collect()
     }

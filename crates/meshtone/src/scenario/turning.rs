@@ -292,7 +292,6 @@ fn sun_drives(
 /// Rotation of sun, carrier and ring over that of the input; 0 of a fixed one.
 pub(super) fn member_ratios(scenario: &Scenario, set: &PlanetarySet, ratios: &[Ratio]) -> [Ratio; 3] {
     set.shafts().map(|name| {
-        let shaft = name.and_then(|name| scenario.shafts().iter().position(|shaft| shaft.name == name));
-        shaft.map_or(Ratio::whole(0), |shaft| ratios[shaft])
+        name.and_then(|name| scenario.shaft_number(name)).map_or(Ratio::whole(0), |shaft| ratios[shaft])
     })
 }

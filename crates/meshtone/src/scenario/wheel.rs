@@ -189,10 +189,8 @@ keys! {
     unbalance "" "its unbalance" .otherwise("none").alternative("{ g_mm = 50.0 }");
     eccentricity_mm "mm" "the eccentricity of its seat"
         .range(Range::not_negative()).rule("less than the module; of a wheel in one mesh");
-    din_grade "" "the grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth"
-        .range(Range::from_to(0.0, 12.0));
-    iso_class "" "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none"
-        .range(Range::from_to(0.0, 11.0)).rule("not beside din_grade");
+    = { din_grade_row("the grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade)) };
+    = { iso_class_row(field!(iso_class)) };
     tooth_share "-"
         "the part of the tolerances of profile slope and form that each tooth has of its own; the rest is common to a wheel's teeth"
         .range(SHARE);

@@ -278,7 +278,27 @@ impl Sensor {
                 ScenarioError::new("sensor.bits", bits, problem).with_help("write sensor.range_g too")
             );
         }
-        Ok(())
+        self.check_direction()
+    }
+
+    /// A ring moves outwards and around, every other place along the axes; the set of a ring is spur, and does not move along its shafts.
+    fn check_direction(&self) -> Check {
+        use SensorDirection::{Axial, Radial, Tangential};
+        let refused = |problem: &str, help: &str| {
+            let value = format!("{:?}", self.direction.name());
+            Err(ScenarioError::new("sensor.direction", value, problem).with_help(help))
+        };
+        match (self.direction, RingPlace::of(self.at.name())) {
+            (Radial | Tangential, None) if self.reads_its_place() => refused(
+                "can be measured only on the ring of a planetary set",
+                "write sensor.at = \"ring:SET:DEGREES\", or take another direction",
+            ),
+            (Axial, Some(_)) => refused(
+                "cannot be measured on a ring, which moves only across its axis",
+                "take \"radial\", \"tangential\", \"vertical\" or \"horizontal\"",
+            ),
+            _ => Ok(()),
+        }
     }
 
     fn check(&self, model: Model) -> Check {

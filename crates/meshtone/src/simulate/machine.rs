@@ -276,7 +276,6 @@ fn set_parts(
             waves: set.rim.waves as usize,
         },
         damping_ratio: set.support_damping_ratio,
-        first_meshes,
         sun_drives: of_set.sun_drives,
         base_radii_m: [
             sun.base_radius_mm,

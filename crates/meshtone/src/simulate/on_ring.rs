@@ -32,14 +32,11 @@ impl Term {
     /// # Arguments
     /// * `wave` - cosine and sine of its number of waves times the angle in the carrier's frame
     fn of_wave(&self, [cos, sin]: [f64; 2]) -> [[f64; 2]; 2] {
-        let k = self.waves as f64;
         match self.shape {
             TermShape::X => [[cos, -sin], [-sin, -cos]],
             TermShape::Y => [[sin, cos], [cos, -sin]],
             TermShape::Rotation { radius_m } => [[0.0, radius_m], [0.0; 2]],
-            TermShape::Rim(RimShape { waves: 0, .. }) => [[1.0, 0.0], [0.0; 2]],
-            TermShape::Rim(RimShape { is_sine: false, .. }) => [[cos, -sin / k], [-k * sin, -cos]],
-            TermShape::Rim(RimShape { is_sine: true, .. }) => [[sin, cos / k], [k * cos, -sin]],
+            TermShape::Rim(shape) => shape.of_wave([cos, sin]),
         }
     }
 }

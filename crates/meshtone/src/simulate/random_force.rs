@@ -38,7 +38,9 @@ pub(crate) struct RandomForces {
     spectra: Vec<Vec<Complex64>>,
     /// Number of values of the spectra's signals, as many as are kept or a few more: they repeat themselves after that.
     length: usize,
-    /// The transfer functions to all sensors.
+    /// Number of the first place of each sensor.
+    first_places: Vec<usize>,
+    /// The transfer functions to all sensors' places.
     response: LateralResponse,
 }
 
@@ -94,10 +96,14 @@ impl Stages {
             }
             spectrum
         };
-        let places: Vec<DVector<f64>> =
-            (0..self.sensors.len()).flat_map(|sensor| self.weights_of(modal, sensor)).collect();
+        let (mut places, mut first_places): (Vec<DVector<f64>>, Vec<usize>) = Default::default();
+        for sensor in 0..self.sensors.len() {
+            first_places.push(places.len());
+            places.extend(self.weights_of(modal, sensor));
+        }
         let response = LateralResponse::new(modal, &self.closed_meshes(), &places, rate_hz / 2.0);
-        RandomForces { spectra: mesh_force_n.iter().enumerate().map(spectrum).collect(), length, response }
+        let spectra = mesh_force_n.iter().enumerate().map(spectrum).collect();
+        RandomForces { spectra, length, first_places, response }
     }
 
     /// (N/√Hz) The density of a mesh's random force at each kept sample.
@@ -150,9 +156,8 @@ impl Stages {
     /// * `sensor` - its number
     /// * `motion` - is added to
     pub(crate) fn add_random_part(&self, sensor: usize, motion: &mut [f64]) {
-        let (Some(random), Some((_, modal))) = (&self.random_forces, self.machine()) else { return };
-        let places = |sensor: usize| self.weights_of(modal, sensor).len();
-        let first: usize = (0..sensor).map(places).sum();
+        let Some(random) = &self.random_forces else { return };
+        let first = random.first_places[sensor];
         match self.sensors[sensor].output(&self.scenario.set_names()) {
             Output::Acceleration { factor, .. } => {
                 let added = self.moved_by_chance(random, first);
@@ -189,7 +194,7 @@ impl Stages {
 
     /// (m/s²) The acceleration of a place by the random forces of all meshes.
     fn moved_by_chance(&self, random: &RandomForces, place: usize) -> Vec<f64> {
-        let RandomForces { spectra, length, response } = random;
+        let RandomForces { spectra, length, response, .. } = random;
         let lines = length / 2 + 1;
         let mut sum = vec![Complex64::ZERO; lines];
         for (mesh, spectrum) in spectra.iter().enumerate() {

@@ -158,3 +158,34 @@ pub(crate) fn misalignment_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
     )
     .range(Range::from_to(-1e3, 1e3))
 }
+
+/// The row of the damping of a mesh.
+pub(crate) fn mesh_damping_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    let meaning = "the damping of teeth in contact, relative to the critical damping of the wheels' rotation on the mean mesh stiffness";
+    row("damping_ratio", "-", meaning, field)
+        .range(Range::below_one().help("measured ratios are 0.03 to 0.17"))
+}
+
+/// The row of the coefficient of friction.
+pub(crate) fn friction_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
+    row("friction", "-", "the coefficient of friction of the flanks; 0 for frictionless ones", field)
+        .range(Range::from_to(0.0, 0.5).help("lubricated flanks have 0.02 to 0.1"))
+}
+
+/// The row of the random force.
+pub(crate) fn random_force_row<S: 'static>(meaning: &'static str, field: Field<S, f64>) -> KeyRow<S> {
+    row("random_force", "-", meaning, field)
+        .range(Range::from_to(0.0, 10.0).help("0.02 to 0.2 sounds like recorded gearboxes"))
+}
+
+/// The row of the grade of DIN 3961.
+pub(crate) fn din_grade_row<S: 'static>(meaning: &'static str, field: Field<S, u8>) -> KeyRow<S> {
+    row("din_grade", "", meaning, field).range(Range::from_to(0.0, 12.0))
+}
+
+/// The row of the class of ISO 1328-1.
+pub(crate) fn iso_class_row<S: 'static>(field: Field<S, u8>) -> KeyRow<S> {
+    let meaning =
+        "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none";
+    row("iso_class", "", meaning, field).range(Range::from_to(0.0, 11.0)).rule("not beside din_grade")
+}

@@ -85,7 +85,6 @@ fn lin_parker(planets: usize) -> SetParts {
             waves: 1,
         },
         damping_ratio: 0.02,
-        first_meshes: [0, planets],
         sun_drives: true,
         base_radii_m: [sun_m, planet_m, planet_m, ring_m],
         working_pressure_angles_rad: [alpha; 2],
@@ -547,6 +546,14 @@ fn sets_that_do_not_fit_are_refused() {
     assert!(errors.contains("planetary.pin.error_um"));
     let sensor = refused(&[("ring:p:90", "ring:q:90")]);
     assert!(sensor.contains("sensor.at") && sensor.contains("ring:p:90"));
+    let direction = refused(&[("ring:p:90\"", "output:0\"\ndirection = \"radial\"")]);
+    assert!(direction.contains("sensor.direction") && direction.contains("\"radial\""));
+    let along = refused(&[("ring:p:90\"", "ring:p:90\"\ndirection = \"axial\"")]);
+    assert!(along.contains("sensor.direction") && along.contains("\"axial\""));
+    let mut sensor = Sensor::default();
+    sensor.direction = SensorDirection::Tangential;
+    let of_pair = Scenario::new(GearPair::example()).with_sensors(vec![sensor]).validate().unwrap_err();
+    assert_eq!(of_pair.key, "sensor.direction");
     let elsewhere = refused(&[(
         "[solver]",
         "[[fault]]\nwheel = \"p.sun\"\nflank = \"ring\"\nkind = \"missing-tooth\"\n[solver]",

@@ -46,8 +46,6 @@ pub struct SetParts {
     pub rim: RimParts,
     /// (-) Damping ratio of pins, supports, rim and couplings.
     pub damping_ratio: f64,
-    /// Number of the mesh of the sun with the first planet, and of that of the first planet with the ring.
-    pub first_meshes: [usize; 2],
     /// Whether the sun drives its planets, seen from the carrier.
     pub sun_drives: bool,
     /// (m) Base radii of sun, planet at the sun, planet at the ring, and ring.
@@ -142,12 +140,20 @@ impl RimShape {
     /// # Arguments
     /// * `angle_rad` - (rad) φ, from x towards y in the carrier's frame
     pub fn at(self, angle_rad: f64) -> [f64; 2] {
+        let (sin, cos) = (self.waves as f64 * angle_rad).sin_cos();
+        self.of_wave([cos, sin])[0]
+    }
+
+    /// (-) The same, and how both change with the angle.
+    ///
+    /// # Arguments
+    /// * `wave` - cosine and sine of kφ
+    pub fn of_wave(self, [cos, sin]: [f64; 2]) -> [[f64; 2]; 2] {
         let k = self.waves as f64;
-        let (sin, cos) = (k * angle_rad).sin_cos();
         match (self.waves, self.is_sine) {
-            (0, _) => [1.0, 0.0],
-            (_, false) => [cos, -sin / k],
-            (_, true) => [sin, cos / k],
+            (0, _) => [[1.0, 0.0], [0.0; 2]],
+            (_, false) => [[cos, -sin / k], [-k * sin, -cos]],
+            (_, true) => [[sin, cos / k], [k * cos, -sin]],
         }
     }
 }
