@@ -1,9 +1,9 @@
 //! From a gearbox to everything that its page draws.
 
-use meshtone::scenario::{Scenario, ScenarioWarning};
+use meshtone::scenario::{Member, Scenario, ScenarioWarning};
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::{
-    AngularSettings, GearTrain, SignalError, TrainRecording, TrainSettings, TrainTurning, revolution_average,
+    AngularSettings, GearTrain, IndicatorValue, SignalError, TrainRecording, TrainSettings, TrainTurning,
 };
 use meshtone::{Simulation, StepJudgement};
 use serde_json::{Map, Value, json};
@@ -80,12 +80,16 @@ pub fn gearbox_answer(
     let of_wheel = simulation.stages.layout.mesh_of(wheel).map(|(mesh, _)| gearbox.meshes[mesh].name());
     let mesh = options.mesh.as_deref().or(of_wheel.as_deref());
     let signals = &simulation.channels.signals;
-    let train = GearTrain::of_stages(&simulation.stages);
+    let signal =
+        number(options.channel.as_deref(), signals.iter().map(|signal| signal.name.to_string()).collect());
+    let channel = &signals[signal].name;
+    let mut train = GearTrain::of_stages(&simulation.stages).at_sensor(gearbox, channel);
+    // No planets pass what is no sensor's: forces and speeds.
+    if !gearbox.all_sensors().iter().any(|sensor| sensor.channel() == *channel) {
+        train.sets.clear();
+    }
     Ok(GearboxState {
-        signal: number(
-            options.channel.as_deref(),
-            signals.iter().map(|signal| signal.name.to_string()).collect(),
-        ),
+        signal,
         wheel,
         mesh: number(mesh, gearbox.meshes.iter().map(|mesh| mesh.name()).collect()),
         bearing: LookedAtBearing::of(gearbox, &train, options.bearing.as_deref()),
@@ -132,15 +136,18 @@ impl GearboxState {
                 turning,
             })
         };
-        let average = recording().ok().and_then(|recording| self.average(&recording));
-        let indicators = self.indicators(recording().ok().as_ref(), signal.unit);
+        let average =
+            recording().and_then(|recording| recording.average(self.wheel, &AngularSettings::default()));
+        let indicators = recording().and_then(|recording| self.indicators(&recording, signal.unit));
+        let problem = average.as_ref().err().or(indicators.as_ref().err()).map(ToString::to_string);
         // What is kept while a control moves is too short for averages.
         let bearing = self.bearing.as_ref().filter(|_| self.options.detail == Detail::Full);
         let bearing = bearing.map(|bearing| bearing.json(recording(), &mut packet));
         let wheel = &self.gearbox.wheels[self.wheel];
-        let average = average.map(
-            |(values, revolutions)| json!({ "values": packet.array(values), "revolutions": revolutions }),
-        );
+        let average = average
+            .ok()
+            .map(|of| json!({ "values": packet.array(of.values), "revolutions": of.revolutions }));
+        let indicators = indicators.ok().flatten().map(|table| indicators_json(&table));
         let mut said = json!({
             "detail": if self.options.detail == Detail::Full { "full" } else { "coarse" },
             "toml": meshtone::written_out(&self.gearbox.to_toml()),
@@ -158,7 +165,7 @@ impl GearboxState {
             },
             "spectrum": spectrum.json(&tones, &mut packet),
             "lines": lines.iter().map(line).collect::<Vec<_>>(),
-            "wheel": { "name": wheel.name, "teeth": wheel.teeth, "average": average, "indicators": indicators },
+            "wheel": { "name": wheel.name, "teeth": wheel.teeth, "average": average, "indicators": indicators, "problem": problem },
             "bearing": bearing,
             "mesh": { "name": self.gearbox.meshes[self.mesh].name(), "force": packet.array(force.iter().copied()) },
         });
@@ -168,22 +175,17 @@ impl GearboxState {
         packet.bytes(&said)
     }
 
-    /// The average of a signal over the revolutions of the wheel that is looked at, and the number of revolutions; none where there is not
-    /// one.
-    fn average(&self, recording: &TrainRecording<'_>) -> Option<(Vec<f64>, usize)> {
-        let angular = recording.angular(self.wheel, &AngularSettings::default()).ok()?;
-        let revolutions = angular.revolutions();
-        let average = revolution_average(&angular.values, angular.points_per_revolution);
-        (revolutions > 0).then_some((average, revolutions))
-    }
-
-    /// Indicators of the wheel that is looked at; none while a control moves, when too little is simulated, and of too few revolutions.
-    fn indicators(&self, recording: Option<&TrainRecording<'_>>, unit: &str) -> Value {
-        let recording = recording.filter(|_| self.options.detail == Detail::Full);
-        let records = recording.and_then(|recording| recording.process(&TrainSettings::default()).ok());
-        let of_wheel = records.and_then(|all| all.wheels.into_iter().find(|of| of.wheel == self.wheel));
-        let record = of_wheel.and_then(|of| of.records.into_iter().next());
-        record.map_or(Value::Null, |record| indicators_json(&record.indicators.table(unit)))
+    /// Indicators of the wheel that is looked at; none while a control moves, when too little is simulated.
+    fn indicators(
+        &self,
+        recording: &TrainRecording<'_>,
+        unit: &str,
+    ) -> Result<Option<Vec<IndicatorValue>>, SignalError> {
+        if self.options.detail != Detail::Full {
+            return Ok(None);
+        }
+        let records = recording.process_one(self.wheel, &TrainSettings::default())?.records;
+        Ok(records.first().map(|record| record.indicators.table(unit)))
     }
 
     /// Key figures of the train and of the mesh that is looked at: what, value, unit.
@@ -230,9 +232,19 @@ impl GearboxState {
             let module_mm = layout
                 .mesh_of(number)
                 .map_or(f64::NAN, |(mesh, _)| layout.gears[mesh].transverse_module_mm());
+            // Its axis is where its carrier takes it; the speeds of a set's wheels are against that.
+            let of_set = wheel.of_set.map(|of| (&layout.sets[of.set], of.member));
+            let carrier_ratio = of_set.map_or(0.0, |(set, _)| set.ratios[1].value());
+            let carrier = of_set.filter(|(_, member)| matches!(member, Member::Planet(_))).map(|(set, _)| {
+                let [x_m, y_m] = layout.positions_m[layout.shaft_of_wheel[set.first_wheel]];
+                json!({ "x_mm": x_m * 1e3, "y_mm": y_m * 1e3, "ratio": carrier_ratio })
+            });
             json!({
                 "name": wheel.name,
                 "shaft": of,
+                "ratio": layout.ratios[of].value() + carrier_ratio,
+                "in_set": of_set.is_some(),
+                "carrier": carrier,
                 "x_mm": layout.positions_m[of][0] * 1e3,
                 "y_mm": layout.positions_m[of][1] * 1e3,
                 "z_mm": layout.z_mm(gearbox, number),
@@ -245,10 +257,17 @@ impl GearboxState {
         };
         let mesh = |(number, mesh): (usize, &super::lines::MeshTone)| json!({ "name": mesh.name, "wheels": layout.wheels_of_mesh[number], "frequency_hz": mesh.frequency_hz });
         let bearing = |(bearing, &shaft): (&meshtone::scenario::Bearing, &usize)| {
+            // A planet's is midway along it.
+            let planet = (0..gearbox.wheels.len()).find(|wheel| layout.shaft_of_wheel[*wheel] == shaft);
+            let z_mm = match (gearbox.shafts().get(shaft), planet) {
+                (None, Some(wheel)) => layout.z_mm(gearbox, wheel),
+                (of_shaft, _) => of_shaft.map_or(0.0, |of| of.z_mm(bearing.at)),
+            };
             json!({
                 "name": bearing.seat_name(),
                 "shaft": shaft,
-                "z_mm": gearbox.shafts()[shaft].z_mm(bearing.at),
+                "z_mm": z_mm,
+                "x_mm": layout.positions_m[shaft][0] * 1e3,
                 "rolling": bearing.element().is_some(),
                 "damaged": !bearing.defect.is_empty(),
             })

@@ -106,6 +106,7 @@ pub fn recording(
     let tachometer = question.tachometer.as_deref().map(|name| (name, question.pulses_per_revolution));
     let Turned { source, train, turning } =
         turned(&recording, tachometer, simulated.as_ref(), scenario, constant)?;
+    let train = train.at_sensor(machine, &channel.name);
     let looked_at = TrainRecording {
         signal: &channel.samples,
         sampling_rate_hz: recording.sampling_rate_hz,

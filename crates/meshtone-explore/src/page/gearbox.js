@@ -41,6 +41,7 @@ class GearboxView {
     const choose = (key) => (name) => this.#chosen(key, name);
     this.#train = new Train(byId("front"), byId("above"), choose("wheel"), choose("mesh"), choose("bearing"));
     for (const key of Object.keys(this.asked)) byId(key).addEventListener("change", ({ target }) => this.#chosen(key, target.value));
+    byId("turn").addEventListener("click", ({ target }) => target.setAttribute("aria-pressed", this.#train.turn()));
     byId("logarithmic").addEventListener("change", () => this.#now && this.#spectrum(this.#now));
     byId("all-indicators").addEventListener("change", () => this.#full && this.#indicators(this.#full));
   }
@@ -138,8 +139,8 @@ class GearboxView {
     const recorded = this.#recordedWheel(wheel);
     const drawn = average ? this.#beside(signal, line(signal.name, ...over(average.values)),
       (answer, isRecorded) => over(isRecorded ? recorded?.average : answer.wheel.average?.values)) : [];
-    this.#plots.average.set(drawn, { y: `signal (${signal.unit})`, title: average ? `Average over ${average.revolutions} revolutions` : "Average", empty: "needs a steady speed and a whole revolution" });
-    byId("wheel-note").textContent = recorded?.problem ? `Recording: ${recorded.problem}` : "";
+    this.#plots.average.set(drawn, { y: `signal (${signal.unit})`, title: average ? `Average over ${average.revolutions} revolutions` : "Average", empty: wheel.problem ?? "needs a steady speed and a whole revolution" });
+    byId("wheel-note").textContent = [wheel.problem, recorded?.problem && `Recording: ${recorded.problem}`].filter(Boolean).join(" ");
   }
 
   #recordedWheel({ name }) {

@@ -3,6 +3,12 @@
 const SVG = "http://www.w3.org/2000/svg";
 /** Free room around the train, as a part of its size. */
 const ROOM = 0.06;
+/** Revolutions a second of the fastest wheel while the train is turned. */
+const TURNED_HZ = 0.25;
+/** Width of a letter over the size of its text. */
+const LETTER = 0.6;
+/** Thickness of a ring's rim over the size of the picture. */
+const RIM = 0.05;
 
 function made(name, attributes, ...children) {
   const node = document.createElementNS(SVG, name);
@@ -40,6 +46,11 @@ export class Train {
   #chooseWheel;
   #chooseMesh;
   #chooseBearing;
+  /** What turns in the picture: nodes, each with the function that makes its transform of the input's revolutions. */
+  #moving = [];
+  #input = 0;
+  #inputHz = 0;
+  #isTurning = false;
 
   /** @param chooseWheel, chooseMesh, chooseBearing called with a name */
   constructor(front, above, chooseWheel, chooseMesh, chooseBearing) {
@@ -55,40 +66,86 @@ export class Train {
     if (focused) [...document.querySelectorAll(".train g")].find((group) => group.getAttribute("aria-label") === focused)?.focus();
   }
 
+  /** Turns the picture, or stops it. @returns whether it turns */
+  turn() {
+    this.#isTurning = !this.#isTurning;
+    let last = null;
+    const next = (now) => {
+      if (!this.#isTurning) return;
+      this.#input += ((now - (last ?? now)) / 1000) * this.#inputHz;
+      last = now;
+      this.#place();
+      requestAnimationFrame(next);
+    };
+    if (this.#isTurning) requestAnimationFrame(next);
+    return this.#isTurning;
+  }
+
+  #place() {
+    this.#moving.forEach(([node, at]) => node.setAttribute("transform", at(this.#input)));
+  }
+
+  /** Lets a node turn about a point with the input's revolutions. */
+  #turns(node, ratio, [x, y]) {
+    this.#moving.push([node, (input) => `rotate(${(-360 * ratio * input) % 360} ${x} ${y})`]);
+    return node;
+  }
+
   #fromTheFront({ shafts, wheels, meshes }, chosen, chosenMesh) {
+    this.#moving = [];
+    this.#inputHz = TURNED_HZ / Math.max(...wheels.map(({ ratio }) => Math.abs(ratio)));
     const centre = ({ x_mm: x, y_mm: y }) => [x, -y];
     const size = Math.max(...wheels.map(({ pitch_radius_mm: radius }) => radius));
+    // Of wheels in a set the names are in front: the sun's would be behind the shafts, and a planet takes its own along.
+    const names = [];
+    const carried = (node, { carrier }) => (carrier ? this.#turns(node, carrier.ratio, centre(carrier)) : node);
+    const named = (wheel, [x, y], text, height) => {
+      const node = this.#turns(textAt(x, y, height, text), -(wheel.carrier?.ratio ?? 0), [x, y]);
+      names.push(carried(made("g", {}, node), wheel));
+    };
     const circles = wheels.map((wheel) => {
-      const { name, teeth, damaged, pitch_radius_mm: radius } = wheel;
+      const { name, teeth, damaged, internal, in_set: inSet, ratio, carrier, pitch_radius_mm: radius } = wheel;
       const [x, y] = centre(wheel);
       // A dash a tooth.
       const dash = (Math.PI * radius) / teeth;
-      return choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name}, ${teeth} teeth${damaged ? ", damaged" : ""}`, () => this.#chooseWheel(name),
-        made("circle", { cx: x, cy: y, r: radius, class: "body" }),
-        made("circle", { cx: x, cy: y, r: radius, class: "teeth", "stroke-dasharray": dash, "stroke-width": size * 0.04 }),
-        // Beside a small wheel there is more room than in it.
-        textAt(x, y - (radius < 0.5 * size ? radius + size * 0.1 : radius * 0.72), size * 0.11, `${name} · ${teeth}`));
+      const text = `${name} · ${teeth}`;
+      const rim = internal ? [made("circle", { cx: x, cy: y, r: radius + size * RIM, class: "body" })] : [];
+      const body = [...rim, made("circle", { cx: x, cy: y, r: radius, class: internal ? "hole" : "body" }),
+        this.#turns(made("circle", { cx: x, cy: y, r: radius, class: "teeth", "stroke-dasharray": dash, "stroke-width": size * 0.04 }), ratio - (carrier?.ratio ?? 0), [x, y])];
+      // Beside a small wheel there is more room than in it.
+      if (internal) names.push(textAt(x, y - radius - size * 0.14, size * 0.11, text));
+      else if (inSet) named(wheel, [x, y + (carrier ? 0 : radius * 0.4)], text, Math.min(size * 0.11, (1.8 * radius) / (LETTER * text.length)));
+      else body.push(textAt(x, y - (radius < 0.5 * size ? radius + size * 0.1 : radius * 0.72), size * 0.11, text));
+      return carried(choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name}, ${teeth} teeth${damaged ? ", damaged" : ""}`, () => this.#chooseWheel(name), ...body), wheel);
     });
     // Of two wheels on one shaft the smaller is seen before the larger.
     const order = wheels.map((_, index) => index).sort((a, b) => wheels[b].pitch_radius_mm - wheels[a].pitch_radius_mm);
-    const below = shafts.map((_, number) => Math.max(0, ...wheels.filter(({ shaft }) => shaft === number).map(({ pitch_radius_mm: radius }) => radius)));
+    const isHere = ({ x_mm: x, y_mm: y }, shaft) => Math.hypot(x - shaft.x_mm, y - shaft.y_mm) < 1e-3 * size;
+    const below = shafts.map((shaft, number) => {
+      const onAxis = wheels.filter((wheel) => isHere(wheel, shaft)).map(({ pitch_radius_mm: radius, internal }) => radius + (internal ? size * RIM : 0));
+      // The names of shafts on one axis stand below one another.
+      const before = shafts.slice(0, number).filter((other) => isHere(other, shaft)).length;
+      return Math.max(0, ...onAxis) + size * (0.13 + 0.13 * before);
+    });
     const axes = shafts.map(({ name, x_mm: x, y_mm: y, radius_mm: radius, speed_hz: speed, sense }, number) => {
       const arc = radius * 2;
       const arrow = sense > 0 ? `M ${x + arc} ${-y} A ${arc} ${arc} 0 0 0 ${x} ${-y - arc} l ${arc * 0.35} ${-arc * 0.3} m ${-arc * 0.35} ${arc * 0.3} l ${arc * 0.35} ${arc * 0.3}`
         : `M ${x - arc} ${-y} A ${arc} ${arc} 0 0 1 ${x} ${-y - arc} l ${-arc * 0.35} ${-arc * 0.3} m ${arc * 0.35} ${arc * 0.3} l ${-arc * 0.35} ${arc * 0.3}`;
       return made("g", { class: "shaft" }, made("circle", { cx: x, cy: -y, r: radius }), made("path", { d: arrow, class: "turn" }),
-        textAt(x, -y + below[number] + size * 0.13, size * 0.1, `${name} ${Number(speed.toPrecision(4))} Hz`));
+        textAt(x, -y + below[number], size * 0.1, `${name} ${Number(speed.toPrecision(4))} Hz`));
     });
     const points = meshes.map(({ name, wheels: [a, b], frequency_hz: hz }) => {
       const [from, to] = [centre(wheels[a]), centre(wheels[b])];
       const mate = (wheels[b].internal ? -1 : 1) * wheels[b].pitch_radius_mm;
       const part = wheels[a].pitch_radius_mm / (wheels[a].pitch_radius_mm + mate);
       const [x, y] = [0, 1].map((axis) => from[axis] + part * (to[axis] - from[axis]));
-      return choosable("mesh", name === chosenMesh, `mesh ${name}, ${Number(hz.toPrecision(4))} Hz`, () => this.#chooseMesh(name),
-        made("circle", { cx: x, cy: y, r: size * 0.08 }));
+      return carried(choosable("mesh", name === chosenMesh, `mesh ${name}, ${Number(hz.toPrecision(4))} Hz`, () => this.#chooseMesh(name),
+        made("circle", { cx: x, cy: y, r: size * (wheels[a].in_set ? 0.05 : 0.08) })), [wheels[a], wheels[b]].find(({ carrier }) => carrier) ?? {});
     });
     const corners = wheels.flatMap((wheel) => [-1, 1].map((sign) => centre(wheel).map((place) => place + sign * (wheel.pitch_radius_mm + size * 0.15))));
-    fit(this.#front, corners, [...order.map((index) => circles[index]), ...axes, ...points]);
+    corners.push(...shafts.map((shaft, number) => [shaft.x_mm, -shaft.y_mm + below[number] + size * 0.05]));
+    fit(this.#front, corners, [...order.map((index) => circles[index]), ...axes, ...points, ...names]);
+    this.#place();
   }
 
   #fromAbove({ shafts, wheels, bearings }, chosen, chosenBearing) {
@@ -97,17 +154,25 @@ export class Train {
     const size = last - first;
     const lines = shafts.map(({ name, x_mm: x, radius_mm: radius, start_mm: start, length_mm: length }) =>
       made("g", { class: "shaft" }, made("rect", { x: start, y: x - radius, width: length, height: 2 * radius }), textAt(start + length / 2, x, size * 0.035, name)));
-    const supports = bearings.map(({ name, shaft, z_mm: z, rolling, damaged }) => {
-      const { x_mm: x, radius_mm: radius } = shafts[shaft];
+    const supports = bearings.map(({ name, shaft, x_mm: x, z_mm: z, rolling, damaged }) => {
+      // A planet's has no shaft of its own.
+      const radius = shafts[shaft]?.radius_mm ?? size * 0.01;
       const square = made("rect", { class: "bearing", x: z - radius * 0.5, y: x - radius * 1.6, width: radius, height: radius * 3.2 });
       if (!rolling) return square;
       return choosable(`rolling${damaged ? " damaged" : ""}`, name === chosenBearing, `rolling bearing ${name}${damaged ? ", damaged" : ""}`, () => this.#chooseBearing(name), square);
     });
-    const faces = wheels.map(({ name, damaged, teeth, x_mm: x, z_mm: z, face_width_mm: width, pitch_radius_mm: radius }) => {
+    const taken = [];
+    const faces = wheels.map(({ name, damaged, teeth, internal, in_set: inSet, x_mm: x, z_mm: z, face_width_mm: width, pitch_radius_mm: radius }) => {
+      const face = (from, height) => made("rect", { class: "body", x: z - width / 2, y: x + from, width, height });
+      const rim = size * RIM;
+      const at = x - (internal ? radius + 2 * rim : inSet ? 0 : radius * 0.6);
+      // Of planets behind one another one is named.
+      const isFree = !taken.some(([otherZ, otherAt]) => Math.abs(otherZ - z) < width && Math.abs(otherAt - at) < size * 0.04);
+      taken.push([z, at]);
       return choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name} from above, ${teeth} teeth`, () => this.#chooseWheel(name),
-        made("rect", { class: "body", x: z - width / 2, y: x - radius, width, height: 2 * radius }), textAt(z, x - radius * 0.6, size * 0.045, name));
+        ...(internal ? [face(-radius - rim, rim), face(radius, rim)] : [face(-radius, 2 * radius)]), ...(isFree ? [textAt(z, at, size * 0.045, name)] : []));
     });
-    const corners = [[first, 0], [last, 0], ...wheels.flatMap(({ x_mm: x, pitch_radius_mm: radius }) => [-1, 1].map((sign) => [first, x + sign * radius]))];
+    const corners = [[first, 0], [last, 0], ...wheels.flatMap(({ x_mm: x, pitch_radius_mm: radius }) => [-1, 1].map((sign) => [first, x + sign * (radius + size * RIM)]))];
     fit(this.#above, corners, [...lines, ...faces, ...supports]);
   }
 }

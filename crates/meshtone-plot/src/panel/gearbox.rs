@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use meshtone::scenario::{Scenario, ScenarioWheel};
 use meshtone::signal::{
-    AngularSettings, AngularSignal, GearTrain, ShaftPhase, SignalError, StatedTurning, TrainRecording,
-    TrainTurning, angular_resample, revolution_average,
+    AngularSettings, AngularSignal, GearTrain, ShaftPhase, SignalError, StatedTurning, SynchronousAverage,
+    TrainRecording, TrainTurning, angular_resample,
 };
 use meshtone::{Simulation, Stages};
 
@@ -354,12 +354,9 @@ fn stiffness(canvas: &mut Canvas, area: Area, (gearbox, stages): (&Scenario, &St
 fn average(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Scenario, &Simulation), wheel: usize) {
     let (stages, name) = (&simulation.stages, &gearbox.wheels[wheel].name);
     let average = over_wheel_angle(gearbox, simulation, wheel);
-    let values = average.as_ref().map_or_else(
-        |_| Vec::new(),
-        |angular| revolution_average(&angular.values, angular.points_per_revolution),
-    );
+    let values = average.as_ref().map_or(&[][..], |average| &average.values);
     let y = axes::range(values.iter().copied(), 0.06);
-    let title = match average.as_ref().map_or(0, AngularSignal::revolutions) {
+    let title = match average.as_ref().map_or(0, |average| average.revolutions) {
         0 => format!("Average over the revolutions of {name}"),
         1 => format!("One revolution of {name}"),
         revolutions => format!("Average of {revolutions} revolutions of {name}"),
@@ -368,29 +365,31 @@ fn average(canvas: &mut Canvas, area: Area, (gearbox, simulation): (&Scenario, &
     tint(canvas, &axes, stages, wheel, 360.0 / f64::from(gearbox.wheels[wheel].teeth));
     axes.x_axis(canvas, &Ticks::every(90.0, 0.0, 360.0), "Angle since its first tooth enters contact (°)");
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Acceleration (g)", NAME_LEFT);
-    match average {
-        Ok(_) => axes.line(canvas, over(axes.x, &values), CURVE),
-        Err(error) => axes.note(canvas, spectrum::note(&error)),
+    match &average {
+        Ok(_) => axes.line(canvas, over(axes.x, values), CURVE),
+        Err(error) => axes.note(canvas, spectrum::note(error)),
     }
     axes.frame(canvas);
 }
 
-/// The first sensor's signal over the revolutions of a wheel.
+/// The average of the first sensor's signal over the revolutions of a wheel.
 fn over_wheel_angle(
     gearbox: &Scenario,
     simulation: &Simulation,
     wheel: usize,
-) -> Result<AngularSignal, SignalError> {
-    let train = GearTrain::of_stages(&simulation.stages);
+) -> Result<SynchronousAverage, SignalError> {
+    let first = simulation.channels.signals.first();
+    let channel = first.map_or("", |signal| &signal.name);
+    let train = GearTrain::of_stages(&simulation.stages).at_sensor(gearbox, channel);
     let turning = TrainTurning::Shaft {
         shaft: train.input(),
         phase: input_phase(gearbox, simulation)?,
         stated: StatedTurning::Other,
     };
-    let signal = simulation.channels.signals.first().map_or(&[][..], |signal| &signal.values);
+    let signal = first.map_or(&[][..], |signal| &signal.values);
     let sampling_rate_hz = simulation.channels.sampling_rate_hz;
     TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning }
-        .angular(wheel, &AngularSettings::default())
+        .average(wheel, &AngularSettings::default())
 }
 
 /// The phase of the input at the kept samples.

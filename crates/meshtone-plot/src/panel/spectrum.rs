@@ -53,6 +53,8 @@ pub(super) fn note(error: &SignalError) -> &'static str {
     match error {
         SignalError::TooFew { .. }
         | SignalError::TooFewRevolutions { .. }
+        | SignalError::TooFewPassages { .. }
+        | SignalError::TeethNotSeen { .. }
         | SignalError::LengthMismatch { .. } => TOO_SHORT,
         SignalError::Constant { .. } => "the signal is constant",
         _ => ANGLE_UNKNOWN,

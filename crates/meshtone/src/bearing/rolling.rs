@@ -60,6 +60,8 @@ pub struct RollingBearing {
     pub stiffness_n_per_m: f64,
     /// (N/m) The linear spring in its place, of x and y.
     pub spring_n_per_m: [[f64; 2]; 2],
+    /// (m) By how much the inner ring is off its place while the machine is in its own.
+    pub off_m: [f64; 2],
     /// (m) Displacement at which the linear spring is free.
     free_m: [f64; 2],
     /// (m) Displacement under the static load.
@@ -145,6 +147,7 @@ impl RollingBearing {
             static_load_n,
             stiffness_n_per_m: 0.0,
             spring_n_per_m: [[0.0; 2]; 2],
+            off_m: [0.0; 2],
             free_m: [0.0; 2],
             static_m: [0.0; 2],
             parts,
@@ -304,10 +307,11 @@ impl RollingBearing {
     /// The difference between the load of the elements and that of the linear spring.
     ///
     /// # Arguments
-    /// * `stretch_m` - (m) of the linear spring
+    /// * `x_m`, `y_m` - (m) stretch of the linear spring by the machine's motion
     /// * `places` - where the elements are
     #[inline(always)]
-    pub(crate) fn beside_spring(&self, stretch_m: [f64; 2], places: &ElementPlaces) -> BearingLoad {
+    pub(crate) fn beside_spring(&self, [x_m, y_m]: [f64; 2], places: &ElementPlaces) -> BearingLoad {
+        let stretch_m = [x_m + self.off_m[0], y_m + self.off_m[1]];
         let [free_x_m, free_y_m] = self.free_m;
         let mut load = self.load([free_x_m + stretch_m[0], free_y_m + stretch_m[1]], places);
         let [[xx, xy], [_, yy]] = self.spring_n_per_m;

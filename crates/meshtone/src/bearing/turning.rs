@@ -39,8 +39,8 @@ pub(crate) struct BearingTurning<'a> {
     step_s: f64,
     /// (rev) Of the motor, at the last sample.
     last: Option<f64>,
-    /// (-) Angle of the shaft, of the cage, and of an element's spin, over that of the motor.
-    ratios: [f64; 3],
+    /// (-) Angle of the inner and the outer ring, of the cage against the outer ring, and of an element's spin, over that of the motor.
+    ratios: [f64; 4],
     /// (rad) Angles of the cage and of an element's spin at the start.
     start_rad: [f64; 2],
     slip: Walk,
@@ -100,13 +100,14 @@ impl<'a> BearingTurning<'a> {
     ///
     /// # Arguments
     /// * `bearing` - the bearing
-    /// * `speed_ratio` - (-) rotation of its shaft over that of the motor
+    /// * `ring_ratios` - (-) rotation of its inner ring and of its outer one over that of the motor, seen where its load stands still: of a shaft's
+    ///   bearing that of the shaft and 0, of a planet's 0 of the pin and that of the planet
     /// * `seed` - of the scenario
     /// * `number` - of the bearing in it
     /// * `step_s` - (s) from sample to sample
     pub(crate) fn new(
         bearing: &'a RollingBearing,
-        speed_ratio: f64,
+        [inner, outer]: [f64; 2],
         seed: u64,
         number: usize,
         step_s: f64,
@@ -116,15 +117,15 @@ impl<'a> BearingTurning<'a> {
         let mut start = Draws::new(seed, Purpose::BearingStart, number as u64);
         let spacing_rad = TAU / f64::from(geometry.elements);
         let contact_mm = geometry.element_mm * geometry.contact_angle_deg.to_radians().cos();
-        let ratios = [1.0, orders.cage, orders.element_spin].map(|order| order * speed_ratio);
-        let [shaft, cage, spin] = ratios;
+        let [rolling, spin] = [orders.cage, orders.element_spin].map(|order| order * (inner - outer));
+        let cage = outer + rolling;
         let spall = |spall: &super::Spall| {
             let (start_rad, radius_mm, turned) = match spall.place {
                 DefectPlace::Outer => {
-                    (bearing.load_angle_rad(), (geometry.pitch_mm + contact_mm) / 2.0, -cage)
+                    (bearing.load_angle_rad(), (geometry.pitch_mm + contact_mm) / 2.0, outer - cage)
                 }
                 DefectPlace::Inner => {
-                    (bearing.load_angle_rad(), (geometry.pitch_mm - contact_mm) / 2.0, shaft - cage)
+                    (bearing.load_angle_rad(), (geometry.pitch_mm - contact_mm) / 2.0, inner - cage)
                 }
                 DefectPlace::Element => (0.0, geometry.element_mm / 2.0, spin),
             };
@@ -141,7 +142,7 @@ impl<'a> BearingTurning<'a> {
             elements: geometry.elements as usize,
             step_s,
             last: None,
-            ratios,
+            ratios: [inner, outer, rolling, spin],
             start_rad: [start.uniform(PI, PI), start.uniform(PI, PI)],
             slip: Walk::new(
                 Draws::new(seed, Purpose::BearingSlip, number as u64),
@@ -160,7 +161,7 @@ impl<'a> BearingTurning<'a> {
         block.cage.clear();
         block.drops.clear();
         block.spalls = self.spalls.len();
-        let [shaft_ratio, cage_ratio, spin_ratio] = self.ratios;
+        let [inner_ratio, outer_ratio, cage_ratio, spin_ratio] = self.ratios;
         let spacing_rad = TAU / self.elements as f64;
         for (k, motor) in revolutions.iter().enumerate() {
             // Before the first sample it turned as it does after it.
@@ -171,7 +172,7 @@ impl<'a> BearingTurning<'a> {
             self.last = Some(*motor);
             let rolled_rad = TAU * cage_ratio * motor;
             let slipped_rad = self.slip.at_rad(rolled_rad.abs() / spacing_rad) * cage_ratio.signum();
-            let cage_rad = self.start_rad[0] + rolled_rad + slipped_rad;
+            let cage_rad = self.start_rad[0] + TAU * outer_ratio * motor + rolled_rad + slipped_rad;
             let (sin, cos) = cage_rad.sin_cos();
             block.cage.push([cos, sin]);
             for spall in &self.spalls {
@@ -184,8 +185,8 @@ impl<'a> BearingTurning<'a> {
                     )
                 };
                 let (element, angle_rad) = match spall.place {
-                    DefectPlace::Outer => nearest(spall.angle_rad),
-                    DefectPlace::Inner => nearest(spall.angle_rad + TAU * shaft_ratio * motor),
+                    DefectPlace::Outer => nearest(spall.angle_rad + TAU * outer_ratio * motor),
+                    DefectPlace::Inner => nearest(spall.angle_rad + TAU * inner_ratio * motor),
                     DefectPlace::Element => {
                         // It slips as much as its cage does, and meets a race every half turn.
                         let spun_rad = self.start_rad[1]
@@ -274,17 +275,19 @@ mod tests {
         (1..motor.len() - 1).filter(is_deepest).map(|k| motor[k]).collect()
     }
 
-    /// BPFO, BPFI and 2 BSF of the shaft's revolutions, whichever way it turns.
+    /// BPFO, BPFI and 2 BSF of the revolutions of one ring against the other, whichever turns and which way.
     #[test]
     fn elements_meet_a_spall_at_the_orders_of_the_bearing() {
         for (place, order) in
             [(DefectPlace::Outer, 3.58478), (DefectPlace::Inner, 5.41522), (DefectPlace::Element, 4.71350)]
         {
-            for ratio in [1.0, -0.4] {
-                let hits = hits(BearingTurning::new(&bearing(place, 0.0), ratio, 7, 0, 1e-5), 20);
+            // A shaft either way, and a planet that turns about its pin.
+            for ratios in [[1.0, 0.0], [-0.4, 0.0], [0.0, -0.6]] {
+                let hits = hits(BearingTurning::new(&bearing(place, 0.0), ratios, 7, 0, 1e-5), 20);
                 let count = (hits.len() - 1) as f64;
                 let found = count / (hits[hits.len() - 1] - hits[0]);
-                assert!((found / (order * f64::abs(ratio)) - 1.0).abs() < 2e-3, "{place:?} {ratio}: {found}");
+                let ratio = f64::abs(ratios[0] - ratios[1]);
+                assert!((found / (order * ratio) - 1.0).abs() < 3e-3, "{place:?} {ratios:?}: {found}");
             }
         }
     }
@@ -318,7 +321,7 @@ mod tests {
     /// 1 % of a spacing at each pass: the interval of two passes has that standard deviation, and the walk grows with their root.
     #[test]
     fn cage_slips_by_a_walk() {
-        let hits = hits(BearingTurning::new(&bearing(DefectPlace::Outer, 0.01), 1.0, 7, 0, 1e-5), 400);
+        let hits = hits(BearingTurning::new(&bearing(DefectPlace::Outer, 0.01), [1.0, 0.0], 7, 0, 1e-5), 400);
         let deviation = |over: usize| {
             let gaps: Vec<f64> = hits.windows(over + 1).map(|of| of[over] - of[0]).collect();
             let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;

@@ -178,7 +178,10 @@ impl Layout {
             .map(|(index, wheel)| shaft_of("wheel", index, own_wheels, &wheel.shaft))
             .collect::<Result<_, _>>()?;
         let shaft_of_bearing: Vec<usize> = (scenario.bearings().iter().enumerate())
-            .map(|(index, bearing)| shaft_of("bearing", index, scenario.bearings().len(), &bearing.shaft))
+            .map(|(index, bearing)| match scenario.axis_of_planet(&bearing.shaft) {
+                Some(axis) => Ok(axis),
+                None => shaft_of("bearing", index, scenario.bearings().len(), &bearing.shaft),
+            })
             .collect::<Result<_, _>>()?;
         let meshes = scenario.own_meshes();
         let wheels_of_mesh: Vec<[usize; 2]> = (scenario.meshes.iter().enumerate())

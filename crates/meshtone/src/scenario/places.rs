@@ -82,8 +82,9 @@ impl Scenario {
             _ => {
                 let (shaft, place) = along(at)
                     .ok_or("must be \"SHAFT:AT\", \"shaft:SHAFT:AT\" or \"housing:[x, y, z]\"".to_owned())?;
-                let mut bearings = self.bearings().iter().zip(&layout.shaft_of_bearing);
+                let bearings = self.bearings().iter().zip(&layout.shaft_of_bearing);
                 let seat = bearings
+                    .filter(|(_, of)| **of < self.shafts().len())
                     .position(|(bearing, of)| *of == shaft && (bearing.at - place).abs() < SAME_PLACE);
                 seat.map(GearboxPlace::Seat).ok_or_else(|| "names no bearing's place".to_owned())
             }
@@ -92,7 +93,7 @@ impl Scenario {
 
     fn known_places(&self) -> String {
         let seats: Vec<String> =
-            self.bearings().iter().map(|bearing| format!("{:?}", bearing.seat_name())).collect();
+            self.bearings_of_shafts().map(|bearing| format!("{:?}", bearing.seat_name())).collect();
         let sets: Vec<String> =
             self.planetary().iter().map(|set| format!("\"ring:{}:90\"", set.name)).collect();
         let rings = if sets.is_empty() { String::new() } else { format!("; rings {}", sets.join(", ")) };

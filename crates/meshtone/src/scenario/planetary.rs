@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use super::{Scenario, ScenarioMesh, ScenarioWheel, Shafts};
 use crate::keys::{Keys, Range, field, keys};
-use crate::machine::{Coupled, WheelInertia};
+use crate::machine::{Bearing, Coupled, WheelInertia};
 use crate::wheel::rows::*;
 use crate::wheel::{FlankRelief, FoundationCoefficients};
 
@@ -375,6 +375,20 @@ impl Scenario {
     /// Number of a shaft.
     pub(crate) fn shaft_number(&self, name: &str) -> Option<usize> {
         self.shafts().iter().position(|shaft| shaft.name == name)
+    }
+
+    /// The bearings that sit between a shaft and a seat: all but those of planets.
+    pub fn bearings_of_shafts(&self) -> impl Iterator<Item = &Bearing> {
+        self.bearings().iter().filter(|bearing| self.axis_of_planet(&bearing.shaft).is_none())
+    }
+
+    /// Number of the axis of a planet, on which a bearing can be: those of sets come after the shafts.
+    pub(super) fn axis_of_planet(&self, name: &str) -> Option<usize> {
+        let of_sets = &self.wheels[self.own_wheels()..];
+        let is_named = |wheel: &ScenarioWheel| {
+            wheel.name == name && matches!(wheel.of_set, Some(OfSet { member: Member::Planet(_), .. }))
+        };
+        Some(self.shafts().len() + of_sets.iter().position(is_named)?)
     }
 
     /// Whether a member of a set sits at the end of its shaft rather than at its beginning: away from the motor, which is at the beginning of its

@@ -7,6 +7,7 @@ use super::planetary::{FIXED, Member, PlanetarySet};
 use super::turning::member_ratios;
 use super::{Scenario, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
+use crate::machine::Bearing;
 use crate::operation::least_common_multiple;
 use crate::wheel::{Gears, Hand, Mounting, Wheel};
 
@@ -272,6 +273,17 @@ impl Layout {
         Ok(())
     }
 
+    /// Number of the set and of the planet whose axis this is.
+    ///
+    /// # Arguments
+    /// * `axis` - its number among the shafts
+    pub fn planet_on_axis(&self, axis: usize) -> Option<[usize; 2]> {
+        let first_axis = |set: &SetLayout| self.shaft_of_wheel[set.first_wheel + 1];
+        let has = |set: &&SetLayout| (first_axis(set)..first_axis(set) + set.planets()).contains(&axis);
+        let number = self.sets.iter().position(|set| has(&set))?;
+        Some([number, axis - first_axis(&self.sets[number])])
+    }
+
     /// Whether a wheel is a ring with internal teeth.
     ///
     /// # Arguments
@@ -324,6 +336,27 @@ impl Scenario {
             if set.name == FIXED {
                 let key = entry_key("planetary", index, self.planetary().len(), "name");
                 return Err(ScenarioError::new(key, format!("{FIXED:?}"), "says that a member stands still"));
+            }
+        }
+        let of_planets = |bearing: &Bearing| self.axis_of_planet(&bearing.shaft);
+        for (index, bearing) in self.bearings().iter().enumerate() {
+            let Some(axis) = of_planets(bearing) else { continue };
+            let refused = |key: &str, value: &str, problem: &str, help: &str| {
+                let key = entry_key("bearing", index, self.bearings().len(), key);
+                Err(ScenarioError::new(key, format!("{value:?}"), problem).with_help(help))
+            };
+            if bearing.element().is_none() {
+                let problem = "a planet's bearing without balls or rollers is its pin's stiffness";
+                return refused(
+                    "kind",
+                    "linear",
+                    problem,
+                    "set planetary.pin.stiffness_n_per_m, or another kind",
+                );
+            }
+            if self.bearings()[..index].iter().any(|before| of_planets(before) == Some(axis)) {
+                let problem = "is a planet that has a bearing already; rows of elements count as one";
+                return refused("shaft", &bearing.shaft, problem, "remove one of the two");
             }
         }
         if !self.planetary().is_empty() && self.operation.overruns() {

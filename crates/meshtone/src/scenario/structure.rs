@@ -344,7 +344,7 @@ impl Scenario {
             direction: SensorDirection::Radial,
             ..Sensor::at_place(&format!("ring:{}:90", set.name))
         });
-        let on_seats = self.bearings().iter().map(|bearing| Sensor::at_place(&bearing.seat_name()));
+        let on_seats = self.bearings_of_shafts().map(|bearing| Sensor::at_place(&bearing.seat_name()));
         on_rings.chain(on_seats).collect()
     }
 

@@ -5,8 +5,8 @@ use meshtone_fourier::{from_real_spectrum, real_spectrum};
 use super::record::as_series;
 use super::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, GearTrain, Passages, PassingSignal, Record,
-    ShaftPhase, SignalError, SignalWarning, TrainRecording, angular_resample, planetary_average,
-    process_average,
+    ShaftPhase, SignalError, SignalWarning, SynchronousAverage, TrainRecording, angular_resample,
+    planetary_average, process_average,
 };
 use crate::scenario::{Layout, Member, Ratio, Scenario, SetLayout};
 use crate::sensor::{RingPlace, Sensor};
@@ -94,6 +94,11 @@ pub(super) struct Passing {
 }
 
 impl Passing {
+    /// The average of all there is.
+    pub(super) fn average(&self) -> Result<SynchronousAverage, SignalError> {
+        Ok(planetary_average(&self.signals, &self.passages)?.average)
+    }
+
     /// The records of the wheel: of all there is, or of segments.
     ///
     /// # Arguments

@@ -7,7 +7,7 @@ use super::record::{process_angular, process_angular_segments};
 use super::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, ForeignSearch, GearTrain, Interpolation,
     Record, SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
-    angular_resample, check_channel, sensor_faults,
+    SynchronousAverage, angular_resample, check_channel, revolution_average, sensor_faults,
 };
 use crate::scenario::Scenario;
 use crate::wheel::WheelName;
@@ -213,6 +213,34 @@ impl TrainRecording<'_> {
                 shafts.angular(self.signal, WheelName::BOTH[wheel.min(1)], &settings)
             }
             TrainTurning::Shaft { .. } => angular_resample(self.signal, &self.wheel_phase(wheel)?, settings),
+        }
+    }
+
+    /// The average over the revolutions of a wheel, of one at least: of planets and suns that a carrier takes past the sensor by windows around their
+    /// passages.
+    ///
+    /// # Arguments
+    /// * `wheel` - its number
+    /// * `settings` - how the signal is resampled
+    ///
+    /// # Errors
+    /// Those of [`angular_resample`]; no whole revolution, or teeth that did not pass the sensor.
+    pub fn average(
+        &self,
+        wheel: usize,
+        settings: &AngularSettings,
+    ) -> Result<SynchronousAverage, SignalError> {
+        if let Some(passing) = self.passing(wheel, settings)? {
+            return passing.average();
+        }
+        let angular = self.angular(wheel, settings)?;
+        match angular.revolutions() {
+            0 => Err(SignalError::TooFewRevolutions { revolutions: 0.0, needed: 1 }),
+            revolutions => Ok(SynchronousAverage {
+                revolutions,
+                nyquist_order: angular.nyquist_order,
+                values: revolution_average(&angular.values, angular.points_per_revolution),
+            }),
         }
     }
 

@@ -306,7 +306,9 @@ impl Stages {
         let turning = |(number, bearing): &'a (usize, RollingBearing)| {
             let shaft = self.layout.shaft_of_bearing[*number];
             let ratio = self.layout.ratios[shaft].value();
-            BearingTurning::new(bearing, ratio, self.scenario.seed, *number, time.step_s())
+            // A planet turns with the outer ring about its pin.
+            let rings = if shaft < self.layout.own_shafts() { [ratio, 0.0] } else { [0.0, ratio] };
+            BearingTurning::new(bearing, rings, self.scenario.seed, *number, time.step_s())
         };
         Problem {
             time,

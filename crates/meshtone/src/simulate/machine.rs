@@ -161,13 +161,16 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         let both = line.wheels.iter().zip(line.base_radii_m);
         1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
     });
-    let sets: Vec<SetParts> = (scenario.planetary().iter().zip(&layout.sets))
+    let mut sets: Vec<SetParts> = (scenario.planetary().iter().zip(&layout.sets))
         .map(|(set, of_set)| set_parts(scenario, layout, teeth, set, of_set))
         .collect();
-    let linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(scenario.bearings()))
+    let mut linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(scenario.bearings()))
+        .filter(|(shaft, _)| **shaft < shafts.len())
         .map(|(&shaft, bearing)| SeatedBearing::linear(shaft, bearing))
         .collect();
-    let rolling: Vec<(usize, RollingParts)> = scenario.rolling_bearings()?;
+    let mut rolling: Vec<(usize, RollingParts)> = scenario.rolling_bearings()?;
+    // Those of planets come last in the machine.
+    rolling.sort_by_key(|(number, _)| (layout.shaft_of_bearing[*number] + 1).saturating_sub(shafts.len()));
     let ratios: Vec<f64> = layout.ratios.iter().take(shafts.len()).map(|ratio| ratio.value()).collect();
     let of_wheels = (scenario.wheels.iter().zip(&layout.shaft_of_wheel))
         .map(|(wheel, &shaft)| PlacedUnbalance { shaft, at: wheel.at, unbalance: &wheel.unbalance });
@@ -177,30 +180,43 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         unbalance: &of.unbalance,
     });
     let unbalances: Vec<_> = of_wheels.chain(of_shafts).filter(|of| of.unbalance.g_mm > 0.0).collect();
-    let mut parts = GearboxParts {
+    let without = GearboxParts {
         shafts: &shafts,
         speed_ratios: &ratios,
         discs: &discs,
         meshes: &lines,
-        bearings: &linear,
+        bearings: &[],
         housing: scenario.housing(),
         material: scenario.material,
         unbalances: &unbalances,
         brake_inertia_kgm2: scenario.operation.brake_inertia_kgm2,
-        sets: &sets,
+        sets: &[],
     };
+    let parts = GearboxParts { bearings: &linear, sets: &sets, ..without };
     let mut machine = GearboxMachine::new(&parts);
-    let (mut seated, mut bearings) = (linear.clone(), Vec::new());
+    let mut bearings = Vec::new();
     if !rolling.is_empty() {
-        let loads_n = machine.static_bearing_loads_n(&parts, scenario.operation.brake_torque_nm);
+        let torque_nm = scenario.operation.brake_torque_nm;
+        let loads_n = machine.static_bearing_loads_n(&parts, torque_nm);
         for ((number, rolling), load_n) in rolling.into_iter().zip(loads_n) {
-            let bearing = RollingBearing::new(rolling, load_n);
-            seated[number].radial_n_per_m = bearing.spring_n_per_m;
+            let mut bearing = RollingBearing::new(rolling, load_n);
+            match layout.planet_on_axis(layout.shaft_of_bearing[number]) {
+                Some([set, planet]) => {
+                    let set = &mut sets[set];
+                    let springs = set.rolling_n_per_m.iter_mut().filter(|(of, _)| *of == planet);
+                    springs.for_each(|(_, spring)| *spring = bearing.spring_n_per_m);
+                    bearing.off_m[1] = set.pin_errors_m.get(planet).copied().unwrap_or(0.0);
+                }
+                None => {
+                    let seat = layout.shaft_of_bearing[..number].iter().filter(|of| **of < shafts.len());
+                    linear[seat.count()].radial_n_per_m = bearing.spring_n_per_m;
+                }
+            }
             bearings.push((number, bearing));
         }
-        parts.bearings = &seated;
-        machine = GearboxMachine::new(&parts);
+        machine = GearboxMachine::new(&GearboxParts { bearings: &linear, sets: &sets, ..without });
     }
+    let parts = GearboxParts { bearings: &linear, sets: &sets, ..without };
     let mesh_mass_kg = mass_kg.chain(sets.iter().flat_map(SetParts::mesh_masses_kg)).collect();
     let spinning = machine.spinning(&parts);
     let rim_radii_m = sets.iter().map(|set| set.rim.radius_m).collect();
@@ -265,6 +281,13 @@ fn set_parts(
         supports_n_per_m: [set.sun_support_n_per_m, set.carrier_support_n_per_m, support],
         couplings_nm_per_rad: [to_sun, coupling, to_ring],
         pin_n_per_m: set.pin.stiffness_n_per_m,
+        rolling_n_per_m: (0..planets)
+            .filter(|planet| {
+                let axis = layout.shaft_of_wheel[of_set.first_wheel + 1 + planet];
+                layout.shaft_of_bearing.contains(&axis)
+            })
+            .map(|planet| (planet, [[set.pin.stiffness_n_per_m, 0.0], [0.0, set.pin.stiffness_n_per_m]]))
+            .collect(),
         pin_errors_m: set.pin.error_um.iter().map(|um| um * 1e-6).collect(),
         rim: RimParts {
             radius_m: root_m + rim_m / 2.0,

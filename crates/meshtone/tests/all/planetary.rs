@@ -73,6 +73,7 @@ fn lin_parker(planets: usize) -> SetParts {
         supports_n_per_m: [1e8; 3],
         couplings_nm_per_rad: [0.0, 0.0, 1e9 * ring_m * ring_m],
         pin_n_per_m: 1e8,
+        rolling_n_per_m: Vec::new(),
         pin_errors_m: Vec::new(),
         // One shape alone is left, which is as good as rigid.
         rim: RimParts {
@@ -471,6 +472,49 @@ fn damaged_teeth_sound_at_their_orders() {
     assert!(off < 1e-3 * on);
 }
 
+/// A planet turns with the outer ring of its bearing, and its load stands at the inner one on the pin: a spall of the outer race passes the load once a
+/// turn, which gives its lines sidebands, and one of the inner race stays under the load.
+#[test]
+fn planet_bearings_exchange_the_roles_of_their_rings() {
+    const BEARING: &str = "[[bearing]]\nshaft = \"p.planet1\"\nat = 0.5\nkind = \"roller\"\nelements = 14\nelement_mm = 10.0\npitch_mm = 60.0\nslip_percent = 0.0\n";
+    let revolutions = 12.0;
+    let shown = |defect: &str| {
+        let text = RIG_A.replace("[operation]", &format!("{BEARING}{defect}\n[operation]"));
+        let mut scenario = Scenario::from_toml(&text).unwrap();
+        scenario.solver.sampling_rate_hz = 40280.0;
+        scenario.solver.duration_s = Some(revolutions * 31.0 / (20.0 * 0.81 * 19.0));
+        let stages = stages(scenario).unwrap();
+        let load_n = stages.bearings[0].1.static_load_n;
+        // Twice the tangential force of a mesh, by the linear springs that only find where to linearise.
+        assert!(load_n[0].abs() < 1.0 && (load_n[1] / -822.4 - 1.0).abs() < 0.02, "{load_n:?}");
+        stages.simulate().unwrap().channels.signal("force_n.p.sun-p.planet1").unwrap().to_vec()
+    };
+    let [sound, outer, inner] = ["", "outer", "inner"].map(|race| match race {
+        "" => shown(""),
+        race => shown(&format!("defect = [{{ race = \"{race}\", width_mm = 2.0 }}]")),
+    });
+    // Orders of the planet against the carrier.
+    let (of_outer, of_inner) = (14.0 * (1.0 - 1.0 / 6.0) / 2.0, 14.0 * (1.0 + 1.0 / 6.0) / 2.0);
+    let lines = |signal: &[f64], order: f64| {
+        [order, order - 1.0, order + 1.0].map(|order| line_m_s2(signal, order, revolutions) / 9.81)
+    };
+    for (name, signal) in [("sound", &sound), ("outer", &outer), ("inner", &inner)] {
+        println!("{name}: BPFO {:.2?} N, BPFI {:.2?} N", lines(signal, of_outer), lines(signal, of_inner));
+    }
+    let [[outer_line, below, above], [sound_line, ..]] =
+        [&outer, &sound].map(|signal| lines(signal, of_outer));
+    assert!(
+        outer_line.min(below).min(above) > 20.0 * sound_line,
+        "{outer_line} {below} {above} {sound_line}"
+    );
+    let [inner_line, below, above] = lines(&inner, of_inner);
+    let [sound_line, ..] = lines(&sound, of_inner);
+    assert!(
+        inner_line > 2.0 * sound_line && below.max(above) < 0.02 * inner_line,
+        "{inner_line} {below} {above}"
+    );
+}
+
 /// The ratios of all shafts of a train of sets.
 fn ratios(shafts: &[&str], sets: &[[&str; 3]], brake: &str) -> Result<Vec<String>, ScenarioError> {
     let mut text = String::new();
@@ -559,6 +603,8 @@ fn sets_that_do_not_fit_are_refused() {
         "[[fault]]\nwheel = \"p.sun\"\nflank = \"ring\"\nkind = \"missing-tooth\"\n[solver]",
     )]);
     assert!(elsewhere.contains("fault.flank"));
+    let linear = refused(&[("[operation]", "[[bearing]]\nshaft = \"p.planet1\"\nat = 0.5\n[operation]")]);
+    assert!(linear.contains("bearing[4].kind") && linear.contains("planetary.pin.stiffness_n_per_m"));
     let overrun = refused(&[("brake_torque_nm = 263.157894736842", "brake_torque_nm = -263.0")]);
     assert!(overrun.contains("operation.brake_torque_nm"));
 }

@@ -525,7 +525,7 @@ impl GearboxMachine {
         parts.unbalances.iter().map(of_unbalance).chain(bent.map(of_bow)).chain(of_pins).collect()
     }
 
-    /// Stretch of each rolling bearing along x and y.
+    /// Stretch of each rolling bearing along x and y, of planets along ζ and η.
     fn rolling_bearings(&self, parts: &GearboxParts, coordinates: usize) -> Vec<[DVector<f64>; 2]> {
         let stretch = |(of, seat): (&SeatedBearing, &usize)| {
             let node = self.node(of.shaft, of.bearing.at * parts.shafts[of.shaft].0.length_mm * 1e-3);
@@ -537,7 +537,9 @@ impl GearboxMachine {
             })
         };
         let rolling = parts.bearings.iter().zip(&self.seats).filter(|(of, _)| of.bearing.element().is_some());
-        rolling.map(stretch).collect()
+        let of_planets =
+            self.sets.iter().zip(parts.sets).flat_map(|(set, of)| set.rolling_bearings(of, coordinates));
+        rolling.map(stretch).chain(of_planets).collect()
     }
 
     /// What turns with each node. Beams count half at either end.
@@ -579,11 +581,13 @@ impl GearboxMachine {
         }
         let displacement = machine.displaced_by(stiffness, &[force]).column(0).into_owned();
         let rolling = parts.bearings.iter().filter(|of| of.bearing.element().is_some());
-        let load = |(of, stretch): (&SeatedBearing, &[DVector<f64>; 2])| {
+        let of_planets =
+            parts.sets.iter().flat_map(|set| set.rolling_n_per_m.iter().map(|(_, spring)| *spring));
+        let load = |(spring, stretch): ([[f64; 2]; 2], &[DVector<f64>; 2])| {
             let [x_m, y_m] = stretch.each_ref().map(|stretch| stretch.dot(&displacement));
-            of.radial_n_per_m.map(|[of_x, of_y]| of_x * x_m + of_y * y_m)
+            spring.map(|[of_x, of_y]| of_x * x_m + of_y * y_m)
         };
-        rolling.zip(&machine.bearings).map(load).collect()
+        rolling.map(|of| of.radial_n_per_m).chain(of_planets).zip(&machine.bearings).map(load).collect()
     }
 
     /// The line of action of a mesh: the driving wheel, which turns in the sense s about z, pushes the other one along

@@ -40,6 +40,8 @@ pub struct SetParts {
     pub couplings_nm_per_rad: [f64; 3],
     /// (N/m) Stiffness of each pin.
     pub pin_n_per_m: f64,
+    /// (N/m) What stands in place of that at planets on rolling bearings: the number of the planet, and the bearing's linear spring along ζ and η.
+    pub rolling_n_per_m: Vec<(usize, [[f64; 2]; 2])>,
     /// (m) How far each pin stands ahead of its place; empty for none.
     pub pin_errors_m: Vec<f64>,
     /// The rim of the ring.
@@ -76,6 +78,12 @@ pub struct RimParts {
 }
 
 impl SetParts {
+    /// (N/m) Stiffness of a planet's pin, or of the rolling bearing on it, along ζ and η.
+    fn pin_n_per_m(&self, planet: usize) -> [[f64; 2]; 2] {
+        let rolling = self.rolling_n_per_m.iter().find(|(of, _)| *of == planet);
+        rolling.map_or([[self.pin_n_per_m, 0.0], [0.0, self.pin_n_per_m]], |(_, spring)| *spring)
+    }
+
     /// (kg) The mass that the wheels' rotation has along each line of action, those of the sun first.
     pub fn mesh_masses_kg(&self) -> Vec<f64> {
         let [sun, planet, ring, _] = self.bodies.map(|body| body.polar_kgm2);
@@ -229,8 +237,13 @@ impl SetCoordinates {
             };
             assembly.hold(&twist, parts.couplings_nm_per_rad[member], damping);
         }
-        for stretch in self.pins(parts).iter().flatten() {
-            assembly.hold(stretch, parts.pin_n_per_m, damping);
+        for (planet, [along, across]) in self.pins(parts).iter().enumerate() {
+            let [[radial, mixed], [_, tangential]] = parts.pin_n_per_m(planet);
+            assembly.hold(along, radial, damping);
+            assembly.hold(across, tangential, damping);
+            let spring = assembly.spring(damping);
+            spring.couple(along, across, mixed);
+            spring.couple(across, along, mixed);
         }
     }
 
@@ -247,6 +260,23 @@ impl SetCoordinates {
         parts.angles_rad.iter().zip(&self.planets).map(of_planet).collect()
     }
 
+    /// The stretch of each planet's rolling bearing along ζ and η: of its inner ring on the pin against its outer one in the planet.
+    ///
+    /// # Arguments
+    /// * `parts` - of the set
+    /// * `coordinates` - number of coordinates of the machine
+    pub(super) fn rolling_bearings(&self, parts: &SetParts, coordinates: usize) -> Vec<[DVector<f64>; 2]> {
+        let pins = self.pins(parts);
+        let of_planet = |(planet, _): &(usize, _)| {
+            pins[*planet].each_ref().map(|stretch| {
+                let mut of_bearing = DVector::zeros(coordinates);
+                stretch.iter().for_each(|&(n, weight)| of_bearing[n] = -weight);
+                of_bearing
+            })
+        };
+        parts.rolling_n_per_m.iter().map(of_planet).collect()
+    }
+
     /// The constant forces of pins that stand ahead of their places: each presses its planet and its carrier with its stiffness times the error.
     ///
     /// # Arguments
@@ -254,8 +284,11 @@ impl SetCoordinates {
     /// * `coordinates` - number of coordinates of the machine
     pub(super) fn pin_errors(&self, parts: &SetParts, coordinates: usize) -> Option<TurningForce> {
         let mut force = DVector::zeros(coordinates);
-        for ([_, across], error_m) in self.pins(parts).into_iter().zip(&parts.pin_errors_m) {
-            across.iter().for_each(|&(n, weight)| force[n] += weight * parts.pin_n_per_m * error_m);
+        for (planet, (stretch, error_m)) in self.pins(parts).iter().zip(&parts.pin_errors_m).enumerate() {
+            let [_, by_error] = parts.pin_n_per_m(planet);
+            for (stretch, stiffness) in stretch.iter().zip(by_error) {
+                stretch.iter().for_each(|&(n, weight)| force[n] += weight * stiffness * error_m);
+            }
         }
         let is_some = force.iter().any(|value| *value != 0.0);
         is_some.then(|| TurningForce::new(0.0, false, [force, DVector::zeros(coordinates)], 0.0))
