@@ -618,6 +618,8 @@ class GearboxPlanetary(TypedDict, total=False):
         (N/m) The stiffness that holds the sun across its axis; a floating sun has 1e3. Allowed: > 0, ≤ 1e15.
     carrier_support_n_per_m : float
         (N/m) The stiffness that holds the carrier across its axis. Allowed: > 0, ≤ 1e15.
+    carrier_eccentricity_um : float
+        (µm) The eccentricity of the circle of the pins, towards the first planet. Allowed: 0…1000.
     coupling_stiffness_nm_per_rad : float
         (N m/rad) The torsional stiffness between a member and its shaft, or the ground where sun or carrier is fixed.
         Allowed: > 0, ≤ 1e15.
@@ -658,6 +660,7 @@ class GearboxPlanetary(TypedDict, total=False):
     rim: Rim
     sun_support_n_per_m: float
     carrier_support_n_per_m: float
+    carrier_eccentricity_um: float
     coupling_stiffness_nm_per_rad: float
     support_damping_ratio: float
     sun_inertia: SunInertia

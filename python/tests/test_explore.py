@@ -750,3 +750,36 @@ def test_a_bearing_becomes_a_rolling_one_with_a_defect(train_page: Page, train: 
     assert page.enter("bearing[0].kind", "linear") == ""
     assert page.run(hidden)
     assert "element" not in bearing()
+
+
+def test_a_planetary_set_turns_and_is_looked_at_wheel_by_wheel(browser: Chrome) -> None:
+    """Planets turn about the axis, teeth are seen by averages of windows, and lines are named after set and carrier."""
+    text = mt.gearbox_template("planetary-lab").replace("sampling_rate_hz = 100_000.0", "sampling_rate_hz = 50000.0")
+    with mt.explore(mt.Scenario.from_toml(text), open_browser=False) as explorer:
+        assert explorer.url is not None
+        page = Page(browser, explorer.url)
+        carried = "return document.querySelector('#front [aria-label^=\"wheel p.planet2\"]').getAttribute('transform')"
+        start = page.run(carried)
+        page.run("document.getElementById('turn').click()")
+        page.wait(lambda: page.run(carried) != start, "the planets to turn")
+        page.run("document.getElementById('turn').click()")
+        assert page.run("return document.getElementById('turn').getAttribute('aria-pressed')") == "false"
+        look = "const box = document.getElementById('wheel'); box.value = arguments[0]; box.dispatchEvent(new Event('change'))"
+        indicators = "return document.querySelectorAll('#indicators tbody tr').length"
+        for wheel in ("p.planet2", "p.sun", "p.ring"):
+            page.settled(lambda wheel=wheel: page.run(look, wheel), wheel)  # type: ignore[misc]
+            page.wait(lambda: page.run(indicators) > 5, f"the indicators of {wheel}")
+        lines = page.run("return [...document.querySelectorAll('#lines tbody th')].map((cell) => cell.textContent)")
+        assert any("mesh p" in line and "shaft output" in line for line in lines), lines
+        assert not any("p.planet2-p.ring" in line for line in lines)
+        signal = mt.simulate(explorer.scenario)["ring_p_90_radial_g"][::5]
+        rows = "".join(f"{number / 1e4:.4f},{value:.4g}\n" for number, value in enumerate(signal))
+        open_recording(page, "set.csv", f"time_s,vibration_g\n{rows}".encode())
+        head = "return [...document.querySelectorAll('#indicators thead th')].map((cell) => cell.textContent)"
+        page.wait(lambda: page.run(head) == ["indicator", "now", "recording"], "the recording's indicators")
+        assert page.enter("solver.duration_s", "1.0") == ""
+        page.settled(lambda: page.run(look, "p.planet1"), "a planet of a short signal")
+        page.wait(lambda: "revolutions" in text_of(page, "wheel-note"), "the reason why there is no average")
+        assert page.enter("planetary[0].pin.stiffness_n_per_m", "2e8") == ""
+        assert page.errors() == []
+        browser.get("about:blank")

@@ -132,6 +132,14 @@ impl Prior {
         let mut base = rig.clone().with_faults(Vec::new());
         base.sensors.truncate(1);
         let has_any_sensor = base.sensors.is_empty();
+        if let Some(set) = base.planetary().first() {
+            let problem = "is a planetary set, and these are not diagnosed: the average of a planet takes many revolutions of the carrier, and \
+                           thousands of simulations of that length would have to be compared";
+            return Err(ScenarioError::new("planetary", format!("{:?}", set.name), problem).with_help(
+                "compare the averages of `meshtone indicators` with those of the sound machine, or learn from a data set (`meshtone init dataset \
+                 --planetary`)",
+            ));
+        }
         if base.rig().is_none() {
             once(&mut base)?;
         } else if has_any_sensor {

@@ -277,6 +277,7 @@ warning_kinds! {
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than gears usually run";
     Gyroscopic "gyroscopic" "gyroscopic moments, which are neglected, shift a natural frequency by more than 2 %";
+    IdlePlanet "idle-planet" "a planet carries less than a tenth of its share of the load";
     TurningFrame "turning-frame" "the forces of a carrier's turning frame, which are neglected, shift natural frequencies by more than 1 %";
     AddedThrust "added-thrust" "the axial forces of two helical wheels add up on their shaft";
     LongCycle "long-cycle" "the machine repeats itself only after a very long time";

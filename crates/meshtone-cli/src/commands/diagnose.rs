@@ -113,7 +113,10 @@ impl Diagnose {
         let of_rig = [self.scenario.as_path()].into_iter().chain(self.tuned.as_deref());
         let read: Vec<&Path> = recordings.chain(self.phase.files()).chain(of_rig).collect();
         let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
-        let prior = Prior::new(&scenario).map_err(|error| Failure::bad_input(error.to_string()))?;
+        let prior = Prior::new(&scenario).map_err(|error| {
+            let failure = Failure::bad_input(error.to_string());
+            error.help.into_iter().fold(failure, Failure::with_help)
+        })?;
         question.check(&prior)?;
         // Before minutes of simulations.
         let of_reading = of_now.iter().chain(&of_healthy).map(warnings::in_words);

@@ -47,6 +47,9 @@ pub struct Init {
     /// Print the plan of a data set of a gearbox, instead of one pair
     #[arg(long)]
     gearbox: bool,
+    /// Print the plan of a data set of a planetary set
+    #[arg(long, conflicts_with = "gearbox")]
+    planetary: bool,
     /// Write the files that an experiment names beside it: its scenario, and recordings of a simulated rig
     #[arg(long, requires = "output")]
     files: bool,
@@ -68,6 +71,7 @@ Examples:
   meshtone init gearbox --all
   meshtone init dataset -o plan.toml
   meshtone init dataset --gearbox -o plan.toml
+  meshtone init dataset --planetary -o plan.toml
   meshtone init experiment --files -o experiment.toml   with recordings, for `meshtone tune experiment.toml`
   meshtone init recordings                              a folder of recordings, with a list of what is in them";
 
@@ -85,6 +89,7 @@ impl Init {
             }
             GEARBOX => gearbox_template(rig),
             DATASET if self.gearbox => plan::gearbox_template(),
+            DATASET if self.planetary => plan::planetary_template(),
             DATASET => plan::template().to_owned(),
             EXPERIMENT => experiment::template().to_owned(),
             kind if self.all => template_of_all_keys(kind).ok_or_else(unknown)?,
@@ -105,6 +110,7 @@ impl Init {
             ("--rig", self.rig.is_some(), self.kind == GEARBOX, "only a gearbox has published rigs"),
             ("--files", self.files, self.kind == EXPERIMENT, "only an experiment names files"),
             ("--gearbox", self.gearbox, self.kind == DATASET, "only a data set is of a pair or of a gearbox"),
+            ("--planetary", self.planetary, self.kind == DATASET, "only a data set has a plan"),
             ("--all", self.all, is_scenario, "only a scenario has a longer form"),
         ];
         match options.into_iter().find(|(_, is_given, fits, _)| *is_given && !fits) {

@@ -144,7 +144,7 @@ fn indicators_of_a_planetary_set() {
     let changes = [
         ("teeth = { sun = 31, planet = 31, ring = 95 }", "teeth = { sun = 20, planet = 25, ring = 70 }"),
         ("profile_shift = { sun = 0.32, planet = 0.32, ring = -0.0611 }", ""),
-        ("50_000.0", "10_000.0"),
+        ("100_000.0", "40_000.0"),
         ("speed_wander_percent = 0.03", ""),
     ];
     let text = changes.iter().fold(text, |text, (from, to)| {
@@ -153,7 +153,7 @@ fn indicators_of_a_planetary_set() {
     });
     workplace.write("set.toml", text);
     workplace.succeeds(&["simulate", "set.toml", "-o", "out", "--no-panel", "-q"]);
-    let by_speed = ["--scenario", "set.toml", "--shaft", "output", "--shaft-hz", "4.4444444444"];
+    let by_speed = ["--scenario", "set.toml", "--shaft", "output", "--shaft-hz", "8.8888888889"];
     for options in [&[][..], &by_speed] {
         let command = ["indicators", "out", "-o", "shown", "--no-figure", "-q"];
         workplace.succeeds(&[&command[..], options].concat());
@@ -170,6 +170,8 @@ fn indicators_of_a_planetary_set() {
         let is_found = of("warnings", "code").iter().any(|code| code == "planets-found");
         assert_eq!(is_found, !options.is_empty(), "{}", shown["warnings"]);
     }
+    let diagnose = ["diagnose", "out", "--scenario", "set.toml"];
+    workplace.fails(2, &diagnose, &["is a planetary set", "init dataset --planetary"]);
 }
 
 /// Every shaft of a simulation, and of a recording with a tachometer on one shaft and a bearing's tone.

@@ -18,7 +18,7 @@ mod wheel;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{GearboxRig, Scenario};
 use meshtone_io::experiment::Tuned;
 use meshtone_toml::{TomlDocument, TomlError};
 
@@ -258,8 +258,34 @@ settle_fraction = 0.81
 settle_tolerance = 1e-2
 ";
     let gearbox = meshtone::scenario::gearbox_template(None);
+    with_gearbox(include_str!("template_gearbox.toml"), &gearbox, SOLVER)
+}
+
+/// A commented plan of a data set of a planetary set.
+///
+/// ```
+/// use std::path::Path;
+/// use meshtone_dataset::plan::{Plan, planetary_template};
+///
+/// let plan = Plan::read_text(planetary_template(), Path::new("plan.toml"))?;
+/// assert_eq!(plan.content.keep.wheel.names(), "p.sun, p.planet1, p.planet2, p.planet3, p.ring");
+/// # Ok::<(), meshtone_io::scenario_file::ReadScenarioError>(())
+/// ```
+pub fn planetary_template() -> String {
+    const SOLVER: &str = "\
+[scenario.solver]
+sampling_rate_hz = 100000.0
+duration_s = 5.0
+settle_tolerance = 1e-2
+";
+    let gearbox = meshtone::scenario::gearbox_template(Some(GearboxRig::PlanetaryLab));
+    with_gearbox(include_str!("template_planetary.toml"), &gearbox, SOLVER)
+}
+
+/// A plan with the sections of a gearbox, but for its solver's.
+fn with_gearbox(plan: &str, gearbox: &str, solver: &str) -> String {
     let has_section =
-        |part: &&str| part.lines().any(|line| line.starts_with('[')) && !part.starts_with("[solver]");
+        |part: &&str| part.lines().any(|line| line.starts_with('[')) && !part.contains("[solver]");
     let of_scenario = |line: &str| {
         let brackets = line.len() - line.trim_start_matches('[').len();
         let scenario = if brackets > 0 { "scenario." } else { "" };
@@ -271,7 +297,7 @@ settle_tolerance = 1e-2
     let parts: String = parts
         .map(|part| part.lines().filter(is_steady).map(of_scenario).collect::<String>() + "\n")
         .collect();
-    include_str!("template_gearbox.toml").replace("# <gearbox>\n", &format!("{parts}{SOLVER}\n"))
+    plan.replace("# <gearbox>\n", &format!("{parts}{solver}\n"))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use meshtone::batch::{Observation, SignalRecorder};
 use meshtone::damage::damages_of_fault;
 use meshtone::scenario::{Fault, ScenarioWarning, Sensor};
 use meshtone::sensor::{Channel, ContactFigures, SignalSource};
-use meshtone::signal::{AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
+use meshtone::signal::{AngleZero, AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
 use meshtone::tuning::DifferenceChain;
 use meshtone::{Simulation, Stages, StepJudgement};
 
@@ -187,7 +187,7 @@ impl<'a> View<'a> {
                 noise::add(&record.drawn, background, number as u64, rate_hz, channel)?;
             }
         }
-        self.chain(&GearTrain::of_stages(self.simulated))?.fill(&mut record, analysed, channels)?;
+        self.chain(&self.train())?.fill(&mut record, analysed, channels)?;
         Ok(record)
     }
 
@@ -337,7 +337,13 @@ impl<'a> View<'a> {
         // The wheels of a pair turn with the marked one.
         let number = if turning.enter_together { turning.marked } else { turning.number(wheel) };
         let turns = f64::from(turning.wheels[number].teeth) / f64::from(self.wheel(wheel).teeth);
-        let angles = self.angles(number, usize::MAX);
+        let mut angles = self.angles(number, usize::MAX);
+        // Where the planets of a set stand is known with the angles since the simulation's start.
+        let is_of_set = number >= self.simulated.scenario.own_wheels();
+        if is_of_set {
+            let first = self.train().wheels[number].start_rev;
+            angles.iter_mut().for_each(|angle| *angle -= first);
+        }
         let step = self.simulated.time.sampling_rate_hz / rate_hz;
         let at = |i: usize| {
             let place = i as f64 * step;
@@ -346,7 +352,23 @@ impl<'a> View<'a> {
             let angle = from + (place - whole as f64) * (angles[(whole + 1).min(last)] - from);
             angle * turns
         };
-        ShaftPhase::new(0, (0..samples).map(at).collect())
+        let mut phase = ShaftPhase::new(0, (0..samples).map(at).collect())?;
+        if is_of_set {
+            phase.zero = AngleZero::Simulated;
+        }
+        Ok(phase)
+    }
+
+    /// The machine, with the place of the analysed channel's sensor, and the wheels of planetary sets counted from their first tooth of the record.
+    fn train(&self) -> GearTrain {
+        let scenario = &self.simulated.scenario;
+        let mut train = GearTrain::of_stages(self.simulated).at_sensor(scenario, &self.keep.analysed.name());
+        for (number, wheel) in train.wheels.iter_mut().enumerate().skip(scenario.own_wheels()) {
+            let counted = self.window.counted_from[number] as f64;
+            wheel.start_rev =
+                (self.window.turning.wheels[number].first_pitch - counted) / f64::from(wheel.teeth);
+        }
+        train
     }
 
     /// The chain that makes a record of the channels.
@@ -367,7 +389,6 @@ impl<'a> View<'a> {
         let stages = self.simulated;
         // The same settings as those of the signals that the enhancement was tuned with.
         let angular = DifferenceChain::angular_settings(stages.scenario.model);
-        let train = GearTrain::of_stages(stages);
-        Ok(self.chain(&train)?.analyse(signal, 0, angular, MeanPart::Removed)?.parts.difference)
+        Ok(self.chain(&self.train())?.analyse(signal, 0, angular, MeanPart::Removed)?.parts.difference)
     }
 }

@@ -1,8 +1,8 @@
 //! From the channels of a record, simulated or recorded, to what a data set keeps of them.
 
 use meshtone::signal::{
-    AngularSettings, AntiAliasing, ChainSettings, Edge, GearTrain, MeanPart, Record as Analysis,
-    SeparationSettings, ShaftPhase, SignalError, angular_resample, process_channel,
+    AngularSettings, AntiAliasing, Edge, GearTrain, MeanPart, Record as Analysis, SeparationSettings,
+    ShaftPhase, SignalError, StatedTurning, TrainRecording, TrainSettings, TrainTurning, angular_resample,
 };
 
 use super::{Record, RecordAverage};
@@ -27,7 +27,7 @@ impl KeptChain<'_> {
     /// * `channels` - (g, N, …) in the order of [`Keep::simulated`], at the data set's rate; empty where one was not recorded
     ///
     /// # Errors
-    /// Those of [`process_channel`]; channels that are shorter than what is kept.
+    /// Those of [`TrainRecording::process_one`]; channels that are shorter than what is kept.
     pub fn fill(
         &self,
         record: &mut Record,
@@ -84,9 +84,19 @@ impl KeptChain<'_> {
             mean,
             ..SeparationSettings::new(teeth as usize)
         };
-        let separation = self.train.separation(number, &separation);
-        let settings = ChainSettings { angular, separation: Some(separation) };
-        process_channel(&double(signal), &self.phases[averaged], teeth, &settings)
+        let phase = self.phases[averaged].clone();
+        let turning = TrainTurning::Shaft {
+            shaft: self.train.wheels[number].shaft,
+            phase,
+            stated: StatedTurning::Other,
+        };
+        let (signal, sampling_rate_hz) = (double(signal), self.keep.sampling_rate_hz);
+        let recording =
+            TrainRecording { signal: &signal, sampling_rate_hz, train: self.train, turning: &turning };
+        let records =
+            recording.process_one(number, &TrainSettings { angular, separation, revolutions: None })?.records;
+        let needed = meshtone::signal::FEWEST_REVOLUTIONS;
+        records.into_iter().next().ok_or(SignalError::TooFewRevolutions { revolutions: 0.0, needed })
     }
 
     /// Number of a wheel of the plan in the machine.

@@ -11,7 +11,7 @@ use meshtone::signal::{
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
 use meshtone_dataset::merge::merge;
-use meshtone_dataset::plan::gearbox_template;
+use meshtone_dataset::plan::{gearbox_template, planetary_template};
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
 use parquet::record::Field;
@@ -329,4 +329,57 @@ fn what_a_gearbox_does_not_have_is_refused_at_its_key() {
         &of_varied_material("per = \"record\"\n"),
         &["material.density_kg_per_m3", "would differ between records of one unit"],
     );
+}
+
+/// Averages of a planetary set are those of windows, which begin with the first tooth of the record: a damaged tooth of sun and planets is where the
+/// column says.
+#[test]
+fn damaged_teeth_of_a_planetary_set_are_where_the_record_says() {
+    let mut text = planetary_template();
+    for (written, other) in [
+        ("records = 60\nunits = 6", "records = 6\nunits = 3"),
+        ("questions = [\"detection\", \"diagnosis\", \"severity\"]", "questions = [\"diagnosis\"]"),
+        ("teeth = { sun = 31, planet = 31, ring = 95 }", "teeth = { sun = 20, planet = 25, ring = 70 }"),
+        ("profile_shift = { sun = 0.32, planet = 0.32, ring = -0.0611 }  # assumed\n", ""),
+        ("iso_class = 5  # assumed\n", ""),
+        ("sampling_rate_hz = 100000.0\nduration_s = 5.0", "sampling_rate_hz = 40000.0\nduration_s = 3.0"),
+        (
+            "sampling_rate_hz = 25e3\nduration_s = 5.0",
+            "difference = true\nsampling_rate_hz = 2e4\nduration_s = 3.0",
+        ),
+    ] {
+        assert!(text.contains(written), "{written}");
+        text = text.replace(written, other);
+    }
+    let (before, rest) = text.split_once("[[class]]\nlabel = \"healthy\"").unwrap();
+    let after = &rest[rest.find("# What varies").unwrap()..];
+    let class = |wheel: &str, tooth: u32| {
+        format!(
+            "[[class]]\nlabel = \"{wheel}\"\nfault = {{ wheel = \"{wheel}\", kind = \"missing-tooth\", tooth = {tooth} }}\nseverity = 5\n\n"
+        )
+    };
+    let plan = plan(&format!(
+        "{before}{}{}{}{after}",
+        class("p.sun", 4),
+        class("p.planet1", 7),
+        class("p.planet2", 12)
+    ));
+    let made = made(&plan);
+    for row in 0..made.rows.len() {
+        let wheel = made.text("fault_wheel", row);
+        let column = wheel.replace('.', "_");
+        let tooth = f64::from(made.tooth(row).unwrap());
+        let teeth = made.whole(&format!("{column}_teeth"), row) as f64;
+        let difference = made.signal(&format!("{column}_difference_g"), row);
+        let at = (0..difference.len())
+            .max_by(|a, b| difference[*a].abs().total_cmp(&difference[*b].abs()))
+            .unwrap();
+        let found = 1.0 + at as f64 / difference.len() as f64 * teeth;
+        // A sun's tooth is heard at each of three planets, and a planet's at sun and ring, whichever is the loudest.
+        let again = teeth / if wheel == "p.sun" { 3.0 } else { 2.0 };
+        let apart = (found - tooth + again / 2.0).rem_euclid(again) - again / 2.0;
+        println!("{wheel}: tooth {tooth}, found at {found:.2}");
+        // What the loss of the tooth leads to follows within two pitches.
+        assert!((-0.5..2.5).contains(&apart), "{wheel}: {found} for {tooth}");
+    }
 }

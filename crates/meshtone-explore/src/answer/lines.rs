@@ -1,6 +1,6 @@
 //! What the lines of a gearbox's spectrum are: harmonics of which mesh, sidebands of which shaft.
 
-use meshtone::signal::GearTrain;
+use meshtone::signal::{GearTrain, TrainSet};
 use meshtone_fourier::{hann_window, real_spectrum};
 use serde_json::{Value, json};
 
@@ -44,8 +44,8 @@ pub struct MeshTone {
     pub name: String,
     /// (Hz) Its frequency.
     pub frequency_hz: f64,
-    /// Numbers of the shafts of its wheels.
-    pub shafts: [usize; 2],
+    /// Numbers of the shafts of whose rotation its lines have sidebands: those of its wheels.
+    pub shafts: Vec<usize>,
 }
 
 /// The tones of a train: of its meshes, and names and (Hz) rotations of its shafts.
@@ -53,8 +53,13 @@ pub struct MeshTone {
 pub struct Tones {
     /// The meshes.
     pub meshes: Vec<MeshTone>,
+    /// What lines are named after: the meshes, but all those of a planetary set whose carrier turns as one, of which the sensor hears sidebands of the
+    /// carrier.
+    pub named: Vec<MeshTone>,
     /// The shafts.
     pub shafts: Vec<(String, f64)>,
+    /// Numbers of the shafts that lines are named after: of planets alike the first, and of no ring that the carrier turns past.
+    pub named_shafts: Vec<usize>,
 }
 
 impl Spectrum {
@@ -117,13 +122,31 @@ impl Tones {
     pub fn of(train: &GearTrain, input_hz: f64) -> Self {
         let speed_hz = |shaft: usize| train.shafts[shaft].speed_ratio.value() * input_hz;
         let mesh = |(number, wheels): (usize, &[usize; 2])| {
-            let shafts = wheels.map(|wheel| train.wheels[wheel].shaft);
+            let shafts = wheels.map(|wheel| train.wheels[wheel].shaft).to_vec();
             let frequency_hz = f64::from(train.wheels[wheels[0]].teeth) * speed_hz(shafts[0]);
             MeshTone { name: train.mesh_name(number), frequency_hz, shafts }
         };
         let shafts = train.shafts.iter().enumerate();
+        let meshes: Vec<MeshTone> = train.meshes.iter().enumerate().map(mesh).collect();
+        let of_set = |set: &TrainSet| set.first_wheel..set.first_wheel + set.planets_rev.len() + 2;
+        let is_in = |set: &TrainSet, mesh: usize| of_set(set).contains(&train.meshes[mesh][0]);
+        let alone = (0..meshes.len()).filter(|&mesh| !train.sets.iter().any(|set| is_in(set, mesh)));
+        let of_sets = train.sets.iter().filter_map(|set| {
+            let mesh = (0..meshes.len()).find(|&mesh| is_in(set, mesh))?;
+            let carrier =
+                train.shafts.iter().position(|of| of.speed_ratio.value() == set.carrier.value().abs())?;
+            let wheels = [0, 1].map(|member| train.wheels[set.first_wheel + member].shaft);
+            let shafts = [carrier].into_iter().chain(wheels).collect();
+            Some(MeshTone { name: set.name.clone(), shafts, ..meshes[mesh] })
+        });
+        let is_again = |shaft: usize| {
+            let mut others = train.sets.iter().flat_map(|set| of_set(set).skip(2));
+            others.any(|wheel| train.wheels[wheel].shaft == shaft)
+        };
         Self {
-            meshes: train.meshes.iter().enumerate().map(mesh).collect(),
+            named: alone.map(|mesh| meshes[mesh].clone()).chain(of_sets).collect(),
+            named_shafts: (0..train.shafts.len()).filter(|shaft| !is_again(*shaft)).collect(),
+            meshes,
             shafts: shafts.map(|(number, shaft)| (shaft.name.clone(), speed_hz(number))).collect(),
         }
     }
@@ -136,7 +159,7 @@ impl Tones {
     /// * `tolerance_hz` - (Hz) how far it may be beside what it is named after
     pub fn name(&self, frequency_hz: f64, tolerance_hz: f64) -> String {
         let mut found: Vec<(i64, String)> = Vec::new();
-        for mesh in &self.meshes {
+        for mesh in &self.named {
             let nearest = (frequency_hz / mesh.frequency_hz).round().max(1.0);
             let beside = frequency_hz - nearest * mesh.frequency_hz;
             let harmonic = format!("{nearest} × mesh {}", mesh.name);
@@ -146,8 +169,8 @@ impl Tones {
                 found.push((0, if is_fundamental { format!("mesh frequency of {name}") } else { harmonic }));
                 continue;
             }
-            for shaft in mesh.shafts {
-                let (name, speed_hz) = &self.shafts[shaft];
+            for shaft in &mesh.shafts {
+                let (name, speed_hz) = &self.shafts[*shaft];
                 let count = (beside / speed_hz).round();
                 // Lines that are hardly farther apart than the spectrum's own would be named whatever they are.
                 let is_resolved = tolerance_hz < LEAST_RESOLVED * speed_hz;
@@ -161,7 +184,7 @@ impl Tones {
                 }
             }
         }
-        for (name, speed_hz) in &self.shafts {
+        for (name, speed_hz) in self.named_shafts.iter().map(|shaft| &self.shafts[*shaft]) {
             let count = (frequency_hz / speed_hz).round();
             let is_near = (frequency_hz - count * speed_hz).abs() <= tolerance_hz;
             if count >= 1.0 && is_near && count <= MOST_TURNS {
@@ -190,9 +213,12 @@ mod tests {
     fn tones() -> Tones {
         let mesh =
             |name: &str, frequency_hz, shafts| MeshTone { name: name.to_owned(), frequency_hz, shafts };
+        let meshes = vec![mesh("z1-z2", 960.0, vec![0, 1]), mesh("z3-z4", 480.0, vec![1, 2])];
         let shafts = [("input", 30.0), ("middle", 10.0), ("output", 6.0)];
         Tones {
-            meshes: vec![mesh("z1-z2", 960.0, [0, 1]), mesh("z3-z4", 480.0, [1, 2])],
+            named: meshes.clone(),
+            meshes,
+            named_shafts: vec![0, 1, 2],
             shafts: shafts.map(|(name, speed_hz)| (name.to_owned(), speed_hz)).to_vec(),
         }
     }

@@ -125,6 +125,7 @@ struct DrawnWheel<'a> {
     radius: f64,
     width: f64,
     is_damaged: bool,
+    is_ring: bool,
 }
 
 /// All wheels of the train.
@@ -138,15 +139,20 @@ fn drawn_wheels<'a>(gearbox: &'a Scenario, stages: &Stages) -> Vec<DrawnWheel<'a
         let z = layout.z_mm(gearbox, number);
         let radius = layout.gears[mesh].transverse_module_mm() * f64::from(*teeth) / 2.0;
         let is_damaged = gearbox.faults.iter().any(|fault| fault.wheel == *name);
-        Some(DrawnWheel { name, x, y, z, radius, width: *face_width_mm, is_damaged })
+        let is_ring = layout.is_ring(number);
+        Some(DrawnWheel { name, x, y, z, radius, width: *face_width_mm, is_damaged, is_ring })
     };
     gearbox.wheels.iter().enumerate().filter_map(drawn).collect()
 }
 
+/// (-) Outer radius of a ring over that of its pitch circle, as it is drawn.
+const RIM: f64 = 1.1;
+
 /// From where to where all wheels reach.
 fn extent(wheels: &[DrawnWheel], of: fn(&DrawnWheel) -> f64) -> [f64; 2] {
-    let low = wheels.iter().map(|wheel| of(wheel) - wheel.radius).fold(f64::INFINITY, f64::min);
-    let high = wheels.iter().map(|wheel| of(wheel) + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
+    let radius = |wheel: &DrawnWheel| wheel.radius * if wheel.is_ring { RIM } else { 1.0 };
+    let low = wheels.iter().map(|wheel| of(wheel) - radius(wheel)).fold(f64::INFINITY, f64::min);
+    let high = wheels.iter().map(|wheel| of(wheel) + radius(wheel)).fold(f64::NEG_INFINITY, f64::max);
     [low, high]
 }
 
@@ -171,14 +177,22 @@ fn draw_front(
     order.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     for wheel in order {
         let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
-        canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
+        let circle = |radius: f64| circle(&axes, wheel.x, wheel.y, radius);
+        if wheel.is_ring {
+            canvas.outlined(&circle(RIM * wheel.radius), OUTLINE, fill);
+            canvas.outlined(&circle(wheel.radius), OUTLINE, Fill::solid(colour::WHITE));
+        } else {
+            canvas.outlined(&circle(wheel.radius), OUTLINE, fill);
+        }
     }
     for (shaft, [x_m, y_m]) in gearbox.shafts().iter().zip(&stages.layout.positions_m) {
         let radius = shaft.radius_at_mm(0.5);
         canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
     }
     for wheel in wheels {
-        let at = axes.at(wheel.x, wheel.y + 0.72 * wheel.radius);
+        // Inside a ring there are its planets.
+        let part = if wheel.is_ring { 0.9 } else { 0.72 };
+        let at = axes.at(wheel.x, wheel.y + part * wheel.radius);
         canvas.text(at, wheel.name, TextStyle::NOTE.anchored(Anchor::Middle).with_halo());
     }
     axes.frame(canvas);
@@ -217,12 +231,24 @@ fn draw_above(
     }
     for wheel in wheels {
         let fill = if wheel.is_damaged { DAMAGED } else { WHEEL };
+        let style = TextStyle::NOTE.anchored(Anchor::Middle).with_halo();
+        if wheel.is_ring {
+            // Its planets are seen between both sides of its rim.
+            let (middle, half) = ((RIM + 1.0) / 2.0 * wheel.radius, (RIM - 1.0) / 2.0 * wheel.radius);
+            for x in [-middle, middle] {
+                let side = rectangle(&axes, (wheel.z, wheel.x + x), (wheel.width / 2.0, half));
+                canvas.outlined(&side, OUTLINE, fill);
+            }
+            canvas.text(axes.at(wheel.z, wheel.x + middle), wheel.name, style);
+            continue;
+        }
         let outline = rectangle(&axes, (wheel.z, wheel.x), (wheel.width / 2.0, wheel.radius));
         canvas.outlined(&outline, OUTLINE, fill);
-        let style = TextStyle::NOTE.anchored(Anchor::Middle).with_halo();
         canvas.text(axes.at(wheel.z, wheel.x), wheel.name, style);
     }
-    for (bearing, shaft) in gearbox.bearings().iter().zip(&layout.shaft_of_bearing) {
+    // Those of planets are inside of these.
+    let bearings = gearbox.bearings().iter().zip(&layout.shaft_of_bearing);
+    for (bearing, shaft) in bearings.filter(|(_, shaft)| **shaft < gearbox.shafts().len()) {
         let (shaft, [x_m, _]) = (&gearbox.shafts()[*shaft], layout.positions_m[*shaft]);
         let (x, y) = axes.at(shaft.z_mm(bearing.at), x_m * 1e3);
         let (top, bottom) = (y - BEARING_PX, y + BEARING_PX);

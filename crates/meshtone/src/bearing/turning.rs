@@ -287,7 +287,7 @@ mod tests {
                 let count = (hits.len() - 1) as f64;
                 let found = count / (hits[hits.len() - 1] - hits[0]);
                 let ratio = f64::abs(ratios[0] - ratios[1]);
-                assert!((found / (order * ratio) - 1.0).abs() < 3e-3, "{place:?} {ratios:?}: {found}");
+                assert!((found / (order * ratio) - 1.0).abs() < 2e-3, "{place:?} {ratios:?}: {found}");
             }
         }
     }

@@ -18,6 +18,9 @@ pub(crate) struct SignalFigures {
     added: usize,
     /// Samples that are exactly 0.
     zeros: usize,
+    /// The last sample, and how often the signal changed its sign from a sample to the next.
+    last: f64,
+    flips: usize,
     /// Sum with weights that rise evenly to the middle and fall again.
     weighted: f64,
     squares: f64,
@@ -32,7 +35,17 @@ impl SignalFigures {
     /// # Arguments
     /// * `samples` - that there will be
     pub(crate) fn new(samples: usize) -> Self {
-        Self { samples, added: 0, zeros: 0, weighted: 0.0, squares: 0.0, parts: [0.0; 3], largest: 0.0 }
+        Self {
+            samples,
+            added: 0,
+            zeros: 0,
+            last: 0.0,
+            flips: 0,
+            weighted: 0.0,
+            squares: 0.0,
+            parts: [0.0; 3],
+            largest: 0.0,
+        }
     }
 
     /// Those of a whole signal.
@@ -59,6 +72,8 @@ impl SignalFigures {
         let stays = self.largest.is_nan() || value.abs() <= self.largest;
         self.largest = if stays { self.largest } else { value.abs() };
         self.zeros += usize::from(value == 0.0);
+        self.flips += usize::from(value * self.last < 0.0);
+        self.last = value;
     }
 
     /// The mean.
@@ -85,6 +100,11 @@ impl SignalFigures {
     /// The largest absolute value; no number where a value is none.
     pub(crate) fn largest(&self) -> f64 {
         self.largest
+    }
+
+    /// (-) The part of the samples that have the other sign than the sample before.
+    pub(crate) fn part_of_flips(&self) -> f64 {
+        self.flips as f64 / self.samples.max(1) as f64
     }
 
     /// (-) The part of the samples that is exactly 0.
@@ -123,6 +143,7 @@ mod tests {
         assert!((vibration.mean_in_middle() - 3.0).abs() < 1e-3);
         let some = SignalFigures::of([0.0, -3.0, 0.0, 4.0].into_iter());
         assert_eq!((some.largest(), some.part_of_zeros(), some.rms()), (4.0, 0.5, 2.5));
+        assert_eq!(SignalFigures::of([1.0, -3.0, 0.0, 4.0, -1.0].into_iter()).part_of_flips(), 0.4);
         assert!(SignalFigures::of([1.0, f64::NAN, 2.0].into_iter()).largest().is_nan());
     }
 }

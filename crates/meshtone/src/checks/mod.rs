@@ -8,7 +8,7 @@ mod figures;
 mod settled;
 mod torques;
 
-pub(crate) use bounds::{overlap_modules, speed_factor};
+pub(crate) use bounds::{crossings, overlap_modules, speed_factor};
 pub(crate) use figures::{Figures, SignalFigures};
 pub(crate) use settled::{WindowSums, transient_part};
 pub(crate) use torques::TorqueBalance;

@@ -199,6 +199,30 @@ impl Machine {
         })
     }
 
+    /// The torque of the brake on the coordinates.
+    pub(super) fn braked(&self, torque_nm: f64) -> DVector<f64> {
+        let mut torque = DVector::zeros(self.coordinates());
+        for drive in &self.drives {
+            if let Drive::Brake { coordinate, torque_share } = drive {
+                torque[*coordinate] += torque_share * torque_nm;
+            }
+        }
+        torque
+    }
+
+    /// (N) Force of each mesh at rest under the torque of the brake and the forces that do not turn, such as those of pins off their places.
+    ///
+    /// # Arguments
+    /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
+    /// * `torque_nm` - (N m) of the brake
+    pub(crate) fn forces_at_rest_n(&self, mesh_stiffness_n_per_m: &[f64], torque_nm: f64) -> Vec<f64> {
+        let constant = self.turning_forces.iter().filter(|of| of.speed_ratio == 0.0 && !of.of_square_speed);
+        let load = constant.fold(self.braked(torque_nm), |sum, of| sum + &of.at[0]);
+        let displaced = self.displaced_by(self.closed_stiffness(mesh_stiffness_n_per_m), &[load]);
+        let lines = self.lines.iter().zip(mesh_stiffness_n_per_m);
+        lines.map(|(line, stiffness)| stiffness * line.at_middle.dot(&displaced.column(0))).collect()
+    }
+
     /// How the wheels of each mesh lean against one another at rest under the torque of the brake, with closed meshes whose forces act midway
     /// along their faces, and how much less by moments of these forces.
     ///
@@ -206,12 +230,7 @@ impl Machine {
     /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
     /// * `torque_nm` - (N m) of the brake
     pub(crate) fn leans(&self, mesh_stiffness_n_per_m: &[f64], torque_nm: f64) -> Leans {
-        let mut torque = DVector::zeros(self.coordinates());
-        for drive in &self.drives {
-            if let Drive::Brake { coordinate, torque_share } = drive {
-                torque[*coordinate] += torque_share * torque_nm;
-            }
-        }
+        let torque = self.braked(torque_nm);
         let moments = self.lines.iter().map(|line| line.per_m.clone());
         let loads: Vec<DVector<f64>> = std::iter::once(torque).chain(moments).collect();
         let displaced = self.displaced_by(self.closed_stiffness(mesh_stiffness_n_per_m), &loads);

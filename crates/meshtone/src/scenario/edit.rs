@@ -33,11 +33,11 @@ fn collect(table: &Table, path: &str, numbers: &mut Vec<ScenarioNumber>) {
     }
 }
 
-/// What follows the name of a list in the keys of each of its entries: `[z1]` of a wheel, `[z1-z2]` of a mesh, `[input:0]` of a bearing, and
+/// What follows the name of a list in the keys of each of its entries: `[z1]` of a wheel, `[p]` of a planetary set, `[z1-z2]` of a mesh, `[input:0]` of a bearing, and
 /// the number from 0 where an entry has no name of its own; nothing of the only fault and of the only sensor.
 fn entry_names(list: &str, entries: &[Value]) -> Vec<String> {
     let name = |entry: &Value| match list {
-        "shaft" | "wheel" => entry.get("name")?.as_str().map(str::to_owned),
+        "shaft" | "wheel" | "planetary" => entry.get("name")?.as_str().map(str::to_owned),
         "mesh" => {
             let wheels = entry.get("wheels")?.as_array()?.iter().filter_map(Value::as_str);
             Some(wheels.collect::<Vec<_>>().join("-"))

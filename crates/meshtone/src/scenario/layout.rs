@@ -696,7 +696,7 @@ pub(super) fn section(list: &str, index: usize, entries: usize) -> String {
 }
 
 /// The key of an entry of a list.
-pub(super) fn entry_key(list: &str, index: usize, entries: usize, key: &str) -> String {
+pub(crate) fn entry_key(list: &str, index: usize, entries: usize, key: &str) -> String {
     format!("{}.{key}", section(list, index, entries))
 }
 

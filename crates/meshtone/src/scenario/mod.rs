@@ -48,6 +48,7 @@ pub use crate::wheel::{
 pub use edit::{ScenarioNumber, names_or_numbers, split_key};
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use gearbox_template::{GearboxRig, gearbox_template, gearbox_template_of_all_keys};
+pub(crate) use layout::entry_key;
 pub use layout::{Layout, Ratio};
 pub use long::gearbox_sections;
 pub use mesh::ScenarioMesh;

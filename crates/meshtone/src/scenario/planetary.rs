@@ -66,6 +66,8 @@ pub struct PlanetarySet {
     pub sun_support_n_per_m: f64,
     /// (N/m) Stiffness that holds the carrier across its axis. Default 1e8.
     pub carrier_support_n_per_m: f64,
+    /// (µm) How far the circle of the pins lies off the axis about which the carrier turns, towards the first planet. Default 0.
+    pub carrier_eccentricity_um: f64,
     /// (N m/rad) Torsional stiffness between a member and its shaft, or the ground where it is fixed. Default 1e5.
     pub coupling_stiffness_nm_per_rad: f64,
     /// (-) Damping ratio of pins, supports, rim and couplings. Default 0.02.
@@ -185,6 +187,7 @@ keys! {
         rim: Rim::default(),
         sun_support_n_per_m: 1e8,
         carrier_support_n_per_m: 1e8,
+        carrier_eccentricity_um: 0.0,
         coupling_stiffness_nm_per_rad: 1e5,
         support_damping_ratio: 0.02,
         sun_inertia: WheelInertia::default(),
@@ -224,6 +227,8 @@ keys! {
     rim "" "the rim of the ring and its support";
     sun_support_n_per_m "N/m" "the stiffness that holds the sun across its axis; a floating sun has 1e3" .range(STIFFNESS);
     carrier_support_n_per_m "N/m" "the stiffness that holds the carrier across its axis" .range(STIFFNESS);
+    carrier_eccentricity_um "µm" "the eccentricity of the circle of the pins, towards the first planet"
+        .range(Range::from_to(0.0, 1e3));
     coupling_stiffness_nm_per_rad "N m/rad"
         "the torsional stiffness between a member and its shaft, or the ground where sun or carrier is fixed"
         .range(STIFFNESS);
@@ -287,6 +292,18 @@ impl PlanetarySet {
             return self.planet_angles_deg.iter().map(|angle_deg| angle_deg.to_radians()).collect();
         }
         (0..self.planets).map(|planet| TAU * f64::from(planet) / f64::from(self.planets)).collect()
+    }
+
+    /// (m) How far each pin stands off its place, outwards and in the sense of positive rotation.
+    pub fn pin_errors_m(&self) -> Vec<[f64; 2]> {
+        let angles_rad = self.planet_angles_rad();
+        let of_pin = |(planet, angle_rad): (usize, &f64)| {
+            let (sin, cos) = (angles_rad[0] - angle_rad).sin_cos();
+            let own_um = self.pin.error_um.get(planet).copied().unwrap_or(0.0);
+            [self.carrier_eccentricity_um * cos, self.carrier_eccentricity_um * sin + own_um]
+                .map(|um| um * 1e-6)
+        };
+        angles_rad.iter().enumerate().map(of_pin).collect()
     }
 
     /// Name of a wheel.

@@ -56,8 +56,8 @@ shaft = \"output\"
 at = 1.0
 
 [operation]
-input_speed_hz = 20.0  # assumed
-brake_torque_nm = 200.0  # assumed
+input_speed_hz = 40.0  # assumed
+brake_torque_nm = 100.0  # assumed
 # The speed wanders slowly, as that of an induction motor does.
 speed_wander_percent = 0.03  # assumed
 
@@ -73,10 +73,10 @@ speed_wander_percent = 0.03  # assumed
 [[sensor]]
 at = \"ring:p:90\"
 
-# Every tooth of a planet has passed the sensor after 31 revolutions of the carrier, 6.3 s.
+# Every tooth of a planet has passed the sensor after 31 revolutions of the carrier, 3.2 s.
 [solver]
-sampling_rate_hz = 50_000.0
-duration_s = 8.0
+sampling_rate_hz = 100_000.0
+duration_s = 4.0
 ";
 
 /// The gearbox of a wind turbine.

@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::{Simulation, Stages};
-use crate::checks::{Figures, SignalFigures, TorqueBalance, overlap_modules, speed_factor};
+use crate::checks::{Figures, SignalFigures, TorqueBalance, crossings, overlap_modules, speed_factor};
 use crate::error::Error;
+use crate::mesh::Mesh;
 use crate::operation::MotionSample;
 use crate::scenario::{Ratio, Shafts};
 use crate::sensor::{Channels, SignalSource};
@@ -51,13 +52,14 @@ impl Stages {
     /// * `figures` - of the kept signals
     ///
     /// # Errors
-    /// Flanks that overlap by more than a module, a shaft that is off its speed by more than a factor of 3, torques that are off balance by
-    /// more than a tenth.
+    /// Flanks that overlap by more than a module, or of planetary sets fly through their backlash from sample to sample, a shaft that is off its speed by
+    /// more than a factor of 3, torques that are off balance by more than a tenth.
     pub(crate) fn check_laws(&self, figures: &Figures) -> Result<(), Error> {
         if self.machine().is_none() || self.time.kept_samples() == 0 {
             return Ok(());
         }
-        if let Some(problem) = self.overlap(figures).or_else(|| self.lost_speed(figures)) {
+        let problem = self.overlap(figures).or_else(|| self.crossed(figures));
+        if let Some(problem) = problem.or_else(|| self.lost_speed(figures)) {
             let rate_hz = self.time.sampling_rate_hz;
             let help = self.help_of_load().unwrap_or_else(|| {
                 format!(
@@ -91,6 +93,25 @@ impl Stages {
             ))
         };
         meshes.enumerate().find_map(of_mesh)
+    }
+
+    /// Teeth of planetary sets that strike with one flank at a sample and with the other at the next: the steps are too long for their impacts, which
+    /// then grow.
+    fn crossed(&self, figures: &Figures) -> Option<String> {
+        let of_mesh = |(mesh, force): (usize, &SignalFigures)| {
+            let Mesh { backlash_m, mean_stiffness_n_per_m, .. } = self.meshes.get(mesh)?;
+            let deflection_m = force.mean().abs() / mean_stiffness_n_per_m;
+            let part = crossings(force.part_of_flips(), (*backlash_m)?, deflection_m)?;
+            Some(format!(
+                "the flanks of {} fly through their backlash from one sample to the next at {:.0} % of the samples, with up to {:.3e} N: the \
+                 step is too long for their impacts",
+                self.mesh_in_words(mesh),
+                100.0 * part,
+                force.largest()
+            ))
+        };
+        let is_of_set = |(mesh, _): &(usize, _)| self.scenario.meshes[*mesh].is_of_set;
+        figures.forces.iter().enumerate().filter(is_of_set).find_map(of_mesh)
     }
 
     /// A shaft that does not turn as it is driven.

@@ -205,7 +205,7 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
                     let set = &mut sets[set];
                     let springs = set.rolling_n_per_m.iter_mut().filter(|(of, _)| *of == planet);
                     springs.for_each(|(_, spring)| *spring = bearing.spring_n_per_m);
-                    bearing.off_m[1] = set.pin_errors_m.get(planet).copied().unwrap_or(0.0);
+                    bearing.off_m = set.pin_errors_m[planet];
                 }
                 None => {
                     let seat = layout.shaft_of_bearing[..number].iter().filter(|of| **of < shafts.len());
@@ -288,7 +288,7 @@ fn set_parts(
             })
             .map(|planet| (planet, [[set.pin.stiffness_n_per_m, 0.0], [0.0, set.pin.stiffness_n_per_m]]))
             .collect(),
-        pin_errors_m: set.pin.error_um.iter().map(|um| um * 1e-6).collect(),
+        pin_errors_m: set.pin_errors_m(),
         rim: RimParts {
             radius_m: root_m + rim_m / 2.0,
             thickness_m: rim_m,

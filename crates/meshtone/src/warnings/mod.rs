@@ -15,12 +15,14 @@ use crate::checks::{WindowSums, transient_part};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{Shaft, WheelBody};
 use crate::operation::{Operation, TimeGrid};
-use crate::scenario::{MemoryLimit, Scenario, SensorPlace};
+use crate::scenario::{MemoryLimit, Scenario, SensorPlace, SetLayout, entry_key};
 use crate::simulate::{Stages, stages_within};
 use crate::wheel::{Gears, unused_slices};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
+/// (-) Part of the mean load of the planets that each one carries without a warning.
+const LEAST_SHARE: f64 = 0.1;
 /// (-) Part of the module by which a wheel may run out without a warning.
 const TOLERATED_RUN_OUT: f64 = 0.1;
 /// (-) Part of the module by which the nominal load may press the teeth together without a warning.
@@ -72,11 +74,34 @@ impl Stages {
             .chain(self.large_run_outs())
             .chain(self.undamped())
             .chain(self.gyroscopic())
+            .chain(self.idle_planets())
             .chain(self.overloads())
             .chain(self.uneven_faces())
             .chain(self.without_contact())
             .chain(self.mesh_resonances())
             .collect()
+    }
+
+    /// Planets that hardly bear at rest, because of their pins.
+    fn idle_planets(&self) -> Vec<ScenarioWarning> {
+        let Some((assembled, _)) = self.machine().filter(|_| !self.layout.sets.is_empty()) else {
+            return Vec::new();
+        };
+        let (stiffness, torque_nm) = (self.mean_stiffness_n_per_m(), self.scenario.operation.brake_torque_nm);
+        let forces_n = assembled.machine.forces_at_rest_n(&stiffness, torque_nm);
+        let of_set = |(number, set): (usize, &SetLayout)| {
+            let of_planets = &forces_n[set.first_mesh..set.first_mesh + set.planets()];
+            let mean_n = of_planets.iter().sum::<f64>() / of_planets.len() as f64;
+            let planet = of_planets.iter().position(|force_n| *force_n < LEAST_SHARE * mean_n)?;
+            let key = entry_key("planetary", number, self.layout.sets.len(), "pin.error_um");
+            let message = format!(
+                "planet {} carries {:.1} % of what a planet carries on average, at rest: it loses contact when the set turns",
+                planet + 1,
+                100.0 * (of_planets[planet] / mean_n).max(0.0)
+            );
+            Some(ScenarioWarning::new(WarningKind::IdlePlanet, key, message))
+        };
+        self.layout.sets.iter().enumerate().filter_map(of_set).collect()
     }
 
     /// Teeth that the load would bend off, mesh by mesh.

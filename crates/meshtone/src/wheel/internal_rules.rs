@@ -21,6 +21,9 @@ pub(super) fn check(gears: &NamedGears) -> Check {
         let help = format!("make the profile shifts of {planet} and {ring} more alike");
         require(&shift, gears.gear_profile_shift, holds, problem).map_err(|error| error.with_help(help))
     };
+    let helix = gears.key("helix_angle_deg");
+    let problem = format!("must be 0: {ring} has internal teeth, which are simulated as spur ones only");
+    require(&helix, gears.helix_angle_deg, gears.helix_angle_deg == 0.0, problem)?;
     let inside = gears.pinion_teeth;
     let problem = format!("must be more than {inside}, the teeth of {planet}, which turns inside");
     teeth(gears.gear_teeth > inside, problem, format!("use more teeth on {ring}"))?;
@@ -94,6 +97,9 @@ mod tests {
         ] {
             assert_eq!(checked(planet, ring, shifts), Ok(()), "{planet}/{ring}");
         }
+        let mut helical = Gears::new(2.0, 31, 81, 20.0);
+        (helical.internal, helical.helix_angle_deg) = (true, 10.0);
+        assert_eq!(NamedGears::of_pair(&helical).check().unwrap_err().key, "gears.helix_angle_deg");
         for (planet, ring, shifts, key, words) in [
             (81, 81, [0.0; 2], "gears.gear_teeth", "must be more than 81"),
             // The independent simulator's example of tips that reach below the planet's base circle.

@@ -151,13 +151,19 @@ fn natural_frequencies_are_those_of_lin_and_parker() {
 
 /// The share of each planet in the sun's torque at rest.
 fn shares(planets: u32, sun_support_n_per_m: f64, rim_mm: f64, error_um: f64) -> Vec<f64> {
-    let scenario = scenario(|set| {
-        set.teeth = MemberTeeth { sun: 30, planet: 30, ring: 90 };
-        (set.planets, set.module_mm, set.face_width_mm) = (planets, 2.5, 25.0);
+    shares_of(planets, |set| {
         set.sun_support_n_per_m = sun_support_n_per_m;
         set.rim.thickness_mm = Some(rim_mm);
         set.pin.error_um = vec![0.0; planets as usize];
         set.pin.error_um[0] = error_um;
+    })
+}
+
+fn shares_of(planets: u32, change: impl Fn(&mut PlanetarySet)) -> Vec<f64> {
+    let scenario = scenario(|set| {
+        set.teeth = MemberTeeth { sun: 30, planet: 30, ring: 90 };
+        (set.planets, set.module_mm, set.face_width_mm) = (planets, 2.5, 25.0);
+        change(set);
     });
     let stages = stages(&scenario).unwrap();
     let Equations::Machine(machine, _) = &stages.equations else { panic!("the published model has no sets") };
@@ -204,6 +210,33 @@ fn planets_share_the_load() {
     assert!(floating.iter().all(|share| (share - 1.0 / 3.0).abs() < 1e-5));
     let four = shares(4, 1e3, 12.0, 40.0);
     assert!((four[0] - four[2]).abs() < 1e-4 && (four[1] - four[3]).abs() < 1e-9);
+
+    // A carrier that may move takes its pins back to where they belong; one that is held loads a planet that is behind its place more.
+    let off = |support: f64| {
+        shares_of(4, |set| (set.carrier_eccentricity_um, set.carrier_support_n_per_m) = (20.0, support))
+    };
+    let (free, held) = (off(1e-3), off(1e8));
+    println!("carrier off its axis: {free:.6?} {held:.4?}");
+    assert!(free.iter().all(|share| (share - 0.25).abs() < 1e-6));
+    assert!(held[1] - held[3] > 0.05 && (held[1] + held[3] - held[0] - held[2]).abs() < 1e-3);
+}
+
+/// A planet that hardly bears is warned of, and a step too long for impacts is an error in place of a result.
+#[test]
+fn what_is_doubtful_is_said() {
+    let of =
+        |error_um: f64| stages(scenario(|set| set.pin.error_um = vec![error_um, 0.0, 0.0, 0.0])).unwrap();
+    let idle =
+        |error_um| of(error_um).warnings().iter().filter(|of| of.kind == WarningKind::IdlePlanet).count();
+    assert_eq!((idle(5.0), idle(60.0)), (0, 1));
+    for (wheel, rate_hz) in [("p.sun", 1e4), ("p.sun", 2e4), ("p.planet1", 1.5e4), ("p.planet1", 2e4)] {
+        let mut scenario = scenario(|_| {});
+        (scenario.solver.sampling_rate_hz, scenario.solver.duration_s) = (rate_hz, Some(3.0));
+        scenario.faults = vec![Fault::new(wheel, 1, Damage::from(MissingTooth))];
+        let error = simulate(scenario).unwrap_err().to_string();
+        println!("{error}");
+        assert!(error.contains("fly through their backlash"), "{wheel} {rate_hz}");
+    }
 }
 
 /// Positions of all first pairs, in base pitches, the whole part left out.

@@ -573,13 +573,8 @@ impl GearboxMachine {
         const MESH_N_PER_M: f64 = 3e8;
         let machine = &self.machine;
         let stiffness = machine.closed_stiffness(&vec![MESH_N_PER_M; machine.lines.len()]);
-        let mut force = DVector::zeros(machine.coordinates());
-        for drive in &machine.drives {
-            if let Drive::Brake { coordinate, torque_share } = drive {
-                force[*coordinate] += torque_share * torque_nm;
-            }
-        }
-        let displacement = machine.displaced_by(stiffness, &[force]).column(0).into_owned();
+        let displacement =
+            machine.displaced_by(stiffness, &[machine.braked(torque_nm)]).column(0).into_owned();
         let rolling = parts.bearings.iter().filter(|of| of.bearing.element().is_some());
         let of_planets =
             parts.sets.iter().flat_map(|set| set.rolling_n_per_m.iter().map(|(_, spring)| *spring));

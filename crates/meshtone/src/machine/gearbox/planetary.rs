@@ -42,8 +42,8 @@ pub struct SetParts {
     pub pin_n_per_m: f64,
     /// (N/m) What stands in place of that at planets on rolling bearings: the number of the planet, and the bearing's linear spring along ζ and η.
     pub rolling_n_per_m: Vec<(usize, [[f64; 2]; 2])>,
-    /// (m) How far each pin stands ahead of its place; empty for none.
-    pub pin_errors_m: Vec<f64>,
+    /// (m) How far each pin stands off its place, along ζ and along η; empty for none.
+    pub pin_errors_m: Vec<[f64; 2]>,
     /// The rim of the ring.
     pub rim: RimParts,
     /// (-) Damping ratio of pins, supports, rim and couplings.
@@ -277,7 +277,7 @@ impl SetCoordinates {
         parts.rolling_n_per_m.iter().map(of_planet).collect()
     }
 
-    /// The constant forces of pins that stand ahead of their places: each presses its planet and its carrier with its stiffness times the error.
+    /// The constant forces of pins that stand off their places: each presses its planet and its carrier with its stiffness times the error.
     ///
     /// # Arguments
     /// * `parts` - of the set
@@ -285,9 +285,10 @@ impl SetCoordinates {
     pub(super) fn pin_errors(&self, parts: &SetParts, coordinates: usize) -> Option<TurningForce> {
         let mut force = DVector::zeros(coordinates);
         for (planet, (stretch, error_m)) in self.pins(parts).iter().zip(&parts.pin_errors_m).enumerate() {
-            let [_, by_error] = parts.pin_n_per_m(planet);
-            for (stretch, stiffness) in stretch.iter().zip(by_error) {
-                stretch.iter().for_each(|&(n, weight)| force[n] += weight * stiffness * error_m);
+            for (stretch, spring) in stretch.iter().zip(parts.pin_n_per_m(planet)) {
+                let pushed_n: f64 =
+                    spring.iter().zip(error_m).map(|(spring, error_m)| spring * error_m).sum();
+                stretch.iter().for_each(|&(n, weight)| force[n] += weight * pushed_n);
             }
         }
         let is_some = force.iter().any(|value| *value != 0.0);
