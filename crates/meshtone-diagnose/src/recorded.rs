@@ -91,7 +91,7 @@ fn nothing_synchronous(
     let parts = parts.collect::<Option<Vec<_>>>()?;
     let is_known = parts.iter().all(|part| part.revolutions >= FEWEST_REVOLUTIONS);
     let part = *parts.get(slowest).filter(|_| is_known && parts.iter().all(|part| part.is_noise()))?;
-    Some(SignalWarning::NothingSynchronous { part, teeth }.to_string())
+    Some(SignalWarning::NothingSynchronous { part, teeth, other: None }.to_string())
 }
 
 /// (-) Level of the quietest revolution over that of the loudest, below which the sensor did not measure all the time.

@@ -255,7 +255,7 @@ pub fn check_recording(
             .ok()
             .and_then(|average| signal::synchronous_part(&angular.values, &average.values));
         let part = part.filter(SynchronousPart::is_noise);
-        found.extend(part.map(|part| SignalWarning::NothingSynchronous { part, teeth }));
+        found.extend(part.map(|part| SignalWarning::NothingSynchronous { part, teeth, other: None }));
         Ok(found)
     });
     Ok(typed(&found.map_err(value_error)?))

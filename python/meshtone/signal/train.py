@@ -55,7 +55,7 @@ class TrainRecord:
         (Hz) Mean speed of each shaft that has a wheel.
     foreign_lines : list of ForeignLine or None
         Lines that belong to no shaft and no mesh, the strongest first; None where they were not looked for: over a run-up, where a stated value
-        does not fit, in fewer than six revolutions.
+        does not fit, in fewer than six revolutions. Weak ones are not told from teeth that meet again before these have met four times: none is listed.
     own_orders_part : float or None
         (-) Part of all orders at which a line is taken to be of a shaft or a mesh: foreign lines among them are not found. It falls with the length of
         the recording.

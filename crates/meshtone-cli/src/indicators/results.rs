@@ -67,6 +67,7 @@ impl Series {
                 .zip(velocity)
                 .map(|(machine, velocity)| machine.zone(velocity)),
             own_orders_part: records.foreign.as_ref().map(|found| found.own_part),
+            foreign_lines_need_s: records.foreign.as_ref().and_then(|found| found.needed_s),
             foreign_lines: records.foreign.map(|found| found.tones),
         });
         self.results.warnings.extend(warnings);

@@ -16,8 +16,6 @@ const OF_GEARS: [&str; 7] = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", 
 const LINES: usize = 10;
 /// (-) Part of the orders that are the machine's own from which on the table recommends a longer recording: a line is rather missed than found.
 const MOST_OWN: f64 = 0.5;
-/// (-) Part from which on it does not say that no line was found: next to nothing is left in which one could be.
-const ALL_OWN: f64 = 0.95;
 
 /// The table of one record or of a series.
 ///
@@ -115,8 +113,13 @@ fn limits(series: &Series) -> String {
 
 /// The lines of the last recording that belong to no shaft and no mesh, where they were looked for.
 fn foreign_lines(series: &Series, unit: &str) -> String {
-    let Some(RecordingEntry { source, foreign_lines: Some(lines), own_orders_part: Some(own), .. }) =
-        series.results.recordings.last()
+    let Some(RecordingEntry {
+        source,
+        foreign_lines: Some(lines),
+        own_orders_part: Some(own),
+        foreign_lines_need_s,
+        ..
+    }) = series.results.recordings.last()
     else {
         return String::new();
     };
@@ -127,16 +130,16 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
     };
     if lines.is_empty() {
         let percent = 100.0 * own;
-        let searched = if *own > ALL_OWN {
-            format!(
-                "the recording{of} is too short to distinguish foreign lines from those of shafts and meshes"
-            )
-        } else {
-            format!(
+        let searched = match foreign_lines_need_s {
+            Some(needed_s) => format!(
+                "the recording{of} is too short to distinguish foreign lines from those of teeth that meet again: it needs {needed_s:.1} s"
+            ),
+            None => format!(
                 "no foreign line was found{of}; {percent:.0} % of all orders are too near one of a shaft or a mesh to distinguish a line there"
-            )
+            ),
         };
-        let longer = if *own > MOST_OWN { ": record for longer" } else { "" };
+        let is_long = foreign_lines_need_s.is_none() && *own > MOST_OWN;
+        let longer = if is_long { ": record for longer" } else { "" };
         return format!("\n  {searched}{longer}\n");
     }
     let on = if series.wheels.len() > 2 { "the input" } else { "the shaft" };

@@ -180,7 +180,7 @@ fn indicators_of_every_shaft() {
     let workplace = Workplace::new();
     broken(&workplace);
     let text = String::from_utf8(workplace.read("gearbox.toml")).unwrap();
-    let text = text.replace("duration_s = 0.1", "duration_s = 2.0");
+    let text = text.replace("duration_s = 0.1", "duration_s = 2.5");
     let text = text.replace("sampling_rate_hz = 100000.0", "sampling_rate_hz = 20000.0");
     // The tachometer's pulses are those of a constant speed.
     let text = text.replace("speed_wander_percent = 0.03\n", "");
@@ -198,7 +198,7 @@ fn indicators_of_every_shaft() {
         results["records"].as_array().unwrap().iter().map(|record| record[key].to_string()).collect()
     };
     assert_eq!(of(&simulated, "shaft"), ["\"input\"", "\"middle\"", "\"middle\"", "\"output\""]);
-    assert_eq!(of(&simulated, "revolutions"), ["59", "19", "19", "11"]);
+    assert_eq!(of(&simulated, "revolutions"), ["74", "24", "24", "14"]);
     assert_eq!(simulated["recordings"][0]["foreign_lines"], serde_json::json!([]));
     let figure = String::from_utf8(workplace.read("simulated/indicators.svg")).unwrap();
     for words in [

@@ -115,7 +115,9 @@ fn wrong_statements_about_a_recording_are_warned_of_with_code_and_numbers() {
         mate.as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap()).collect();
     assert_eq!(codes, ["nothing-synchronous"], "{words}");
     assert_eq!(mate[0]["values"]["teeth"], 37.0);
-    for words_of_mate in ["the wheel of 37 teeth", "the recording's length and noise", "--mate-teeth"] {
+    for words_of_mate in
+        ["the wheel of 37 teeth", "(19 teeth), whose damage may hide this wheel", "--mate-teeth"]
+    {
         assert!(words.contains(words_of_mate), "{words}");
     }
     let (tones, words) = warnings(&["tone.csv", "--shaft-hz", "20", "--mate-teeth", "38"]);

@@ -2,7 +2,7 @@
 
 use super::{
     AngularSignal, ForeignSearch, ForeignTones, GearTrain, ShaftPhase, SignalWarning, StatedFacts,
-    StatedTurning, find_train_mismatch, foreign_tones,
+    StatedTurning, find_train_mismatch, foreign_tones::search,
 };
 
 /// Looks for a sign that a recording does not fit the stated facts, and for tones that belong to neither shaft.
@@ -79,9 +79,17 @@ impl RecordingCheck {
         if train.meshes.is_empty() || phase.is_run_up(sampling_rate_hz) {
             return Self::default();
         }
-        let foreign = foreign_tones(angular, train, shaft, phase.mean_speed_hz(sampling_rate_hz));
+        let followed = match turning {
+            StatedTurning::MeshTone { .. } => train.teeth_on(shaft).min().map(f64::from),
+            _ => None,
+        };
+        let mut foreign = search(angular, train, shaft, phase.mean_speed_hz(sampling_rate_hz), followed);
         let tones = foreign.as_ref().and_then(|found| ForeignTones::of(&found.tones));
-        let warning = tones.filter(ForeignTones::count).map(SignalWarning::ForeignTones);
-        Self { warnings: warning.into_iter().collect(), foreign }
+        let counting = tones.filter(ForeignTones::count);
+        if counting.is_none() {
+            // Weak ones may be of teeth that meet again.
+            foreign.iter_mut().filter(|found| found.needed_s.is_some()).for_each(|found| found.tones.clear());
+        }
+        Self { warnings: counting.map(SignalWarning::ForeignTones).into_iter().collect(), foreign }
     }
 }

@@ -34,6 +34,8 @@ const LOBE: usize = 4;
 const OWN: [f64; 2] = [2.0, 1.0];
 /// (lines) Least distance of the orders at which the same teeth meet again where they are told from each other.
 const APART: f64 = 4.0;
+/// (cycles) How well the phase of a mesh tone is known: beyond it another line would have been followed.
+const FOLLOWED_CYCLES: f64 = 0.5;
 /// Orders of one shaft by which a mesh has sidebands that are no orders of another one.
 const SIDEBANDS: i32 = 4;
 /// (-) Least square of a tone over that of the strongest line: weaker ones are left out.
@@ -64,6 +66,8 @@ pub struct ForeignSearch {
     /// (-) Part of the orders that were searched at which a tone would belong to the train: it falls with the length of the recording, which
     /// distinguishes orders.
     pub own_part: f64,
+    /// (s) Length that a recording needs for weak tones to be told from orders at which the same teeth meet again; none where this one has it.
+    pub needed_s: Option<f64>,
 }
 
 /// Tones that belong to no shaft and make much of a recording.
@@ -160,6 +164,20 @@ pub fn foreign_tones(
     shaft: usize,
     mean_speed_hz: f64,
 ) -> Option<ForeignSearch> {
+    search(angular, train, shaft, mean_speed_hz, None)
+}
+
+/// Does what [`foreign_tones`] does.
+///
+/// # Arguments
+/// * `followed_order` - order of the mesh tone from which the angle is known; its error grows with the order that is looked at
+pub(super) fn search(
+    angular: &AngularSignal,
+    train: &GearTrain,
+    shaft: usize,
+    mean_speed_hz: f64,
+    followed_order: Option<f64>,
+) -> Option<ForeignSearch> {
     let revolutions = angular.revolutions();
     if revolutions < FEWEST_REVOLUTIONS {
         return None;
@@ -172,7 +190,9 @@ pub fn foreign_tones(
     let energy: f64 = squares[lines.start.min(passed)..passed].iter().sum();
     let largest = squares[..passed].iter().copied().fold(0.0, f64::max);
     let medians: Vec<f64> = squares[..passed].chunks(BAND).map(median).collect();
-    let own = OwnOrders::new(train, shaft, revolutions as f64, passed as f64 / revolutions as f64);
+    let drift_lines = followed_order.map_or(0.0, |followed| FOLLOWED_CYCLES / followed);
+    let own =
+        OwnOrders::new(train, shaft, revolutions as f64, (passed as f64 / revolutions as f64, drift_lines));
     let to_input = train.speed_ratio(shaft, train.input()).value();
     let tone = |line: usize| {
         let square = squares[line];
@@ -200,7 +220,11 @@ pub fn foreign_tones(
     };
     let mut tones: Vec<ForeignTone> = lines.filter_map(tone).collect();
     tones.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
-    Some(ForeignSearch { tones, own_part: own.part() })
+    let hunting = train.spacings(shaft).1;
+    let is_short = hunting * (revolutions as f64) < APART;
+    // Of a recording only whole revolutions are left.
+    let needed_s = is_short.then(|| (APART / hunting + 1.0) / mean_speed_hz);
+    Some(ForeignSearch { tones, own_part: own.part(), needed_s })
 }
 
 /// The orders of a train, to which a tone may belong.
@@ -212,11 +236,16 @@ struct OwnOrders {
 }
 
 impl OwnOrders {
-    fn new(train: &GearTrain, shaft: usize, revolutions: f64, highest: f64) -> Self {
+    /// # Arguments
+    /// * `highest`, `drift_lines` - the last order that is looked at, and by how many lines an order of the machine may be off for each order
+    fn new(train: &GearTrain, shaft: usize, revolutions: f64, (highest, drift_lines): (f64, f64)) -> Self {
         let (shafts, hunting) = train.spacings(shaft);
         let of_input = train.speed_ratio(train.input(), shaft).value();
         let [near_shaft, near_other] = OWN.map(|lines| lines / revolutions);
-        let near = |order: f64, by: f64| [order - by, order + by];
+        let near = |order: f64, by: f64| {
+            let by = by.max(drift_lines * order / revolutions);
+            [order - by, order + by]
+        };
         let multiples = |spacing: f64, by: f64| {
             let last = ((highest + by) / spacing) as u32;
             (0..=last).map(move |multiple| near(f64::from(multiple) * spacing, by))

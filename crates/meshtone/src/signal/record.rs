@@ -28,19 +28,22 @@ pub struct Record {
     pub envelope_spectrum: Vec<f64>,
     /// The indicators.
     pub indicators: Indicators,
+    /// What the average holds of the revolutions; none of an average alone.
+    pub synchronous: Option<SynchronousPart>,
     /// Warnings besides those of the phase: [`ShaftPhase::warnings`].
     pub warnings: Vec<SignalWarning>,
 }
 
 impl Record {
-    /// Adds a warning where the average holds hardly more than noise would leave.
+    /// Adds what the average holds of the revolutions, and a warning where that is hardly more than noise would leave.
     ///
     /// # Arguments
     /// * `values` - the revolutions that were averaged
     /// * `teeth` - of the wheel
     fn with_doubt(mut self, values: &[f64], teeth: u32) -> Self {
-        let part = synchronous_part(values, &self.average.values).filter(SynchronousPart::is_noise);
-        self.warnings.extend(part.map(|part| SignalWarning::NothingSynchronous { part, teeth }));
+        self.synchronous = synchronous_part(values, &self.average.values);
+        let part = self.synchronous.filter(SynchronousPart::is_noise);
+        self.warnings.extend(part.map(|part| SignalWarning::NothingSynchronous { part, teeth, other: None }));
         self
     }
 }
@@ -231,6 +234,7 @@ pub fn process_average(
         )?,
         envelope_spectrum: order_spectrum(&envelope)?,
         order_spectrum: spectrum,
+        synchronous: None,
         warnings: doubtful.then_some(near).into_iter().collect(),
         envelope,
         parts,

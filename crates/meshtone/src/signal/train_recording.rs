@@ -7,10 +7,13 @@ use super::record::{process_angular, process_angular_segments};
 use super::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, ForeignSearch, GearTrain, Interpolation,
     Record, SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
-    SynchronousAverage, angular_resample, check_channel, revolution_average, sensor_faults,
+    SynchronousAverage, TrainWheel, angular_resample, check_channel, revolution_average, sensor_faults,
 };
 use crate::scenario::Scenario;
 use crate::wheel::WheelName;
+
+/// (-) Part of a recording's mean square from which on most of it repeats with a shaft.
+const MOST: f64 = 0.5;
 
 /// How the shafts of a train turn over a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -308,10 +311,7 @@ impl TrainRecording<'_> {
             found.foreign = found.foreign.or(check.foreign);
             let mut warnings = check.warnings;
             match angular.and_then(|angular| self.process_wheel(number, &angular, settings)) {
-                Ok(wheel) => {
-                    warnings.extend(wheel.records.iter().flat_map(|record| &record.warnings).cloned());
-                    found.wheels.push(wheel);
-                }
+                Ok(wheel) => found.wheels.push(wheel),
                 Err(
                     error @ (SignalError::TooFewRevolutions { .. }
                     | SignalError::TooFewPassages { .. }
@@ -328,9 +328,38 @@ impl TrainRecording<'_> {
                 }
             }
         }
+        for wheel in 0..found.wheels.len() {
+            self.name_other(&mut found.wheels, wheel);
+            for warning in found.wheels[wheel].records.iter().flat_map(|record| &record.warnings) {
+                if !found.warnings.contains(warning) {
+                    found.warnings.push(warning.clone());
+                }
+            }
+        }
         match first_without {
             Some(error) if found.wheels.is_empty() => Err(error),
             _ => Ok(found),
+        }
+    }
+
+    /// Names, in the warnings that nothing repeats with a wheel, a wheel of another shaft with which most of the recording repeats.
+    ///
+    /// # Arguments
+    /// * `wheels` - the results
+    /// * `of` - number of the result whose warnings they are
+    fn name_other(&self, wheels: &mut [WheelRecords], of: usize) {
+        let shaft = |records: &WheelRecords| self.train.wheels[records.wheel].shaft;
+        let others = wheels.iter().filter(|other| shaft(other) != shaft(&wheels[of]));
+        let held = others.filter_map(|other| {
+            let part = other.records.first()?.synchronous.filter(|part| part.of_mean_square > MOST)?;
+            let TrainWheel { name, teeth, .. } = &self.train.wheels[other.wheel];
+            Some((format!("{name} ({teeth} teeth)"), part.of_mean_square))
+        });
+        let largest = held.max_by(|a, b| a.1.total_cmp(&b.1));
+        for warning in wheels[of].records.iter_mut().flat_map(|record| &mut record.warnings) {
+            if let SignalWarning::NothingSynchronous { other, .. } = warning {
+                other.clone_from(&largest);
+            }
         }
     }
 

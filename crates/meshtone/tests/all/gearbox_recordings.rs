@@ -180,7 +180,15 @@ fn a_bearing_is_foreign_and_the_gearbox_is_not() {
             let tone = |rev: &f64| 0.1 * level * 2f64.sqrt() * (TAU * 3.0523 * rev).cos();
             let values: Vec<f64> =
                 signal.values.iter().zip(&phase.revolutions).map(|(value, rev)| value + tone(rev)).collect();
-            let foreign = process(&values).foreign.unwrap().tones;
+            let foreign = process(&values).foreign.unwrap();
+            // The same teeth of 29/100 and 36/90 meet again after 250 revolutions of the input: no weak line is judged in a third of that.
+            if rig == Some(GearboxRig::Tecnalia) {
+                let least_s = 4.0 * 250.0 / gearbox.operation.pinion_speed_hz;
+                assert!(foreign.tones.is_empty() && foreign.needed_s.unwrap() >= least_s, "{foreign:?}");
+                continue;
+            }
+            assert_eq!(foreign.needed_s, None, "{rig:?}");
+            let foreign = foreign.tones;
             let [bearing] = foreign[..] else { panic!("{rig:?} {}: {foreign:?}", signal.name) };
             let hz = 3.0523 * gearbox.operation.pinion_speed_hz;
             assert!((bearing.order - 3.0523).abs() < 5e-3 && (bearing.frequency_hz / hz - 1.0).abs() < 2e-3);
@@ -225,6 +233,31 @@ fn a_mesh_tone_and_a_wrong_speed() {
     let records = recording.process(&TrainSettings::default()).unwrap();
     println!("{:?}", records.warnings);
     assert!(records.warnings.iter().any(|warning| warning.code() == "speed_hz"), "{:?}", records.warnings);
+}
+
+/// Where the angle is that of a mesh tone, with an error of less than half a cycle of it, harmonics of the other mesh of the shaft, which lie eight times as
+/// high and as far beside their orders, are not foreign; of a tachometer they would be.
+#[test]
+fn an_error_of_the_mesh_tone_makes_no_line_foreign() {
+    let train = GearTrain::of_scenario(&healthy(None)).unwrap();
+    let (rate_hz, turns, followed) = (20_000.0, 41.0, 48.0);
+    let turned: Vec<f64> = (0..82_000).map(|i| turns * f64::from(i) / 82_000.0).collect();
+    let noise = crate::signal::noise(7, turned.len());
+    let order = |order: f64, rev: f64| (TAU * (order * rev).fract()).cos();
+    let meshes = |rev: f64| order(48.0, rev) + (1..=4).map(|h| order(f64::from(96 * h), rev)).sum::<f64>();
+    let signal: Vec<f64> = turned.iter().zip(noise).map(|(rev, noise)| meshes(*rev) + 0.1 * noise).collect();
+    let off = 1.0 + 0.4 / (followed * turns);
+    let phase = ShaftPhase::new(0, turned.iter().map(|rev| off * rev).collect()).unwrap();
+    let tones = |stated: StatedTurning| {
+        let turning = TrainTurning::Shaft { shaft: 1, phase: phase.clone(), stated };
+        let recording =
+            TrainRecording { signal: &signal, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
+        let records = recording.process(&TrainSettings::default()).unwrap();
+        println!("{stated:?} {:?} {:?}", records.foreign, records.warnings);
+        records.foreign.map(|found| found.tones.len())
+    };
+    assert_eq!(tones(StatedTurning::MeshTone { nominal_hz: 10.0 }), Some(0));
+    assert!(tones(StatedTurning::Other) > Some(0));
 }
 
 /// A recording of 1.6 revolutions of the output shaft has no average of its wheel, but those of the others; of 0.4, there is none at all.

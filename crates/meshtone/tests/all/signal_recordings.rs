@@ -4,8 +4,9 @@
 use std::f64::consts::PI;
 
 use meshtone::signal::{
-    AngularSignal, ChainSettings, Edge, MeshTone, ShaftPhase, SignalWarning, StatedFacts, StatedTurning,
-    angular_resample, check_recording, interpolate_band_limited, process_angular, resample,
+    AngularSignal, ChainSettings, Edge, GearTrain, MeshTone, ShaftPhase, SignalWarning, StatedFacts,
+    StatedTurning, TrainRecording, TrainSettings, TrainTurning, angular_resample, check_recording,
+    interpolate_band_limited, process_angular, resample,
 };
 use rayon::prelude::*;
 
@@ -343,6 +344,30 @@ fn pair_with_hunting_tooth(teeth: u32, mate_teeth: u32, revolutions: usize) -> A
     };
     let values = noise.into_iter().enumerate().map(value).collect();
     AngularSignal { points_per_revolution, start_rev: 0.0, nyquist_order: 512.0, values }
+}
+
+/// Under four periods of the hunting tooth its orders are no lines of their own: none of them is foreign, and the needed length is said.
+#[test]
+fn hunting_tooth_orders_of_a_short_recording_are_not_foreign() {
+    let (speed_hz, rate_hz) = (30.0, 30.0 * 1024.0);
+    let train = GearTrain::of_wheels([("pinion", 23), ("gear", 38)]);
+    let searched = |revolutions: usize| {
+        let signal = pair_with_hunting_tooth(23, 38, revolutions).values;
+        let phase = ShaftPhase::constant(speed_hz, rate_hz, signal.len()).unwrap();
+        let turning = TrainTurning::Shaft { shaft: 0, phase, stated: StatedTurning::Other };
+        let recording =
+            TrainRecording { signal: &signal, sampling_rate_hz: rate_hz, train: &train, turning: &turning };
+        let found = recording.process(&TrainSettings::default()).unwrap();
+        println!("{revolutions}: {:?} {:?}", found.foreign, found.warnings);
+        found.foreign.unwrap()
+    };
+    for revolutions in [100, 148] {
+        let found = searched(revolutions);
+        assert!(found.tones.is_empty(), "{revolutions}: {found:?}");
+        let needed_s = found.needed_s.unwrap();
+        assert!((needed_s - 153.0 / speed_hz).abs() < 0.01, "{needed_s}");
+    }
+    assert_eq!(searched(160).needed_s, None);
 }
 
 #[test]
