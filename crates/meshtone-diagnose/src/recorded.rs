@@ -266,7 +266,7 @@ impl SlowestShaft<'_> {
         let mut lines = lines_off_shafts(&unrepeated, train, wheel.shaft);
         let level = standard_deviation(&angular.values).max(f64::MIN_POSITIVE);
         let unrepeated_part = (standard_deviation(&unrepeated.values) / level).powi(2) / kept;
-        let found = foreign_tones(&unrepeated, train, wheel.shaft, *speed_hz);
+        let found = foreign_tones(&unrepeated, train, wheel.shaft, *speed_hz, None);
         let mut tones = found.map_or_else(Vec::new, |found| found.tones);
         tones.iter_mut().for_each(|tone| tone.part *= unrepeated_part);
         let passed = (PASSED * angular.nyquist_order) as usize * unrepeated.revolutions();

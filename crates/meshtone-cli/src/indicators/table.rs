@@ -138,8 +138,8 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
                 "no foreign line was found{of}; {percent:.0} % of all orders are too near one of a shaft or a mesh to distinguish a line there"
             ),
         };
-        let is_long = foreign_lines_need_s.is_none() && *own > MOST_OWN;
-        let longer = if is_long { ": record for longer" } else { "" };
+        let longer =
+            if foreign_lines_need_s.is_none() && *own > MOST_OWN { ": record for longer" } else { "" };
         return format!("\n  {searched}{longer}\n");
     }
     let on = if series.wheels.len() > 2 { "the input" } else { "the shaft" };

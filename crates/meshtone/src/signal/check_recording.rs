@@ -2,7 +2,7 @@
 
 use super::{
     AngularSignal, ForeignSearch, ForeignTones, GearTrain, ShaftPhase, SignalWarning, StatedFacts,
-    StatedTurning, find_train_mismatch, foreign_tones::search,
+    StatedTurning, find_train_mismatch, foreign_tones,
 };
 
 /// Looks for a sign that a recording does not fit the stated facts, and for tones that belong to neither shaft.
@@ -79,11 +79,10 @@ impl RecordingCheck {
         if train.meshes.is_empty() || phase.is_run_up(sampling_rate_hz) {
             return Self::default();
         }
-        let followed = match turning {
-            StatedTurning::MeshTone { .. } => train.teeth_on(shaft).min().map(f64::from),
-            _ => None,
-        };
-        let mut foreign = search(angular, train, shaft, phase.mean_speed_hz(sampling_rate_hz), followed);
+        let is_followed = matches!(turning, StatedTurning::MeshTone { .. });
+        let followed = train.teeth_on(shaft).min().filter(|_| is_followed).map(f64::from);
+        let speed_hz = phase.mean_speed_hz(sampling_rate_hz);
+        let mut foreign = foreign_tones(angular, train, shaft, speed_hz, followed);
         let tones = foreign.as_ref().and_then(|found| ForeignTones::of(&found.tones));
         let counting = tones.filter(ForeignTones::count);
         if counting.is_none() {

@@ -141,6 +141,7 @@ pub fn lines_off_shafts(angular: &AngularSignal, train: &GearTrain, shaft: usize
 /// * `train` - the shafts
 /// * `shaft` - number of the shaft
 /// * `mean_speed_hz` - (Hz) mean speed of the shaft
+/// * `followed_order` - order of the mesh tone from which the angle is known, where it is: its error grows with the order that is looked at
 ///
 /// # Returns
 /// None of fewer than six revolutions, in which nothing is distinguished.
@@ -153,25 +154,12 @@ pub fn lines_off_shafts(angular: &AngularSignal, train: &GearTrain, shaft: usize
 /// let phase = ShaftPhase::constant(20.0, 1e4, signal.len())?;
 /// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
 /// let train = GearTrain::of_wheels([("pinion", 19), ("gear", 38)]);
-/// let found = foreign_tones(&angular, &train, 0, 20.0).ok_or("too short")?;
+/// let found = foreign_tones(&angular, &train, 0, 20.0, None).ok_or("too short")?;
 /// let [tone] = found.tones[..] else { panic!() };
 /// assert!((tone.frequency_hz - 313.0).abs() < 0.05 && (tone.amplitude - 0.1).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn foreign_tones(
-    angular: &AngularSignal,
-    train: &GearTrain,
-    shaft: usize,
-    mean_speed_hz: f64,
-) -> Option<ForeignSearch> {
-    search(angular, train, shaft, mean_speed_hz, None)
-}
-
-/// Does what [`foreign_tones`] does.
-///
-/// # Arguments
-/// * `followed_order` - order of the mesh tone from which the angle is known; its error grows with the order that is looked at
-pub(super) fn search(
     angular: &AngularSignal,
     train: &GearTrain,
     shaft: usize,
@@ -190,9 +178,9 @@ pub(super) fn search(
     let energy: f64 = squares[lines.start.min(passed)..passed].iter().sum();
     let largest = squares[..passed].iter().copied().fold(0.0, f64::max);
     let medians: Vec<f64> = squares[..passed].chunks(BAND).map(median).collect();
-    let drift_lines = followed_order.map_or(0.0, |followed| FOLLOWED_CYCLES / followed);
-    let own =
-        OwnOrders::new(train, shaft, revolutions as f64, (passed as f64 / revolutions as f64, drift_lines));
+    let drift_rev = followed_order.map_or(0.0, |followed| FOLLOWED_CYCLES / followed);
+    let highest = passed as f64 / revolutions as f64;
+    let own = OwnOrders::new(train, shaft, revolutions as f64, (highest, drift_rev));
     let to_input = train.speed_ratio(shaft, train.input()).value();
     let tone = |line: usize| {
         let square = squares[line];
@@ -220,10 +208,9 @@ pub(super) fn search(
     };
     let mut tones: Vec<ForeignTone> = lines.filter_map(tone).collect();
     tones.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
-    let hunting = train.spacings(shaft).1;
-    let is_short = hunting * (revolutions as f64) < APART;
+    let needed_rev = APART / train.spacings(shaft).1;
     // Of a recording only whole revolutions are left.
-    let needed_s = is_short.then(|| (APART / hunting + 1.0) / mean_speed_hz);
+    let needed_s = (needed_rev > revolutions as f64).then_some((needed_rev + 1.0) / mean_speed_hz);
     Some(ForeignSearch { tones, own_part: own.part(), needed_s })
 }
 
@@ -237,13 +224,13 @@ struct OwnOrders {
 
 impl OwnOrders {
     /// # Arguments
-    /// * `highest`, `drift_lines` - the last order that is looked at, and by how many lines an order of the machine may be off for each order
-    fn new(train: &GearTrain, shaft: usize, revolutions: f64, (highest, drift_lines): (f64, f64)) -> Self {
+    /// * `highest`, `drift_rev` - the last order that is looked at, and (rev) how far the angle may be off
+    fn new(train: &GearTrain, shaft: usize, revolutions: f64, (highest, drift_rev): (f64, f64)) -> Self {
         let (shafts, hunting) = train.spacings(shaft);
         let of_input = train.speed_ratio(train.input(), shaft).value();
         let [near_shaft, near_other] = OWN.map(|lines| lines / revolutions);
         let near = |order: f64, by: f64| {
-            let by = by.max(drift_lines * order / revolutions);
+            let by = by.max(drift_rev * order / revolutions);
             [order - by, order + by]
         };
         let multiples = |spacing: f64, by: f64| {

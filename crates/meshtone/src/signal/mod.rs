@@ -83,9 +83,7 @@ pub use indicators::{
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
 pub use kurtogram::{Kurtogram, KurtogramBand, kurtogram, spectral_kurtosis};
-pub use mismatch::{
-    Alternative, Evidence, Mismatch, StatedFacts, StatedTurning, find_mismatch, find_train_mismatch,
-};
+pub use mismatch::{Alternative, Mismatch, StatedFacts, StatedTurning, find_mismatch, find_train_mismatch};
 pub use octaves::{OCTAVES, OctaveBand, octave_bands};
 pub use order_map::{OrderMap, OrderMapSettings, order_map};
 pub use phase::{

@@ -28,8 +28,8 @@ pub struct Record {
     pub envelope_spectrum: Vec<f64>,
     /// The indicators.
     pub indicators: Indicators,
-    /// What the average holds of the revolutions; none of an average alone.
-    pub synchronous: Option<SynchronousPart>,
+    /// (-) Part of the mean square of the revolutions that the average holds; none of an average alone.
+    pub held: Option<f64>,
     /// Warnings besides those of the phase: [`ShaftPhase::warnings`].
     pub warnings: Vec<SignalWarning>,
 }
@@ -41,8 +41,9 @@ impl Record {
     /// * `values` - the revolutions that were averaged
     /// * `teeth` - of the wheel
     fn with_doubt(mut self, values: &[f64], teeth: u32) -> Self {
-        self.synchronous = synchronous_part(values, &self.average.values);
-        let part = self.synchronous.filter(SynchronousPart::is_noise);
+        let part = synchronous_part(values, &self.average.values);
+        self.held = part.map(|part| part.of_mean_square);
+        let part = part.filter(SynchronousPart::is_noise);
         self.warnings.extend(part.map(|part| SignalWarning::NothingSynchronous { part, teeth, other: None }));
         self
     }
@@ -234,7 +235,7 @@ pub fn process_average(
         )?,
         envelope_spectrum: order_spectrum(&envelope)?,
         order_spectrum: spectrum,
-        synchronous: None,
+        held: None,
         warnings: doubtful.then_some(near).into_iter().collect(),
         envelope,
         parts,

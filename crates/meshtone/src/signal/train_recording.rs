@@ -12,8 +12,8 @@ use super::{
 use crate::scenario::Scenario;
 use crate::wheel::WheelName;
 
-/// (-) Part of a recording's mean square from which on most of it repeats with a shaft.
-const MOST: f64 = 0.5;
+/// (-) Part of the mean square from which on most of a recording repeats with a shaft; noise leaves less of any two revolutions that count.
+const MOST: f64 = 0.75;
 
 /// How the shafts of a train turn over a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -328,9 +328,15 @@ impl TrainRecording<'_> {
                 }
             }
         }
-        for wheel in 0..found.wheels.len() {
-            self.name_other(&mut found.wheels, wheel);
-            for warning in found.wheels[wheel].records.iter().flat_map(|record| &record.warnings) {
+        // Where one shaft has it all, others have nothing because of that one.
+        let holder = found.wheels.iter().find(|of| of.records.iter().all(|record| record.held > Some(MOST)));
+        let holder = holder.map(|of| &self.train.wheels[of.wheel]);
+        let holder = holder.map(|TrainWheel { name, teeth, .. }| format!("{name} ({teeth} teeth)"));
+        for record in found.wheels.iter_mut().flat_map(|of| &mut of.records) {
+            for warning in &mut record.warnings {
+                if let SignalWarning::NothingSynchronous { other, .. } = warning {
+                    other.clone_from(&holder);
+                }
                 if !found.warnings.contains(warning) {
                     found.warnings.push(warning.clone());
                 }
@@ -339,27 +345,6 @@ impl TrainRecording<'_> {
         match first_without {
             Some(error) if found.wheels.is_empty() => Err(error),
             _ => Ok(found),
-        }
-    }
-
-    /// Names, in the warnings that nothing repeats with a wheel, a wheel of another shaft with which most of the recording repeats.
-    ///
-    /// # Arguments
-    /// * `wheels` - the results
-    /// * `of` - number of the result whose warnings they are
-    fn name_other(&self, wheels: &mut [WheelRecords], of: usize) {
-        let shaft = |records: &WheelRecords| self.train.wheels[records.wheel].shaft;
-        let others = wheels.iter().filter(|other| shaft(other) != shaft(&wheels[of]));
-        let held = others.filter_map(|other| {
-            let part = other.records.first()?.synchronous.filter(|part| part.of_mean_square > MOST)?;
-            let TrainWheel { name, teeth, .. } = &self.train.wheels[other.wheel];
-            Some((format!("{name} ({teeth} teeth)"), part.of_mean_square))
-        });
-        let largest = held.max_by(|a, b| a.1.total_cmp(&b.1));
-        for warning in wheels[of].records.iter_mut().flat_map(|record| &mut record.warnings) {
-            if let SignalWarning::NothingSynchronous { other, .. } = warning {
-                other.clone_from(&largest);
-            }
         }
     }
 

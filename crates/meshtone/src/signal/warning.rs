@@ -78,14 +78,18 @@ pub enum SignalWarning {
     #[error("{0}")]
     DoesNotFit(Mismatch),
     /// The average holds hardly more than noise would leave.
-    #[error("{}", nothing_synchronous(part, *teeth, other.as_ref()))]
+    #[error(
+        "no signal is synchronous with the wheel of {teeth} teeth: the average of {0} revolutions holds {1:.2} % of the recording's \
+         mean square, noise alone leaves {2:.2} %; its indicators are meaningless. {3}",
+        part.revolutions, 100.0 * part.of_mean_square, 100.0 / part.revolutions as f64, remedy(other.as_deref())
+    )]
     NothingSynchronous {
         /// What the average holds.
         part: SynchronousPart,
         /// Teeth of the wheel.
         teeth: u32,
-        /// Name of a wheel of another shaft with which most of the recording repeats, and (-) how much, where there is one.
-        other: Option<(String, f64)>,
+        /// Name of a wheel of another shaft with which most of the recording repeats, where there is one.
+        other: Option<String>,
     },
     /// The recording is too short for an average over some shafts, or over any: what repeats with them is left beside the lines of bearings.
     #[error("{}", not_averaged(shafts, *of_all, *needed))]
@@ -164,15 +168,11 @@ impl SignalWarning {
                 values.extend(mismatch.energy_ratio.map(|ratio| ("energy_ratio".to_owned(), ratio)));
                 values
             }
-            Self::NothingSynchronous { part, teeth, other } => {
-                let mut values = of(&[
-                    ("of_mean_square", part.of_mean_square),
-                    ("revolutions", part.revolutions as f64),
-                    ("teeth", f64::from(*teeth)),
-                ]);
-                values.extend(other.iter().map(|(_, held)| ("other_of_mean_square".to_owned(), *held)));
-                values
-            }
+            Self::NothingSynchronous { part, teeth, .. } => of(&[
+                ("of_mean_square", part.of_mean_square),
+                ("revolutions", part.revolutions as f64),
+                ("teeth", f64::from(*teeth)),
+            ]),
             Self::NotAveraged { shafts, needed, .. } => {
                 let of_shaft = |(index, (_, turned)): (usize, &(String, f64))| {
                     (format!("revolutions_{}", index + 1), *turned)
@@ -212,24 +212,16 @@ impl SignalWarning {
     }
 }
 
-/// The words of [`SignalWarning::NothingSynchronous`].
-fn nothing_synchronous(part: &SynchronousPart, teeth: u32, other: Option<&(String, f64)>) -> String {
-    let SynchronousPart { of_mean_square, revolutions } = part;
-    let cause = match other {
-        Some((wheel, held)) => format!(
-            "{:.0} % of the mean square repeats with {wheel}, whose damage may hide this wheel; or these teeth are stated wrongly",
-            100.0 * held
-        ),
-        None => "Check the tooth counts, the pulses per revolution, the speed and whether it is steady, the sampling rate, and the \
-                 recording's length and noise"
-            .to_owned(),
+/// What to do about [`SignalWarning::NothingSynchronous`].
+fn remedy(other: Option<&str>) -> String {
+    const CHECK: &str = "Check the tooth counts, the pulses per revolution, the speed and whether it is steady, the sampling rate, and the \
+                         recording's length and noise";
+    let hides = |other| {
+        format!(
+            "Most of the recording repeats with {other}, whose damage may hide this wheel; or these teeth are stated wrongly"
+        )
     };
-    format!(
-        "no signal is synchronous with the wheel of {teeth} teeth: the average of {revolutions} revolutions holds {:.2} % of the recording's \
-         mean square, noise alone leaves {:.2} %; its indicators are meaningless. {cause}",
-        100.0 * of_mean_square,
-        100.0 / *revolutions as f64
-    )
+    other.map_or_else(|| CHECK.to_owned(), hides)
 }
 
 /// The words of [`SignalWarning::NotAveraged`].

@@ -98,9 +98,7 @@ impl Hypothesis {
             Alternative::Teeth { .. } if may_be_speed => -1.0,
             Alternative::OtherShaft { .. } => 2.0,
             Alternative::PulsesPerRevolution { .. } | Alternative::Teeth { .. } => 1.0,
-            Alternative::MateTeeth { .. }
-            | Alternative::ShaftSpeed { .. }
-            | Alternative::VaryingSpeed { .. } => 0.0,
+            _ => 0.0,
         }
     }
 
@@ -150,11 +148,6 @@ impl Hypothesis {
 
     fn mesh(&self, orders: &FineOrders) -> f64 {
         self.mesh_lines(orders).map(|(_, prominence)| prominence).sum()
-    }
-
-    /// The evidence for it in the recording.
-    pub(super) fn evidence(&self, orders: &FineOrders) -> Evidence {
-        self.evidence_beside(orders, &[])
     }
 
     /// The evidence for it beside orders that are known: those do not count for the mate's shaft, nor do the wheel's own.

@@ -12,7 +12,7 @@ use super::{AngularSignal, GearTrain};
 use changing_speed::changing_speed;
 use fine_orders::FineOrders;
 use hypotheses::Hypothesis;
-use other_turning::{OtherTurning, meshes_together_speak_for, other_turning};
+use other_turning::{meshes_together_speak_for, other_turning};
 use steadier_speed::{SteadierSpeed, steadier_speed};
 use varying_speed::varying_speed;
 
@@ -167,15 +167,15 @@ impl Alternative {
 }
 
 /// Evidence for an interpretation of the recording.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Evidence {
+#[derive(Debug, Clone, Copy)]
+struct Evidence {
     /// (-) Sum over the mesh harmonics of the logarithm of each line over its strongest neighbour, each from −1 to 3.
-    pub mesh: f64,
+    mesh: f64,
     /// (-) Height of the wheel's shaft orders above the bins between them, in standard deviations of noise.
     /// None where the recording is too short to tell.
-    pub wheel_orders: Option<f64>,
+    wheel_orders: Option<f64>,
     /// (-) Height of the mate's shaft orders, likewise.
-    pub mate_orders: Option<f64>,
+    mate_orders: Option<f64>,
 }
 
 impl Evidence {
@@ -190,12 +190,8 @@ impl Evidence {
 pub struct Mismatch {
     /// The stated facts.
     pub stated: StatedFacts,
-    /// Evidence for the stated facts.
-    pub stated_evidence: Evidence,
     /// The alternative.
     pub alternative: Alternative,
-    /// Evidence for the alternative.
-    pub evidence: Evidence,
     /// (-) Energy of the mesh harmonics in the average at the alternative speed over that at the stated one; none where the speed is
     /// not in doubt.
     pub energy_ratio: Option<f64>,
@@ -266,11 +262,9 @@ pub fn find_train_mismatch(
         return speed;
     }
     let name = |shaft: usize| train.shafts[shaft].name.clone();
-    let of_other = |OtherTurning { alternative, shaft: other, evidence, stated_evidence, .. }| Mismatch {
+    let of_other = |(alternative, other): (Alternative, Option<usize>)| Mismatch {
         stated,
-        stated_evidence,
         alternative,
-        evidence,
         energy_ratio: None,
         shafts: other.map(|other| [name(shaft), name(other)]),
     };
@@ -295,22 +289,16 @@ fn find_among(
         return None;
     }
     let as_stated = Hypothesis::as_stated(stated);
-    let stated_evidence = as_stated.evidence(orders);
+    let stated_evidence = as_stated.evidence_beside(orders, &[]);
     let of_pair = Hypothesis::orders_of_pair(stated, orders);
-    let mismatch = |alternative, evidence, energy_ratio| Mismatch {
-        stated: *stated,
-        stated_evidence,
-        alternative,
-        evidence,
-        energy_ratio,
-        shafts: None,
-    };
+    let mismatch =
+        |alternative, energy_ratio| Mismatch { stated: *stated, alternative, energy_ratio, shafts: None };
     if let StatedTurning::ConstantSpeed { speed_hz: stated_hz }
     | StatedTurning::MeshTone { nominal_hz: stated_hz } = stated.turning
         && let Some(variation) = changing_speed(angular, stated.teeth)
     {
         let alternative = Alternative::VaryingSpeed { variation, stated_hz };
-        return Some(mismatch(alternative, stated_evidence, None));
+        return Some(mismatch(alternative, None));
     }
     // Where the shaft's own orders are not seen, a mesh frequency is as well of another speed as of other teeth.
     let may_be_speed = matches!(stated.turning, StatedTurning::ConstantSpeed { .. })
@@ -337,7 +325,7 @@ fn find_among(
         .and_then(|(likeliest, _)| better.iter().find(|(half, _)| half.explains_mate_of(likeliest, stated)));
     let likeliest = half.or(likeliest).copied();
     if let StatedTurning::ConstantSpeed { speed_hz } = stated.turning {
-        let (hypothesis, evidence) = likeliest.unwrap_or((as_stated, stated_evidence));
+        let hypothesis = likeliest.map_or(as_stated, |(hypothesis, _)| hypothesis);
         let speed_is_alternative = likeliest
             .is_some_and(|(hypothesis, _)| matches!(hypothesis.alternative, Alternative::ShaftSpeed { .. }));
         let steadier = steadier_speed(angular, orders, &hypothesis, stated.teeth).filter(|steadier| {
@@ -348,15 +336,14 @@ fn find_among(
             if is_doubtful { varying_speed(angular, orders, &as_stated, stated.teeth) } else { None };
         if let Some(variation) = variation {
             let alternative = Alternative::VaryingSpeed { variation, stated_hz: speed_hz };
-            return Some(mismatch(alternative, stated_evidence, None));
+            return Some(mismatch(alternative, None));
         }
         if let Some(SteadierSpeed { factor, energy_ratio }) = steadier {
             let alternative = Alternative::ShaftSpeed { speed_hz: speed_hz * factor, stated_hz: speed_hz };
-            return Some(mismatch(alternative, evidence, Some(energy_ratio)));
+            return Some(mismatch(alternative, Some(energy_ratio)));
         }
     }
-    let (hypothesis, evidence) = likeliest?;
-    Some(mismatch(hypothesis.alternative, evidence, None))
+    Some(mismatch(likeliest?.0.alternative, None))
 }
 
 /// The evidence for a hypothesis, where it is clearly more than that for the stated facts.
@@ -376,11 +363,8 @@ fn evidence_if_better(
     of_pair: &[f64],
     orders: &FineOrders,
 ) -> Option<Evidence> {
-    let own = if hypothesis.moves_wheel() {
-        hypothesis.evidence(orders)
-    } else {
-        hypothesis.evidence_beside(orders, of_pair)
-    };
+    let known = if hypothesis.moves_wheel() { &[] } else { of_pair };
+    let own = hypothesis.evidence_beside(orders, known);
     let new_mesh = hypothesis.unshared_mesh(as_stated, &[], orders);
     let lost_mesh = as_stated.unshared_mesh(hypothesis, &[], orders).unwrap_or(0.0);
     let wheel_gain = gain(own.wheel_orders, stated.wheel_orders);

@@ -2,9 +2,7 @@
 
 use super::fine_orders::FineOrders;
 use super::hypotheses::{HARMONICS, SAME_LINE, SIDEBANDS, pulse_counts};
-use super::{
-    Alternative, CLEAR_MESH, Evidence, LEAST_COMB, LEAST_MESH, LEAST_MESH_GAIN, POOR_COMB, StatedTurning,
-};
+use super::{Alternative, CLEAR_MESH, LEAST_COMB, LEAST_MESH, LEAST_MESH_GAIN, POOR_COMB, StatedTurning};
 use crate::signal::GearTrain;
 
 /// Least gain in evidence of another number of pulses. Many are tried, and 441 right statements about 49 simulated gearboxes gave none.
@@ -14,18 +12,6 @@ const LEAST_GAIN_OF_PULSES: f64 = 15.0;
 const LEAST_LINES_OF_PULSES: f64 = 9.0;
 /// Gain that another shaft has from the start, since it is a likelier mistake than a number of pulses that fits alike.
 const SHAFT_IS_LIKELIER: f64 = 1.0;
-
-/// A better source with its evidence, and that of the stated one.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct OtherTurning {
-    pub(super) alternative: Alternative,
-    /// Number of the shaft that speed or pulses are of, where it is another one.
-    pub(super) shaft: Option<usize>,
-    pub(super) evidence: Evidence,
-    pub(super) stated_evidence: Evidence,
-    /// By how much the evidence is more than the stated one's, of what only one of them has.
-    gain: f64,
-}
 
 /// The lines of a train whose stated shaft turns `factor` times as quickly as the angle says.
 struct Turning<'a> {
@@ -64,10 +50,6 @@ impl<'a> Turning<'a> {
     /// The sum of the prominences of the mesh lines.
     fn mesh(&self) -> f64 {
         self.lines.iter().map(|(_, prominence)| prominence).sum()
-    }
-
-    fn evidence(&self) -> Evidence {
-        Evidence { mesh: self.mesh(), wheel_orders: self.orders.comb(self.shafts[0], &[]), mate_orders: None }
     }
 
     /// Sum of the prominences of the mesh lines that are at no multiple of other orders; 0 where there is no such line.
@@ -143,14 +125,16 @@ pub(super) fn meshes_together_speak_for(
 /// * `train` - of several meshes
 /// * `shaft` - number of the shaft whose angle is stated
 /// * `turning` - the source from which its angle is known
+///
+/// # Returns
+/// What is right, and the number of the shaft that speed or pulses are of, where it is another one.
 pub(super) fn other_turning(
     orders: &FineOrders,
     train: &GearTrain,
     shaft: usize,
     turning: StatedTurning,
-) -> Option<OtherTurning> {
+) -> Option<(Alternative, Option<usize>)> {
     let as_stated = Turning::new(orders, train, shaft, 1.0);
-    let stated_evidence = as_stated.evidence();
     let shafts = (0..train.shafts.len()).filter_map(|other| {
         let teeth = train.teeth_on(other).next()?;
         let factor = train.speed_ratio(shaft, other).value();
@@ -173,8 +157,7 @@ pub(super) fn other_turning(
         let other = Turning::new(orders, train, shaft, factor);
         let likelier = if of_shaft.is_some() { SHAFT_IS_LIKELIER } else { 0.0 };
         let gain = other.gain_if_clear(&as_stated, factor, of_shaft.is_none())? + likelier;
-        let evidence = other.evidence();
-        Some(OtherTurning { alternative, shaft: of_shaft, evidence, stated_evidence, gain })
+        Some((gain, (alternative, of_shaft)))
     });
-    better.max_by(|a, b| a.gain.total_cmp(&b.gain))
+    better.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, better)| better)
 }

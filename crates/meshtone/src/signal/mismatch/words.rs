@@ -14,9 +14,7 @@ impl Mismatch {
     fn source(&self) -> &'static str {
         match self.stated.turning {
             StatedTurning::Pulses { .. } => "the pulses are",
-            StatedTurning::ConstantSpeed { .. } | StatedTurning::MeshTone { .. } | StatedTurning::Other => {
-                "the speed is"
-            }
+            _ => "the speed is",
         }
     }
 }
