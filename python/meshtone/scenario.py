@@ -472,7 +472,7 @@ def template(kind: str, *, all_keys: bool = False) -> str:
     Parameters
     ----------
     kind : str
-        'healthy', or a kind of fault: 'missing-tooth', 'tooth-breakage', 'root-crack', 'partial-face', 'through-face', 'pits',
+        'healthy', 'helical', or a kind of fault: 'missing-tooth', 'tooth-breakage', 'root-crack', 'partial-face', 'through-face', 'pits',
         'tooth-destruction', 'wear'.
     all_keys : bool
         Whether every key stands in it, with its unit, meaning and default, instead of those that matter.
@@ -490,6 +490,6 @@ def template(kind: str, *, all_keys: bool = False) -> str:
     Examples
     --------
     >>> print(template("healthy").splitlines()[0])
-    # A Meshtone scenario: a pair of spur gears, its operation, and its damage.
+    # A Meshtone scenario: a pair of gears, its operation, and its damage.
     """
     return _core.template(kind, all_keys)

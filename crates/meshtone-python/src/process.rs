@@ -171,6 +171,7 @@ pub fn train_parts<'py>(
     let all = PyDict::new(py);
     all.set_item("wheels", wheels.collect::<PyResult<Vec<_>>>()?)?;
     all.set_item("own_orders_part", foreign.as_ref().map(|found| found.own_part))?;
+    all.set_item("foreign_lines_need_s", foreign.as_ref().and_then(|found| found.needed_s))?;
     all.set_item("foreign", foreign.map(|found| found.tones.iter().map(line).collect::<Vec<_>>()))?;
     all.set_item("warnings", typed(&warnings))?;
     Ok(all)

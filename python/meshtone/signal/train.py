@@ -55,10 +55,12 @@ class TrainRecord:
         (Hz) Mean speed of each shaft that has a wheel.
     foreign_lines : list of ForeignLine or None
         Lines that belong to no shaft and no mesh, the strongest first; None where they were not looked for: over a run-up, where a stated value
-        does not fit, in fewer than six revolutions. Weak ones are not told from teeth that meet again before these have met four times: none is listed.
+        does not fit, in fewer than six revolutions. Weak ones are listed only where the recording has four hunting-tooth periods: see ``foreign_lines_need_s``.
     own_orders_part : float or None
         (-) Part of all orders at which a line is taken to be of a shaft or a mesh: foreign lines among them are not found. It falls with the length of
         the recording.
+    foreign_lines_need_s : float or None
+        (s) Length that a recording needs for weak foreign lines to be distinguished from hunting-tooth orders; None where this one has it.
     warnings : list of SignalWarning
         What is doubtful.
     """
@@ -68,6 +70,7 @@ class TrainRecord:
     mean_speeds_hz: dict[str, float]
     foreign_lines: list[ForeignLine] | None
     own_orders_part: float | None
+    foreign_lines_need_s: float | None
     warnings: list[SignalWarning]
 
     def __getitem__(self, wheel: str) -> Record:
@@ -384,5 +387,6 @@ def train_record(parts: dict[str, Any], name: str) -> TrainRecord:
         mean_speeds_hz={shaft: speed_hz for _, shaft, _, speed_hz, _ in wheels},
         foreign_lines=None if foreign is None else [ForeignLine(*line) for line in foreign],
         own_orders_part=parts["own_orders_part"],
+        foreign_lines_need_s=parts["foreign_lines_need_s"],
         warnings=warnings,
     )

@@ -180,8 +180,7 @@ impl Path {
     }
 }
 
-/// The path at octaves.
-/// All that the estimate holds, for programs.
+/// The estimate, for programs.
 fn numbers(estimate: &PathEstimate) -> Value {
     let drive = &estimate.drive;
     let sidebands = drive.sidebands.iter().map(|of| {
@@ -196,6 +195,7 @@ fn numbers(estimate: &PathEstimate) -> Value {
         "phase_deg": estimate.phase_deg,
         "compared_hz": estimate.compared_hz,
         "misfit": estimate.misfit,
+        "failed_draws": estimate.failed_draws,
         "speed_wander_percent": drive.speed_wander_percent,
         "line_share": drive.line_share,
         "random_force_factor": drive.random_force_factor,
@@ -203,6 +203,7 @@ fn numbers(estimate: &PathEstimate) -> Value {
     })
 }
 
+/// The path at octaves.
 fn summary(estimate: &PathEstimate, output: &path::Path) -> String {
     let [from_hz, to_hz] = estimate.compared_hz;
     let mut text = format!("  {:>10}  {:>8}  {:>18}\n", "Hz", "dB", "90 %");

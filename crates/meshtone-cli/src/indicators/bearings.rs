@@ -89,19 +89,27 @@ fn bearing(text: &str) -> Result<NamedChoice, String> {
 /// The geometry of a row in a user's list, whose first line names the columns.
 fn of_list(file: &str, designation: &str) -> Result<BearingGeometry, String> {
     let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
-    let mut rows =
-        text.trim_start_matches('\u{feff}').lines().map(|line| line.split([',', ';']).map(str::trim));
-    let heads: Vec<&str> = rows.next().into_iter().flatten().collect();
+    let mut lines = text.trim_start_matches('\u{feff}').lines();
+    let head = lines.next().unwrap_or_default();
+    // Beside semicolons a comma is the decimal sign.
+    let separator = if head.contains(';') { ';' } else { ',' };
+    let cells = |line| -> Vec<&str> {
+        str::split(line, separator).map(|cell| cell.trim().trim_matches('"')).collect()
+    };
+    let heads = cells(head);
     let columns = ["designation", "elements", "element_mm", "pitch_mm", "contact_angle_deg"];
     let places = columns.map(|column| heads.iter().position(|head| *head == column));
     let [Some(name), Some(elements), Some(element_mm), Some(pitch_mm), Some(angle_deg)] = places else {
         return Err(format!("the first line of {file} must name the columns {}", columns.join(", ")));
     };
-    let mut rows = rows.map(Iterator::collect::<Vec<_>>);
-    let row = rows.find(|row| row.get(name) == Some(&designation));
+    let row = lines.map(cells).find(|row| row.get(name) == Some(&designation));
     let row = row.ok_or_else(|| format!("{file} has no bearing {designation} in its column designation"))?;
-    let numbers =
-        [elements, element_mm, pitch_mm, angle_deg].map(|place| row.get(place).copied().unwrap_or_default());
+    let numbers = [elements, element_mm, pitch_mm, angle_deg]
+        .map(|place| row.get(place).copied().unwrap_or_default().replace(',', "."));
+    if let Some(at) = numbers.iter().position(|cell| cell.parse::<f64>().is_err()) {
+        let (column, cell) = (columns[at + 1], &numbers[at]);
+        return Err(format!("{file}, {designation}: {column} = {cell:?} must be a number"));
+    }
     geometry(&numbers.join(",")).map_err(|error| format!("{file}, {designation}: {error}"))
 }
 

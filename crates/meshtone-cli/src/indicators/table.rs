@@ -132,7 +132,8 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
         let percent = 100.0 * own;
         let searched = match foreign_lines_need_s {
             Some(needed_s) => format!(
-                "the recording{of} is too short to distinguish foreign lines from those of teeth that meet again: it needs {needed_s:.1} s"
+                "the recording{of} is too short to distinguish foreign lines from hunting-tooth orders: it needs {:.0} s",
+                needed_s.ceil()
             ),
             None => format!(
                 "no foreign line was found{of}; {percent:.0} % of all orders are too near one of a shaft or a mesh to distinguish a line there"

@@ -204,11 +204,16 @@ fn bearings_of_a_gearbox_are_on_its_shafts() {
     assert_eq!(results(&workplace)["settings"]["bearings"], serde_json::json!(["ER-16K"]));
     // A list of the user's own, as a workbook exports it.
     let head = "\u{feff}maker;designation;elements;element_mm;pitch_mm;contact_angle_deg";
-    workplace.write("ours.csv", format!("{head}\nSome Ltd;6308;8;15.08;65.0;0\nSome Ltd;6309;8;;72.5;0\n"));
+    workplace.write("ours.csv", format!("{head}\nSome Ltd;6308;8;15.08;65.0;0\nSome Ltd;6309;8;;72.5;0\nSome Ltd;\"6310\";8;19,05;80,5;0\n"));
     workplace.succeeds(&command(&["ours.csv:6308@output"]));
     assert_eq!(results(&workplace)["settings"]["bearings"], serde_json::json!(["6308@output"]));
-    workplace.fails(2, &command(&["ours.csv:6310"]), &["ours.csv has no bearing 6310"]);
-    workplace.fails(2, &command(&["ours.csv:6309"]), &["ours.csv, 6309: must be one of 6203"]);
+    // Beside semicolons a comma is the decimal sign.
+    workplace.succeeds(&command(&["ours.csv:6310@output"]));
+    let listed = results(&workplace)["bearings"].clone();
+    workplace.succeeds(&command(&["8,19.05,80.5@output"]));
+    assert_eq!(listed[0]["lines"], results(&workplace)["bearings"][0]["lines"]);
+    workplace.fails(2, &command(&["ours.csv:6311"]), &["ours.csv has no bearing 6311"]);
+    workplace.fails(2, &command(&["ours.csv:6309"]), &["ours.csv, 6309: element_mm = \"\" must be a number"]);
     workplace.fails(2, &command(&["absent.csv:6308"]), &["absent.csv: No such file"]);
     workplace.write("short.csv", "designation,elements\n6308,8\n");
     workplace.fails(2, &command(&["short.csv:6308"]), &["the first line of short.csv must name", "pitch_mm"]);

@@ -49,6 +49,7 @@ export class Desk {
 
   #end(stated) {
     byId("desk").hidden = true;
+    this.#file = null;
     this.#confirm(stated);
     this.#confirm = () => {};
   }
@@ -62,10 +63,13 @@ export class Desk {
 
   /** Asks what the file looks like with what is stated, and shows it. */
   async #look() {
+    const file = this.#file;
     this.#status("reading…");
+    // What is still asked is not known yet.
+    byId("desk-use").disabled = true;
     // What is looked at of the simulation has another channel.
-    const buffer = await this.#newest.ask({ ...this.#question(), channel: undefined, ...this.#stated() }, this.#file);
-    if (!buffer) return null;
+    const buffer = await this.#newest.ask({ ...this.#question(), channel: undefined, ...this.#stated() }, file);
+    if (!buffer || file !== this.#file) return null;
     const said = unpacked(buffer);
     if (!said.is_simulated) this.#show(said);
     this.#status(said.problem ? "not read yet" : "read");

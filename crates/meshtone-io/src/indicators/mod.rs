@@ -78,7 +78,7 @@ pub struct RecordingEntry {
     /// (-) Part of the orders at which a tone would belong to the shafts and meshes, since the recording does not distinguish it from theirs; none
     /// where foreign lines were not looked for.
     pub own_orders_part: Option<f64>,
-    /// (s) Length that a recording needs for weak foreign lines to be told from orders at which the same teeth meet again; none where this one has it, or
+    /// (s) Length that a recording needs for weak foreign lines to be distinguished from hunting-tooth orders; none where this one has it, or
     /// where they were not looked for.
     pub foreign_lines_need_s: Option<f64>,
 }

@@ -76,7 +76,7 @@ fn stated_or_timed(
     present: impl Fn() -> Vec<String>,
 ) -> Result<(StatedRate, f64), Problem> {
     if let Some(rate_hz) = options.sampling_rate_hz {
-        return Ok((StatedRate { by: "what is stated".to_owned(), rate_hz }, 0.0));
+        return Ok((StatedRate { by: "the stated rate".to_owned(), rate_hz }, 0.0));
     }
     let by_time = |column: &str| format!("time column {column}");
     let Some(first) = stated.first() else {

@@ -27,8 +27,8 @@ pub enum RecordingWarning {
     },
     /// The last segment of a TDMS file has no end, as its recorder broke off.
     #[error(
-        "the recorder broke off while it wrote the file: up to {samples} samples a channel in its last block, which is not whole, are left \
-         out, and what had not been written is missing"
+        "the recorder broke off while it wrote the file: what had not been written is missing, and of its last block up to {samples} \
+         samples a channel are left out"
     )]
     BrokenOff {
         /// Samples of the channel that has most of them in the block.

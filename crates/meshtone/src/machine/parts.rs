@@ -210,14 +210,22 @@ impl Machine {
         torque
     }
 
+    /// The torque of the brake and the forces that do not turn, such as those of pins off their places.
+    ///
+    /// # Arguments
+    /// * `torque_nm` - (N m) of the brake
+    pub(super) fn load_at_rest(&self, torque_nm: f64) -> DVector<f64> {
+        let constant = self.turning_forces.iter().filter(|of| of.speed_ratio == 0.0 && !of.of_square_speed);
+        constant.fold(self.braked(torque_nm), |sum, of| sum + &of.at[0])
+    }
+
     /// (N) Force of each mesh at rest under the torque of the brake and the forces that do not turn, such as those of pins off their places.
     ///
     /// # Arguments
     /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
     /// * `torque_nm` - (N m) of the brake
     pub(crate) fn forces_at_rest_n(&self, mesh_stiffness_n_per_m: &[f64], torque_nm: f64) -> Vec<f64> {
-        let constant = self.turning_forces.iter().filter(|of| of.speed_ratio == 0.0 && !of.of_square_speed);
-        let load = constant.fold(self.braked(torque_nm), |sum, of| sum + &of.at[0]);
+        let load = self.load_at_rest(torque_nm);
         let displaced = self.displaced_by(self.closed_stiffness(mesh_stiffness_n_per_m), &[load]);
         let lines = self.lines.iter().zip(mesh_stiffness_n_per_m);
         lines.map(|(line, stiffness)| stiffness * line.at_middle.dot(&displaced.column(0))).collect()

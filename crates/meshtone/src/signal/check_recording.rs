@@ -86,7 +86,7 @@ impl RecordingCheck {
         let tones = foreign.as_ref().and_then(|found| ForeignTones::of(&found.tones));
         let counting = tones.filter(ForeignTones::count);
         if counting.is_none() {
-            // Weak ones may be of teeth that meet again.
+            // Weak ones may be of hunting-tooth orders.
             foreign.iter_mut().filter(|found| found.needed_s.is_some()).for_each(|found| found.tones.clear());
         }
         Self { warnings: counting.map(SignalWarning::ForeignTones).into_iter().collect(), foreign }

@@ -66,7 +66,7 @@ pub struct ForeignSearch {
     /// (-) Part of the orders that were searched at which a tone would belong to the train: it falls with the length of the recording, which
     /// distinguishes orders.
     pub own_part: f64,
-    /// (s) Length that a recording needs for weak tones to be told from orders at which the same teeth meet again; none where this one has it.
+    /// (s) Length that a recording needs for weak tones to be distinguished from hunting-tooth orders; none where this one has it.
     pub needed_s: Option<f64>,
 }
 

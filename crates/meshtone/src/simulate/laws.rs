@@ -58,9 +58,16 @@ impl Stages {
         if self.machine().is_none() || self.time.kept_samples() == 0 {
             return Ok(());
         }
-        let problem = self.overlap(figures).or_else(|| self.crossed(figures));
-        if let Some(problem) = problem.or_else(|| self.lost_speed(figures)) {
-            let rate_hz = self.time.sampling_rate_hz;
+        let rate_hz = self.time.sampling_rate_hz;
+        if let Some(problem) = self.crossed(figures) {
+            let help = format!(
+                "raise solver.sampling_rate_hz from {rate_hz:.0} to {:.0} S/s; where that changes nothing, raise the damping ratios or \
+                 operation.brake_torque_nm",
+                4.0 * rate_hz
+            );
+            return Err(Error::Impossible { problem, help });
+        }
+        if let Some(problem) = self.overlap(figures).or_else(|| self.lost_speed(figures)) {
             let help = self.help_of_load().unwrap_or_else(|| {
                 format!(
                     "raise solver.sampling_rate_hz from {rate_hz:.0} to {:.0} S/s; where that changes nothing, lower \
@@ -110,6 +117,7 @@ impl Stages {
                 force.largest()
             ))
         };
+        // Of other meshes the repeated step warns, which sets have not.
         let is_of_set = |(mesh, _): &(usize, _)| self.scenario.meshes[*mesh].is_of_set;
         figures.forces.iter().enumerate().filter(is_of_set).find_map(of_mesh)
     }

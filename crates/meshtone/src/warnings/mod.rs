@@ -93,9 +93,11 @@ impl Stages {
             let of_planets = &forces_n[set.first_mesh..set.first_mesh + set.planets()];
             let mean_n = of_planets.iter().sum::<f64>() / of_planets.len() as f64;
             let planet = of_planets.iter().position(|force_n| *force_n < LEAST_SHARE * mean_n)?;
-            let key = entry_key("planetary", number, self.layout.sets.len(), "pin.error_um");
+            let has_errors = self.scenario.planetary()[number].pin.error_um.iter().any(|um| *um != 0.0);
+            let cause = if has_errors { "pin.error_um" } else { "carrier_eccentricity_um" };
+            let key = entry_key("planetary", number, self.layout.sets.len(), cause);
             let message = format!(
-                "planet {} carries {:.1} % of what a planet carries on average, at rest: it loses contact when the set turns",
+                "planet {} carries {:.1} % of what a planet carries on average, at rest: it may lose contact when the set turns",
                 planet + 1,
                 100.0 * (of_planets[planet] / mean_n).max(0.0)
             );

@@ -522,6 +522,16 @@ fn planet_bearings_exchange_the_roles_of_their_rings() {
         assert!(load_n[0].abs() < 1.0 && (load_n[1] / -822.4 - 1.0).abs() < 0.02, "{load_n:?}");
         stages.simulate().unwrap().channels.signal("force_n.p.sun-p.planet1").unwrap().to_vec()
     };
+    // A pin ahead of its place relieves its planet, one behind loads it as much more.
+    let load_n = |error_um: f64| {
+        let mut scenario =
+            Scenario::from_toml(&RIG_A.replace("[operation]", &format!("{BEARING}\n[operation]"))).unwrap();
+        scenario.structure.shafts_mut().unwrap().planetary[0].pin.error_um = vec![error_um, 0.0, 0.0, 0.0];
+        stages(scenario).unwrap().bearings[0].1.static_load_n[1]
+    };
+    let [ahead, exact, behind] = [20.0, 0.0, -20.0].map(load_n);
+    println!("bearing of a planet ahead, in its place, behind: {ahead:.1}, {exact:.1}, {behind:.1} N");
+    assert!(ahead / exact < 0.6 && ((ahead + behind) / (2.0 * exact) - 1.0).abs() < 0.01);
     let [sound, outer, inner] = ["", "outer", "inner"].map(|race| match race {
         "" => shown(""),
         race => shown(&format!("defect = [{{ race = \"{race}\", width_mm = 2.0 }}]")),

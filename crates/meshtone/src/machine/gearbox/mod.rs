@@ -574,15 +574,20 @@ impl GearboxMachine {
         let machine = &self.machine;
         let stiffness = machine.closed_stiffness(&vec![MESH_N_PER_M; machine.lines.len()]);
         let displacement =
-            machine.displaced_by(stiffness, &[machine.braked(torque_nm)]).column(0).into_owned();
+            machine.displaced_by(stiffness, &[machine.load_at_rest(torque_nm)]).column(0).into_owned();
         let rolling = parts.bearings.iter().filter(|of| of.bearing.element().is_some());
-        let of_planets =
-            parts.sets.iter().flat_map(|set| set.rolling_n_per_m.iter().map(|(_, spring)| *spring));
-        let load = |(spring, stretch): ([[f64; 2]; 2], &[DVector<f64>; 2])| {
-            let [x_m, y_m] = stretch.each_ref().map(|stretch| stretch.dot(&displacement));
-            spring.map(|[of_x, of_y]| of_x * x_m + of_y * y_m)
-        };
-        rolling.map(|of| of.radial_n_per_m).chain(of_planets).zip(&machine.bearings).map(load).collect()
+        let of_planets = parts.sets.iter().flat_map(|set| {
+            set.rolling_n_per_m.iter().map(|(planet, spring)| (*spring, set.pin_errors_m[*planet]))
+        });
+        let on_shafts = rolling.map(|of| (of.radial_n_per_m, [0.0; 2]));
+        let springs = on_shafts.chain(of_planets).zip(&machine.bearings);
+        // A pin off its place presses its planet's bearing by as much as the planet does not give way.
+        springs
+            .map(|((spring, off_m), stretch)| {
+                let [x_m, y_m] = [0, 1].map(|axis| stretch[axis].dot(&displacement) + off_m[axis]);
+                spring.map(|[of_x, of_y]| of_x * x_m + of_y * y_m)
+            })
+            .collect()
     }
 
     /// The line of action of a mesh: the driving wheel, which turns in the sense s about z, pushes the other one along
