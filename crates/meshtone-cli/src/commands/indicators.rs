@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshtone_io::indicators::WarningEntry;
+use meshtone_io::indicators::{RecordingEntry, WarningEntry};
 use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_plot::trend::Trend;
 
@@ -96,6 +96,7 @@ impl Indicators {
         }
         series.finish()?;
         let mut trends = figures::trends(&series);
+        self.refuse_unanswered(&series)?;
         if let Some(first) = self.processing.sound_records {
             series.results.limits = limits::set(&series, &mut trends, first as usize);
         }
@@ -124,6 +125,23 @@ impl Indicators {
         let (to, limits) = (directory.display(), self.processing.iso_20816);
         let table = || format!("{from} -> {to}\n{}", table::table(&series, limits));
         self.shown.print(&to, table, || series.results.to_json())
+    }
+
+    /// Refuses options that nothing of the recordings can answer.
+    fn refuse_unanswered(&self, series: &Series) -> Result<(), Failure> {
+        let most = series.wheels.iter().map(|wheel| series.of(wheel).count()).max().unwrap_or(0);
+        if let Some(first) = self.processing.sound_records.filter(|first| *first as usize >= most) {
+            let problem =
+                format!("--sound-records {first}: a wheel has {most} at most, so that none is judged");
+            return Failure::refuse(problem, "name more recordings, or state fewer that are sound");
+        }
+        let has_velocity = |entry: &RecordingEntry| entry.velocity_rms_mm_per_s.is_some();
+        if self.processing.iso_20816.is_some() && !series.results.recordings.iter().any(has_velocity) {
+            let problem =
+                format!("--iso-20816: {} is not known to be an acceleration", series.results.channel);
+            return Failure::refuse(problem, "state its unit by --unit, g or m/s2");
+        }
+        Ok(())
     }
 
     fn directory(&self) -> PathBuf {

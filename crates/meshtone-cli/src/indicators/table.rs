@@ -104,7 +104,7 @@ fn limits(series: &Series) -> String {
             series.results.recordings.get(recording - 1).map(|entry| super::figures::name(&entry.source));
         let segment = segment.map_or_else(String::new, |segment| format!(", segment {segment}"));
         let LimitEntry { wheel, indicator, limit, .. } = of;
-        Some(format!("    {indicator} of {wheel}: above {} from {}{segment} on\n", short(*limit), source?))
+        Some(format!("    {indicator} of {wheel}: first above {} at {}{segment}\n", short(*limit), source?))
     });
     let crossed: String = crossed.collect();
     let none = if crossed.is_empty() { "    none was crossed\n" } else { "" };
@@ -132,8 +132,8 @@ fn foreign_lines(series: &Series, unit: &str) -> String {
         let percent = 100.0 * own;
         let searched = match foreign_lines_need_s {
             Some(needed_s) => format!(
-                "the recording{of} is too short to distinguish foreign lines from hunting-tooth orders: it needs {:.0} s",
-                needed_s.ceil()
+                "the recording{of} is too short to distinguish foreign lines from hunting-tooth orders: it needs {:.1} s",
+                (10.0 * needed_s).ceil() / 10.0
             ),
             None => format!(
                 "no foreign line was found{of}; {percent:.0} % of all orders are too near one of a shaft or a mesh to distinguish a line there"

@@ -191,7 +191,7 @@ fn indicators_of_every_shaft() {
     };
     let said = stdout(&workplace.succeeds(&["indicators", "out", "-o", "simulated"]));
     // The same teeth of all wheels meet again every 0.5 s, and in four of these periods, of whole revolutions, their lines are distinguished.
-    for words in ["shaft middle with z2, 96 teeth, and z3, 48 teeth", "hunting-tooth orders: it needs 2 s"] {
+    for words in ["shaft middle with z2, 96 teeth, and z3, 48 teeth", "hunting-tooth orders: it needs 2."] {
         assert!(said.contains(words), "{said}");
     }
     let simulated = results("simulated");

@@ -252,8 +252,8 @@ fn limits_zones_and_tables_as_text() {
     let assert = workplace.succeeds(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
     let said = stdout(&assert);
     for words in [
-        "RMS of the difference of wheel: above",
-        "from rig_2026-11-05.csv on",
+        "RMS of the difference of wheel: first above",
+        "at rig_2026-11-05.csv",
         "(zone ",
         "ISO 20816-3, medium-rigid: A/B 1.4, B/C 2.8, C/D 4.5 mm/s",
     ] {
@@ -282,6 +282,15 @@ fn limits_zones_and_tables_as_text() {
     let amplitude = spectra.numbers(spectra.column("amplitude").unwrap(), 0).unwrap().values;
     // The mesh tone of 19 teeth has an amplitude of 1.
     assert!((amplitude[19] - 1.0).abs() < 0.05, "{}", amplitude[19]);
+    // What the recordings cannot answer is refused.
+    let of_one = ["indicators", "rig_2026-11-01.csv", "-c", "bearing", "--tach", "tacho", "--teeth", "19"];
+    let asked = |more: &[&'static str]| [&of_one[..], more].concat();
+    let words = ["--sound-records 3: a wheel has 1 at most, so that none is judged", "fewer"];
+    workplace.fails(2, &asked(&["--sound-records", "3"]), &words);
+    let words = ["--iso-20816: bearing is not known to be an acceleration", "--unit, g or m/s2"];
+    let volts = String::from_utf8(workplace.read("rig_2026-11-01.csv")).unwrap().replacen("[g]", "[V]", 1);
+    workplace.write("rig_2026-11-01.csv", volts);
+    workplace.fails(2, &asked(&["--iso-20816", "large-rigid"]), &words);
     // Without limits there are none, and no text.
     workplace.succeeds(&[
         "indicators",

@@ -4,11 +4,13 @@ use meshtone::signal::SAMPLING_RATES_HZ;
 
 use super::error::{Problem, names};
 use super::label::Label;
-use super::time::{Timing, timing};
+use super::time::{Timing, readable, timing};
 use super::{RecordingOptions, RecordingWarning};
 
 /// Two statements of one rate may differ by this part, for instance by the digits that were written.
 const AGREEMENT: f64 = 1e-6;
+/// How far the mean rate of times that have none of their own may be from a stated one: they are coarse, or have gaps.
+const ROUGH_AGREEMENT: f64 = 0.02;
 
 /// (S/s) Least number under a short name that is a sampling rate.
 const LEAST_OF_SHORT_NAME: f64 = 1000.0;
@@ -120,11 +122,20 @@ pub(super) fn other_than_timed(
     options: &RecordingOptions,
 ) -> Option<RecordingWarning> {
     let times = times.filter(|times| times.iter().all(|time| time.is_finite()))?;
-    let timing = timing(&label.raw, times, unit_s).ok()?;
+    let (rate_hz, uncertainty) = match timing(&label.raw, times, unit_s) {
+        Ok(Timing { rate_hz, uncertainty, .. }) => (rate_hz, uncertainty),
+        // Times with a gap have no rate, but so many samples in their span.
+        Err(_) => {
+            let mean_hz = (times.len() as f64 - 1.0) / (unit_s * (times.last()? - times.first()?));
+            (readable(mean_hz), ROUGH_AGREEMENT)
+        }
+    };
+    if !(rate_hz.is_finite() && rate_hz > 0.0) {
+        return None;
+    }
     let units = if label.states_time_unit() { &[1.0][..] } else { &[1.0, 1e3, 1e6] };
     let by = format!("time column {}", label.raw);
-    let own =
-        units.iter().map(|unit| other(&by, timing.rate_hz * unit, timing.uncertainty + AGREEMENT, options));
+    let own = units.iter().map(|unit| other(&by, rate_hz * unit, uncertainty + AGREEMENT, options));
     own.collect::<Option<Vec<_>>>()?.into_iter().next()
 }
 

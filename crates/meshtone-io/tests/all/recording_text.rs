@@ -190,10 +190,7 @@ fn bad_lines_are_named() {
     }
     let dates = b"timestamp,a\n10:00 AM,1\n10:01 AM,2\n10:02 AM,3\n";
     let message = refused("run.csv", dates, &RecordingOptions::default());
-    assert!(
-        message.contains("not a number; times of day are not read: state the sampling rate"),
-        "{message}"
-    );
+    assert!(message.contains("not a number; times are read as hh:mm:ss"), "{message}");
 }
 
 #[test]
@@ -213,6 +210,22 @@ fn time_must_be_uniform() {
     assert!(message.contains("option sampling_rate_hz") && message.contains("it has time, a"), "{message}");
     let recording = read("run.csv", content(&times).as_bytes(), &rate(50_000.0)).unwrap();
     assert_eq!((recording.len(), recording.channels.len()), (999, 1));
+}
+
+/// Half a second is lost: a stated rate counts, but not in silence.
+#[test]
+fn a_gap_under_a_stated_rate_is_said() {
+    let lost = |i: u32| f64::from(i) / 1000.0 + if i < 2500 { 0.0 } else { 0.5 };
+    let content = |time_s: &dyn Fn(u32) -> f64| {
+        let rows = (0..5000).map(|i| format!("{:.3},1.25\n", time_s(i)));
+        format!("time_s,a\n{}", rows.collect::<String>())
+    };
+    let warned = |time_s: &dyn Fn(u32) -> f64| {
+        read("run.csv", content(time_s).as_bytes(), &rate(1000.0)).unwrap().warnings
+    };
+    assert_eq!(warned(&|i| f64::from(i) / 1000.0), []);
+    let said = warned(&lost)[0].to_string();
+    assert!(said.contains("stated as 1000 S/s, but time column time_s says 909.074 S/s"), "{said}");
 }
 
 #[test]

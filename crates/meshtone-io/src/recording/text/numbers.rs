@@ -188,7 +188,7 @@ impl<'h> Numbers<'h> {
                 "the first lines are read with the decimal {is}; if it is the {other}, say so (option text.decimal_sign)"
             )
         } else if text.contains(':') {
-            "times of day are not read: state the sampling rate (option sampling_rate_hz)".to_string()
+            "times are read as hh:mm:ss, with a date as 2026-11-29 or 29.11.2026: state the sampling rate (option sampling_rate_hz)".to_string()
         } else if self.rows == 0 {
             "if the line belongs to the file's head, skip it (option text.skip_lines) or begin it with #; if the column \
              holds no numbers, choose others (option channels)"
