@@ -10,6 +10,7 @@ use meshtone_io::recording::{
 
 use super::reading::warnings_of;
 use crate::failure::Failure;
+use crate::terminal::warn;
 
 /// The columns of a file of numbers that is no recording, as it has no sampling rate, and what is doubtful about the file.
 ///
@@ -79,7 +80,15 @@ pub fn times_s(times: Channel, start_s: f64) -> Vec<f64> {
 
 /// (Hz) A speed in whatever unit it is stated.
 pub fn hertz(path: &Path, speed: Channel) -> Result<Vec<f64>, Failure> {
-    let named = if speed.name.to_lowercase().ends_with("rpm") { "rpm" } else { "Hz" };
+    let lower = speed.name.to_lowercase();
+    let named = if lower.ends_with("rpm") { "rpm" } else { "Hz" };
+    if speed.unit.is_none() && named == "Hz" && !lower.ends_with("hz") {
+        let name = &speed.name;
+        warn(format_args!(
+            "{}: {name} has no unit and is taken in Hz; of rpm call it {name} [rpm]",
+            path.display()
+        ));
+    }
     let unit = speed.unit.as_deref().unwrap_or(named).trim().to_lowercase();
     let in_hertz = match unit.as_str() {
         "hz" | "1/s" | "rev/s" | "rps" => 1.0,

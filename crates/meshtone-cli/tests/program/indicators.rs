@@ -340,6 +340,7 @@ fn the_phase_may_be_of_another_rate_in_the_same_file() {
     let (by_speed, said) = of(["--speed-channel", "speed"]);
     assert!((by_speed / by_constant - 1.0).abs() < 1e-6, "{by_speed} {by_constant}");
     assert!(said.contains("speed was recorded at 100 S/s and is interpolated to 5000 S/s"), "{said}");
+    assert!(said.contains("speed has no unit and is taken in Hz; of rpm call it speed [rpm]"), "{said}");
     let (by_pulses, _) = of(["--pulse-times", "pulses"]);
     assert!((by_pulses / by_constant - 1.0).abs() < 1e-3, "{by_pulses} {by_constant}");
 }
