@@ -51,7 +51,7 @@ def test_what_is_doubtful_about_a_file_is_warned_of(tmp_path: Path) -> None:
         read_recording(path)
     with pytest.warns(meshtone.MeshtoneWarning, match="stated as 900 S/s, but time column time .s. says 1000 S/s") as other:
         read_recording(path, channels=["bearing"], sampling_rate_hz=900)
-    assert [warning.message.code for warning in [*caught, *other]] == ["copied-channel", "other-rate"]  # type: ignore[union-attr]
+    assert [warning.message.code for warning in [*caught, *other]] == ["copied-channel", "other-rate"]
 
 
 def test_npz(tmp_path: Path) -> None:
