@@ -87,6 +87,11 @@ pub struct Remade {
 }
 
 impl Generated {
+    /// Number of records that were simulated now and stand in the written shards.
+    pub fn simulated_records(&self) -> u64 {
+        self.written_records - self.failures.len() as u64
+    }
+
     /// All records that failed, in this run and earlier, in their order.
     pub fn missing(&self) -> Vec<&FailedRecord> {
         let mut missing: Vec<_> = self.earlier_failures.iter().chain(&self.failures).collect();

@@ -330,13 +330,13 @@ fn refuse_missing(of: &str, generated: &Generated) -> Result<(), Failure> {
     Failure::refuse(problem, help)
 }
 
-/// What was made, for programs.
+/// Returns what was made, for programs.
 fn numbers(generated: &Generated) -> Value {
     json!({
         "complete": generated.complete,
         "written_shards": generated.written_shards,
         "kept_shards": generated.kept_shards,
-        "written_records": generated.written_records - generated.failures.len() as u64,
+        "written_records": generated.simulated_records(),
         "failed_records": generated.missing().iter().map(|failed| failed.record).collect::<Vec<_>>(),
     })
 }
@@ -344,7 +344,7 @@ fn numbers(generated: &Generated) -> Value {
 fn summary(plan: &Plan, generated: &Generated, to: &Destination) -> String {
     let written = format!(
         "  {} in {} written, {} {} there already\n",
-        counted(generated.written_records - generated.failures.len() as u64, "record"),
+        counted(generated.simulated_records(), "record"),
         counted(generated.written_shards, "shard"),
         counted(generated.kept_shards, "shard"),
         if generated.kept_shards == 1 { "was" } else { "were" }

@@ -104,7 +104,7 @@ pub fn stdout(assert: &Assert) -> String {
     String::from_utf8(assert.get_output().stdout.clone()).unwrap()
 }
 
-/// What a command printed with `--json`: one line.
+/// Returns the one line that a command printed with `--json`.
 pub fn printed_json(assert: &Assert) -> Value {
     let text = stdout(assert);
     assert_eq!(text.lines().count(), 1, "{text}");

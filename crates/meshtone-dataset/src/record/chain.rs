@@ -320,9 +320,8 @@ impl<'a> View<'a> {
     /// * `most` - how many samples
     fn angles(&self, number: usize, most: usize) -> Vec<f64> {
         let wheel = &self.window.turning.wheels[number];
-        let teeth = f64::from(wheel.teeth);
-        let ratio = wheel.pitches_per_revolution / teeth;
-        let first = (wheel.first_pitch - self.window.counted_from[number] as f64) / teeth;
+        let ratio = wheel.pitches_per_revolution / f64::from(wheel.teeth);
+        let first = self.start_rev(number);
         let revolutions = input_revolutions(self.simulated, self.window.margin).into_iter();
         revolutions.take(most).map(|revolution| revolution * ratio + first).collect()
     }
@@ -341,7 +340,7 @@ impl<'a> View<'a> {
         // Where the planets of a set stand is known with the angles since the simulation's start.
         let is_of_set = number >= self.simulated.scenario.own_wheels();
         if is_of_set {
-            let first = self.train().wheels[number].start_rev;
+            let first = self.start_rev(number);
             angles.iter_mut().for_each(|angle| *angle -= first);
         }
         let step = self.simulated.time.sampling_rate_hz / rate_hz;
@@ -359,14 +358,18 @@ impl<'a> View<'a> {
         Ok(phase)
     }
 
+    /// (rev) Where a wheel stands at the simulation's start, counted from its first tooth of the record.
+    fn start_rev(&self, number: usize) -> f64 {
+        let wheel = &self.window.turning.wheels[number];
+        (wheel.first_pitch - self.window.counted_from[number] as f64) / f64::from(wheel.teeth)
+    }
+
     /// The machine, with the place of the analysed channel's sensor, and the wheels of planetary sets counted from their first tooth of the record.
     fn train(&self) -> GearTrain {
         let scenario = &self.simulated.scenario;
         let mut train = GearTrain::of_stages(self.simulated).at_sensor(scenario, &self.keep.analysed.name());
         for (number, wheel) in train.wheels.iter_mut().enumerate().skip(scenario.own_wheels()) {
-            let counted = self.window.counted_from[number] as f64;
-            wheel.start_rev =
-                (self.window.turning.wheels[number].first_pitch - counted) / f64::from(wheel.teeth);
+            wheel.start_rev = self.start_rev(number);
         }
         train
     }

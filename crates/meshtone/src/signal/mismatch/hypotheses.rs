@@ -98,7 +98,9 @@ impl Hypothesis {
             Alternative::Teeth { .. } if may_be_speed => -1.0,
             Alternative::OtherShaft { .. } => 2.0,
             Alternative::PulsesPerRevolution { .. } | Alternative::Teeth { .. } => 1.0,
-            _ => 0.0,
+            Alternative::MateTeeth { .. }
+            | Alternative::ShaftSpeed { .. }
+            | Alternative::VaryingSpeed { .. } => 0.0,
         }
     }
 

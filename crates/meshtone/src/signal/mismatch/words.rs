@@ -14,7 +14,9 @@ impl Mismatch {
     fn source(&self) -> &'static str {
         match self.stated.turning {
             StatedTurning::Pulses { .. } => "the pulses are",
-            _ => "the speed is",
+            StatedTurning::ConstantSpeed { .. } | StatedTurning::MeshTone { .. } | StatedTurning::Other => {
+                "the speed is"
+            }
         }
     }
 }
