@@ -13,9 +13,13 @@ simulation = mt.simulate(mt.examples.healthy().copy(sampling_rate_hz=1e4))
 assert simulation.vertical_g.std() > 0
 ";
 
-/// Maturin's argument that leaves the names out of a module. The linker does so, and so the module is compiled for it: with and without are
-/// two compilations.
-const STRIPPED: &str = "--strip";
+/// Maturin's arguments for a small module: without names, and, where Rust links with LLD, with one of functions that are alike. The linker
+/// does so, and so the module is compiled for it: with and without are two compilations.
+const SMALL: &[&str] = if cfg!(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu")) {
+    &["--strip", "--", "-Clink-arg=-Wl,--icf=all"]
+} else {
+    &["--strip"]
+};
 
 /// Name of the benchmark's data set, by which the Python package knows it.
 const BENCHMARK: &str = "benchmark-1";
@@ -103,7 +107,8 @@ pub fn program(row: &StepRunner) -> Result<PathBuf, u8> {
 /// The exit code of what failed.
 pub fn wheel(row: &StepRunner, python: &Path) -> Result<PathBuf, u8> {
     row.step("Python wheel", || {
-        maturin(row, python, "whl", &["build", "--release", "--locked", "--quiet", STRIPPED])
+        let arguments = ["--release", "--locked", "--quiet", "--compression-level", "9"];
+        maturin(row, python, "whl", "build", &[&arguments[..], SMALL].concat())
     })
 }
 
@@ -115,18 +120,24 @@ pub fn wheel(row: &StepRunner, python: &Path) -> Result<PathBuf, u8> {
 /// # Errors
 /// The exit code of what failed.
 pub fn source(row: &StepRunner, python: &Path) -> Result<PathBuf, u8> {
-    row.step("Source distribution", || maturin(row, python, "gz", &["sdist"]))
+    row.step("Source distribution", || maturin(row, python, "gz", "sdist", &[]))
 }
 
 /// Lets maturin make one file; returns it. Earlier ones of its kind are removed.
-fn maturin(row: &StepRunner, python: &Path, extension: &str, arguments: &[&str]) -> Result<PathBuf, u8> {
+fn maturin(
+    row: &StepRunner,
+    python: &Path,
+    extension: &str,
+    command: &str,
+    arguments: &[&str],
+) -> Result<PathBuf, u8> {
     let folder = folder(row);
     std::fs::create_dir_all(&folder).map_err(|error| row.fail_at(&folder, &error))?;
     for old in of_kind(row, &folder, extension)? {
         std::fs::remove_file(&old).map_err(|error| row.fail_at(&old, &error))?;
     }
     let mut maturin = Command::new(python);
-    maturin.args(["-m", "maturin"]).args(arguments).arg("--out").arg(&folder).envs(row.environment());
+    maturin.args(["-m", "maturin", command, "--out"]).arg(&folder).args(arguments).envs(row.environment());
     row.program(&mut maturin)?;
     let made = of_kind(row, &folder, extension)?.pop();
     made.ok_or_else(|| row.fail(&format!("{}: nothing was made", folder.display())))
@@ -186,7 +197,7 @@ pub fn try_source(row: &StepRunner, python: &Path, source: &Path) -> Result<(), 
         row.program(Command::new(python).args(["-c", COMPARISON]).arg(source).arg(row.root()))?;
         let alike = [
             ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
-            ("MATURIN_PEP517_ARGS", STRIPPED.into()),
+            ("MATURIN_PEP517_ARGS", SMALL.join(" ").into()),
         ];
         let built = empty_folder(row, "source wheel")?;
         environment::pip_wheel(row, python, &built, |pip| {
