@@ -60,6 +60,7 @@ __all__ = [
     "process_simulated",
     "process_train",
     "read_recording",
+    "recording_files",
     "repair_pulses",
     "resample",
     "rows_like",
@@ -323,6 +324,7 @@ def read_recording(
     time: _Column | None,
     calibrations: Sequence[tuple[_Column, float | None, str | None]],
 ) -> dict[str, Any]: ...
+def recording_files() -> list[tuple[str, bytes]]: ...
 def set_memory_limit(limit_bytes: int | None) -> None: ...
 def change_duration(signal: _Array, width_ratio: float, centre_rev: float) -> _Array: ...
 def change_fault_to_harmonics_ratio(

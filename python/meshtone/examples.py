@@ -1,4 +1,4 @@
-"""Scenarios to start from: the pair of the paper's examples, healthy and with each fault.
+"""Scenarios to start from: the pair of the paper's examples, healthy and with each fault; and recordings to try.
 
 Examples
 --------
@@ -11,6 +11,11 @@ ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=3.0, wheel='ge
 
 from __future__ import annotations
 
+from os import PathLike
+from pathlib import Path
+
+from ._core import recording_files
+from ._files import written_whole
 from .scenario import Scenario, template
 
 __all__ = [
@@ -19,6 +24,7 @@ __all__ = [
     "missing_tooth",
     "partial_face",
     "pits",
+    "recordings",
     "root_crack",
     "through_face",
     "tooth_breakage",
@@ -85,3 +91,32 @@ def all() -> dict[str, Scenario]:
         "tooth-destruction": tooth_destruction(),
         "wear": wear(),
     }
+
+
+def recordings(folder: str | PathLike[str] = "recordings") -> Path:
+    """Recordings of simulated machines, as ``meshtone init recordings`` writes them: 25 files, 25 MB.
+
+    They are of this pair and of a gearbox: healthy, with a broken tooth, with a spall in a bearing, during a run-up, and on twelve days
+    on which a tooth breaks. ``README.md`` says what is in each.
+
+    Parameters
+    ----------
+    folder : str or path
+        Where they are written; it is made, and files of the same names are replaced.
+
+    Returns
+    -------
+    pathlib.Path
+        The folder.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    """
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    for name, content in recording_files():
+        with written_whole(place / name) as stream:
+            stream.write(content)
+    return place

@@ -14,7 +14,6 @@ mod other_kind;
 mod other_option;
 mod output_directory;
 mod progress;
-mod recording_files;
 mod replacement;
 mod report;
 mod results;

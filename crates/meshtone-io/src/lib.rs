@@ -14,6 +14,7 @@ pub mod path_csv;
 pub mod printable;
 mod read_results;
 pub mod recording;
+pub mod recording_files;
 pub mod run_identity;
 pub mod scenario_file;
 pub mod signals;

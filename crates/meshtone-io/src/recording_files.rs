@@ -1,16 +1,18 @@
 //! The files of `meshtone init recordings`: recordings of simulated machines, to try the commands on.
 
-use std::io::{Cursor, Write};
-use std::path::Path;
+use std::io::Cursor;
 
 use meshtone::operation::Profile;
 use meshtone::scenario::{Scenario, gearbox_template, template};
 use meshtone::sensor::{Channels, NamedSignal, SignalSource};
 use meshtone::signal::{Edge, resample_to};
-use meshtone_io::atomic_file::StagedFile;
-use meshtone_io::signals::{SignalFormat, SignalTable};
 
-use crate::failure::Failure;
+use crate::signals::{SignalFormat, SignalTable};
+
+/// Why there are none: what is simulated is fixed, so that only a fault of this program is one.
+type Problem = Box<dyn std::error::Error + Send + Sync>;
+/// The files: their names, and what is in them.
+type Files = Vec<(String, Vec<u8>)>;
 
 /// The file that says what is in the others.
 pub const LIST: &str = "README.md";
@@ -31,41 +33,28 @@ const NOISE_G_PER_RTHZ: f64 = 5e-4;
 /// Twelve days of the pair, by the severity of its broken tooth.
 const DAYS: [f64; 12] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.55, 0.58, 0.61, 0.65, 0.7, 0.8];
 
-/// Writes the files beside one another, where they appear once they are committed.
-///
-/// # Arguments
-/// * `directory` - of all
+/// Simulates the recordings: the files to write beside one another, by name.
 ///
 /// # Errors
-/// A file cannot be written, or a template is not what it was.
-pub fn stage(directory: &Path) -> Result<Vec<StagedFile>, Failure> {
-    let rig = template("healthy").ok_or_else(|| Failure::failed("there is no scenario of the pair"))?;
+/// A template is not what it was, or a simulation fails.
+pub fn recording_files() -> Result<Files, Problem> {
+    let rig = template("healthy").ok_or("there is no scenario of the pair")?;
     let gearbox = with_behind(&gearbox_template(None), LAST_BEARING, BALLS)?;
-    let mut folder = RecordingFolder { directory, staged: Vec::new(), contents: String::new() };
-    folder.add("rig.toml", "what is known of the pair: no sensor, no noise, no damage", rig.as_bytes())?;
-    folder.add(
-        "gearbox.toml",
-        "what is known of the gearbox; a ball bearing at the end of its output",
-        gearbox.as_bytes(),
-    )?;
+    let mut folder = RecordingFolder::default();
+    folder.add("rig.toml", "what is known of the pair: no sensor, no noise, no damage", rig.clone());
+    let known = "what is known of the gearbox; a ball bearing at the end of its output";
+    folder.add("gearbox.toml", known, gearbox.clone());
 
     let pair = |severity: f64| [&rig, fault("gear", severity).as_str(), SENSOR].concat();
     folder.record("first.csv", "the healthy pair, its pinion at 40 rev/s", &pair(0.0), Run::steady(4.0))?;
     let broken =
         folder.record("run.csv", "the pair with a broken tooth on the gear", &pair(0.7), Run::steady(4.0))?;
     for (name, format) in [("run.mat", SignalFormat::Mat), ("run.wav", SignalFormat::Wav)] {
-        folder.add(name, "the same", &file_of(name, &broken, format)?)?;
+        folder.add(name, "the same", file_of(&broken, format)?);
     }
-    folder.add(
-        "pulses.txt",
-        "instants of one pulse a revolution of the gear in run.csv, in s",
-        pulses(&broken).as_bytes(),
-    )?;
-    folder.add(
-        "speed.csv",
-        "time and speed of the gear in run.csv, ten times a second",
-        speeds(&broken).as_bytes(),
-    )?;
+    let every_revolution = "instants of one pulse a revolution of the gear in run.csv, in s";
+    folder.add("pulses.txt", every_revolution, pulses(&broken));
+    folder.add("speed.csv", "time and speed of the gear in run.csv, ten times a second", speeds(&broken));
     let run_up = Run { run_up_hz: Some([15.0, 45.0]), ..Run::steady(6.0) };
     folder.record("run_up.csv", "the healthy pair, its pinion from 15 to 45 rev/s", &pair(0.0), run_up)?;
     for (day, severity) in DAYS.iter().enumerate() {
@@ -82,29 +71,20 @@ pub fn stage(directory: &Path) -> Result<Vec<StagedFile>, Failure> {
     let spalled = with_behind(&gearbox, BALLS, SPALL)?;
     let broken = [&gearbox, fault("z2", 0.8).as_str()].concat();
     folder.record("gearbox_first.csv", "the healthy gearbox", &gearbox, Run::steady(4.0))?;
-    folder.record(
-        "gearbox.csv",
-        "the gearbox with a broken tooth on the wheel z2",
-        &broken,
-        Run::steady(4.0),
-    )?;
-    folder.record(
-        "bearing.csv",
-        "the gearbox with a spall on the outer race of its ball bearing, 9,12,60",
-        &spalled,
-        Run::steady(8.0),
-    )?;
-    folder.finish()
+    let on_z2 = "the gearbox with a broken tooth on the wheel z2";
+    folder.record("gearbox.csv", on_z2, &broken, Run::steady(4.0))?;
+    let on_ring = "the gearbox with a spall on the outer race of its ball bearing, 9,12,60";
+    folder.record("bearing.csv", on_ring, &spalled, Run::steady(8.0))?;
+    Ok(folder.finish())
 }
 
 /// A text with a part more.
 ///
 /// # Errors
 /// The place behind which it belongs is not there.
-fn with_behind(text: &str, place: &str, part: &str) -> Result<String, Failure> {
-    let (before, after) = text
-        .split_once(place)
-        .ok_or_else(|| Failure::failed(format!("the template of a gearbox has no {place:?}")))?;
+fn with_behind(text: &str, place: &str, part: &str) -> Result<String, Problem> {
+    let (before, after) =
+        text.split_once(place).ok_or_else(|| format!("the template of a gearbox has no {place:?}"))?;
     Ok([before, place, part, after].concat())
 }
 
@@ -133,21 +113,20 @@ impl Run {
 }
 
 /// The files so far.
-struct RecordingFolder<'a> {
-    directory: &'a Path,
-    staged: Vec<StagedFile>,
+#[derive(Default)]
+struct RecordingFolder {
+    files: Files,
     /// A line a file.
     contents: String,
 }
 
-impl RecordingFolder<'_> {
+impl RecordingFolder {
     /// Adds a file, and a line to the list unless it is described elsewhere.
-    fn add(&mut self, name: &str, contents: &str, bytes: &[u8]) -> Result<(), Failure> {
+    fn add(&mut self, name: &str, contents: &str, bytes: impl Into<Vec<u8>>) {
         if !contents.is_empty() {
             self.describe(&format!("`{name}`"), contents);
         }
-        self.staged.push(StagedFile::write(&self.directory.join(name), |file| file.write_all(bytes))?);
-        Ok(())
+        self.files.push((name.to_owned(), bytes.into()));
     }
 
     /// Adds a line to the list.
@@ -156,14 +135,13 @@ impl RecordingFolder<'_> {
     }
 
     /// Simulates a recording and adds it as text.
-    fn record(&mut self, name: &str, contents: &str, scenario: &str, run: Run) -> Result<Channels, Failure> {
-        let failed = |error: Box<dyn std::error::Error>| Failure::failed(format!("{name}: {error}"));
-        let recording = recording(scenario, run).map_err(failed)?;
-        self.add(name, contents, &file_of(name, &recording, SignalFormat::Csv)?)?;
+    fn record(&mut self, name: &str, contents: &str, scenario: &str, run: Run) -> Result<Channels, Problem> {
+        let recording = recording(scenario, run).map_err(|error| format!("{name}: {error}"))?;
+        self.add(name, contents, file_of(&recording, SignalFormat::Csv)?);
         Ok(recording)
     }
 
-    fn finish(mut self) -> Result<Vec<StagedFile>, Failure> {
+    fn finish(mut self) -> Files {
         let text = format!(
             "Recordings of simulated machines, made by Meshtone: of a pair of 17 and 38 teeth whose pinion turns at 40 rev/s, and of a gearbox of\n\
              two stages, 32/96 and 48/80 teeth, whose input turns at 30 rev/s. The channels are `bearing`, an acceleration in g; `tacho`, the\n\
@@ -172,13 +150,13 @@ impl RecordingFolder<'_> {
              meshtone indicators run.csv -c bearing --tach tacho --teeth 17 --mate-teeth 38\n\n{}",
             self.contents
         );
-        self.add(LIST, "", text.as_bytes())?;
-        Ok(self.staged)
+        self.add(LIST, "", text);
+        self.files
     }
 }
 
 /// What a sensor, a tachometer on the motor's shaft and a speed sensor on the brake's record of a machine.
-fn recording(scenario: &str, run: Run) -> Result<Channels, Box<dyn std::error::Error>> {
+fn recording(scenario: &str, run: Run) -> Result<Channels, Problem> {
     let mut scenario = Scenario::from_toml(scenario)?;
     scenario.solver.duration_s = Some(run.duration_s);
     scenario.solver.sampling_rate_hz = SIMULATED_RATE_HZ;
@@ -245,15 +223,14 @@ fn tachometer_v(revolutions: f64) -> f64 {
 }
 
 /// The bytes of a file of the recording; text has the units in the names of its columns, as recorders write them.
-fn file_of(name: &str, recording: &Channels, format: SignalFormat) -> Result<Vec<u8>, Failure> {
+fn file_of(recording: &Channels, format: SignalFormat) -> Result<Vec<u8>, Problem> {
     let mut recording = recording.clone();
     if format == SignalFormat::Csv {
         let units = ["bearing [g]", "tacho [V]", "speed [Hz]"];
         recording.signals.iter_mut().zip(units).for_each(|(signal, name)| signal.name = name.into());
     }
     let mut file = Cursor::new(Vec::new());
-    let written = SignalTable::without_scenario(&recording).write(&mut file, format);
-    written.map_err(|error| Failure::failed(format!("{name}: {error}")))?;
+    SignalTable::without_scenario(&recording).write(&mut file, format)?;
     Ok(file.into_inner())
 }
 

@@ -47,7 +47,7 @@ mod _core {
         memory::set_memory_limit,
         phase::{ShaftPhase, repair_pulses, tachometer_pulses},
         process::{check_recording, find_mismatch, process_channel, process_series, process_train},
-        recording::read_recording,
+        recording::{read_recording, recording_files},
         scenario::{Scenario, gearbox_template, template},
         sensor_path::estimate_path,
         signal::{

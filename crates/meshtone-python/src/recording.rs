@@ -6,10 +6,10 @@ use meshtone_io::recording::{
     self, Calibration, ColumnChoice, ReadRecordingError, RecordingOptions, TimeColumn,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::array::array;
-use crate::error::file_error;
+use crate::error::{file_error, value_error};
 
 /// A column's name or number.
 #[derive(FromPyObject)]
@@ -74,4 +74,11 @@ pub fn read_recording<'py>(
     let channels = channels.map(|channel| (channel.name, channel.unit, array(py, channel.samples)));
     all.set_item("channels", channels.collect::<Vec<_>>())?;
     Ok(all)
+}
+
+/// Recordings of simulated machines, to try things on: the name of each file and what is in it.
+#[pyfunction]
+pub fn recording_files(py: Python<'_>) -> PyResult<Vec<(String, Bound<'_, PyBytes>)>> {
+    let files = py.detach(meshtone_io::recording_files::recording_files).map_err(value_error)?;
+    Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
 }

@@ -1,6 +1,6 @@
 //! `meshtone init`
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -11,12 +11,11 @@ use meshtone::scenario::{
 };
 use meshtone_dataset::plan;
 use meshtone_io::atomic_file::StagedFile;
-use meshtone_io::experiment;
+use meshtone_io::{experiment, recording_files};
 
 use crate::experiment_files;
 use crate::failure::Failure;
 use crate::progress;
-use crate::recording_files;
 use crate::replacement::stage_text;
 use crate::terminal;
 
@@ -159,8 +158,12 @@ impl Init {
             );
         }
         let message = format!("simulating recordings for {}", directory.display());
-        let staged = progress::with_spinner(message, true, || recording_files::stage(directory))?;
-        self.commit(staged)?;
+        let files = progress::with_spinner(message, true, recording_files::recording_files);
+        let stage = |(name, bytes): (String, Vec<u8>)| {
+            StagedFile::write(&directory.join(name), |file| file.write_all(&bytes))
+        };
+        let staged = files.map_err(|error| Failure::failed(error.to_string()))?.into_iter().map(stage);
+        self.commit(staged.collect::<Result<_, _>>()?)?;
         terminal::print(&format!("{}: what is in the recordings beside it\n", list.display()))
     }
 
