@@ -679,7 +679,10 @@ def test_damage_is_added_to_a_wheel_and_a_file_opened(train_page: Page, train: m
     add = "const add = document.getElementById('add-fault'); add.previousSibling.value = 'tooth-breakage'; add.click()"
     assert page.settled(lambda: page.run(add), "damage") == ""
     assert 'wheel = "z3"' in train.scenario.to_toml()
-    assert page.run("return document.querySelectorAll('#front .damaged').length") == 1
+    # The tooth has a colour, and the wheel's outline where no teeth are seen.
+    teeth = "return [...document.querySelectorAll('#front .tooth')].map((tooth) => tooth.closest('.wheel').getAttribute('aria-label'))"
+    assert page.run(teeth) == ["wheel z3, 48 teeth, damaged"]
+    assert page.run("return document.querySelector('#above .damaged').getAttribute('aria-label')") == "wheel z3 from above, 48 teeth"
     assert page.enter("fault[0].severity", "0.9") == ""
     assert "severity = 0.9" in train.scenario.to_toml()
     page.settled(lambda: page.drop("start.toml", start.to_toml().encode()), "the file")

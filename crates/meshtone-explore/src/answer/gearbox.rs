@@ -227,6 +227,10 @@ impl GearboxState {
                 "sense": layout.ratios[number].value().signum(),
             })
         };
+        let damaged_teeth = |wheel: &meshtone::scenario::ScenarioWheel| -> Vec<u32> {
+            let faults = gearbox.faults.iter().filter(|fault| fault.wheel == wheel.name);
+            faults.flat_map(|fault| fault.tooth.numbers(wheel.teeth)).collect()
+        };
         let wheel = |(number, wheel): (usize, &meshtone::scenario::ScenarioWheel)| {
             let of = layout.shaft_of_wheel[number];
             let module_mm = layout
@@ -252,7 +256,8 @@ impl GearboxState {
                 "pitch_radius_mm": module_mm * f64::from(wheel.teeth) / 2.0,
                 "face_width_mm": wheel.face_width_mm,
                 "teeth": wheel.teeth,
-                "damaged": gearbox.faults.iter().any(|fault| fault.wheel == wheel.name),
+                "sense": layout.ratios[of].value().signum(),
+                "damaged": damaged_teeth(wheel),
             })
         };
         let mesh = |(number, mesh): (usize, &super::lines::MeshTone)| json!({ "name": mesh.name, "wheels": layout.wheels_of_mesh[number], "frequency_hz": mesh.frequency_hz });

@@ -90,6 +90,7 @@ export class Plot {
   #marker = null;
   #builtAs = "";
   #framedAs = "";
+  #named = "";
   #values;
   #title;
   #empty;
@@ -150,7 +151,10 @@ export class Plot {
     this.#range = range ?? (this.#lines.length && most > least ? [least, most] : [0, 1]);
     this.#empty.textContent = empty;
     this.#empty.hidden = this.#lines.length > 0 || !empty;
-    this.#legend();
+    // The values under the pointer stay while the same lines are drawn anew.
+    const named = this.#lines.map(({ label, look }) => [label, look]).join();
+    if (named !== this.#named) this.#legend();
+    this.#named = named;
     this.#draw();
   }
 
@@ -173,6 +177,7 @@ export class Plot {
   repaint() {
     this.#plot?.destroy();
     this.#plot = null;
+    this.#legend();
     this.#draw();
   }
 

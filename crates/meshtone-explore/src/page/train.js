@@ -38,6 +38,17 @@ function fit(svg, corners, children) {
   svg.replaceChildren(...children);
 }
 
+/** The middle of the longest part of a shaft that nothing covers, or a place behind its end where a name of some width has no room there. @param covered [from, to] each */
+function freePlace({ start_mm: start, length_mm: length, radius_mm: radius }, covered, width) {
+  const inside = (place) => Math.min(Math.max(place, start), start + length);
+  let [free, from] = [[start, start], start];
+  for (const [next, end] of [...covered.sort(([a], [b]) => a - b), [start + length, start + length]]) {
+    if (inside(next) - from > free[1] - free[0]) free = [from, inside(next)];
+    from = Math.max(from, inside(end));
+  }
+  return free[1] - free[0] < width ? start + length + radius + width / 2 : (free[0] + free[1]) / 2;
+}
+
 const textAt = (x, y, size, text) => made("text", { x, y, "font-size": size, "text-anchor": "middle", "dominant-baseline": "central" }, text);
 
 export class Train {
@@ -48,7 +59,8 @@ export class Train {
   #chooseBearing;
   /** What turns in the picture: nodes, each with the function that makes its transform of the input's revolutions. */
   #moving = [];
-  #input = 0;
+  /** Turned a little at first: a first tooth, which is often the damaged one, would be hidden where its wheel meets another. */
+  #input = 0.3;
   #inputHz = 0;
   #isTurning = false;
 
@@ -96,27 +108,42 @@ export class Train {
     this.#inputHz = TURNED_HZ / Math.max(...wheels.map(({ ratio }) => Math.abs(ratio)));
     const centre = ({ x_mm: x, y_mm: y }) => [x, -y];
     const size = Math.max(...wheels.map(({ pitch_radius_mm: radius }) => radius));
-    // Of wheels in a set the names are in front: the sun's would be behind the shafts, and a planet takes its own along.
+    // Names are in front; a planet takes its own along.
     const names = [];
     const carried = (node, { carrier }) => (carrier ? this.#turns(node, carrier.ratio, centre(carrier)) : node);
     const named = (wheel, [x, y], text, height) => {
       const node = this.#turns(textAt(x, y, height, text), -(wheel.carrier?.ratio ?? 0), [x, y]);
       names.push(carried(made("g", {}, node), wheel));
     };
-    const circles = wheels.map((wheel) => {
-      const { name, teeth, damaged, internal, in_set: inSet, ratio, carrier, pitch_radius_mm: radius } = wheel;
+    const meeting = ({ wheels: [a, b] }) => {
+      const [from, to] = [centre(wheels[a]), centre(wheels[b])];
+      const mate = (wheels[b].internal ? -1 : 1) * wheels[b].pitch_radius_mm;
+      const part = wheels[a].pitch_radius_mm / (wheels[a].pitch_radius_mm + mate);
+      return [0, 1].map((axis) => from[axis] + part * (to[axis] - from[axis]));
+    };
+    const circles = wheels.map((wheel, index) => {
+      const { name, teeth, damaged, sense, internal, in_set: inSet, ratio, carrier, pitch_radius_mm: radius } = wheel;
       const [x, y] = centre(wheel);
-      // A dash a tooth.
+      // A dash a tooth. The first stands where the wheel first meets another; the next in contact follow behind it.
       const dash = (Math.PI * radius) / teeth;
+      const [meetX, meetY] = meeting(meshes.find((mesh) => mesh.wheels.includes(index)));
+      const first = Math.atan2(meetY - y, meetX - x);
+      const arc = (tooth) => {
+        const middle = first + (sense * 2 * Math.PI * (tooth - 1)) / teeth;
+        const [from, to] = [-1, 1].map((side) => middle + (side * Math.PI) / (2 * teeth)).map((angle) => [x + radius * Math.cos(angle), y + radius * Math.sin(angle)]);
+        return made("path", { d: `M ${from} A ${radius} ${radius} 0 0 1 ${to}`, class: "tooth", "stroke-width": size * 0.1 });
+      };
+      const toothed = made("g", {}, made("circle", { cx: x, cy: y, r: radius, class: "teeth", "stroke-dasharray": dash, "stroke-dashoffset": dash / 2 - first * radius, "stroke-width": size * 0.04 }),
+        ...damaged.map(arc));
       const text = `${name} · ${teeth}`;
       const rim = internal ? [made("circle", { cx: x, cy: y, r: radius + size * RIM, class: "body" })] : [];
       const body = [...rim, made("circle", { cx: x, cy: y, r: radius, class: internal ? "hole" : "body" }),
-        this.#turns(made("circle", { cx: x, cy: y, r: radius, class: "teeth", "stroke-dasharray": dash, "stroke-width": size * 0.04 }), ratio - (carrier?.ratio ?? 0), [x, y])];
+        this.#turns(toothed, ratio - (carrier?.ratio ?? 0), [x, y])];
       // Beside a small wheel there is more room than in it.
       if (internal) names.push(textAt(x, y - radius - size * 0.14, size * 0.11, text));
       else if (inSet) named(wheel, [x, y + (carrier ? 0 : radius * 0.4)], text, Math.min(size * 0.11, (1.8 * radius) / (LETTER * text.length)));
-      else body.push(textAt(x, y - (radius < 0.5 * size ? radius + size * 0.1 : radius * 0.72), size * 0.11, text));
-      return carried(choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name}, ${teeth} teeth${damaged ? ", damaged" : ""}`, () => this.#chooseWheel(name), ...body), wheel);
+      else names.push(textAt(x, y - (radius < 0.5 * size ? radius + size * 0.1 : radius * 0.72), size * 0.11, text));
+      return carried(choosable("wheel", name === chosen, `wheel ${name}, ${teeth} teeth${damaged.length ? ", damaged" : ""}`, () => this.#chooseWheel(name), ...body), wheel);
     });
     // Of two wheels on one shaft the smaller is seen before the larger.
     const order = wheels.map((_, index) => index).sort((a, b) => wheels[b].pitch_radius_mm - wheels[a].pitch_radius_mm);
@@ -134,11 +161,9 @@ export class Train {
       return made("g", { class: "shaft" }, made("circle", { cx: x, cy: -y, r: radius }), made("path", { d: arrow, class: "turn" }),
         textAt(x, -y + below[number], size * 0.1, `${name} ${Number(speed.toPrecision(4))} Hz`));
     });
-    const points = meshes.map(({ name, wheels: [a, b], frequency_hz: hz }) => {
-      const [from, to] = [centre(wheels[a]), centre(wheels[b])];
-      const mate = (wheels[b].internal ? -1 : 1) * wheels[b].pitch_radius_mm;
-      const part = wheels[a].pitch_radius_mm / (wheels[a].pitch_radius_mm + mate);
-      const [x, y] = [0, 1].map((axis) => from[axis] + part * (to[axis] - from[axis]));
+    const points = meshes.map((mesh) => {
+      const { name, wheels: [a, b], frequency_hz: hz } = mesh;
+      const [x, y] = meeting(mesh);
       return carried(choosable("mesh", name === chosenMesh, `mesh ${name}, ${Number(hz.toPrecision(4))} Hz`, () => this.#chooseMesh(name),
         made("circle", { cx: x, cy: y, r: size * (wheels[a].in_set ? 0.05 : 0.08) })), [wheels[a], wheels[b]].find(({ carrier }) => carrier) ?? {});
     });
@@ -152,8 +177,14 @@ export class Train {
     const first = Math.min(...shafts.map(({ start_mm: start }) => start));
     const last = Math.max(...shafts.map(({ start_mm: start, length_mm: length }) => start + length));
     const size = last - first;
-    const lines = shafts.map(({ name, x_mm: x, radius_mm: radius, start_mm: start, length_mm: length }) =>
-      made("g", { class: "shaft" }, made("rect", { x: start, y: x - radius, width: length, height: 2 * radius }), textAt(start + length / 2, x, size * 0.035, name)));
+    const names = [];
+    const lines = shafts.map((shaft) => {
+      const { name, x_mm: x, radius_mm: radius, start_mm: start, length_mm: length } = shaft;
+      const faces = wheels.filter(({ x_mm: axis, pitch_radius_mm: reach }) => Math.abs(axis - x) < reach).map(({ z_mm: z, face_width_mm: width }) => [z - width / 2, z + width / 2]);
+      const seats = bearings.filter(({ x_mm: axis }) => axis === x).map(({ z_mm: z, shaft: of }) => [-1, 1].map((side) => z + side * 0.5 * (shafts[of]?.radius_mm ?? 0)));
+      names.push(textAt(freePlace(shaft, [...faces, ...seats], LETTER * size * 0.035 * name.length), x, size * 0.035, name));
+      return made("g", { class: "shaft" }, made("rect", { x: start, y: x - radius, width: length, height: 2 * radius }));
+    });
     const supports = bearings.map(({ name, shaft, x_mm: x, z_mm: z, rolling, damaged }) => {
       // A planet's has no shaft of its own.
       const radius = shafts[shaft]?.radius_mm ?? size * 0.01;
@@ -165,14 +196,15 @@ export class Train {
     const faces = wheels.map(({ name, damaged, teeth, internal, in_set: inSet, x_mm: x, z_mm: z, face_width_mm: width, pitch_radius_mm: radius }) => {
       const face = (from, height) => made("rect", { class: "body", x: z - width / 2, y: x + from, width, height });
       const rim = size * RIM;
-      const at = x - (internal ? radius + 2 * rim : inSet ? 0 : radius * 0.6);
+      const at = x - (internal ? radius + 1.8 * rim : inSet ? 0 : radius * 0.6);
       // Of planets behind one another one is named.
       const isFree = !taken.some(([otherZ, otherAt]) => Math.abs(otherZ - z) < width && Math.abs(otherAt - at) < size * 0.04);
       taken.push([z, at]);
-      return choosable(`wheel${damaged ? " damaged" : ""}`, name === chosen, `wheel ${name} from above, ${teeth} teeth`, () => this.#chooseWheel(name),
-        ...(internal ? [face(-radius - rim, rim), face(radius, rim)] : [face(-radius, 2 * radius)]), ...(isFree ? [textAt(z, at, size * 0.045, name)] : []));
+      if (isFree) names.push(textAt(z, at, size * 0.045, name));
+      return choosable(`wheel${damaged.length ? " damaged" : ""}`, name === chosen, `wheel ${name} from above, ${teeth} teeth`, () => this.#chooseWheel(name),
+        ...(internal ? [face(-radius - rim, rim), face(radius, rim)] : [face(-radius, 2 * radius)]));
     });
-    const corners = [[first, 0], [last, 0], ...wheels.flatMap(({ x_mm: x, pitch_radius_mm: radius }) => [-1, 1].map((sign) => [first, x + sign * (radius + size * RIM)]))];
-    fit(this.#above, corners, [...lines, ...faces, ...supports]);
+    const corners = [[first, 0], [last, 0], ...wheels.flatMap(({ x_mm: x, pitch_radius_mm: radius }) => [-1, 1].map((sign) => [first, x + sign * (radius + 2 * size * RIM)]))];
+    fit(this.#above, corners, [...lines, ...faces, ...supports, ...names]);
   }
 }
