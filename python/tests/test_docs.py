@@ -81,7 +81,6 @@ def test_gallery_includes_its_scripts(script: Path) -> None:
 
 SHORTER = {
     "campbell": [("np.linspace(10, 60, 101)", "np.linspace(10, 60, 21)")],
-    "classifier": [("records = 400\n", "records = 100\n")],
     "root_crack": [("np.linspace(0, 4.25, 18)", "np.linspace(0, 4.25, 6)")],
     "sensor_path": [
         ('"time_s": [0, 10], "value": [20, 60]}, settle_fraction=1 / 11', '"time_s": [0, 2], "value": [20, 60]}, settle_fraction=1 / 3'),
