@@ -8,7 +8,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import meshtone as mt
-import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -25,16 +24,10 @@ def repository(folder: Path) -> None:
     for rig in folder.glob("examples/experiments/rig_*.toml"):
         text = rig.read_text(encoding="utf-8")
         rig.write_text(text if "[solver]" in text else f"{text}\n[solver]\nduration_s = 0.3\n", encoding="utf-8")
-    # As `meshtone simulate broken.toml -o broken` and `meshtone init recordings` leave them.
+    # As `meshtone simulate broken.toml -o broken` leaves it.
     simulation = mt.simulate(mt.examples.tooth_breakage().copy(duration_s=0.3))
-    for name in ("broken", "recordings"):
-        (folder / name).mkdir()
+    (folder / "broken").mkdir()
     simulation.save(folder / "broken/signals.parquet")
-    time_s = np.arange(60_000) / 2e4
-    knocks = np.random.default_rng(1).normal(size=time_s.size) * (1 + 10 * (time_s * 107.4 % 1 < 0.1))
-    tacho = 5 * (time_s * 30 % 1 < 0.1)
-    columns = np.column_stack([time_s, knocks, tacho])
-    np.savetxt(folder / "recordings/bearing.csv", columns, delimiter=",", header="time [s],bearing [g],tacho [V]", comments="")
 
 
 GUIDE = sorted(page.relative_to(ROOT).as_posix() for page in (ROOT / "docs/src/guide").glob("*.md") if BLOCK.search(page.read_text(encoding="utf-8")))
