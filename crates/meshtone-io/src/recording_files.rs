@@ -18,9 +18,9 @@ type Files = Vec<(String, Vec<u8>)>;
 pub const LIST: &str = "README.md";
 /// (S/s) Sampling rate of the recordings.
 const SAMPLING_RATE_HZ: f64 = 20e3;
-/// The last bearing of the gearbox, and what it is in place of the template's spring: balls as of a 6208, whose bore fits the shaft.
+/// The last bearing of the gearbox, and what it is in place of the template's spring: balls as of a 6308, whose bore fits the shaft.
 const LAST_BEARING: &str = "shaft = \"output\"\nat = 1.0\n";
-const BALLS: &str = "kind = \"ball\"\nelements = 9\nelement_mm = 12.0\npitch_mm = 60.0\n";
+const BALLS: &str = "kind = \"ball\"\nelements = 8\nelement_mm = 15.1\npitch_mm = 65.0\n";
 const SPALL: &str = "defect = [{ race = \"outer\", width_mm = 2.0 }]\n";
 /// The sensor of the pair, whose template has none.
 const SENSOR: &str = "\n[[sensor]]\nat = \"support\"\n";
@@ -73,7 +73,7 @@ pub fn recording_files() -> Result<Files, Problem> {
     folder.record("gearbox_first.csv", "the healthy gearbox", &gearbox, Run::steady(4.0))?;
     let on_z2 = "the gearbox with a broken tooth on the wheel z2";
     folder.record("gearbox.csv", on_z2, &broken, Run::steady(4.0))?;
-    let on_ring = "the gearbox with a spall on the outer race of its ball bearing, 9,12,60";
+    let on_ring = "the gearbox with a spall on the outer race of its ball bearing, 8,15.1,65";
     folder.record("bearing.csv", on_ring, &spalled, Run::steady(8.0))?;
     Ok(folder.finish())
 }

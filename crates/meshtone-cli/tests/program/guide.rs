@@ -1,4 +1,4 @@
-//! The shell blocks of the guide, in the order of its chapters, in one folder that is empty at first.
+//! The shell blocks of README and of the guide, in the order of its chapters, in one folder that is empty at first.
 #![cfg(unix)]
 
 use std::fs;
@@ -19,12 +19,13 @@ fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src")
 }
 
-/// The chapters of the guide, as the summary of the book has them.
+/// README, and the chapters of the guide as the summary of the book has them.
 fn chapters() -> Vec<String> {
     let summary = fs::read_to_string(source().join("SUMMARY.md")).unwrap();
     let links =
         summary.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link.to_owned());
-    links.filter(|link| link.starts_with("guide/")).collect()
+    let guide = links.filter(|link| link.starts_with("guide/"));
+    std::iter::once("../../README.md".to_owned()).chain(guide).collect()
 }
 
 fn blocks() -> Vec<Block> {
@@ -87,6 +88,6 @@ fn every_block_runs() {
 #[test]
 fn blocks_are_counted_by_their_marks() {
     let count = |mark: Option<&str>| blocks().iter().filter(|block| block.mark.as_deref() == mark).count();
-    assert_eq!([None, Some("slow"), Some("unrun")].map(count), [12, 4, 8]);
-    assert_eq!(blocks().len(), 24, "a mark is not known");
+    assert_eq!([None, Some("slow"), Some("unrun")].map(count), [13, 4, 9]);
+    assert_eq!(blocks().len(), 26, "a mark is not known");
 }
