@@ -277,9 +277,9 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         mesh(["z3", "z4"], "left"),
         format!(
             "# Stiffnesses of bearings, seats, housing and couplings are at their defaults{}.\n{bearings}",
-            if rig.is_some() { ", which are assumed" } else { "" }
+            if rig.is_some() { ", which are assumed, as their places are" } else { "" }
         ),
-        "[housing]\nmass_kg = 30.0\n".to_owned(),
+        format!("[housing]\nmass_kg = 30.0{assumed}\n"),
         format!(
             "[operation]\ninput_speed_hz = {input_speed_hz:?}{}\nbrake_torque_nm = 60.0{assumed}\n\
              # The torque varies as a coupling of three jaws makes it at the input, and with the middle shaft.\n\
@@ -289,7 +289,7 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         ),
         fault.to_owned(),
         format!(
-            "# Without [[sensor]] a vertical one sits on every bearing's seat.\n[[sensor]]\nat = \"input:0\"\n\n[[sensor]]\nat = \"output:1\"\n\n\
+            "# Without [[sensor]] a vertical one sits on every bearing's seat.\n[[sensor]]\nat = \"input:0\"{assumed}\n\n[[sensor]]\nat = \"output:1\"{assumed}\n\n\
              [solver]\nsampling_rate_hz = {sampling_rate_hz:?}\nduration_s = 1.0\n"
         ),
     ]
