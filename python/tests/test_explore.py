@@ -289,6 +289,16 @@ def test_speed_over_time_is_a_table(page: Page, explorer: mt.Explorer) -> None:
     assert explorer.scenario == fast()
 
 
+def test_values_under_the_pointer_follow(page: Page) -> None:
+    """A new answer neither takes them away nor leaves those of the last one."""
+    shown = "return document.querySelector('#waveform .values').textContent"
+    assert page.run(shown) == ""
+    page.run("document.getElementById('waveform').dispatchEvent(new KeyboardEvent('keydown', { key: '+' }))")
+    place, value = page.run(shown).split(": ")
+    assert page.enter("operation.brake_torque_nm", "100") == ""
+    assert page.run(shown).split(": ")[0] == place and page.run(shown).split(": ")[1] != value
+
+
 def test_a_preset_its_damage_and_severity(page: Page, explorer: mt.Explorer) -> None:
     script = "const p = document.getElementById('preset'); p.value = 'tooth_breakage'; p.dispatchEvent(new Event('change'))"
     page.settled(lambda: page.run(script), "the preset")

@@ -91,6 +91,7 @@ export class Plot {
   #builtAs = "";
   #framedAs = "";
   #named = "";
+  #shownAt = null;
   #values;
   #title;
   #empty;
@@ -151,9 +152,8 @@ export class Plot {
     this.#range = range ?? (this.#lines.length && most > least ? [least, most] : [0, 1]);
     this.#empty.textContent = empty;
     this.#empty.hidden = this.#lines.length > 0 || !empty;
-    // The values under the pointer stay while the same lines are drawn anew.
     const named = this.#lines.map(({ label, look }) => [label, look]).join();
-    if (named !== this.#named) this.#legend();
+    if (named !== this.#named || this.#shownAt !== null) this.#say();
     this.#named = named;
     this.#draw();
   }
@@ -177,7 +177,7 @@ export class Plot {
   repaint() {
     this.#plot?.destroy();
     this.#plot = null;
-    this.#legend();
+    this.#say();
     this.#draw();
   }
 
@@ -284,8 +284,15 @@ export class Plot {
     this.showAt(plot.posToVal(left, "x"));
   }
 
+  /** The values where they are shown, otherwise the names. */
+  #say() {
+    if (this.#shownAt === null) this.#legend();
+    else this.showAt(this.#shownAt);
+  }
+
   /** The names of lines that lie over each other, in their colours. */
   #legend() {
+    this.#shownAt = null;
     const names = this.#lines.length > 1 ? this.#lines : [];
     this.#values.replaceChildren(...names.flatMap(({ label, look }) => {
       const name = Object.assign(document.createElement("b"), { textContent: label });
@@ -295,6 +302,7 @@ export class Plot {
   }
 
   showAt(x) {
+    this.#shownAt = x;
     const at = ({ y, from, step }) => {
       const index = Math.round((x - from) / step);
       return index >= 0 && index < y.length ? y[index] : NaN;
