@@ -1,7 +1,7 @@
 //! The main numbers of a run, for reading.
 
 use meshtone_io::summary::{
-    ChannelSummary, HelixSummary, MachineSummary, MeshForce, MeshStiffness, MeshSummary, Summary,
+    ChannelSummary, HelixSummary, MachineSummary, MeshForce, MeshStiffness, MeshSummary, SetSummary, Summary,
 };
 
 /// Natural frequencies that are printed.
@@ -22,7 +22,9 @@ pub fn table(summary: &Summary) -> String {
         let kurtosis = kurtosis.map_or_else(|| "-".to_string(), short);
         format!("  {name:<28}{rms:>12}{peak:>12}{kurtosis:>12}\n")
     });
-    whole.chain(meshes).chain([heads]).chain(signals).collect()
+    let sets =
+        summary.machine.planetary.iter().map(|set| row((format!("orders of {}", set.name), orders(set))));
+    whole.chain(sets).chain(meshes).chain([heads]).chain(signals).collect()
 }
 
 /// The rows of the whole machine.
@@ -43,6 +45,16 @@ fn of_whole(summary: &Summary) -> [(&'static str, String); 7] {
         ("natural frequencies, Hz", shown.join(" ") + more),
         ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
     ]
+}
+
+/// At which orders the events of a planetary set repeat.
+fn orders(set: &SetSummary) -> String {
+    let of = set.orders_per_carrier_revolution;
+    let [mesh, planets, sun, planet, ring] =
+        [of.mesh, of.planet_passage, of.sun_tooth, of.planet_tooth, of.ring_tooth].map(short);
+    format!(
+        "mesh {mesh}, planets pass {planets}; a tooth of the sun {sun}, of a planet {planet}, of the ring {ring} (per revolution of the carrier)"
+    )
 }
 
 /// The rows of a mesh.

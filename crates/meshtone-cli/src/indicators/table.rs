@@ -174,12 +174,16 @@ fn of_record(series: &Series, wheels: &[&Wheel]) -> String {
     let names: Vec<String> =
         wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
     let shaft = wheels[0].shaft.as_ref().map(|shaft| format!("shaft {shaft} with "));
+    let order = wheels[0].tooth_order_of_carrier;
+    let order =
+        order.map(|order| format!("; a damaged tooth shows at order {} of the carrier", short(order)));
     let mut text = format!(
-        "\n  {}{}: average of {} revolutions at {} Hz\n",
+        "\n  {}{}: average of {} revolutions at {} Hz{}\n",
         shaft.unwrap_or_default(),
         names.join(", and "),
         record.revolutions,
-        short(record.mean_speed_hz)
+        short(record.mean_speed_hz),
+        order.unwrap_or_default()
     );
     let mut add = |label: &str, cells: &[String]| text += &line(format_args!("{label:<12}"), cells, 14);
     add("", &["rms", "peak to peak", "crest", "skewness", "kurtosis"].map(str::to_owned));

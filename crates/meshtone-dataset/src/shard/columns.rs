@@ -445,7 +445,7 @@ fn of_spall(number: usize) -> [Column; 5] {
         size("spall_drop_um", "µm", |of| Some(of.sizes.drop_um))
             .meaning("how deep an element drops into the spall: to its depth, or until it touches both edges"),
         size("spall_angle_deg", "°", |of| (of.sizes.place != DefectPlace::Element).then_some(of.sizes.angle_deg)).meaning(
-            "angle from the static load of the bearing to the middle of the spall, of the inner race at time 0 before settling; null of a \
+            "angle from the static load of the bearing to the middle of the spall, of a race that turns at time 0 before settling; null of a \
              rolling element, which starts at a random angle",
         ),
         size("spall_order", "-", |of| Some(of.order)).meaning(

@@ -196,7 +196,11 @@ impl GearboxState {
         let largest_n = force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let apart = ContactFigures::of_force(force_n).apart_fraction;
         let of_mesh = |what: &str| format!("{what} of {name}");
-        vec![
+        let train = GearTrain::of_stages(stages);
+        let tooth = train.tooth_order_of_carrier(self.wheel).map(|order| {
+            (format!("damaged tooth of {}", train.wheels[self.wheel].name), order, "th order of the carrier")
+        });
+        let mut figures = vec![
             (of_mesh("mesh frequency"), tones.meshes[self.mesh].frequency_hz, "Hz"),
             (of_mesh("contact ratio"), pair.teeth.path.contact_ratio, ""),
             (of_mesh("mean stiffness"), mesh.mean_stiffness_n_per_m * 1e-6, "N/µm"),
@@ -209,7 +213,9 @@ impl GearboxState {
                 "revolutions of the input",
             ),
             ("sampling rate".to_owned(), self.simulation.channels.sampling_rate_hz, "S/s"),
-        ]
+        ];
+        figures.extend(tooth);
+        figures
     }
 
     /// The train, as it stands: axes, circles, faces.

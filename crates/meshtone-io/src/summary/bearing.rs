@@ -45,7 +45,7 @@ pub struct DefectSummary {
     pub width_mm: f64,
     /// (µm) By how much an element drops into it at most.
     pub drop_um: f64,
-    /// (°) From the direction of the static load to its middle, of the inner race at the start.
+    /// (°) From the direction of the static load to its middle; of a race that turns, at the start.
     pub angle_deg: f64,
     /// (-) Its width over the diameter of an element.
     pub severity: f64,

@@ -6,10 +6,12 @@
 mod bearing;
 mod json;
 mod mesh;
+mod planetary;
 
 pub use bearing::{BearingOrders, BearingSummary, DefectSummary};
 pub use json::write_json;
 pub use mesh::{HelixSummary, MeshForce, MeshStiffness, MeshSummary, OneMesh, TransmissionError};
+pub use planetary::SetSummary;
 
 use std::path::Path;
 use std::time::Duration;
@@ -94,6 +96,9 @@ pub struct MachineSummary {
     pub meshes: Vec<MeshSummary>,
     /// The rolling bearings, in the order of the file; none of a pair.
     pub bearings: Vec<BearingSummary>,
+    /// The planetary sets, in the order of the file; the key is left out where there is none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub planetary: Vec<SetSummary>,
     /// (Hz) The natural frequencies at the mean mesh stiffness, rising: of a pair 13, under `contact` 17.
     pub natural_frequencies_hz: Vec<f64>,
     /// (Hz) Of each mode of shafts of beams without their meshes the natural frequency without and with gyroscopic moments; none of a rig.
@@ -266,6 +271,7 @@ impl MachineSummary {
             bearings: bearings
                 .map(|((_, bearing), (name, _))| BearingSummary::new(name.clone(), bearing))
                 .collect(),
+            planetary: scenario.planetary().iter().map(SetSummary::new).collect(),
             natural_frequencies_hz: stages.natural_frequencies_hz(),
             gyroscopic_modes_hz: (stages.gyroscopic_shifts(input_hz).into_iter())
                 .map(|mode| [mode.frequency_hz, mode.shifted_hz])

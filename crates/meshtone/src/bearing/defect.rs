@@ -43,7 +43,7 @@ pub struct BearingDefect {
     pub width_mm: Option<f64>,
     /// (µm) Depth of the spall. Default 100. An element does not drop deeper than the edges of the spall let it.
     pub depth_um: f64,
-    /// (°) From the direction of the bearing's static load to the middle of the spall, positive about z; of the inner race at the start.
+    /// (°) From the direction of the bearing's static load to the middle of the spall, positive about z; of a race that turns (the inner one, of a planet the outer one) at the start.
     pub angle_deg: f64,
 }
 
@@ -99,7 +99,7 @@ pub struct Spall {
     pub width_mm: f64,
     /// (µm) By how much an element drops at most: down to the depth, or until it touches both edges.
     pub drop_um: f64,
-    /// (°) From the direction of the static load to its middle, of the inner race at the start.
+    /// (°) From the direction of the static load to its middle; of a race that turns, at the start.
     pub angle_deg: f64,
     /// (-) Width over the diameter of an element.
     pub severity: f64,

@@ -539,79 +539,81 @@ impl MeshLaw {
         2.0 * self.back_stiffness_n_per_m
     }
 
-    /// (N, N/m) The force that the flanks carry at a deflection, and its slope.
-    ///
-    /// The springs are summed in as many sums as fit side by side, so that the compiler can take several of them at once.
+    /// (N, N/m) The force that the flanks carry at a deflection, and its slope, without friction.
     ///
     /// # Arguments
     /// * `springs` - stiffness and offset of each
     /// * `deflection_m` - (m) D
     #[inline(always)]
     pub(crate) fn force_and_slope(&self, springs: Springs, deflection_m: f64) -> [f64; 2] {
-        let lets_go_m = self.contact.lets_go_at_m();
-        let spring = |stiffness: f64, offset: f64| {
-            let penetration = deflection_m + offset;
-            let touching = if penetration > lets_go_m { stiffness } else { 0.0 };
-            [touching * penetration, touching]
-        };
-        let (stiffness, of_rest) = springs.stiffness.as_chunks::<AT_ONCE>();
-        let (offset, offset_of_rest) = springs.offset.as_chunks::<AT_ONCE>();
-        let mut sums = [[0.0; AT_ONCE]; 2];
-        for (stiffness, offset) in stiffness.iter().zip(offset) {
-            for n in 0..AT_ONCE {
-                let [force, slope] = spring(stiffness[n], offset[n]);
-                sums[0][n] += force;
-                sums[1][n] += slope;
-            }
-        }
-        for (stiffness, offset) in of_rest.iter().zip(offset_of_rest) {
-            let [force, slope] = spring(*stiffness, *offset);
-            sums[0][0] += force;
-            sums[1][0] += slope;
-        }
-        let [mut force, mut slope] = sums.map(|[a, b, c, d]| (a + b) + (c + d));
-        for corner in springs.corners {
-            let [of_corner, slope_of_corner] = corner.force_and_slope(springs.laws, deflection_m);
-            force += of_corner;
-            slope += slope_of_corner;
-        }
-        let back_m = self.back_touches_at_m() - deflection_m;
-        let back = if back_m > 0.0 { self.back_stiffness_n_per_m } else { 0.0 };
-        [force - back * back_m.max(0.0), slope + back]
+        self.load(springs, [], deflection_m).0
     }
 
-    /// The friction of the drive flanks at a deflection: (N, N/m) across the line of action with its slope, and (N m, N) its moment about the pitch
-    /// point with its slope. Coast flanks slide without friction.
+    /// (N, N/m) The force that the flanks carry at a deflection, and the friction of the drive flanks: across the line of action, and (N m, N) its moment
+    /// about the pitch point; each with its slope. Coast flanks slide without friction.
     ///
     /// # Arguments
     /// * `springs` - of a mesh with friction
     /// * `deflection_m` - (m) D
     #[inline(always)]
-    pub(crate) fn friction(&self, springs: Springs, deflection_m: f64) -> [[f64; 2]; 2] {
+    pub(crate) fn force_and_friction(
+        &self,
+        springs: Springs,
+        deflection_m: f64,
+    ) -> ([f64; 2], [[f64; 2]; 2]) {
+        self.load(springs, springs.sliding, deflection_m)
+    }
+
+    /// The force at a deflection, and what `P` of the numbers of sliding make of the force of each spring; each with its slope.
+    ///
+    /// The springs are summed in as many sums as fit side by side, so that the compiler can take several of them at once.
+    #[inline(always)]
+    fn load<const P: usize>(
+        &self,
+        springs: Springs,
+        sliding: [&[f64]; P],
+        deflection_m: f64,
+    ) -> ([f64; 2], [[f64; 2]; P]) {
         let lets_go_m = self.contact.lets_go_at_m();
-        // As many springs as fit whole sums: see [`SpringSamples`].
-        let [stiffness, offset, across, moment] =
-            [springs.stiffness, springs.offset, springs.sliding[0], springs.sliding[1]]
-                .map(|values| values.as_chunks::<AT_ONCE>().0);
-        let mut by_place = [[[0.0; AT_ONCE]; 2]; 2];
-        for (((stiffness, offset), across), moment) in stiffness.iter().zip(offset).zip(across).zip(moment) {
+        let mut by_place = [[0.0; AT_ONCE]; 2];
+        let mut sliding_by_place = [[[0.0; AT_ONCE]; 2]; P];
+        let mut add = |n: usize, [stiffness, offset]: [f64; 2], parts: [f64; P]| {
+            let penetration_m = deflection_m + offset;
+            let touching = if penetration_m > lets_go_m { stiffness } else { 0.0 };
+            let load = [touching * penetration_m, touching];
+            for k in 0..2 {
+                by_place[k][n] += load[k];
+                sliding_by_place.iter_mut().zip(parts).for_each(|(sums, part)| sums[k][n] += load[k] * part);
+            }
+        };
+        let (stiffness, of_rest) = springs.stiffness.as_chunks::<AT_ONCE>();
+        let (offset, offset_of_rest) = springs.offset.as_chunks::<AT_ONCE>();
+        let whole = sliding.map(|of| of.as_chunks::<AT_ONCE>().0);
+        for (chunk, (stiffness, offset)) in stiffness.iter().zip(offset).enumerate() {
+            let parts = whole.map(|of| of[chunk]);
             for n in 0..AT_ONCE {
-                let penetration_m = deflection_m + offset[n];
-                let touching = if penetration_m > lets_go_m { stiffness[n] } else { 0.0 };
-                for (sums, part) in by_place.iter_mut().zip([across[n], moment[n]]) {
-                    sums[0][n] += touching * penetration_m * part;
-                    sums[1][n] += touching * part;
-                }
+                add(n, [stiffness[n], offset[n]], parts.map(|of| of[n]));
             }
         }
-        let mut sums = by_place.map(|sums| sums.map(|[a, b, c, d]| (a + b) + (c + d)));
+        // Springs with friction fit whole sums: see [`SpringSamples`].
+        for (stiffness, offset) in of_rest.iter().zip(offset_of_rest) {
+            add(0, [*stiffness, *offset], [0.0; P]);
+        }
+        let total = |[a, b, c, d]: [f64; AT_ONCE]| (a + b) + (c + d);
+        let [mut force, mut slope] = by_place.map(total);
+        let mut friction = sliding_by_place.map(|sums| sums.map(total));
         for corner in springs.corners {
             let of_corner = corner.force_and_slope(springs.laws, deflection_m);
-            for (sum, part) in sums.iter_mut().zip(springs.sliding_of_laws[corner.law as usize]) {
-                sum.iter_mut().zip(of_corner).for_each(|(sum, of_corner)| *sum += of_corner * part);
+            force += of_corner[0];
+            slope += of_corner[1];
+            for (p, sums) in friction.iter_mut().enumerate() {
+                let part = springs.sliding_of_laws[corner.law as usize][p];
+                sums.iter_mut().zip(of_corner).for_each(|(sum, of_corner)| *sum += of_corner * part);
             }
         }
-        sums
+        let back_m = self.back_touches_at_m() - deflection_m;
+        let back = if back_m > 0.0 { self.back_stiffness_n_per_m } else { 0.0 };
+        ([force - back * back_m.max(0.0), slope + back], friction)
     }
 
     /// What a mesh with two unknowns carries.

@@ -53,7 +53,7 @@ pub use layout::{Layout, Ratio};
 pub use long::gearbox_sections;
 pub use mesh::ScenarioMesh;
 pub use meshtone_toml::ErrorKind;
-pub use planetary::{Member, MemberShifts, MemberTeeth, OfSet, Pin, PlanetarySet, Rim};
+pub use planetary::{Member, MemberShifts, MemberTeeth, OfSet, Pin, PlanetarySet, Rim, SetOrders};
 pub use planetary_layout::SetLayout;
 pub use short::{SectionDescription, sections};
 pub use structure::{Shafts, Structure};

@@ -5,6 +5,8 @@
 
 use std::f64::consts::TAU;
 
+use serde::Serialize;
+
 use super::{Scenario, ScenarioMesh, ScenarioWheel, Shafts};
 use crate::keys::{Keys, Range, field, keys};
 use crate::machine::{Bearing, Coupled, WheelInertia};
@@ -92,6 +94,45 @@ pub struct MemberTeeth {
     pub planet: u32,
     /// Of the ring.
     pub ring: u32,
+}
+
+/// Orders at which the events of a planetary set repeat, per revolution of its carrier against its ring: the carrier's own revolution where the ring is fixed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SetOrders {
+    /// Teeth of every mesh meet.
+    pub mesh: f64,
+    /// A planet passes a place on the ring.
+    pub planet_passage: f64,
+    /// One tooth of the sun meets any planet.
+    pub sun_tooth: f64,
+    /// One tooth of a planet meets the sun, and so the ring.
+    pub planet_tooth: f64,
+    /// One tooth of the ring meets any planet.
+    pub ring_tooth: f64,
+}
+
+impl MemberTeeth {
+    /// The orders of the events of a set: McFadden and Smith, Proc. IMechE C 199 (1985) 65.
+    ///
+    /// ```
+    /// let teeth = meshtone::scenario::MemberTeeth { sun: 19, planet: 31, ring: 81 };
+    /// assert_eq!(teeth.orders(4).sun_tooth, 4.0 * 81.0 / 19.0);
+    /// ```
+    ///
+    /// # Arguments
+    /// * `planets` - how many there are
+    pub fn orders(self, planets: usize) -> SetOrders {
+        let [sun, planet, ring] = [self.sun, self.planet, self.ring].map(f64::from);
+        let planets = planets as f64;
+        SetOrders {
+            mesh: ring,
+            planet_passage: planets,
+            sun_tooth: planets * ring / sun,
+            planet_tooth: ring / planet,
+            ring_tooth: planets,
+        }
+    }
 }
 
 /// Profile shift coefficients of a set.

@@ -354,6 +354,21 @@ impl Scenario {
                     "set planetary.pin.stiffness_n_per_m, or another kind",
                 );
             }
+            let usual = Bearing::new(&bearing.shaft, bearing.at);
+            let without_effect = [
+                ("seat", bearing.seat != usual.seat),
+                ("damping_ratio", bearing.damping_ratio != usual.damping_ratio),
+                ("axial_stiffness_n_per_m", bearing.axial_stiffness_n_per_m.is_some()),
+                (
+                    "tilt_stiffness_nm_per_rad",
+                    bearing.tilt_stiffness_nm_per_rad != usual.tilt_stiffness_nm_per_rad,
+                ),
+            ];
+            if let Some((key, _)) = without_effect.into_iter().find(|(_, is_given)| *is_given) {
+                let problem = "has no effect on the bearing of a planet, which sits on its pin";
+                let help = "remove it; planetary.support_damping_ratio is the damping of pins";
+                return refused(key, &bearing.shaft, problem, help);
+            }
             if self.bearings()[..index].iter().any(|before| of_planets(before) == Some(axis)) {
                 let problem = "is a planet that has a bearing already; rows of elements count as one";
                 return refused("shaft", &bearing.shaft, problem, "remove one of the two");

@@ -8,7 +8,7 @@ use super::{
     ShaftPhase, SignalError, SignalWarning, SynchronousAverage, TrainRecording, angular_resample,
     planetary_average, process_average,
 };
-use crate::scenario::{Layout, Member, Ratio, Scenario, SetLayout};
+use crate::scenario::{Layout, Member, MemberTeeth, Ratio, Scenario, SetLayout};
 use crate::sensor::{RingPlace, Sensor};
 
 /// A planetary set whose planets pass a sensor: its carrier turns.
@@ -71,6 +71,24 @@ impl GearTrain {
             set.sensor_rev = on_ring.map(|place| place.angle_rad / std::f64::consts::TAU);
         }
         self
+    }
+
+    /// Order of the carrier at which one damaged tooth of a wheel of a set meets its mates; none of a wheel outside of sets.
+    ///
+    /// # Arguments
+    /// * `wheel` - its number
+    pub fn tooth_order_of_carrier(&self, wheel: usize) -> Option<f64> {
+        self.sets.iter().find_map(|set| {
+            let (first, planets) = (set.first_wheel, set.planets_rev.len());
+            let [sun, planet, ring] = [first, first + 1, first + 1 + planets].map(|n| self.wheels[n].teeth);
+            let orders = MemberTeeth { sun, planet, ring }.orders(planets);
+            match wheel.checked_sub(first)? {
+                0 => Some(orders.sun_tooth),
+                number if number <= planets => Some(orders.planet_tooth),
+                number if number == planets + 1 => Some(orders.ring_tooth),
+                _ => None,
+            }
+        })
     }
 
     /// The set that a wheel belongs to, where planets carry its meshes past the sensor: of planets and suns. A ring stands before it.

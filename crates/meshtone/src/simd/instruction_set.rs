@@ -203,7 +203,7 @@ pub(crate) trait Instructions: Copy {
 
 /// Instructions that the compiled architecture has; products are rounded before they are added.
 #[derive(Clone, Copy)]
-struct Plain;
+pub(crate) struct Plain;
 
 impl Instructions for Plain {
     #[inline(always)]

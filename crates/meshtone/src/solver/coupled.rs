@@ -170,7 +170,8 @@ impl History {
     /// Keeps what some outputs see.
     fn new(outputs: &[OutputOfModes]) -> Self {
         let kept = |number: usize| {
-            let seen = || outputs.iter().map(|output| &output.0[number]).filter(|seen| !seen.lots.is_empty());
+            let seen =
+                || outputs.iter().map(|output| &output.modes[number]).filter(|seen| !seen.lots.is_empty());
             let end = seen().map(|seen| seen.first + seen.lots.len()).max().unwrap_or(0);
             let lots = seen().map(|seen| seen.first).min().unwrap_or(0)..end;
             let tiles = vec![LotTile([Lanes::splat(0.0); TILE]); lots.len() * BLOCK / TILE];
@@ -310,8 +311,11 @@ struct Constants {
     outputs: Vec<OutputOfModes>,
 }
 
-/// An output: the weights of each number of a [`LotState`].
-struct OutputOfModes([Weights; 3]);
+/// An output: the weights of each number of a [`LotState`], and those of the forces that it sees, with their columns.
+struct OutputOfModes {
+    modes: [Weights; 3],
+    forces: Vec<(usize, f64)>,
+}
 
 impl Constants {
     fn new(prepared: Prepared, order: &Order) -> Self {
@@ -328,8 +332,9 @@ impl Constants {
             }
             lots
         };
-        let output = |of: &OutputWeights| {
-            OutputOfModes([&of.displacement, &of.velocity, &of.acceleration].map(|list| order.weights(list)))
+        let output = |of: &OutputWeights| OutputOfModes {
+            modes: [&of.displacement, &of.velocity, &of.acceleration].map(|list| order.weights(list)),
+            forces: of.force.iter().copied().enumerate().filter(|(_, weight)| *weight != 0.0).collect(),
         };
         let (restore, damp) = (order.lots(&prepared.restore), order.lots(&prepared.damp));
         let external_push = prepared.external_push.each_ref().map(|push| order.lots(push));
@@ -435,7 +440,7 @@ struct Outputs<'a> {
 }
 
 /// Samples whose outputs are summed in registers; a part of [`BLOCK`].
-const TILE: usize = 8;
+const TILE: usize = 4;
 
 impl Task for Outputs<'_> {
     type Output = ();
@@ -448,7 +453,7 @@ impl Task for Outputs<'_> {
         for (values, (output, others)) in self.outputs.iter_mut().zip(outputs) {
             for (tile, external) in external.chunks(TILE).enumerate() {
                 let mut sums = [Lanes::splat(0.0); TILE];
-                for (weights, (kept, tiles)) in output.0.iter().zip(states.iter()) {
+                for (weights, (kept, tiles)) in output.modes.iter().zip(states.iter()) {
                     let first = tile * kept.len() + weights.first.saturating_sub(kept.start);
                     for (weight, lot) in weights.lots.iter().zip(&tiles[first..]) {
                         for k in 0..TILE {
@@ -458,7 +463,9 @@ impl Task for Outputs<'_> {
                 }
                 for (k, external) in external.iter().enumerate() {
                     let sample = tile * TILE + k;
-                    let forces = dot(&others.force, &force[sample * columns..]);
+                    let force = &force[sample * columns..];
+                    let forces: f64 =
+                        output.forces.iter().map(|(column, weight)| weight * force[*column]).sum();
                     let steady = others.constant + others.per_sample * (self.first_recorded + sample) as f64;
                     values.push(steady + forces + dot(&others.external, external) + total(sums[k]));
                 }
@@ -517,7 +524,7 @@ impl State {
                     column.static_deflection + dot(&column.of_external, &self.external) + turned + total(sum);
             }
         }
-        constants.contact_forces(sample, self);
+        constants.contact_forces(simd, sample, self);
         let pushes = constants.pushes.chunks_exact(self.force.len());
         for (LotState([.., acceleration]), pushes) in self.lots.iter_mut().zip(pushes) {
             for (push, force) in pushes.iter().zip(&self.force) {
@@ -534,7 +541,7 @@ impl Constants {
     /// * `sample` - what touches at the step's end
     /// * `state` - has the free deflections, and the deflection of each mesh at the step's start; those of all unknowns are set to those at its end
     #[inline(always)]
-    fn contact_forces(&self, sample: &ContactSample, state: &mut State) {
+    fn contact_forces<I: Instructions>(&self, simd: I, sample: &ContactSample, state: &mut State) {
         let prepared = &self.prepared;
         let equations = &state.equations;
         let mut free = equations.of_static;
@@ -546,7 +553,7 @@ impl Constants {
             state.deflection[unknown] = free[unknown] - (2.0 * last - before);
         }
         let Found { loads, iterations, searched } =
-            equations.solve(&law, &free, &mut state.deflection, &mut state.search);
+            equations.solve(simd, &law, &free, &mut state.deflection, &mut state.search);
         for unknown in equations.of_bearings() {
             let [_, last] = state.pressed[unknown];
             state.pressed[unknown] = [last, free[unknown] - state.deflection[unknown]];
@@ -600,8 +607,8 @@ trait Law {
     /// Whether the force of a mesh is smooth, so that between iterates that are near to one another its tangent is the force.
     fn is_smooth(&self, mesh: usize) -> bool;
 
-    /// Friction of a mesh with its moment, each with its slope, as of [`MeshLaw::friction`]; asked for only where flanks rub.
-    fn friction(&self, mesh: usize, deflection_m: f64) -> [[f64; 2]; 2];
+    /// Of a mesh whose flanks rub, also its friction and the moment of that, as [`MeshLaw::force_and_friction`].
+    fn of_rubbing_mesh(&self, mesh: usize, deflection_m: f64) -> ([f64; 2], [[f64; 2]; 2]);
 
     /// Of a mesh whose tilt is an unknown, at (m) the deflection midway and what the tilt adds at the face's end.
     fn of_tilted(&self, mesh: usize, deflection_m: [f64; 2]) -> TiltedLoad;
@@ -639,8 +646,8 @@ impl Law for ContactLaw<'_> {
     }
 
     #[inline(always)]
-    fn friction(&self, mesh: usize, deflection_m: f64) -> [[f64; 2]; 2] {
-        self.laws[mesh].friction(self.sample.springs[mesh].at(self.sample.k), deflection_m)
+    fn of_rubbing_mesh(&self, mesh: usize, deflection_m: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+        self.laws[mesh].force_and_friction(self.sample.springs[mesh].at(self.sample.k), deflection_m)
     }
 
     #[inline(always)]
@@ -711,7 +718,7 @@ struct Equations {
     first_tilt: usize,
     /// Both unknowns of each bearing, and of each mesh with two.
     twins: Vec<[usize; 2]>,
-    /// (m/N) G.
+    /// (m/N) G, by columns: of each unknown's force, the deflection of each.
     compliance: Matrix,
     /// (m) What the static forces, which the forces on the modes are relative to, add to D₀.
     of_static: OfUnknowns,
@@ -737,7 +744,7 @@ impl Equations {
             across: prepared.across(),
         };
         for (a, row) in prepared.compliance[..count].iter().enumerate() {
-            this.compliance[a][..count].copy_from_slice(&row[..count]);
+            row[..count].iter().enumerate().for_each(|(b, g)| this.compliance[b][a] = *g);
             this.of_static[a] =
                 row.iter().zip(&prepared.static_force_n).map(|(g, force_n)| g * force_n).sum();
         }
@@ -764,8 +771,9 @@ impl Equations {
     /// * `free` - (m) D₀
     /// * `deflection` - (m) where to begin; set to the solution
     #[inline(always)]
-    fn solve(
+    fn solve<I: Instructions>(
         &self,
+        simd: I,
         law: &impl Law,
         free: &OfUnknowns,
         deflection: &mut OfUnknowns,
@@ -777,7 +785,7 @@ impl Equations {
             // The loads of two iterates take turns.
             let [even, odd] = loads;
             let (now, new) = if iteration % 2 == 0 { (even, odd) } else { (odd, even) };
-            self.newton(free, deflection, now, next);
+            self.newton(simd, free, deflection, now, next);
             self.set_next_loads(law, [deflection, next], now, new);
             let same = self.is_same(law, [now, new], deflection, next);
             if !same && iteration >= MOST_PLAIN_ITERATIONS {
@@ -827,17 +835,15 @@ impl Equations {
                 }
                 continue;
             }
-            let further = |[force, slope]: [f64; 2]| [force + slope * (to[a] - from[a]), slope];
-            [next.forces[a], next.slopes[a]] = if is_on_tangent {
-                further([loads.forces[a], loads.slopes[a]])
+            if is_on_tangent {
+                let further = |[force, slope]: [f64; 2]| [force + slope * (to[a] - from[a]), slope];
+                [next.forces[a], next.slopes[a]] = further([loads.forces[a], loads.slopes[a]]);
+                next.friction[a] = loads.friction[a].map(|[force, slope, _]| {
+                    let [force, slope] = further([force, slope]);
+                    [force, slope, 0.0]
+                });
             } else {
-                law.of_mesh(a, to[a])
-            };
-            if self.across.is_some() {
-                let [across, moment] = loads.friction[a].map(|[force, slope, _]| [force, slope]);
-                let friction =
-                    if is_on_tangent { [further(across), further(moment)] } else { law.friction(a, to[a]) };
-                next.friction[a] = friction.map(|[force, slope]| [force, slope, 0.0]);
+                self.set_even_loads(law, a, to, next);
             }
         }
         for (bearing, a) in self.of_bearings().step_by(2).enumerate() {
@@ -875,11 +881,20 @@ impl Equations {
                 self.set_tilted_loads(law, [a, tilt], deflection, loads);
                 continue;
             }
-            [loads.forces[a], loads.slopes[a]] = law.of_mesh(a, deflection[a]);
-            if self.across.is_some() {
-                loads.friction[a] = law.friction(a, deflection[a]).map(|[force, slope]| [force, slope, 0.0]);
-            }
+            self.set_even_loads(law, a, deflection, loads);
         }
+    }
+
+    /// Sets force, slope and friction of a mesh with one unknown.
+    #[inline(always)]
+    fn set_even_loads(&self, law: &impl Law, mesh: usize, deflection: &OfUnknowns, loads: &mut Loads) {
+        if self.across.is_none() {
+            [loads.forces[mesh], loads.slopes[mesh]] = law.of_mesh(mesh, deflection[mesh]);
+            return;
+        }
+        let (load, friction) = law.of_rubbing_mesh(mesh, deflection[mesh]);
+        [loads.forces[mesh], loads.slopes[mesh]] = load;
+        loads.friction[mesh] = friction.map(|[force, slope]| [force, slope, 0.0]);
     }
 
     /// Sets forces, slopes and friction of a mesh with two unknowns.
@@ -911,68 +926,65 @@ impl Equations {
 
     /// Sets `next` to the solution if the slopes at `deflection` K went on, `(1 + G K) D = D₀ − G (f − K D)`.
     #[inline(always)]
-    fn newton(&self, free: &OfUnknowns, deflection: &OfUnknowns, loads: &Loads, next: &mut OfUnknowns) {
-        // Short loops of a known length are compiled to fewer instructions. G is 0 beyond the machine's unknowns.
+    fn newton<I: Instructions>(
+        &self,
+        simd: I,
+        free: &OfUnknowns,
+        deflection: &OfUnknowns,
+        loads: &Loads,
+        next: &mut OfUnknowns,
+    ) {
+        // Columns of a known length are compiled to fewer instructions. G is 0 beyond the machine's unknowns.
         match self.count {
-            0..=2 => next[..2].copy_from_slice(&self.newton_of::<2>(2, free, deflection, loads)),
-            3..=4 => next[..4].copy_from_slice(&self.newton_of::<4>(4, free, deflection, loads)),
-            5..=8 => next[..8].copy_from_slice(&self.newton_of::<8>(8, free, deflection, loads)),
-            9..=16 => {
-                next[..16].copy_from_slice(&self.newton_of::<16>(self.count, free, deflection, loads));
+            0..=2 => next[..2].copy_from_slice(&self.newton_of::<_, 2>(simd, 2, free, deflection, loads)),
+            3..=4 => next[..4].copy_from_slice(&self.newton_of::<_, 4>(simd, 4, free, deflection, loads)),
+            5..=8 => next[..8].copy_from_slice(&self.newton_of::<_, 8>(simd, 8, free, deflection, loads)),
+            count @ 9..=16 => {
+                next[..16].copy_from_slice(&self.newton_of::<_, 16>(simd, count, free, deflection, loads));
             }
-            _ => *next = self.newton_of(self.count, free, deflection, loads),
+            count => *next = self.newton_of(simd, count, free, deflection, loads),
         }
     }
 
-    /// [`Self::newton`] of `count` of at most `N` unknowns.
+    /// [`Self::newton`] of `count` of at most `N` unknowns, column by column of the matrix, so that the rows of each lie side by side.
     #[inline(always)]
-    fn newton_of<const N: usize>(
+    fn newton_of<I: Instructions, const N: usize>(
         &self,
+        simd: I,
         count: usize,
         free: &OfUnknowns,
         deflection: &OfUnknowns,
         loads: &Loads,
     ) -> [f64; N] {
-        let mut matrix = [[0.0; N]; N];
-        let mut constant = [0.0; N];
+        let mut columns = [Lanes([0.0; N]); N];
+        let mut right = Lanes::from_fn(|a| free[a]);
         for b in 0..count {
-            for a in 0..count {
-                matrix[a][b] = self.compliance[a][b] * loads.slopes[b] + f64::from(a == b);
-            }
-            constant[b] = loads.forces[b] - loads.slopes[b] * deflection[b];
+            let slope = loads.slopes[b];
+            add(simd, &mut columns[b], slope, &self.compliance[b]);
+            add(simd, &mut right, slope * deflection[b] - loads.forces[b], &self.compliance[b]);
         }
         for &[first, second] in &self.twins {
             let cross = loads.cross_slopes[first];
             for (b, other) in [(first, second), (second, first)] {
-                constant[b] -= cross * deflection[other];
-                for a in 0..count {
-                    matrix[a][b] += self.compliance[a][other] * cross;
-                }
+                add(simd, &mut columns[b], cross, &self.compliance[other]);
+                add(simd, &mut right, cross * deflection[b], &self.compliance[other]);
             }
-        }
-        let mut right = [0.0; N];
-        for a in 0..count {
-            let pressed = (0..count).map(|b| self.compliance[a][b] * constant[b]).sum::<f64>();
-            right[a] = free[a] - pressed;
         }
         if let Some(across) = &self.across {
-            for (b, (of_mesh, loads)) in across.iter().zip(&loads.friction).enumerate().take(self.meshes) {
-                for (of_unknown, [force, slope, of_tilt]) in of_mesh.iter().zip(loads) {
-                    for a in 0..count {
-                        matrix[a][b] -= of_unknown[a] * slope;
-                        right[a] += of_unknown[a] * (force - slope * deflection[b]);
-                    }
+            for b in 0..self.meshes {
+                for (of_unknown, [force, slope, of_tilt]) in across[b].iter().zip(loads.friction[b]) {
+                    let mut constant = force - slope * deflection[b];
+                    add(simd, &mut columns[b], -slope, of_unknown);
                     if let Some(tilt) = self.tilts[b] {
-                        for a in 0..count {
-                            matrix[a][tilt] -= of_unknown[a] * of_tilt;
-                            right[a] -= of_unknown[a] * (of_tilt * deflection[tilt]);
-                        }
+                        constant -= of_tilt * deflection[tilt];
+                        add(simd, &mut columns[tilt], -of_tilt, of_unknown);
                     }
+                    add(simd, &mut right, constant, of_unknown);
                 }
             }
         }
-        eliminate(count, &mut matrix, &mut right);
-        right
+        eliminate(simd, count, &mut columns, &mut right);
+        right.0
     }
 
     /// Goes from `from` towards `to`, Newton's iterate, as far as makes the residual smaller: up to the next pair that touches or leaves the
@@ -983,7 +995,7 @@ impl Equations {
             self.set_loads(law, deflection, &mut loads);
             let forces = loads.forces;
             let of_unknown = |a: usize| {
-                let pressed = (0..self.count).map(|b| self.compliance[a][b] * forces[b]);
+                let pressed = (0..self.count).map(|b| self.compliance[b][a] * forces[b]);
                 let rubbed = self.across.iter().flat_map(|across| across.iter().zip(&loads.friction));
                 let rubbed = rubbed.flat_map(|(of_mesh, friction)| of_mesh.iter().zip(friction));
                 let rubbed: f64 = rubbed.map(|(of_unknown, [force, ..])| of_unknown[a] * force).sum();
@@ -1029,32 +1041,38 @@ struct Found {
 /// Halvings of the way until only rounding is left of it.
 const HALVINGS: usize = 60;
 
-/// Solves `(1 + G K) x = right` by elimination without a search for pivots. Those of meshes are at least 1, since G is positive and no slope of a mesh is
-/// negative. Those of bearings are near 1, since the compliance G within a step is small beside that of the bearing's linear spring.
+/// Adds so many times the first numbers of a column.
+#[inline(always)]
+fn add<I: Instructions, const N: usize>(simd: I, sums: &mut Lanes<N>, times: f64, column: &OfUnknowns) {
+    *sums = Lanes::splat(times).mul_add(simd, Lanes::from_fn(|a| column[a]), *sums);
+}
+
+/// Solves `(1 + G K) x = right` by Gauss and Jordan's elimination without a search for pivots. Those of meshes are at least 1, since G is positive and no
+/// slope of a mesh is negative. Those of bearings are near 1, since the compliance G within a step is small beside that of the bearing's linear spring.
+///
+/// Each pivot's column is eliminated from all rows at once, and not from those below it alone: rows side by side cost no more. The pivot's own row is left
+/// with `a − (a/p)(p − 1) = a/p`, as it must be, because the columns are those of G K, without the 1.
 ///
 /// # Arguments
 /// * `count` - number of equations
-/// * `matrix` - by rows; is overwritten
+/// * `columns` - of G K; are overwritten
 /// * `right` - the right-hand side; set to the solution
 #[inline(always)]
-fn eliminate<const N: usize>(count: usize, matrix: &mut [[f64; N]; N], right: &mut [f64; N]) {
-    let mut over_pivot = [0.0; N];
-    for column in 0..count {
-        let pivot_row = matrix[column];
-        over_pivot[column] = 1.0 / pivot_row[column];
-        for row in column + 1..count {
-            let factor = matrix[row][column] * over_pivot[column];
-            for k in column + 1..count {
-                matrix[row][k] -= factor * pivot_row[k];
-            }
-            right[row] -= factor * right[column];
-        }
-    }
-    for row in (0..count).rev() {
-        for k in row + 1..count {
-            right[row] -= matrix[row][k] * right[k];
-        }
-        right[row] *= over_pivot[row];
+fn eliminate<I: Instructions, const N: usize>(
+    simd: I,
+    count: usize,
+    columns: &mut [Lanes<N>; N],
+    right: &mut Lanes<N>,
+) {
+    for pivot in 0..count {
+        let eliminated = columns[pivot];
+        let over_pivot = 1.0 / (1.0 + eliminated.0[pivot]);
+        let from = |column: &mut Lanes<N>| {
+            let factor = Lanes::splat(column.0[pivot] * over_pivot);
+            *column = eliminated.negative_mul_add(simd, factor, *column);
+        };
+        columns[pivot + 1..count].iter_mut().for_each(from);
+        from(right);
     }
 }
 
@@ -1062,6 +1080,7 @@ fn eliminate<const N: usize>(count: usize, matrix: &mut [[f64; N]; N], right: &m
 mod tests {
     use super::*;
     use crate::random::{Draws, Purpose};
+    use crate::simd::Plain;
 
     /// A law that is a function.
     struct Function<F>(F);
@@ -1075,8 +1094,8 @@ mod tests {
             false
         }
 
-        fn friction(&self, _: usize, _: f64) -> [[f64; 2]; 2] {
-            [[0.0; 2]; 2]
+        fn of_rubbing_mesh(&self, mesh: usize, deflection_m: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+            (self.of_mesh(mesh, deflection_m), [[0.0; 2]; 2])
         }
 
         fn of_tilted(&self, _: usize, _: [f64; 2]) -> TiltedLoad {
@@ -1118,8 +1137,8 @@ mod tests {
             true
         }
 
-        fn friction(&self, _: usize, _: f64) -> [[f64; 2]; 2] {
-            [[0.0; 2]; 2]
+        fn of_rubbing_mesh(&self, mesh: usize, deflection_m: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+            (self.of_mesh(mesh, deflection_m), [[0.0; 2]; 2])
         }
 
         fn of_tilted(&self, mesh: usize, [deflection, tilt]: [f64; 2]) -> TiltedLoad {
@@ -1168,13 +1187,13 @@ mod tests {
             equations.compliance = products(&a, strength, count);
             for start in [-10.0, 0.0, 10.0] {
                 let mut deflection = [start; MOST_UNKNOWNS];
-                let found = equations.solve(&law, &free, &mut deflection, &mut Search::new());
+                let found = equations.solve(Plain, &law, &free, &mut deflection, &mut Search::new());
                 most = [most[0].max(found.iterations), most[1] + found.searched];
                 let mut loads = Loads::NONE;
                 equations.set_loads(&law, &deflection, &mut loads);
                 for row in 0..count {
                     let pressed: f64 =
-                        (0..count).map(|b| equations.compliance[row][b] * loads.forces[b]).sum();
+                        (0..count).map(|b| equations.compliance[b][row] * loads.forces[b]).sum();
                     let residual = deflection[row] + pressed - free[row];
                     assert!(residual.abs() < 1e-6 * (1.0 + strength), "{problem}: {residual}");
                 }
@@ -1222,10 +1241,10 @@ mod tests {
             equations.compliance = products(&a, strength, count);
             for start in [-10.0, 0.0, 10.0] {
                 let mut deflection = [start; MOST_UNKNOWNS];
-                equations.solve(&Function(law), &free, &mut deflection, &mut Search::new());
+                equations.solve(Plain, &Function(law), &free, &mut deflection, &mut Search::new());
                 for row in 0..count {
                     let pressed: f64 = (0..count)
-                        .map(|column| equations.compliance[row][column] * law(column, deflection[column])[0])
+                        .map(|column| equations.compliance[column][row] * law(column, deflection[column])[0])
                         .sum();
                     let residual = deflection[row] + pressed - free[row];
                     assert!(residual.abs() < 1e-9 * (1.0 + strength), "{problem}: {residual}");
@@ -1249,8 +1268,8 @@ mod tests {
             false
         }
 
-        fn friction(&self, _: usize, _: f64) -> [[f64; 2]; 2] {
-            [[0.0; 2]; 2]
+        fn of_rubbing_mesh(&self, mesh: usize, deflection_m: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+            (self.of_mesh(mesh, deflection_m), [[0.0; 2]; 2])
         }
 
         fn of_tilted(&self, _: usize, _: [f64; 2]) -> TiltedLoad {
@@ -1288,7 +1307,7 @@ mod tests {
             free[..3].copy_from_slice(&free_m);
             for start_m in [0.0, 1e-6, -2e-5] {
                 let mut deflection = [start_m; MOST_UNKNOWNS];
-                equations.solve(&MeshAndBearing, &free, &mut deflection, &mut Search::new());
+                equations.solve(Plain, &MeshAndBearing, &free, &mut deflection, &mut Search::new());
                 let mut loads = Loads::NONE;
                 equations.set_loads(&MeshAndBearing, &deflection, &mut loads);
                 for row in 0..3 {
@@ -1313,12 +1332,12 @@ mod tests {
         let equations = Equations::without_tilts([2, 2], compliance);
         let law = Function(law);
         let mut exact = [0.0; MOST_UNKNOWNS];
-        equations.solve(&law, &free, &mut exact, &mut Search::new());
+        equations.solve(Plain, &law, &free, &mut exact, &mut Search::new());
         let mut searched = [-4.0; MOST_UNKNOWNS];
         for _ in 0..20 {
             let Search { loads: [mut loads, _], next: mut newton } = Search::new();
             equations.set_loads(&law, &searched, &mut loads);
-            equations.newton(&free, &searched, &loads, &mut newton);
+            equations.newton(Plain, &free, &searched, &loads, &mut newton);
             searched = equations.towards(&law, &free, &searched, &newton);
         }
         assert!(

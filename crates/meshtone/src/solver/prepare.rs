@@ -262,10 +262,11 @@ impl Prepared {
                 moments.push(-load.forces[1]);
                 of_friction.extend(load.friction.iter().map(|friction| friction[0]).filter(|_| has_friction));
                 load.forces[0]
+            } else if has_friction {
+                let (load, friction) = law.force_and_friction(springs, deflection(mesh));
+                of_friction.extend(friction.map(|friction| friction[0]));
+                load[0]
             } else {
-                if has_friction {
-                    of_friction.extend(law.friction(springs, deflection(mesh)).map(|friction| friction[0]));
-                }
                 law.force_and_slope(springs, deflection(mesh))[0]
             };
             force.push(self.static_force_n[mesh] - carried);

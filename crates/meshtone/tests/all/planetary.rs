@@ -189,6 +189,15 @@ fn shares_of(planets: u32, change: impl Fn(&mut PlanetarySet)) -> Vec<f64> {
 /// Planets share the load as an independent simulator says; three on a sun that floats share it equally, and opposite ones of four are alike.
 #[test]
 fn planets_share_the_load() {
+    // A pin that is stiffer than a machine can show shares as a stiff one does: its error presses with the stiffness that it has there.
+    let stiff = [1e13, 1e15].map(|stiffness_n_per_m| {
+        shares_of(4, |set| set.pin = Pin { stiffness_n_per_m, error_um: vec![2.0, 0.0, 0.0, 0.0] })
+    });
+    println!("{stiff:?}");
+    stiff[0]
+        .iter()
+        .zip(&stiff[1])
+        .for_each(|(one, other)| assert!((one - other).abs() < 1e-3, "{one} {other}"));
     let table: [(u32, f64, f64, f64, [f64; 3]); 8] = [
         (3, 1e3, 12.0, 40.0, [0.33332940903685787, 0.33333529548157104, 0.33333529548157104]),
         (3, 1e8, 12.0, 5.0, [0.32660148052350463, 0.3366992597382482, 0.33669925973824727]),
@@ -229,7 +238,7 @@ fn what_is_doubtful_is_said() {
     let idle =
         |error_um| of(error_um).warnings().iter().filter(|of| of.kind == WarningKind::IdlePlanet).count();
     assert_eq!((idle(5.0), idle(60.0)), (0, 1));
-    for (wheel, rate_hz) in [("p.sun", 1e4), ("p.sun", 2e4), ("p.planet1", 1.5e4), ("p.planet1", 2e4)] {
+    for (wheel, rate_hz) in [("p.sun", 1e4), ("p.sun", 2e4), ("p.planet1", 1e4), ("p.planet1", 1.5e4)] {
         let mut scenario = scenario(|_| {});
         (scenario.solver.sampling_rate_hz, scenario.solver.duration_s) = (rate_hz, Some(3.0));
         scenario.faults = vec![Fault::new(wheel, 1, Damage::from(MissingTooth))];
@@ -466,6 +475,51 @@ fn rig_a_sounds_as_it_does_elsewhere() {
     }
 }
 
+/// Sidebands follow the places of the planets. In a set whose meshes are not in phase each planet sounds as the first does, turned by its angle, so that
+/// order n is that of one planet times `Σ exp(i n ψ)` (McFadden and Smith, Proc. IMechE C 199 (1985) 65), and orders at which this sum is 0 are missing. Of
+/// planets in phase the sidebands lie alike on both sides of the mesh, at every order where they are spaced unequally (Inalpolat and Kahraman, JSV 323
+/// (2009) 677).
+#[test]
+fn sidebands_follow_the_places_of_the_planets() {
+    let lines = |teeth: [u32; 3], angles_deg: &[f64], revolutions: f64| -> Vec<f64> {
+        let [sun, planet, ring] = teeth;
+        let mut scenario = scenario(|set| {
+            set.teeth = MemberTeeth { sun, planet, ring };
+            (set.planets, set.planet_angles_deg) = (angles_deg.len() as u32, angles_deg.to_vec());
+            (set.sun_support_n_per_m, set.carrier_support_n_per_m) = (1e9, 1e9);
+        });
+        scenario.solver.duration_s = Some(revolutions * f64::from(sun + ring) / (20.0 * f64::from(sun)));
+        scenario.solver.sampling_rate_hz = 80_000.0;
+        let ring = &simulate(scenario).map_err(|error| error.to_string()).unwrap().channels.signals[0];
+        (0..=2 * teeth[2]).map(|order| line_m_s2(&ring.values, f64::from(order), revolutions)).collect()
+    };
+    let of_places = |angles_deg: &[f64], order: usize| {
+        let (cos, sin) = angles_deg.iter().fold((0.0, 0.0), |(c, s), angle| {
+            let (sin, cos) = (order as f64 * angle.to_radians()).sin_cos();
+            (c + cos, s + sin)
+        });
+        f64::hypot(cos, sin)
+    };
+    let places = [vec![0.0, 86.4, 180.0, 266.4], vec![0.0, 97.2, 180.0, 277.2]];
+    let [one, other] = places.each_ref().map(|places| lines([19, 31, 81], places, 8.0));
+    for order in 74..=88 {
+        let [a, b] = places.each_ref().map(|places| of_places(places, order));
+        println!("{order}: {:.5} {:.5}, {a:.3} {b:.3}", one[order], other[order]);
+        if order % 2 == 1 {
+            assert!(one[order].max(other[order]) < 0.01 * one[80], "{order}");
+        } else {
+            let as_told = one[order] * b / (other[order] * a);
+            assert!((as_told - 1.0).abs() < 0.1 || a.min(b) < 0.3, "{order}: {as_told}");
+        }
+    }
+    let in_phase = lines([20, 40, 100], &[0.0, 126.0, 234.0], 4.0);
+    for away in 1..=8 {
+        let [below, above] = [in_phase[100 - away], in_phase[100 + away]];
+        println!("100 ± {away}: {below:.5} {above:.5}");
+        assert!((below / above).ln().abs() < 0.5 && below > 0.05 * in_phase[99], "{away}: {below} {above}");
+    }
+}
+
 /// Orders of a damaged sun or planet tooth are where the tooth counts say, and a ring tooth adds no order to those of the sound set.
 #[test]
 fn damaged_teeth_sound_at_their_orders() {
@@ -631,6 +685,14 @@ fn sets_that_do_not_fit_are_refused() {
     assert!(crowded.contains("run into one another"));
     let errors = refused(&[("planets = 4", "planets = 4\npin = { error_um = [1.0] }")]);
     assert!(errors.contains("planetary.pin.error_um"));
+    let bearing =
+        |key: &str| format!("[[bearing]]\nshaft = \"p.planet1\"\nkind = \"roller\"\n{key}\n\n[operation]");
+    for (key, value) in
+        [("damping_ratio", "0.2"), ("seat", "{ mass_kg = 2.0 }"), ("tilt_stiffness_nm_per_rad", "1.0")]
+    {
+        let text = refused(&[("[operation]", &bearing(&format!("{key} = {value}")))]);
+        assert!(text.contains(key) && text.contains("has no effect on the bearing of a planet"), "{text}");
+    }
     let sensor = refused(&[("ring:p:90", "ring:q:90")]);
     assert!(sensor.contains("sensor.at") && sensor.contains("ring:p:90"));
     let direction = refused(&[("ring:p:90\"", "output:0\"\ndirection = \"radial\"")]);

@@ -156,6 +156,50 @@ fn simulated_cracks_show_on_their_wheels() {
     assert!((1..=4).all(|planet| (rise(planet) - 1.0).abs() < 0.1));
 }
 
+/// The force of a mesh pushes the ring along its circumference for the most part. On a stiff ring a sensor that measures outwards hears a planet loudest
+/// where it stands beside the sensor, and so its knock in the average of another one; a tangential sensor hears it as it passes, and names it.
+#[test]
+fn a_tangential_sensor_names_the_damaged_planet_of_a_stiff_ring() {
+    let mut toml = RIG_A.to_owned();
+    for (written, other) in [
+        (
+            "teeth = { sun = 19, planet = 31, ring = 81 }\nplanets = 4",
+            "teeth = { sun = 20, planet = 25, ring = 70 }\nplanets = 3",
+        ),
+        ("damping_ratio = 0.06\nfriction = 0.0\nrandom_force = 0.0\n", "iso_class = 5\n"),
+        ("thickness_mm = 12.0", "thickness_mm = 30.0"),
+        ("coupling_stiffness_nm_per_rad = 1.0\ndamping_ratio = 0.02\n", ""),
+        ("brake_inertia_kgm2 = 1000.0\n", ""),
+        ("sampling_rate_hz = 161120.0\nduration_s = 5.0", "sampling_rate_hz = 60000.0\nduration_s = 2.5"),
+        (
+            "at = \"ring:p:90\"",
+            "at = \"ring:p:90\"\ndirection = \"tangential\"\n\n[[sensor]]\nat = \"ring:p:90\"",
+        ),
+    ] {
+        assert!(toml.contains(written), "{written}");
+        toml = toml.replace(written, other);
+    }
+    for planet in 1..=3 {
+        let fault = format!(
+            "[[fault]]\nkind = \"tooth-breakage\"\nwheel = \"p.planet{planet}\"\ntooth = 6\nseverity = 0.7\n"
+        );
+        let scenario = Scenario::from_toml(&format!("{toml}\n{fault}")).unwrap();
+        let channels = simulate(scenario.clone()).unwrap().channels;
+        let kurtosis = |channel: &str| -> Vec<f64> {
+            let train = GearTrain::of_scenario(&scenario).unwrap().at_sensor(&scenario, channel);
+            let turning = TrainTurning::of_simulated(&scenario, channels.start_s, channels.len()).unwrap();
+            let (signal, sampling_rate_hz) = (&channels[channel], channels.sampling_rate_hz);
+            let recording = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
+            let wheels = recording.process(&TrainSettings::default()).unwrap().wheels;
+            wheels[1..=3].iter().map(|of| of.records[0].indicators.difference.kurtosis.unwrap()).collect()
+        };
+        let [tangential, radial] = ["ring_p_90_tangential_g", "ring_p_90_radial_g"].map(kurtosis);
+        println!("planet {planet}: tangential {tangential:.2?}, radial {radial:.2?}");
+        let loudest = (0..3).max_by(|a, b| tangential[*a].total_cmp(&tangential[*b])).unwrap();
+        assert_eq!(loudest + 1, planet);
+    }
+}
+
 /// With fewer revolutions than bring every tooth before the sensor, the error says how many are needed, and that no number is enough where tooth
 /// counts have a common factor.
 #[test]

@@ -366,7 +366,7 @@ impl GearboxMachine {
                 .chain(sets().flat_map(|(set, of)| set.lines(of, coordinates)))
                 .collect(),
             bearings: this.rolling_bearings(parts, coordinates),
-            turning_forces: this.turning_forces(parts, coordinates),
+            turning_forces: this.turning_forces(parts, &mass),
             drives: this.drives(parts, brake, &mass),
             mass,
             ..this.machine
@@ -484,7 +484,8 @@ impl GearboxMachine {
 
     /// The forces of unbalances and of bent shafts. A bent shaft resists being straightened: it pushes with `K u₀`, its stiffness times its
     /// shape without a load.
-    fn turning_forces(&self, parts: &GearboxParts, coordinates: usize) -> Vec<TurningForce> {
+    fn turning_forces(&self, parts: &GearboxParts, mass: &DMatrix<f64>) -> Vec<TurningForce> {
+        let coordinates = mass.nrows();
         let of_unbalance = |of: &PlacedUnbalance| {
             let motion = self.between_nodes(of.shaft, of.at);
             let [x, y] = [0, 1].map(|axis| {
@@ -520,8 +521,7 @@ impl GearboxMachine {
             TurningForce::new(parts.speed_ratios[number], false, forces, shaft.bow.angle_deg)
         };
         let bent = (0..parts.shafts.len()).filter(|&number| parts.shafts[number].0.bow.middle_um > 0.0);
-        let of_pins =
-            self.sets.iter().zip(parts.sets).filter_map(|(set, of)| set.pin_errors(of, coordinates));
+        let of_pins = self.sets.iter().zip(parts.sets).filter_map(|(set, of)| set.pin_errors(of, mass));
         parts.unbalances.iter().map(of_unbalance).chain(bent.map(of_bow)).chain(of_pins).collect()
     }
 

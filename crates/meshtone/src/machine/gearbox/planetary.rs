@@ -11,9 +11,9 @@
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
-use super::{Assembly, TurningForce};
+use super::{Assembly, TurningForce, limited_stiffness};
 use crate::machine::WheelBody;
 use crate::machine::parts::{AcrossLine, LineOfAction};
 
@@ -277,22 +277,26 @@ impl SetCoordinates {
         parts.rolling_n_per_m.iter().map(of_planet).collect()
     }
 
-    /// The constant forces of pins that stand off their places: each presses its planet and its carrier with its stiffness times the error.
+    /// The constant forces of pins that stand off their places: each presses its planet and its carrier with the stiffness that it has in the machine
+    /// times the error.
     ///
     /// # Arguments
     /// * `parts` - of the set
-    /// * `coordinates` - number of coordinates of the machine
-    pub(super) fn pin_errors(&self, parts: &SetParts, coordinates: usize) -> Option<TurningForce> {
-        let mut force = DVector::zeros(coordinates);
+    /// * `mass` - of the machine
+    pub(super) fn pin_errors(&self, parts: &SetParts, mass: &DMatrix<f64>) -> Option<TurningForce> {
+        let mut force = DVector::zeros(mass.nrows());
         for (planet, (stretch, error_m)) in self.pins(parts).iter().zip(&parts.pin_errors_m).enumerate() {
-            for (stretch, spring) in stretch.iter().zip(parts.pin_n_per_m(planet)) {
+            let [[radial, mixed], [_, tangential]] = parts.pin_n_per_m(planet);
+            let [radial, tangential] = [(0, radial), (1, tangential)]
+                .map(|(n, spring)| limited_stiffness(mass, &stretch[n], spring));
+            for (stretch, spring) in stretch.iter().zip([[radial, mixed], [mixed, tangential]]) {
                 let pushed_n: f64 =
                     spring.iter().zip(error_m).map(|(spring, error_m)| spring * error_m).sum();
                 stretch.iter().for_each(|&(n, weight)| force[n] += weight * pushed_n);
             }
         }
         let is_some = force.iter().any(|value| *value != 0.0);
-        is_some.then(|| TurningForce::new(0.0, false, [force, DVector::zeros(coordinates)], 0.0))
+        is_some.then(|| TurningForce::new(0.0, false, [force, DVector::zeros(mass.nrows())], 0.0))
     }
 
     /// Motion of the rigid set per unit of the input's rotation.
