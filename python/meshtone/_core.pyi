@@ -383,7 +383,8 @@ def estimate_path(
 def dataset_template() -> str: ...
 def check_plan(plan: _Path) -> None: ...
 def generate_dataset(
-    plan: _Path,
+    plan: _Path | dict[str, Any],
+    records: int | None,
     to: str,
     jobs: int | None,
     part: int,

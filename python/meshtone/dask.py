@@ -19,7 +19,7 @@ __all__ = ["generate"]
 
 def _part(plan: str, path: str, number: int, of: int) -> int:
     """One part of a data set, with one thread: the cluster runs as many parts at a time as it has threads."""
-    _core.generate_dataset(plan, path, 1, number, of, None)
+    _core.generate_dataset(plan, None, path, 1, number, of, None)
     return number
 
 

@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     import pyarrow
     import pyarrow.dataset
     import pyarrow.fs
+    import xarray
 
     from ._like import Channels
     from ._torch import TorchDataset
@@ -116,9 +117,10 @@ def dataset_template() -> str:
 
 
 def generate_dataset(
-    plan: str | PathLike[str],
+    plan: str | PathLike[str] | dict[str, Any],
     path: str | PathLike[str],
     *,
+    records: int | None = None,
     jobs: int | None = None,
     part: tuple[int, int] | None = None,
     progress: bool | Callable[[int, int], None] = False,
@@ -130,10 +132,12 @@ def generate_dataset(
 
     Parameters
     ----------
-    plan : str or path
-        The plan file.
+    plan : str, path or dict
+        The plan file; or what stands in one, whose names of files are then relative to the working directory.
     path : str or path
         Directory to write to, or the URL of an object store where the compiled module was built with those.
+    records : int, optional
+        How many, in place of the plan's number.
     jobs : int, optional
         Threads that simulate; all cores by default.
     part : tuple of int, optional
@@ -166,7 +170,8 @@ def generate_dataset(
     report = _progress.shown("records") if progress is True else (progress or None)
     number, of = (1, 1) if part is None else _part(part)
     threads = None if jobs is None else whole("jobs", jobs, 1)
-    remade, doubts = _core.generate_dataset(plan, fspath(path), threads, number, of, report)
+    count = None if records is None else whole("records", records, 1)
+    remade, doubts = _core.generate_dataset(plan, count, fspath(path), threads, number, of, report)
     warn(doubts)
     if remade:
         file, reason = remade[0]
@@ -637,25 +642,28 @@ class Dataset:
             f"Dataset of {len(self)} records{state}", _display.table([("", *splits), *counts]), _display.table(facts)
         )
 
-    def filter(self, expression: pyarrow.dataset.Expression) -> Dataset:
-        """The records for which an expression holds; nothing is read before it is asked for.
+    def filter(self, expression: pyarrow.dataset.Expression | Callable[[dict[str, Any]], bool]) -> Dataset:
+        """The records for which an expression or a function holds; the signals are not read before they are asked for.
 
         Parameters
         ----------
-        expression : pyarrow.dataset.Expression
-            ``pyarrow.dataset.field("pinion_speed_hz") > 30``. :meth:`take` takes records that a function of Python chose.
+        expression : pyarrow.dataset.Expression or callable
+            ``pyarrow.dataset.field("pinion_speed_hz") > 30``, of which nothing is read either, or a function of the values of a record
+            without its signals, ``lambda record: record["pinion_speed_hz"] > 30``.
 
         Raises
         ------
         TypeError
-            Something else, such as a function.
+            Something else.
         """
         import pyarrow.dataset
 
+        if callable(expression):
+            chosen = [record["record"] for record in self.records(self.scalar_columns) if expression(record)]
+            expression = pyarrow.dataset.field("record").isin(pyarrow.array(chosen, self._native.schema.field("record").type))
         if not isinstance(expression, pyarrow.dataset.Expression):
             raise TypeError(
-                f"expression = {expression!r}: must be one of pyarrow, such as pyarrow.dataset.field('pinion_speed_hz') > 30; "
-                "take(numpy.flatnonzero(dataset['pinion_speed_hz'] > 30)) does without one"
+                f"expression = {expression!r}: must be one of pyarrow, such as pyarrow.dataset.field('pinion_speed_hz') > 30, or a function"
             )
         both = expression if self._filter is None else self._filter & expression
         return Dataset(self.place, self._native, both, self._empty)
@@ -739,6 +747,29 @@ class Dataset:
         with extra("polars"):
             import polars
         return polars.DataFrame(self.to_arrow(self._value_columns() if columns is None else columns))
+
+    def to_xarray(self, signals: Sequence[str] = (), *, points: int | None = None) -> xarray.Dataset:
+        """The records as xarray has them, over ``record``.
+
+        Needs xarray and pandas: ``pip install 'meshtone[xarray]'``.
+
+        Parameters
+        ----------
+        signals : sequence of str, optional
+            Signals that are added, over ``record`` and ``sample``.
+        points : int, optional
+            Their length, as of :meth:`arrays`.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            xarray or pandas is not installed.
+        ValueError
+            As :meth:`arrays`.
+        """
+        with extra("xarray"):
+            table: xarray.Dataset = self.to_pandas().set_index("record").to_xarray()
+        return table.assign({name: (("record", "sample"), self.arrays(name, points=points)[0][:, 0]) for name in signals})
 
     @property
     def scalar_columns(self) -> list[str]:

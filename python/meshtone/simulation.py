@@ -24,6 +24,7 @@ from .signal.train import TrainRecord, train_record
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -360,6 +361,19 @@ class Simulation:
         with extra("tables"):
             import pandas
         return pandas.DataFrame(self.channels, index=pandas.Index(self.time_s, name="time_s"))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """All signals as xarray has them, over ``time_s``.
+
+        Needs xarray and pandas: ``pip install 'meshtone[xarray]'``.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            xarray or pandas is not installed.
+        """
+        with extra("xarray"):
+            return self.to_pandas().to_xarray()
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the signals; the file's ending says the format. :func:`read_recording` reads all of them.
@@ -791,6 +805,12 @@ class Signals(_Channels):
     def __post_init__(self) -> None:
         for signal in self.channels.values():
             signal.flags.writeable = False
+
+    def __getitem__(self, channel: str) -> npt.NDArray[np.float32]:
+        """The signal of a name."""
+        if channel not in self.channels:
+            raise KeyError(f"there is no channel {channel!r}; there are {', '.join(self.channels)}")
+        return self.channels[channel]
 
     def at_rate(self, target_rate_hz: float) -> Signals:
         """The same signals at exactly this sampling rate, by a polyphase filter that keeps what lies below half of it.

@@ -31,10 +31,33 @@ fn front_matter(set: &Finished) -> String {
     };
     let splits = set.plan.content.splits.names_in(&units_of_split);
     format!(
-        "---\nlicense: {licence}\npretty_name: {}\ntags: [vibration, gears, condition-monitoring, simulation]\nconfigs:\n- config_name: default\n  data_files:\n{}---\n\n",
+        "---\nlicense: {licence}\npretty_name: {}\ntags: [vibration, gears, condition-monitoring, simulation]\nconfigs:\n- config_name: default\n  data_files:\n{}dataset_info:\n  features:\n{}---\n\n",
         json!(about.title),
-        splits.into_iter().map(files_of).collect::<String>()
+        splits.into_iter().map(files_of).collect::<String>(),
+        set.columns.iter().map(|column| feature(set, column)).collect::<String>()
     )
+}
+
+/// Writes a column as `datasets` reads it: labels as classes, whose numbers are those of Python's `to_torch`.
+fn feature(set: &Finished, column: &Column) -> String {
+    let kind = match column.cell_type {
+        _ if column.name == "label" => {
+            let mut labels: Vec<&str> = set.plan.content.classes.iter().map(|class| &*class.label).collect();
+            labels.sort_unstable();
+            labels.dedup();
+            let name = |(number, label)| format!("\n          '{number}': {}", json!(label));
+            format!(
+                "dtype:\n      class_label:\n        names:{}",
+                labels.into_iter().enumerate().map(name).collect::<String>()
+            )
+        }
+        CellType::Int32 => "dtype: int32".to_owned(),
+        CellType::Int64 => "dtype: int64".to_owned(),
+        CellType::Float64 => "dtype: float64".to_owned(),
+        CellType::Text => "dtype: string".to_owned(),
+        CellType::Float32List => "sequence: float32".to_owned(),
+    };
+    format!("  - name: {}\n    {kind}\n", column.name)
 }
 
 fn head(set: &Finished) -> String {
@@ -209,12 +232,13 @@ fn questions(set: &Finished) -> String {
 
 /// Says in words how a damage grows.
 fn grows(growth: &Growth) -> String {
-    let Growth { law, start, failure, censored, life_rev, .. } = growth;
+    let Growth { law, start, failure, censored, life_rev, over } = growth;
     let name = law.name();
     format!(
         ", which grows by the law `{name}` from severity {start} to failure at {failure} after a life, `{}`, that each run draws; a run \
-         is stopped before with a probability of {censored}",
-        life_rev.name()
+         is stopped before with a probability of {censored}; its records are spread evenly over the {}",
+        life_rev.name(),
+        over.name()
     )
 }
 

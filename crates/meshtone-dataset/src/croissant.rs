@@ -18,7 +18,11 @@ const SIMULATED: &str = concat!("simulated with Meshtone ", env!("CARGO_PKG_VERS
 
 /// How a data set is to be cited.
 pub(crate) fn citation(about: &About) -> String {
-    let by_title = || format!("{}, version {}, {SIMULATED}", about.title, about.version);
+    let by_title = || {
+        let creator = about.creator.as_ref().map(|name| format!("{name}: ")).unwrap_or_default();
+        let doi = about.doi.as_ref().map(|doi| format!(", https://doi.org/{doi}")).unwrap_or_default();
+        format!("{creator}{}, version {}, {SIMULATED}{doi}", about.title, about.version)
+    };
     about.citation.clone().unwrap_or_else(by_title)
 }
 
@@ -47,8 +51,13 @@ pub(crate) fn metadata(set: &Finished, documents: &[Document]) -> String {
         "distribution": distribution(shards, documents),
         "recordSet": [of_splits(&splits), of_records(columns)],
     });
-    if let Some(day) = &about.published {
-        metadata["datePublished"] = json!(day);
+    let creator = about.creator.as_ref().map(|name| json!({ "@type": "sc:Organization", "name": name }));
+    let doi = about.doi.as_ref().map(|doi| json!(format!("https://doi.org/{doi}")));
+    let [day, url] = [&about.published, &about.url].map(|text| text.as_ref().map(|text| json!(text)));
+    for (key, value) in [("datePublished", day), ("creator", creator), ("url", url), ("sameAs", doi)] {
+        if let Some(value) = value {
+            metadata[key] = value;
+        }
     }
     format!("{metadata:#}\n")
 }

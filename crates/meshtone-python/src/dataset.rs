@@ -13,7 +13,7 @@ use meshtone_dataset::{DatasetError, rows_like as rows_like_of};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::array::{Signal, samples};
 use crate::error::{os_error, read_error, value_error, with_help};
@@ -21,6 +21,7 @@ use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
 use crate::process::{TypedWarning, typed};
 use crate::scenario::Scenario;
+use crate::value::table;
 
 /// The commented plan.
 #[pyfunction]
@@ -41,7 +42,8 @@ type Made = (Vec<(String, String)>, Vec<String>);
 #[pyfunction]
 pub fn generate_dataset(
     py: Python<'_>,
-    plan: PathBuf,
+    plan: &Bound<'_, PyAny>,
+    records: Option<u32>,
     to: &str,
     jobs: Option<usize>,
     part: u64,
@@ -54,7 +56,7 @@ pub fn generate_dataset(
     if jobs == Some(0) {
         return Err(value_error("jobs = 0: must be at least 1"));
     }
-    let read = py.detach(|| Plan::read(&plan)).map_err(|error| read_error(&plan, &error))?;
+    let read = plan_of(py, plan, records)?;
     let doubts = read.warnings();
     let to = destination(to)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.unwrap_or(0)).build();
@@ -65,6 +67,26 @@ pub fn generate_dataset(
     })?;
     let remade = generated.map_err(dataset_error)?.remade.into_iter();
     Ok((remade.map(|remade| (remade.file, remade.reason)).collect(), doubts))
+}
+
+/// Reads a plan: a file, or a dictionary, of which the names of files are relative to the working directory.
+///
+/// # Arguments
+/// * `records` - instead of the plan's number
+fn plan_of(py: Python<'_>, plan: &Bound<'_, PyAny>, records: Option<u32>) -> PyResult<Plan> {
+    let dictionary = plan.cast::<PyDict>().ok();
+    let path = if dictionary.is_some() { PathBuf::from("plan.toml") } else { plan.extract()? };
+    let mut table = dictionary.map(table).transpose()?;
+    if let Some(records) = records {
+        // What cannot be read or is no TOML is reported below.
+        table = table.or_else(|| std::fs::read_to_string(&path).ok()?.parse().ok());
+        table.as_mut().and_then(|table| table.insert("records".to_owned(), i64::from(records).into()));
+    }
+    let read = py.detach(|| match table {
+        Some(table) => Plan::read_text(table.to_string(), &path),
+        None => Plan::read(&path),
+    });
+    read.map_err(|error| read_error(&path, &error))
 }
 
 /// Puts parts together.

@@ -23,6 +23,18 @@ pub enum Law {
     },
 }
 
+/// What the records of a run are spread over evenly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SpreadOver {
+    /// Its age, as where a machine is looked at once a week.
+    #[default]
+    Age,
+    /// The severity, so that as many records have a large damage as a small one, however fast it grows at the end.
+    Severity,
+}
+
+meshtone_toml::named!(SpreadOver { Age = "age", Severity = "severity" });
+
 /// The growth of the damage of a class's units to failure. All records of a unit in such a class are of one run, in one mounting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Growth {
@@ -36,6 +48,8 @@ pub struct Growth {
     pub life_rev: Distribution,
     /// (-) Part of the runs that are stopped before failure, at any part of their life from a fifth on.
     pub censored: f64,
+    /// What the records are spread over.
+    pub over: SpreadOver,
 }
 
 /// The position of a record in the run to failure of its unit.
@@ -84,7 +98,7 @@ impl Growth {
     /// use meshtone_dataset::plan::{Distribution, Growth, Law};
     ///
     /// let life_rev = Distribution::Fixed(1e6);
-    /// let crack = Growth { law: Law::Paris { exponent: 2.0 }, start: 0.01, failure: 1.0, life_rev, censored: 0.0 };
+    /// let crack = Growth { law: Law::Paris { exponent: 2.0 }, start: 0.01, failure: 1.0, life_rev, censored: 0.0, over: Default::default() };
     /// assert_eq!((crack.severity_at(0.0, 1), crack.severity_at(1.0, 1)), (0.01, 1.0));
     /// assert!((crack.severity_at(0.5, 1) - 0.1).abs() < 1e-12); // exponential growth
     /// ```
@@ -110,7 +124,7 @@ impl Growth {
     }
 
     /// Computes where a record is in the run of its unit: runs are looked at as often as they have records, once in each of as many equal
-    /// parts of the time that they are observed.
+    /// parts of the time that they are observed, or of the severity that they reach in it.
     ///
     /// # Arguments
     /// * `seed` - of the run
@@ -123,13 +137,33 @@ impl Growth {
         let is_censored = stopped < self.censored;
         let observed = if is_censored { EARLIEST_END + (1.0 - EARLIEST_END) * end } else { 1.0 };
         let within = Draws::new(seed, Purpose::DatasetInspection, place).uniform(0.5, 0.5);
-        let part = observed * (place as f64 + within) / records.max(1) as f64;
+        let spread = (place as f64 + within) / records.max(1) as f64;
+        let part = match self.over {
+            SpreadOver::Age => observed * spread,
+            SpreadOver::Severity => {
+                let reached = self.severity_at(observed, seed) - self.start;
+                self.part_at(self.start + spread * reached, observed, seed)
+            }
+        };
         RunPosition {
             age_rev: part * life_rev,
             remaining_rev: (observed - part) * life_rev,
             is_censored,
             severity: self.severity_at(part, seed),
         }
+    }
+}
+
+impl Growth {
+    /// (-) Part of the life, at most `latest`, at which a severity is reached: by bisection, because pits grow in steps.
+    fn part_at(&self, severity: f64, latest: f64, seed: u64) -> f64 {
+        let [mut before, mut after] = [0.0, latest];
+        for _ in 0..53 {
+            let middle = 0.5 * (before + after);
+            let side = if self.severity_at(middle, seed) < severity { &mut before } else { &mut after };
+            *side = middle;
+        }
+        after
     }
 }
 
@@ -144,6 +178,7 @@ mod tests {
             failure: 0.9,
             life_rev: Distribution::LogUniform([1e5, 1e7]),
             censored: 0.3,
+            over: SpreadOver::Age,
         }
     }
 
@@ -190,5 +225,17 @@ mod tests {
             censored += u32::from(ages[0].is_censored);
         }
         assert!((250..350).contains(&censored), "{censored}");
+    }
+
+    #[test]
+    fn records_over_the_severity_are_in_equal_parts_of_it() {
+        for law in [Law::Paris { exponent: 3.0 }, Law::Pits { count: 1000, exponent: 2.0 }] {
+            let run = Growth { over: SpreadOver::Severity, censored: 0.0, ..growth(law) };
+            for place in 0..10 {
+                let severity = run.age(7, place, 10).severity;
+                let part = 10.0 * (severity - 0.02) / 0.88 - place as f64;
+                assert!((-1e-9..1.02).contains(&part), "{law:?}: {severity} of record {place}");
+            }
+        }
     }
 }

@@ -27,7 +27,7 @@ pub(crate) use class::kinds;
 pub use class::{Class, Severity};
 pub use fault::ClassFault;
 pub(crate) use fault::{FaultPlace, FaultyBase, with_faults};
-pub use growth::{Growth, Law, RunPosition};
+pub use growth::{Growth, Law, RunPosition, SpreadOver};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
@@ -87,13 +87,16 @@ impl PlanFile {
     pub const NAMES: [&'static str; 4] = ["plan.toml", "scenario.toml", "tuned.toml", "background.csv"];
 
     /// Keys of a plan that change no record: what the data card states, and the names of files, which count by their texts.
-    const BESIDE_CONTENT: [&'static str; 10] = [
+    const BESIDE_CONTENT: [&'static str; 13] = [
         "title",
         "description",
         "licence",
         "version",
         "published",
         "citation",
+        "creator",
+        "url",
+        "doi",
         "questions",
         "scenario",
         "tuned",
@@ -126,6 +129,12 @@ pub struct About {
     pub published: Option<String>,
     /// How it is to be cited; none to cite it by its title.
     pub citation: Option<String>,
+    /// Who made it.
+    pub creator: Option<String>,
+    /// Where it is found.
+    pub url: Option<String>,
+    /// Its digital object identifier, as `10.5281/zenodo.1234567`.
+    pub doi: Option<String>,
     /// The questions that it asks about a record.
     pub questions: Vec<Question>,
 }

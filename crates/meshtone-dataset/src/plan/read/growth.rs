@@ -2,7 +2,7 @@
 
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use super::super::{ClassFault, Distribution, Growth, Law};
+use super::super::{ClassFault, Distribution, Growth, Law, SpreadOver};
 use super::rule::distribution;
 use super::{fraction, number_where};
 
@@ -12,7 +12,7 @@ const PITS_EXPONENT: f64 = 2.0;
 const PITS: u32 = 40;
 const LARGEST_EXPONENT: f64 = 10.0;
 /// The keys of all laws.
-const KEYS: [&str; 7] = ["law", "exponent", "count", "start", "failure", "life_rev", "censored"];
+const KEYS: [&str; 8] = ["law", "exponent", "count", "start", "failure", "life_rev", "censored", "over"];
 
 pub(super) fn read(value: &TomlValue<'_>, faults: &[ClassFault]) -> ReadResult<Growth> {
     let [fault] = faults else {
@@ -71,5 +71,6 @@ fn growth(table: &TomlTable<'_>, fault: &ClassFault) -> ReadResult<Growth> {
         return Err(life.error("must be more than 0 revolutions"));
     }
     let censored = part("censored")?.unwrap_or(0.0);
-    Ok(Growth { law, start, failure, life_rev, censored })
+    let over = table.read_optional("over", |value| value.choice(&SpreadOver::NAMES))?.unwrap_or_default();
+    Ok(Growth { law, start, failure, life_rev, censored, over })
 }

@@ -113,13 +113,19 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     let text = |key, default: &str| -> ReadResult<String> {
         Ok(root.read_optional(key, TomlValue::string)?.unwrap_or(default).to_owned())
     };
+    let if_stated = |key| -> ReadResult<Option<String>> {
+        Ok(root.read_optional(key, TomlValue::string)?.map(str::to_owned))
+    };
     let about = About {
         title: text("title", "Spur gear vibration")?,
         description: text("description", "")?,
         licence: text("licence", LICENCE)?,
         version: root.read_optional("version", version)?.unwrap_or(VERSION).to_owned(),
         published: root.read_optional("published", date)?.map(str::to_owned),
-        citation: root.read_optional("citation", TomlValue::string)?.map(str::to_owned),
+        citation: if_stated("citation")?,
+        creator: if_stated("creator")?,
+        url: if_stated("url")?,
+        doi: if_stated("doi")?,
         questions: Vec::new(),
     };
     let seed = root.read_optional("seed", |value| value.integer(0..=u64::MAX))?;

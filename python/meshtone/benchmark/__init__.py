@@ -1,0 +1,346 @@
+"""A suite of tasks for methods of gear diagnosis: frozen plans, one evaluator, one table.
+
+A :class:`Task` says which records of which data set a method may learn from, and which it is scored on. :func:`open_task` makes the data
+set, or opens it; :func:`evaluate` scores what a method answers; :func:`compare` puts submissions side by side. What is asked and what
+simple methods score: the book's chapter "Data sets". It needs pyarrow: ``pip install 'meshtone[datasets]'``; the baselines need scikit-learn.
+
+Examples
+--------
+::
+
+    from meshtone import benchmark
+
+    posed = benchmark.open_task("diagnosis", "sets")                       # makes sets/pairs-1, or opens it
+    train, test = posed.records("train"), posed.records()
+    model.fit(train.matrix(columns), posed.kinds("train"))
+    answers = {"record": test["record"], **dict(zip(model.classes_, model.predict_proba(test.matrix(columns)).T))}
+    scores = benchmark.evaluate(posed, answers)
+    print(benchmark.compare("diagnosis", {"mine": scores, **benchmark.BASELINES["diagnosis"]}))
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .._names import hint
+from .._published import PUBLISHED
+from .._warnings import warn
+from ..datasets import Dataset, generate_dataset
+from ._measures import interval, measures_of_kinds, measures_of_lives
+
+__all__ = ["BASELINES", "SETS", "TASKS", "Posed", "Scores", "Task", "compare", "evaluate", "open_task"]
+
+Texts = npt.NDArray[np.str_]
+Numbers = npt.NDArray[np.float64]
+Columns = Mapping[str, npt.NDArray[Any]]
+
+Scores = dict[str, dict[str, list[float]]]
+"""Of each split and measure the value and the ends of its 90 % interval over units."""
+
+FOLDER = Path(__file__).parent
+
+SETS = {file.stem: file for file in sorted(FOLDER.glob("*.toml"))}
+"""The frozen plans by the names of their data sets."""
+
+BASELINES: dict[str, dict[str, Scores]] = json.loads((FOLDER / "scores.json").read_text("utf-8"))
+"""The scores of the baselines, by task and name."""
+
+RUN_UP = "run-up"
+"""Label of records that are known to be healthy, also of a hidden rig."""
+
+
+Roles = dict[str, npt.NDArray[np.bool_]]
+"""Which records a method learns from, "train", and which each other split has; a record may be in several."""
+
+
+def _as_split(columns: Columns) -> Roles:
+    return {str(split): columns["split"] == split for split in np.unique(columns["split"].astype(str)) if split != "validation"}
+
+
+def _healthy_alone(columns: Columns) -> Roles:
+    roles = _as_split(columns)
+    return {**roles, "train": roles["train"] & (columns["label"] == "healthy")}
+
+
+def _few(of_each_class: int, columns: Columns) -> Roles:
+    """The first of a permutation of each class, so that more labels contain the fewer."""
+    roles, order = _as_split(columns), np.random.default_rng(0).permutation(len(columns["label"]))
+    first = np.zeros(len(order), dtype=bool)
+    for label in np.unique(columns["label"]):
+        first[order[(roles["train"] & (columns["label"] == label))[order]][:of_each_class]] = True
+    return {**roles, "train": first}
+
+
+def _other_rigs(columns: Columns) -> Roles:
+    roles = _as_split(columns)
+    return {**roles, "test": roles["test"] & (columns["label"] != RUN_UP)}
+
+
+def _specimens(by_specimen: bool, columns: Columns) -> Roles:
+    """Of each unit one class alone, as where each specimen carries its own fault; a third of the specimens, or of the records, is the test."""
+    draws = np.random.default_rng(0)
+    classes, units = np.unique(columns["label"]), np.unique(columns["unit"])
+    number = draws.permutation(len(units))[np.searchsorted(units, columns["unit"])]
+    third = number // len(classes) % 3 if by_specimen else draws.integers(3, size=len(number))
+    carried = columns["label"] == classes[number % len(classes)]
+    return {"train": carried & (third > 0), "test": carried & (third == 0)}
+
+
+def _laws(drawn: float, columns: Columns) -> Roles:
+    """Each law of damage beside the healthy records; `drawn` is the part of the pits to learn from that are drawn."""
+    labels, split = columns["label"].astype(str), columns["split"]
+    is_base, at = np.char.find(labels, "/") < 0, np.random.default_rng(0).random(len(labels))
+    learnt = np.where(labels == "pits", at >= drawn, np.where(labels == "pits/drawn", at < drawn, is_base))
+    roles = {"train": (split == "train") & learnt, "test": (split == "test") & is_base, "fillet": (split == "fillet") & is_base}
+    for label in np.unique(labels[~is_base]):
+        for law in (label.partition("/")[0], label):
+            roles[str(law)] = (split == "test") & np.isin(labels, ["healthy", law])
+    return roles
+
+
+@dataclass(frozen=True)
+class Task:
+    """A question that is posed of a data set.
+
+    Attributes
+    ----------
+    name : str
+        Its name in :data:`TASKS`.
+    set : str
+        The data set, one of :data:`SETS`.
+    question : str
+        In words.
+    measure : str
+        The measure that ranks: "recall", "auc", or "of_constant", of which less is better.
+    roles : callable
+        From columns to the records to learn from, "train", and those of each split that is scored.
+    """
+
+    name: str
+    set: str
+    question: str
+    measure: str
+    roles: Callable[[Columns], Roles]
+
+
+TASKS = {
+    task.name: task
+    for task in [
+        Task("diagnosis", "pairs-1", "healthy, or which of five kinds of damage, and how severe?", "recall", _as_split),
+        Task("anomaly", "pairs-1", "damaged or not, learnt from healthy records alone?", "auc", _healthy_alone),
+        Task("few-5", "pairs-1", "as diagnosis, from 5 labelled records of each class?", "recall", partial(_few, 5)),
+        Task("few-20", "pairs-1", "as diagnosis, from 20 labelled records of each class?", "recall", partial(_few, 20)),
+        Task("few-100", "pairs-1", "as diagnosis, from 100 labelled records of each class?", "recall", partial(_few, 100)),
+        Task("rigs", "rigs-1", "which damage, on eight other rigs whose healthy run-up is known?", "recall", _other_rigs),
+        Task("specimens-random", "pairs-1", "one fault a specimen, scored on other records of the same specimens", "recall", partial(_specimens, False)),
+        Task("specimens", "pairs-1", "one fault a specimen, scored on other specimens", "recall", partial(_specimens, True)),
+        Task("bearings", "gearbox-1", "which bearing race or tooth of a gearbox is damaged?", "recall", _as_split),
+        Task("life", "lives-1", "which part of its life does a damaged gear have left?", "of_constant", _as_split),
+        Task("laws", "laws-1", "which damage, where it obeys another law than what was learnt?", "recall", partial(_laws, 0.0)),
+        Task("laws-drawn", "laws-1", "the same, where half of the pits to learn from are drawn?", "recall", partial(_laws, 0.5)),
+    ]
+}
+"""The tasks by their names."""
+
+
+class Posed:
+    """A task and its data set. :func:`open_task` makes one.
+
+    Attributes
+    ----------
+    task : Task
+        The question.
+    dataset : Dataset
+        All records, also those that the task does not use.
+    splits : list of str
+        The splits that are scored.
+    """
+
+    def __init__(self, task: Task, dataset: Dataset) -> None:
+        self.task, self.dataset = task, dataset
+        self._columns = {name: dataset.column(name) for name in ("record", "unit", "split", "label")}
+        self._roles = task.roles(self._columns)
+        self.splits = [role for role in self._roles if role != "train"]
+
+    def records(self, *roles: str) -> Dataset:
+        """Records by their roles, in the order of :attr:`dataset`.
+
+        Parameters
+        ----------
+        *roles : str
+            'train', or splits; none: all that are scored.
+
+        Raises
+        ------
+        ValueError
+            A role that there is not.
+        """
+        import pyarrow
+        import pyarrow.dataset
+
+        numbers = pyarrow.array(self._columns["record"][self._places(*roles)])
+        return self.dataset.filter(pyarrow.dataset.field("record").isin(numbers))
+
+    def kinds(self, *roles: str) -> Texts:
+        """What is to be said of each of these records: its class, without what tells laws of damage and run-ups apart."""
+        labels = self._columns["label"][self._places(*roles)].astype(str)
+        return np.where(labels == RUN_UP, "healthy", np.char.partition(labels, "/")[..., 0]).astype(str)
+
+    def severities(self, *roles: str) -> Numbers:
+        """Severity of the first damage of each of these records, 0 of a healthy one."""
+        return np.nan_to_num(self.dataset.matrix(["fault_severity"])[self._places(*roles), 0])
+
+    def left(self, *roles: str) -> Numbers:
+        """Part of its life that the damaged wheel of each of these records has left, from 1 to 0."""
+        age, remaining = self.dataset.matrix(["age_rev", "remaining_rev"])[self._places(*roles)].T
+        return np.asarray(remaining / (age + remaining), dtype=np.float64)
+
+    def units(self, *roles: str) -> npt.NDArray[Any]:
+        """Unit of each of these records."""
+        return self._columns["unit"][self._places(*roles)]
+
+    def _places(self, *roles: str) -> npt.NDArray[np.bool_]:
+        known = ["train", *self.splits]
+        if other := [role for role in roles if role not in known]:
+            raise ValueError(f"there is no split '{other[0]}', but {', '.join(known)}")
+        chosen: npt.NDArray[np.bool_] = np.any([self._roles[role] for role in roles or self.splits], axis=0)
+        return chosen
+
+
+def open_task(name: str, folder: str | PathLike[str], *, plan: str | PathLike[str] | None = None, jobs: int | None = None) -> Posed:
+    """Make a task's data set, or go on with it, or open it.
+
+    Parameters
+    ----------
+    name : str
+        One of :data:`TASKS`.
+    folder : str or path
+        Where the data sets are: this one in a folder of its name.
+    plan : str or path, optional
+        Another plan of the same columns and classes, such as a smaller one. Its scores compare with nothing.
+    jobs : int, optional
+        Threads that simulate; all cores by default.
+
+    Returns
+    -------
+    Posed
+
+    Raises
+    ------
+    ValueError
+        No such task.
+    OSError
+        What kept the data set from being made.
+
+    Warns
+    -----
+    MeshtoneWarning
+        The data set is not the published one: another version made it.
+    """
+    if name not in TASKS:
+        raise ValueError(f"there is no task '{name}'{hint(name, list(TASKS))}; there are {', '.join(TASKS)}")
+    task = TASKS[name]
+    dataset = generate_dataset(plan or SETS[task.set], Path(folder, task.set), jobs=jobs)
+    found = hashlib.sha256((dataset.path / "manifest.json").read_bytes()).hexdigest()
+    if plan is None and found != PUBLISHED.get(task.set):
+        warn([f"{dataset.place} is not the published {task.set}: another version of Meshtone made it, and its scores compare with none of those"])
+    return Posed(task, dataset)
+
+
+def evaluate(posed: Posed, answers: str | PathLike[str] | Mapping[str, npt.ArrayLike]) -> Scores:
+    """Score what a method answers for the records of every split.
+
+    Intervals hold 90 % of the scores of units that are drawn with replacement, because records of one unit are no independent witnesses.
+
+    Parameters
+    ----------
+    posed : Posed
+        The task.
+    answers : mapping of arrays, or path
+        Columns, or the name of a Parquet or CSV file of them: ``record``, the numbers of all records that are scored, in any order, and
+
+        * of a kind of damage the probability of each class, in a column of its name
+        * of an anomaly ``score``, more for what looks damaged
+        * of a life ``left``, the part that is left
+
+        and, where the method knows them, ``quantile_10`` to ``quantile_90``, of the severity or of the life that is left.
+
+    Returns
+    -------
+    Scores
+        Of each split: ``auc``, of damaged against healthy; ``recall``, the mean of all classes; ``calibration``, by how much the
+        probability of damage is off on average, over ten equal parts of the records; ``mae``; ``of_constant``, the error over that of
+        the best constant; ``crps``, the continuous ranked probability score, from the quantiles.
+
+    Raises
+    ------
+    ValueError
+        Records or columns that are missing or doubled; numbers that are not finite.
+    """
+    columns = _read(answers) if isinstance(answers, (str, PathLike)) else {name: np.asarray(values) for name, values in answers.items()}
+    wanted = posed.records()["record"]
+    numbers = columns.get("record", np.empty(0))
+    if len(np.unique(numbers)) != len(numbers) or not set(wanted) <= set(numbers):
+        raise ValueError(f"record: must have each of the {len(wanted)} records of {', '.join(posed.splits)} once")
+    place = dict(zip(numbers, range(len(numbers)), strict=True))
+    order = np.array([place[number] for number in wanted])
+    given = {name: np.asarray(values, dtype=np.float64)[order] for name, values in columns.items()}
+    if bad := [name for name, values in given.items() if not np.isfinite(values).all()]:
+        raise ValueError(f"{bad[0]}: must be finite")
+    if posed.task.measure == "of_constant":
+        measures = measures_of_lives(given, posed.left(), float(np.median(posed.left("train"))))
+    else:
+        measures = measures_of_kinds(given, posed.kinds(), posed.severities(), np.unique(posed.kinds("train")))
+    places, units = posed._places(), posed.units()
+    chosen = {split: np.flatnonzero(posed._roles[split][places]) for split in posed.splits}
+    return {split: {name: interval(measure, of, units) for name, measure in measures.items()} for split, of in chosen.items()}
+
+
+def compare(task: str, submissions: Mapping[str, Scores], measures: Sequence[str] = ()) -> str:
+    """A table of submissions to one task.
+
+    Parameters
+    ----------
+    task : str
+        One of :data:`TASKS`.
+    submissions : mapping of str to Scores
+        Names and scores.
+    measures : sequence of str, optional
+        Those that are shown; by default the one that ranks.
+
+    Returns
+    -------
+    str
+        In Markdown: a row for each submission, the best first, and a column for each split and measure.
+    """
+    main = TASKS[task].measure
+    splits = sorted({split for scores in submissions.values() for split in scores}, key=lambda split: (split != "test", split))
+    heads = [(split, measure) for split in splits for measure in measures or [main]]
+    sign = 1 if main == "of_constant" else -1
+    lines = ["| " + " | ".join([task, *(f"{split}, {measure}" for split, measure in heads)]) + " |", "|---|" + "---:|" * len(heads)]
+    for name, scores in sorted(submissions.items(), key=lambda one: sign * one[1][splits[0]][main][0]):
+        cells = [_cell(scores.get(split, {}).get(measure)) for split, measure in heads]
+        lines.append("| " + " | ".join([name, *cells]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _cell(score: list[float] | None) -> str:
+    return "–" if score is None else f"{score[0]:.3f} ({score[1]:.3f} to {score[2]:.3f})"
+
+
+def _read(file: str | PathLike[str]) -> dict[str, npt.NDArray[Any]]:
+    import pyarrow.dataset
+
+    form = "csv" if fspath(file).endswith(".csv") else "parquet"
+    table = pyarrow.dataset.dataset(fspath(file), format=form).to_table()
+    return {name: table[name].to_numpy() for name in table.column_names}
