@@ -1,6 +1,6 @@
 """How fast a data set is read in a learner's order, beside pyarrow alone, with a floor for each number.
 
-Run by hand: ``python python/benchmarks/loading.py DIRECTORY``, the directory of a data set such as ``examples/datasets/benchmark.toml`` makes.
+Run by hand: ``python python/benchmarks/loading.py DIRECTORY``, the directory of a data set such as ``python/meshtone/benchmark/pairs-1.toml`` makes.
 Exits with 1 if a floor is missed. torch's ``DataLoader`` is stood for by what it does with a data set: batches of shuffled places.
 """
 

@@ -292,9 +292,9 @@ def load(name: str, path: str | PathLike[str]) -> Dataset:
     Parameters
     ----------
     name : str
-        'benchmark-1', the benchmark of the book's chapter "Data sets".
+        One of :data:`meshtone.benchmark.SETS`, such as 'pairs-1'.
     path : str or path
-        Its archive, ``benchmark-1.zip``, which is unpacked into the folder ``benchmark-1`` beside it unless that exists; or that folder.
+        Its archive, ``pairs-1.zip``, which is unpacked into the folder ``pairs-1`` beside it unless that exists; or that folder.
 
     Returns
     -------
@@ -311,8 +311,8 @@ def load(name: str, path: str | PathLike[str]) -> Dataset:
     --------
     ::
 
-        benchmark = datasets.load("benchmark-1", "benchmark-1.zip")
-        train = benchmark.split("train")
+        pairs = datasets.load("pairs-1", "pairs-1.zip")
+        train = pairs.split("train")
     """
     if name not in PUBLISHED:
         raise ValueError(f"no data set '{name}' is published{hint(name, PUBLISHED)}; there is {', '.join(PUBLISHED)}")

@@ -577,7 +577,7 @@ def test_a_published_set_is_unpacked_and_compared(
     gears: datasets.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As `cargo xtask benchmark` packs the benchmark."""
-    folder = tmp_path / "made" / "benchmark-1"
+    folder = tmp_path / "made" / "pairs-1"
     shutil.copytree(gears.path, folder)
     script = Path(__file__).parents[2] / "examples" / "datasets" / "publish.py"
 
@@ -586,21 +586,21 @@ def test_a_published_set_is_unpacked_and_compared(
         return subprocess.run(command, capture_output=True, text=True, encoding="utf-8")
 
     assert publish().returncode == 0
-    archive = folder.with_name("benchmark-1.zip")
+    archive = folder.with_name("pairs-1.zip")
     packed = archive.read_bytes()
-    digest, name = archive.with_name("benchmark-1.zip.sha256").read_text("utf-8").split()
+    digest, name = archive.with_name("pairs-1.zip.sha256").read_text("utf-8").split()
     assert (digest, name) == (hashlib.sha256(packed).hexdigest(), archive.name)
     with zipfile.ZipFile(archive) as opened:
         # The bytes do not depend on the system.
         assert {(member.create_system, member.external_attr >> 16) for member in opened.infolist()} == {(3, 0o644)}
         assert "CC-BY-4.0" in opened.read("LICENSE").decode()
         sums = [line.split("  ") for line in opened.read("SHA256SUMS").decode().splitlines()]
-        assert {name: digest for digest, name in sums} == {f"benchmark-1/{name}": digest for name, digest in digests(folder).items()}
+        assert {name: digest for digest, name in sums} == {f"pairs-1/{name}": digest for name, digest in digests(folder).items()}
     # Another SHA-256 in the package is reported with the line to write, and the archive has the same bytes again.
     published = tmp_path / "published.py"
     published.write_text("", encoding="utf-8")
     other = publish("--published", str(published))
-    line = f'"benchmark-1": "{digests(folder)["manifest.json"]}"'
+    line = f'"pairs-1": "{digests(folder)["manifest.json"]}"'
     assert other.returncode == 1 and line in other.stderr and archive.read_bytes() == packed
     published.write_text(line, encoding="utf-8")
     assert publish("--published", str(published)).returncode == 0
@@ -608,39 +608,39 @@ def test_a_published_set_is_unpacked_and_compared(
     downloads = tmp_path / "downloads"
     downloads.mkdir()
     shutil.copy(archive, downloads)
-    with pytest.raises(ValueError, match=r"is not the published benchmark-1: the SHA-256 of its manifest.json is [0-9a-f]{64} instead"):
-        datasets.load("benchmark-1", downloads / archive.name)
+    with pytest.raises(ValueError, match=r"is not the published pairs-1: the SHA-256 of its manifest.json is [0-9a-f]{64} instead"):
+        datasets.load("pairs-1", downloads / archive.name)
     # Nothing of a wrong archive stays, so that another one can be fetched.
     assert [file.name for file in downloads.iterdir()] == [archive.name]
-    monkeypatch.setitem(PUBLISHED, "benchmark-1", digests(folder)["manifest.json"])
+    monkeypatch.setitem(PUBLISHED, "pairs-1", digests(folder)["manifest.json"])
     changed = downloads / "changed.zip"
     with zipfile.ZipFile(archive) as opened, zipfile.ZipFile(changed, "w") as rewritten:
         for member in opened.namelist():
             other_bytes = b"x" if member.endswith("train-000001.parquet") else opened.read(member)
             rewritten.writestr(member, other_bytes)
-        rewritten.writestr("benchmark-1/more.txt", "more")
-    with pytest.raises(ValueError, match=r"is not the published benchmark-1: data/train-000001.parquet in it has other bytes; fetch it again"):
-        datasets.load("benchmark-1", changed)
+        rewritten.writestr("pairs-1/more.txt", "more")
+    with pytest.raises(ValueError, match=r"is not the published pairs-1: data/train-000001.parquet in it has other bytes; fetch it again"):
+        datasets.load("pairs-1", changed)
     with zipfile.ZipFile(archive) as opened, zipfile.ZipFile(changed, "w") as rewritten:
-        rewritten.writestr("benchmark-1/manifest.json", opened.read("benchmark-1/manifest.json"))
-    with pytest.raises(ValueError, match="is no whole archive of benchmark-1: There is no item named"):
-        datasets.load("benchmark-1", changed)
+        rewritten.writestr("pairs-1/manifest.json", opened.read("pairs-1/manifest.json"))
+    with pytest.raises(ValueError, match="is no whole archive of pairs-1: There is no item named"):
+        datasets.load("pairs-1", changed)
     changed.unlink()
     assert [file.name for file in downloads.iterdir()] == [archive.name]
-    for place in (archive.name, "benchmark-1"):
-        loaded = datasets.load("benchmark-1", downloads / place)
-        assert loaded.path == downloads / "benchmark-1" and len(loaded) == 24
-    flip(downloads / "benchmark-1" / "data" / "train-000001.parquet", 3)
+    for place in (archive.name, "pairs-1"):
+        loaded = datasets.load("pairs-1", downloads / place)
+        assert loaded.path == downloads / "pairs-1" and len(loaded) == 24
+    flip(downloads / "pairs-1" / "data" / "train-000001.parquet", 3)
     with pytest.raises(ValueError, match=r"train-000001.parquet: its bytes are not those that were written"):
-        datasets.load("benchmark-1", downloads / archive.name)
-    with pytest.raises(ValueError, match="no data set 'benchmark' is published; did you mean 'benchmark-1'"):
-        datasets.load("benchmark", archive)
+        datasets.load("pairs-1", downloads / archive.name)
+    with pytest.raises(ValueError, match="no data set 'pairs' is published; did you mean 'pairs-1'"):
+        datasets.load("pairs", archive)
     with pytest.raises(FileNotFoundError):
-        datasets.load("benchmark-1", tmp_path / "absent.zip")
+        datasets.load("pairs-1", tmp_path / "absent.zip")
     (tmp_path / "text.zip").write_text("text", encoding="utf-8")
-    with pytest.raises(ValueError, match="is no whole archive of benchmark-1"):
-        datasets.load("benchmark-1", tmp_path / "text.zip")
-    assert not (tmp_path / "benchmark-1").exists()
+    with pytest.raises(ValueError, match="is no whole archive of pairs-1"):
+        datasets.load("pairs-1", tmp_path / "text.zip")
+    assert not (tmp_path / "pairs-1").exists()
 
 
 CLASSES_WITH_TWO = """

@@ -21,10 +21,10 @@ const SMALL: &[&str] = if cfg!(all(target_arch = "x86_64", target_os = "linux", 
     &["--strip"]
 };
 
-/// Name of the benchmark's data set, by which the Python package knows it.
-const BENCHMARK: &str = "benchmark-1";
+/// Frozen plans of the benchmark's data sets, by whose names the Python package knows the sets.
+const PLANS: &str = "python/meshtone/benchmark";
 
-/// Makes everything that a release carries but the benchmark's data set.
+/// Makes everything that a release carries but the benchmark's data sets.
 ///
 /// # Errors
 /// The exit code of what failed.
@@ -47,22 +47,23 @@ pub fn make_wheel(row: &StepRunner) -> Result<(), u8> {
     Ok(())
 }
 
-/// Makes the benchmark's data set, or goes on with it, and packs it as an archive.
+/// Makes the benchmark's data sets, or goes on with them, and packs each as an archive.
 ///
 /// # Errors
-/// The exit code of what failed; the Python package has another SHA-256 of the data set, so that it would refuse the archive.
+/// The exit code of what failed; the Python package has another SHA-256 of a data set, so that it would refuse the archive.
 pub fn benchmark(row: &StepRunner) -> Result<(), u8> {
-    let set = folder(row).join(BENCHMARK);
     let program = program(row)?;
-    row.step("Data set of the benchmark", || {
-        row.program(
-            Command::new(program).args(["dataset", "examples/datasets/benchmark.toml", "-o"]).arg(&set),
-        )
-    })?;
-    row.step("Archive of the data set", || {
-        let arguments = ["--published", "python/meshtone/_published.py"];
-        row.program(environment::base().arg("examples/datasets/publish.py").arg(&set).args(arguments))
-    })
+    for plan in of_kind(row, &row.root().join(PLANS), "toml")? {
+        let set = folder(row).join(plan.file_stem().unwrap_or_default());
+        row.step(&format!("Data set {}", set.display()), || {
+            row.program(Command::new(&program).arg("dataset").arg(&plan).arg("-o").arg(&set))
+        })?;
+        row.step("Archive of the data set", || {
+            let arguments = ["--published", "python/meshtone/_published.py"];
+            row.program(environment::base().arg("examples/datasets/publish.py").arg(&set).args(arguments))
+        })?;
+    }
+    Ok(())
 }
 
 /// Says what was made, and how large it is.

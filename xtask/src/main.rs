@@ -43,8 +43,8 @@ Tasks:
   dist         Make what a release carries, in target/dist: the program, the Python package's wheel
                and its source distribution
   wheel        Of these, only the wheel
-  benchmark    Make the benchmark's data set there, as the archive that a release carries (two minutes on two cores; needs
-               Python), and check that the package has its SHA-256
+  benchmark    Make the benchmark's data sets there, as the archives that a release carries (four minutes on two cores; needs
+               Python), and check that the package has their SHA-256
   generate     Write what follows from the rows of the library's keys: Python's arguments and classes, the guide's lists
   check-rooms  Only the check that no folder of the library imports against the direction of the data
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas

@@ -97,12 +97,14 @@ def _specimens(by_specimen: bool, columns: Columns) -> Roles:
 
 
 def _laws(drawn: float, columns: Columns) -> Roles:
-    """Each law of damage beside the healthy records; `drawn` is the part of the pits to learn from that are drawn."""
+    """Each law of damage beside the healthy records; `drawn` is the part of the records to learn from that obey the other law of their class."""
     labels, split = columns["label"].astype(str), columns["split"]
     is_base, at = np.char.find(labels, "/") < 0, np.random.default_rng(0).random(len(labels))
-    learnt = np.where(labels == "pits", at >= drawn, np.where(labels == "pits/drawn", at < drawn, is_base))
+    laws = np.unique(labels[~is_base])
+    has_other = np.isin(labels, np.char.partition(laws, "/")[:, 0])
+    learnt = np.where(is_base, ~has_other | (at >= drawn), at < drawn)
     roles = {"train": (split == "train") & learnt, "test": (split == "test") & is_base, "fillet": (split == "fillet") & is_base}
-    for label in np.unique(labels[~is_base]):
+    for label in laws:
         for law in (label.partition("/")[0], label):
             roles[str(law)] = (split == "test") & np.isin(labels, ["healthy", law])
     return roles
@@ -147,7 +149,8 @@ TASKS = {
         Task("bearings", "gearbox-1", "which bearing race or tooth of a gearbox is damaged?", "recall", _as_split),
         Task("life", "lives-1", "which part of its life does a damaged gear have left?", "of_constant", _as_split),
         Task("laws", "laws-1", "which damage, where it obeys another law than what was learnt?", "recall", partial(_laws, 0.0)),
-        Task("laws-drawn", "laws-1", "the same, where half of the pits to learn from are drawn?", "recall", partial(_laws, 0.5)),
+        Task("laws-drawn", "laws-1", "the same, where half of the records to learn from obey the other law?", "recall", partial(_laws, 0.5)),
+        Task("laws-known", "laws-1", "the same, where all of them do?", "recall", partial(_laws, 1.0)),
     ]
 }
 """The tasks by their names."""
@@ -217,7 +220,7 @@ class Posed:
         return chosen
 
 
-def open_task(name: str, folder: str | PathLike[str], *, plan: str | PathLike[str] | None = None, jobs: int | None = None) -> Posed:
+def open_task(name: str, folder: str | PathLike[str], *, records: int | None = None, jobs: int | None = None) -> Posed:
     """Make a task's data set, or go on with it, or open it.
 
     Parameters
@@ -226,8 +229,8 @@ def open_task(name: str, folder: str | PathLike[str], *, plan: str | PathLike[st
         One of :data:`TASKS`.
     folder : str or path
         Where the data sets are: this one in a folder of its name.
-    plan : str or path, optional
-        Another plan of the same columns and classes, such as a smaller one. Its scores compare with nothing.
+    records : int, optional
+        In place of the plan's, to try a method: such scores compare with nothing.
     jobs : int, optional
         Threads that simulate; all cores by default.
 
@@ -250,9 +253,9 @@ def open_task(name: str, folder: str | PathLike[str], *, plan: str | PathLike[st
     if name not in TASKS:
         raise ValueError(f"there is no task '{name}'{hint(name, list(TASKS))}; there are {', '.join(TASKS)}")
     task = TASKS[name]
-    dataset = generate_dataset(plan or SETS[task.set], Path(folder, task.set), jobs=jobs)
+    dataset = generate_dataset(SETS[task.set], Path(folder, task.set), records=records, jobs=jobs)
     found = hashlib.sha256((dataset.path / "manifest.json").read_bytes()).hexdigest()
-    if plan is None and found != PUBLISHED.get(task.set):
+    if records is None and found != PUBLISHED.get(task.set):
         warn([f"{dataset.place} is not the published {task.set}: another version of Meshtone made it, and its scores compare with none of those"])
     return Posed(task, dataset)
 

@@ -117,16 +117,35 @@ def beside_run_up(values: Matrix, labels: npt.NDArray[Any], units: npt.NDArray[A
     return relative
 
 
+def beside_history(values: Matrix, runs: npt.NDArray[Any], age: npt.NDArray[Any]) -> Matrix:
+    """Values of each record less those of the first three looks at its run, and the mean of the last four looks less the same."""
+    relative = np.empty((len(values), 2 * values.shape[1]))
+    for run in np.unique(runs):
+        looks = np.flatnonzero(runs == run)
+        looks = looks[np.argsort(age[looks])]
+        begin = values[looks[:3]].mean(axis=0)
+        for place, look in enumerate(looks):
+            latest = values[looks[max(0, place - 3) : place + 1]].mean(axis=0)
+            relative[look] = np.concatenate([values[look] - begin, latest - begin])
+    return relative
+
+
 def answers(posed: Posed) -> Iterator[tuple[str, dict[str, npt.NDArray[Any]]]]:
     """What each of a task's three baselines answers.
 
     The features of all records are computed once. Quantiles of a severity or a life are those of the errors that the model makes on
     fifths of the training's units that are left out of it.
     """
-    values, record = features(posed.dataset), posed.dataset.column("record")
-    if RUN_UP in posed.dataset.column("label"):
-        values = np.hstack([values, beside_run_up(values, posed.dataset.column("label"), posed.dataset.column("unit"))])
-    of_train, of_test = (np.isin(record, posed.records(*role).column("record")) for role in (["train"], []))
+    dataset = posed.dataset
+    values, record, label, unit = features(dataset), dataset["record"], dataset["label"].astype(str), dataset["unit"]
+    of_train, of_test = (np.isin(record, posed.records(*role)["record"]) for role in (["train"], []))
+    # An octave beyond half the sampling rate of all but a few records is no feature.
+    values = values[:, np.isfinite(values[of_train]).mean(axis=0) > 0.5]
+    if RUN_UP in label:
+        values = np.hstack([values, beside_run_up(values, label, unit)])
+    if "age_rev" in dataset.columns:
+        runs = np.char.add(label, unit.astype(str))
+        values = np.hstack([values, beside_history(values, runs, dataset["age_rev"])])
     train, test = values[of_train], values[of_test]
     number = {"record": record[of_test]}
     if posed.task.measure == "auc":
@@ -151,7 +170,7 @@ def quantiles(model: Any, train: Matrix, target: Matrix, units: npt.NDArray[Any]
     return {"left": np.clip(answer, 0.0, 1.0), **ends}
 
 
-def score(name: str, folder: Path, plan: Path | None = None) -> dict[str, Scores]:
+def score(name: str, folder: Path, records: int | None = None) -> dict[str, Scores]:
     """Scores of a task's baselines.
 
     Parameters
@@ -160,10 +179,10 @@ def score(name: str, folder: Path, plan: Path | None = None) -> dict[str, Scores
         One of :data:`meshtone.benchmark.TASKS`.
     folder : path
         Where the data sets are, or are made.
-    plan : path, optional
+    records : int, optional
         As of :func:`meshtone.benchmark.open_task`.
     """
-    posed = open_task(name, folder, plan=plan)
+    posed = open_task(name, folder, records=records)
     # Threads of so small models wait for each other longer than they compute where the cores are busy.
     with threadpool_limits(1):
         return {model: evaluate(posed, given) for model, given in answers(posed)}

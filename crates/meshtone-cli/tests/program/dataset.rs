@@ -270,7 +270,7 @@ fn the_first_look() {
 #[test]
 fn the_benchmark_and_the_template_are_plans() {
     let workplace = workplace();
-    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/datasets/benchmark.toml");
+    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../python/meshtone/benchmark/pairs-1.toml");
     let scenario = stdout(&workplace.succeeds(&["dataset", "scenario", plan.to_str().unwrap(), "7999"]));
     assert!(scenario.contains("[gears]"), "{scenario}");
     workplace.succeeds(&["init", "dataset", "-o", "template.toml"]);

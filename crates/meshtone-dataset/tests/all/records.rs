@@ -182,7 +182,7 @@ fn a_killed_run_loses_less_than_a_minute() {
     let gearbox = meshtone_dataset::plan::gearbox_template()
         .replace("[keep]", "[keep]\naverage = false\ndifference = false\nchannels = []");
     let (benchmark, gearbox) =
-        (per_shard(&read("../../examples/datasets/benchmark.toml")), per_shard(&plan(&gearbox)));
+        (per_shard(&read("../../python/meshtone/benchmark/pairs-1.toml")), per_shard(&plan(&gearbox)));
     // Of indicators alone, 32 MB would be thousands of records of the gearbox.
     for (records, record_s) in [(benchmark, 0.013), (gearbox, 0.18)] {
         let lost_s = records as f64 * record_s;
