@@ -96,6 +96,9 @@ KNOWN_OF_WHEELS = re.compile(r"(?!fault|latent).*(teeth|module_mm|face_width_mm|
 TARGETS = re.compile(r"label|severity.*|fault.*|remaining_rev")
 """Columns of the damage that was simulated."""
 
+MIXED_PARTS = 16
+"""Parts of files, of at most 64 records, that are in memory at a time while records are shuffled."""
+
 OVER_A_REVOLUTION = ("average_g", "difference_g", "enhanced_relative_difference")
 """Columns of signals at equal angles of one revolution; the others are at equal times."""
 
@@ -863,7 +866,9 @@ class Dataset:
         chunks = self.to_arrow([name]).column(0).chunks
         return [signal for chunk in chunks for signal in _signals_of(chunk)]
 
-    def records(self, columns: Sequence[str] | None = None, *, batch_size: int = 64) -> Iterator[dict[str, Any]]:
+    def records(
+        self, columns: Sequence[str] | None = None, *, batch_size: int = 64, shuffle: int | None = None
+    ) -> Iterator[dict[str, Any]]:
         """The records one after the other; only some are in memory at a time.
 
         Parameters
@@ -872,6 +877,9 @@ class Dataset:
             All by default.
         batch_size : int
             How many are read at a time.
+        shuffle : int, optional
+            Seed of a random order, such as the number of the epoch: parts of files are read in random order, and the records of sixteen
+            parts, about a thousand, are mixed. So a set that no memory holds is read in pieces, where :meth:`to_torch` reads single records.
 
         Yields
         ------
@@ -886,8 +894,20 @@ class Dataset:
         self._check(columns or ())
         chosen = self.columns if columns is None else list(columns)
         batch_size = whole("batch_size", batch_size, 1)
+        if shuffle is not None:
+            yield from self._shuffled(chosen, np.random.default_rng(whole("shuffle", shuffle, 0)))
+            return
         for batch in self._native.to_batches(columns=chosen, filter=self._filter, batch_size=batch_size):
             yield from _records_of(batch)
+
+    def _shuffled(self, columns: list[str], draws: np.random.Generator) -> Iterator[dict[str, Any]]:
+        """The records of row groups in random order, of so many groups at a time mixed with each other."""
+        parts = [part for fragment in self._native.get_fragments() for part in fragment.split_by_row_group()]
+        order = draws.permutation(len(parts))
+        for first in range(0, len(parts), MIXED_PARTS):
+            tables = [parts[part].to_table(columns=columns, filter=self._filter) for part in order[first : first + MIXED_PARTS]]
+            mixed = [record for table in tables for batch in table.to_batches() for record in _records_of(batch)]
+            yield from (mixed[place] for place in draws.permutation(len(mixed)))
 
     def matrix(self, columns: Sequence[str]) -> npt.NDArray[np.float64]:
         """Columns of numbers side by side, as classifiers take them.
