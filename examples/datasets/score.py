@@ -1,8 +1,8 @@
-"""Scores baselines on a data set's questions, and looks for shortcuts.
+"""Looks closely at a data set's questions: shortcuts, kinds, severities, noise and more models than the baselines of `meshtone.benchmark`.
 
     pip install 'meshtone[datasets,tables,plot]' scikit-learn   # aeon for random kernels, torch for the network: left out without
-    python score.py benchmark -o scores                # scores.json, scores.md and three figures
-    python score.py benchmark -o scores --check        # exit code 1 where the bounds of a fair question do not hold
+    python score.py pairs-1 -o scores                # scores.json, scores.md and three figures
+    python score.py pairs-1 -o scores --check        # exit code 1 where the bounds of a fair question do not hold
 
 Every model is trained on the split `train`, what draws with five seeds, and scored on `test`. Intervals hold 90 % of what one training scores
 where the test split's units (a bootstrap: records of one unit are no independent witnesses) and the seed are drawn. What a model answered is
@@ -24,11 +24,10 @@ from typing import NoReturn
 
 import numpy as np
 import pandas as pd
-from scipy.stats import rankdata
 from sklearn.dummy import DummyClassifier
-from sklearn.ensemble import HistGradientBoostingClassifier, HistGradientBoostingRegressor
+from sklearn.ensemble import HistGradientBoostingRegressor
 from sklearn.impute import SimpleImputer
-from sklearn.linear_model import LogisticRegression, RidgeClassifierCV
+from sklearn.linear_model import RidgeClassifierCV
 from sklearn.metrics import roc_curve
 from sklearn.model_selection import GridSearchCV, GroupKFold
 from sklearn.pipeline import make_pipeline
@@ -36,13 +35,14 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
 import meshtone as mt
+from meshtone.benchmark.baselines import CLASSIFIERS
+from meshtone.benchmark.measures import QUANTILES, auc, mean_recall
 
 # What is known of a machine without looking at its vibration.
 CONDITIONS = ["pinion_speed_hz", "brake_torque_nm", "pinion_teeth", "gear_teeth", "module_mm", "face_width_mm"]
 PARTS = ("average_", "regular_", "residual_", "difference_", "envelope_")
 GEAR = ["fm0", "fm4", "m6a", "m8a", "na4", "energy_ratio", "sideband_level_factor"]
 ORDERS = "mesh_harmonic_"
-QUANTILES = np.arange(0.1, 0.95, 0.1)
 DRAWS = 400
 
 # The question is fair where a method can win on merit: neither hopeless nor solved, and nothing but the vibration shows it.
@@ -193,14 +193,11 @@ class NetworkAndBoosting:
 
 
 def logistic(seed: int) -> object:
-    model = LogisticRegression(C=0.3, max_iter=5000, class_weight="balanced")
-    return make_pipeline(SimpleImputer(keep_empty_features=True), StandardScaler(), model)
+    return CLASSIFIERS["logistic regression"]()
 
 
 def boosting(seed: int) -> object:
-    return HistGradientBoostingClassifier(
-        max_iter=150, learning_rate=0.1, l2_regularization=1.0, class_weight="balanced", random_state=seed, early_stopping=False
-    )
+    return CLASSIFIERS["gradient boosting"]().set_params(random_state=seed)
 
 
 MODELS = {
@@ -232,18 +229,6 @@ def interval(scores: list[Callable[[np.ndarray], float]], units: np.ndarray) -> 
     ends = np.nanquantile(drawn, [0.05, 0.95])
     of_all = np.mean([score(np.arange(len(units))) for score in scores])
     return [round(float(value), 3) for value in (of_all, *ends)]
-
-
-def auc(damaged: np.ndarray, probability: np.ndarray) -> float:
-    """By Mann and Whitney's ranks: thousands of times for the intervals, which scikit-learn's checks of its input would make long."""
-    found = damaged == 1
-    count = np.count_nonzero(found)
-    pairs = count * (len(found) - count)
-    return float((rankdata(probability)[found].sum() - count * (count + 1) / 2) / pairs) if pairs else float("nan")
-
-
-def mean_recall(labels: np.ndarray, named: np.ndarray) -> float:
-    return float(np.mean([np.mean(named[labels == label] == label) for label in np.unique(labels)]))
 
 
 def detection(test: Records, runs: list[np.ndarray]) -> dict[str, object]:

@@ -155,6 +155,31 @@ def test_the_suite(tmp_path: Path) -> None:
                     assert value == pytest.approx(committed, abs=0.02, nan_ok=True), f"{name}, {model}, {split}, {measure}"
 
 
+def module_of(script: Path) -> Any:
+    """A script without another process: the libraries of some take seconds to load."""
+    spec = importlib.util.spec_from_file_location(script.stem, script)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+ORDINARY = module_of(FOLDER / "thirteen_scripts.py")
+
+
+@pytest.mark.parametrize("script", ORDINARY.SCRIPTS, ids=lambda script: script.__name__)
+def test_ordinary_scripts_run(script: Any, tmp_path_factory: pytest.TempPathFactory, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path_factory.getbasetemp() / "ordinary"
+    folder.mkdir(exist_ok=True)
+    with warnings.catch_warnings(), threadpool_limits(1):
+        warnings.simplefilter("ignore", MeshtoneWarning)
+        try:
+            script(folder)
+        except ModuleNotFoundError as error:
+            pytest.skip(f"{error.name} is not installed")
+    assert len(ORDINARY.SCRIPTS) == 13 and capsys.readouterr().out
+
+
 def small(plan: str) -> str:
     """One tooth pair and module, 400 records of 40 units at speeds that are simulated soon, and halves of the severities for quarters.
 
@@ -184,11 +209,7 @@ def test_the_benchmark_is_fair(draws: int, tmp_path: Path, monkeypatch: pytest.M
     datasets.generate_dataset(plan, tmp_path / "small")
     script = FOLDER / "score.py"
     outputs = ["-o", str(tmp_path / "scores"), "--check"]
-    # Without another process: the libraries of the script take seconds to load.
-    spec = importlib.util.spec_from_file_location("score", script)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = module_of(script)
     monkeypatch.setattr(module, "DRAWS", draws)
 
     def score(folder: Path, *arguments: str) -> tuple[int, str]:

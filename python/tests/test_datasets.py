@@ -218,7 +218,52 @@ def test_hugging_face_gives_the_declared_splits(tmp_path: Path, monkeypatch: pyt
     assert sum(map(len, units)) == len(set.union(*units)) == 6
     train = hugging_face.load_dataset(str(made.path), split="train", cache_dir=str(tmp_path / "cache"))
     assert train["record"][:] == sorted(train["record"]) == made.split("train").column("record").tolist()
+    # Labels are classes, numbered as in torch.
+    assert train.features["label"].names == sorted(set(made["label"]))
+    assert [train.features["label"].int2str(number) for number in train["label"]] == made.split("train")["label"].tolist()
     assert train[0]["vertical_g"] == made.split("train").signals("vertical_g")[0].tolist()
+
+
+def test_who_made_it_and_where_it_is(tmp_path: Path) -> None:
+    plan = write_plan(tmp_path)
+    about = 'creator = "Us"\nurl = "https://example.org/gears"\ndoi = "10.5281/zenodo.1"\npublished = "2026-11-30"\n'
+    plan.write_text(about + PLAN, encoding="utf-8")
+    folder = datasets.generate_dataset(plan, tmp_path / "set").path
+    metadata = json.loads((folder / "croissant.json").read_text("utf-8"))
+    assert metadata["creator"] == {"@type": "sc:Organization", "name": "Us"} and metadata["url"] == "https://example.org/gears"
+    assert metadata["datePublished"] == "2026-11-30" and metadata["sameAs"] == "https://doi.org/10.5281/zenodo.1"
+    assert "Cite as: Us: " in (folder / "README.md").read_text("utf-8") and metadata["citeAs"].endswith(", https://doi.org/10.5281/zenodo.1")
+
+
+def test_a_plan_is_a_dictionary_too_and_has_other_numbers_of_records(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = write_plan(tmp_path)
+    fewer = datasets.generate_dataset(plan, tmp_path / "fewer", records=12)
+    assert len(fewer) == 12 and len(datasets.generate_dataset(plan, tmp_path / "fewer", records=12)) == 12
+    with pytest.raises(ValueError, match="data set of another plan|another plan"):
+        datasets.generate_dataset(plan, tmp_path / "fewer", records=13)
+    with pytest.raises(ValueError, match="records = 0"):
+        datasets.generate_dataset(plan, tmp_path / "none", records=0)
+    # What a dictionary names lies in the working directory.
+    monkeypatch.chdir(tmp_path)
+    given = {"records": 12, "units": 4, "scenario": "machine.toml", "class": [{"label": "healthy"}, {"label": "missing", "fault": {"kind": "missing-tooth"}}]}
+    made = datasets.generate_dataset(given, tmp_path / "of dictionary")
+    assert len(made) == 12 and set(made["label"]) == {"healthy", "missing"}
+    with pytest.raises(ValueError, match="recrods"):
+        datasets.generate_dataset({**given, "recrods": 3}, tmp_path / "misspelt")
+
+
+def test_shuffled_records_are_all_records_once(gears: datasets.Dataset) -> None:
+    orders = [[record["record"] for record in gears.records(["record", "average_g"], shuffle=seed)] for seed in (0, 0, 1)]
+    assert orders[0] == orders[1] != orders[2] and sorted(orders[0]) == sorted(orders[2]) == sorted(gears["record"])
+    healthy = gears.filter(lambda record: record["label"] == "healthy")
+    assert sorted(record["record"] for record in healthy.records(shuffle=3)) == sorted(gears["record"][gears["label"] == "healthy"])
+    assert set(healthy["label"]) == {"healthy"} and len(healthy.split("train")) < len(healthy)
+
+
+def test_records_in_xarray(gears: datasets.Dataset) -> None:
+    pytest.importorskip("xarray", reason="xarray is not installed: pip install xarray")
+    table = gears.to_xarray(["average_g"], points=256)
+    assert table["average_g"].sizes == {"record": 24, "sample": 256} and list(table["label"].values) == list(gears["label"])
 
 
 def test_card_of_splits_by_mounting(tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ from .._names import hint
 from .._published import PUBLISHED
 from .._warnings import warn
 from ..datasets import Dataset, generate_dataset
-from ._measures import interval, measures_of_kinds, measures_of_lives
+from .measures import interval, measures_of_kinds, measures_of_lives
 
 __all__ = ["BASELINES", "SETS", "TASKS", "Posed", "Scores", "Task", "compare", "evaluate", "open_task"]
 

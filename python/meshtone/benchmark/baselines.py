@@ -18,7 +18,7 @@ from .. import signal
 from .._extras import extra
 from ..datasets import Dataset
 from . import RUN_UP, TASKS, Posed, Scores, compare, evaluate, open_task
-from ._measures import QUANTILES
+from .measures import QUANTILES
 
 with extra("sklearn"):
     from sklearn.covariance import LedoitWolf

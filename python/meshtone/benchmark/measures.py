@@ -100,13 +100,14 @@ def interval(measure: Measure, chosen: npt.NDArray[np.intp], units: npt.NDArray[
     return [round(float(value), 3) for value in (measure(chosen), low, high)]
 
 
-def auc(damaged: npt.NDArray[np.bool_], score: Numbers) -> float:
+def auc(damaged: npt.ArrayLike, score: Numbers) -> float:
     """Area under the receiver operating characteristic, by Mann and Whitney's mean ranks; NaN of one class alone."""
+    is_damaged = np.asarray(damaged, dtype=bool)
     _, number, count = np.unique(score, return_inverse=True, return_counts=True)
     rank = (np.cumsum(count) - (count - 1) / 2)[number]
-    found = np.count_nonzero(damaged)
-    pairs = found * (len(damaged) - found)
-    return float((rank[damaged].sum() - found * (found + 1) / 2) / pairs) if pairs else float("nan")
+    found = np.count_nonzero(is_damaged)
+    pairs = found * (len(is_damaged) - found)
+    return float((rank[is_damaged].sum() - found * (found + 1) / 2) / pairs) if pairs else float("nan")
 
 
 def mean_recall(kinds: npt.NDArray[np.str_], named: npt.NDArray[np.str_]) -> float:
