@@ -66,7 +66,7 @@ def shuffled_by_pyarrow(gears: Dataset, places: np.ndarray) -> None:
 
 def shuffled_by_hugging_face(gears: Dataset, places: np.ndarray, cache: str) -> Callable[[], object]:
     """The same with Hugging Face's ``datasets``, from its own copy."""
-    import datasets
+    import datasets  # type: ignore[import-untyped]
 
     read = datasets.load_dataset("parquet", data_files=gears.arrow.files, split="train", cache_dir=cache)
     arrays = read.select_columns([SIGNAL]).with_format("numpy")

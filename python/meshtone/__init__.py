@@ -10,7 +10,7 @@ True
 
 The parts: :class:`Scenario`, :func:`Gearbox` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
 takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
-:mod:`meshtone.datasets` makes and loads labelled data sets; :func:`diagnose` says what may be wrong with a gear; :func:`estimate_path` finds what lies between gears and sensor; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
+:mod:`meshtone.datasets` makes and loads labelled data sets, on which :mod:`meshtone.benchmark` poses tasks; :func:`diagnose` says what may be wrong with a gear; :func:`estimate_path` finds what lies between gears and sensor; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
 
 from . import _damage, datasets, examples, hybrid, signal

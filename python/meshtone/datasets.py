@@ -772,7 +772,9 @@ class Dataset:
         """
         with extra("xarray"):
             table: xarray.Dataset = self.to_pandas().set_index("record").to_xarray()
-        return table.assign({name: (("record", "sample"), self.arrays(name, points=points)[0][:, 0]) for name in signals})
+        for name in signals:
+            table[name] = (("record", "sample"), self.arrays(name, points=points)[0][:, 0])
+        return table
 
     @property
     def scalar_columns(self) -> list[str]:

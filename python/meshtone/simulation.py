@@ -373,7 +373,8 @@ class Simulation:
             xarray or pandas is not installed.
         """
         with extra("xarray"):
-            return self.to_pandas().to_xarray()
+            signals: xarray.Dataset = self.to_pandas().to_xarray()
+        return signals
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the signals; the file's ending says the format. :func:`read_recording` reads all of them.

@@ -21,7 +21,7 @@ from threadpoolctl import threadpool_limits
 
 FOLDER = Path(__file__).parents[2] / "examples" / "datasets"
 
-RECORDS = {"pairs-1": 480, "rigs-1": 480, "gearbox-1": 90, "lives-1": 180, "laws-1": 300}
+RECORDS = {"pairs-1": 400, "rigs-1": 330, "gearbox-1": 66, "lives-1": 180, "laws-1": 240}
 """As many of each plan as the quick test simulates."""
 
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use meshtone_dataset::generate::{self, GenerateControl, Part};
 use meshtone_dataset::merge::merge;
-use meshtone_dataset::plan::{Plan, template};
+use meshtone_dataset::plan::{Plan, PlanFile, template};
 use meshtone_dataset::record::MachineRecording;
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
@@ -14,6 +14,7 @@ use pyo3::PyErr;
 use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use toml::Table;
 
 use crate::array::{Signal, samples};
 use crate::error::{os_error, read_error, value_error, with_help};
@@ -74,19 +75,20 @@ pub fn generate_dataset(
 /// # Arguments
 /// * `records` - instead of the plan's number
 fn plan_of(py: Python<'_>, plan: &Bound<'_, PyAny>, records: Option<u32>) -> PyResult<Plan> {
-    let dictionary = plan.cast::<PyDict>().ok();
-    let path = if dictionary.is_some() { PathBuf::from("plan.toml") } else { plan.extract()? };
-    let mut table = dictionary.map(table).transpose()?;
+    let (mut table, path) = if let Ok(dictionary) = plan.cast::<PyDict>() {
+        (table(dictionary)?, PathBuf::from("plan.toml"))
+    } else {
+        let path: PathBuf = plan.extract()?;
+        let read = py.detach(|| Plan::read(&path)).map_err(|error| read_error(&path, &error))?;
+        let plan = read.files.iter().find(|file| records.is_some() && file.name == PlanFile::NAMES[0]);
+        let text = plan.map(|plan| plan.text.parse::<Table>());
+        let Some(Ok(table)) = text else { return Ok(read) };
+        (table, path)
+    };
     if let Some(records) = records {
-        // What cannot be read or is no TOML is reported below.
-        table = table.or_else(|| std::fs::read_to_string(&path).ok()?.parse().ok());
-        table.as_mut().and_then(|table| table.insert("records".to_owned(), i64::from(records).into()));
+        table.insert("records".to_owned(), i64::from(records).into());
     }
-    let read = py.detach(|| match table {
-        Some(table) => Plan::read_text(table.to_string(), &path),
-        None => Plan::read(&path),
-    });
-    read.map_err(|error| read_error(&path, &error))
+    py.detach(|| Plan::read_text(table.to_string(), &path)).map_err(|error| read_error(&path, &error))
 }
 
 /// Puts parts together.

@@ -201,7 +201,8 @@ class Posed:
 
     def severities(self, *roles: str) -> Numbers:
         """Severity of the first damage of each of these records, 0 of a healthy one."""
-        return np.nan_to_num(self.dataset.matrix(["fault_severity"])[self._places(*roles), 0])
+        severities: Numbers = np.nan_to_num(self.dataset.matrix(["fault_severity"])[self._places(*roles), 0])
+        return severities
 
     def left(self, *roles: str) -> Numbers:
         """Part of its life that the damaged wheel of each of these records has left, from 1 to 0."""

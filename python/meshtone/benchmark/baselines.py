@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -195,7 +196,9 @@ def main() -> None:
     scores = json.loads(file.read_text("utf-8")) if file.exists() else {}
     for name in names or TASKS:
         scores[name] = score(name, Path(folder))
-        file.write_text(json.dumps(scores, indent=1) + "\n", "utf-8")
+        # A line for each measure.
+        text = re.sub(r"\n\s*(?=[-\d\]N])", " ", json.dumps(scores, indent=1))
+        file.write_text(text + "\n", "utf-8")
         print(compare(name, scores[name]), flush=True)
 
 
