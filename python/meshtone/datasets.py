@@ -904,7 +904,13 @@ class Dataset:
 
     def _shuffled(self, columns: list[str], draws: np.random.Generator) -> Iterator[dict[str, Any]]:
         """The records of row groups in random order, of so many groups at a time mixed with each other."""
-        parts = [part for fragment in self._native.get_fragments() for part in fragment.split_by_row_group()]
+        import pyarrow.dataset
+
+        # Of a set in memory there is one part.
+        parts: list[Any] = []
+        for fragment in self._native.get_fragments():
+            in_file = isinstance(fragment, pyarrow.dataset.ParquetFileFragment)
+            parts += fragment.split_by_row_group() if in_file else [fragment]
         order = draws.permutation(len(parts))
         for first in range(0, len(parts), MIXED_PARTS):
             tables = [parts[part].to_table(columns=columns, filter=self._filter) for part in order[first : first + MIXED_PARTS]]

@@ -138,7 +138,7 @@ def test_a_record_by_its_place(gears: datasets.Dataset) -> None:
     with pytest.raises(ValueError, match="records = 25: there are 24"):
         gears.sample(25)
     with pytest.raises(TypeError, match="or a function"):
-        gears.filter("label == 'healthy'")  # type: ignore[arg-type]
+        gears.filter("label == 'healthy'")
     # Another process maps files of its own.
     assert pickle.loads(pickle.dumps(datasets.Rows(test, ["record"])))[0] == {"record": int(test["record"][0])}
     groups = [gears.indicator_columns, gears.condition_columns, gears.target_columns]
@@ -257,6 +257,7 @@ def test_shuffled_records_are_all_records_once(gears: datasets.Dataset) -> None:
     assert orders[0] == orders[1] != orders[2] and sorted(orders[0]) == sorted(orders[2]) == sorted(gears["record"])
     healthy = gears.filter(lambda record: record["label"] == "healthy")
     assert sorted(record["record"] for record in healthy.records(shuffle=3)) == sorted(gears["record"][gears["label"] == "healthy"])
+    assert sorted(record["record"] for record in gears[:5].records(shuffle=0)) == sorted(gears[:5]["record"])
     assert set(healthy["label"]) == {"healthy"} and len(healthy.split("train")) < len(healthy)
 
 
