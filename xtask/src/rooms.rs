@@ -10,7 +10,7 @@ use crate::files;
 
 /// The rooms of `crates/meshtone/src`, floor by floor. A room imports rooms of earlier floors.
 const FLOORS: &[&[&str]] = &[
-    &["error", "error_table", "random", "interpolation", "simd", "threads", "model", "trace_fields"],
+    &["error", "error_table", "random", "interpolation", "simd", "threads", "known", "model", "trace_fields"],
     &["keys"],
     &["wheel", "bearing"],
     &["damage"],

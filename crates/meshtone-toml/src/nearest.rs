@@ -31,7 +31,13 @@ pub fn nearest_name<'n>(written: &str, candidates: impl IntoIterator<Item = &'n 
 pub(crate) fn is_misspelling(written: &str, name: &str) -> bool {
     name.len() >= 4
         && written.len() < LONGEST_NAME
-        && (strsim::damerau_levenshtein(written, name) <= 2 || has_another_unit(written, name))
+        && (differs_by_two(written, name) || has_another_unit(written, name))
+}
+
+/// Returns whether one or two letters differ. Names of other lengths need no comparison.
+fn differs_by_two(written: &str, name: &str) -> bool {
+    let [letters, own] = [written, name].map(|name| name.chars().count());
+    letters.abs_diff(own) <= 2 && strsim::damerau_levenshtein(written, name) <= 2
 }
 
 /// Returns whether the two names are of the same quantity in two units, which stand behind the last underscore: `speed_rpm` and

@@ -32,6 +32,7 @@ pub mod damage;
 mod error;
 mod error_table;
 mod keys;
+mod known;
 pub mod mesh;
 mod model;
 pub mod operation;

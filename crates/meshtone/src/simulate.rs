@@ -24,7 +24,7 @@ pub use machine::AssembledMachine;
 use measured::WantedChannels;
 use random_force::RandomForces;
 pub use wheels::MeshedPair;
-use wheels::{healthy_teeth, sound_pair};
+use wheels::{KnownDeviations, healthy_teeth, sound_pair};
 
 use crate::bearing::RollingBearing;
 use crate::damage::{DamagedTooth, ToothPart};
@@ -37,7 +37,7 @@ use crate::scenario::{Layout, MemoryLimit, Ripple, Scenario};
 use crate::sensor::{Channels, ContactFigures, Sensor, SignalSource};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, ModalMachine, MotionState, Output, Recorder, StepCounts};
-use crate::wheel::{Teeth, TipRelief, WheelDeviations, WheelName};
+use crate::wheel::{KnownProfiles, Teeth, TipRelief, WheelDeviations, WheelName};
 
 /// Results of every stage before the time loop, of any form of scenario: a pair is a train with one mesh.
 #[derive(Clone, PartialEq)]
@@ -169,17 +169,25 @@ pub fn stages(scenario: impl Into<Scenario>) -> Result<Stages, ScenarioError> {
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed - 1 }).is_err());
 /// ```
 pub fn stages_within(scenario: impl Into<Scenario>, limit: MemoryLimit) -> Result<Stages, ScenarioError> {
-    stages_with(scenario.into(), limit, &KnownModes::default())
+    stages_with(scenario.into(), limit, &KnownStages::default())
 }
 
-/// Does what [`stages_within`] does, with modes that are known already.
+/// What stages made of the same for earlier simulations.
+#[derive(Debug, Default)]
+pub(crate) struct KnownStages {
+    profiles: KnownProfiles,
+    deviations: KnownDeviations,
+    modes: KnownModes,
+}
+
+/// Does what [`stages_within`] does, with results of stages that are known already.
 ///
 /// Layout and teeth come first, as both models need them, and settling last, as it is of both; what lies between is either a machine
 /// around meshes or the published model. Faults get their severities only here, since the teeth of all meshes must be known for that.
 pub(crate) fn stages_with(
     scenario: Scenario,
     memory_limit: MemoryLimit,
-    known: &KnownModes,
+    known: &KnownStages,
 ) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
     let scenario = scenario.with_members();
@@ -189,12 +197,12 @@ pub(crate) fn stages_with(
     let layout = scenario.layout()?;
     let mut time = scenario.time_grid();
     clock.lap("scenario");
-    let teeth = healthy_teeth(scenario.model, &layout);
+    let teeth = healthy_teeth(scenario.model, &layout, &known.profiles);
     clock.lap("tooth profiles");
     let parts = if scenario.model.has_meshes() {
         machine_parts(&scenario, &layout, &time, teeth, known, &mut clock)?
     } else {
-        published_parts(&scenario, &layout, &time, teeth, &mut clock)?
+        published_parts(&scenario, &layout, &time, teeth, known, &mut clock)?
     };
     let Parts { pairs, overrun, meshes, bearings, equations, slowest_mode } = parts;
     let settle_tolerance = scenario.solver.settle_tolerance;
@@ -257,22 +265,23 @@ fn machine_parts(
     layout: &Layout,
     time: &TimeGrid,
     teeth: Vec<Teeth>,
-    known: &KnownModes,
+    known: &KnownStages,
     clock: &mut Clock,
 ) -> Result<Parts, ScenarioError> {
-    let (machine, bearings) = machine::assembled(scenario, layout, &teeth, known)?;
+    let (machine, bearings) = machine::assembled(scenario, layout, &teeth, &known.modes)?;
     let modal = machine.modal(scenario, &vec![0.0; teeth.len()]);
     let driven_mm: Vec<f64> = teeth.iter().map(|teeth| teeth.gear.base_radius_mm).collect();
     let forces_n = static_forces_n(Some(&modal), &driven_mm, scenario.operation.brake_torque_nm);
     clock.lap("equations of motion");
     let pairs: Vec<MeshedPair> = (teeth.into_iter().zip(forces_n).enumerate())
         .map(|(mesh, (teeth, force_n))| {
-            sound_pair(scenario, layout, time, mesh, teeth, force_n).damaged(scenario, layout, mesh)
+            sound_pair(scenario, layout, time, mesh, teeth, &known.deviations, force_n)
+                .damaged(scenario, layout, mesh)
         })
         .collect::<Result<_, _>>()?;
     let overrun = scenario.operation.overruns().then(|| {
         let layout = layout.overrun(scenario);
-        let teeth = healthy_teeth(scenario.model, &layout);
+        let teeth = healthy_teeth(scenario.model, &layout, &known.profiles);
         let pairs = pairs.iter().zip(teeth).map(|(pair, teeth)| pair.exchanged(teeth)).collect();
         Overrun { layout, pairs }
     });
@@ -299,10 +308,13 @@ fn published_parts(
     layout: &Layout,
     time: &TimeGrid,
     teeth: Vec<Teeth>,
+    known: &KnownStages,
     clock: &mut Clock,
 ) -> Result<Parts, ScenarioError> {
     let forces_n = static_forces_n(None, &[teeth[0].gear.base_radius_mm], scenario.operation.brake_torque_nm);
-    let sound = |(mesh, (teeth, force_n))| sound_pair(scenario, layout, time, mesh, teeth, force_n);
+    let sound = |(mesh, (teeth, force_n))| {
+        sound_pair(scenario, layout, time, mesh, teeth, &known.deviations, force_n)
+    };
     let mut pairs: Vec<MeshedPair> = teeth.into_iter().zip(forces_n).enumerate().map(sound).collect();
     clock.lap("profile errors");
     let MeshedPair { teeth, profile_errors, cycle, damaged, .. } = &mut pairs[0];

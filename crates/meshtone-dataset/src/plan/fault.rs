@@ -1,6 +1,8 @@
 //! The faults of a class: damaged teeth and spalls of rolling bearings, and where the scenarios of its records have them.
 
-use meshtone::scenario::{BearingDefect, Fault, Scenario, ScenarioError, ScenarioNumber, names_or_numbers};
+use meshtone::scenario::{
+    BearingDefect, Fault, NumberedScenario, Scenario, ScenarioError, ScenarioNumber, names_or_numbers,
+};
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::draw::is_of_plan;
@@ -94,7 +96,7 @@ fn bearing_names(gearbox: &Scenario) -> Vec<String> {
 /// * `base` - healthy
 /// * `faults` - of the class
 pub(crate) fn with_faults(base: &Scenario, faults: &[ClassFault]) -> Scenario {
-    FaultyBase::new(base, faults).scenario
+    FaultyBase::new(base, faults).scenario.scenario().clone()
 }
 
 /// Where the scenario of a record has a fault of its class.
@@ -113,7 +115,7 @@ pub(crate) enum FaultPlace {
 #[derive(Debug, Clone)]
 pub(crate) struct FaultyBase {
     /// The scenario.
-    pub scenario: Scenario,
+    pub scenario: NumberedScenario,
     /// Where it has each fault.
     pub places: Vec<FaultPlace>,
     /// The beginnings of each fault's keys in the plan and in the scenario.
@@ -133,12 +135,12 @@ impl FaultyBase {
         let places: Vec<FaultPlace> =
             faults.iter().filter_map(|fault| put_into(&mut scenario, &names, fault)).collect();
         let sections = sections(&scenario, &places);
-        Self { scenario, places, sections }
+        Self { scenario: NumberedScenario::new(scenario), places, sections }
     }
 
     /// All numbers of the scenario, by the plan's keys.
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        let mut numbers = self.scenario.numbers();
+        let mut numbers = self.scenario.scenario().numbers();
         for number in &mut numbers {
             number.key = renamed(&number.key, self.sections.iter().map(|[plan, scenario]| [scenario, plan]));
         }

@@ -392,6 +392,7 @@ impl<'a> View<'a> {
         let stages = self.simulated;
         // The same settings as those of the signals that the enhancement was tuned with.
         let angular = DifferenceChain::angular_settings(stages.scenario.model);
-        Ok(self.chain(&self.train())?.analyse(signal, 0, angular, MeanPart::Removed)?.parts.difference)
+        let (_, record) = self.chain(&self.train())?.analyse(signal, 0, angular, MeanPart::Removed)?;
+        Ok(record.parts.difference)
     }
 }

@@ -1,8 +1,9 @@
 //! From the channels of a record, simulated or recorded, to what a data set keeps of them.
 
 use meshtone::signal::{
-    AngularSettings, AntiAliasing, Edge, GearTrain, MeanPart, Record as Analysis, SeparationSettings,
-    ShaftPhase, SignalError, StatedTurning, TrainRecording, TrainSettings, TrainTurning, angular_resample,
+    AngleZero, AngularSettings, AngularSignal, AntiAliasing, Edge, GearTrain, MeanPart, Record as Analysis,
+    SeparationSettings, ShaftPhase, SignalError, StatedTurning, TrainRecording, TrainSettings, TrainTurning,
+    angular_resample,
 };
 
 use super::{Record, RecordAverage};
@@ -35,10 +36,15 @@ impl KeptChain<'_> {
         mut channels: Vec<Vec<f32>>,
     ) -> Result<(), SignalError> {
         let keep = self.keep;
+        let mut over_angle = None;
         if let Some(analysed) = analysed.filter(|_| keep.is_analysed()) {
-            let averages =
-                (0..keep.wheel.all().len()).map(|number| self.average(&channels[analysed], number));
-            record.averages = averages.collect::<Result<_, _>>()?;
+            for number in 0..keep.wheel.all().len() {
+                let (angular, average) = self.average(&channels[analysed], number)?;
+                record.averages.push(average);
+                // A planet's average begins elsewhere.
+                let is_first = number == 0 && self.phases[0].zero != AngleZero::Simulated;
+                over_angle = if is_first { Some((analysed, angular)) } else { over_angle };
+            }
         }
         channels.truncate(keep.channels.len());
         let recorded = |channel: &&mut Vec<f32>| !channel.is_empty();
@@ -55,15 +61,17 @@ impl KeptChain<'_> {
         if let Some(angle) = keep.over_angle {
             let speed_hz = record.wheels[self.number(&keep.wheel.all()[0])].speed_hz;
             record.sampling_rate_hz = angle.points_per_revolution as f64 * speed_hz;
-            for channel in channels.iter_mut().filter(recorded) {
-                *channel = self.over_angle(channel, angle)?;
+            for (number, channel) in channels.iter_mut().enumerate().filter(|(_, channel)| recorded(channel))
+            {
+                let known = over_angle.take_if(|(analysed, _)| number == *analysed);
+                *channel = self.over_angle(channel, angle, known.map(|(_, angular)| angular))?;
             }
         }
         record.channels = channels;
         Ok(())
     }
 
-    /// The results of the signal chain for one of the averaged wheels.
+    /// The analysed channel over the angle of one of the averaged wheels, and the results of the signal chain for that wheel.
     ///
     /// # Arguments
     /// * `signal` - the analysed channel
@@ -75,7 +83,7 @@ impl KeptChain<'_> {
         averaged: usize,
         angular: AngularSettings,
         mean: MeanPart,
-    ) -> Result<Analysis, SignalError> {
+    ) -> Result<(AngularSignal, Analysis), SignalError> {
         let number = self.number(&self.keep.wheel.all()[averaged]);
         let teeth = self.train.wheels[number].teeth;
         let separation = SeparationSettings {
@@ -93,10 +101,12 @@ impl KeptChain<'_> {
         let (signal, sampling_rate_hz) = (double(signal), self.keep.sampling_rate_hz);
         let recording =
             TrainRecording { signal: &signal, sampling_rate_hz, train: self.train, turning: &turning };
-        let records =
-            recording.process_one(number, &TrainSettings { angular, separation, revolutions: None })?.records;
+        let settings = TrainSettings { angular, separation, revolutions: None };
+        let angular = recording.angular(number, &settings.angular)?;
+        let records = recording.process_wheel(number, &angular, &settings)?.records;
         let needed = meshtone::signal::FEWEST_REVOLUTIONS;
-        records.into_iter().next().ok_or(SignalError::TooFewRevolutions { revolutions: 0.0, needed })
+        let record = records.into_iter().next();
+        Ok((angular, record.ok_or(SignalError::TooFewRevolutions { revolutions: 0.0, needed })?))
     }
 
     /// Number of a wheel of the plan in the machine.
@@ -104,9 +114,14 @@ impl KeptChain<'_> {
         self.train.wheels.iter().position(|known| known.name == wheel).unwrap_or(0)
     }
 
-    /// What a channel shows over the revolutions of an averaged wheel.
-    fn average(&self, signal: &[f32], averaged: usize) -> Result<RecordAverage, SignalError> {
-        let analysis = self.analyse(signal, averaged, AngularSettings::default(), MeanPart::default())?;
+    /// A channel over the angle of an averaged wheel, and what it shows over the wheel's revolutions.
+    fn average(
+        &self,
+        signal: &[f32],
+        averaged: usize,
+    ) -> Result<(AngularSignal, RecordAverage), SignalError> {
+        let (angular, analysis) =
+            self.analyse(signal, averaged, AngularSettings::default(), MeanPart::default())?;
         let mut kept = RecordAverage { warnings: analysis.warnings, ..RecordAverage::default() };
         if self.keep.average {
             kept.average = self.of_revolution(&analysis.average.values)?;
@@ -117,7 +132,7 @@ impl KeptChain<'_> {
         if self.keep.indicators {
             kept.indicators = analysis.indicators.table("g");
         }
-        Ok(kept)
+        Ok((angular, kept))
     }
 
     /// A signal over one revolution, with as many values as are asked for.
@@ -130,12 +145,23 @@ impl KeptChain<'_> {
     }
 
     /// A channel over whole revolutions of the first averaged wheel, from the first one on.
-    fn over_angle(&self, signal: &[f32], angle: OverAngle) -> Result<Vec<f32>, SignalError> {
+    ///
+    /// # Arguments
+    /// * `signal` - the channel
+    /// * `angle` - what is kept of it
+    /// * `known` - the channel over the wheel's angle, where that is known
+    fn over_angle(
+        &self,
+        signal: &[f32],
+        angle: OverAngle,
+        known: Option<AngularSignal>,
+    ) -> Result<Vec<f32>, SignalError> {
         // The chain refuses a constant channel.
         if let Some(&first) = signal.first().filter(|first| signal.iter().all(|x| x == *first)) {
             return Ok(vec![first; angle.values()]);
         }
-        let angular = angular_resample(&double(signal), &self.phases[0], &AngularSettings::default())?;
+        let resampled = || angular_resample(&double(signal), &self.phases[0], &AngularSettings::default());
+        let angular = known.map_or_else(resampled, Ok)?;
         if angular.revolutions() < angle.revolutions {
             let what = "revolutions of a record for keep.revolutions";
             let (given, needed) = (angular.revolutions(), angle.revolutions);

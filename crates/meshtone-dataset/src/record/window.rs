@@ -75,7 +75,7 @@ fn margin(
     turning: &Turning,
     time: &TimeGrid,
 ) -> Result<usize, SignalError> {
-    let reach = AntiAliasing::steep(time.sampling_rate_hz, keep.sampling_rate_hz)?.reach();
+    let reach = AntiAliasing::steep_reach(time.sampling_rate_hz, keep.sampling_rate_hz)?;
     let simulated = keep.simulated();
     let is_read = |name: &str| simulated.contains(&Channel::Sensor(name.to_owned()));
     let sensors = scenario.sensors.iter().filter(|sensor| is_read(&sensor.name()));

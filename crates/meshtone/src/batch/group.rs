@@ -2,11 +2,10 @@
 
 use super::keep::Keep;
 use crate::error::Error;
-use crate::machine::KnownModes;
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::simd::InstructionSet;
 use crate::simulate::random_force::WithMeshForces;
-use crate::simulate::{Stages, stages_with};
+use crate::simulate::{KnownStages, Stages, stages_with};
 use crate::solver::{LANES, Output, Problem, Recorder, integrate_side_by_side};
 
 /// A scenario and its number.
@@ -28,7 +27,7 @@ struct Ready<R> {
 pub(super) fn simulate_group<K: Keep>(
     scenarios: Vec<Numbered>,
     keep: &K,
-    known: &KnownModes,
+    known: &KnownStages,
     instructions: InstructionSet,
 ) -> Vec<NumberedResult<K::Kept>> {
     let mut results = Vec::with_capacity(scenarios.len());

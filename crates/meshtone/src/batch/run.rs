@@ -8,9 +8,9 @@ use super::group::{Numbered, NumberedResult, simulate_group};
 use super::keep::Keep;
 use super::plan::groups;
 use crate::error::Error;
-use crate::machine::KnownModes;
 use crate::scenario::Scenario;
 use crate::simd::InstructionSet;
+use crate::simulate::KnownStages;
 use crate::solver::LANES;
 use crate::threads;
 
@@ -88,7 +88,7 @@ pub fn simulate_many<K: Keep>(
         finished: Mutex::new(0),
         panicked: AtomicBool::new(false),
         keep,
-        known: KnownModes::default(),
+        known: KnownStages::default(),
         control,
         threads: threads::count(),
     };
@@ -103,8 +103,8 @@ struct Work<'a, K: Keep, I, F> {
     /// A thread has panicked: what it had in flight never arrives.
     panicked: AtomicBool,
     keep: &'a K,
-    /// Modes of machines of the same masses and springs.
-    known: KnownModes,
+    /// What the simulations have in common.
+    known: KnownStages,
     control: &'a Control<'a>,
     threads: usize,
 }

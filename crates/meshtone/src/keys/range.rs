@@ -1,5 +1,6 @@
 //! The range of numbers that a key may have.
 
+use std::fmt::Arguments;
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 use std::ops::RangeBounds;
 
@@ -70,7 +71,7 @@ impl Range {
     /// * `value` - the number
     /// * `written` - the number as the message has it
     /// * `unit` - its unit
-    pub fn check(&self, key: &str, value: f64, written: &str, unit: &str) -> Check {
+    pub fn check(&self, key: &str, value: f64, written: Arguments<'_>, unit: &str) -> Check {
         let refused = |problem: String| ScenarioError::new(key, written, problem);
         if !value.is_finite() {
             return Err(refuse(key, value, "must be a finite number"));

@@ -8,6 +8,7 @@ use super::files::NumberFiles;
 use super::range::Range;
 use super::table::{Keys, check_keys, describe_from, read_keys, written_pairs};
 use super::text::{array, inline_table, number};
+use crate::error::ScenarioError;
 
 /// Written form of a key's value.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +65,7 @@ impl KeyValue for f64 {
     }
 
     fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
-        range.check(key, *self, &format!("{self:?}"), unit)
+        range.check(key, *self, format_args!("{self:?}"), unit)
     }
 
     fn kind() -> KeyKind {
@@ -86,7 +87,7 @@ macro_rules! whole_numbers {
             }
 
             fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
-                range.check(key, *self as f64, &self.to_string(), unit)
+                range.check(key, *self as f64, format_args!("{self}"), unit)
             }
 
             fn kind() -> KeyKind {
@@ -119,7 +120,8 @@ impl<const N: usize> KeyValue for [f64; N] {
 /// Each number of an array, under its place in it.
 fn check_entries(entries: &[f64], key: &str, range: &Range, unit: &str) -> Check {
     let mut entries = entries.iter().enumerate();
-    entries.try_for_each(|(index, entry)| entry.check(&format!("{key}[{index}]"), range, unit))
+    let named = |index, error| ScenarioError { key: format!("{key}[{index}]"), ..error };
+    entries.try_for_each(|(index, entry)| entry.check(key, range, unit).map_err(|error| named(index, error)))
 }
 
 /// A list whose length other keys state.

@@ -1,11 +1,11 @@
 //! Undamped modes of a machine, and their damping.
 
 use std::f64::consts::TAU;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::parts::{Machine, Spring};
+use crate::known::Known;
 
 /// Modes of a machine without its meshes, in rising order, in turned coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,48 +107,8 @@ impl Modes {
     }
 }
 
-/// Modes that several simulations of the same machine share.
-#[derive(Debug, Default)]
-pub(crate) struct KnownModes(Mutex<Vec<Arc<KnownMachine>>>);
-
-#[derive(Debug)]
-struct KnownMachine {
-    mass: DMatrix<f64>,
-    springs: Vec<Spring>,
-    /// Computed by the first thread that asks for them, while the others wait.
-    modes: OnceLock<Arc<Modes>>,
-}
-
-/// Machines whose modes are kept.
-const MOST_KNOWN: usize = 8;
-
-impl KnownModes {
-    /// [`Modes::damped_by_springs`], computed only once of machines with the same masses and springs.
-    ///
-    /// # Arguments
-    /// * `machine` - the machine
-    pub(crate) fn damped_by_springs(&self, machine: &Machine) -> Arc<Modes> {
-        let entry = self.entry(machine);
-        entry.modes.get_or_init(|| Arc::new(Modes::damped_by_springs(machine))).clone()
-    }
-
-    /// The entry of a machine, made where there is none.
-    fn entry(&self, machine: &Machine) -> Arc<KnownMachine> {
-        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_same =
-            |known: &&Arc<KnownMachine>| known.mass == machine.mass && known.springs == machine.springs;
-        if let Some(known) = all.iter().find(is_same) {
-            return known.clone();
-        }
-        if all.len() >= MOST_KNOWN {
-            all.remove(0);
-        }
-        let (mass, springs) = (machine.mass.clone(), machine.springs.clone());
-        let entry = Arc::new(KnownMachine { mass, springs, modes: OnceLock::new() });
-        all.push(entry.clone());
-        entry
-    }
-}
+/// Modes of machines, by their masses and springs.
+pub(crate) type KnownModes = Known<(DMatrix<f64>, Vec<Spring>), Modes, 8>;
 
 /// Part of the largest eigenvalue of connected coordinates below which another is rounding, as that of a shaft that turns freely.
 const ROUNDING_OF_EIGENVALUES: f64 = 1e-13;
@@ -257,51 +217,4 @@ pub(crate) fn connected_groups(
         groups.push(group);
     }
     groups
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A chain of masses on springs.
-    fn chain(mass_kg: f64) -> Machine {
-        let stiffness = DMatrix::from_fn(20, 20, |r, c| match r.abs_diff(c) {
-            0 => 2e8,
-            1 => -1e8,
-            _ => 0.0,
-        });
-        Machine {
-            names: vec!["x".into(); 20],
-            mass: DMatrix::identity(20, 20) * mass_kg,
-            turn: DMatrix::identity(20, 20),
-            springs: vec![Spring { stiffness, damping_ratio: 0.02 }],
-            lines: Vec::new(),
-            bearings: Vec::new(),
-            turning_forces: Vec::new(),
-            spinning: Vec::new(),
-            drives: Vec::new(),
-            places: Vec::new(),
-            rigid_rotation: DVector::zeros(20),
-        }
-    }
-
-    #[test]
-    fn modes_of_a_machine_are_computed_once() {
-        let known = KnownModes::default();
-        let ask = |mass_kg: f64| known.damped_by_springs(&chain(mass_kg));
-        // Threads that ask at the same time get the one that the first of them computes.
-        let asked: Vec<Arc<Modes>> = std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| ask(1.0))).collect();
-            threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
-        });
-        assert_eq!(asked.len(), 8);
-        assert!(asked.iter().all(|modes| Arc::ptr_eq(modes, &asked[0])));
-        assert_eq!(*asked[0], Modes::damped_by_springs(&chain(1.0)));
-        // Another machine has its own, and many of them push the first one out.
-        assert_ne!(ask(2.0).angular_frequencies, asked[0].angular_frequencies);
-        (3..=2 + MOST_KNOWN).for_each(|mass_kg| drop(ask(mass_kg as f64)));
-        assert!(known.0.lock().is_ok_and(|all| all.len() == MOST_KNOWN));
-        assert!(!Arc::ptr_eq(&ask(1.0), &asked[0]));
-        assert_eq!(ask(1.0), asked[0]);
-    }
 }

@@ -1,5 +1,7 @@
 //! Teeth as the published code has them.
 
+use std::sync::Arc;
+
 use crate::interpolation::{NaturalSpline, Pchip};
 use crate::wheel::{
     ContactLine, Gears, Root, Teeth, TipRelief, ToothProfile, Wheel, WheelName, tooth_profile,
@@ -24,18 +26,14 @@ pub fn relieved_teeth(gears: &Gears, bore_radii_mm: [f64; 2], relief: Option<Tip
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
     let profile = |wheel: &Wheel| {
-        tooth_profile(
-            wheel,
-            gears.points_per_tooth,
-            gears.uniform_flank_reduction_mm,
-            relief,
-            Root::Published(joint(wheel)),
-        )
+        let root = Root::Published(joint(wheel));
+        let (points, reduction_mm) = (gears.points_per_tooth, gears.uniform_flank_reduction_mm);
+        Arc::new(tooth_profile(wheel, points, reduction_mm, relief, root))
     };
     let own = Teeth::with_profiles(gears, [pinion, gear], profile);
     let contact =
         ContactLine { pinion_initial_contact_index: own.contact.initial_contact_index, ..own.contact };
-    Teeth { pinion_profile: resampled(&own.pinion_profile, &own.contact), contact, ..own }
+    Teeth { pinion_profile: Arc::new(resampled(&own.pinion_profile, &own.contact)), contact, ..own }
 }
 
 impl ContactLine {

@@ -1,5 +1,7 @@
 //! Single numbers of a scenario, by the names of their keys.
 
+use std::sync::OnceLock;
+
 use toml::{Table, Value};
 
 use super::{Scenario, ScenarioError, Sensor};
@@ -150,6 +152,39 @@ fn parsed(text: &str) -> Result<Table, ScenarioError> {
     text.parse().map_err(|error: toml::de::Error| ScenarioError::new("", "", error.message()))
 }
 
+/// A scenario in which numbers are set many times.
+#[derive(Debug, Clone)]
+pub struct NumberedScenario {
+    scenario: Scenario,
+    /// Its file, made when it is needed first.
+    table: OnceLock<Result<Table, ScenarioError>>,
+}
+
+impl NumberedScenario {
+    /// # Arguments
+    /// * `scenario` - in which numbers will be set
+    pub fn new(scenario: Scenario) -> Self {
+        Self { scenario, table: OnceLock::new() }
+    }
+
+    /// The scenario as it was.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// Does what [`Scenario::with_numbers`] does.
+    ///
+    /// # Arguments
+    /// * `numbers` - dotted key, as in the file, and value in the key's unit
+    ///
+    /// # Errors
+    /// Those of [`Scenario::with_numbers`].
+    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Scenario, ScenarioError> {
+        let table = self.table.get_or_init(|| self.scenario.table()).clone();
+        self.scenario.changed(with_numbers_that(table, numbers, no_such_number)?)
+    }
+}
+
 impl Scenario {
     /// The number at a key of the scenario file, defaults included.
     ///
@@ -216,7 +251,7 @@ impl Scenario {
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
-        self.changed(with_numbers_that(self.table(), numbers, no_such_number)?)
+        NumberedScenario::new(self.clone()).with_numbers(numbers)
     }
 
     /// Does what [`Self::with_numbers`] does, but numbers at keys that this scenario does not have, such as another fault's, are left out.
@@ -235,6 +270,9 @@ impl Scenario {
         let Some(text) = text else { return Ok(self.clone()) };
         // A line of this text is no line that anybody has written.
         let mut changed = Self::from_toml(&text).map_err(|error| error.at_line(None))?;
+        if self.wheels.iter().all(|wheel| wheel.profile_errors_mm.is_none()) {
+            return Ok(changed);
+        }
         // Not part of the text's table.
         for (wheel, before) in changed.wheels.iter_mut().zip(&self.wheels) {
             wheel.profile_errors_mm.clone_from(&before.profile_errors_mm);

@@ -1,6 +1,7 @@
 //! Reading signals at any places behind an anti-aliasing filter.
 
-use std::sync::LazyLock;
+use std::cell::RefCell;
+use std::sync::{Arc, LazyLock};
 
 use super::check::check_positive;
 use super::filter_bank::{BankPosition, FilterBank, SincCurve};
@@ -15,6 +16,8 @@ static CURVE: LazyLock<SincCurve> = LazyLock::new(|| SincCurve::new(ZERO_CROSSIN
 static STEEP_CURVE: LazyLock<SincCurve> = LazyLock::new(|| SincCurve::new(23, 7.857));
 /// (-) Its cutoff over half the lower rate: the middle of the transition from 0.8 to 1.
 const STEEP_CUTOFF: f64 = 0.9;
+/// Steep filters that a thread keeps: records of a data set are read with few ratios of rates beside their own.
+const KEPT: usize = 4;
 
 /// A low-pass filter at half the lower of two sampling rates, whatever their ratio, that reads signals in single precision at
 /// any places.
@@ -23,7 +26,7 @@ const STEEP_CUTOFF: f64 = 0.9;
 /// half that rate, and below 0.2 % from 1.2 of it on. The ratio of the rates need not be one of whole numbers.
 #[derive(Debug, Clone)]
 pub struct AntiAliasing {
-    bank: FilterBank,
+    bank: Arc<FilterBank>,
     /// Samples on each side of a place.
     reach: usize,
     /// Rows of taps from one sample to the next.
@@ -78,7 +81,34 @@ impl AntiAliasing {
     /// # Ok::<(), meshtone::signal::SignalError>(())
     /// ```
     pub fn steep(from_hz: f64, to_hz: f64) -> Result<Self, SignalError> {
-        Ok(Self::of_curve(&STEEP_CURVE, rate_of(from_hz, to_hz)? / STEEP_CUTOFF))
+        thread_local! {
+            static LAST: RefCell<Vec<(f64, AntiAliasing)>> = const { RefCell::new(Vec::new()) };
+        }
+        let rate = rate_of(from_hz, to_hz)? / STEEP_CUTOFF;
+        // Below, a bank has 0.2 MB at any rate.
+        if rate > ROW_STEPS {
+            return Ok(Self::of_curve(&STEEP_CURVE, rate));
+        }
+        LAST.with_borrow_mut(|last| {
+            let known = last.iter().position(|(of, _)| *of == rate);
+            let filter =
+                known.map_or_else(|| Self::of_curve(&STEEP_CURVE, rate), |place| last.remove(place).1);
+            // The one that was used longest ago gives way.
+            last.truncate(KEPT - 1);
+            last.insert(0, (rate, filter.clone()));
+            Ok(filter)
+        })
+    }
+
+    /// [`Self::reach`] of the steep filter for two rates.
+    ///
+    /// # Arguments
+    /// * `from_hz`, `to_hz` - (S/s) as for [`Self::new`]
+    ///
+    /// # Errors
+    /// Those of [`Self::new`].
+    pub fn steep_reach(from_hz: f64, to_hz: f64) -> Result<usize, SignalError> {
+        Ok(FilterBank::reach(&STEEP_CURVE, rate_of(from_hz, to_hz)? / STEEP_CUTOFF))
     }
 
     /// Samples of the signal on each side of a place that its value depends on.
@@ -91,7 +121,8 @@ impl AntiAliasing {
     /// * `rate` - (-) samples of the signal from one of its zero crossings to the next
     fn of_curve(curve: &SincCurve, rate: f64) -> Self {
         let steps = (ROW_STEPS / rate).ceil() as usize;
-        Self { bank: FilterBank::low_pass(curve, rate, steps), reach: FilterBank::reach(curve, rate), steps }
+        let bank = Arc::new(FilterBank::low_pass(curve, rate, steps));
+        Self { bank, reach: FilterBank::reach(curve, rate), steps }
     }
 
     /// Reads signals of one length at places between their samples.

@@ -361,8 +361,16 @@ impl TrainRecording<'_> {
         self.process_wheel(wheel, &self.angular(wheel, &settings.angular)?, settings)
     }
 
-    /// The records of a wheel.
-    fn process_wheel(
+    /// Does what [`Self::process_one`] does with the channel over the angle of the wheel.
+    ///
+    /// # Arguments
+    /// * `wheel` - its number
+    /// * `angular` - of [`Self::angular`] with the same settings
+    /// * `settings` - how
+    ///
+    /// # Errors
+    /// Those of [`Self::process_one`].
+    pub fn process_wheel(
         &self,
         wheel: usize,
         angular: &AngularSignal,

@@ -4,7 +4,7 @@ use super::healthy_teeth;
 use crate::damage::{Damage, Fault};
 use crate::error::ScenarioError;
 use crate::scenario::Scenario;
-use crate::wheel::Teeth;
+use crate::wheel::{KnownProfiles, Teeth};
 
 impl Scenario {
     /// (-) How severe each fault is, from 0, none, to 1, the largest that the tooth allows: as given, or by its sizes.
@@ -48,7 +48,9 @@ impl Scenario {
         let honoured = self.without_ignored_keys();
         let (layout, faults) = (honoured.layout()?, self.placed_faults());
         let mut answers: Vec<T> = faults.iter().map(|_| T::default()).collect();
-        for (mesh, teeth) in healthy_teeth(honoured.model, &layout).into_iter().enumerate() {
+        for (mesh, teeth) in
+            healthy_teeth(honoured.model, &layout, &KnownProfiles::default()).into_iter().enumerate()
+        {
             for (number, fault) in layout.faults_of_mesh(&faults, mesh) {
                 answers[number] = ask(&fault, &teeth);
             }

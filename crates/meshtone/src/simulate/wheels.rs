@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use crate::damage::{DamagedTooth, Fault, damaged_teeth_of_file};
 use crate::error::ScenarioError;
+use crate::known::Known;
 use crate::mesh::HelixWobble;
 use crate::operation::{CycleGrid, TimeGrid};
 use crate::published;
@@ -11,7 +12,8 @@ use crate::random::{Draws, Purpose};
 use crate::scenario::{Layout, Model, Scenario};
 use crate::wheel::quality::{deviations, profile_errors};
 use crate::wheel::{
-    Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Teeth, WheelName, teeth,
+    Deviations, ERROR_POINTS, ErrorTable, Gears, KnownProfiles, ProfileErrors, Quality, RunOut, Teeth, Wheel,
+    WheelName, teeth_of_known,
 };
 
 /// Two wheels in mesh: what the stages before the mesh make of them.
@@ -47,8 +49,12 @@ pub struct MeshedPair {
 /// # Arguments
 /// * `model` - of the scenario
 /// * `layout` - its gears, and the bores of its wheels
-pub(super) fn healthy_teeth(model: Model, layout: &Layout) -> Vec<Teeth> {
-    let of_mesh = if model.has_meshes() { teeth } else { published::teeth };
+/// * `known` - profiles that are known already
+pub(super) fn healthy_teeth(model: Model, layout: &Layout, known: &KnownProfiles) -> Vec<Teeth> {
+    let of_mesh = |gears: &Gears, bores_mm| match model.has_meshes() {
+        true => teeth_of_known(gears, bores_mm, known),
+        false => published::teeth(gears, bores_mm),
+    };
     let bores_mm = layout.wheels_of_mesh.iter().map(|wheels| wheels.map(|wheel| layout.bore_radii_mm[wheel]));
     layout.gears.iter().zip(bores_mm).map(|(gears, bores_mm)| of_mesh(gears, bores_mm)).collect()
 }
@@ -59,6 +65,7 @@ pub(super) fn healthy_teeth(model: Model, layout: &Layout) -> Vec<Teeth> {
 /// * `scenario`, `layout`, `time` - what is simulated, how it stands and turns, and its division of time
 /// * `mesh` - number of the mesh
 /// * `teeth` - its healthy teeth
+/// * `known` - deviations that are known already
 /// * `static_force_n` - (N) force that holds the brake's nominal torque
 pub(super) fn sound_pair(
     scenario: &Scenario,
@@ -66,12 +73,13 @@ pub(super) fn sound_pair(
     time: &TimeGrid,
     mesh: usize,
     teeth: Teeth,
+    known: &KnownDeviations,
     static_force_n: f64,
 ) -> MeshedPair {
     let gears = &layout.gears[mesh];
     let numbers = layout.wheels_of_mesh[mesh];
     let Deviations { flanks: profile_errors, run_out, helix_slope_um } = if scenario.model.has_meshes() {
-        of_both(scenario, layout, mesh, &teeth)
+        of_both(scenario, layout, mesh, &teeth, known)
     } else {
         // The published code knows profile errors only.
         let flanks = profile_errors(&scenario.quality(), &teeth, scenario.seed);
@@ -156,24 +164,37 @@ impl MeshedPair {
     }
 }
 
+/// Deviations, by quality and seed of both wheels, the wheels, and the radii at which contact begins: of the units of a data set, at 50 kB each.
+pub(super) type KnownDeviations = Known<([(Quality, u64); 2], [(Wheel, f64); 2]), Deviations, 128>;
+
 /// The deviations of a mesh's wheels, each drawn with its seed: a wheel in two meshes has the same in both.
-fn of_both(scenario: &Scenario, layout: &Layout, mesh: usize, teeth: &Teeth) -> Deviations {
+fn of_both(
+    scenario: &Scenario,
+    layout: &Layout,
+    mesh: usize,
+    teeth: &Teeth,
+    known: &KnownDeviations,
+) -> Deviations {
     let numbers = layout.wheels_of_mesh[mesh];
     let draws = WheelName::BOTH.map(|side| {
         let seed = scenario.seed_of_wheel(numbers[side as usize]);
         (layout.quality_of_mesh(scenario, mesh, side), seed)
     });
-    let draw = |(quality, seed): &(Quality, u64)| deviations(quality, teeth, *seed);
-    let pinion = draw(&draws[0]);
-    if draws[0] == draws[1] {
-        return pinion;
-    }
-    let gear = draw(&draws[1]);
-    Deviations {
-        run_out: [pinion.run_out[0], gear.run_out[1]],
-        helix_slope_um: [pinion.helix_slope_um[0], gear.helix_slope_um[1]],
-        flanks: joined(pinion.flanks, gear.flanks, teeth),
-    }
+    let wheels = WheelName::BOTH.map(|side| (*teeth.wheel(side), teeth.initial_contact_radius_mm(side)));
+    let drawn = known.get((draws, wheels), |(draws, _)| {
+        let draw = |(quality, seed): &(Quality, u64)| deviations(quality, teeth, *seed);
+        let pinion = draw(&draws[0]);
+        if draws[0] == draws[1] {
+            return pinion;
+        }
+        let gear = draw(&draws[1]);
+        Deviations {
+            run_out: [pinion.run_out[0], gear.run_out[1]],
+            helix_slope_um: [pinion.helix_slope_um[0], gear.helix_slope_um[1]],
+            flanks: joined(pinion.flanks, gear.flanks, teeth),
+        }
+    });
+    Deviations::clone(&drawn)
 }
 
 /// The pinion's errors of one draw and the gear's of another; ideal where one has none.

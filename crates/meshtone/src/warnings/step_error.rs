@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::ops::Range;
+use std::ops::{Index, Range};
 
 use crate::error::Error;
 use crate::machine::{Axis, PINION_SUPPORT};
@@ -186,35 +186,43 @@ fn estimate(stages: &Stages, signals: [&WheelTurnSums; 2]) -> f64 {
 /// * `machine` - with the signals' sensors
 /// * `lines` - the sines of all signals
 /// * `powers` - mean square of each signal
-fn growth(machine: &MeanMachine, lines: impl Iterator<Item = Line>, powers: &[f64]) -> f64 {
+fn growth<P: Index<usize, Output = f64>>(
+    machine: &MeanMachine,
+    lines: impl Iterator<Item = Line<P>>,
+    powers: &[f64],
+) -> f64 {
     let mut gained = vec![0.0; powers.len()];
     let mut known: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
+    // Of most lines the nearest place is that of the line before.
+    let (mut nearest, mut most) = (None, vec![0.0_f64; powers.len()]);
     for line in lines {
-        let counts = |&n: &usize| powers[n] > ROUNDING * ROUNDING && line.powers[n] > LEAST_PART * powers[n];
-        let counted: Vec<usize> = (0..powers.len()).filter(counts).collect();
-        if counted.is_empty() {
+        let counts =
+            |n: &usize| powers[*n] > ROUNDING * ROUNDING && line.powers[*n] > LEAST_PART * powers[*n];
+        if !(0..powers.len()).any(|n| counts(&n)) {
             continue;
         }
-        let nearest = (line.frequency_hz.ln() / APART.ln_1p()).round() as i64;
-        let near = nearest - NEAR..=nearest + NEAR;
-        for place in near.clone() {
-            let frequency_hz = || (place as f64 * APART.ln_1p()).exp();
-            known.entry(place).or_insert_with(|| machine.squared_growth(TAU * frequency_hz()));
+        let place = (line.frequency_hz.ln() / APART.ln_1p()).round() as i64;
+        if nearest.replace(place) != Some(place) {
+            most.fill(0.0);
+            for near in place - NEAR..=place + NEAR {
+                let frequency_hz = || (near as f64 * APART.ln_1p()).exp();
+                let growths =
+                    known.entry(near).or_insert_with(|| machine.squared_growth(TAU * frequency_hz()));
+                most.iter_mut().zip(growths).for_each(|(most, of)| *most = most.max((*of - 1.0).abs()));
+            }
         }
-        for n in counted {
-            let growths = known.range(near.clone()).map(|(_, growth)| (growth[n] - 1.0).abs());
-            let most = growths.fold(0.0, f64::max);
-            gained[n] += line.powers[n] / powers[n] * most;
+        for n in (0..powers.len()).filter(counts) {
+            gained[n] += line.powers[n] / powers[n] * most[n];
         }
     }
     gained.into_iter().map(|gained| (1.0 + gained).sqrt() - 1.0).fold(0.0, f64::max)
 }
 
 /// A sine of some signals.
-struct Line {
+struct Line<P> {
     frequency_hz: f64,
     /// Its mean square in each.
-    powers: Vec<f64>,
+    powers: P,
 }
 
 /// The error of the step by its signals themselves: by its plain sensors and the forces of its meshes, whose spectra have the lines.
@@ -230,8 +238,9 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
         frequency_hz: index as f64 * resolution_hz,
         powers: spectra.iter().map(|spectrum| spectrum[index]).collect(),
     };
-    let is_strong =
-        |line: &Line| line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole);
+    let is_strong = |line: &Line<Vec<f64>>| {
+        line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole)
+    };
     let lines = (1..channels.len().div_ceil(2)).map(line).filter(is_strong);
     let plain = stages.sensors.iter().filter(|sensor| is_plain(sensor));
     let sensors: Vec<_> = plain.map(|sensor| (sensor.name().into(), sensor.direction.axis())).collect();
@@ -339,7 +348,7 @@ fn power_spectrum(values: &[f64]) -> Vec<f64> {
 }
 
 /// The sines of acceleration and force that repeat with every turn of the gear, and those that do with the pinion's.
-fn lines(stages: &Stages, signals: [&WheelTurnSums; 2]) -> impl Iterator<Item = Line> {
+fn lines(stages: &Stages, signals: [&WheelTurnSums; 2]) -> impl Iterator<Item = Line<[f64; 2]>> {
     let Gears { pinion_teeth: pinion, gear_teeth: gear, .. } = stages.layout.gears[0];
     let speed_hz = stages.scenario.operation.pinion_speed_hz;
     // Orders of the pinion that are orders of the gear too.
@@ -348,7 +357,7 @@ fn lines(stages: &Stages, signals: [&WheelTurnSums; 2]) -> impl Iterator<Item = 
     let of_wheel = |turns: [&TurnSum; 2], shaft_hz: f64| {
         let [acceleration, force] = turns.map(orders);
         acceleration.zip(force).map(move |((order, acceleration), (_, force))| {
-            (order, Line { frequency_hz: order as f64 * shaft_hz, powers: vec![acceleration, force] })
+            (order, Line { frequency_hz: order as f64 * shaft_hz, powers: [acceleration, force] })
         })
     };
     let of_gear = of_wheel(signals.map(|signal| &signal.of_gear), gear_speed_hz);

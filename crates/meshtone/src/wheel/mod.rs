@@ -38,6 +38,14 @@ pub use quality::{
 pub use radii::Wheel;
 pub(crate) use rules::{HALF_THICKNESS, unused_slices};
 
+use std::sync::Arc;
+
+use crate::known::Known;
+
+/// Profiles, by the section's wheel without what they do not depend on, the number of points and the uniform reduction: of all pairs of tooth
+/// counts and modules of a data set, at 0.24 MB each.
+pub(crate) type KnownProfiles = Known<(Wheel, usize, f64), ToothProfile, 48>;
+
 /// Both wheels with their teeth, ready to mesh.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -51,9 +59,9 @@ pub struct Teeth {
     /// The same of the gear.
     pub gear_section: Wheel,
     /// Profile of a healthy pinion tooth, of helical wheels in the normal section.
-    pub pinion_profile: ToothProfile,
+    pub pinion_profile: Arc<ToothProfile>,
     /// Profile of a healthy gear tooth, likewise.
-    pub gear_profile: ToothProfile,
+    pub gear_profile: Arc<ToothProfile>,
     /// Points along the profiles at which the teeth touch.
     pub contact: ContactLine,
     /// The path along which conjugate flanks touch.
@@ -209,11 +217,19 @@ impl Teeth {
 ///
 /// Source: paper, stage 2.
 pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2]) -> Teeth {
+    teeth_of_known(gears, bore_radii_mm, &KnownProfiles::default())
+}
+
+/// Does what [`teeth`] does, with profiles that are known already.
+pub(crate) fn teeth_of_known(gears: &Gears, bore_radii_mm: [f64; 2], known: &KnownProfiles) -> Teeth {
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
     // A relief that thins the tip by half its thickness would leave nothing to touch: it is the published model's alone.
     let profile = |wheel: &Wheel| {
-        tooth_profile(wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm, None, Root::Arc)
+        let wheel = Wheel { face_width_mm: 0.0, bore_radius_mm: 0.0, ..*wheel };
+        known.get((wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm), |key| {
+            tooth_profile(&key.0, key.1, key.2, None, Root::Arc)
+        })
     };
     Teeth::with_profiles(gears, [pinion, gear], profile)
 }
@@ -228,7 +244,7 @@ impl Teeth {
     pub(crate) fn with_profiles(
         gears: &Gears,
         [pinion, gear]: [Wheel; 2],
-        profile: impl Fn(&Wheel) -> ToothProfile,
+        profile: impl Fn(&Wheel) -> Arc<ToothProfile>,
     ) -> Self {
         let section = |wheel: &Wheel| wheel.normal_section(gears.pressure_angle_deg.to_radians());
         let (pinion_section, gear_section) = (section(&pinion), section(&gear));

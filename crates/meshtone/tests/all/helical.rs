@@ -51,7 +51,7 @@ fn with_former_foundation(scenario: &Scenario) -> Stages {
     let profile = |section: &Wheel| tooth_profile(section, points, 0.0, None, Root::Published(None));
     let teeth = &mut stages.pairs[0].teeth;
     (teeth.pinion_profile, teeth.gear_profile) =
-        (profile(&teeth.pinion_section), profile(&teeth.gear_section));
+        (profile(&teeth.pinion_section).into(), profile(&teeth.gear_section).into());
     stages
 }
 
