@@ -12,9 +12,9 @@ pub use rustfft::num_complex::Complex64;
 
 /// The longest of the short signals: averages, turns of a wheel.
 const LONGEST_SHORT: usize = 1 << 17;
-/// Lengths of short signals whose plans are kept: of an average, of a turn of either wheel, and some that signals of other lengths
-/// are padded to, see [`shared_length`].
-const SHORT_LENGTHS: usize = 8;
+/// Lengths of the short signals whose plans are kept, added up: of an average, of a turn of either wheel, and some that signals of other
+/// lengths are padded to, see [`shared_length`].
+const KEPT_IN_ALL: usize = 2 * LONGEST_SHORT;
 /// The longest signal whose plans are kept; of a longer one they would hold more than some 20 MB in every thread.
 const LONGEST_KEPT: usize = 1 << 19;
 
@@ -41,14 +41,18 @@ fn plan<P>(len: usize, make: impl FnOnce(&mut Planners) -> P) -> P {
     if len > LONGEST_KEPT {
         return make(&mut Planners::new(len));
     }
-    let (last, lengths) = if len > LONGEST_SHORT { (&LAST_LONG, 1) } else { (&LAST_SHORT, SHORT_LENGTHS) };
+    let (last, most) = if len > LONGEST_SHORT { (&LAST_LONG, len) } else { (&LAST_SHORT, KEPT_IN_ALL) };
     last.with_borrow_mut(|last| {
         let known = last.iter().position(|planners| planners.len == len);
         let mut planners = known.map_or_else(|| Planners::new(len), |place| last.remove(place));
         let plan = make(&mut planners);
-        // The one that was used longest ago gives way.
-        last.truncate(lengths - 1);
         last.insert(0, planners);
+        // Those that were used longest ago give way.
+        let mut kept = 0;
+        last.retain(|of| {
+            kept += of.len;
+            kept <= most
+        });
         plan
     })
 }

@@ -3,6 +3,7 @@
 //! Average, difference and indicators are computed from the samples of a raw channel as they are kept, with noise and rounding to
 //! single precision. A user who reads the raw channel finds the same average.
 
+use std::cell::OnceCell;
 use std::error::Error;
 
 use meshtone::batch::{Observation, SignalRecorder};
@@ -130,23 +131,18 @@ fn spall(stages: &Stages, bearing: usize, number: usize) -> Option<RecordSpall> 
     Some(RecordSpall { bearing: stages.scenario.bearings()[bearing].seat_name(), sizes, order })
 }
 
-/// (rev) Angle of the input at every sample from one on.
-fn input_revolutions(stages: &Stages, from: usize) -> Vec<f64> {
-    let time = &stages.time;
-    let kept = stages.motion().skip(time.first_kept_sample + from).take(time.kept_samples() - from);
-    kept.map(|sample| sample.revolutions).collect()
-}
-
 /// A simulation that is read like a recording: from the mark on, at the sampling rate of the data set.
 struct View<'a> {
     keep: &'a Keep,
     simulated: &'a Stages,
     window: Window,
+    /// (rev) Angle of the input at every sample from the record's first on, computed when it is needed first.
+    input_rev: OnceCell<Vec<f64>>,
 }
 
 impl<'a> View<'a> {
     fn new(content: &'a Content, window: Window, simulated: &'a Stages) -> Self {
-        Self { keep: &content.keep, simulated, window }
+        Self { keep: &content.keep, simulated, window, input_rev: OnceCell::new() }
     }
 
     /// Makes the record.
@@ -322,8 +318,14 @@ impl<'a> View<'a> {
         let wheel = &self.window.turning.wheels[number];
         let ratio = wheel.pitches_per_revolution / f64::from(wheel.teeth);
         let first = self.start_rev(number);
-        let revolutions = input_revolutions(self.simulated, self.window.margin).into_iter();
-        revolutions.take(most).map(|revolution| revolution * ratio + first).collect()
+        let revolutions = self.input_rev.get_or_init(|| {
+            let (time, from) = (&self.simulated.time, self.window.margin);
+            // The torque has no part in it.
+            let motion = self.simulated.motion().with_ripple(Vec::new());
+            let kept = motion.skip(time.first_kept_sample + from).take(time.kept_samples() - from);
+            kept.map(|sample| sample.revolutions).collect()
+        });
+        revolutions.iter().take(most).map(|revolution| revolution * ratio + first).collect()
     }
 
     /// Phase of an averaged wheel's shaft at the recording's samples.

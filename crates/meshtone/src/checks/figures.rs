@@ -49,31 +49,34 @@ impl SignalFigures {
     }
 
     /// Those of a whole signal.
-    pub(crate) fn of(values: impl ExactSizeIterator<Item = f64>) -> Self {
+    pub(crate) fn of(values: &[f64]) -> Self {
         let mut figures = Self::new(values.len());
-        values.for_each(|value| figures.add(value));
+        figures.add(values);
         figures
     }
 
-    /// Adds the next sample.
-    #[inline]
-    pub(crate) fn add(&mut self, value: f64) {
-        let before_end = self.samples.saturating_sub(self.added);
-        self.added += 1;
-        self.weighted += self.added.min(before_end) as f64 * value;
-        self.squares += value * value;
-        let part = match self.added.cmp(&before_end) {
-            std::cmp::Ordering::Less => 0,
-            std::cmp::Ordering::Equal => 1,
-            std::cmp::Ordering::Greater => 2,
-        };
-        self.parts[part] += value;
-        // A value that is no number stays.
-        let stays = self.largest.is_nan() || value.abs() <= self.largest;
-        self.largest = if stays { self.largest } else { value.abs() };
-        self.zeros += usize::from(value == 0.0);
-        self.flips += usize::from(value * self.last < 0.0);
-        self.last = value;
+    /// Adds the next samples.
+    pub(crate) fn add(&mut self, values: &[f64]) {
+        // Where each half ends: a sum that is chosen for every sample has to wait for memory.
+        let end_of = |samples: usize| samples.saturating_sub(self.added).min(values.len());
+        let ends = [end_of(self.samples / 2), end_of(self.samples.div_ceil(2)), values.len()];
+        let mut from = 0;
+        for (part, end) in ends.into_iter().enumerate() {
+            let mut sum = self.parts[part];
+            for &value in &values[from..end] {
+                let before_end = self.samples.saturating_sub(self.added);
+                self.added += 1;
+                self.weighted += self.added.min(before_end) as f64 * value;
+                self.squares += value * value;
+                sum += value;
+                self.largest = if value.abs() > self.largest { value.abs() } else { self.largest };
+                self.zeros += usize::from(value == 0.0);
+                self.flips += usize::from(value * self.last < 0.0);
+                self.last = value;
+            }
+            self.parts[part] = sum;
+            from = end;
+        }
     }
 
     /// The mean.
@@ -99,7 +102,7 @@ impl SignalFigures {
 
     /// The largest absolute value; no number where a value is none.
     pub(crate) fn largest(&self) -> f64 {
-        self.largest
+        if self.squares.is_nan() { f64::NAN } else { self.largest }
     }
 
     /// (-) The part of the samples that have the other sign than the sample before.
@@ -127,7 +130,7 @@ mod tests {
         for count in [1, 2, 3, 6, 7, 1000, 1001] {
             let values: Vec<f64> =
                 (0..count).map(|n| 3.0 + (0.1 * n as f64).cos() + 0.001 * n as f64).collect();
-            let figures = SignalFigures::of(values.iter().copied());
+            let figures = SignalFigures::of(&values);
             let middle = |values: &[f64]| {
                 let weight = |n: usize| (n + 1).min(values.len() - n) as f64;
                 let sum: f64 = values.iter().enumerate().map(|(n, value)| weight(n) * value).sum();
@@ -139,11 +142,16 @@ mod tests {
             assert!((figures.rise() - rise).abs() < 1e-12, "{count}: {} {rise}", figures.rise());
             assert!((figures.mean() - values.iter().sum::<f64>() / count as f64).abs() < 1e-12);
         }
-        let vibration = SignalFigures::of((0..1000).map(|n| 3.0 + (0.1 * f64::from(n)).cos()));
-        assert!((vibration.mean_in_middle() - 3.0).abs() < 1e-3);
-        let some = SignalFigures::of([0.0, -3.0, 0.0, 4.0].into_iter());
+        let vibration: Vec<f64> = (0..1000).map(|n| 3.0 + (0.1 * f64::from(n)).cos()).collect();
+        let whole = SignalFigures::of(&vibration);
+        // In blocks of any length.
+        let mut vibration_in_blocks = SignalFigures::new(1000);
+        vibration.chunks(97).for_each(|block| vibration_in_blocks.add(block));
+        assert_eq!(vibration_in_blocks, whole);
+        assert!((whole.mean_in_middle() - 3.0).abs() < 1e-3);
+        let some = SignalFigures::of(&[0.0, -3.0, 0.0, 4.0]);
         assert_eq!((some.largest(), some.part_of_zeros(), some.rms()), (4.0, 0.5, 2.5));
-        assert_eq!(SignalFigures::of([1.0, -3.0, 0.0, 4.0, -1.0].into_iter()).part_of_flips(), 0.4);
-        assert!(SignalFigures::of([1.0, f64::NAN, 2.0].into_iter()).largest().is_nan());
+        assert_eq!(SignalFigures::of(&[1.0, -3.0, 0.0, 4.0, -1.0]).part_of_flips(), 0.4);
+        assert!(SignalFigures::of(&[1.0, f64::NAN, 2.0]).largest().is_nan());
     }
 }

@@ -90,6 +90,11 @@ macro_rules! kinds {
                 }
             }
 
+            /// Every kind by its name, with each key at its default.
+            fn starts() -> Vec<(&'static str, Self)> {
+                vec![$(($kind::NAME, Self::$kind($kind::start()))),+]
+            }
+
             fn read(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
                 match self {
                     $(Self::$kind(damage) => read_keys(damage, table, &NoFiles),)+
@@ -213,7 +218,6 @@ macro_rules! kinds {
                 summary: $summary.trim_ascii(),
                 keys: describe::<$kind>(),
                 place: fault::keys_of_place(Damage::$kind($kind::start())),
-                start: Damage::$kind($kind::start()),
                 example: Damage::$kind($kind::example()),
                 sizes: $kind::SIZES,
                 rig: $kind::RIG,
@@ -259,18 +263,16 @@ pub struct DamageKind {
     pub example: Damage,
     /// Its keys that a severity stands in place of, by their names.
     pub sizes: &'static [&'static str],
-    pub(crate) start: Damage,
     pub(crate) rig: PaperRig,
 }
 
 impl Damage {
     /// A damage of the kind that a table names, its keys not read yet.
     fn start_of(table: &TomlTable<'_>) -> ReadResult<Self> {
-        let kinds = damage_kinds();
-        let names: Vec<_> = kinds.iter().map(|kind| format!("\"{}\"", kind.name)).collect();
+        let starts = Self::starts();
+        let names: Vec<_> = starts.iter().map(|(name, _)| format!("\"{name}\"")).collect();
         let meaning =
             format!("one of {}; for a healthy pair, leave out the section [fault]", names.join(", "));
-        let starts: Vec<_> = kinds.into_iter().map(|kind| (kind.name, kind.start)).collect();
         table.required("kind", &meaning)?.choice(&starts)
     }
 }

@@ -82,7 +82,8 @@ impl Section {
         }
         let step = corner.above_y_mm.min(top);
         if corner.missing_mm <= missing || step >= top {
-            return left(&[Strip::new(face_width_mm, missing, -y, top)]);
+            let strip = [Strip::new(face_width_mm, missing, -y, top)];
+            return if hollows.is_empty() { Self::of(&strip) } else { left(&strip) };
         }
         left(&[
             Strip::new(face_width_mm, missing, -y, step),
@@ -109,6 +110,8 @@ impl Section {
         Self { shear_per_mm2, ..stack }
     }
 
+    // Inlined where there is one strip, as of most points of most teeth.
+    #[inline(always)]
     fn of(strips: &[Strip]) -> Self {
         let area: f64 = strips.iter().map(Strip::area_mm2).sum();
         let mean = |of: fn(&Strip) -> f64| {

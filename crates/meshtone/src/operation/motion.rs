@@ -118,6 +118,18 @@ impl<'a> Motion<'a> {
         torque_nm * (1.0 + self.ripple.iter().map(wave).sum::<f64>())
     }
 
+    /// Goes on to the next sample.
+    fn advance(&mut self) {
+        let speed_hz = self.speed_hz;
+        self.sample += 1;
+        self.speed_hz = self.draw_speed();
+        self.revolutions = if self.is_steady() {
+            self.sample as f64 / self.samples_per_revolution
+        } else {
+            self.revolutions + 0.5 * (speed_hz + self.speed_hz) * self.step_s
+        };
+    }
+
     /// The profile at the present sample, or the constant where there is none. Its time 0 is where the kept signal starts.
     fn at_sample(&self, profile: Option<&Profile>, constant: f64) -> f64 {
         profile.map_or(constant, |profile| {
@@ -145,14 +157,17 @@ impl Iterator for Motion<'_> {
             speed_hz: self.speed_hz,
             torque_nm: self.draw_torque(),
         };
-        self.sample += 1;
-        self.speed_hz = self.draw_speed();
-        self.revolutions = if self.is_steady() {
-            self.sample as f64 / self.samples_per_revolution
-        } else {
-            self.revolutions + 0.5 * (here.speed_hz + self.speed_hz) * self.step_s
-        };
+        self.advance();
         Some(here)
+    }
+
+    /// What is skipped needs no harmonics of the torque.
+    fn nth(&mut self, skipped: usize) -> Option<MotionSample> {
+        for _ in 0..skipped {
+            fluctuation(&mut self.torque_draws, self.operation.torque_fluctuation_nm);
+            self.advance();
+        }
+        self.next()
     }
 }
 

@@ -39,7 +39,7 @@ impl Stages {
     /// # Arguments
     /// * `channels` - all kept signals
     pub(crate) fn figures(&self, channels: &Channels) -> Figures {
-        let of = |source| SignalFigures::of(channels.of(source).iter().copied());
+        let of = |source| SignalFigures::of(channels.of(source));
         Figures {
             forces: (0..self.meshes.len()).map(|mesh| of(SignalSource::MeshForce(mesh))).collect(),
             speeds: (0..self.layout.own_shafts()).map(|shaft| of(SignalSource::ShaftSpeed(shaft))).collect(),
@@ -141,8 +141,8 @@ impl Stages {
         if self.scenario.operation.keeps_speed() {
             return self.scenario.operation.pinion_speed_hz;
         }
-        let kept = self.kept_motion();
-        SignalFigures::of(kept.iter().map(|motion| motion.speed_hz)).mean()
+        let speed_hz: Vec<f64> = self.kept_motion().iter().map(|motion| motion.speed_hz).collect();
+        SignalFigures::of(&speed_hz).mean()
     }
 
     /// Motor and brake at the kept samples.
@@ -187,9 +187,9 @@ impl Stages {
         let (torque_nm, acceleration) = if operation.is_constant() {
             (operation.brake_torque_nm, 0.0)
         } else {
-            let kept = self.kept_motion();
-            let torque_nm = SignalFigures::of(kept.iter().map(|motion| motion.torque_nm));
-            let speed_hz = SignalFigures::of(kept.iter().map(|motion| motion.speed_hz));
+            let kept = self.kept_motion().into_iter().map(|motion| (motion.torque_nm, motion.speed_hz));
+            let (torque_nm, speed_hz): (Vec<f64>, Vec<f64>) = kept.unzip();
+            let [torque_nm, speed_hz] = [torque_nm, speed_hz].map(|values| SignalFigures::of(&values));
             (torque_nm.mean_in_middle(), TAU * self.time.sampling_rate_hz * speed_hz.rise())
         };
         let friction: Vec<f64> = self.scenario.meshes.iter().map(|mesh| mesh.friction).collect();

@@ -335,7 +335,7 @@ fn shafts_of_beams(
     }
     let stepped_up_to_hz = scenario.solver.highest_mode_hz(scenario.time_grid().sampling_rate_hz);
     let of = &machine.machine;
-    let modes = known.get((of.mass.clone(), of.springs.clone()), |_| Modes::damped_by_springs(of));
+    let modes = known.get(Modes::made_of(of), |_| Modes::damped_by_springs(of));
     let (_, fastest_hz) = scenario.fastest_speed(layout);
     machine.machine.spinning = modes.stepped_spinning(&spinning, TAU * fastest_hz, TAU * stepped_up_to_hz);
     let assembled = AssembledMachine {

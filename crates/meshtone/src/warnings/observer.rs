@@ -48,7 +48,7 @@ impl Observer {
         self.force.add(force_n);
         let figures = self.figures.forces.iter_mut().chain(&mut self.figures.speeds);
         for (figures, signal) in figures.zip([force_n, pinion_hz, gear_hz]) {
-            signal.iter().for_each(|value| figures.add(*value));
+            figures.add(signal);
         }
         for (windows, signal) in self.windows.iter_mut().zip([vertical_g, force_n]) {
             windows.add(signal);

@@ -236,12 +236,12 @@ pub(super) fn step_error_of_signals(simulation: &Simulation, judgement: StepJudg
     let resolution_hz = channels.sampling_rate_hz / channels.len() as f64;
     let line = |index: usize| Line {
         frequency_hz: index as f64 * resolution_hz,
-        powers: spectra.iter().map(|spectrum| spectrum[index]).collect(),
+        powers: spectra.iter().map(|spectrum| spectrum[index]).collect::<Vec<f64>>(),
     };
-    let is_strong = |line: &Line<Vec<f64>>| {
-        line.powers.iter().zip(&powers).any(|(line, whole)| *line > STRONG_PART * whole)
+    let is_strong = |index: &usize| {
+        spectra.iter().zip(&powers).any(|(spectrum, whole)| spectrum[*index] > STRONG_PART * whole)
     };
-    let lines = (1..channels.len().div_ceil(2)).map(line).filter(is_strong);
+    let lines = (1..channels.len().div_ceil(2)).filter(is_strong).map(line);
     let plain = stages.sensors.iter().filter(|sensor| is_plain(sensor));
     let sensors: Vec<_> = plain.map(|sensor| (sensor.name().into(), sensor.direction.axis())).collect();
     let laws = stages.meshes.iter().map(|mesh| mesh.law()).collect();
