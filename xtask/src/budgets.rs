@@ -162,14 +162,15 @@ pub fn measure(row: &StepRunner) -> Result<(), u8> {
 fn instructions(root: &Path, target: &Path) -> Result<Vec<String>, String> {
     let budgets = Budgets::read(root, "million_instructions")?;
     let mut problems = Vec::new();
-    for scenario in budgets.table.keys() {
+    for example in budgets.table.keys() {
+        let command = if example.starts_with("datasets/") { "dataset" } else { "simulate" };
         let mut valgrind = Command::new("valgrind");
         valgrind.args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"]);
-        valgrind.arg(target.join("release").join("meshtone")).arg("simulate");
+        valgrind.arg(target.join("release").join("meshtone")).arg(command);
         valgrind
-            .arg(root.join("examples").join(format!("{scenario}.toml")))
+            .arg(root.join("examples").join(format!("{example}.toml")))
             .arg("-o")
-            .arg(target.join("results"));
+            .arg(target.join(command));
         let output = match valgrind.current_dir(root).output() {
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 println!("    instructions were not counted: there is no valgrind");
@@ -179,9 +180,9 @@ fn instructions(root: &Path, target: &Path) -> Result<Vec<String>, String> {
         };
         let said = String::from_utf8_lossy(&output.stderr);
         let counted = counted(&said).filter(|_| output.status.success());
-        let counted = counted.ok_or_else(|| format!("{scenario} under valgrind: {said}"))?;
-        println!("    {scenario}: {:.1} million instructions", counted as f64 / 1e6);
-        problems.extend(budgets.problem(scenario, counted as f64 / 1e6, 1.0)?);
+        let counted = counted.ok_or_else(|| format!("{example} under valgrind: {said}"))?;
+        println!("    {example}: {:.1} million instructions", counted as f64 / 1e6);
+        problems.extend(budgets.problem(example, counted as f64 / 1e6, 1.0)?);
     }
     Ok(problems)
 }

@@ -1,9 +1,9 @@
-//! Records a second, from the plan to files on the disk: one simulation each, two channels of one hunting period at 25 kS/s,
-//! average, difference and indicators.
+//! Records a second, from the plan to files on the disk: of pairs, two channels of one hunting period at 25 kS/s, average, difference and
+//! indicators, or what the benchmark keeps; and a tenth as many of a gearbox, as its template of a plan has them.
 //!
 //! ```sh
-//! cargo bench -p meshtone-dataset                 # both plans, as many threads as processors
-//! cargo bench -p meshtone-dataset -- 400 1        # 400 records each, one thread
+//! cargo bench -p meshtone-dataset                 # all plans, as many threads as processors
+//! cargo bench -p meshtone-dataset -- 400 1        # 400 records of pairs each, one thread
 //! ```
 //!
 //! Printed are records a second, and a second of processor time, which other programs' load hardly changes (Linux).
@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use meshtone_dataset::generate::{GenerateControl, Part, generate};
-use meshtone_dataset::plan::Plan;
+use meshtone_dataset::plan::{Plan, gearbox_template};
 use meshtone_dataset::store::Destination;
 
 /// The healthy example's machine and each kind of fault, at 40 Hz, as many records of each.
@@ -51,9 +51,11 @@ fn main() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/datasets");
     let benchmark = std::fs::read_to_string(folder.join("benchmark.toml")).expect("the example is there");
     let benchmark = benchmark.replace("records = 8000", &format!("records = {records}"));
+    let gearbox = gearbox_template().replace("records = 200", &format!("records = {}", records / 10));
     let plans = [
         ("six classes at 40 Hz", REFERENCE.replace("RECORDS", &records.to_string())),
         ("benchmark.toml, 15 to 45 Hz, a sensor, noise", benchmark),
+        ("gearbox of two stages, from its template", gearbox),
     ];
     for (name, text) in plans {
         let plan = Plan::read_text(text, &folder.join("plan.toml")).unwrap_or_else(|error| panic!("{error}"));

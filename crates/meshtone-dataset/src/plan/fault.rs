@@ -96,7 +96,7 @@ fn bearing_names(gearbox: &Scenario) -> Vec<String> {
 /// * `base` - healthy
 /// * `faults` - of the class
 pub(crate) fn with_faults(base: &Scenario, faults: &[ClassFault]) -> Scenario {
-    FaultyBase::new(base, faults).scenario.scenario().clone()
+    FaultyBase::new(base, faults).numbered.scenario
 }
 
 /// Where the scenario of a record has a fault of its class.
@@ -115,7 +115,7 @@ pub(crate) enum FaultPlace {
 #[derive(Debug, Clone)]
 pub(crate) struct FaultyBase {
     /// The scenario.
-    pub scenario: NumberedScenario,
+    pub numbered: NumberedScenario,
     /// Where it has each fault.
     pub places: Vec<FaultPlace>,
     /// The beginnings of each fault's keys in the plan and in the scenario.
@@ -135,12 +135,12 @@ impl FaultyBase {
         let places: Vec<FaultPlace> =
             faults.iter().filter_map(|fault| put_into(&mut scenario, &names, fault)).collect();
         let sections = sections(&scenario, &places);
-        Self { scenario: NumberedScenario::new(scenario), places, sections }
+        Self { numbered: NumberedScenario::new(scenario), places, sections }
     }
 
     /// All numbers of the scenario, by the plan's keys.
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        let mut numbers = self.scenario.scenario().numbers();
+        let mut numbers = self.numbered.scenario.numbers();
         for number in &mut numbers {
             number.key = renamed(&number.key, self.sections.iter().map(|[plan, scenario]| [scenario, plan]));
         }
@@ -160,7 +160,7 @@ impl FaultyBase {
         let renamed: Vec<(String, f64)> =
             of_scenario.map(|(key, value)| (renamed(key, sections()), *value)).collect();
         let numbers: Vec<(&str, f64)> = renamed.iter().map(|(key, value)| (key.as_str(), *value)).collect();
-        self.scenario.with_numbers(&numbers)
+        self.numbered.with_numbers(&numbers)
     }
 
     /// (-) How severe each fault is in a scenario of [`Self::with_values`]; none where that cannot be.

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::sync::Arc;
+
 use crate::support::check;
 use meshtone::scenario::*;
 use meshtone::sensor::Channels;
@@ -367,11 +369,11 @@ fn damaged_wheels_of_a_gearbox_are_drawn_as_far_as_there_is_room() {
 #[test]
 fn a_wheel_without_a_profile_is_named() {
     let mut simulation = with_damaged_wheels(1);
-    simulation.stages.pairs[0].teeth.pinion_profile.x_mm.truncate(1);
+    Arc::make_mut(&mut simulation.stages.pairs[0].teeth.pinion_profile).x_mm.truncate(1);
     let error = panel::draw(&simulation).map(drop).unwrap_err();
     assert_eq!(error.to_string(), "z1's tooth profile has 1 points; at least 2 are needed to draw it");
     let Simulation { mut stages, channels, .. } = simulated(&of_example(None));
-    stages.pairs[0].teeth.gear_profile.x_mm.truncate(1);
+    Arc::make_mut(&mut stages.pairs[0].teeth.gear_profile).x_mm.truncate(1);
     let error = panel::draw(&stages.with_channels(channels)).map(drop).unwrap_err();
     assert_eq!(error.to_string(), "the gear's tooth profile has 1 points; at least 2 are needed to draw it");
 }

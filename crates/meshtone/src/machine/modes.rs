@@ -233,3 +233,47 @@ pub(crate) fn connected_groups(
     }
     groups
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Masses on springs.
+    fn machine(mass_kg: f64, stiffness_n_per_m: f64, damping_ratio: f64) -> Machine {
+        let stiffness = DMatrix::identity(4, 4) * stiffness_n_per_m;
+        Machine {
+            names: vec!["x".into(); 4],
+            mass: DMatrix::identity(4, 4) * mass_kg,
+            turn: DMatrix::identity(4, 4),
+            springs: vec![Spring { stiffness, damping_ratio }],
+            lines: Vec::new(),
+            bearings: Vec::new(),
+            turning_forces: Vec::new(),
+            spinning: Vec::new(),
+            drives: Vec::new(),
+            places: Vec::new(),
+            rigid_rotation: DVector::zeros(4),
+        }
+    }
+
+    #[test]
+    fn machines_are_told_apart_by_all_that_their_modes_depend_on() {
+        let made_of = |mass_kg, stiffness_n_per_m, damping_ratio| {
+            Modes::made_of(&machine(mass_kg, stiffness_n_per_m, damping_ratio))
+        };
+        let one = made_of(1.0, 1e8, 0.02);
+        assert_eq!(one, made_of(1.0, 1e8, 0.02));
+        for other in [made_of(2.0, 1e8, 0.02), made_of(1.0, 2e8, 0.02), made_of(1.0, 1e8, 0.03)] {
+            assert_ne!(one, other);
+        }
+        // What stands in another place, or belongs to another spring, is something else.
+        let mut moved = machine(1.0, 1e8, 0.02);
+        moved.springs[0].stiffness[(0, 1)] = 1e7;
+        let mut back = machine(1.0, 1e8, 0.02);
+        back.springs[0].stiffness[(1, 0)] = 1e7;
+        assert_ne!(Modes::made_of(&moved), Modes::made_of(&back));
+        let mut two = machine(1.0, 1e8, 0.02);
+        two.springs.push(Spring { stiffness: DMatrix::zeros(4, 4), damping_ratio: 0.02 });
+        assert_ne!(one, Modes::made_of(&two));
+    }
+}

@@ -199,3 +199,24 @@ fn wander(deviation: f64, seed: u64, time: &TimeGrid) -> Option<Profile> {
 fn fluctuation(draws: &mut Option<Draws>, half_width: f64) -> f64 {
     draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, half_width))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{GearPair, Scenario};
+
+    /// With draws for each sample, a wander and harmonics: all that later samples depend on.
+    #[test]
+    fn what_is_skipped_is_passed() {
+        let mut scenario = Scenario::new(GearPair::example());
+        let operation = &mut scenario.operation;
+        (operation.speed_fluctuation_hz, operation.torque_fluctuation_nm) = (0.5, 2.0);
+        operation.speed_wander_percent = 1.0;
+        let time = scenario.time_grid();
+        let ripple = vec![TorqueHarmonic { order: 3.0, amplitude: 0.2, phase_rad: 1.0 }];
+        let motion = || Motion::new(&scenario.operation, 7, &time).with_ripple(ripple.clone());
+        let all: Vec<MotionSample> = motion().take(120).collect();
+        assert_eq!(motion().skip(100).take(20).collect::<Vec<_>>(), all[100..]);
+        assert_eq!(motion().step_by(7).take(10).last(), Some(all[63]));
+    }
+}

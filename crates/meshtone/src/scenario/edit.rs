@@ -153,9 +153,20 @@ fn parsed(text: &str) -> Result<Table, ScenarioError> {
 }
 
 /// A scenario in which numbers are set many times.
+///
+/// ```
+/// use meshtone::scenario::{GearPair, NumberedScenario, Scenario};
+///
+/// let numbered = NumberedScenario::new(Scenario::new(GearPair::example()));
+/// let at = |speed_hz: f64| numbered.with_numbers(&[("operation.pinion_speed_hz", speed_hz)]);
+/// assert_eq!([at(20.0)?, at(30.0)?].map(|scenario| scenario.operation.pinion_speed_hz), [20.0, 30.0]);
+/// assert_eq!(at(20.0)?, numbered.scenario.with_number("operation.pinion_speed_hz", 20.0)?);
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct NumberedScenario {
-    scenario: Scenario,
+    /// As it was.
+    pub scenario: Scenario,
     /// Its file, made when it is needed first.
     table: OnceLock<Result<Table, ScenarioError>>,
 }
@@ -165,11 +176,6 @@ impl NumberedScenario {
     /// * `scenario` - in which numbers will be set
     pub fn new(scenario: Scenario) -> Self {
         Self { scenario, table: OnceLock::new() }
-    }
-
-    /// The scenario as it was.
-    pub fn scenario(&self) -> &Scenario {
-        &self.scenario
     }
 
     /// Does what [`Scenario::with_numbers`] does.

@@ -1,12 +1,12 @@
 //! Reading signals at any places behind an anti-aliasing filter.
 
-use std::cell::RefCell;
 use std::sync::{Arc, LazyLock};
 
 use super::check::check_positive;
 use super::filter_bank::{BankPosition, FilterBank, SincCurve};
 use super::resample::{BETA, ZERO_CROSSINGS};
 use super::{Edge, SignalError};
+use crate::known::Known;
 
 /// Rows of taps between two samples, times the ratio of the rates: straight lines between them are off by 4.7e-6 at most.
 const ROW_STEPS: f64 = 512.0;
@@ -16,8 +16,8 @@ static CURVE: LazyLock<SincCurve> = LazyLock::new(|| SincCurve::new(ZERO_CROSSIN
 static STEEP_CURVE: LazyLock<SincCurve> = LazyLock::new(|| SincCurve::new(23, 7.857));
 /// (-) Its cutoff over half the lower rate: the middle of the transition from 0.8 to 1.
 const STEEP_CUTOFF: f64 = 0.9;
-/// Steep filters that a thread keeps: records of a data set are read with few ratios of rates beside their own.
-const KEPT: usize = 4;
+/// Steep filters that are kept: records of a data set are read with few ratios of rates beside their own.
+const KEPT: usize = 16;
 
 /// A low-pass filter at half the lower of two sampling rates, whatever their ratio, that reads signals in single precision at
 /// any places.
@@ -81,23 +81,11 @@ impl AntiAliasing {
     /// # Ok::<(), meshtone::signal::SignalError>(())
     /// ```
     pub fn steep(from_hz: f64, to_hz: f64) -> Result<Self, SignalError> {
-        thread_local! {
-            static LAST: RefCell<Vec<(f64, AntiAliasing)>> = const { RefCell::new(Vec::new()) };
-        }
+        static KNOWN: LazyLock<Known<u64, AntiAliasing, KEPT>> = LazyLock::new(Known::default);
         let rate = rate_of(from_hz, to_hz)? / STEEP_CUTOFF;
-        // Below, a bank has 0.2 MB at any rate.
-        if rate > ROW_STEPS {
-            return Ok(Self::of_curve(&STEEP_CURVE, rate));
-        }
-        LAST.with_borrow_mut(|last| {
-            let known = last.iter().position(|(of, _)| *of == rate);
-            let filter =
-                known.map_or_else(|| Self::of_curve(&STEEP_CURVE, rate), |place| last.remove(place).1);
-            // The one that was used longest ago gives way.
-            last.truncate(KEPT - 1);
-            last.insert(0, (rate, filter.clone()));
-            Ok(filter)
-        })
+        let filter = || Self::of_curve(&STEEP_CURVE, rate);
+        // Up to there a bank has 0.2 MB at any rate.
+        Ok(if rate > ROW_STEPS { filter() } else { Self::clone(&KNOWN.get(rate.to_bits(), |_| filter())) })
     }
 
     /// [`Self::reach`] of the steep filter for two rates.
@@ -261,6 +249,23 @@ mod tests {
             assert_eq!(filter.read(&signals, places(), edge), alone);
             assert_eq!(filter.read(&signals[..2], places(), edge), alone[..2]);
             assert!(alone[0] != alone[1] && alone[1] != alone[2]);
+        }
+    }
+
+    #[test]
+    fn a_filter_that_was_kept_reads_the_same() {
+        let signal = noise(300);
+        let read = |to_hz: f64| {
+            let filter = AntiAliasing::steep(1e4, to_hz).unwrap();
+            assert_eq!(AntiAliasing::steep_reach(1e4, to_hz).unwrap(), filter.reach());
+            filter.read(&[&signal], (0..200).map(|i| f64::from(i) * 1.3), Edge::Reflect).remove(0)
+        };
+        let made = AntiAliasing::of_curve(&STEEP_CURVE, 1e4 / 6789.0 / STEEP_CUTOFF);
+        let made = made.read(&[&signal], (0..200).map(|i| f64::from(i) * 1.3), Edge::Reflect).remove(0);
+        for _ in 0..2 {
+            assert!(read(6789.0) == made && read(6789.0) == made && read(5000.0) != made);
+            // So many others push it out.
+            (0..KEPT).for_each(|n| assert!(read(4000.0 + n as f64) != made));
         }
     }
 

@@ -225,7 +225,7 @@ fn one_tooth_part_by_part() {
     let gears = Gears::new(2.0, 62, 62, 20.0);
     let wheel = Wheel::new(&gears, WheelName::Gear, 17.5);
     let scale = 1e3 * 206.0 / 210.0;
-    let own = linear_teeth(&gears, 35.0).gear_profile;
+    let own = linear_teeth(&gears, 35.0).gear_profile.as_ref().clone();
     let trochoid = Flank::new(&wheel).with_trochoid(&wheel);
     for (shape, profile, turned) in [
         ("own, nominal angle", &own, false),
