@@ -180,14 +180,21 @@ impl History {
         Self { states: [kept(0), kept(1), kept(2)], force: Vec::new(), external: Vec::new() }
     }
 
-    /// Takes the next state.
+    /// Takes the next state, with displacements and velocities as they are at the step's end, where a step predicts them without its forces.
     #[inline(always)]
-    fn push(&mut self, state: &State) {
+    fn push<I: Instructions>(&mut self, simd: I, state: &State, betas: &[Lot]) {
         let (tile, k) = (self.external.len() / TILE, self.external.len() % TILE);
+        let at_end = |number: usize, lot: usize| {
+            let LotState([displacement, velocity, acceleration]) = &state.lots[lot];
+            match number {
+                0 => betas[lot].0.mul_add(simd, *acceleration, *displacement),
+                1 => Lanes::splat(0.5).mul_add(simd, *acceleration, *velocity),
+                _ => *acceleration,
+            }
+        };
         for (number, (kept, tiles)) in self.states.iter_mut().enumerate() {
-            let tiles = tiles[tile * kept.len()..].iter_mut();
-            for (tile, lot) in tiles.zip(&state.lots[kept.clone()]) {
-                tile.0[k] = lot.0[number];
+            for (tile, lot) in tiles[tile * kept.len()..].iter_mut().zip(kept.clone()) {
+                tile.0[k] = at_end(number, lot);
             }
         }
         self.force.extend_from_slice(&state.force);
@@ -308,10 +315,12 @@ struct Constants {
     deflected: Vec<usize>,
     columns: Vec<Vec<LotColumns>>,
     turning: Vec<[Vec<Lot>; 2]>,
+    /// (-) Of each lot, what of `Δt² q̈` a displacement has at a step's end beside what was predicted.
+    betas: Vec<Lot>,
     outputs: Vec<OutputOfModes>,
 }
 
-/// An output: the weights of each number of a [`LotState`], and those of the forces that it sees, with their columns.
+/// An output: the weights of each number of a [`LotState`] at a step's end, and those of the forces that it sees, with their columns.
 struct OutputOfModes {
     modes: [Weights; 3],
     forces: Vec<(usize, f64)>,
@@ -332,8 +341,17 @@ impl Constants {
             }
             lots
         };
+        let betas = prepared.betas();
+        // Displacements and velocities at a step's end have their part of the accelerations already: of an output of these nothing is left.
+        let beside = |of: &OutputWeights| -> Vec<f64> {
+            let at = |list: &[f64], n: usize| list.get(n).copied().unwrap_or(0.0);
+            let of_mode = |(n, acceleration): (usize, &f64)| {
+                acceleration - betas[n] * at(&of.displacement, n) - 0.5 * at(&of.velocity, n)
+            };
+            of.acceleration.iter().enumerate().map(of_mode).collect()
+        };
         let output = |of: &OutputWeights| OutputOfModes {
-            modes: [&of.displacement, &of.velocity, &of.acceleration].map(|list| order.weights(list)),
+            modes: [&of.displacement, &of.velocity, &beside(of)].map(|list| order.weights(list)),
             forces: of.force.iter().copied().enumerate().filter(|(_, weight)| *weight != 0.0).collect(),
         };
         let (restore, damp) = (order.lots(&prepared.restore), order.lots(&prepared.damp));
@@ -354,6 +372,7 @@ impl Constants {
                 .map(|of| of.each_ref().map(|push| order.lots(push)))
                 .collect(),
             outputs: prepared.outputs.iter().map(output).collect(),
+            betas: order.lots(&betas),
             prepared,
         }
     }
@@ -422,7 +441,7 @@ impl Task for Steps<'_> {
     fn run<I: Instructions>(self, simd: I) {
         for (k, sample) in self.samples.clone().enumerate() {
             if sample >= self.first_recorded {
-                self.history.push(self.state);
+                self.history.push(simd, self.state, &self.constants.betas);
             }
             let external = (!self.is_steady).then(|| external(self.block, k));
             let sample = ContactSample { springs: self.springs, block: self.block, k };

@@ -287,6 +287,11 @@ impl Prepared {
         self.state_of([&displacement, &model.initial_velocity], force, block, external)
     }
 
+    /// (-) β of each mode.
+    pub(super) fn betas(&self) -> Vec<f64> {
+        self.steps.iter().map(|step| step.beta).collect()
+    }
+
     /// The state of a motion that was kept, perhaps at another step.
     ///
     /// # Arguments
