@@ -13,8 +13,8 @@ simulation = mt.simulate(mt.examples.healthy().copy(sampling_rate_hz=1e4))
 assert simulation.vertical_g.std() > 0
 ";
 
-/// Maturin's arguments for a small module: without names, and, where Rust links with LLD, with one of functions that are alike. The linker
-/// does so, and so the module is compiled for it: with and without are two compilations.
+/// Maturin's arguments for a small module: without names, and, where Rust links with LLD, with one of functions that are alike, which is safe since
+/// Rust promises no function an address of its own. The linker does both, and so the module is compiled for it: with and without are two compilations.
 const SMALL: &[&str] = if cfg!(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu")) {
     &["--strip", "--", "-Clink-arg=-Wl,--icf=all"]
 } else {

@@ -49,11 +49,11 @@ fn of_whole(summary: &Summary) -> [(&'static str, String); 7] {
 
 /// At which orders the events of a planetary set repeat.
 fn orders(set: &SetSummary) -> String {
-    let of = set.orders_per_carrier_revolution;
+    let of = set.orders_of_carrier_against_ring;
     let [mesh, planets, sun, planet, ring] =
         [of.mesh, of.planet_passage, of.sun_tooth, of.planet_tooth, of.ring_tooth].map(short);
     format!(
-        "mesh {mesh}, planets pass {planets}; a tooth of the sun {sun}, of a planet {planet}, of the ring {ring} (per revolution of the carrier)"
+        "mesh {mesh}, planets pass {planets}; a tooth of the sun {sun}, of a planet {planet}, of the ring {ring} (per revolution of the carrier against the ring)"
     )
 }
 

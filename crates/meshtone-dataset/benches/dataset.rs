@@ -48,13 +48,13 @@ fn main() {
     let mut numbers = std::env::args().skip(1).filter_map(|argument| argument.parse::<usize>().ok());
     let (records, threads) = (numbers.next().unwrap_or(600), numbers.next().unwrap_or(0));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/datasets");
-    let benchmark = std::fs::read_to_string(folder.join("benchmark.toml")).expect("the example is there");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../python/meshtone/benchmark");
+    let benchmark = std::fs::read_to_string(folder.join("pairs-1.toml")).expect("the plan is there");
     let benchmark = benchmark.replace("records = 8000", &format!("records = {records}"));
     let gearbox = gearbox_template().replace("records = 200", &format!("records = {}", records / 10));
     let plans = [
         ("six classes at 40 Hz", REFERENCE.replace("RECORDS", &records.to_string())),
-        ("benchmark.toml, 15 to 45 Hz, a sensor, noise", benchmark),
+        ("pairs-1.toml, 15 to 45 Hz, a sensor, noise", benchmark),
         ("gearbox of two stages, from its template", gearbox),
     ];
     for (name, text) in plans {

@@ -25,8 +25,8 @@ pub struct Wheel {
     pub teeth: u32,
     /// Name of its shaft; none of a pair, whose wheels have a shaft each.
     pub shaft: Option<String>,
-    /// Order of the carrier at which a damaged tooth of it shows; none outside of planetary sets.
-    pub tooth_order_of_carrier: Option<f64>,
+    /// Order of the carrier against the ring at which a damaged tooth of it shows; none outside of planetary sets.
+    pub tooth_order_of_carrier_against_ring: Option<f64>,
     /// What belongs to the regular part of its average.
     pub separation: SeparationSettings,
     /// Meaning of its tooth 1.

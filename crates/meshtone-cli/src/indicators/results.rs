@@ -89,7 +89,7 @@ impl Series {
                     teeth: wheel.teeth,
                     revolutions: record.average.revolutions,
                     mean_speed_hz: of_wheel.mean_speed_hz,
-                    tooth_order_of_carrier: wheel.tooth_order_of_carrier,
+                    tooth_order_of_carrier_against_ring: wheel.tooth_order_of_carrier_against_ring,
                     points_per_revolution: record.average.values.len(),
                     nyquist_order: record.average.nyquist_order,
                     indicators: record.indicators,

@@ -174,9 +174,10 @@ fn of_record(series: &Series, wheels: &[&Wheel]) -> String {
     let names: Vec<String> =
         wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
     let shaft = wheels[0].shaft.as_ref().map(|shaft| format!("shaft {shaft} with "));
-    let order = wheels[0].tooth_order_of_carrier;
-    let order =
-        order.map(|order| format!("; a damaged tooth shows at order {} of the carrier", short(order)));
+    let order = wheels[0].tooth_order_of_carrier_against_ring;
+    let order = order.map(|order| {
+        format!("; a damaged tooth shows at order {} of the carrier against the ring", short(order))
+    });
     let mut text = format!(
         "\n  {}{}: average of {} revolutions at {} Hz{}\n",
         shaft.unwrap_or_default(),

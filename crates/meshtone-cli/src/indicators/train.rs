@@ -185,7 +185,7 @@ fn wheels(
             name: of.name.clone(),
             teeth: of.teeth,
             shaft: (!is_pair).then(|| train.shafts[of.shaft].name.clone()),
-            tooth_order_of_carrier: train.tooth_order_of_carrier(number),
+            tooth_order_of_carrier_against_ring: train.tooth_order_of_carrier_against_ring(number),
             separation: train.separation(number, &SeparationSettings::new(1)),
             first_tooth: first_tooth(number, &damaged_teeth),
             damaged_teeth,

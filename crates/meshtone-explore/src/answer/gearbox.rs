@@ -197,8 +197,12 @@ impl GearboxState {
         let apart = ContactFigures::of_force(force_n).apart_fraction;
         let of_mesh = |what: &str| format!("{what} of {name}");
         let train = GearTrain::of_stages(stages);
-        let tooth = train.tooth_order_of_carrier(self.wheel).map(|order| {
-            (format!("damaged tooth of {}", train.wheels[self.wheel].name), order, "th order of the carrier")
+        let tooth = train.tooth_order_of_carrier_against_ring(self.wheel).map(|order| {
+            (
+                format!("order of a damaged tooth of {}", train.wheels[self.wheel].name),
+                order,
+                "of the carrier against the ring",
+            )
         });
         let mut figures = vec![
             (of_mesh("mesh frequency"), tones.meshes[self.mesh].frequency_hz, "Hz"),

@@ -100,9 +100,9 @@ pub struct RecordEntry {
     pub revolutions: usize,
     /// (Hz) Mean speed of its shaft over the recording.
     pub mean_speed_hz: f64,
-    /// Order of the carrier at which a damaged tooth of the wheel shows; none outside of planetary sets.
+    /// Order of the carrier against the ring at which a damaged tooth of the wheel shows; none outside of planetary sets.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub tooth_order_of_carrier: Option<f64>,
+    pub tooth_order_of_carrier_against_ring: Option<f64>,
     /// Values of the average.
     pub points_per_revolution: usize,
     /// (orders) Beyond this order of the shaft the recording holds nothing.

@@ -9,14 +9,14 @@ use serde::Serialize;
 pub struct SetSummary {
     /// Its name.
     pub name: String,
-    /// The orders at which its events repeat.
-    pub orders_per_carrier_revolution: SetOrders,
+    /// The orders of its carrier against its ring at which its events repeat.
+    pub orders_of_carrier_against_ring: SetOrders,
 }
 
 impl SetSummary {
     /// The main numbers of a set.
     pub(super) fn new(set: &PlanetarySet) -> Self {
-        let orders_per_carrier_revolution = set.teeth.orders(set.planet_angles_rad().len());
-        Self { name: set.name.clone(), orders_per_carrier_revolution }
+        let orders_of_carrier_against_ring = set.teeth.orders(set.planet_angles_rad().len());
+        Self { name: set.name.clone(), orders_of_carrier_against_ring }
     }
 }

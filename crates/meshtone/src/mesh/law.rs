@@ -553,7 +553,7 @@ impl MeshLaw {
     /// about the pitch point; each with its slope. Coast flanks slide without friction.
     ///
     /// # Arguments
-    /// * `springs` - of a mesh with friction
+    /// * `springs` - of the mesh; without friction of its own beside meshes that have some, its friction is 0
     /// * `deflection_m` - (m) D
     #[inline(always)]
     pub(crate) fn force_and_friction(
@@ -561,6 +561,9 @@ impl MeshLaw {
         springs: Springs,
         deflection_m: f64,
     ) -> ([f64; 2], [[f64; 2]; 2]) {
+        if springs.sliding[0].is_empty() {
+            return (self.force_and_slope(springs, deflection_m), [[0.0; 2]; 2]);
+        }
         self.load(springs, springs.sliding, deflection_m)
     }
 

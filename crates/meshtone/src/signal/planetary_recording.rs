@@ -73,11 +73,11 @@ impl GearTrain {
         self
     }
 
-    /// Order of the carrier at which one damaged tooth of a wheel of a set meets its mates; none of a wheel outside of sets.
+    /// Order of the carrier against the ring at which one damaged tooth of a wheel of a set meets its mates; none of a wheel outside of sets.
     ///
     /// # Arguments
     /// * `wheel` - its number
-    pub fn tooth_order_of_carrier(&self, wheel: usize) -> Option<f64> {
+    pub fn tooth_order_of_carrier_against_ring(&self, wheel: usize) -> Option<f64> {
         self.sets.iter().find_map(|set| {
             let (first, planets) = (set.first_wheel, set.planets_rev.len());
             let [sun, planet, ring] = [first, first + 1, first + 1 + planets].map(|n| self.wheels[n].teeth);

@@ -12,7 +12,7 @@ use meshtone::{Equations, Stages, simulate, stages};
 use nalgebra::{DMatrix, DVector};
 
 /// Numbers of an independent simulator of planetary sets: see `planetary/README.md`.
-const RIG_A: &str = include_str!("../planetary/rig_a.toml");
+pub const RIG_A: &str = include_str!("../planetary/rig_a.toml");
 
 fn scenario(change: impl Fn(&mut PlanetarySet)) -> Scenario {
     let mut scenario = Scenario::from_toml(RIG_A).unwrap();
@@ -516,7 +516,10 @@ fn sidebands_follow_the_places_of_the_planets() {
     for away in 1..=8 {
         let [below, above] = [in_phase[100 - away], in_phase[100 + away]];
         println!("100 ± {away}: {below:.5} {above:.5}");
-        assert!((below / above).ln().abs() < 0.5 && below > 0.05 * in_phase[99], "{away}: {below} {above}");
+        assert!(
+            (below / above).ln().abs() < 1.4_f64.ln() && below > 0.05 * in_phase[99],
+            "{away}: {below} {above}"
+        );
     }
 }
 

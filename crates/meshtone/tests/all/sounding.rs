@@ -2,8 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::planetary::RIG_A;
+use crate::planetary_averages::STAGE;
 use meshtone::machine::Axis;
 use meshtone::scenario::{HousingModes, Ripple, Scenario, ScenarioError, Sensor, gearbox_template};
+use meshtone::sensor::SignalSource;
 use meshtone::{simulate, stages};
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -27,6 +30,38 @@ fn set_modes(gearbox: &mut Scenario, modes: HousingModes) {
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// A mesh without friction beside one that has some is as with next to none: of spur and helical teeth that tilt with their wheels, of helical ones that
+/// do not, and of a planetary set.
+#[test]
+fn a_mesh_without_friction_stands_beside_one_with_it() {
+    let box_of = |helix_angle_deg: f64| {
+        let mut gearbox = bare().unwrap();
+        gearbox.meshes.iter_mut().for_each(|mesh| mesh.helix_angle_deg = helix_angle_deg);
+        gearbox.meshes[0].friction = 0.05;
+        gearbox
+    };
+    let set = RIG_A.replacen("[[shaft]]", &format!("{STAGE}[[shaft]]"), 1);
+    let set = set.replace("couples_to = \"motor\"\ncoupling_stiffness_nm_per_rad = 1.0\n", "");
+    let mut set = Scenario::from_toml(&set).unwrap();
+    (set.solver.sampling_rate_hz, set.solver.duration_s) = (8e4, Some(0.1));
+    assert!(set.meshes[0].friction > 0.0);
+    for (gearbox, mesh) in [(box_of(0.0), 1), (box_of(15.0), 1), (set, 1)] {
+        let force_n = |friction: f64| {
+            let mut gearbox = gearbox.clone();
+            match gearbox.structure.shafts_mut().and_then(|shafts| shafts.planetary.first_mut()) {
+                Some(set) => set.friction = friction,
+                None => gearbox.meshes[1].friction = friction,
+            }
+            simulate(gearbox).unwrap().channels.of(SignalSource::MeshForce(mesh)).to_vec()
+        };
+        let [without, with] = [0.0, 1e-9].map(force_n);
+        let largest_n = without.iter().fold(0.0, |most: f64, force_n| most.max(force_n.abs()));
+        let apart_n = without.iter().zip(&with).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        println!("{:e} of {largest_n:.1} N", apart_n);
+        assert!(apart_n < 1e-5 * largest_n, "{apart_n}");
+    }
 }
 
 /// The loss of ideal wheels is `π μ (1/z₁ + 1/z₂)(1 − ε + ε₁² + ε₂²)` of the power: textbooks of gears, with the load shared evenly among
