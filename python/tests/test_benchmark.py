@@ -127,6 +127,7 @@ def test_roles_are_what_tasks_say(sets: Path) -> None:
     assert {"pits", "pits/drawn"} < set(drawn.records("train")["label"]) and "pits" not in set(posed_of("laws-known", sets).records("train")["label"])
     # Run-ups of the hidden rigs may be looked at, and are not asked about.
     rigs = posed_of("rigs", sets)
+    assert len(set(rigs.units())) == 8
     assert "run-up" in set(rigs.records("train")["label"]) and "run-up" not in set(rigs.records()["label"])
 
 
