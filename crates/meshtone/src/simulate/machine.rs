@@ -162,7 +162,10 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
         1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
     });
     let mut sets: Vec<SetParts> = (scenario.planetary().iter().zip(&layout.sets))
-        .map(|(set, of_set)| set_parts(scenario, layout, teeth, set, of_set))
+        .map(|(set, of_set)| SetParts {
+            has_forces_across,
+            ..set_parts(scenario, layout, teeth, set, of_set)
+        })
         .collect();
     let mut linear: Vec<SeatedBearing> = (layout.shaft_of_bearing.iter().zip(scenario.bearings()))
         .filter(|(shaft, _)| **shaft < shafts.len())
@@ -223,7 +226,7 @@ fn beams(scenario: &Scenario, layout: &Layout, teeth: &[Teeth]) -> Result<Beams,
     Ok(Beams { machine, discs, spinning, mesh_mass_kg, bearings, rim_radii_m })
 }
 
-/// What a planetary set is made of.
+/// What a planetary set is made of, with no forces across its lines of action.
 fn set_parts(
     scenario: &Scenario,
     layout: &Layout,
@@ -308,7 +311,7 @@ fn set_parts(
         ]
         .map(|mm| mm * 1e-3),
         working_pressure_angles_rad: [at_sun, at_ring].map(|teeth| teeth.gear.working_pressure_angle_rad),
-        has_forces_across: set.friction > 0.0 || set.random_force > 0.0,
+        has_forces_across: false,
     }
 }
 

@@ -688,8 +688,9 @@ fn sets_that_do_not_fit_are_refused() {
     assert!(crowded.contains("run into one another"));
     let errors = refused(&[("planets = 4", "planets = 4\npin = { error_um = [1.0] }")]);
     assert!(errors.contains("planetary.pin.error_um"));
-    let bearing =
-        |key: &str| format!("[[bearing]]\nshaft = \"p.planet1\"\nkind = \"roller\"\n{key}\n\n[operation]");
+    let bearing = |key: &str| {
+        format!("[[bearing]]\nshaft = \"p.planet1\"\nat = 0.5\nkind = \"roller\"\n{key}\n\n[operation]")
+    };
     for (key, value) in
         [("damping_ratio", "0.2"), ("seat", "{ mass_kg = 2.0 }"), ("tilt_stiffness_nm_per_rad", "1.0")]
     {

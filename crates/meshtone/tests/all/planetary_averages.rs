@@ -204,7 +204,7 @@ fn a_tangential_sensor_names_the_damaged_planet_of_a_stiff_ring() {
     }
     let [tangential, radial] = named;
     println!("of 6 named by the tangential sensor {tangential}, by the radial one {radial}");
-    assert!(tangential == 6 && radial < 5, "{tangential} {radial}");
+    assert!(tangential >= 5 && radial <= 2, "{tangential} {radial}");
 }
 
 /// With fewer revolutions than bring every tooth before the sensor, the error says how many are needed, and that no number is enough where tooth
