@@ -136,7 +136,7 @@ impl Prior {
             let problem = "is a planetary set, and these are not diagnosed: the average of a planet takes many revolutions of the carrier, and \
                            thousands of simulations of that length would have to be compared";
             return Err(ScenarioError::new("planetary", format!("{:?}", set.name), problem).with_help(
-                "compare the averages of `meshtone indicators` with those of the sound machine, or learn from a data set (`meshtone init dataset \
+                "use `meshtone indicators`, which names the wheel whose average stands out, or learn from a data set (`meshtone init dataset \
                  --planetary`)",
             ));
         }

@@ -16,6 +16,10 @@ const OF_GEARS: [&str; 7] = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", 
 const LINES: usize = 10;
 /// (-) Part of the orders that are the machine's own from which on the table recommends a longer recording: a line is rather missed than found.
 const MOST_OWN: f64 = 0.5;
+/// Kurtosis of a difference signal of a planetary set that is impulsive: sound simulated sets have 3.2 to 4.4.
+const IMPULSIVE: f64 = 5.0;
+/// How many times that of the next wheel it is where a wheel stands out.
+const BESIDE_NEXT: f64 = 1.15;
 
 /// The table of one record or of a series.
 ///
@@ -37,10 +41,31 @@ pub fn table(series: &Series, machine: Option<Iso20816>) -> String {
             }
         }
     }
+    text += &standing_out(series);
     text += &foreign_lines(series, unit);
     text += &series.results.bearings.iter().map(|entry| bearing(series, entry)).collect::<String>();
     text += &limits(series);
     text + &velocities(series, machine)
+}
+
+/// Which wheel of planetary sets has the most impulsive difference signal, where one stands out.
+fn standing_out(series: &Series) -> String {
+    let of_sets = series.wheels.iter().filter(|wheel| wheel.tooth_order_of_carrier_against_ring.is_some());
+    let mut wheels: Vec<(f64, &str)> = of_sets
+        .filter_map(|wheel| Some((series.of(wheel).last()?.indicators.difference.kurtosis?, &*wheel.name)))
+        .collect();
+    wheels.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let [(largest, wheel), (next, other), ..] = wheels[..] else { return String::new() };
+    let [largest_in_words, next_in_words] = [largest, next].map(short);
+    if largest > IMPULSIVE.max(BESIDE_NEXT * next) {
+        format!(
+            "\n  {wheel} stands out: kurtosis of the difference {largest_in_words}, of {other} {next_in_words}\n"
+        )
+    } else {
+        format!(
+            "\n  no wheel of a planetary set stands out: kurtosis of the difference {largest_in_words} at most\n"
+        )
+    }
 }
 
 /// The verdict about a bearing in a recording, and its lines.

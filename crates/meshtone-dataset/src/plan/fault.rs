@@ -96,7 +96,7 @@ fn bearing_names(gearbox: &Scenario) -> Vec<String> {
 /// * `base` - healthy
 /// * `faults` - of the class
 pub(crate) fn with_faults(base: &Scenario, faults: &[ClassFault]) -> Scenario {
-    FaultyBase::new(base, faults).numbered.scenario
+    FaultyBase::new(base, faults).numbered.scenario().clone()
 }
 
 /// Where the scenario of a record has a fault of its class.
@@ -140,7 +140,7 @@ impl FaultyBase {
 
     /// All numbers of the scenario, by the plan's keys.
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        let mut numbers = self.numbered.scenario.numbers();
+        let mut numbers = self.numbered.scenario().numbers();
         for number in &mut numbers {
             number.key = renamed(&number.key, self.sections.iter().map(|[plan, scenario]| [scenario, plan]));
         }

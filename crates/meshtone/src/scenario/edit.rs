@@ -160,13 +160,13 @@ fn parsed(text: &str) -> Result<Table, ScenarioError> {
 /// let numbered = NumberedScenario::new(Scenario::new(GearPair::example()));
 /// let at = |speed_hz: f64| numbered.with_numbers(&[("operation.pinion_speed_hz", speed_hz)]);
 /// assert_eq!([at(20.0)?, at(30.0)?].map(|scenario| scenario.operation.pinion_speed_hz), [20.0, 30.0]);
-/// assert_eq!(at(20.0)?, numbered.scenario.with_number("operation.pinion_speed_hz", 20.0)?);
+/// assert_eq!(at(20.0)?, numbered.scenario().with_number("operation.pinion_speed_hz", 20.0)?);
 /// # Ok::<(), meshtone::scenario::ScenarioError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct NumberedScenario {
-    /// As it was.
-    pub scenario: Scenario,
+    /// As it was: not to be changed, since [`Self::table`] would not follow.
+    scenario: Scenario,
     /// Its file, made when it is needed first.
     table: OnceLock<Result<Table, ScenarioError>>,
 }
@@ -176,6 +176,11 @@ impl NumberedScenario {
     /// * `scenario` - in which numbers will be set
     pub fn new(scenario: Scenario) -> Self {
         Self { scenario, table: OnceLock::new() }
+    }
+
+    /// The scenario without the numbers.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
     }
 
     /// Does what [`Scenario::with_numbers`] does.
