@@ -57,15 +57,21 @@ fn standing_out(series: &Series) -> String {
     wheels.sort_by(|a, b| b.0.total_cmp(&a.0));
     let [(largest, wheel), (next, other), ..] = wheels[..] else { return String::new() };
     let [largest_in_words, next_in_words] = [largest, next].map(short);
-    if largest > IMPULSIVE.max(BESIDE_NEXT * next) {
+    let said = if largest <= IMPULSIVE {
         format!(
-            "\n  {wheel} stands out: kurtosis of the difference {largest_in_words}, of {other} {next_in_words}\n"
+            "no wheel of a planetary set stands out: kurtosis of the difference {largest_in_words} at most"
+        )
+    } else if largest > BESIDE_NEXT * next {
+        format!(
+            "{wheel} stands out: kurtosis of the difference {largest_in_words}, of {other} {next_in_words}"
         )
     } else {
         format!(
-            "\n  no wheel of a planetary set stands out: kurtosis of the difference {largest_in_words} at most\n"
+            "{wheel} and {other} stand out alike: kurtosis of the difference {largest_in_words} and {next_in_words}; a sensor along the \
+             circumference of the ring tells planets apart better than one across it"
         )
-    }
+    };
+    format!("\n  {said}\n")
 }
 
 /// The verdict about a bearing in a recording, and its lines.
