@@ -38,12 +38,22 @@ def posed_of(name: str, sets: Path) -> benchmark.Posed:
 
 
 def bounds_broken(name: str, scores: dict[str, benchmark.Scores]) -> list[str]:
-    """Baselines of a fair task are neither hopeless nor perfect on its first split."""
-    measure = benchmark.TASKS[name].measure
-    classes = 5 if benchmark.TASKS[name].set in ("rigs-1", "laws-1") else 6
-    least, most = {"auc": (0.6, 0.95), "recall": (1 / classes + 0.1, 0.95), "of_constant": (0.05, 0.7)}[measure]
-    values = {model: splits["test"][measure][0] for model, splits in scores.items()}
-    return [f"{name}, {model}: {value}" for model, value in values.items() if not least <= value <= most]
+    """Baselines of a fair task are neither hopeless nor perfect on all splits that rank.
+
+    A law of damage is a split of two classes. Where it is known, it is what the task `laws` is compared with, and ranks nothing.
+    """
+    measure, of_set = benchmark.TASKS[name].measure, benchmark.TASKS[name].set
+    broken = []
+    for model, splits in scores.items():
+        for split, measures in splits.items():
+            is_law = of_set == "laws-1" and split not in ("test", "fillet")
+            if is_law and name != "laws":
+                continue
+            classes = 2 if is_law else 5 if of_set in ("rigs-1", "laws-1") else 6
+            least, most = {"auc": (0.6, 0.95), "recall": (1 / classes + 0.1, 0.95), "of_constant": (0.05, 0.7)}[measure]
+            if not least <= measures[measure][0] <= most:
+                broken.append(f"{name}, {model}, {split}: {measures[measure][0]}")
+    return broken
 
 
 def test_plans_and_committed_scores_fit_the_tasks() -> None:
@@ -55,9 +65,8 @@ def test_plans_and_committed_scores_fit_the_tasks() -> None:
         assert len(scores) == 3 and bounds_broken(name, scores) == []
         for splits in scores.values():
             for measures in splits.values():
-                # A calibration error grows where fewer units count, and may lie below its interval.
-                assert all(low <= high and value <= high for value, low, high in measures.values())
-                assert all(low <= value for name, (value, low, _) in measures.items() if name != "calibration")
+                assert {name for name, score in measures.items() if len(score) == 1} <= {"calibration"}
+                assert all(low <= value <= high for value, low, high in (score for score in measures.values() if len(score) == 3))
     shown = benchmark.compare("specimens", benchmark.BASELINES["specimens"])
     assert shown.count("\n") == 5 and shown.startswith("| specimens | test, recall |")
 
@@ -69,6 +78,18 @@ def test_one_fault_a_specimen_flatters_a_random_split() -> None:
         assert inflated - splits["test"]["recall"][0] >= 0.1, model
 
 
+def test_half_of_the_other_law_regains_half_of_the_loss() -> None:
+    """By the committed scores, in the mean of the baselines: of one, a loss of 0.05 is not much more than its interval."""
+
+    def recall(task: str, law: str) -> float:
+        return float(np.mean([splits[law]["recall"][0] for splits in benchmark.BASELINES[task].values()]))
+
+    for law in ("pits/drawn", "wear/uneven", "root-crack/worn"):
+        behind = law.partition("/")[2]
+        none, half, known = (recall(task, law) for task in ("laws", f"laws-half-{behind}", f"laws-known-{behind}"))
+        assert half - none >= (known - none) / 2 > 0, law
+
+
 def test_what_is_answered_is_scored(sets: Path, tmp_path: Path) -> None:
     posed = posed_of("diagnosis", sets)
     kinds, record, severities = posed.kinds(), posed.records()["record"], posed.severities()
@@ -78,8 +99,7 @@ def test_what_is_answered_is_scored(sets: Path, tmp_path: Path) -> None:
     exact = {f"quantile_{10 * number}": severities for number in range(1, 10)}
     scores = benchmark.evaluate(posed, {**right, **exact})
     for measures in scores.values():
-        assert measures == {"recall": [1.0] * 3, "auc": [1.0] * 3, "calibration": measures["calibration"], "crps": [0.0] * 3}
-        assert measures["calibration"][0] == 0.0
+        assert measures == {"recall": [1.0] * 3, "auc": [1.0] * 3, "calibration": [0.0], "crps": [0.0] * 3}
     # A constant has chance's scores, and a probability that is always 0.1 too large an error of 0.1 or more.
     constant = {"record": record, **{str(kind): np.full(len(record), float(kind == "wear")) for kind in classes}}
     measures = benchmark.evaluate(posed, constant)["test"]
@@ -92,15 +112,26 @@ def test_what_is_answered_is_scored(sets: Path, tmp_path: Path) -> None:
     pyarrow.csv.write_csv(table, tmp_path / "answers.csv")
     of_files = [benchmark.evaluate(posed, tmp_path / f"answers.{ending}") for ending in ("parquet", "csv")]
     assert of_files[0] == of_files[1] == benchmark.evaluate(posed, right)
+    # What the task does not ask for is not read.
+    assert benchmark.evaluate(posed, {**right, "score": severities, "remark": np.full(len(record), "seen")}) == of_files[0]
     wrong: list[tuple[dict[str, Any], str]] = [
-        ({name: values[1:] for name, values in right.items()}, "record: must have each of the [0-9]+ records of .* once"),
+        ({name: values[1:] for name, values in right.items()}, "record: must have each of the [0-9]+ records that are scored once"),
         ({name: np.concatenate([values, values[:1]]) for name, values in right.items()}, "record: must have each"),
-        ({name: values for name, values in right.items() if name != "pits"}, "there is no column 'pits'"),
-        ({**right, "pits": np.full(len(record), np.nan)}, "pits: must be finite"),
+        ({name: values for name, values in right.items() if name != "pits"}, "there is no column 'pits'; this task needs healthy, pits, "),
+        ({**right, "quantile_50": severities}, "there is no column 'quantile_10'"),
+        ({**right, "pits": right["pits"][1:]}, r"pits: has the shape \([0-9]+,\); it must have a number for each of the [0-9]+ records"),
+        ({**right, "pits": np.full(len(record), "many")}, "pits: could not convert .*; it must have numbers"),
+        ({**right, "pits": np.full(len(record), np.nan)}, "pits: is nan of record [0-9]+; it must be within 0 to 1"),
+        ({**right, "pits": 3.0 * right["pits"] - 1.0}, "pits: is -1 of record [0-9]+; it must be within 0 to 1"),
+        ({**right, "pits": np.full(len(record), 0.5)}, "healthy, pits, …: add up to 1.5 of record [0-9]+; probabilities must add up to 1"),
     ]
     for answers, message in wrong:
         with pytest.raises(ValueError, match=message):
             benchmark.evaluate(posed, answers)
+    anomaly = posed_of("anomaly", sets)
+    with pytest.raises(ValueError, match="there is no column 'score'; this task needs score"):
+        benchmark.evaluate(anomaly, right)
+    assert benchmark.evaluate(anomaly, {"record": record, "score": 50.0 * severities})["test"] == {"auc": [1.0] * 3}
     with pytest.raises(ValueError, match="there is no task 'diagnoses'; did you mean 'diagnosis'"):
         benchmark.open_task("diagnoses", sets)
     with pytest.raises(ValueError, match="there is no split 'tset', but train, "):
@@ -121,14 +152,28 @@ def test_roles_are_what_tasks_say(sets: Path) -> None:
     specimens = posed_of("specimens", sets)
     carried = {(unit, kind) for unit, kind in zip(specimens.units(), specimens.kinds(), strict=True)}
     assert len(carried) == len({unit for unit, _ in carried})
-    laws, drawn = posed_of("laws", sets), posed_of("laws-drawn", sets)
+    laws, half, known = (posed_of(name, sets) for name in ("laws", "laws-half-drawn", "laws-known-drawn"))
     assert set(laws.records("pits/drawn")["label"]) == {"healthy", "pits/drawn"} and set(laws.kinds("pits/drawn")) == {"healthy", "pits"}
-    assert not any("/" in label for label in laws.records("train")["label"])
-    assert {"pits", "pits/drawn"} < set(drawn.records("train")["label"]) and "pits" not in set(posed_of("laws-known", sets).records("train")["label"])
+    learnt = [set(posed.records("train")["label"]) for posed in (laws, half, known)]
+    assert not any("/" in label for label in learnt[0])
+    # One law is switched, and all other classes stay as they are.
+    assert learnt[1] == learnt[0] | {"pits/drawn"} and learnt[2] == learnt[1] - {"pits"}
+    # Who calls a crack on a worn gear wear is right.
+    kinds = np.where(laws.second_kinds() == "", laws.kinds(), laws.second_kinds())
+    named = {str(kind): (kinds == kind).astype(float) for kind in np.unique(laws.kinds("train"))}
+    scores = benchmark.evaluate(laws, {"record": laws.records()["record"], **named})
+    assert "wear" in kinds[laws.kinds() == "root-crack"] and all(measures["recall"] == [1.0] * 3 for measures in scores.values())
     # Run-ups of the hidden rigs may be looked at, and are not asked about.
     rigs = posed_of("rigs", sets)
-    assert len(set(rigs.units())) == 8
-    assert "run-up" in set(rigs.records("train")["label"]) and "run-up" not in set(rigs.records()["label"])
+    assert len(set(rigs.units())) == 8 and rigs.splits == ["test"] and "run-up" not in set(rigs.records()["label"])
+    assert set(rigs.records("run-up")["label"]) == {"run-up"} and set(rigs.units("run-up")) == set(rigs.units())
+
+
+def test_a_history_has_no_future() -> None:
+    values, age = np.random.default_rng(1).random((6, 2)), np.arange(6.0)
+    whole = baselines.beside_history(values, np.zeros(6), age)
+    for looks in range(1, 6):
+        np.testing.assert_array_equal(baselines.beside_history(values[:looks], np.zeros(looks), age[:looks]), whole[:looks])
 
 
 @pytest.mark.parametrize("name", ["diagnosis", "anomaly", "rigs", "bearings", "life", "laws"])

@@ -36,7 +36,7 @@ from .._names import hint
 from .._published import PUBLISHED
 from .._warnings import warn
 from ..datasets import Dataset, generate_dataset
-from .measures import interval, measures_of_kinds, measures_of_lives
+from .measures import BIASED, OF_QUANTILES, interval, measures_of_kinds, measures_of_lives, measures_of_scores
 
 __all__ = ["BASELINES", "SETS", "TASKS", "Posed", "Scores", "Task", "compare", "evaluate", "open_task"]
 
@@ -45,7 +45,7 @@ Numbers = npt.NDArray[np.float64]
 Columns = Mapping[str, npt.NDArray[Any]]
 
 Scores = dict[str, dict[str, list[float]]]
-"""Of each split and measure the value and the ends of its 90 % interval over units."""
+"""Of each split and measure the value and the ends of its 90 % interval over units; of a calibration error the value alone."""
 
 FOLDER = Path(__file__).parent
 
@@ -56,11 +56,16 @@ BASELINES: dict[str, dict[str, Scores]] = json.loads((FOLDER / "scores.json").re
 """The scores of the baselines, by task and name."""
 
 RUN_UP = "run-up"
-"""Label of records that are known to be healthy, also of a hidden rig."""
+"""Label of records that are known to be healthy, and of a hidden rig's the role."""
 
+NOT_SCORED = ("train", RUN_UP)
+"""Roles of records that a method may look at."""
+
+SUM_TOLERANCE = 0.01
+"""That of probabilities which were rounded for a file."""
 
 Roles = dict[str, npt.NDArray[np.bool_]]
-"""Which records a method learns from, "train", and which each other split has; a record may be in several."""
+"""Which records a method learns from, "train", and which every other role has; a record may be in several."""
 
 
 def _as_split(columns: Columns) -> Roles:
@@ -72,9 +77,9 @@ def _healthy_alone(columns: Columns) -> Roles:
     return {**roles, "train": roles["train"] & (columns["label"] == "healthy")}
 
 
-def _few(of_each_class: int, columns: Columns) -> Roles:
-    """The first of a permutation of each class, so that more labels contain the fewer."""
-    roles, order = _as_split(columns), np.random.default_rng(0).permutation(len(columns["label"]))
+def _few(of_each_class: int, columns: Columns, draw: int = 0) -> Roles:
+    """The first of a permutation of each class, so that more labels contain the fewer. The task is draw 0; others show how far it is chance."""
+    roles, order = _as_split(columns), np.random.default_rng(draw).permutation(len(columns["label"]))
     first = np.zeros(len(order), dtype=bool)
     for label in np.unique(columns["label"]):
         first[order[(roles["train"] & (columns["label"] == label))[order]][:of_each_class]] = True
@@ -83,12 +88,16 @@ def _few(of_each_class: int, columns: Columns) -> Roles:
 
 def _other_rigs(columns: Columns) -> Roles:
     roles = _as_split(columns)
-    return {**roles, "test": roles["test"] & (columns["label"] != RUN_UP)}
+    known = columns["label"] == RUN_UP
+    return {**roles, "test": roles["test"] & ~known, RUN_UP: roles["test"] & known}
 
 
-def _specimens(by_specimen: bool, columns: Columns) -> Roles:
-    """Of each unit one class alone, as where each specimen carries its own fault; a third of the specimens, or of the records, is the test."""
-    draws = np.random.default_rng(0)
+def _specimens(by_specimen: bool, columns: Columns, draw: int = 0) -> Roles:
+    """Of each unit one class alone, as where each specimen carries its own fault; a third of the specimens, or of the records, is the test.
+
+    The task is draw 0, as of :func:`_few`.
+    """
+    draws = np.random.default_rng(draw)
     classes, units = np.unique(columns["label"]), np.unique(columns["unit"])
     number = draws.permutation(len(units))[np.searchsorted(units, columns["unit"])]
     third = number // len(classes) % 3 if by_specimen else draws.integers(3, size=len(number))
@@ -96,15 +105,17 @@ def _specimens(by_specimen: bool, columns: Columns) -> Roles:
     return {"train": carried & (third > 0), "test": carried & (third == 0)}
 
 
-def _laws(drawn: float, columns: Columns) -> Roles:
-    """Each law of damage beside the healthy records; `drawn` is the part of the records to learn from that obey the other law of their class."""
+def _laws(other: str, drawn: float, columns: Columns) -> Roles:
+    """Each law of damage beside the healthy records.
+
+    To learn from are all classes after their first laws, but of the class of `other`, such as "pits/drawn", the part `drawn` obeys that one.
+    """
     labels, split = columns["label"].astype(str), columns["split"]
-    is_base, at = np.char.find(labels, "/") < 0, np.random.default_rng(0).random(len(labels))
-    laws = np.unique(labels[~is_base])
-    has_other = np.isin(labels, np.char.partition(laws, "/")[:, 0])
-    learnt = np.where(is_base, ~has_other | (at >= drawn), at < drawn)
-    roles = {"train": (split == "train") & learnt, "test": (split == "test") & is_base, "fillet": (split == "fillet") & is_base}
-    for label in laws:
+    is_first, at = np.char.find(labels, "/") < 0, np.random.default_rng(0).random(len(labels))
+    is_switched = is_first & (labels == other.partition("/")[0])
+    learnt = np.where(labels == other, at < drawn, is_first & (~is_switched | (at >= drawn)))
+    roles = {"train": (split == "train") & learnt, "test": (split == "test") & is_first, "fillet": (split == "fillet") & is_first}
+    for label in np.unique(labels[~is_first]):
         for law in (label.partition("/")[0], label):
             roles[str(law)] = (split == "test") & np.isin(labels, ["healthy", law])
     return roles
@@ -148,9 +159,18 @@ TASKS = {
         Task("specimens", "pairs-1", "one fault a specimen, scored on other specimens", "recall", partial(_specimens, True)),
         Task("bearings", "gearbox-1", "which bearing race or tooth of a gearbox is damaged?", "recall", _as_split),
         Task("life", "lives-1", "which part of its life does a damaged gear have left?", "of_constant", _as_split),
-        Task("laws", "laws-1", "which damage, where it obeys another law than what was learnt?", "recall", partial(_laws, 0.0)),
-        Task("laws-drawn", "laws-1", "the same, where half of the records to learn from obey the other law?", "recall", partial(_laws, 0.5)),
-        Task("laws-known", "laws-1", "the same, where all of them do?", "recall", partial(_laws, 1.0)),
+        Task("laws", "laws-1", "which damage, where it obeys another law than what was learnt?", "recall", partial(_laws, "", 0.0)),
+        *(
+            Task(
+                f"laws-{part}-{other.partition('/')[2]}",
+                "laws-1",
+                f"the same, where {said} what is learnt of {kind} obeys the other law?",
+                "recall",
+                partial(_laws, other, drawn),
+            )
+            for other, kind in [("pits/drawn", "pits"), ("wear/uneven", "wear"), ("root-crack/worn", "cracks")]
+            for part, said, drawn in [("half", "half of", 0.5), ("known", "all of", 1.0)]
+        ),
     ]
 }
 """The tasks by their names."""
@@ -173,7 +193,7 @@ class Posed:
         self.task, self.dataset = task, dataset
         self._columns = {name: dataset.column(name) for name in ("record", "unit", "split", "label")}
         self._roles = task.roles(self._columns)
-        self.splits = [role for role in self._roles if role != "train"]
+        self.splits = [role for role in self._roles if role not in NOT_SCORED]
 
     def records(self, *roles: str) -> Dataset:
         """Records by their roles, in the order of :attr:`dataset`.
@@ -181,7 +201,8 @@ class Posed:
         Parameters
         ----------
         *roles : str
-            'train', or splits; none: all that are scored.
+            'train'; 'run-up' of the task "rigs", the records of the hidden rigs that are known to be healthy; or splits; none: all that
+            are scored.
 
         Raises
         ------
@@ -199,6 +220,13 @@ class Posed:
         labels = self._columns["label"][self._places(*roles)].astype(str)
         return np.where(labels == RUN_UP, "healthy", np.char.partition(labels, "/")[..., 0]).astype(str)
 
+    def second_kinds(self, *roles: str) -> Texts:
+        """Kind of a second damage of each of these records, '' of none: to name it is right too."""
+        places = self._places(*roles)
+        if "fault_2_kind" not in self.dataset.columns:
+            return np.full(np.count_nonzero(places), "")
+        return np.array([kind or "" for kind in self.dataset["fault_2_kind"][places]])
+
     def severities(self, *roles: str) -> Numbers:
         """Severity of the first damage of each of these records, 0 of a healthy one."""
         severities: Numbers = np.nan_to_num(self.dataset.matrix(["fault_severity"])[self._places(*roles), 0])
@@ -214,9 +242,8 @@ class Posed:
         return self._columns["unit"][self._places(*roles)]
 
     def _places(self, *roles: str) -> npt.NDArray[np.bool_]:
-        known = ["train", *self.splits]
-        if other := [role for role in roles if role not in known]:
-            raise ValueError(f"there is no split '{other[0]}', but {', '.join(known)}")
+        if other := [role for role in roles if role not in self._roles]:
+            raise ValueError(f"there is no split '{other[0]}', but {', '.join(sorted(self._roles, key=lambda role: role not in NOT_SCORED))}")
         chosen: npt.NDArray[np.bool_] = np.any([self._roles[role] for role in roles or self.splits], axis=0)
         return chosen
 
@@ -289,25 +316,55 @@ def evaluate(posed: Posed, answers: str | PathLike[str] | Mapping[str, npt.Array
     Raises
     ------
     ValueError
-        Records or columns that are missing or doubled; numbers that are not finite.
+        Records or columns that are missing or doubled; numbers that are not finite, or but for ``score`` not within 0 to 1; probabilities of a
+        record that do not add up to 1 within 0.01.
     """
-    columns = _read(answers) if isinstance(answers, (str, PathLike)) else {name: np.asarray(values) for name, values in answers.items()}
-    wanted = posed.records()["record"]
-    numbers = columns.get("record", np.empty(0))
-    if len(np.unique(numbers)) != len(numbers) or not set(wanted) <= set(numbers):
-        raise ValueError(f"record: must have each of the {len(wanted)} records of {', '.join(posed.splits)} once")
-    place = dict(zip(numbers, range(len(numbers)), strict=True))
-    order = np.array([place[number] for number in wanted])
-    given = {name: np.asarray(values, dtype=np.float64)[order] for name, values in columns.items()}
-    if bad := [name for name, values in given.items() if not np.isfinite(values).all()]:
-        raise ValueError(f"{bad[0]}: must be finite")
-    if posed.task.measure == "of_constant":
+    truth, classes = posed.records(), np.unique(posed.kinds("train"))
+    measure = posed.task.measure
+    needed = {"of_constant": ["left"], "auc": ["score"], "recall": [str(name) for name in classes]}[measure]
+    given = _checked(_read(answers) if isinstance(answers, (str, PathLike)) else answers, truth["record"], needed, measure)
+    if measure == "of_constant":
         measures = measures_of_lives(given, posed.left(), float(np.median(posed.left("train"))))
+    elif measure == "auc":
+        measures = measures_of_scores(given, posed.kinds())
     else:
-        measures = measures_of_kinds(given, posed.kinds(), posed.severities(), np.unique(posed.kinds("train")))
+        measures = measures_of_kinds(given, posed.kinds(), posed.second_kinds(), posed.severities(), classes)
     places, units = posed._places(), posed.units()
     chosen = {split: np.flatnonzero(posed._roles[split][places]) for split in posed.splits}
-    return {split: {name: interval(measure, of, units) for name, measure in measures.items()} for split, of in chosen.items()}
+    return {
+        split: {name: [round(one(of), 3)] if name == BIASED else interval(one, of, units) for name, one in measures.items()}
+        for split, of in chosen.items()
+    }
+
+
+def _checked(answers: Mapping[str, npt.ArrayLike], records: npt.NDArray[Any], needed: Sequence[str], measure: str) -> dict[str, Numbers]:
+    """The needed columns of answers, and quantiles if there are any, in the order of `records`; others are not read."""
+    numbers = np.asarray(answers.get("record", []))
+    if len(np.unique(numbers)) != len(numbers) or not set(records) <= set(numbers):
+        raise ValueError(f"record: must have each of the {len(records)} records that are scored once")
+    if measure != "auc" and any(name in answers for name in OF_QUANTILES):
+        needed = [*needed, *OF_QUANTILES]
+    if missing := [name for name in needed if name not in answers]:
+        raise ValueError(f"there is no column '{missing[0]}'; this task needs {', '.join(needed)}")
+    place = dict(zip(numbers, range(len(numbers)), strict=True))
+    order = np.array([place[number] for number in records])
+    least, most, allowed = (-np.inf, np.inf, "finite") if measure == "auc" else (0.0, 1.0, "within 0 to 1")
+    given: dict[str, Numbers] = {}
+    for name in needed:
+        values = np.asarray(answers[name])
+        if values.shape != numbers.shape:
+            raise ValueError(f"{name}: has the shape {values.shape}; it must have a number for each of the {len(numbers)} records")
+        try:
+            given[name] = values.astype(np.float64)[order]
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{name}: {error}; it must have numbers") from None
+        bad = ~np.isfinite(given[name]) | (given[name] < least) | (given[name] > most)
+        if bad.any():
+            raise ValueError(f"{name}: is {given[name][bad][0]:g} of record {records[bad][0]}; it must be {allowed}")
+    total = np.sum([given[name] for name in needed if name not in OF_QUANTILES], axis=0)
+    if measure == "recall" and (bad := np.abs(total - 1.0) > SUM_TOLERANCE).any():
+        raise ValueError(f"{', '.join(needed[:2])}, …: add up to {total[bad][0]:g} of record {records[bad][0]}; probabilities must add up to 1")
+    return given
 
 
 def compare(task: str, submissions: Mapping[str, Scores], measures: Sequence[str] = ()) -> str:
@@ -339,7 +396,10 @@ def compare(task: str, submissions: Mapping[str, Scores], measures: Sequence[str
 
 
 def _cell(score: list[float] | None) -> str:
-    return "–" if score is None else f"{score[0]:.3f} ({score[1]:.3f} to {score[2]:.3f})"
+    if score is None:
+        return "–"
+    value, *ends = score
+    return f"{value:.3f}" + (f" ({ends[0]:.3f} to {ends[1]:.3f})" if ends else "")
 
 
 def _read(file: str | PathLike[str]) -> dict[str, npt.NDArray[Any]]:

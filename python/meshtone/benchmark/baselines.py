@@ -119,13 +119,15 @@ def beside_run_up(values: Matrix, labels: npt.NDArray[Any], units: npt.NDArray[A
 
 
 def beside_history(values: Matrix, runs: npt.NDArray[Any], age: npt.NDArray[Any]) -> Matrix:
-    """Values of each record less those of the first three looks at its run, and the mean of the last four looks less the same."""
+    """Values of each record less those of the first three looks at its run, as far as there were so many, and the mean of the last four
+    looks less the same.
+    """
     relative = np.empty((len(values), 2 * values.shape[1]))
     for run in np.unique(runs):
         looks = np.flatnonzero(runs == run)
         looks = looks[np.argsort(age[looks])]
-        begin = values[looks[:3]].mean(axis=0)
         for place, look in enumerate(looks):
+            begin = values[looks[: min(3, place + 1)]].mean(axis=0)
             latest = values[looks[max(0, place - 3) : place + 1]].mean(axis=0)
             relative[look] = np.concatenate([values[look] - begin, latest - begin])
     return relative
@@ -196,6 +198,7 @@ def main() -> None:
     scores = json.loads(file.read_text("utf-8")) if file.exists() else {}
     for name in names or TASKS:
         scores[name] = score(name, Path(folder))
+        scores = {task: scores[task] for task in TASKS if task in scores}
         # A line for each measure.
         text = re.sub(r"\n\s*(?=[-\d\]N])", " ", json.dumps(scores, indent=1))
         file.write_text(text + "\n", "utf-8")

@@ -14,41 +14,41 @@ Measure = Callable[[npt.NDArray[np.intp]], float]
 
 DRAWS = 400
 QUANTILES = np.arange(0.1, 0.95, 0.1)
+OF_QUANTILES = [f"quantile_{round(100 * quantile)}" for quantile in QUANTILES]
+"""Columns of quantiles."""
+
+BIASED = "calibration"
+"""Has no interval: fewer units scatter more about the diagonal, so that most draws of units with replacement lie above the value itself."""
 
 
 def measures_of_kinds(
-    given: Mapping[str, Numbers], kinds: npt.NDArray[np.str_], severities: Numbers, classes: npt.NDArray[np.str_]
+    given: Mapping[str, Numbers], kinds: npt.NDArray[np.str_], also: npt.NDArray[np.str_], severities: Numbers, classes: npt.NDArray[np.str_]
 ) -> dict[str, Measure]:
-    """Measures of probabilities of classes, or of a score of damage.
+    """Measures of probabilities of classes.
 
     Parameters
     ----------
     given : mapping of str to array, shape (records,)
-        The answers.
-    kinds, severities : array, shape (records,)
-        The truth.
+        The probability of each class, and quantiles of the severity or none.
+    kinds, also, severities : array, shape (records,)
+        The truth: the class, that of a second fault ('' of none), the severity.
     classes : array of str
         What could be learnt.
-
-    Raises
-    ------
-    ValueError
-        Neither a score nor the probabilities of all classes.
     """
-    damaged = kinds != "healthy"
-    if "score" in given:
-        return {"auc": lambda i: auc(damaged[i], given["score"][i])}
-    if missing := [str(name) for name in classes if name not in given]:
-        raise ValueError(f"there is no column '{missing[0]}': the probability of each of {', '.join(classes)} is needed")
-    probabilities = np.column_stack([given[name] for name in classes])
-    probability = 1.0 - given["healthy"]
-    named = classes[np.argmax(probabilities, axis=1)]
+    damaged, probability = kinds != "healthy", 1.0 - given["healthy"]
+    named = classes[np.argmax(np.column_stack([given[name] for name in classes]), axis=1)]
+    right = (named == kinds) | (named == also)
     return {
-        "recall": lambda i: mean_recall(kinds[i], named[i]),
+        "recall": lambda i: mean_recall(kinds[i], right[i]),
         "auc": lambda i: auc(damaged[i], probability[i]),
         "calibration": lambda i: calibration_error(damaged[i], probability[i]),
         **_crps(given, severities),
     }
+
+
+def measures_of_scores(given: Mapping[str, Numbers], kinds: npt.NDArray[np.str_]) -> dict[str, Measure]:
+    """Measures of the column `score`, which is more for what looks damaged, of records of these kinds."""
+    return {"auc": lambda i: auc(kinds[i] != "healthy", given["score"][i])}
 
 
 def measures_of_lives(given: Mapping[str, Numbers], left: Numbers, constant: float) -> dict[str, Measure]:
@@ -57,19 +57,12 @@ def measures_of_lives(given: Mapping[str, Numbers], left: Numbers, constant: flo
     Parameters
     ----------
     given : mapping of str to array, shape (records,)
-        The answers.
+        The column `left`, and its quantiles or none.
     left : array, shape (records,)
         The truth.
     constant : float
         The best constant answer.
-
-    Raises
-    ------
-    ValueError
-        No answer.
     """
-    if "left" not in given:
-        raise ValueError("there is no column 'left': the part of its life that a gear has left is needed")
     off, of_constant = np.abs(given["left"] - left), np.abs(constant - left)
     return {
         "of_constant": lambda i: float(off[i].mean() / of_constant[i].mean()),
@@ -80,10 +73,9 @@ def measures_of_lives(given: Mapping[str, Numbers], left: Numbers, constant: flo
 
 def _crps(given: Mapping[str, Numbers], truth: Numbers) -> dict[str, Measure]:
     """Continuous ranked probability score, where quantiles are given: twice their mean pinball loss."""
-    names = [f"quantile_{round(100 * quantile)}" for quantile in QUANTILES]
-    if not all(name in given for name in names):
+    if OF_QUANTILES[0] not in given:
         return {}
-    off = [truth - given[name] for name in names]
+    off = [truth - given[name] for name in OF_QUANTILES]
     losses = 2.0 * np.mean([np.maximum(q * e, (q - 1.0) * e) for q, e in zip(QUANTILES, off, strict=True)], axis=0)
     return {"crps": lambda i: float(losses[i].mean())}
 
@@ -110,9 +102,9 @@ def auc(damaged: npt.ArrayLike, score: Numbers) -> float:
     return float((rank[is_damaged].sum() - found * (found + 1) / 2) / pairs) if pairs else float("nan")
 
 
-def mean_recall(kinds: npt.NDArray[np.str_], named: npt.NDArray[np.str_]) -> float:
+def mean_recall(kinds: npt.NDArray[np.str_], right: npt.NDArray[np.bool_]) -> float:
     """Mean over the classes of the part that is named rightly."""
-    return float(np.mean([np.mean(named[kinds == kind] == kind) for kind in np.unique(kinds)]))
+    return float(np.mean([np.mean(right[kinds == kind]) for kind in np.unique(kinds)]))
 
 
 def calibration_error(damaged: npt.NDArray[np.bool_], probability: Numbers) -> float:
