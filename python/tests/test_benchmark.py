@@ -6,6 +6,8 @@ import importlib.util
 import json
 import re
 import warnings
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ import pytest
 from meshtone import MeshtoneWarning, _core, benchmark, datasets
 from meshtone._published import PUBLISHED
 from meshtone.benchmark import baselines
+from meshtone.benchmark.measures import mean_recall
 from threadpoolctl import threadpool_limits
 
 FOLDER = Path(__file__).parents[2] / "examples" / "datasets"
@@ -154,10 +157,10 @@ def test_roles_are_what_tasks_say(sets: Path) -> None:
     assert len(carried) == len({unit for unit, _ in carried})
     laws, half, known = (posed_of(name, sets) for name in ("laws", "laws-half-drawn", "laws-known-drawn"))
     assert set(laws.records("pits/drawn")["label"]) == {"healthy", "pits/drawn"} and set(laws.kinds("pits/drawn")) == {"healthy", "pits"}
-    learnt = [set(posed.records("train")["label"]) for posed in (laws, half, known)]
-    assert not any("/" in label for label in learnt[0])
+    first, both, other = (set(posed.records("train")["label"]) for posed in (laws, half, known))
+    assert not any("/" in label for label in first)
     # One law is switched, and all other classes stay as they are.
-    assert learnt[1] == learnt[0] | {"pits/drawn"} and learnt[2] == learnt[1] - {"pits"}
+    assert both == first | {"pits/drawn"} and other == both - {"pits"}
     # Who calls a crack on a worn gear wear is right.
     kinds = np.where(laws.second_kinds() == "", laws.kinds(), laws.second_kinds())
     named = {str(kind): (kinds == kind).astype(float) for kind in np.unique(laws.kinds("train"))}
@@ -201,6 +204,32 @@ def test_the_suite(tmp_path: Path) -> None:
                 for measure, (value, *_) in measures.items():
                     committed = benchmark.BASELINES[name][model][split][measure][0]
                     assert value == pytest.approx(committed, abs=0.02, nan_ok=True), f"{name}, {model}, {split}, {measure}"
+
+
+@pytest.mark.measurement
+def test_other_draws_of_a_task_scatter(tmp_path: Path) -> None:
+    """Which records are labelled, and which specimen has which fault, is one draw: what ten draws' recall scatters by, and their mean."""
+    dataset = benchmark.open_task("diagnosis", tmp_path).dataset
+    values = baselines.features(dataset)
+    mean: dict[tuple[str, str], float] = {}
+    for name in ("few-5", "few-20", "few-100", "specimens", "specimens-random"):
+        task = benchmark.TASKS[name]
+        assert isinstance(task.roles, partial)
+        recalls: dict[str, list[float]] = {model: [] for model in baselines.CLASSIFIERS}
+        for draw in range(10):
+            posed = benchmark.Posed(replace(task, roles=partial(task.roles.func, *task.roles.args, draw=draw)), dataset)
+            train, test = (np.isin(dataset["record"], posed.records(role)["record"]) for role in ("train", "test"))
+            features = values[:, np.isfinite(values[train]).mean(axis=0) > 0.5]
+            for model, classifier in baselines.CLASSIFIERS.items():
+                with threadpool_limits(1):
+                    named = classifier().fit(features[train], posed.kinds("train")).predict(features[test])
+                recalls[model].append(mean_recall(posed.kinds("test"), named == posed.kinds("test")))
+        for model, of_draws in recalls.items():
+            mean[name, model], deviation = float(np.mean(of_draws)), float(np.std(of_draws, ddof=1))
+            print(f"{name}, {model}: {mean[name, model]:.3f} ± {deviation:.3f}; the task's {of_draws[0]:.3f}")
+            assert deviation <= 0.06 and abs(of_draws[0] - mean[name, model]) <= 2 * deviation
+    for model in baselines.CLASSIFIERS:
+        assert mean["specimens-random", model] - mean["specimens", model] >= 0.1, model
 
 
 def module_of(script: Path) -> Any:
