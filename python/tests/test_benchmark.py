@@ -110,7 +110,7 @@ def test_what_is_answered_is_scored(sets: Path, tmp_path: Path) -> None:
     damaged = np.mean(kinds[np.isin(record, posed.records("test")["record"])] != "healthy")
     assert measures["calibration"][0] == pytest.approx(1 - damaged, abs=0.02)
     # Files, in any order, are what arrays are.
-    table = pyarrow.table(right).take(np.random.default_rng(0).permutation(len(record)))
+    table = pyarrow.table({**right, "remark": ["seen"] * len(record)}).take(np.random.default_rng(0).permutation(len(record)))
     pyarrow.parquet.write_table(table, tmp_path / "answers.parquet")
     pyarrow.csv.write_csv(table, tmp_path / "answers.csv")
     of_files = [benchmark.evaluate(posed, tmp_path / f"answers.{ending}") for ending in ("parquet", "csv")]

@@ -319,10 +319,10 @@ def evaluate(posed: Posed, answers: str | PathLike[str] | Mapping[str, npt.Array
         Records or columns that are missing or doubled; numbers that are not finite, or but for ``score`` not within 0 to 1; probabilities of a
         record that do not add up to 1 within 0.01.
     """
-    truth, classes = posed.records(), np.unique(posed.kinds("train"))
-    measure = posed.task.measure
+    measure, classes = posed.task.measure, np.unique(posed.kinds("train"))
     needed = {"of_constant": ["left"], "auc": ["score"], "recall": [str(name) for name in classes]}[measure]
-    given = _checked(_read(answers) if isinstance(answers, (str, PathLike)) else answers, truth["record"], needed, measure)
+    columns = _read(answers, ["record", *needed, *OF_QUANTILES]) if isinstance(answers, (str, PathLike)) else answers
+    given = _checked(columns, posed.records()["record"], needed, measure)
     if measure == "of_constant":
         measures = measures_of_lives(given, posed.left(), float(np.median(posed.left("train"))))
     elif measure == "auc":
@@ -348,7 +348,8 @@ def _checked(answers: Mapping[str, npt.ArrayLike], records: npt.NDArray[Any], ne
         raise ValueError(f"there is no column '{missing[0]}'; this task needs {', '.join(needed)}")
     place = dict(zip(numbers, range(len(numbers)), strict=True))
     order = np.array([place[number] for number in records])
-    least, most, allowed = (-np.inf, np.inf, "finite") if measure == "auc" else (0.0, 1.0, "within 0 to 1")
+    # A probability of single precision may be above 1 by its rounding.
+    least, most, allowed = (-np.inf, np.inf, "finite") if measure == "auc" else (-1e-6, 1.0 + 1e-6, "within 0 to 1")
     given: dict[str, Numbers] = {}
     for name in needed:
         values = np.asarray(answers[name])
@@ -402,9 +403,10 @@ def _cell(score: list[float] | None) -> str:
     return f"{value:.3f}" + (f" ({ends[0]:.3f} to {ends[1]:.3f})" if ends else "")
 
 
-def _read(file: str | PathLike[str]) -> dict[str, npt.NDArray[Any]]:
+def _read(file: str | PathLike[str], wanted: Sequence[str]) -> dict[str, npt.NDArray[Any]]:
     import pyarrow.dataset
 
     form = "csv" if fspath(file).endswith(".csv") else "parquet"
-    table = pyarrow.dataset.dataset(fspath(file), format=form).to_table()
+    answers = pyarrow.dataset.dataset(fspath(file), format=form)
+    table = answers.to_table([name for name in answers.schema.names if name in wanted])
     return {name: table[name].to_numpy() for name in table.column_names}
