@@ -361,12 +361,12 @@ def scores(train: Records, test: Records, models: list[str], seeds: int, kept: P
         damaged, kinds = [run["damaged"] for run in runs], [run["label"] for run in runs]
         single = [auc(test.damaged, run) for run in damaged]
         probabilities[name] = damaged[int(np.argsort(single)[len(single) // 2])]
-        named = [lambda i, k=k: mean_recall(test.labels[i], k[i]) for k in kinds]
+        named = [lambda i, k=k: mean_recall(test.labels[i], test.labels[i] == k[i]) for k in kinds]
         result["models"][name] = {
             "detection": detection(test, damaged),
             "detection of all seeds": [round(float(value), 3) for value in single],
             "diagnosis": interval(named, test.units),
-            "diagnosis of all seeds": [round(mean_recall(test.labels, run), 3) for run in kinds],
+            "diagnosis of all seeds": [round(mean_recall(test.labels, test.labels == run), 3) for run in kinds],
             "recall": {
                 str(label): round(float(np.mean([run[test.labels == label] == label for run in kinds])), 3) for label in labels
             },

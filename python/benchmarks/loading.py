@@ -80,7 +80,8 @@ def by_workers(gears: Dataset, workers: int) -> float:
     """
     from torch.utils.data import DataLoader
 
-    loader = DataLoader(gears.to_torch(gears.signal_columns, points=POINTS), batch_size=64, shuffle=True, num_workers=workers, persistent_workers=workers > 0)
+    signals = gears.to_torch(gears.signal_columns, points=POINTS)
+    loader = DataLoader(signals, batch_size=64, shuffle=True, num_workers=workers, persistent_workers=workers > 0)
     return per_second(len(gears), lambda: list(loader))
 
 

@@ -171,11 +171,11 @@ TASKS = {
         Task("few-5", "pairs-1", "as diagnosis, from 5 labelled records of each class?", "recall", partial(_few, 5)),
         Task("few-20", "pairs-1", "as diagnosis, from 20 labelled records of each class?", "recall", partial(_few, 20)),
         Task("few-100", "pairs-1", "as diagnosis, from 100 labelled records of each class?", "recall", partial(_few, 100)),
-        Task("rigs", "rigs-1", "which damage, on eight other rigs whose healthy run-up is known?", "recall", _other_rigs),
+        Task("rigs", "rigs-1", "which damage, on eight other rigs, of each of which twelve healthy records are known?", "recall", _other_rigs),
         Task("specimens-random", "pairs-1", "one fault a specimen, scored on other records of the same specimens", "recall", partial(_specimens, False)),
         Task("specimens", "pairs-1", "one fault a specimen, scored on other specimens", "recall", partial(_specimens, True)),
         Task("bearings", "gearbox-1", "which bearing race or tooth of a gearbox is damaged?", "recall", _as_split),
-        Task("life", "lives-1", "which part of its life does a damaged gear have left?", "of_constant", _later_looks),
+        Task("life", "lives-1", "which part of its life does a damaged gear have left, from the fourth look on?", "of_constant", _later_looks),
         Task("laws", "laws-1", "which damage, where it obeys another law than what was learnt?", "recall", partial(_laws, "", 0.0)),
         *(
             Task(
