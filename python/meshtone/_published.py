@@ -1,9 +1,9 @@
 """Published data sets: the SHA-256 of each one's ``manifest.json``, which has that of every file."""
 
 PUBLISHED = {
-    "gearbox-1": "6faae8ad33bf0eccd485e4cea9431876f4f24380f0668ab15d75f6c70a171ed6",
-    "laws-1": "c965be95019a0fb24e91dd73dd2a61d365531da7a22e7de9c3824bcf2d99f004",
-    "lives-1": "abc975c91b4791eb571d143fedae0b84053677a864776b4cdae01debff1de2e6",
-    "pairs-1": "ca006b1524d406e60658da625c4122aed4238f39adcef76adbf66552feb3a177",
-    "rigs-1": "dc8d27b9122ef7c818ed1e683544a46b8ec32140cc111e5cacc45c2203b15020",
+    "gearbox-1": "534edcf407e8c4fde4c9b04076a20758905d6dfa083eef83fae9509e0c6a04bd",
+    "laws-1": "df7f10a5dd660e8e863904ba277b6fac93c315c5ceb149d8fddff95e7a5b6621",
+    "lives-1": "2e8e6b895dc3b2973b2de612e05c8cc65430e33b3d2415fccaf8a7ebd34545ee",
+    "pairs-1": "bd223612e0661b55fc643f2c950dc38ec8d27223200ace19f253b2d8f0b07bdc",
+    "rigs-1": "b52584b7bb0e01df5e9553774d294feb71dd94b9a1e769f0cc74520a33037c17",
 }

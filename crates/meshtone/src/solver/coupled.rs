@@ -1086,12 +1086,11 @@ fn eliminate<I: Instructions, const N: usize>(
     for pivot in 0..count {
         let eliminated = columns[pivot];
         let over_pivot = 1.0 / (1.0 + eliminated.0[pivot]);
-        let from = |column: &mut Lanes<N>| {
-            let factor = Lanes::splat(column.0[pivot] * over_pivot);
-            *column = eliminated.negative_mul_add(simd, factor, *column);
-        };
-        columns[pivot + 1..count].iter_mut().for_each(from);
-        from(right);
+        let factor = |column: &Lanes<N>| Lanes::splat(column.0[pivot] * over_pivot);
+        for column in &mut columns[pivot + 1..count] {
+            *column = eliminated.negative_mul_add(simd, factor(column), *column);
+        }
+        *right = eliminated.negative_mul_add(simd, factor(right), *right);
     }
 }
 
