@@ -59,11 +59,13 @@ fn standing_out(series: &Series) -> String {
     let [largest_in_words, next_in_words] = [largest, next].map(short);
     let said = if largest <= IMPULSIVE {
         format!(
-            "no wheel of a planetary set stands out: kurtosis of the difference {largest_in_words} at most"
+            "no wheel of a planetary set stands out: kurtosis of the difference {largest_in_words} at most (cracks, and damage of one flank of a \
+             planet, may not show)"
         )
     } else if largest > BESIDE_NEXT * next {
         format!(
-            "{wheel} stands out: kurtosis of the difference {largest_in_words}, of {other} {next_in_words}"
+            "{wheel} stands out: kurtosis of the difference {largest_in_words}, of {other} {next_in_words} (from a sensor that measures outwards \
+             it may be a neighbour of that planet)"
         )
     } else {
         format!(

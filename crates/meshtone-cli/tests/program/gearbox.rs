@@ -151,7 +151,7 @@ fn indicators_of_a_planetary_set() {
         assert!(text.contains(from), "{from}");
         text.replace(from, to)
     });
-    workplace.write("set.toml", text);
+    workplace.write("set.toml", &text);
     workplace.succeeds(&["simulate", "set.toml", "-o", "out", "--no-panel", "-q"]);
     let by_speed = ["--scenario", "set.toml", "--shaft", "output", "--shaft-hz", "8.8888888889"];
     for options in [&[][..], &by_speed] {
@@ -170,6 +170,17 @@ fn indicators_of_a_planetary_set() {
         let is_found = of("warnings", "code").iter().any(|code| code == "planets-found");
         assert_eq!(is_found, !options.is_empty(), "{}", shown["warnings"]);
     }
+    let broken =
+        format!("{text}\n[[fault]]\nwheel = \"p.planet2\"\nkind = \"tooth-breakage\"\nseverity = 0.7\n");
+    let along = "at = \"ring:p:90\"\ndirection = \"tangential\"";
+    workplace.write("broken.toml", broken.replace("at = \"ring:p:90\"", along));
+    workplace.succeeds(&["simulate", "broken.toml", "-o", "broken", "--no-panel", "-q"]);
+    let said = |run: &str| {
+        let assert = workplace.succeeds(&["indicators", run, "-o", "shown", "--no-figure"]);
+        String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+    };
+    assert!(said("out").contains("no wheel of a planetary set stands out"));
+    assert!(said("broken").contains("p.planet2 stands out: kurtosis of the difference"));
     let diagnose = ["diagnose", "out", "--scenario", "set.toml"];
     workplace.fails(2, &diagnose, &["is a planetary set", "init dataset --planetary"]);
 }
