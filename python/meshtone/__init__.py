@@ -10,10 +10,11 @@ True
 
 The parts: :class:`Scenario`, :func:`Gearbox` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
 takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
-:mod:`meshtone.datasets` makes and loads labelled data sets, on which :mod:`meshtone.benchmark` poses tasks; :func:`diagnose` says what may be wrong with a gear; :func:`estimate_path` finds what lies between gears and sensor; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
+:mod:`meshtone.datasets` makes and loads labelled data sets, on which :mod:`meshtone.benchmark` poses tasks; :func:`diagnose` says what may be wrong with a gear; :func:`estimate_path` finds what lies between gears and sensor, :func:`adapt` makes a data set for a machine of it; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
 
 from . import _damage, datasets, examples, hybrid, signal
+from ._adapt import Adaptation, adapt
 from ._core import __version__
 from ._damage import *
 from ._diagnose import Diagnosis, diagnose
@@ -32,6 +33,7 @@ from .simulation import CHANNELS, ContactFigures, Signals, Simulation, StaticMes
 
 __all__ = [
     "CHANNELS",
+    "Adaptation",
     "ContactFigures",
     "Dataset",
     "Diagnosis",
@@ -48,6 +50,7 @@ __all__ = [
     "Simulation",
     "StaticMesh",
     "__version__",
+    "adapt",
     "datasets",
     "diagnose",
     "enhance",

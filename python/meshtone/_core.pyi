@@ -13,6 +13,7 @@ _Column = int | str
 _Bearing = tuple[int, float, float, float]
 
 __all__ = [
+    "Adaptation",
     "ExploreServer",
     "INDICATORS",
     "ORDER_MAP_MESH_ORDERS",
@@ -22,6 +23,7 @@ __all__ = [
     "ShaftPhase",
     "Simulation",
     "__version__",
+    "adapt_dataset",
     "add_noise",
     "angular_resample",
     "bearings_of_train",
@@ -119,6 +121,11 @@ class Scenario:
     def __ne__(self, other: object, /) -> bool: ...
 
 def template(kind: str, all_keys: bool) -> str: ...
+@final
+class Adaptation:
+    def json(self) -> str: ...
+    def probabilities(self, recording: tuple[_Array, float, ShaftPhase, str | None]) -> list[list[float]]: ...
+
 @final
 class ExploreServer:
     def __new__(cls, scenario: Scenario, port: int, in_notebook: bool) -> ExploreServer: ...
@@ -362,6 +369,14 @@ def diagnose(
     progress: Callable[[int, int], None] | None,
 ) -> tuple[str, _Array, list[_Array]]: ...
 def tuned_rig(scenario: Scenario, path: _Path) -> Scenario: ...
+def adapt_dataset(
+    machine: Scenario,
+    recordings: Sequence[tuple[_Array, float, ShaftPhase, str | None]],
+    to: _Path,
+    classes: Sequence[str] | None,
+    numbers: tuple[int, int, int],
+    progress: Callable[[int, int], None] | None,
+) -> Adaptation: ...
 def estimate_path(
     machine: Scenario,
     recordings: Sequence[tuple[_Array, float, ShaftPhase, str | None]],

@@ -9,6 +9,7 @@ mod commands;
 mod diagnose;
 mod experiment_files;
 mod failure;
+mod healthy;
 mod indicators;
 mod other_kind;
 mod other_option;

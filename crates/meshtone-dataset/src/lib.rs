@@ -5,6 +5,7 @@
 //! [`merge`](merge::merge) joins parts that were made separately. [`verify`](verify::verify) checks a data set against its hashes.
 #![deny(missing_docs)]
 
+pub mod adapt;
 mod card;
 mod contents;
 mod croissant;

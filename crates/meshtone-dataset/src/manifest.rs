@@ -15,6 +15,8 @@ use crate::store::{Destination, Files};
 pub(crate) const MANIFEST: &str = "manifest.json";
 pub(crate) const CARD: &str = "README.md";
 pub(crate) const CROISSANT: &str = "croissant.json";
+/// What a set that is adapted to a machine says beside its records.
+pub(crate) const ADAPTATION: &str = "adaptation.json";
 pub(crate) const PREVIEW: [&str; 2] = ["preview.svg", "preview.png"];
 /// In format 5, a shard has its own seal in its footer. Earlier formats were those of versions before the first release.
 pub(crate) const FORMAT_VERSION: u64 = 5;
@@ -86,7 +88,7 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
 
 /// Returns whether a name is that of a file of a data set.
 pub(crate) fn is_of_a_data_set(name: &str) -> bool {
-    let known = [MANIFEST, CARD, CROISSANT].into_iter().chain(PREVIEW).chain(PlanFile::NAMES);
+    let known = [MANIFEST, CARD, CROISSANT, ADAPTATION].into_iter().chain(PREVIEW).chain(PlanFile::NAMES);
     known.into_iter().any(|known| known == name) || Shards::is_name(name)
 }
 

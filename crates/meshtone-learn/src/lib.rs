@@ -1,13 +1,14 @@
 //! What simulations teach about a recording, in numbers alone.
 //!
 //! [`WheelLines`] are what an average over the revolutions of a wheel shows. [`wheel_features`] makes a row of numbers of them, and
-//! [`beyond_healthy`] takes away what was there when the wheel was healthy. [`ridge`] and [`Softmax`] learn probabilities of classes from
-//! rows, a [`SizeModel`] learns a size with its uncertainty, and an [`OutlierTest`] says how many simulations are as strange as a recording.
+//! [`beyond_healthy`] takes away what was there when the wheel was healthy. [`ridge`] and [`Softmax`], or [`ExtraTrees`], learn probabilities of
+//! classes from rows, a [`SizeModel`] learns a size with its uncertainty, and an [`OutlierTest`] says how many simulations are as strange as a recording.
 //! What the numbers mean for a gear, in words, is the business of the diagnosis, which is compiled without optimisation; this
 //! crate is compiled for speed.
 #![deny(missing_docs)]
 
 mod error;
+mod extra_trees;
 mod features;
 mod fold;
 mod healthy;
@@ -19,6 +20,7 @@ mod size;
 mod softmax;
 
 pub use error::LearnError;
+pub use extra_trees::ExtraTrees;
 pub use features::{WheelFeatures, wheel_features};
 pub use fold::{FOLDS, fold_of};
 pub use healthy::beyond_healthy;

@@ -155,7 +155,8 @@ fn destination(to: &str) -> PyResult<Destination> {
     Destination::parse(to).map_err(dataset_error)
 }
 
-fn dataset_error(error: DatasetError) -> PyErr {
+/// The exception of an error.
+pub fn dataset_error(error: DatasetError) -> PyErr {
     match error {
         DatasetError::Plan(error) => read_error(Path::new("."), &error),
         DatasetError::Refused { problem, help } => with_help(problem, Some(&help)),

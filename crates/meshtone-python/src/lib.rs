@@ -6,6 +6,7 @@
 // Functions that Python calls take what Python gives, and are documented there.
 #![allow(clippy::too_many_arguments)]
 
+mod adapt;
 mod array;
 mod batch;
 mod bearing;
@@ -32,6 +33,7 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::{
+        adapt::{Adaptation, adapt_dataset},
         batch::simulate_many,
         bearing::{
             bearings_of_train, best_band, cepstral_prewhitening, defect_lines, defect_orders,

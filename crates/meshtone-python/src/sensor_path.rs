@@ -25,7 +25,35 @@ type Drive = (Option<[f64; 3]>, Option<[f64; 2]>, Option<[f64; 3]>, Vec<Sideband
 type Sidebands = (String, usize, [f64; 2], [f64; 3], bool);
 
 /// A recording: values in g, rate, phase, and the name of the shaft that it is of; none of the pinion or the input.
-type Recorded<'py> = (Signal<'py>, f64, PyRef<'py, ShaftPhase>, Option<String>);
+pub type Recorded<'py> = (Signal<'py>, f64, PyRef<'py, ShaftPhase>, Option<String>);
+
+/// Recordings of the healthy machine.
+///
+/// # Arguments
+/// * `rig`, `train` - the machine
+/// * `recordings` - as Python gives them
+pub fn healthy_recordings(
+    rig: &meshtone::scenario::Scenario,
+    train: &GearTrain,
+    recordings: &[Recorded<'_>],
+) -> PyResult<Vec<HealthyRecording>> {
+    let healthy = |(values, sampling_rate_hz, phase, shaft): &Recorded<'_>| {
+        let values_g = samples(values)?.to_vec();
+        let (shaft, stated) = stated_of_rig(rig, train, phase, shaft.as_deref())?;
+        let sampling_rate_hz = *sampling_rate_hz;
+        Ok(HealthyRecording { values_g, sampling_rate_hz, shaft, phase: phase.0.clone(), stated })
+    };
+    recordings.iter().map(healthy).collect()
+}
+
+/// The exception of an error.
+pub fn path_error(error: PathError) -> PyErr {
+    match &error {
+        PathError::Simulation(Error::Scenario(error)) => scenario_error(error),
+        PathError::Cancelled => PyRuntimeError::new_err(error.to_string()),
+        _ => value_error(error),
+    }
+}
 
 /// Estimates the path from recordings.
 #[pyfunction]
@@ -39,13 +67,7 @@ pub fn estimate_path<'py>(
 ) -> PyResult<Estimated<'py>> {
     let (rig, settings) = (machine.0.clone(), PathSettings { draws, seed });
     let train = GearTrain::of_scenario(&rig).map_err(|error| scenario_error(&error))?;
-    let healthy = |(values, sampling_rate_hz, phase, shaft): &Recorded<'py>| {
-        let values_g = samples(values)?.to_vec();
-        let (shaft, stated) = stated_of_rig(&rig, &train, phase, shaft.as_deref())?;
-        let sampling_rate_hz = *sampling_rate_hz;
-        Ok(HealthyRecording { values_g, sampling_rate_hz, shaft, phase: phase.0.clone(), stated })
-    };
-    let healthy = recordings.iter().map(healthy).collect::<PyResult<Vec<_>>>()?;
+    let healthy = healthy_recordings(&rig, &train, &recordings)?;
     let estimate = interruptible(py, progress, 0, |cancelled, report| {
         let progress = |finished: usize, all: usize| report(finished as u64, all as u64);
         tuning::estimate_path(
@@ -55,11 +77,7 @@ pub fn estimate_path<'py>(
             &ExperimentControl { progress: &progress, cancelled },
         )
     })?;
-    let estimate = estimate.map_err(|error| match &error {
-        PathError::Simulation(Error::Scenario(error)) => scenario_error(error),
-        PathError::Cancelled => PyRuntimeError::new_err(error.to_string()),
-        _ => value_error(error),
-    })?;
+    let estimate = estimate.map_err(path_error)?;
     let text = path_csv(&estimate);
     let failed = [estimate.failed_draws, estimate.drive.failed];
     let PathEstimate { frequency_hz, magnitude_db, low_db, high_db, phase_deg, compared_hz, drive, .. } =

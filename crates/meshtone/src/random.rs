@@ -94,6 +94,8 @@ pub enum Purpose {
     SpeedWander = 40,
     /// Phase of a wheel's helix slope that turns with it; index: 0.
     HelixWobble = 41,
+    /// Splits of a decision tree; index: tree.
+    Trees = 42,
 }
 
 /// A sequence of random numbers.

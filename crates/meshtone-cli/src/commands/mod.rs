@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod adapt;
 mod completions;
 mod dataset;
 mod diagnose;
@@ -26,6 +27,7 @@ pub enum Command {
     Indicators(Box<indicators::Indicators>),
     Diagnose(Box<diagnose::Diagnose>),
     Path(Box<path::Path>),
+    Adapt(Box<adapt::Adapt>),
     #[cfg(feature = "explore")]
     Explore(explore::Explore),
     Init(init::Init),
@@ -45,6 +47,7 @@ impl Command {
             Self::Indicators(arguments) => arguments.run(),
             Self::Diagnose(arguments) => arguments.run(),
             Self::Path(arguments) => arguments.run(),
+            Self::Adapt(arguments) => arguments.run(),
             #[cfg(feature = "explore")]
             Self::Explore(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),

@@ -1,35 +1,17 @@
 //! `meshtone path`
 
 use std::path::{self, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use meshtone::Error;
-use meshtone::scenario::Scenario;
-use meshtone::signal::{SignalWarning, StatedFacts, TrainBearing, TrainRecording};
-use meshtone::tuning::{
-    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordedDrive,
-    RecordingProblem, SidebandCause, estimate_path,
-};
-use meshtone_diagnose::other_tone;
-use meshtone_io::indicators::WarningEntry;
+use meshtone::tuning::{PathEstimate, RecordedDrive, SidebandCause};
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::path_csv::path_csv;
-use meshtone_io::scenario_file::ScenarioFile;
 use serde_json::{Value, json};
 
-use crate::check::check;
-use crate::diagnose::observe::to_g;
 use crate::failure::Failure;
-use crate::indicators::options::{PhaseOptions, ReadingOptions, ShaftOptions};
-use crate::indicators::reading::Input;
-use crate::indicators::refuse::{RefusedInput, refuse};
-use crate::indicators::train::Turned;
-use crate::progress::with_bar;
+use crate::healthy::HealthyRecordings;
 use crate::replacement::stage_text;
-use crate::same_file::is_same_file;
 use crate::shown::Shown;
-use crate::warnings::{self, about};
 
 /// Estimate the path to a sensor from recordings of the healthy machine
 ///
@@ -40,29 +22,13 @@ use crate::warnings::{self, about};
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Path {
-    /// Recordings by one sensor: any file of `meshtone indicators`, or directories that `meshtone simulate` wrote
-    #[arg(value_name = "HEALTHY", required = true)]
-    recordings: Vec<PathBuf>,
-    /// The healthy machine, a pair or a gearbox, with the recordings' load; the sensor that recorded is the listed one of the channel, or the first one; its faults are left out
-    #[arg(long, value_name = "SCENARIO.toml")]
-    scenario: PathBuf,
+    #[command(flatten)]
+    healthy: HealthyRecordings,
     /// File to write; it is replaced if it exists
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
-    /// Draws of the wheels
-    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u64).range(*PathSettings::DRAWS.start() as u64..=*PathSettings::DRAWS.end() as u64))]
-    draws: u64,
-    /// Seed of the draws
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
     #[command(flatten)]
     shown: Shown,
-    #[command(flatten)]
-    reading: ReadingOptions,
-    #[command(flatten)]
-    phase: PhaseOptions,
-    #[command(flatten)]
-    shafts: ShaftOptions,
 }
 
 const EXAMPLES: &str = "\
@@ -73,110 +39,11 @@ Examples:
 
 impl Path {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = ScenarioFile::read(&self.scenario)?;
-        let mut scenario = file.scenario.clone().with_faults(Vec::new());
-        self.reading.lead_with_sensor(&mut scenario);
-        let (doubts, _) = check(&scenario).map_err(|error| file.refuse(error))?;
-        warnings::print(&file, &doubts);
-        let recordings = self.recordings.iter().map(PathBuf::as_path);
-        let mut read = file.sources().chain(recordings).chain(self.phase.files());
-        if let Some(source) = read.find(|source| is_same_file(&self.output, source)) {
-            let problem = format!("-o {}: is read, as {}", self.output.display(), source.display());
-            return Failure::refuse(problem, "name another file with -o");
-        }
-        let mut healthy = Vec::with_capacity(self.recordings.len());
-        for path in &self.recordings {
-            let (recording, doubts) = self.recording(path, &scenario)?;
-            doubts.iter().for_each(|entry| crate::terminal::warn(warnings::in_words(entry)));
-            healthy.push(recording);
-        }
-        let settings = PathSettings { draws: self.draws as usize, seed: self.seed };
-        let estimate = with_bar("simulations", !self.shown.quiet, |show| {
-            let progress = |finished: usize, all: usize| show(finished as u64, all as u64);
-            let cancelled = AtomicBool::new(false);
-            estimate_path(
-                &scenario,
-                &healthy,
-                &settings,
-                &ExperimentControl { progress: &progress, cancelled: &cancelled },
-            )
-        });
-        let estimate = estimate.map_err(|error| self.refuse(&file, error))?;
+        let machine = self.healthy.read(&self.output)?;
+        let estimate = self.healthy.estimate(&machine, self.shown.quiet)?;
         let staged = stage_text(&self.output, &path_csv(&estimate))?;
         undisturbed(|| staged.commit())?;
-        if estimate.failed_draws + estimate.drive.failed > 0 {
-            crate::terminal::warn(format_args!(
-                "simulations failed: {} of {} draws of the wheels are left out of the path, {} of those for the drive",
-                estimate.failed_draws, self.draws, estimate.drive.failed
-            ));
-        }
         self.shown.print(&self.output.display(), || summary(&estimate, &self.output), || numbers(&estimate))
-    }
-
-    /// Reads a recording whole, with how its shafts turned, and what is doubtful about it.
-    ///
-    /// Where the mesh tone of a pair was followed, a doubtful phase may be that of another tone, which other tooth counts say.
-    fn recording(
-        &self,
-        path: &path::Path,
-        scenario: &Scenario,
-    ) -> Result<(HealthyRecording, Vec<WarningEntry>), Failure> {
-        let mut input = Input::read(path, &self.reading, self.phase.channel())?;
-        to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
-        let Turned { train, turning, warnings, .. } =
-            Turned::new(&input, &self.phase, &self.shafts, Some(scenario))?;
-        let Input { source, channel, sampling_rate_hz, .. } = input;
-        let what = format!("channel {}", channel.name);
-        let refused = |error| refuse(&source, &what, RefusedInput::Phase, &error);
-        let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
-        let heard =
-            TrainRecording { signal: &channel.samples, sampling_rate_hz, train: &train, turning: &turning };
-        let heard = heard.bearing_defects(&bearings).map_err(refused)?;
-        // The path of a damaged machine would take its bursts for the path's.
-        let unsound = heard.races.iter().filter(|race| race.is_detected()).map(|race| {
-            let (part, seats, seen) =
-                (race.race.name(), &train.bearings[race.bearings[0]].0, race.in_words());
-            about(
-                &source,
-                format_args!(
-                    "the machine should be healthy, but the {part} of bearing {seats} has a defect: {seen}"
-                ),
-            )
-        });
-        let unsound: Vec<WarningEntry> = unsound.collect();
-        let (shaft, phase, stated) = turning.known_phase(&train).map_err(refused)?;
-        if train.meshes.len() == 1
-            && let Some(stated) = StatedFacts::of_shaft(&train, shaft, stated)
-            && let Some(mismatch) =
-                other_tone(&channel.samples, sampling_rate_hz, &phase, &stated).map_err(refused)?
-        {
-            let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
-            let problem = format!("{}: {problem}", path.display());
-            return Failure::refuse(problem, "state the speed, or a tachometer with --tach");
-        }
-        let doubtful = phase.warnings.iter().map(|warning| about(&source, warning));
-        let warnings = warnings.into_iter().chain(doubtful).chain(unsound).collect();
-        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, shaft, phase, stated }, warnings))
-    }
-
-    /// Names the file that an error is about.
-    fn refuse(&self, file: &ScenarioFile, error: PathError) -> Failure {
-        match error {
-            PathError::Simulation(Error::Scenario(error)) => file.refuse(error).into(),
-            PathError::Recording { index, problem } => {
-                let path = &self.recordings[index];
-                let failure = Failure::bad_input(format!("{}: {problem}", path.display()));
-                match problem {
-                    RecordingProblem::Signal(error) => {
-                        refuse(path, "the signal", RefusedInput::Phase, &error)
-                    }
-                    RecordingProblem::DoesNotFit(_) => failure
-                        .with_help("check --shaft, --mesh, --pulses-per-rev, the speed and the scenario"),
-                    _ => failure,
-                }
-            }
-            error => Failure::bad_input(error.to_string()),
-        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The program, run as its users run it. One test program, because each is linked with all libraries.
 #![allow(clippy::unwrap_used)]
 
+mod adapt;
 mod bad_input;
 mod bearings;
 mod dataset;

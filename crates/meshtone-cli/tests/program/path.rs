@@ -4,7 +4,8 @@ use std::fs;
 
 use crate::support::{Workplace, fast_with, printed_json, stdout};
 
-fn workplace() -> Workplace {
+/// A rig, and what its sensor shows of other wheels behind a path.
+pub fn workplace() -> Workplace {
     let workplace = Workplace::new();
     let rig = fast_with("sampling_rate_hz", "sampling_rate_hz = 20000.0");
     let rig = format!("{rig}duration_s = 2.0\n[quality]\ndin_grade = 6\n");

@@ -6,6 +6,7 @@ mod rules;
 mod settings;
 
 pub use motion::{Motion, MotionSample, TorqueHarmonic};
+pub(crate) use parameters::MOST_RIPPLE;
 pub use parameters::{Operation, Profile, Ripple};
 pub use settings::{LengthKey, Solver};
 

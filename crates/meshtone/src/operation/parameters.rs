@@ -284,7 +284,7 @@ impl Operation {
 const TORQUE: Range = Range::from_to(-1e9, 1e9);
 
 /// (-) Largest sum of the amplitudes of the torque's harmonics. Beyond it the motion flips between two states.
-pub(super) const MOST_RIPPLE: f64 = 1.2;
+pub(crate) const MOST_RIPPLE: f64 = 1.2;
 
 /// A harmonic of the brake's torque.
 #[derive(Debug, Clone, PartialEq)]

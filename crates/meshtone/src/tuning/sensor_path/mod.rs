@@ -3,6 +3,7 @@
 //! Pieces of the recordings are simulated at their speeds with many draws of the wheels. What the recordings show more than the
 //! simulations at a frequency, in mesh harmonics, sidebands and remainder alike, is the path.
 
+mod adapted;
 mod cells;
 mod drive;
 mod error;

@@ -16,7 +16,7 @@ const FEWEST: usize = 8;
 /// that begin a little above 1.
 const UNEXPLAINED: f64 = 1.5;
 /// (orders) How near to another one an order is the same.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 
 /// Sidebands at a distance of one order of a shaft from the mesh harmonics, of a recording and of the simulations.
 #[derive(Debug, Clone, PartialEq)]
@@ -137,6 +137,20 @@ impl RepeatedLines {
     }
 }
 
+/// (orders of the input) The order of a ripple of the torque.
+///
+/// # Arguments
+/// * `ripple` - the ripple
+/// * `scenario`, `train` - of the machine
+pub(super) fn ripple_order(ripple: &Ripple, scenario: &Scenario, train: &GearTrain) -> f64 {
+    let named = train.shafts.iter().position(|shaft| Some(&shaft.name) == ripple.shaft.as_ref());
+    // Without a name it is the brake's: of a rig the gear's.
+    let is_brakes = |shaft: &GearboxShaft| shaft.couples_to == Coupled::Brake;
+    let of_brake = || scenario.shafts().iter().position(is_brakes).or(train.shafts.len().checked_sub(1));
+    let shaft = named.or_else(of_brake).and_then(|shaft| train.shafts.get(shaft));
+    shaft.map_or(0.0, |shaft| ripple.order * shaft.speed_ratio.value())
+}
+
 /// The sidebands of a recording beside those of simulations, of each order that both show.
 ///
 /// # Arguments
@@ -149,15 +163,8 @@ pub(super) fn compared(
     recorded: &RepeatedLines,
     draws: &[RepeatedLines],
 ) -> Vec<RecordedSidebands> {
-    let ripple_order = |ripple: &Ripple| {
-        let named = train.shafts.iter().position(|shaft| Some(&shaft.name) == ripple.shaft.as_ref());
-        // Without a name it is the brake's: of a rig the gear's.
-        let is_brakes = |shaft: &GearboxShaft| shaft.couples_to == Coupled::Brake;
-        let of_brake = || scenario.shafts().iter().position(is_brakes).or(train.shafts.len().checked_sub(1));
-        let shaft = named.or_else(of_brake).and_then(|shaft| train.shafts.get(shaft));
-        shaft.map_or(0.0, |shaft| ripple.order * shaft.speed_ratio.value())
-    };
-    let ripples: Vec<f64> = scenario.operation.torque_ripple.iter().map(ripple_order).collect();
+    let ripples: Vec<f64> =
+        scenario.operation.torque_ripple.iter().map(|ripple| ripple_order(ripple, scenario, train)).collect();
     let all = sideband_orders(train).into_iter().enumerate();
     let of_order = |(number, of): (usize, SidebandOrder)| {
         let recorded = recorded.levels[number]?;

@@ -1,0 +1,118 @@
+//! Probabilities of the classes of a data set for records beside healthy ones.
+
+use meshtone_learn::ExtraTrees;
+
+use super::rows::Rows;
+use crate::error::DatasetError;
+
+/// Label of records without damage.
+pub(super) const HEALTHY: &str = "healthy";
+/// (-) Part of the weight that healthy records have; the classes of damage share the rest evenly.
+const HEALTHY_WEIGHT: f64 = 0.5;
+
+/// A classifier of the records of a data set.
+#[derive(Debug, Clone)]
+pub(super) struct Detector {
+    /// Its classes, the healthy one first.
+    pub labels: Vec<String>,
+    /// Numbers of the features that all records have, and their medians.
+    features: Vec<(usize, f64)>,
+    trees: ExtraTrees,
+}
+
+impl Detector {
+    /// Learns from the records of a data set.
+    ///
+    /// # Arguments
+    /// * `rows` - the records, with their labels
+    ///
+    /// # Errors
+    /// A single class; records from which nothing can be learnt.
+    pub fn learn(rows: &Rows) -> Result<Self, DatasetError> {
+        let mut labels: Vec<String> = rows.labels.iter().flatten().cloned().collect();
+        labels.sort_unstable_by_key(|label| (label != HEALTHY, label.clone()));
+        labels.dedup();
+        let place = |label: &Option<String>| labels.iter().position(|known| Some(known) == label.as_ref());
+        let classes: Vec<usize> = rows.labels.iter().filter_map(place).collect();
+        let weight = |class: usize| {
+            let count = classes.iter().filter(|of| **of == class).count() as f64;
+            let part = if class == 0 {
+                HEALTHY_WEIGHT
+            } else {
+                (1.0 - HEALTHY_WEIGHT) / (labels.len() as f64 - 1.0)
+            };
+            part / count
+        };
+        let weights: Vec<f64> = (0..labels.len()).map(weight).collect();
+        let values = rows.beside_healthy(&|row| classes[row] == 0);
+        let width = values.first().map_or(0, Vec::len);
+        let column = |feature: usize| values.iter().map(|row| row[feature]).collect::<Vec<f64>>();
+        let features = (0..width).filter_map(|feature| {
+            let mut column = column(feature);
+            column.sort_by(f64::total_cmp);
+            column.iter().all(|value| value.is_finite()).then(|| (feature, column[column.len() / 2]))
+        });
+        let features: Vec<(usize, f64)> = features.collect();
+        let values: Vec<Vec<f64>> = values.iter().map(|row| known(row, &features)).collect();
+        let trees = ExtraTrees::learn(&values, &classes, &weights, 1).map_err(|error| {
+            let problem = format!("nothing can be learnt from the records: {error}");
+            DatasetError::refused(problem, "simulate more units")
+        })?;
+        Ok(Self { labels, features, trees })
+    }
+
+    /// (-) The probabilities of the classes for some records, each beside the healthy ones of its unit.
+    ///
+    /// # Arguments
+    /// * `rows` - the records
+    /// * `healthy` - whether a record is known to be healthy
+    pub fn probabilities(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
+        let beside = rows.beside_healthy(healthy);
+        beside.iter().map(|row| self.trees.probabilities(&known(row, &self.features))).collect()
+    }
+}
+
+/// The features of a row that a detector uses; the median for what the row has no value of.
+fn known(row: &[f64], features: &[(usize, f64)]) -> Vec<f64> {
+    let value =
+        |&(feature, median): &(usize, f64)| if row[feature].is_finite() { row[feature] } else { median };
+    features.iter().map(value).collect()
+}
+
+/// (-) The area under the curve: how often a damaged record has a larger score than a healthy one.
+///
+/// # Arguments
+/// * `scores`, `is_damaged` - of each record
+pub(super) fn area_under_curve(scores: &[f64], is_damaged: &[bool]) -> f64 {
+    let of = |damaged: bool| {
+        scores.iter().zip(is_damaged).filter(move |(_, is)| **is == damaged).map(|(score, _)| *score)
+    };
+    let [healthy, damaged] = [of(false).collect::<Vec<f64>>(), of(true).collect()];
+    let above = |score: &f64| {
+        healthy
+            .iter()
+            .map(|other| {
+                if score > other {
+                    1.0
+                } else if score == other {
+                    0.5
+                } else {
+                    0.0
+                }
+            })
+            .sum::<f64>()
+    };
+    damaged.iter().map(above).sum::<f64>() / (healthy.len() * damaged.len()) as f64
+}
+
+/// (-) The score that at most one in twenty healthy records exceeds: of fewer than nineteen the largest, which the next one exceeds with a
+/// probability of one over their number and one.
+///
+/// # Arguments
+/// * `healthy` - scores of healthy records, at least one
+pub(super) fn threshold(healthy: &[f64]) -> f64 {
+    let mut scores = healthy.to_vec();
+    scores.sort_by(f64::total_cmp);
+    let rank = (0.95 * (scores.len() + 1) as f64).ceil() as usize;
+    scores[rank.clamp(1, scores.len()) - 1]
+}

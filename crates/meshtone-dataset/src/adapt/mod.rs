@@ -1,0 +1,286 @@
+//! Adapting a data set to a machine of which only healthy recordings are known.
+//!
+//! The path to the sensor, the drive and the sidebands that the recordings tell are put into the machine's scenario. Simulations of it with every
+//! class of damage are the data set. A classifier learns from them; its threshold is that which the healthy recordings exceed once in twenty
+//! times; and simulated machines that differ from the scenario, as real ones do, say what may be expected.
+
+mod detector;
+mod plan;
+mod rows;
+
+use meshtone::scenario::Scenario;
+use meshtone::signal::{GearTrain, ShaftPhase};
+use meshtone::tuning::{HealthyRecording, PathEstimate};
+use serde_json::{Value, json};
+
+pub use plan::{AdaptSettings, tooth_classes};
+
+use crate::error::DatasetError;
+use crate::generate::{GenerateControl, Generated, Part, generate};
+use crate::like::rows_like;
+use crate::manifest::ADAPTATION;
+use crate::plan::Plan;
+use crate::record::MachineRecording;
+use crate::store::Destination;
+use detector::{Detector, HEALTHY, area_under_curve, threshold};
+use plan::Machine;
+use rows::Rows;
+
+/// Healthy records of each unit, and those of every other class.
+const OF_UNIT: [u64; 2] = [3, 1];
+/// Machines that say what may be expected, and their records: so many healthy ones that each is judged by a threshold of the others.
+const HIDDEN_MACHINES: u64 = 8;
+const OF_HIDDEN: [u64; 2] = [12, 2];
+/// Windows that the longest recording is to be cut into, as long as a record; and revolutions of the slowest shaft that a record has at least.
+const WINDOWS: f64 = 8.0;
+const LEAST_REVOLUTIONS: f64 = 8.0;
+/// (-) How far a window's speed may be beyond those of the set.
+const SPEED_MARGIN: f64 = 0.02;
+
+/// A machine, and what its healthy recordings tell.
+#[derive(Debug, Clone, Copy)]
+pub struct KnownMachine<'a> {
+    /// Its scenario without faults; the first sensor recorded.
+    pub scenario: &'a Scenario,
+    /// The recordings.
+    pub recordings: &'a [HealthyRecording],
+    /// The path to the sensor, estimated from them.
+    pub estimate: &'a PathEstimate,
+}
+
+/// What may be expected of a diagnosis by the data set, from machines that differ from the scenario.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Expected {
+    /// Machines that were simulated.
+    pub machines: u64,
+    /// (-) Area under the curve of damaged against healthy: the mean over the machines, the least and the largest.
+    pub area: [f64; 3],
+    /// (-) Balanced accuracy of detection, by a threshold of each machine's own healthy records; likewise.
+    pub detection: [f64; 3],
+    /// (-) Mean recall of all classes; likewise.
+    pub recall: [f64; 3],
+}
+
+/// A data set for a machine, and the classifier that was learnt from it.
+#[derive(Debug, Clone)]
+pub struct Adaptation {
+    /// The plan of the data set.
+    pub plan: Plan,
+    /// What was made of it.
+    pub generated: Generated,
+    /// (-) Probability of damage from which on a recording is called damaged.
+    pub threshold: f64,
+    /// (-) Probability of damage of each window of the healthy recordings at the set's speeds.
+    pub healthy: Vec<f64>,
+    /// What may be expected.
+    pub expected: Expected,
+    detector: Detector,
+    known: Rows,
+}
+
+/// Makes a data set for a machine, and learns from it.
+///
+/// First come the simulations, of the machine and of those from which the expectation is. Then each window of the healthy recordings, as long as
+/// a record, is judged beside the other windows: so it is as strange as the next recording of the healthy machine.
+///
+/// # Arguments
+/// * `machine` - the machine
+/// * `settings` - classes, units, seed
+/// * `to` - directory of the data set
+/// * `control` - progress and cancellation
+///
+/// # Errors
+/// Those of [`generate`]; a class that the machine cannot have.
+pub fn adapt(
+    machine: &KnownMachine,
+    settings: &AdaptSettings,
+    to: &Destination,
+    control: &GenerateControl,
+) -> Result<Adaptation, DatasetError> {
+    let KnownMachine { scenario, recordings, estimate } = *machine;
+    let refuse = |problem: String| DatasetError::refused(problem, "see `meshtone check` about the scenario");
+    let train = GearTrain::of_scenario(scenario).map_err(|error| refuse(error.to_string()))?;
+    let mut adapted = estimate.adapted(scenario, &train);
+    shorten(&mut adapted, &train, recordings);
+    let rates = recordings.iter().map(|recording| recording.sampling_rate_hz);
+    let simulated =
+        Machine { scenario: &adapted, estimate, recorded_rate_hz: rates.fold(f64::INFINITY, f64::min) };
+    let plan = simulated.plan(settings, "known-rig", OF_UNIT)?;
+    let seed = settings.seed.wrapping_add(1);
+    let hidden = AdaptSettings { units: HIDDEN_MACHINES, seed, ..settings.clone() };
+    let hidden = simulated.plan(&hidden, "unknown-rig", OF_HIDDEN)?;
+    let all = plan.records() + hidden.records();
+    let shown = |done: u64, _: u64| (control.progress)(done, all);
+    let generated = generate(
+        &plan,
+        to,
+        Part::WHOLE,
+        &GenerateControl { progress: &shown, cancelled: control.cancelled },
+    )?;
+    let folder = tempfile::TempDir::new().map_err(DatasetError::write("simulations"))?;
+    let beside = Destination::directory(folder.path().join("hidden"));
+    let shown = |done: u64, _: u64| (control.progress)(plan.records() + done, all);
+    generate(
+        &hidden,
+        &beside,
+        Part::WHOLE,
+        &GenerateControl { progress: &shown, cancelled: control.cancelled },
+    )?;
+    let set = Rows::of_set(&plan, to)?;
+    let detector = Detector::learn(&set)?;
+    let known = windows(&plan, scenario, &train, recordings, &set);
+    let healthy = of_damage(&detector.probabilities(&known, &|_| true));
+    let hidden = Rows::of_set(&hidden, &beside)?;
+    let (expected, hidden_healthy) = expected(&detector, &hidden);
+    // Without several windows the healthy records of the other machines stand in.
+    let threshold = threshold(if healthy.len() > 1 { &healthy } else { &hidden_healthy });
+    let adaptation = Adaptation { plan, generated, threshold, healthy, expected, detector, known };
+    to.write_bytes(ADAPTATION, format!("{:#}\n", adaptation.to_json()).as_bytes())?;
+    Ok(adaptation)
+}
+
+impl Adaptation {
+    /// The classes, the healthy one first.
+    pub fn classes(&self) -> &[String] {
+        &self.detector.labels
+    }
+
+    /// (-) The probabilities of the classes for each window of a recording of the machine, beside its healthy recordings.
+    ///
+    /// # Arguments
+    /// * `recording` - with the channel of the first sensor
+    ///
+    /// # Errors
+    /// Those of [`rows_like`].
+    pub fn probabilities(&self, recording: &MachineRecording) -> Result<Vec<Vec<f64>>, DatasetError> {
+        let now = Rows::of_recordings(&self.plan, rows_like(&self.plan, &[*recording])?.parquet)?;
+        let count = now.len();
+        let all = now.with(&self.known);
+        let mut probabilities = self.detector.probabilities(&all, &|row| row >= count);
+        probabilities.truncate(count);
+        Ok(probabilities)
+    }
+
+    /// What was found, for programs.
+    pub fn to_json(&self) -> Value {
+        let range =
+            |[mean, least, largest]: [f64; 3]| json!({ "mean": mean, "least": least, "largest": largest });
+        json!({
+            "classes": self.classes(),
+            "records": self.plan.records(),
+            "threshold": self.threshold,
+            "healthy_windows": self.healthy,
+            "expected": {
+                "machines": self.expected.machines,
+                "area_under_curve": range(self.expected.area),
+                "detection_balanced_accuracy": range(self.expected.detection),
+                "recall": range(self.expected.recall),
+            },
+        })
+    }
+}
+
+/// Shortens what is simulated of a machine, so that the longest recording has several windows of that length; but not below some revolutions.
+fn shorten(scenario: &mut Scenario, train: &GearTrain, recordings: &[HealthyRecording]) {
+    let length_s = |of: &HealthyRecording| of.values_g.len() as f64 / of.sampling_rate_hz;
+    let longest_s = recordings.iter().map(length_s).fold(0.0, f64::max);
+    let grid = scenario.time_grid();
+    let own_s = grid.kept_samples() as f64 / grid.sampling_rate_hz;
+    let slowest = train.shafts.iter().map(|shaft| shaft.speed_ratio.value()).fold(f64::INFINITY, f64::min);
+    let least_s = LEAST_REVOLUTIONS / (slowest * scenario.operation.pinion_speed_hz);
+    let wanted_s = (longest_s / WINDOWS).max(least_s);
+    if wanted_s < own_s {
+        let settling_s = grid.first_kept_sample as f64 / grid.sampling_rate_hz;
+        scenario.solver.discard_and_keep(settling_s, wanted_s);
+    }
+}
+
+/// (-) The probabilities of damage.
+fn of_damage(probabilities: &[Vec<f64>]) -> Vec<f64> {
+    probabilities.iter().map(|of| 1.0 - of[0]).collect()
+}
+
+/// Windows of the healthy recordings, as long as a record and at a speed of the set; all of one machine. A recording that is too short has none.
+fn windows(
+    plan: &Plan,
+    scenario: &Scenario,
+    train: &GearTrain,
+    recordings: &[HealthyRecording],
+    set: &Rows,
+) -> Rows {
+    let name = plan.content.keep.analysed.name();
+    let [slowest, fastest] = [
+        set.speed_hz.iter().copied().fold(f64::INFINITY, f64::min) * (1.0 - SPEED_MARGIN),
+        set.speed_hz.iter().copied().fold(0.0, f64::max) * (1.0 + SPEED_MARGIN),
+    ];
+    let mut all = Rows::default();
+    for HealthyRecording { values_g, sampling_rate_hz, shaft, phase, .. } in recordings {
+        let channels = [(name.clone().into_owned(), values_g.iter().map(|&value| value as f32).collect())];
+        let phase: &ShaftPhase = phase;
+        let recording = MachineRecording {
+            channels: &channels,
+            sampling_rate_hz: *sampling_rate_hz,
+            machine: scenario,
+            shaft: Some(&train.shafts[*shaft].name),
+            phase,
+        };
+        let rows = rows_like(plan, &[recording]).and_then(|rows| Rows::of_recordings(plan, rows.parquet));
+        if let Ok(rows) = rows {
+            let at_speed = rows.filter(|row| (slowest..=fastest).contains(&rows.speed_hz[row]));
+            all = all.with(&at_speed);
+        }
+    }
+    all.units.iter_mut().for_each(|unit| *unit = 0);
+    all
+}
+
+/// What a detector finds on machines that differ from its scenario, each by the threshold of its other healthy records; and the scores of all
+/// healthy records.
+fn expected(detector: &Detector, hidden: &Rows) -> (Expected, Vec<f64>) {
+    let is_healthy = |row: usize| hidden.labels[row].as_deref() == Some(HEALTHY);
+    let probabilities = detector.probabilities(hidden, &is_healthy);
+    let scores = of_damage(&probabilities);
+    let mut units = hidden.units.clone();
+    units.sort_unstable();
+    units.dedup();
+    let of_units: Vec<[f64; 3]> = units
+        .iter()
+        .map(|&unit| {
+            let rows: Vec<usize> = (0..hidden.len()).filter(|&row| hidden.units[row] == unit).collect();
+            let damaged: Vec<bool> = rows.iter().map(|&row| !is_healthy(row)).collect();
+            let own: Vec<f64> = rows.iter().map(|&row| scores[row]).collect();
+            let share = |of: bool, is_right: &dyn Fn(usize) -> bool| {
+                let asked: Vec<usize> = (0..rows.len()).filter(|&at| damaged[at] == of).collect();
+                asked.iter().filter(|&&at| is_right(at)).count() as f64 / asked.len().max(1) as f64
+            };
+            let limit_without = |at: usize| {
+                let others = (0..rows.len()).filter(|&other| other != at && !damaged[other]);
+                threshold(&others.map(|other| own[other]).collect::<Vec<f64>>())
+            };
+            let alarms = [
+                share(false, &|at| own[at] <= limit_without(at)),
+                share(true, &|at| own[at] > limit_without(at)),
+            ];
+            let recalls = detector.labels.iter().enumerate().map(|(class, label)| {
+                let of_label = rows.iter().filter(|&&row| hidden.labels[row].as_ref() == Some(label));
+                let named = |row: &usize| {
+                    let most = (0..detector.labels.len())
+                        .max_by(|a, b| probabilities[*row][*a].total_cmp(&probabilities[*row][*b]));
+                    most == Some(class)
+                };
+                let of_label: Vec<usize> = of_label.copied().collect();
+                of_label.iter().filter(|row| named(row)).count() as f64 / of_label.len().max(1) as f64
+            });
+            let recall = recalls.sum::<f64>() / detector.labels.len() as f64;
+            [area_under_curve(&own, &damaged), (alarms[0] + alarms[1]) / 2.0, recall]
+        })
+        .collect();
+    let of = |which: usize| {
+        let values: Vec<f64> = of_units.iter().map(|of| of[which]).collect();
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        [mean, values.iter().copied().fold(1.0, f64::min), values.iter().copied().fold(0.0, f64::max)]
+    };
+    let healthy = (0..hidden.len()).filter(|&row| is_healthy(row)).map(|row| scores[row]).collect();
+    let machines = of_units.len() as u64;
+    (Expected { machines, area: of(0), detection: of(1), recall: of(2) }, healthy)
+}
