@@ -103,12 +103,12 @@ def Gearbox(
     return Scenario._wrap(gearbox_of(dict(locals()), {}))
 
 
-def gearbox_template(rig: Literal["phm2009-spur", "phm2009-helical", "uconn", "tecnalia", "nrel-grc", "planetary-lab"] | None = None) -> str:
+def gearbox_template(rig: Literal["phm2009-spur", "phm2009-helical", "uconn", "tecnalia", "nrel-grc", "planetary-lab", "oedi-623"] | None = None) -> str:
     """A commented gearbox to start from, as a scenario file: :meth:`Scenario.from_toml` reads it.
 
     Parameters
     ----------
-    rig : {'phm2009-spur', 'phm2009-helical', 'uconn', 'tecnalia', 'nrel-grc', 'planetary-lab'}, optional
+    rig : {'phm2009-spur', 'phm2009-helical', 'uconn', 'tecnalia', 'nrel-grc', 'planetary-lab', 'oedi-623'}, optional
         A rig of which what is published stands in the file, with what has to be assumed marked so; an example by default.
     """
     return _core.gearbox_template(rig)

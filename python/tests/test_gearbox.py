@@ -135,7 +135,7 @@ def test_mistakes_are_named() -> None:
         gearbox(shafts={"name": "input"})
     with pytest.raises(ValueError, match="shaft"):
         gearbox(shafts=[], wheels=[], meshes=[], bearings=[])
-    with pytest.raises(ValueError, match="must be one of phm2009-spur, phm2009-helical, uconn, tecnalia, nrel-grc, planetary-lab"):
+    with pytest.raises(ValueError, match="must be one of phm2009-spur, phm2009-helical, uconn, tecnalia, nrel-grc, planetary-lab, oedi-623"):
         mt.gearbox_template("none")  # type: ignore[arg-type]
 
 

@@ -3,6 +3,7 @@
 //! Exit codes: 0, 1 (something failed, such as a full disk, or may not be written) or 2 (bad input: a scenario, an argument, a name
 //! that leads nowhere, a file that cannot be read).
 
+mod bench;
 mod check;
 mod choice;
 mod commands;

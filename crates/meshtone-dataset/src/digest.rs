@@ -16,7 +16,10 @@ pub struct Digest {
 
 impl Digest {
     /// The digest of bytes in memory.
-    pub(crate) fn of(bytes: &[u8]) -> Self {
+    ///
+    /// # Arguments
+    /// * `bytes` - all of them
+    pub fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, sha256: hexadecimal(Sha256::digest(bytes)) }
     }
 }

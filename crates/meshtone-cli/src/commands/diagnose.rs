@@ -1,17 +1,11 @@
 //! `meshtone diagnose`
 
-use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
-use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone::signal::TrainWheel;
-use meshtone_diagnose::{
-    Answer, DiagnosisWarning, Learned, Observation, Prior, Question, REFINED_RECORDS, ReferenceSet,
-    ReferenceStore, Refined, SignalKind, diagnose, refine,
-};
+use meshtone_diagnose::{Answer, DiagnosisWarning, Observation, Prior, Question, SignalKind};
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
@@ -21,15 +15,15 @@ use serde_json::{Value, json};
 use crate::check::check;
 use crate::choice::{Choice, one_of};
 use crate::diagnose::observe::Observer;
+use crate::diagnose::reference::{ReferenceOptions, answer};
 use crate::diagnose::{figure, table};
 use crate::failure::Failure;
 use crate::indicators::figures::several_names;
 use crate::indicators::options::{PhaseOptions, ReadingOptions, ShaftOptions};
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::progress::with_bar;
 use crate::replacement::{replace, stage_figure, stage_text};
 use crate::shown::Shown;
-use crate::terminal::{print_error_line, warn};
+use crate::terminal::warn;
 use crate::warnings;
 
 const JSON: &str = "diagnosis.json";
@@ -65,13 +59,8 @@ pub struct Diagnose {
     /// Kind of the recordings; `average` and `difference`: one revolution of the gear of a pair
     #[arg(long, default_value = "recording", value_parser = one_of(&SIGNALS))]
     signal: SignalKind,
-    /// Folder in which the simulations are kept. [default: in the user's cache directory, see --help]
-    #[arg(long, value_name = "DIR")]
-    reference: Option<PathBuf>,
-    /// Simulations to learn from, in batches of 512, up to 20480: twice as many take four times as long to compare
-    #[arg(long, value_name = "N", default_value_t = ReferenceStore::USUAL_RECORDS,
-        value_parser = clap::value_parser!(u64).range(ReferenceStore::BATCH..=ReferenceStore::MOST_RECORDS))]
-    records: u64,
+    #[command(flatten)]
+    kept: ReferenceOptions,
     /// Directory to write to. [default: <name of the first recording>_diagnosis in the current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -124,11 +113,10 @@ impl Diagnose {
             of_reading.map(|said| DiagnosisWarning { code: "reading", message: said }).collect();
         let known = [of_reading.clone(), question.warnings(&prior)].concat();
         known.iter().map(|of| &of.message).for_each(warn);
-        let store = ReferenceStore::new(self.folder()?);
-        let reference = self.reference(&store, &prior)?;
-        let learned = Learned::new(&reference, &question)?;
-        let refined = self.refined(&learned, &question)?;
-        let mut answer = diagnose(&learned, &question, refined.as_ref())?;
+        let store = self.kept.store()?;
+        let of = self.scenario.display().to_string();
+        let reference = self.kept.simulations(&store, &prior, &of, self.shown.quiet)?;
+        let mut answer = answer(&reference, &question, self.shown.quiet)?;
         answer.warnings.splice(0..0, of_reading);
         let json = self.json(&answer, &store.folder_of(&prior));
         self.write(&output.path, &answer, &json, &prior.train.wheels)?;
@@ -160,52 +148,6 @@ impl Diagnose {
         Ok(scenario)
     }
 
-    /// Folder in which simulations are kept.
-    fn folder(&self) -> Result<PathBuf, Failure> {
-        self.reference.clone().or_else(ReferenceStore::default_folder).ok_or_else(|| {
-            Failure::bad_input(
-                "there is no folder for the simulations: the environment names no home directory",
-            )
-            .with_help("name one with --reference DIR")
-        })
-    }
-
-    fn reference(&self, store: &ReferenceStore, prior: &Prior) -> Result<ReferenceSet, Failure> {
-        let (folder, since) = (store.folder_of(prior), Instant::now());
-        let kept = fs::read_dir(&folder).map_or(0, Iterator::count) as u64;
-        let shows_progress = !self.shown.quiet && kept < self.records.div_ceil(ReferenceStore::BATCH);
-        if shows_progress {
-            // Also where no bar can be drawn.
-            print_error_line(format_args!(
-                "simulating {} with every kind of damage, up to {} times; what is finished is kept in {}, also when stopped",
-                self.scenario.display(),
-                self.records,
-                folder.display()
-            ));
-        }
-        let reference =
-            self.with_bar(self.records, "simulations", |control| store.get(prior, self.records, control))?;
-        if shows_progress {
-            print_error_line(format!("simulated in {:.0} s", since.elapsed().as_secs_f64()));
-        }
-        Ok(reference)
-    }
-
-    /// More simulations of what is likely.
-    fn refined(&self, learned: &Learned, question: &Question) -> Result<Option<Refined>, Failure> {
-        let simulations = "simulations, of the likeliest damage";
-        Ok(self.with_bar(REFINED_RECORDS, simulations, |control| refine(learned, question, control))?)
-    }
-
-    /// Simulates with a progress bar.
-    fn with_bar<T>(&self, length: u64, counted: &str, simulate: impl FnOnce(&Control) -> T) -> T {
-        with_bar(counted, !self.shown.quiet, |show| {
-            show(0, length);
-            let progress = |finished: usize| show(finished as u64, length);
-            simulate(&Control { progress: &progress, ..Control::default() })
-        })
-    }
-
     fn json(&self, answer: &Answer, folder: &Path) -> Value {
         let names =
             |paths: &[PathBuf]| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>();
@@ -215,7 +157,7 @@ impl Diagnose {
         all["scenario"] = json!(self.scenario.display().to_string());
         all["tuned"] = json!(self.tuned.as_ref().map(|path| path.display().to_string()));
         all["reference"] = json!({
-            "asked": self.records,
+            "asked": self.kept.records,
             "simulated": answer.simulated_records,
             "records": answer.reference_records,
             "refined_records": answer.refined_records,

@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 mod adapt;
+mod bench;
 mod completions;
 mod dataset;
 mod diagnose;
@@ -36,6 +37,7 @@ pub enum Command {
     Tune(tune::Tune),
     Enhance(enhance::Enhance),
     Dataset(dataset::Dataset),
+    Bench(bench::Bench),
     Completions(completions::Completions),
 }
 
@@ -56,6 +58,7 @@ impl Command {
             Self::Tune(arguments) => arguments.run(),
             Self::Enhance(arguments) => arguments.run(),
             Self::Dataset(arguments) => arguments.run(),
+            Self::Bench(arguments) => arguments.run(),
             Self::Completions(arguments) => arguments.run(),
         }
     }

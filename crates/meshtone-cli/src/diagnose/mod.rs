@@ -2,5 +2,6 @@
 
 pub mod figure;
 pub mod observe;
+pub mod reference;
 pub mod refuse;
 pub mod table;

@@ -21,7 +21,7 @@ const MOST_OF_OWN: f64 = 1.5;
 const MOST_OF_STATED: f64 = 10.0;
 
 /// Features of one file, and warnings about it.
-type Observed = (Observation, Vec<WarningEntry>);
+pub type Observed = (Observation, Vec<WarningEntry>);
 
 /// Reads what recordings of a rig show.
 pub struct Observer<'a> {
@@ -63,7 +63,7 @@ impl<'a> Observer<'a> {
     /// * `path` - the file
     pub fn observe(&self, path: &Path) -> Result<Observed, Failure> {
         if self.signal == SignalKind::Recording {
-            return self.recording(path);
+            return self.recording(Input::read(path, self.reading, self.phase.channel())?);
         }
         let gears = self.scenario.gears();
         let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
@@ -98,9 +98,12 @@ impl<'a> Observer<'a> {
         Failure::refuse(problem, "leave out --signal: a whole recording is averaged here")
     }
 
-    fn recording(&self, path: &Path) -> Result<Observed, Failure> {
-        let mut input = Input::read(path, self.reading, self.phase.channel())?;
-        to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
+    /// Observes a recording that was read.
+    ///
+    /// # Arguments
+    /// * `input` - the recording
+    pub fn recording(&self, mut input: Input) -> Result<Observed, Failure> {
+        to_g(&mut input.channel, &input.source, self.reading.sensitivity_mv_per_unit.is_some())?;
         let turned = Turned::new(&input, self.phase, self.shafts, Some(self.scenario))?;
         let Turned { train, turning, warnings, .. } = turned;
         let rate_hz = input.sampling_rate_hz;

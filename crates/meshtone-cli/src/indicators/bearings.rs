@@ -70,7 +70,8 @@ const SEPARATIONS: [Choice<BearingSeparation>; 4] = [
     ("none", "Nothing", BearingSeparation::None),
 ];
 
-fn bearing(text: &str) -> Result<NamedChoice, String> {
+/// A bearing as the option names it, or why it cannot be.
+pub fn bearing(text: &str) -> Result<NamedChoice, String> {
     let (name, shaft) = match text.split_once('@') {
         Some((name, shaft)) => (name, Some(shaft.to_owned())),
         None => (text, None),

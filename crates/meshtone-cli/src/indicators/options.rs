@@ -12,7 +12,7 @@ use crate::choice::{Choice, one_of};
 use crate::terminal::print_error_line;
 
 /// Options that select parts of the files, and state what the files do not say themselves.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Recording")]
 pub struct ReadingOptions {
     /// Column to process, by its name or its number from 1.

@@ -31,7 +31,7 @@ fn recording(seconds: usize, defect: f64, mesh: f64) -> Vec<f64> {
 }
 
 /// White noise from −0.5 to 0.5: the output function of SplitMix64.
-fn noise(i: usize) -> f64 {
+pub fn noise(i: usize) -> f64 {
     let mix = |z: u64, shift: u32, factor: u64| (z ^ (z >> shift)).wrapping_mul(factor);
     let z = (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     (mix(mix(z, 30, 0xbf58_476d_1ce4_e5b9), 27, 0x94d0_49bb_1331_11eb) >> 11) as f64 / (1u64 << 53) as f64

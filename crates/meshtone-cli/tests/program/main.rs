@@ -4,6 +4,7 @@
 mod adapt;
 mod bad_input;
 mod bearings;
+mod bench;
 mod dataset;
 mod diagnose;
 mod examples;

@@ -1,0 +1,133 @@
+//! Scores of a gearbox: indicators of each wheel, and how far they are from those of the healthy machine.
+
+use meshtone::scenario::Scenario;
+use meshtone::signal::WheelRecords;
+use serde_json::{Map, Value, json};
+
+use super::diagnosis::{Diagnoser, counted};
+use super::preset::{HEALTHY, Recorded};
+use super::score::{Scored, Scores, area, columns, each, processed};
+use crate::diagnose::reference::ReferenceOptions;
+use crate::failure::Failure;
+use crate::indicators::bearings::BearingOptions;
+use crate::indicators::reading::Input;
+
+/// FM0 of each wheel, FM4 of each, and the distance; or why there are none.
+type Numbers = Result<Vec<Option<f64>>, String>;
+
+/// Scores the recordings of a gearbox.
+///
+/// # Arguments
+/// * `recordings` - of the set
+/// * `scenario` - of the machine
+/// * `kept` - where simulations are kept, if each is to be diagnosed
+/// * `quiet` - whether nothing is to be shown
+pub fn score(
+    recordings: &[Recorded],
+    scenario: &Scenario,
+    kept: Option<&ReferenceOptions>,
+    quiet: bool,
+) -> Result<Scores, Failure> {
+    let mut found: Vec<Numbers> = each(recordings, quiet, |recording| look(recording, scenario));
+    let distances: Vec<_> = (0..found.len()).map(|place| distance(place, recordings, &found)).collect();
+    found.iter_mut().zip(distances).for_each(|(found, of)| found.iter_mut().for_each(|found| found.push(of)));
+    let wheels = || scenario.wheels.iter().map(|wheel| &wheel.name);
+    let names = ["FM0", "FM4"].into_iter().flat_map(|of| wheels().map(move |wheel| format!("{of} {wheel}")));
+    let mut heads: Vec<String> = names.chain(["distance".to_owned()]).collect();
+    let (mut table, areas) = areas(&heads, recordings, &found);
+    let mut sums = json!({ "areas": areas });
+    let scored = |of: Vec<Option<f64>>| Scored {
+        cells: of.iter().map(in_words).collect(),
+        words: String::new(),
+        value: json!({ "indicators": named(&heads, &of) }),
+    };
+    let mut each: Vec<_> = found.into_iter().map(|found| found.map(scored)).collect();
+    if let Some(kept) = kept.filter(|_| each.iter().any(Result::is_ok)) {
+        let diagnoser = Diagnoser::new(scenario, kept, quiet)?;
+        let mut answers = Vec::new();
+        for (place, scored) in each.iter_mut().enumerate() {
+            let Ok(scored) = scored else { continue };
+            let healthy = beside(place, recordings, true).map(|other| &recordings[other]).next();
+            let answer = diagnoser.diagnose(&recordings[place], healthy);
+            (scored.words, scored.value["diagnosis"]) = answer.shown();
+            answers.push((recordings[place].label.is == HEALTHY, answer));
+        }
+        let (words, numbers) = counted(&answers);
+        (table, sums["diagnosis"]) = (format!("{table}\n  {words}\n"), numbers);
+        heads.push("diagnosis".to_owned());
+    }
+    Ok(Scores { heads, each, table, sums })
+}
+
+/// FM0 of each wheel of a recording, then FM4 of each.
+fn look(recording: &Recorded, scenario: &Scenario) -> Result<Vec<Option<f64>>, Failure> {
+    let input = Input::read(&recording.path, &recording.reading, None)?;
+    let found = processed(&input, recording, Some(scenario), &BearingOptions::default())?;
+    let of_wheel = |name: &str| {
+        let has_name = |of: &&WheelRecords| found.turned.train.wheels[of.wheel].name == name;
+        Some(&found.records.wheels.iter().find(has_name)?.records.first()?.indicators)
+    };
+    let wheels: Vec<_> = scenario.wheels.iter().map(|wheel| of_wheel(&wheel.name)).collect();
+    Ok([wheels.iter().map(|of| (*of)?.fm0).collect::<Vec<_>>(), wheels.iter().map(|of| (*of)?.fm4).collect()]
+        .concat())
+}
+
+/// Areas under the curve by each channel: as a table, and in numbers.
+fn areas(names: &[String], recordings: &[Recorded], found: &[Numbers]) -> (String, Value) {
+    let heads = ["area under the curve".to_owned()].into_iter().chain(names.iter().cloned());
+    let mut rows = vec![(heads.collect(), String::new())];
+    let mut all = Map::new();
+    for Recorded { channel, .. } in recordings {
+        if !all.contains_key(channel) {
+            let area = |column| area_of(column, channel, recordings, found);
+            let areas: Vec<_> = (0..names.len()).map(area).collect();
+            let cells = [channel.clone()].into_iter().chain(areas.iter().map(in_words)).collect();
+            rows.push((cells, String::new()));
+            all.insert(channel.clone(), named(names, &areas));
+        }
+    }
+    (columns(&rows), Value::Object(all))
+}
+
+fn named(names: &[String], numbers: &[Option<f64>]) -> Value {
+    Value::Object(names.iter().cloned().zip(numbers.iter().map(|number| json!(number))).collect())
+}
+
+fn in_words(value: &Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
+}
+
+/// The healthy recordings by the channel of a recording, at its load or at all others.
+fn beside(place: usize, recordings: &[Recorded], at_its_load: bool) -> impl Iterator<Item = usize> {
+    let Recorded { channel, number, .. } = &recordings[place];
+    let fits = move |other: &Recorded| {
+        other.label.is == HEALTHY && other.channel == *channel && (other.number == *number) == at_its_load
+    };
+    (0..recordings.len()).filter(move |other| fits(&recordings[*other]))
+}
+
+/// Distance of a recording from the healthy ones by its channel: rms over wheels, FM0 and FM4 of the logarithm of each over its median
+/// there. A healthy recording is not compared with itself, so neither of the two states is compared with healthy ones at its own load.
+/// None where there are no others.
+fn distance(place: usize, recordings: &[Recorded], found: &[Numbers]) -> Option<f64> {
+    let logarithm = |(column, value): (usize, &Option<f64>)| {
+        let there = beside(place, recordings, false).filter_map(|other| found[other].as_ref().ok()?[column]);
+        let mut there: Vec<f64> = there.collect();
+        there.sort_by(f64::total_cmp);
+        let middle = 0.5 * (there.get(there.len().checked_sub(1)? / 2)? + there[there.len() / 2]);
+        Some((value.as_ref()? / middle).ln())
+    };
+    let logarithms: Vec<f64> = found[place].as_ref().ok()?.iter().enumerate().filter_map(logarithm).collect();
+    let squares: f64 = logarithms.iter().map(|logarithm| logarithm * logarithm).sum();
+    (!logarithms.is_empty()).then(|| (squares / logarithms.len() as f64).sqrt())
+}
+
+/// Area under the curve of a column by a channel, healthy against damaged.
+fn area_of(column: usize, channel: &str, recordings: &[Recorded], found: &[Numbers]) -> Option<f64> {
+    let [healthy, damaged] = [true, false].map(|is_healthy| -> Vec<f64> {
+        let fits = |of: &Recorded| of.channel == channel && (of.label.is == HEALTHY) == is_healthy;
+        let chosen = recordings.iter().zip(found).filter(|(recording, _)| fits(recording));
+        chosen.filter_map(|(_, found)| found.as_ref().ok()?[column]).collect()
+    });
+    area(&healthy, &damaged)
+}
