@@ -76,7 +76,8 @@ fn outcome(is: &str, named: Option<&str>) -> &'static str {
     }
 }
 
-/// Counts of the outcomes, how many recordings of each state are told rightly, and the mean of the states' parts.
+/// Counts of the outcomes, how many recordings of each state are told rightly, and the mean of the states' parts, for the verdict and for the rule. The table and
+/// the numbers are made side by side, as both are the same counts under other names.
 ///
 /// # Arguments
 /// * `told` - states, and what is made of them

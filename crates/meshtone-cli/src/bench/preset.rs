@@ -73,6 +73,8 @@ impl Preset {
         sets.map_err(|error| Failure::failed(format!("presets.toml: {error}")))
     }
 
+    /// Reads a set. The lists of files, and the speeds that go by the places in them, become one list of files with what each is, so that nothing else knows of
+    /// groups.
     fn read(table: TomlTable<'_>) -> ReadResult<Self> {
         let owned = |of: &TomlValue<'_>| of.string().map(str::to_owned);
         let text = |table: &TomlTable<'_>, key| owned(&table.required(key, "text")?);

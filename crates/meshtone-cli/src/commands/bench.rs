@@ -37,7 +37,7 @@ pub struct Bench {
     /// Folder with the set, unpacked
     #[arg(value_name = "DIR")]
     directory: PathBuf,
-    /// The set. [default: the one that most names of files are of]
+    /// The set: cwru, mfpt or oedi-623. [default: the one that most names of files are of]
     #[arg(long, value_name = "NAME")]
     set: Option<String>,
     /// Diagnose a gearbox too, each recording beside the healthy one of its load, a healthy one's second half beside its first; the first time this
@@ -60,6 +60,8 @@ Examples:
   meshtone bench oedi --diagnose --records 2048";
 
 impl Bench {
+    /// Finds the set, scores its recordings, and writes and prints what came out. Checksums are taken first, so that a file that changes meanwhile is noticed the
+    /// next time; and what could not be scored fails the command only where that is everything.
     pub fn run(&self) -> Result<(), Failure> {
         let (set, recordings) = Preset::find(&self.directory, self.set.as_deref())?;
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.directory, "bench"));

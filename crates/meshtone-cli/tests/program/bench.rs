@@ -131,7 +131,7 @@ fn gears_are_compared_with_the_healthy_ones_at_other_loads() {
     let rig = gearbox_template(Some(GearboxRig::Oedi623));
     let rig = rig.replace(
         "sampling_rate_hz = 100000.0\nduration_s = 1.0",
-        "sampling_rate_hz = 12800.0\nduration_s = 2.0",
+        "sampling_rate_hz = 12800.0\nduration_s = 1.2",
     );
     fs::create_dir(workplace.path("set")).unwrap();
     let fault = "[[fault]]\nwheel = \"z1\"\nkind = \"missing-tooth\"\n\n[solver]";
