@@ -8,6 +8,7 @@ import pytest
 import meshtone as mt
 
 
+@pytest.mark.filterwarnings("ignore::meshtone.MeshtoneWarning")
 def test_damage_of_a_machine_behind_an_unknown_path_is_found(tmp_path: Path) -> None:
     rig = mt.examples.healthy().copy(sampling_rate_hz=2e4, settle_tolerance=1e-3, sensors=[mt.Sensor(name="housing")])
     path = {"frequency_hz": [0.0, 1e4], "magnitude": [3.0, 3.0], "phase_deg": [0.0, 0.0]}

@@ -8,7 +8,7 @@ use crate::LearnError;
 /// Trees that vote.
 const TREES: u64 = 200;
 /// Fewest rows of a leaf.
-const LEAST_LEAF: usize = 3;
+const LEAST_LEAF: usize = 2;
 
 /// Extremely randomised trees.
 ///

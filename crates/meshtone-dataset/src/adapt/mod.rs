@@ -9,7 +9,7 @@ mod plan;
 mod rows;
 
 use meshtone::scenario::Scenario;
-use meshtone::signal::{GearTrain, ShaftPhase};
+use meshtone::signal::GearTrain;
 use meshtone::tuning::{HealthyRecording, PathEstimate};
 use serde_json::{Value, json};
 
@@ -200,7 +200,8 @@ fn of_damage(probabilities: &[Vec<f64>]) -> Vec<f64> {
     probabilities.iter().map(|of| 1.0 - of[0]).collect()
 }
 
-/// Windows of the healthy recordings, as long as a record and at a speed of the set; all of one machine. A recording that is too short has none.
+/// Windows of the healthy recordings at one speed, if the set has that speed, as long as a record; all of one machine. A recording that is too
+/// short has none.
 fn windows(
     plan: &Plan,
     scenario: &Scenario,
@@ -214,9 +215,9 @@ fn windows(
         set.speed_hz.iter().copied().fold(0.0, f64::max) * (1.0 + SPEED_MARGIN),
     ];
     let mut all = Rows::default();
-    for HealthyRecording { values_g, sampling_rate_hz, shaft, phase, .. } in recordings {
+    let steady = recordings.iter().filter(|recording| !recording.phase.is_run_up(recording.sampling_rate_hz));
+    for HealthyRecording { values_g, sampling_rate_hz, shaft, phase, .. } in steady {
         let channels = [(name.clone().into_owned(), values_g.iter().map(|&value| value as f32).collect())];
-        let phase: &ShaftPhase = phase;
         let recording = MachineRecording {
             channels: &channels,
             sampling_rate_hz: *sampling_rate_hz,

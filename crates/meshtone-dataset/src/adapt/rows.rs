@@ -174,7 +174,8 @@ impl Rows {
                     .filter(|value| value.is_finite())
                     .collect();
                 known.sort_by(f64::total_cmp);
-                value - known.get(known.len() / 2).copied().unwrap_or(f64::NAN)
+                let middle = |upper: usize| known.get((known.len().saturating_sub(1) + upper) / 2).copied();
+                value - (middle(0).unwrap_or(f64::NAN) + middle(1).unwrap_or(f64::NAN)) / 2.0
             });
             own.iter().copied().chain(beyond).collect()
         };

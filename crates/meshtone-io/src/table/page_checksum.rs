@@ -101,15 +101,22 @@ pub(super) fn of_headers(list: &str) -> Vec<Vec<u32>> {
 pub(super) struct CheckedPages<R> {
     file: Arc<R>,
     headers: Vec<u32>,
-    /// Where the header begins that has been read last.
-    header: AtomicU64,
+    /// Where reading began last, and before that: a header, or what follows one that was looked at beforehand.
+    started: AtomicU64,
+    started_before: AtomicU64,
     /// Pages that have been read.
     pages: AtomicUsize,
 }
 
 impl<R> CheckedPages<R> {
     pub fn new(file: Arc<R>, headers: Vec<u32>) -> Self {
-        Self { file, headers, header: AtomicU64::new(0), pages: AtomicUsize::new(0) }
+        Self {
+            file,
+            headers,
+            started: AtomicU64::new(0),
+            started_before: AtomicU64::new(0),
+            pages: AtomicUsize::new(0),
+        }
     }
 }
 
@@ -124,13 +131,17 @@ impl<R: ChunkReader> ChunkReader for CheckedPages<R> {
 
     /// Reads a header.
     fn get_read(&self, start: u64) -> Result<Self::T> {
-        self.header.store(start, Ordering::Relaxed);
+        self.started_before.store(self.started.swap(start, Ordering::Relaxed), Ordering::Relaxed);
         self.file.get_read(start)
     }
 
     /// Reads what follows the header.
     fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
-        let header = self.header.load(Ordering::Relaxed);
+        let header = match self.started.load(Ordering::Relaxed) {
+            // The end of a list is known by the next page's header, which is looked at before its page is read.
+            last if last == start => self.started_before.load(Ordering::Relaxed),
+            last => last,
+        };
         let before = usize::try_from(start.saturating_sub(header))?;
         let page = self.file.get_bytes(header, before + length)?;
         let checksum = self.headers.get(self.pages.fetch_add(1, Ordering::Relaxed));

@@ -104,3 +104,19 @@ fn no_flipped_bit_changes_what_is_read() {
     }
     assert!(10 * refused > 9 * pages, "{refused} of {pages} and more");
 }
+
+/// The end of a list is known by the next page, whose header is looked at before its page is read.
+#[test]
+fn lists_in_several_pages_are_read() {
+    let mut file = Vec::new();
+    let columns = vec![TableColumn::new("vertical_g", CellType::Float32List)];
+    let mut table = TableWriter::new(&mut file, columns, WriterProperties::builder().build()).unwrap();
+    let lists: Vec<Vec<f32>> = (0..20).map(|row| (0..60_000).map(|at| (row * at) as f32).collect()).collect();
+    table.write_rows(vec![Cells::Float32List(lists.iter().map(Vec::as_slice).collect())]).unwrap();
+    table.close().unwrap();
+    let table = TableReader::new(Bytes::from(file)).unwrap();
+    let column = table.column("vertical_g").unwrap();
+    assert!(table.metadata().row_group(0).column(0).compressed_size() > 2 << 20);
+    let read = table.lists(column, 0).unwrap();
+    assert!(read.iter().flatten().copied().eq(lists.iter().flatten().map(|&value| f64::from(value))));
+}
