@@ -47,7 +47,8 @@ class Adaptation:
     classes : list of str
         The classes, the healthy one first.
     threshold : float
-        (-) Probability of damage above which a recording is called damaged: at most one in twenty windows of the healthy recordings is above it.
+        (-) Probability of damage above which a recording is called damaged: at most one in twenty windows of the healthy recordings, and of
+        healthy simulations, is above it.
     healthy : array, shape (windows,)
         (-) Probability of damage of each window of the healthy recordings at the set's speeds, beside the others.
     expected : Expected

@@ -19,7 +19,7 @@ use crate::shown::Shown;
 ///
 /// Estimates from recordings of the healthy machine the path to the sensor, the wander of the speed, the random forces and the sidebands, as
 /// `meshtone path` does, and simulates that machine with every class of damage. A classifier that is learnt from the simulations judges each window of
-/// the healthy recordings beside the others: at most one in twenty is above its threshold. Machines that differ from the scenario, as real ones do,
+/// the healthy recordings beside the others: at most one in twenty of these, and of healthy simulations, is above its threshold. Machines that differ from the scenario, as real ones do,
 /// are simulated too, and say what may be expected. Writes the data set, and adaptation.json beside it. An interrupted run goes on where it was.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -70,15 +70,12 @@ impl Adapt {
 fn table(adaptation: &Adaptation, estimate: &PathEstimate, to: &Destination) -> String {
     let Adaptation { plan, threshold, healthy, expected, .. } = adaptation;
     let [from_hz, to_hz] = estimate.compared_hz;
-    let of_windows = match healthy.len() {
-        0 | 1 => "from other simulated machines: no recording has two windows as long as a record, at the speed of the set".to_owned(),
-        count => format!("from {count} windows of the healthy recordings"),
-    };
+    let windows = counted(healthy.len() as u64, "window");
     let row = |name: &str, [mean, least, largest]: [f64; 3]| {
         format!("  {name:<40}  {mean:>5.2}  {least:>5.2}  {largest:>5.2}\n")
     };
     let head = format!(
-        "  {} of {} classes: {}\n  the path was compared from {from_hz:.0} to {to_hz:.0} Hz\n  called damaged from a probability of {threshold:.3} on, {of_windows}\n",
+        "  {} of {} classes: {}\n  the path was compared from {from_hz:.0} to {to_hz:.0} Hz\n  called damaged from a probability of {threshold:.3} on, from {windows} of the healthy recordings and healthy simulations\n",
         counted(plan.records(), "record"),
         adaptation.classes().len(),
         adaptation.classes().join(", ")

@@ -30,7 +30,7 @@ fn a_set_of_a_machine_is_made_and_kept() {
         said.contains("80 records of 3 classes: healthy, missing-tooth@pinion, tooth-breakage"),
         "{said}"
     );
-    assert!(said.contains("windows of the healthy recordings"), "{said}");
+    assert!(said.contains("windows of the healthy recordings and healthy simulations"), "{said}");
     workplace.succeeds(&["dataset", "verify", "set"]);
     let scenario = fs::read_to_string(workplace.path("set/scenario.toml")).unwrap();
     assert!(scenario.contains("frequency_response"), "{scenario}");

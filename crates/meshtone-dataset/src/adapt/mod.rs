@@ -1,8 +1,8 @@
 //! Adapting a data set to a machine of which only healthy recordings are known.
 //!
 //! The path to the sensor, the drive and the sidebands that the recordings tell are put into the machine's scenario. Simulations of it with every
-//! class of damage are the data set. A classifier learns from them; its threshold is that which the healthy recordings exceed once in twenty
-//! times; and simulated machines that differ from the scenario, as real ones do, say what may be expected.
+//! class of damage are the data set. A classifier learns from them; its threshold is one that neither the healthy recordings nor healthy simulations exceed more
+//! than once in twenty times; and simulated machines that differ from the scenario, as real ones do, say what may be expected.
 
 mod detector;
 mod plan;
@@ -132,8 +132,9 @@ pub fn adapt(
     let healthy = of_damage(&detector.probabilities(&known, &|_| true));
     let hidden = Rows::of_set(&hidden, &beside)?;
     let (expected, hidden_healthy) = expected(&detector, &hidden);
-    // Without several windows the healthy records of the other machines stand in.
-    let threshold = threshold(if healthy.len() > 1 { &healthy } else { &hidden_healthy });
+    // The recordings may be of one load and one speed, and none may have a window; the simulated machines scatter.
+    let own = if healthy.is_empty() { 0.0 } else { threshold(&healthy) };
+    let threshold = own.max(threshold(&hidden_healthy));
     let adaptation = Adaptation { plan, generated, threshold, healthy, expected, detector, known };
     to.write_bytes(ADAPTATION, format!("{:#}\n", adaptation.to_json()).as_bytes())?;
     Ok(adaptation)
