@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use meshtone::scenario::Scenario;
 use meshtone::signal::TrainWheel;
-use meshtone_diagnose::{Answer, DiagnosisWarning, Observation, Prior, Question, SignalKind};
+use meshtone_diagnose::{Answer, DiagnosisWarning, Observation, Question, SignalKind};
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
