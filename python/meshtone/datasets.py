@@ -54,6 +54,7 @@ import weakref
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import copy
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
@@ -448,7 +449,9 @@ class Dataset:
     ) -> None:
         self.place = place
         self._native = native
-        self._filter = expression
+        # Arrow's threads end later than a scan. If they are the last to hold memory of Python, such as an array given to `isin`, while Python
+        # exits, the process aborts. A copy has memory of Arrow alone.
+        self._filter = copy(expression)
         self._length: int | None = None
         self._empty = empty_columns
         self._rows: Rows | None = None

@@ -54,7 +54,7 @@ class HiddenRig:
             eccentricity_mm=draws.uniform(0, 0.03), iso_class=int(draws.choice([4, 5, 6])),
             sensors=[mt.Sensor(name="housing", at="gear-support", frequency_response=path)],
         )
-        self.snr_db, self.colour, self.hum_hz, self.hum = draws.uniform([9, 0.3, 1500, 0.5], [24, 1.5, 9000, 2])
+        self.snr_db, self.colour, self.hum_hz, self.hum = draws.uniform([9, 0.3, 1500, 0.5], [24, 1.5, 9000, 2]).tolist()
         self.draws = draws
 
     def noise(self, samples: int, rate_hz: float) -> np.ndarray:
