@@ -201,7 +201,6 @@ mod tests {
             kinds,
             outside_model,
             healthy_outside_model: None,
-            rule: crate::Rule::default(),
             warnings: Vec::new(),
             shown_wheel: 1,
             difference_g: Vec::new(),

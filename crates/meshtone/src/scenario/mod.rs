@@ -61,6 +61,7 @@ pub use template::{template, template_kinds, template_of_all_keys};
 pub use uncertainty::log_deviation;
 pub(crate) use validate::unknown_kind;
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};
+pub(crate) use wheel::MOST_WOBBLE;
 pub use wheel::ScenarioWheel;
 
 use crate::operation::{Motion, TimeGrid};

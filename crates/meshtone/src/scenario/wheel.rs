@@ -136,6 +136,8 @@ const ALONG: Range = Range::between(Included(0.0), Included(1.0))
     .message("must be from 0 to 1, the part of the shaft's length from its beginning");
 
 const SHARE: Range = Range::from_to(0.0, 1.0);
+/// (-) Largest slope that varies once a revolution, over the rms deviation of the profiles.
+pub(crate) const MOST_WOBBLE: f64 = 3.0;
 const MATES: &str = "the same of both wheels of a mesh";
 
 keys! {
@@ -197,7 +199,7 @@ keys! {
     pitch_share "-" "a wheel's largest single pitch deviation over its tolerance f_p" .range(SHARE);
     run_out_share "-" "a wheel's run-out over its tolerance F_r" .range(SHARE);
     slope_wobble "-" "the profile slope that varies once a revolution, over the rms deviation of the wheel's profiles"
-        .range(Range::from_to(0.0, 3.0));
+        .range(Range::from_to(0.0, MOST_WOBBLE));
     helix_share "-" "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ"
         .range(SHARE);
     helix_wobble_um "µm" "the amplitude of a helix slope over its face width that turns with it, as of a wheel that wobbles"

@@ -3,7 +3,7 @@
 use super::PathEstimate;
 use super::sidebands::{SAME, SidebandCause, ripple_order};
 use crate::operation::MOST_RIPPLE;
-use crate::scenario::Scenario;
+use crate::scenario::{MOST_WOBBLE, Scenario};
 use crate::signal::GearTrain;
 
 /// (-) Largest share of a tolerance that a run-out may have.
@@ -14,8 +14,8 @@ impl PathEstimate {
     /// what makes sidebands.
     ///
     /// A torque ripple, or run-out and slope wobble of a shaft's wheels, is multiplied by the factor of its sidebands where 1 is not within the
-    /// factor's interval; what draws of the wheels explain stays as stated. Ripples add up to at most what a scenario allows, and a
-    /// run-out is at most its tolerance.
+    /// factor's interval; what draws of the wheels explain stays as stated. Ripples and wobbles are at most what a scenario allows, and
+    /// a run-out is at most its tolerance.
     ///
     /// # Arguments
     /// * `scenario` - the one that the path was estimated for
@@ -51,7 +51,7 @@ impl PathEstimate {
                     let on_shaft = |wheel: usize| train.wheels[wheel].shaft == shaft;
                     for (_, wheel) in adapted.wheels.iter_mut().enumerate().filter(|(at, _)| on_shaft(*at)) {
                         wheel.run_out_share = (wheel.run_out_share * factor).min(WHOLE_TOLERANCE);
-                        wheel.slope_wobble *= factor;
+                        wheel.slope_wobble = (wheel.slope_wobble * factor).min(MOST_WOBBLE);
                     }
                 }
                 SidebandCause::Nothing => {}
