@@ -61,8 +61,11 @@ class Adaptation:
         self.classes: list[str] = found["classes"]
         self.threshold: float = found["threshold"]
         self.healthy: Array = np.array(found["healthy_windows"])
-        expected = {key: of if key == "machines" else (of["mean"], of["least"], of["largest"]) for key, of in found["expected"].items()}
-        self.expected = Expected(**expected)
+        expected = found["expected"]
+        area, detection, recall = (
+            (expected[key]["mean"], expected[key]["least"], expected[key]["largest"]) for key in Expected._fields[1:]
+        )
+        self.expected = Expected(expected["machines"], area, detection, recall)
 
     @property
     def dataset(self) -> Dataset:

@@ -141,7 +141,8 @@ def main() -> None:
         damaged = labels != "healthy"
         scores, classes = learnt_from_labels(rig, asked, steady, folder)
         print(f"{number}, labels: {roc_auc_score(damaged, scores):.3f}, {recall_score(labels, classes, average='macro'):.3f}", flush=True)
-        for name, healthy in {"run-up and steady": [run_up, steady], "steady": [steady], "the first at 10 dB": noisy}.items():
+        ways: dict[str, list[Any]] = {"run-up and steady": [run_up, steady], "steady": [steady], "the first at 10 dB": noisy}
+        for name, healthy in ways.items():
             try:
                 adapted = mt.adapt(healthy, KNOWN, folder / name, classes=list(SEVERITIES))
             except ValueError as error:
