@@ -11,12 +11,13 @@ use toml::Table;
 use crate::files;
 use crate::rooms::code;
 use crate::step::{StepRunner, StepTime, cargo};
+use crate::yardstick::Yardstick;
 
 /// The file of the budgets, from the workspace's root.
 const FILE: &str = "budgets.toml";
 
 /// The numbers of `[processor_seconds]` that are not of one step.
-const OF_NO_STEP: [&str; 4] = ["slack", "first_command", "all_checks", "any_other_step"];
+const OF_NO_STEP: [&str; 5] = ["slack", "yardstick", "first_command", "all_checks", "any_other_step"];
 
 /// The budgets of one table of the file.
 struct Budgets {
@@ -49,7 +50,7 @@ impl Budgets {
         let budget = self.number(key)?;
         let problem = || {
             let allowed =
-                if slack == 1.0 { String::new() } else { format!(", {slack} times as much allowed") };
+                if slack == 1.0 { String::new() } else { format!(", {slack:.2} times as much allowed") };
             format!(
                 "{used:.1} is more than the budget of {budget} for `{key}` in [{}] of {FILE}{allowed}: use less, or raise it in \
                  the same commit and say why",
@@ -57,6 +58,17 @@ impl Budgets {
             )
         };
         Ok((used > budget * slack).then(problem))
+    }
+
+    /// How many times the budgets a step may take: `slack`, times how much slower the processor was than the budgets' machine.
+    fn allowed(&self, yardstick: &Yardstick) -> Result<f64, String> {
+        let quiet_s = self.number("yardstick")?;
+        let measured_s = yardstick.mean_s().unwrap_or(quiet_s);
+        println!(
+            "    yardstick: {measured_s:.4} s, {:.2} times that of the budgets' machine",
+            measured_s / quiet_s
+        );
+        Ok(self.number("slack")? * measured_s / quiet_s)
     }
 
     /// The budgets of steps that there are no more, and so would never be exceeded.
@@ -113,12 +125,13 @@ fn words(root: &Path) -> std::io::Result<usize> {
 /// # Arguments
 /// * `root` - folder of the workspace, where the program has been built
 /// * `times` - of the steps that have ended
+/// * `yardstick` - measured beside them
 ///
 /// # Errors
 /// A file that cannot be read.
-pub fn of_checks(root: &Path, times: &[StepTime]) -> Result<Vec<String>, String> {
+pub fn of_checks(root: &Path, times: &[StepTime], yardstick: &Yardstick) -> Result<Vec<String>, String> {
     let seconds = Budgets::read(root, "processor_seconds")?;
-    let slack = seconds.number("slack")?;
+    let slack = seconds.allowed(yardstick)?;
     let total: f64 = times.iter().map(|time| time.processor_s).sum();
     let mut problems = vec![seconds.problem("all_checks", total, slack)?];
     problems.extend(seconds.without_step(times).map(Some));
@@ -139,6 +152,7 @@ pub fn of_checks(root: &Path, times: &[StepTime]) -> Result<Vec<String>, String>
 /// # Errors
 /// The exit code of what failed, or 1 where a budget is exceeded.
 pub fn measure(row: &StepRunner) -> Result<(), u8> {
+    let yardstick = Yardstick::begin();
     let target = row.root().join("target").join("measure");
     row.step("first command, from nothing", || {
         if target.exists() {
@@ -152,7 +166,7 @@ pub fn measure(row: &StepRunner) -> Result<(), u8> {
     let first_command_s = row.times().last().map_or(0.0, |time| time.processor_s);
     row.check("budget of the first command", |root| {
         let seconds = Budgets::read(root, "processor_seconds")?;
-        let problem = seconds.problem("first_command", first_command_s, seconds.number("slack")?)?;
+        let problem = seconds.problem("first_command", first_command_s, seconds.allowed(&yardstick)?)?;
         Ok::<_, String>(problem.into_iter().collect())
     })?;
     row.check("budgets of instructions", |root| instructions(root, &target))

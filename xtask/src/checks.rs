@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::step::{StepRunner, in_parallel};
 use crate::surroundings::unusual;
+use crate::yardstick::Yardstick;
 use crate::{
     budgets, compilations, dist, docs, environment, features, formatting, kernels, packages, python, rooms,
     rustdoc, scipy, toolchain,
@@ -46,6 +47,7 @@ fn sources(row: &StepRunner) -> Result<(), u8> {
 /// # Errors
 /// The exit code of what failed first.
 pub fn all(root: &Path) -> Result<(), u8> {
+    let yardstick = Yardstick::begin();
     let logs = root.join("target").join("checks").join("log");
     let [rust, python] = StepRunner::pair(root, &logs, &linted())?;
     sources(&rust)?;
@@ -55,7 +57,7 @@ pub fn all(root: &Path) -> Result<(), u8> {
     rust.check("nothing is compiled twice", compilations::problems)?;
     let (ready, prepared) = channel();
     in_parallel(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))?;
-    rust.check("budgets", |root| budgets::of_checks(root, &rust.times()))
+    rust.check("budgets", |root| budgets::of_checks(root, &rust.times(), &yardstick))
 }
 
 /// Variables with which the compiler's own lints and Clippy's are errors of each compilation: no package is compiled apart for the lints.

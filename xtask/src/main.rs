@@ -21,6 +21,7 @@ mod scipy;
 mod step;
 mod surroundings;
 mod toolchain;
+mod yardstick;
 
 use std::path::Path;
 use std::process::ExitCode;
