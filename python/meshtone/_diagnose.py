@@ -47,6 +47,9 @@ class Diagnosis:
         Of a gearbox with ball or roller bearings every race, those with a defect first: ``bearings``, the names of those that it may be of, ``race``,
         ``is_defect``, ``is_detected`` (lines that a sound bearing can have, too), ``false_alarm_probability`` (0.01 stands for all below), ``order``,
         ``found_order``, ``slip``, ``band_hz``, ``depth``, ``healthy_depth``. No severity is estimated.
+    rule : dict
+        What the indicators alone say, without a simulation: ``is_damaged`` (None without a healthy recording), and ``wheels`` with ``fm4``, ``fm0`` and
+        ``sideband_level_factor`` of each, ``now``, ``healthy``, ``limit`` and ``is_above``.
     summary : str
         What it comes to, in a sentence.
     damaged : float
@@ -69,6 +72,7 @@ class Diagnosis:
     kinds: dict[str, dict[str, Any]] = field(repr=False)
     any_damage: dict[str, Any] | None = field(repr=False)
     bearings: list[dict[str, Any]] = field(repr=False)
+    rule: dict[str, Any] = field(repr=False)
     summary: str
     damaged: float
     outside_model: float
@@ -135,7 +139,8 @@ def diagnose(
     scenario : Scenario
         The rig; its faults are left out.
     healthy : the same, optional
-        The same rig when it was healthy.
+        The same rig when it was healthy, each recording at its own rate; all at one speed, best that of the others: beyond 5 % healthy rigs are simulated at
+        that speed too.
     signal : {'recording', 'average', 'difference'}
         What the recordings are.
     tuned : str or path, optional
@@ -203,6 +208,7 @@ def diagnose(
         kinds=report["kinds"],
         any_damage=report["any_damage"],
         bearings=report["bearings"],
+        rule=report["rule"],
         summary=report["summary"],
         damaged=report["damaged"],
         outside_model=report["outside_model"],

@@ -54,6 +54,17 @@ def test_from_signals_to_an_answer(reference: Path) -> None:
     assert json.loads(json.dumps(found.to_dict()))["kinds"] == found.kinds
     assert "tooth 8" in found._repr_html_()
 
+    gear = found.rule["wheels"]["gear"]
+    assert found.rule["is_damaged"] and gear["fm4"]["is_above"]
+    assert gear["fm4"]["now"] > gear["fm4"]["limit"] > gear["fm4"]["healthy"]
+
+    # A healthy recording of another speed and rate is compared with simulations at that speed.
+    slow = mt.simulate(RIG.copy(pinion_speed_hz=28, sampling_rate_hz=6000))
+    phase = mt.ShaftPhase.constant(28.0, 6000.0, slow.vertical_g.size)
+    other = ask(gone, (slow.vertical_g, 6000.0, phase))
+    assert other.damaged > 0.9
+    assert [warning.code for warning in other.warnings if "28.000 Hz in the healthy recording" in warning.message] == ["speed"]
+
     revolution = ask(found.difference_g, signal="difference")
     assert revolution.to_dict()["signal"] == "difference"
     assert any("when it was healthy" in warning.message for warning in revolution.warnings)

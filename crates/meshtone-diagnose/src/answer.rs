@@ -8,6 +8,7 @@ use crate::diagnose::OUTSIDE;
 use meshtone_learn::Interval;
 
 use crate::observation::SignalKind;
+use crate::rule::Rule;
 use crate::warnings::DiagnosisWarning;
 
 /// A size of a damage.
@@ -121,6 +122,8 @@ pub struct Answer {
     pub outside_model: f64,
     /// p-value of the healthy recording among healthy simulations alone; none where there is no healthy recording.
     pub healthy_outside_model: Option<f64>,
+    /// What a rule says, whatever the simulations do.
+    pub rule: Rule,
     /// Warnings.
     pub warnings: Vec<DiagnosisWarning>,
     /// The wheel that the signals below are of, by its place: the likeliest damaged one.

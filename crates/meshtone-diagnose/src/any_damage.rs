@@ -201,6 +201,7 @@ mod tests {
             kinds,
             outside_model,
             healthy_outside_model: None,
+            rule: crate::Rule::default(),
             warnings: Vec::new(),
             shown_wheel: 1,
             difference_g: Vec::new(),

@@ -14,6 +14,7 @@ use crate::learn::{FeatureRow, Layout, Learned, Question};
 use crate::observation::Observation;
 use crate::prior::{DrawnFault, Prior};
 use crate::refine::Refined;
+use crate::rule::Rule;
 use crate::warnings::warnings;
 
 /// (-) p-value below which a recording is called unlike all that was simulated.
@@ -106,6 +107,7 @@ pub fn diagnose(
         kinds,
         outside_model,
         healthy_outside_model,
+        rule: Rule::new(question, &layout),
         warnings: Vec::new(),
         difference_g: question.now[0].wheels[shown_wheel]
             .as_ref()

@@ -71,6 +71,16 @@ pub enum DiagnoseError {
         /// A possible reason, in words.
         reason: String,
     },
+    /// Healthy recordings of different speeds, of which one reference set holds one.
+    #[error(
+        "the healthy recordings turn at {slowest:.3} to {fastest:.3} Hz; give those of one speed, best the one at which the recording in question turns"
+    )]
+    HealthySpeeds {
+        /// (Hz) The least speed.
+        slowest: f64,
+        /// (Hz) The largest.
+        fastest: f64,
+    },
     /// A speed or lines that are not finite.
     #[error("a recording's {what} is {value}; must be finite{beside}")]
     NotFinite {

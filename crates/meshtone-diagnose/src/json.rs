@@ -31,6 +31,7 @@ impl Answer {
             "damaged": self.damaged(),
             "teeth_counted_from": counted_from,
             "summary": self.summary,
+            "rule": self.rule.to_json(wheels),
             "bearings": self.bearings.iter().map(bearing).collect::<Vec<_>>(),
             "any_damage": self.any_damage.as_ref().map(|any| any_damage(any, wheels)),
             "kinds": kinds,

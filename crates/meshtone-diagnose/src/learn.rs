@@ -270,8 +270,7 @@ fn less(now: &[f64], before: &[f64]) -> Vec<f64> {
 fn healthy_test(layout: &Layout, reference: &ReferenceSet) -> OutlierTest {
     let noises = [layout.noises[1].clone(), Vec::new()];
     let alone = Layout { has_healthy: false, noises, ..layout.clone() };
-    let healthy: Vec<&ReferenceRecord> =
-        reference.records.iter().filter(|record| record.fault.is_none()).collect();
+    let healthy: Vec<&ReferenceRecord> = reference.healthy().collect();
     let rows: Vec<Vec<f64>> =
         alone.simulations(reference, &healthy).into_iter().map(|row| row.values).collect();
     let units = healthy.iter().map(|record| record.unit()).collect();

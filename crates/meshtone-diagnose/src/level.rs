@@ -5,6 +5,7 @@ use meshtone_learn::{WheelLines, quantiles};
 
 use crate::learn::{Learned, Question};
 use crate::observation::Observation;
+use crate::reference::ReferenceRecord;
 
 /// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.
 const BEYOND_DB: f64 = 10.0;
@@ -20,8 +21,11 @@ pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
         Some(healthy) => ("healthy recording", of(healthy), true),
         None => ("recording", of(question.now.first()?), false),
     };
-    let counted = learned.reference.records.iter().filter(|record| !is_healthy || record.fault.is_none());
-    let levels = counted.map(|record| (level_db(learned, record.wheels.iter().map(Some)), 1.0)).collect();
+    let level = |record: &ReferenceRecord| (level_db(learned, record.wheels.iter().map(Some)), 1.0);
+    let levels = match is_healthy {
+        true => learned.reference.healthy().map(level).collect(),
+        false => learned.reference.records.iter().map(level).collect(),
+    };
     let [low, median, high] = quantiles(levels, [0.05, 0.5, 0.95]);
     let is_within = (low - BEYOND_DB..=high + BEYOND_DB).contains(&asked);
     (!is_within).then(|| {

@@ -23,6 +23,7 @@ mod prior;
 mod recorded;
 mod reference;
 mod refine;
+mod rule;
 mod speed;
 mod store;
 #[cfg(test)]
@@ -45,6 +46,7 @@ pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
 pub use recorded::other_tone;
 pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
+pub use rule::{Rule, RuleValue};
 pub use store::{ReferenceStore, StoreError};
 pub use warnings::DiagnosisWarning;
 pub use words::AnswerInWords;

@@ -84,6 +84,8 @@ pub struct Prior {
     /// States that the rig names no sensor and has supports, so that the sensor may be on the support of either shaft, or on the seat of any
     /// bearing, on a wall or not.
     pub has_any_sensor: bool,
+    /// (Hz) Speed of the rig's shaft that drives in the healthy records that all others of their pair are compared with, where it is another one.
+    pub healthy_speed_hz: Option<f64>,
     /// Seed of all draws.
     pub seed: u64,
     /// The damage of a refined round; none where every kind on either wheel is drawn.
@@ -158,6 +160,7 @@ impl Prior {
             load_spread: 0.28,
             load_change: 2.3,
             gain_db: 6.0,
+            healthy_speed_hz: None,
             seed: 1,
             focus: None,
         })
@@ -167,9 +170,12 @@ impl Prior {
     ///
     /// # Arguments
     /// * `focus` - the damage
-    /// * `input_speed_hz` - (Hz) of the recording, where it is known
-    pub fn narrowed(&self, focus: Focus, input_speed_hz: Option<f64>) -> Self {
+    /// * `input_speed_hz`, `healthy_speed_hz` - (Hz) of the recording and of the healthy one, where they are known
+    pub fn narrowed(&self, focus: Focus, input_speed_hz: Option<f64>, healthy_speed_hz: Option<f64>) -> Self {
         let mut narrowed = Self { seed: self.seed.wrapping_add(1), focus: Some(focus), ..self.clone() };
+        if self.healthy_speed_hz.is_some() {
+            narrowed.healthy_speed_hz = healthy_speed_hz;
+        }
         if let Some(speed_hz) = input_speed_hz {
             narrowed.base.operation.pinion_speed_hz = speed_hz;
             narrowed.speed_spread = KNOWN_SPEED_SPREAD;
@@ -258,7 +264,9 @@ impl Prior {
         let speed = 0.7 * self.speed_spread * common.uniform(0.0, 1.0) + speed_change;
         let load = self.load_spread * common.uniform(0.0, 1.0) + load_change;
         let operation = &self.base.operation;
-        let speed_hz = operation.pinion_speed_hz * speed.exp();
+        let is_healthy = number.is_multiple_of(RECORDS_PER_UNIT);
+        let nominal_hz = self.healthy_speed_hz.filter(|_| is_healthy).unwrap_or(operation.pinion_speed_hz);
+        let speed_hz = nominal_hz * speed.exp();
         let load_nm = operation.brake_torque_nm * load.exp();
         let mut scenario = self.base.with_numbers(&numbers)?;
         let operation = &mut scenario.operation;
@@ -519,12 +527,29 @@ mod tests {
         assert!(near > 0.4 && higher > 0.08 && lower > 0.08, "{near} {higher} {lower}");
     }
 
+    // Another speed of the healthy recordings changes the first record of each pair alone, and its speed alone.
+    #[test]
+    fn healthy_records_are_drawn_at_their_own_speed() {
+        let prior = prior();
+        let other = Prior { healthy_speed_hz: Some(28.0), ..prior.clone() };
+        for number in 0..8 {
+            let [one, mut two] =
+                [&prior, &other].map(|prior| prior.draw_among(&[], number).unwrap().scenario);
+            if number == 0 {
+                let ratio = two.operation.pinion_speed_hz / one.operation.pinion_speed_hz;
+                assert!((ratio - 28.0 / prior.base.operation.pinion_speed_hz).abs() < 1e-12, "{ratio}");
+                two.operation.pinion_speed_hz = one.operation.pinion_speed_hz;
+            }
+            assert_eq!(one, two);
+        }
+    }
+
     #[test]
     fn a_focus_draws_its_damage_at_the_recordings_speed() {
         let prior = prior();
         let kind = prior.kinds().iter().position(|kind| kind.name == "tooth-breakage").unwrap();
         let focus = Focus { kind, wheel: 0, severity: [0.3, 0.5] };
-        let narrowed = prior.narrowed(focus, Some(43.0));
+        let narrowed = prior.narrowed(focus, Some(43.0), Some(43.0));
         for number in 0..24 {
             let drawn = narrowed.draw(number).unwrap();
             assert!((drawn.scenario.operation.pinion_speed_hz / 43.0 - 1.0).abs() < 0.003);

@@ -12,6 +12,7 @@ use meshtone::signal::{
 use meshtone::wheel::WheelName;
 use meshtone::{Error, Stages};
 use meshtone_learn::{WheelLines, separations};
+use rayon::prelude::*;
 
 use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
 
@@ -54,6 +55,14 @@ impl ReferenceSet {
         let at = self.records.binary_search_by_key(&number, |other| other.number).ok()?;
         Some(&self.records[at])
     }
+
+    /// The records that a healthy recording alone is like: healthy ones, at its speed.
+    pub(crate) fn healthy(&self) -> impl Iterator<Item = &ReferenceRecord> {
+        let is_at_speed = |record: &&ReferenceRecord| {
+            self.prior.healthy_speed_hz.is_none() || record.number.is_multiple_of(RECORDS_PER_UNIT)
+        };
+        self.records.iter().filter(|record| record.fault.is_none()).filter(is_at_speed)
+    }
 }
 
 /// Simulates records of a prior.
@@ -66,12 +75,11 @@ impl ReferenceSet {
 /// Returns those that could be simulated, in their order; fewer where it was cancelled.
 pub fn build_reference(
     prior: &Prior,
-    numbers: std::ops::Range<u64>,
+    numbers: impl IntoParallelIterator<Item = u64>,
     control: &Control,
 ) -> Vec<ReferenceRecord> {
     // A record that cannot be drawn is one that cannot be simulated: neither is in the set.
     let drawn: Vec<(u64, Drawn)> = {
-        use rayon::prelude::*;
         let kinds = prior.kinds();
         let is_wanted = || !control.cancelled.load(Ordering::Relaxed);
         let draw = |number| {

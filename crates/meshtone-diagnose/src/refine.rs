@@ -13,6 +13,7 @@ use crate::DiagnoseError;
 use crate::learn::{Learned, Question};
 use crate::prior::{Focus, Prior};
 use crate::reference::{ReferenceSet, build_reference};
+use crate::speed::mean_hz;
 
 /// (-) Probability of a kind on a wheel from which on it is looked at more closely.
 const LIKELY: f64 = 0.4;
@@ -91,9 +92,9 @@ impl Learned<'_> {
         if severity[1] - severity[0] > TOO_WIDE {
             return Ok(None);
         }
-        let speeds: Vec<f64> = question.now.iter().filter_map(|asked| asked.input_speed_hz).collect();
-        let speed_hz = (!speeds.is_empty()).then(|| speeds.iter().sum::<f64>() / speeds.len() as f64);
-        Ok(Some((class, self.reference.prior.narrowed(Focus { kind, wheel, severity }, speed_hz))))
+        let [speed_hz, healthy_hz] = [question.now, question.healthy].map(mean_hz);
+        let focus = Focus { kind, wheel, severity };
+        Ok(Some((class, self.reference.prior.narrowed(focus, speed_hz, healthy_hz))))
     }
 }
 

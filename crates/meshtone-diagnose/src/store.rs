@@ -12,6 +12,7 @@ use meshtone_fourier::Complex64;
 use meshtone_io::atomic_file::{WriteFileError, write_atomically};
 use meshtone_io::npz::{NpzReader, NpzWriter};
 use meshtone_learn::{MESH_ORDERS, WheelLines, separations};
+use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
@@ -101,6 +102,8 @@ impl ReferenceStore {
 
     /// The first records of a prior's set: those that are there are read, the others simulated and kept.
     ///
+    /// Where the healthy records are at another speed, all others are those of the set at one speed.
+    ///
     /// # Arguments
     /// * `prior` - what may be
     /// * `count` - records, rounded up to whole batches
@@ -112,7 +115,14 @@ impl ReferenceStore {
         let folder = self.folder_of(prior);
         let failed = |source| StoreError::Folder { path: folder.clone(), source };
         fs::create_dir_all(&folder).map_err(failed)?;
+        let is_own =
+            |number: &u64| prior.healthy_speed_hz.is_none() || number.is_multiple_of(RECORDS_PER_UNIT);
         let mut records = Vec::new();
+        if prior.healthy_speed_hz.is_some() {
+            let at_one_speed = Prior { healthy_speed_hz: None, ..prior.clone() };
+            records = self.get(&at_one_speed, count, control)?.records;
+            records.retain(|record| !is_own(&record.number));
+        }
         for batch in 0..count.div_ceil(BATCH) {
             let path = folder.join(format!("batch-{batch:04}.npz"));
             let before = (batch * BATCH) as usize;
@@ -122,7 +132,8 @@ impl ReferenceStore {
                 Err(_) => {
                     let progress = |finished: usize| (control.progress)(before + finished);
                     let own = Control { progress: &progress, ..*control };
-                    let of_batch = build_reference(prior, batch * BATCH..(batch + 1) * BATCH, &own);
+                    let numbers = (batch * BATCH..(batch + 1) * BATCH).into_par_iter().filter(is_own);
+                    let of_batch = build_reference(prior, numbers, &own);
                     if control.cancelled.load(Ordering::Relaxed) {
                         return Err(StoreError::Cancelled);
                     }
@@ -133,6 +144,7 @@ impl ReferenceStore {
             (control.progress)(before + BATCH as usize);
             records.extend(of_batch);
         }
+        records.sort_by_key(|record| record.number);
         Ok(ReferenceSet { prior: prior.clone(), records })
     }
 }
@@ -309,6 +321,20 @@ mod tests {
             store.get(&prior, 1, &control).is_ok()
         });
         assert_eq!(rewritten.collect::<Vec<_>>(), [true, false, false, false]);
+        // Where the healthy records are at another speed, all others are those of the set at one speed.
+        let other = Prior { healthy_speed_hz: Some(28.0), ..prior.clone() };
+        let of_others = store.folder_of(&other).join("batch-0000.npz");
+        let mut healthy: Vec<ReferenceRecord> = of_batch.iter().step_by(8).cloned().collect();
+        healthy.iter_mut().for_each(|record| record.input_speed_hz = 28.0);
+        fs::create_dir_all(store.folder_of(&other)).unwrap();
+        write_atomically(&of_others, |file| write(file, &healthy)).unwrap();
+        write_atomically(&path, |file| write(file, &of_batch)).unwrap();
+        let found = store.get(&other, 1, &control).unwrap();
+        assert_eq!((found.records.len(), found.healthy().count()), (of_batch.len(), healthy.len()));
+        for (record, one_speed) in found.records.iter().zip(&of_batch) {
+            assert_eq!(found.healthy_of(record).unwrap().input_speed_hz, 28.0);
+            assert!(record == one_speed || record.number % 8 == 0);
+        }
         // Of another prior there is none.
         let other = Prior { load_spread: 0.3, ..prior.clone() };
         assert_ne!(store.folder_of(&other), store.folder_of(&prior));

@@ -106,6 +106,10 @@ fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
     let given = format!("the healthy recording is unlike a healthy rig of the scenario ({})", p_in_words(p));
     let alone = Question { now: question.healthy, healthy: &[] };
     let is_mismatch = question.healthy.iter().any(|asked| asked.mismatch.is_some());
+    if learned.reference.prior.healthy_speed_hz.is_some() {
+        // At its speed nothing is simulated with damage.
+        return format!("{given}: {scenario}");
+    }
     // No simulation has what speaks against it: nothing is to be learnt.
     let alone = || Learned::new(learned.reference, &alone).and_then(|of| diagnose(&of, &alone, None)).ok();
     let damaged = if is_mismatch { None } else { alone() };

@@ -25,7 +25,7 @@ pub struct AnswerInWords {
     pub kinds: Vec<[String; 4]>,
     /// Number of the unlikely kinds with their probability together; none where there are none.
     pub others: Option<String>,
-    /// Notes: what the bearings show, what probabilities mean, from where teeth are counted, how many simulations were learnt from.
+    /// Notes: what a rule says, what the bearings show, what probabilities mean, from where teeth are counted, how many simulations were learnt from.
     pub notes: Vec<String>,
 }
 
@@ -38,9 +38,10 @@ impl Answer {
     /// The answer in words.
     pub fn in_words(&self) -> AnswerInWords {
         let (summary, likeness, learnt) = (self.summary.clone(), likeness(self), learnt(self));
-        let bearings = bearings::notes(&self.bearings);
+        let mut first: Vec<String> = self.rule.in_words(&self.wheels).into_iter().collect();
+        first.extend(bearings::notes(&self.bearings));
         if self.is_outside() {
-            let (kinds, notes) = (Vec::new(), [bearings, vec![learnt]].concat());
+            let (kinds, notes) = (Vec::new(), [first, vec![learnt]].concat());
             return AnswerInWords { summary, damaged: None, likeness, kinds, others: None, notes };
         }
         let (shown, others): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.probability >= SHOWN);
@@ -64,7 +65,7 @@ impl Answer {
             likeness,
             kinds: kinds.collect(),
             others: counted,
-            notes: bearings
+            notes: first
                 .into_iter()
                 .chain([Some(PROBABILITY.to_owned()), counted_from(self), Some(learnt)].into_iter().flatten())
                 .collect(),

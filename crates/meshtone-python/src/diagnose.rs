@@ -98,9 +98,9 @@ pub fn check_diagnosis(
     healthy: Vec<PyRef<'_, Observation>>,
 ) -> PyResult<Vec<(&'static str, String)>> {
     let [now, healthy] = [now, healthy].map(observed);
-    let prior = Prior::new(&machine.0).map_err(|error| scenario_error(&error))?;
+    let question = Question { now: &now, healthy: &healthy };
+    let prior = question.prior(&machine.0).map_err(|error| scenario_error(&error))?;
     let check = || {
-        let question = Question { now: &now, healthy: &healthy };
         question.check(&prior)?;
         Ok(question.warnings(&prior))
     };
@@ -128,12 +128,13 @@ pub fn diagnose<'py>(
         value_error("reference: the environment names no home directory; name a folder for the simulations")
     })?;
     let [now, healthy] = [now, healthy].map(observed);
-    let prior = Prior::new(&machine.0).map_err(|error| scenario_error(&error))?;
+    let question = Question { now: &now, healthy: &healthy };
+    let prior = question.prior(&machine.0).map_err(|error| scenario_error(&error))?;
     let store = ReferenceStore::new(folder);
     let answer = interruptible(py, progress, records, |cancelled, report| {
         let progress = |count| report((count as u64).min(records), records);
         let control = Control { progress: &progress, cancelled, ..Control::default() };
-        answer(&store, &prior, records, &Question { now: &now, healthy: &healthy }, &control)
+        answer(&store, &prior, records, &question, &control)
     })??;
     let mut json = answer.to_json();
     json["reference"] = serde_json::json!({

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use meshtone::scenario::Scenario;
 use meshtone::signal::TrainWheel;
-use meshtone_diagnose::{Answer, DiagnosisWarning, Observation, Prior, Question, SignalKind};
+use meshtone_diagnose::{Answer, DiagnosisWarning, Observation, Question, SignalKind};
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::own_file::undisturbed;
@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 
 use crate::check::check;
 use crate::choice::{Choice, one_of};
+use crate::diagnose::healthy::HealthyOptions;
 use crate::diagnose::observe::Observer;
 use crate::diagnose::reference::{ReferenceOptions, answer};
 use crate::diagnose::{figure, table};
@@ -75,12 +76,15 @@ pub struct Diagnose {
     phase: PhaseOptions,
     #[command(flatten)]
     shafts: ShaftOptions,
+    #[command(flatten)]
+    of_healthy: HealthyOptions,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   meshtone diagnose broken --scenario healthy.toml --healthy sound     what `meshtone simulate` wrote
   meshtone diagnose run.csv -c bearing --tach tacho --scenario rig.toml --healthy first.csv
+  meshtone diagnose fast.csv --shaft-hz 28.3 --scenario rig.toml --healthy slow.csv --healthy-shaft-hz 19.9
   meshtone diagnose run.csv -c bearing --scenario rig.toml             the speed is the scenario's, made exact by the mesh tone
   meshtone diagnose figure5.csv --signal difference --unit g --scenario rig.toml";
 
@@ -95,14 +99,17 @@ impl Diagnose {
         let scenario = self.scenario()?;
         let observer = Observer::new(&scenario, self.signal, &self.reading, &self.phase, &self.shafts)?;
         let (now, of_now) = observe(&observer, &self.recordings)?;
+        let (reading, phase) = (self.of_healthy.reading(&self.reading), self.of_healthy.phase(&self.phase));
+        let observer = Observer::new(&scenario, self.signal, &reading, &phase, &self.shafts)?;
         let (healthy, of_healthy) = observe(&observer, &self.healthy)?;
         let question = Question { now: &now, healthy: &healthy };
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.recordings[0], "diagnosis"));
         let recordings = self.recordings.iter().chain(&self.healthy).map(PathBuf::as_path);
         let of_rig = [self.scenario.as_path()].into_iter().chain(self.tuned.as_deref());
-        let read: Vec<&Path> = recordings.chain(self.phase.files()).chain(of_rig).collect();
+        let read: Vec<&Path> =
+            recordings.chain(self.phase.files()).chain(phase.files()).chain(of_rig).collect();
         let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
-        let prior = Prior::new(&scenario).map_err(|error| {
+        let prior = question.prior(&scenario).map_err(|error| {
             let failure = Failure::bad_input(error.to_string());
             error.help.into_iter().fold(failure, Failure::with_help)
         })?;

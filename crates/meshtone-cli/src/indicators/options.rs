@@ -12,7 +12,7 @@ use crate::choice::{Choice, one_of};
 use crate::terminal::print_error_line;
 
 /// Options that select parts of the files, and state what the files do not say themselves.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Recording")]
 pub struct ReadingOptions {
     /// Column to process, by its name or its number from 1.
@@ -174,7 +174,8 @@ fn several(text: &str) -> Result<u32, String> {
     })
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
     number.ok_or_else(|| "must be a number above 0".to_string())
 }

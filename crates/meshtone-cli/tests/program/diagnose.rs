@@ -95,6 +95,7 @@ fn from_recordings_to_an_answer() {
         "teeth are counted as in the simulation",
         "simulations; the others are what these are compared with",
         "given the scenario",
+        "by the indicators alone it is damaged: ",
         "p = ",
     ] {
         assert!(stdout(&assert).contains(words), "{words} in {}", stdout(&assert));
@@ -123,6 +124,30 @@ fn from_recordings_to_an_answer() {
     assert_eq!(workplace.names("other_diagnosis"), [DATA]);
     assert_eq!(likeliest(&healthy).0, "healthy", "{healthy:#}");
     assert!(!stderr(&assert).contains("when it was healthy"));
+
+    // A healthy recording of another speed, rate, column and unit, without a tachometer.
+    let rig = String::from_utf8(workplace.read("rig.toml")).unwrap();
+    let slow = rig.replace("pinion_speed_hz = 40.0", "pinion_speed_hz = 28.0").replace("8000.0", "6000.0");
+    workplace.write("slow.toml", slow);
+    workplace.succeeds(&["simulate", "slow.toml", "-o", "slow", "--no-panel", "-q"]);
+    let slow = read_signals(&workplace.path("slow/signals.parquet")).unwrap().channels;
+    let values = slow["vertical_g"].iter().map(|value| format!("{:e}\n", 9.80665 * value));
+    workplace.write("slow.csv", "acc\n".to_owned() + &values.collect::<String>());
+    as_measured(&workplace, "gone");
+    let of_slow =
+        ["gone.csv", "-c", "bearing", "--tach", "tacho", "--healthy", "slow.csv", "--healthy-channel", "acc"];
+    let as_slow =
+        ["--healthy-sampling-rate-hz", "6000", "--healthy-unit", "m/s²", "--healthy-shaft-hz", "28"];
+    let assert = diagnose(&[&of_slow[..], &as_slow, &["--healthy-from-mesh-tone", "--no-figure"]].concat());
+    let found = answer(&workplace, "gone_diagnosis");
+    assert!(found["damaged"].as_f64().unwrap() > 0.9 && found["is_outside"] == false, "{found:#}");
+    let gear = &found["rule"]["wheels"]["gear"]["fm4"];
+    assert_eq!((&found["rule"]["is_damaged"], &gear["is_above"]), (&true.into(), &true.into()), "{found:#}");
+    let said = stderr(&assert);
+    assert!(
+        said.contains("Hz in the healthy recording, at 40.0") && !said.contains("times as loud"),
+        "{said}"
+    );
 
     // One revolution of the gear; the same bits, whatever the number of threads.
     let mut text = "angle_deg,difference [m/s²]\n".to_owned();
@@ -201,6 +226,7 @@ fn what_is_refused() {
             &["revolutions of the gear", "leave out --signal"],
         ),
         (&["gone", "--signal", "spectrum"], &["difference"]),
+        (&["gone", "--healthy-shaft-hz", "28"], &["--healthy"]),
         (&["gone", "-o", "rig.toml"], &["it is a file"]),
         (&[], &["RECORDING"]),
     ] {

@@ -6,8 +6,8 @@ use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone::signal::{GearTrain, MeshTone, ShaftPhase, StatedTurning, TrainRecording, TrainTurning};
 use meshtone_diagnose::{
-    Answer, AnswerInWords, DiagnosisWarning, Learned, Observation, Prior, Question, REFINED_RECORDS,
-    ReferenceStore, diagnose, refine,
+    Answer, AnswerInWords, DiagnosisWarning, Learned, Observation, Question, REFINED_RECORDS, ReferenceStore,
+    diagnose, refine,
 };
 use meshtone_io::recording::Recording;
 use serde_json::{Value, json};
@@ -91,8 +91,8 @@ pub fn diagnosis(
         healthy.push(observed);
         seen.extend(warnings);
     }
-    let prior = Prior::new(rig)?;
     let asked = Question { now: &[now], healthy: &healthy };
+    let prior = asked.prior(rig)?;
     asked.check(&prior)?;
     seen.extend(asked.warnings(&prior));
     say(json!({ "seen": messages(&seen) }));
