@@ -26,7 +26,7 @@ pub struct HealthyOptions {
     /// Unit of the channel
     #[arg(long, value_name = "UNIT")]
     healthy_unit: Option<String>,
-    /// (Hz) Speed of the shaft; without --shaft-hz and pulses the nominal speed of the mesh tone
+    /// (Hz) Speed of the shaft: constant; with pulses, the value for their check; with --healthy-from-mesh-tone, the nominal speed
     #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
     healthy_shaft_hz: Option<f64>,
     /// Channel with a tachometer's waveform
@@ -42,7 +42,7 @@ pub struct HealthyOptions {
     #[arg(long, value_name = "FILE", group = "source_of_healthy", conflicts_with = "healthy_shaft_hz")]
     healthy_speed_profile: Option<PathBuf>,
     /// Follow the mesh tone
-    #[arg(long, group = "source_of_healthy")]
+    #[arg(long, group = "source_of_healthy", requires = "healthy_shaft_hz")]
     healthy_from_mesh_tone: bool,
 }
 
@@ -63,32 +63,20 @@ impl HealthyOptions {
         }
     }
 
-    /// The options of the phase of the healthy recordings.
-    ///
-    /// A source that is named for them replaces the others' source with its speed. A speed alone replaces a speed, in whatever way that is used; where
-    /// nothing is said of the others, it is the nominal speed of the mesh tone, as theirs is the scenario's.
+    /// The options of the phase of the healthy recordings: those of the others, or where a speed or a source is named for them, these alone.
     ///
     /// # Arguments
     /// * `phase` - those of the other recordings
     pub fn phase(&self, phase: &PhaseOptions) -> PhaseOptions {
-        let mut own = phase.clone();
-        let has_source = self.healthy_tach.is_some()
-            || self.healthy_pulse_times.is_some()
-            || self.healthy_speed_channel.is_some()
-            || self.healthy_speed_profile.is_some()
-            || self.healthy_from_mesh_tone;
-        if has_source {
-            own.shaft_hz = None;
-            own.tach.clone_from(&self.healthy_tach);
-            own.pulse_times.clone_from(&self.healthy_pulse_times);
-            own.speed_channel.clone_from(&self.healthy_speed_channel);
-            own.speed_profile.clone_from(&self.healthy_speed_profile);
-            own.from_mesh_tone = self.healthy_from_mesh_tone;
-        } else if self.healthy_shaft_hz.is_some() {
-            own.from_mesh_tone |= !phase.states_shaft_angle();
-            (own.speed_channel, own.speed_profile) = (None, None);
-        }
-        own.shaft_hz = self.healthy_shaft_hz.or(own.shaft_hz);
-        own
+        let own = PhaseOptions {
+            shaft_hz: self.healthy_shaft_hz,
+            tach: self.healthy_tach.clone(),
+            pulse_times: self.healthy_pulse_times.clone(),
+            speed_channel: self.healthy_speed_channel.clone(),
+            speed_profile: self.healthy_speed_profile.clone(),
+            from_mesh_tone: self.healthy_from_mesh_tone,
+            ..phase.clone()
+        };
+        if own.states_shaft_angle() { own } else { phase.clone() }
     }
 }

@@ -136,9 +136,10 @@ fn from_recordings_to_an_answer() {
     as_measured(&workplace, "gone");
     let of_slow =
         ["gone.csv", "-c", "bearing", "--tach", "tacho", "--healthy", "slow.csv", "--healthy-channel", "acc"];
-    let as_slow =
-        ["--healthy-sampling-rate-hz", "6000", "--healthy-unit", "m/s²", "--healthy-shaft-hz", "28"];
-    let assert = diagnose(&[&of_slow[..], &as_slow, &["--healthy-from-mesh-tone", "--no-figure"]].concat());
+    // Of whole samples a revolution, so not the scenario's.
+    let rate = slow.sampling_rate_hz.to_string();
+    let as_slow = ["--healthy-sampling-rate-hz", &rate, "--healthy-unit", "m/s²", "--healthy-shaft-hz", "28"];
+    let assert = diagnose(&[&of_slow[..], &as_slow, &["--no-figure"]].concat());
     let found = answer(&workplace, "gone_diagnosis");
     assert!(found["damaged"].as_f64().unwrap() > 0.9 && found["is_outside"] == false, "{found:#}");
     let gear = &found["rule"]["wheels"]["gear"]["fm4"];
