@@ -21,7 +21,7 @@ import meshtone as mt
 sys.path.insert(0, str(Path(__file__).parent))
 from hidden_rigs import KEPT_HZ, KNOWN, WHEELS, HiddenRig  # noqa: E402
 
-KINDS = ["missing-tooth", "tooth-breakage", "tooth-destruction", "through-face", "partial-face", "pits", "ground-flank", "root-crack", "wear"]
+KINDS = ["missing-tooth", "tooth-breakage", "tooth-destruction", "through-face", "partial-face", "pits", "root-crack", "wear"]
 SEVERITIES = (0.5, 0.8)
 
 

@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .retain(|record| name(record) != other && (name(record) != SEVERAL || !has_other(record)));
     let mut learned: Option<Learned> = None;
     let mut table = String::from(
-        "unit,kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability,any_wheel,speed_ln,load_ln\n",
+        "unit,kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,common,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability,any_wheel,speed_ln,load_ln\n",
     );
     let is_refined = other == "refined";
     let is_strange = ["signals", "bearing", "teeth", "ratio"].contains(&other);
@@ -356,9 +356,10 @@ fn row(
     let probability = of_kind.map_or(0.0, |of| of.probability);
     write!(
         table,
-        ",{probability},{},{}",
+        ",{probability},{},{},{}",
         answer.outside_model,
-        answer.healthy_outside_model.unwrap_or(f64::NAN)
+        answer.healthy_outside_model.unwrap_or(f64::NAN),
+        answer.common_change.map_or(f64::NAN, |change| change.p)
     )?;
     match of_kind.and_then(|of| of.severity) {
         Some(said) => {

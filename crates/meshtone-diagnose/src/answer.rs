@@ -7,6 +7,7 @@ use crate::bearings::BearingAnswer;
 use crate::diagnose::OUTSIDE;
 use meshtone_learn::Interval;
 
+use crate::mounting::CommonChange;
 use crate::observation::SignalKind;
 use crate::rule::Rule;
 use crate::warnings::DiagnosisWarning;
@@ -120,8 +121,10 @@ pub struct Answer {
     pub kinds: Vec<KindAnswer>,
     /// (-) p-value: the part of the simulated records that are as far as the recording, or farther, from the others.
     pub outside_model: f64,
-    /// p-value of the healthy recording among healthy simulations alone; none where there is no healthy recording.
+    /// p-value of the healthy recording among healthy simulations alone, with the levels and shapes of rig and path; none where there is no healthy recording.
     pub healthy_outside_model: Option<f64>,
+    /// What changed alike in all wheels since the healthy recording; none without one.
+    pub common_change: Option<CommonChange>,
     /// What a rule says, whatever the simulations do.
     pub rule: Rule,
     /// Warnings.
@@ -145,19 +148,25 @@ impl Answer {
         1.0 - healthy.map_or(0.0, |kind| kind.probability)
     }
 
-    /// Returns whether the recording, or the healthy one, is unlike what was simulated, so that nothing can be said.
+    /// Returns whether nothing can be said: the recording is unlike what was simulated, or the sensor was mounted anew since the healthy one.
     pub fn is_outside(&self) -> bool {
-        self.is_recording_outside() || self.is_healthy_outside()
+        self.is_recording_outside() || self.is_remounted()
     }
 
-    /// Returns whether the recording is unlike what was simulated: of two tests each has half of the level of one.
-    pub fn is_recording_outside(&self) -> bool {
-        self.outside_model < if self.has_healthy { 0.5 * OUTSIDE } else { OUTSIDE }
+    /// Returns whether the recording, beside a healthy one what changed since, is unlike what was simulated: of two tests each has half of the level of one.
+    pub(crate) fn is_recording_outside(&self) -> bool {
+        self.outside_model < if self.common_change.is_some() { 0.5 * OUTSIDE } else { OUTSIDE }
     }
 
-    /// Returns whether the healthy recording is unlike the healthy pairs that were simulated.
+    /// Returns whether more changed alike in all wheels than damage explains. It also is the likelier reason of two why a recording is unlike what was simulated.
+    pub fn is_remounted(&self) -> bool {
+        let level = if self.is_recording_outside() { OUTSIDE } else { 0.5 * OUTSIDE };
+        self.common_change.is_some_and(|change| change.p < level)
+    }
+
+    /// Returns whether the healthy recording is unlike the healthy pairs that were simulated. What changed since may be like them all the same.
     pub fn is_healthy_outside(&self) -> bool {
-        self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
+        self.healthy_outside_model.is_some_and(|p| p < OUTSIDE)
     }
 
     /// A wheel's name after `the`: gear, or wheel z3 of a gearbox.

@@ -131,11 +131,12 @@ fn likely_wheels(answer: &Answer) -> String {
 /// * `answer` - all but the summary
 pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
-        let is_of_bearing = answer.is_recording_outside() && answer.has_bearing_lines();
-        let why = if is_of_bearing { ", perhaps because of the bearing" } else { "" };
-        return format!(
-            "Nothing can be said of the teeth: the recordings are unlike what was simulated{why}."
-        );
+        let why = match (answer.is_remounted(), answer.has_bearing_lines()) {
+            (true, _) => "the sensor or its mounting was changed since the healthy recording",
+            (false, true) => "the recordings are unlike what was simulated, perhaps because of the bearing",
+            (false, false) => "the recordings are unlike what was simulated",
+        };
+        return format!("Nothing can be said of the teeth: {why}.");
     }
     let ([unseen, seen], damaged) = (DECIDED, answer.damaged());
     match &answer.any_damage {
@@ -201,6 +202,7 @@ mod tests {
             kinds,
             outside_model,
             healthy_outside_model: None,
+            common_change: None,
             rule: crate::Rule::default(),
             warnings: Vec::new(),
             shown_wheel: 1,

@@ -11,6 +11,7 @@ use crate::answer::{
 use crate::any_damage::sentence;
 use crate::bearings;
 use crate::learn::{FeatureRow, Layout, Learned, Question};
+use crate::mounting::CommonChange;
 use crate::observation::Observation;
 use crate::prior::{DrawnFault, Prior};
 use crate::refine::Refined;
@@ -76,11 +77,13 @@ pub fn diagnose(
     let of_mismatch = |recordings: &[Observation]| {
         if recordings.iter().any(|asked| asked.mismatch.is_some()) { least } else { 1.0 }
     };
-    let outside_model = learned.outside.p_value(&row.values).min(of_mismatch(question.now));
+    let mismatch = of_mismatch(question.now).min(of_mismatch(question.healthy));
+    let outside_model = learned.outside.p_value(&row.values).min(mismatch);
     let healthy_outside_model = learned.healthy_outside.as_ref().map(|outside| {
         let alone = learned.row(&Question { now: question.healthy, healthy: &[] });
-        outside.p_value(&alone.values).min(of_mismatch(question.healthy))
+        outside.p_value(&alone.values)
     });
+    let common_change = CommonChange::new(learned, &row.common_db);
     let wheels = &learned.reference.prior.train.wheels;
     let of_wheels = learned.wheel_probabilities(&of_class);
     let any_damage = AnyDamage::over(&kinds, &draws_of, &of_wheels);
@@ -107,6 +110,7 @@ pub fn diagnose(
         kinds,
         outside_model,
         healthy_outside_model,
+        common_change,
         rule: Rule::new(question, &layout),
         warnings: Vec::new(),
         difference_g: question.now[0].wheels[shown_wheel]

@@ -38,6 +38,7 @@ impl Answer {
             "outside_model": self.outside_model,
             "is_outside": self.is_outside(),
             "healthy_outside_model": self.healthy_outside_model,
+            "common_change": self.common_change.map(|of| json!({ "p": of.p, "within_db": of.within_db })),
             "wheel_probabilities": of_wheels,
             "shown_wheel": wheels[self.shown_wheel],
             "explanations": self.explanations.iter().map(|one| explanation(one, wheels)).collect::<Vec<_>>(),

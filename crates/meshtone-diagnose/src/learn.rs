@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::DamageKind;
+use meshtone::signal::TrainWheel;
 use meshtone_learn::{
     OutlierTest, RandomFeatures, SizeModel, Softmax, Standardisation, WheelFeatures, WheelLines,
     beyond_healthy, fold_of, quantiles, ridge, wheel_features,
@@ -14,6 +15,7 @@ use rayon::prelude::*;
 
 use crate::DiagnoseError;
 use crate::answer::wheel_in_words;
+use crate::mounting::common_db;
 use crate::observation::{Observation, SignalKind};
 use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
@@ -85,6 +87,8 @@ pub(crate) struct Layout {
     pub has_healthy: bool,
     /// The last order of each wheel that is whole everywhere.
     pub last: Vec<usize>,
+    /// The mesh frequency of each wheel, in orders of the first shaft.
+    mesh_orders: Vec<f64>,
     /// (g) Noise in the lines of the recordings that are asked about, and of the healthy ones.
     noises: [Vec<Vec<f64>>; 2],
     /// (Hz) The rig's speed of the shaft that drives.
@@ -111,6 +115,8 @@ pub(crate) struct FeatureRow {
     pub values: Vec<f64>,
     /// (rev) Where the burst of each wheel is.
     pub burst_rev: Vec<f64>,
+    /// (dB) What changed alike in all wheels since the healthy one, see [`common_db`].
+    pub common_db: Vec<f64>,
 }
 
 impl Layout {
@@ -152,6 +158,9 @@ impl Layout {
             simulated.chain(observed).map(WheelLines::last).min().unwrap_or(0)
         };
         let last: Vec<usize> = (0..rig.len()).map(last).collect();
+        let train = &reference.prior.train;
+        let mesh_order =
+            |wheel: &TrainWheel| f64::from(wheel.teeth) * train.speed_ratio(wheel.shaft, 0).value();
         for ((wheel, &last), _) in rig.iter().zip(&last).zip(&first.wheels).filter(|(_, seen)| seen.is_some())
         {
             let needed = FEWEST_MESH_ORDERS * wheel.teeth as usize + wheel.teeth as usize / 2;
@@ -164,6 +173,7 @@ impl Layout {
             signal: first.signal,
             has_healthy: !question.healthy.is_empty(),
             last,
+            mesh_orders: rig.iter().map(mesh_order).collect(),
             noises: [question.now, question.healthy].map(noise_of),
             nominal_hz: reference.prior.base.operation.pinion_speed_hz,
             knows_speed: question.now.iter().any(|asked| asked.input_speed_hz.is_some()),
@@ -204,6 +214,9 @@ impl Layout {
 
     /// Features of two states of one rig, or of one alone.
     ///
+    /// Beside a healthy one only changes count: levels and shapes themselves are the rig's and its path's, which no prior contains. Simulations are told apart as well
+    /// without them.
+    ///
     /// # Arguments
     /// * `now` - lines of the wheels that are seen
     /// * `healthy` - the same wheels when they were healthy
@@ -214,29 +227,34 @@ impl Layout {
         healthy: Option<&[Option<HealthyWheel>]>,
         speed: f64,
     ) -> FeatureRow {
-        let mut row = FeatureRow { values: vec![speed], burst_rev: vec![0.0; now.len()] };
+        let mut row =
+            FeatureRow { values: vec![speed], burst_rev: vec![0.0; now.len()], common_db: Vec::new() };
         let regular = self.signal.has_regular_part();
+        let mut bands = Vec::new();
         for (wheel, now) in now.iter().enumerate() {
             let (Some(now), last) = (now, self.last[wheel]) else { continue };
             let plain = wheel_features(now, last, regular);
-            row.burst_rev[wheel] = plain.burst_rev;
-            row.values.extend(&plain.levels);
-            row.values.extend(&plain.shapes);
-            if let Some(HealthyWheel { lines, features: before }) =
+            let Some(HealthyWheel { lines, features: before }) =
                 healthy.and_then(|healthy| healthy[wheel].as_ref())
-            {
-                let beyond = wheel_features(&beyond_healthy(now, lines, last), last, false);
-                row.burst_rev[wheel] = beyond.burst_rev;
-                let louder = less(&plain.levels, &before.levels);
-                // A level that is wrong as a whole is wrong in all orders, damage in some.
-                row.values.push(quantiles(louder.iter().map(|level| (*level, 1.0)).collect(), [0.5])[0]);
-                row.values.extend(louder);
-                row.values.extend(less(&plain.shapes, &before.shapes));
-                let changed = less(&beyond.levels, &before.levels);
-                row.values.extend(changed.into_iter().map(|level| level.max(LEAST_CHANGE)));
-                row.values.extend(beyond.shapes);
-            }
+            else {
+                row.burst_rev[wheel] = plain.burst_rev;
+                row.values.extend(plain.levels);
+                row.values.extend(plain.shapes);
+                continue;
+            };
+            let beyond = wheel_features(&beyond_healthy(now, lines, last), last, false);
+            row.burst_rev[wheel] = beyond.burst_rev;
+            let louder = less(&plain.levels, &before.levels);
+            bands.push((self.mesh_orders[wheel], louder[plain.bands()].to_vec()));
+            // A level that is wrong as a whole is wrong in all orders, damage in some.
+            row.values.push(quantiles(louder.iter().map(|level| (*level, 1.0)).collect(), [0.5])[0]);
+            row.values.extend(louder);
+            row.values.extend(less(&plain.shapes, &before.shapes));
+            let changed = less(&beyond.levels, &before.levels);
+            row.values.extend(changed.into_iter().map(|level| level.max(LEAST_CHANGE)));
+            row.values.extend(beyond.shapes);
         }
+        row.common_db = common_db(&bands);
         row
     }
 
@@ -258,6 +276,8 @@ impl Layout {
             mean.values.iter_mut().zip(&other.values).for_each(|(sum, value)| *sum += value);
         }
         mean.values.iter_mut().for_each(|value| *value /= count);
+        let common = |band: usize| rows.iter().map(|row| row.common_db[band]).sum::<f64>() / count;
+        mean.common_db = (0..mean.common_db.len()).map(common).collect();
         mean
     }
 }

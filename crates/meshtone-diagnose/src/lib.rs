@@ -15,6 +15,7 @@ mod error;
 mod json;
 mod learn;
 mod level;
+mod mounting;
 mod observation;
 #[cfg(test)]
 #[path = "../../meshtone/tests/all/plain.rs"]
@@ -41,6 +42,7 @@ pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
 pub use meshtone_learn::{Interval, WheelLines};
+pub use mounting::CommonChange;
 pub use observation::{Observation, SignalKind};
 pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
 pub use recorded::other_tone;

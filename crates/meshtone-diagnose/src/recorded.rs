@@ -165,7 +165,7 @@ impl Observation {
             noise: noise.collect(),
             mismatch,
             foreign: off_shafts.tones,
-            doubts: shaft.too_short().into_iter().collect(),
+            doubts: shaft.too_short().into_iter().chain(off_shafts.impulses).collect(),
             bearings: BearingDefects::default(),
         })
     }
@@ -194,6 +194,8 @@ fn mismatch(recording: &TrainRecording, angular: &[AngularSignal]) -> Result<Opt
 struct OffShafts {
     /// Evidence against the recording.
     mismatch: Option<String>,
+    /// What it has of impulses.
+    impulses: Option<String>,
     tones: Option<ForeignTones>,
 }
 
@@ -254,8 +256,8 @@ impl SlowestShaft<'_> {
     /// Looks for what the orders of the shafts do not explain, impulses or tones that repeat with none, and whether it speaks against the recording.
     ///
     /// What repeats whenever the same teeth meet again is taken away, and the lines of all shafts are left out of the spectrum of the rest. Of the
-    /// others, those that stand out of their surroundings are tones; and what they make over time is impulsive where something strikes. Impulses are
-    /// looked for first, since their lines may stand out like tones.
+    /// others, those that stand out of their surroundings are tones, which speak against the recording; and what they make over time is impulsive where something
+    /// strikes. That is a doubt alone: the random part of a real gearbox is impulsive when it is healthy, too, and averages reduce it like noise.
     fn energy_off_all_shafts(&self) -> OffShafts {
         let Self { angular, train, wheel, speed_hz } = self;
         if angular.revolutions() < FEWEST_REVOLUTIONS {
@@ -282,14 +284,14 @@ impl SlowestShaft<'_> {
         let impulses = kurtosis(rest).filter(|impulses| *impulses > IMPULSIVE && part > COUNTS);
         let impulses = impulses.map(|kurtosis| {
             format!(
-                "impulses that repeat with no shaft make {:.0} % of the recording's energy (kurtosis {kurtosis:.1}): a bearing, or \
-                 something else than these teeth",
+                "impulses that repeat with no shaft make {:.0} % of the recording's energy (kurtosis {kurtosis:.1}): a bearing, or this machine's random part; \
+                 they are noise to what is said of the teeth",
                 100.0 * part
             )
         });
         let tones = ForeignTones::of(&tones);
         let that_count = || tones.as_ref().filter(|tones| tones.count()).map(ForeignTones::to_string);
-        OffShafts { mismatch: impulses.or_else(that_count), tones }
+        OffShafts { mismatch: that_count(), impulses, tones }
     }
 }
 
@@ -389,6 +391,6 @@ mod tests {
         };
         let views = views(&mut struck, 34);
         let observed = observed(&views).unwrap();
-        assert!(observed.mismatch.is_some_and(|said| said.contains("no shaft")));
+        assert!(observed.doubts.iter().any(|said| said.contains("no shaft")), "{:?}", observed.doubts);
     }
 }

@@ -68,7 +68,15 @@ impl Question<'_> {
 /// * `answer` - all but its warnings
 /// * `learned`, `question` - what it was made of
 pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<DiagnosisWarning> {
-    let outside = answer.is_recording_outside().then(|| {
+    let mounting = answer.common_change.filter(|_| answer.is_remounted()).map(|change| {
+        let [least, most] = change.within_db;
+        format!(
+            "the difference signals of all wheels changed alike since the healthy recording, by {least:.1} to {most:+.1} dB beside their median ({}), as no damage \
+             changes them: the sensor or its mounting was changed; give a healthy recording of this mounting",
+            p_in_words(change.p)
+        )
+    });
+    let outside = (answer.is_recording_outside() && !answer.is_remounted()).then(|| {
         let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
         let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
         let why = if let Some(hint) = level::unit_hint(learned, question) {
@@ -90,6 +98,7 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
     let healthy = healthy.map(|p| of_healthy(p, learned, question));
     let found = [
+        ("mounting", mounting),
         ("outside", outside),
         ("healthy-outside", healthy),
         ("level", level::doubt(learned, question)),
@@ -213,7 +222,7 @@ mod tests {
         );
         let other = sound.clone().with_mismatch("another machine");
         let mismatch = said(&learned, broken_alone, &[other]);
-        assert!(mismatch.healthy_outside_model.is_some_and(|p| p < 0.01));
+        assert!(mismatch.is_outside() && mismatch.outside_model < 0.01);
 
         let at = |speed_hz| Observation { input_speed_hz: Some(speed_hz), ..broken.clone() };
         assert!(has(&ask(&[at(46.0)]), "the pinion turns at 46.000 Hz"));

@@ -84,11 +84,14 @@ fn percent(probability: f64) -> String {
 
 /// Meaning of the p-value.
 fn likeness(answer: &Answer) -> String {
-    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
-    let (means, p) = match (answer.is_recording_outside(), healthy) {
-        (true, _) => ("the recording is unlike all that was simulated", answer.outside_model),
-        (false, Some(p)) => ("the healthy recording is unlike the healthy rigs that were simulated", p),
-        (false, None) => ("the recording is like what was simulated", answer.outside_model),
+    let (means, p) = match answer.common_change.filter(|_| answer.is_remounted()) {
+        Some(change) => {
+            ("all wheels changed alike since the healthy recording, as none that was simulated", change.p)
+        }
+        None if answer.is_outside() => {
+            ("the recording is unlike all that was simulated", answer.outside_model)
+        }
+        None => ("the recording is like what was simulated", answer.outside_model),
     };
     format!("{means} ({})", p_in_words(p))
 }

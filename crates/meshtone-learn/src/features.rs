@@ -37,6 +37,15 @@ pub struct WheelFeatures {
     pub shapes: Vec<f64>,
     /// (rev) Where the burst is.
     pub burst_rev: f64,
+    /// Number of bands of the difference signal among the levels.
+    bands: usize,
+}
+
+impl WheelFeatures {
+    /// Which of the levels are those of the difference signal in bands, one about each multiple of the mesh frequency.
+    pub fn bands(&self) -> std::ops::Range<usize> {
+        1..1 + self.bands
+    }
 }
 
 /// Features of the lines of an average.
@@ -61,6 +70,7 @@ pub fn wheel_features(view: &WheelLines, last: usize, has_regular_part: bool) ->
         levels: levels(view, &difference, last, has_regular_part),
         shapes,
         burst_rev: at as f64 / difference.points() as f64,
+        bands: last / difference.teeth.max(1),
     }
 }
 

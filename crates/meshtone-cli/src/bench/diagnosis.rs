@@ -78,14 +78,10 @@ impl Diagnosed {
         match &self.0 {
             Err(reason) => (format!("refused: {reason}"), json!({ "refused": reason })),
             Ok(answer) => {
-                let p = answer
-                    .healthy_outside_model
-                    .filter(|_| answer.is_healthy_outside())
-                    .unwrap_or(answer.outside_model);
-                let p = p_in_words(p);
-                let words = match (answer.is_recording_outside(), answer.is_outside()) {
-                    (true, _) => format!("unlike all simulations ({p})"),
-                    (false, true) => format!("the healthy one is unlike all simulations ({p})"),
+                let p = p_in_words(answer.outside_model);
+                let words = match (answer.is_remounted(), answer.is_outside()) {
+                    (true, _) => "mounted anew since the healthy one".to_owned(),
+                    (false, true) => format!("unlike all simulations ({p})"),
                     (false, false) => {
                         let likeliest = answer.kinds.first().map_or("", |kind| kind.label);
                         format!("damaged {:.0} %, likeliest {likeliest} ({p})", 100.0 * answer.damaged())
