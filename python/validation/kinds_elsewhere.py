@@ -1,6 +1,6 @@
 """What a diagnosis says of damage on structures that its prior does not have.
 
-    python python/validation/kinds_elsewhere.py [NUMBER …]     # rigs, by default 8 to 11; ten minutes each on two cores
+    python python/validation/kinds_elsewhere.py [NUMBER …]     # rigs, by default 8 to 11; some minutes each on two cores
 
 The rigs are those of `hidden_rigs.py`, with other numbers. Each is asked with one healthy recording of the same wheels and the scenario that its user
 knows: two recordings of the gear's damage of every kind and each of two severities, and eight healthy ones.
@@ -51,7 +51,7 @@ def main() -> None:
         rig = HiddenRig(number)
         healthy = rig.healthy(16, [30, 30], rig.snr_db)
         for label, recording in asked(rig):
-            answer = mt.diagnose(recording, KNOWN, healthy)
+            answer = mt.diagnose(recording, KNOWN, healthy, records=2560)
             squares.append((answer.damaged - (label != "healthy")) ** 2)
             kind = "refused" if answer.is_outside else max(answer.kinds, key=lambda kind: answer.kinds[kind]["probability"])
             named[label][kind] += 1

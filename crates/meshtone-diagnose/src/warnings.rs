@@ -214,6 +214,22 @@ mod tests {
         };
         assert!(has(&said(&learned, broken_alone, &[times(1000.0)]), "unit"));
         assert!(has(&ask(&[times(9.81)]), "9.81 times as loud as the healthy recording"));
+        // Another path, whether there is damage or not: louder and quieter at the same frequencies of both wheels.
+        for now in [&sound, &broken] {
+            let mut remounted = now.clone();
+            for wheel in remounted.wheels.iter_mut().flatten() {
+                let teeth = wheel.teeth() as f64;
+                let gain = |order: usize| 10f64.powf((2.0 * order as f64 / teeth).sin());
+                wheel.lines.iter_mut().enumerate().for_each(|(order, line)| *line *= gain(order));
+            }
+            let answer = ask(&[remounted]);
+            assert!(
+                answer.is_outside() && has(&answer, "its mounting was changed"),
+                "{:?}",
+                answer.common_change
+            );
+            assert!(answer.summary.contains("mounting") && !ask(std::slice::from_ref(now)).is_remounted());
+        }
         let blamed = said(&learned, sound_alone, broken_alone);
         assert!(
             has(&blamed, "unlike a healthy rig") && has(&blamed, "was it healthy?"),
