@@ -55,10 +55,10 @@ class Diagnosis:
     damaged : float
         (-) Probability that anything is damaged.
     outside_model : float
-        (-) p-value: the part of the simulations that are as unlike the others as the recordings are. Below 0.05 the probabilities
-        mean nothing.
+        (-) p-value: the part of the simulations that are as unlike the others as the recordings are, with a healthy recording as what changed since. Below
+        0.05, with a healthy recording 0.025, the probabilities mean nothing.
     is_outside : bool
-        Whether the recordings are unlike all that was simulated: nothing can be said then.
+        Whether nothing can be said: the recordings are unlike all that was simulated, or the sensor was mounted anew since the healthy one (``mounting``).
     warnings : list of SignalWarning
         What deserves attention: ``code`` and ``message``.
     shown_wheel : str
