@@ -166,7 +166,7 @@ impl Answer {
 
     /// Returns whether the healthy recording is unlike the healthy pairs that were simulated. What changed since may be like them all the same.
     pub fn is_healthy_outside(&self) -> bool {
-        self.healthy_outside_model.is_some_and(|p| p < OUTSIDE)
+        self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
     }
 
     /// A wheel's name after `the`: gear, or wheel z3 of a gearbox.
