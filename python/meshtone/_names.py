@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
-__all__ = ["hint", "near"]
+__all__ = ["absent", "hint", "near"]
 
 
 def near(name: str, known: Iterable[str]) -> list[str]:
@@ -19,3 +19,20 @@ def hint(name: str, known: Iterable[str]) -> str:
     lowered = {each.lower(): each for each in known}
     meant = difflib.get_close_matches(str(name).lower(), lowered, n=1)
     return f"; did you mean '{lowered[meant[0]]}'?" if meant else ""
+
+
+def absent(owner: object, name: str, elsewhere: Mapping[str, str]) -> AttributeError:
+    """The error of an attribute that there is not, with what does the same, by the names that other libraries have for it.
+
+    Parameters
+    ----------
+    owner : object
+        What has no such attribute.
+    name : str
+        The attribute.
+    elsewhere : mapping of str to str
+        What to write in place of several names, which are separated by spaces.
+    """
+    instead = next((f": {call}" for names, call in elsewhere.items() if name in names.split()), "")
+    public = [each for each in dir(type(owner)) if not each.startswith("_")]
+    return AttributeError(f"{type(owner).__name__} has no attribute '{name}'{instead or hint(name, public)}")

@@ -65,7 +65,7 @@ import numpy.typing as npt
 from . import _core, _display, _progress
 from ._extras import extra
 from ._files import written_whole
-from ._names import hint
+from ._names import absent, hint
 from ._published import PUBLISHED
 from ._warnings import warn
 from .signal import resample
@@ -99,6 +99,22 @@ TARGETS = re.compile(r"label|severity.*|fault.*|remaining_rev")
 
 MIXED_PARTS = 16
 """Parts of files, of at most 64 records, that are in memory at a time while records are shuffled."""
+
+ELSEWHERE = {
+    "select iloc loc head tail limit slice": "take(places) or [:10] gives records by their places, to_pandas(columns) a table of some columns",
+    "shuffle permutation": "records(shuffle=seed), or take(np.random.default_rng(seed).permutation(len(dataset)))",
+    "map apply transform with_transform set_transform with_format": "records() goes through the records, to_torch(…, transform=…) takes a function",
+    "train_test_split": "split('train') and split('test'), which share no unit",
+    "select_columns drop remove_columns sort sort_values groupby group_by query value_counts describe": "to_pandas() gives a table that has it",
+    "to_csv to_parquet to_json to_dict to_dicts to_list": "to_pandas() or to_arrow() gives a table that has it; list(dataset) gives dictionaries",
+    "column_names features keys": "columns has the names, units their units",
+    "num_rows n_rows shape size count": "len(dataset) is the number of records",
+    "where": "filter(lambda record: record['label'] == 'healthy')",
+    "to_numpy values X data": "matrix(indicator_columns) gives numbers, arrays(signals) signals of one length",
+    "y target targets labels": "dataset['label'] gives the labels, target_columns what else may be learnt",
+    "iter_batches batch iter": "records(batch_size=…) reads so many at a time",
+}
+"""What does what other libraries have by these names."""
 
 OVER_A_REVOLUTION = ("average_g", "difference_g", "enhanced_relative_difference")
 """Columns of signals at equal angles of one revolution; the others are at equal times."""
@@ -457,8 +473,24 @@ class Dataset:
         self._rows: Rows | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is mapped into memory is of this process.
-        return {**vars(self), "_rows": None}
+        # What is mapped into memory is of this process; of records in memory pyarrow pickles the table alone.
+        return {**vars(self), "_rows": None, "_native": self._native if self._is_in_files else self._native.to_table()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        import pyarrow
+        import pyarrow.dataset
+
+        native = state["_native"]
+        vars(self).update(state, _native=pyarrow.dataset.dataset(native) if isinstance(native, pyarrow.Table) else native)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise absent(self, name, ELSEWHERE)
+
+    @property
+    def _is_in_files(self) -> bool:
+        return hasattr(self._native, "files")
 
     @property
     def path(self) -> Path:
@@ -577,7 +609,7 @@ class Dataset:
         Parameters
         ----------
         places : sequence of int
-            From 0; a place may occur more than once.
+            From 0; a place may occur more than once. ``np.flatnonzero`` gives those of a mask.
 
         Returns
         -------
@@ -588,6 +620,8 @@ class Dataset:
         ------
         IndexError
             There are not so many records.
+        TypeError
+            What is no whole number, such as the values of a mask.
 
         Examples
         --------
@@ -597,7 +631,10 @@ class Dataset:
         """
         import pyarrow.dataset
 
-        numbers = np.asarray(places, dtype=np.int64)
+        numbers = np.asarray(places)
+        if numbers.size and numbers.dtype.kind not in "iu":
+            raise TypeError(f"places: must be whole numbers, and not {numbers.dtype}; np.flatnonzero(mask) gives those of a mask")
+        numbers = numbers.astype(np.int64)
         if numbers.size and not 0 <= numbers.min() <= numbers.max() < len(self):
             raise IndexError(f"places of {len(self)} records are from 0 to {len(self) - 1}")
         table = self._native.take(numbers, filter=self._filter)
@@ -631,21 +668,27 @@ class Dataset:
         return self.records()
 
     def __repr__(self) -> str:
-        labels = Counter(self.column("label").tolist())
-        splits = Counter(self.column("split").tolist())
+        if not len(self):
+            return f"<Dataset of {self._state()}>"
+        # Recordings have neither label nor split.
+        labels = Counter(label or "without label" for label in self.column("label").tolist())
+        splits = Counter(name for name in self.column("split").tolist() if name)
         counts = ", ".join(f"{count} {label}" for label, count in sorted(labels.items()))
-        parts = ", ".join(f"{name} ({count})" for name, count in sorted(splits.items()))
-        state = "" if self.is_complete else ", not complete"
-        return f"<Dataset of {len(self)} records{state}: {counts}; splits {parts}>"
+        parts = "; splits " + ", ".join(f"{name} ({count})" for name, count in sorted(splits.items())) if splits else ""
+        return f"<Dataset of {self._state()}: {counts}{parts}>"
+
+    def _state(self) -> str:
+        """How many records there are, of how many, and where."""
+        of = "" if self._filter is None else f" of {self._native.count_rows()}"
+        return f"{len(self)}{of} records" + ("" if self._is_in_files else " in memory") + ("" if self.is_complete else ", not complete")
 
     def _repr_html_(self) -> str:
         pairs = Counter(zip(self.column("label").tolist(), self.column("split").tolist(), strict=True))
         labels, splits = (sorted({pair[place] for pair in pairs}) for place in (0, 1))
         counts = [(label, *(pairs[label, split] for split in splits)) for label in labels]
-        state = "" if self.is_complete else ", not complete"
         facts = {"Directory": self.place, "Columns": ", ".join(self.columns)}
         return _display.page(
-            f"Dataset of {len(self)} records{state}", _display.table([("", *splits), *counts]), _display.table(facts)
+            f"Dataset of {self._state()}", _display.table([("", *splits), *counts]), _display.table(facts)
         )
 
     def filter(self, expression: pyarrow.dataset.Expression | Callable[[dict[str, Any]], bool]) -> Dataset:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 import errno
 import hashlib
 import importlib
 import importlib.util
 import json
+import multiprocessing
 import pickle
 import re
 import shutil
@@ -14,6 +16,7 @@ import subprocess
 import sys
 import types
 import zipfile
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -139,6 +142,10 @@ def test_a_record_by_its_place(gears: datasets.Dataset) -> None:
         gears.sample(25)
     with pytest.raises(TypeError, match="or a function"):
         gears.filter("label == 'healthy'")
+    for places in (gears["label"] == "healthy", [0.5]):
+        with pytest.raises(TypeError, match=r"places: must be whole numbers, and not (bool|float64); np.flatnonzero\(mask\)"):
+            gears.take(places)  # type: ignore[arg-type]
+    assert len(gears.take([])) == 0
     # Another process maps files of its own.
     assert pickle.loads(pickle.dumps(datasets.Rows(test, ["record"])))[0] == {"record": int(test["record"][0])}
     groups = [gears.indicator_columns, gears.condition_columns, gears.target_columns]
@@ -152,6 +159,43 @@ def test_a_record_by_its_place(gears: datasets.Dataset) -> None:
             gears[place]
     with pytest.raises(TypeError, match="slices, take, filter and split give several"):
         gears[1.5]  # type: ignore[call-overload]
+
+
+def first_signals(dataset: datasets.Dataset, places: list[int]) -> list[Any]:
+    """What a worker is asked for."""
+    return [dataset[place]["average_g"] for place in places]
+
+
+def test_other_processes_read_records_by_their_places_too(gears: datasets.Dataset) -> None:
+    """Of all kinds of selections: those in files, and those in memory, which pyarrow cannot pickle."""
+    healthy = pyarrow.dataset.field("label") == "healthy"
+    selections = [gears, gears.split("test"), gears.filter(lambda record: record["fm4"] > 3), gears[3:15], gears[3:15].filter(healthy), gears.take([])]
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+        for dataset in selections:
+            again = pickle.loads(pickle.dumps(dataset))
+            assert again["record"].tolist() == copy.copy(dataset)["record"].tolist() == dataset["record"].tolist() and repr(again) == repr(dataset)
+            places = list(range(min(3, len(dataset))))
+            for read, signal in zip(pool.submit(first_signals, dataset, places).result(), first_signals(dataset, places), strict=True):
+                assert np.array_equal(read, signal)
+
+
+def test_what_other_libraries_have_is_named(gears: datasets.Dataset) -> None:
+    for name, meant in [
+        ("select", r"Dataset has no attribute 'select': take\(places\) or \[:10\] gives records by their places, to_pandas\(columns\)"),
+        ("shuffle", r"records\(shuffle=seed\)"),
+        ("train_test_split", r"split\('train'\) and split\('test'\), which share no unit"),
+        ("column", None),
+        ("signal_colums", "Dataset has no attribute 'signal_colums'; did you mean 'signal_columns'"),
+        ("nothing_like_it", "Dataset has no attribute 'nothing_like_it'$"),
+    ]:
+        assert hasattr(gears, name) == (meant is None)
+        if meant:
+            with pytest.raises(AttributeError, match=meant):
+                getattr(gears, name)
+    # All that is named in place of others is there.
+    named = set(re.findall(r"\b([a-z_]+)\(", " ".join(datasets.ELSEWHERE.values()))) - {"len", "list", "default_rng", "permutation"}
+    assert named and all(hasattr(gears, name) for name in named)
+    assert not any(hasattr(gears, name) for names in datasets.ELSEWHERE for name in names.split())
 
 
 def test_tables(gears: datasets.Dataset) -> None:
@@ -317,6 +361,9 @@ def test_croissant_is_read_by_its_own_library(tmp_path: Path) -> None:
 def test_repr(gears: datasets.Dataset) -> None:
     assert all(label in gears._repr_html_() for label in ("healthy", "train"))
     assert "24 records" in repr(gears) and "healthy" in repr(gears)
+    assert re.fullmatch(r"<Dataset of 12 of 24 records: \d+ healthy, \d+ tooth-breakage; splits test \(12\)>", repr(gears.split("test")))
+    assert repr(gears[:3]).startswith("<Dataset of 3 records in memory: ") and repr(gears.take([])) == "<Dataset of 0 records in memory>"
+    assert repr(gears.filter(lambda record: False)) == "<Dataset of 0 of 24 records>"
     assert gears.manifest["records"] == 24 and gears.manifest["complete"] is True
     assert "24" in (gears.path / "README.md").read_text(encoding="utf-8")
 
