@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import pickle
 import re
 import warnings
 from dataclasses import replace
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars
 import pyarrow
 import pyarrow.csv
 import pyarrow.parquet
@@ -68,8 +70,13 @@ def test_plans_and_committed_scores_fit_the_tasks() -> None:
         assert len(scores) == 3 and bounds_broken(name, scores) == []
         for splits in scores.values():
             for measures in splits.values():
-                assert {name for name, score in measures.items() if len(score) == 1} <= {"calibration"}
+                assert {name for name, score in measures.items() if len(score) == 1} <= {"calibration", "records"}
                 assert all(low <= value <= high for value, low, high in (score for score in measures.values() if len(score) == 3))
+    for task in benchmark.TASKS.values():
+        [records] = re.findall("^records = ([0-9]+)$", benchmark.SETS[task.set].read_text("utf-8"), re.MULTILINE)
+        assert 0 < max(task.records.values()) < int(records) and len(set(task.classes)) == {"recall": len(task.classes)}.get(task.measure, 0)
+        for splits in benchmark.BASELINES[task.name].values():
+            assert {split: measures["records"] for split, measures in splits.items()} == {split: [of] for split, of in task.records.items()}
     shown = benchmark.compare("specimens", benchmark.BASELINES["specimens"])
     assert shown.count("\n") == 5 and shown.startswith("| specimens | test, recall |")
 
@@ -101,8 +108,9 @@ def test_what_is_answered_is_scored(sets: Path, tmp_path: Path) -> None:
     right = {"record": record, **{str(kind): (kinds == kind).astype(float) for kind in classes}}
     exact = {f"quantile_{10 * number}": severities for number in range(1, 10)}
     scores = benchmark.evaluate(posed, {**right, **exact})
-    for measures in scores.values():
-        assert measures == {"recall": [1.0] * 3, "auc": [1.0] * 3, "calibration": [0.0], "crps": [0.0] * 3}
+    for split, measures in scores.items():
+        count = len(posed.records(split))
+        assert measures == {"records": [count], "recall": [1.0] * 3, "auc": [1.0] * 3, "calibration": [0.0], "crps": [0.0] * 3}
     # A constant has chance's scores, and a probability that is always 0.1 too large an error of 0.1 or more.
     constant = {"record": record, **{str(kind): np.full(len(record), float(kind == "wear")) for kind in classes}}
     measures = benchmark.evaluate(posed, constant)["test"]
@@ -115,30 +123,89 @@ def test_what_is_answered_is_scored(sets: Path, tmp_path: Path) -> None:
     pyarrow.csv.write_csv(table, tmp_path / "answers.csv")
     of_files = [benchmark.evaluate(posed, tmp_path / f"answers.{ending}") for ending in ("parquet", "csv")]
     assert of_files[0] == of_files[1] == benchmark.evaluate(posed, right)
+    for of_table in (table, table.to_pandas(), polars.from_arrow(table)):
+        assert benchmark.evaluate(posed, of_table) == of_files[0]
     # What the task does not ask for is not read.
     assert benchmark.evaluate(posed, {**right, "score": severities, "remark": np.full(len(record), "seen")}) == of_files[0]
+    asked = (
+        f"'diagnosis' asks for the columns record, healthy, pits, .*wear .the probability of each class., with one row for each of the {len(record)} records of "
+        rf"fast \([0-9]+\), light \([0-9]+\), other_teeth \([0-9]+\), test \({len(posed.records('test'))}\), in any order; "
+    )
+    half = {f"quantile_{10 * number}": np.full(len(record), 0.5) for number in range(1, 10)}
     wrong: list[tuple[dict[str, Any], str]] = [
-        ({name: values[1:] for name, values in right.items()}, "record: must have each of the [0-9]+ records that are scored once"),
-        ({name: np.concatenate([values, values[:1]]) for name, values in right.items()}, "record: must have each"),
-        ({name: values for name, values in right.items() if name != "pits"}, "there is no column 'pits'; this task needs healthy, pits, "),
-        ({**right, "quantile_50": severities}, "there is no column 'quantile_10'"),
-        ({**right, "pits": right["pits"][1:]}, r"pits: has the shape \([0-9]+,\); it must have a number for each of the [0-9]+ records"),
+        ({name: values[1:] for name, values in right.items()}, rf"record: of [0-9]+ numbers 1 are missing, such as {record[0]}; {asked}"),
+        ({name: np.concatenate([values, values[:1]]) for name, values in right.items()}, rf"record: .* {record[0]} is there more than once; {asked}"),
+        ({name: values for name, values in right.items() if name != "record"}, f"there is no column 'record'; there are healthy, .*; {asked}"),
+        ({name.replace("pits", "pit"): values for name, values in right.items()}, f"no column 'pits'; did you mean 'pit'.*; {asked}"),
+        ({}, f"there is no column 'record'; {asked}"),
+        ({**right, "record": ["first"] * len(record)}, "record: could not convert .*; it must have numbers"),
+        ({**right, "quantile_50": severities}, "no column 'quantile_10'.*; of quantiles all of quantile_10, quantile_20 to quantile_90"),
+        ({**right, **half, "quantile_70": severities}, "quantile_60 is 0.5 and quantile_70 is 0 of record [0-9]+; quantiles must not fall"),
+        ({**right, "pits": right["pits"][1:]}, r"pits: has the shape \([0-9]+,\); it must have a number for each of the [0-9]+ of `record`"),
+        ({**right, "pits": right["pits"][:, None]}, r"pits: has the shape \([0-9]+, 1\); it must have a number for each record"),
         ({**right, "pits": np.full(len(record), "many")}, "pits: could not convert .*; it must have numbers"),
-        ({**right, "pits": np.full(len(record), np.nan)}, "pits: is nan of record [0-9]+; it must be within 0 to 1"),
-        ({**right, "pits": 3.0 * right["pits"] - 1.0}, "pits: is -1 of record [0-9]+; it must be within 0 to 1"),
-        ({**right, "pits": np.full(len(record), 0.5)}, "healthy, pits, …: add up to 1.5 of record [0-9]+; probabilities must add up to 1"),
+        ({**right, "pits": np.full(len(record), np.nan)}, "pits: is nan of record [0-9]+ and not so of [0-9]+ others; it must be within 0 to 1"),
+        ({**right, "pits": 3.0 * right["pits"] - 1.0}, "pits: is -1 of record [0-9]+ .*; it must be within 0 to 1"),
+        ({**right, "pits": np.full(len(record), 0.5)}, "healthy, pits, .*: add up to 1.5 of record [0-9]+; probabilities must add up to 1"),
     ]
     for answers, message in wrong:
         with pytest.raises(ValueError, match=message):
             benchmark.evaluate(posed, answers)
+    (tmp_path / "text.parquet").write_text("text")
+    table.drop_columns("record").to_pandas().to_json(tmp_path / "answers.json")
+    table.to_pandas().to_csv(tmp_path / "semicolons.csv", sep=";", index=False)
+    for file, message in [
+        ("answers.json", "answers.json: must be a file of Parquet or CSV, with such an ending"),
+        ("text.parquet", "text.parquet is no file of Parquet: "),
+        ("semicolons.csv", "there is no column 'record'.*; there are record;healthy;"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            benchmark.evaluate(posed, tmp_path / file)
+    with pytest.raises(FileNotFoundError, match="absent.csv"):
+        benchmark.evaluate(posed, tmp_path / "absent.csv")
+    with pytest.raises(TypeError, match=rf"columns by their names, .* and not an array of the shape \([0-9]+,\); {asked}"):
+        benchmark.evaluate(posed, severities)
+    with pytest.raises(TypeError, match=r"must be what open_task\('diagnosis', FOLDER\) returns; its splits have so many records: .*test [0-9]+"):
+        benchmark.evaluate("diagnosis", right)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="must be what open_task returns"):
+        benchmark.evaluate(posed.dataset, right)  # type: ignore[arg-type]
+    with pytest.raises(AttributeError, match=r"Posed has no attribute 'split': records\('train'\) gives the records to learn from"):
+        getattr(posed, "split")
+    again = pickle.loads(pickle.dumps(posed))
+    assert repr(again) == repr(posed) and (again.records()["record"] == record).all()
+    assert re.match(r"<Task 'diagnosis' on .*pairs-1: healthy, .* Known: train \([0-9]+\); " + asked, repr(posed))
     anomaly = posed_of("anomaly", sets)
-    with pytest.raises(ValueError, match="there is no column 'score'; this task needs score"):
+    with pytest.raises(ValueError, match="there is no column 'score'; there are .*; 'anomaly' asks for the columns record, score, with one"):
         benchmark.evaluate(anomaly, right)
-    assert benchmark.evaluate(anomaly, {"record": record, "score": 50.0 * severities})["test"] == {"auc": [1.0] * 3}
-    with pytest.raises(ValueError, match="there is no task 'diagnoses'; did you mean 'diagnosis'"):
-        benchmark.open_task("diagnoses", sets)
+    scores = benchmark.evaluate(anomaly, {"record": record, "score": 50.0 * severities})
+    assert scores["test"] == {"records": [len(anomaly.records("test"))], "auc": [1.0] * 3}
+    unknown: Any = "diagnoses"
+    for ask in (lambda: benchmark.open_task("diagnoses", sets), lambda: benchmark.evaluate(unknown, right), lambda: benchmark.compare("diagnoses", {})):
+        with pytest.raises(ValueError, match="there is no task 'diagnoses'; did you mean 'diagnosis'.*; there are diagnosis, anomaly, few-5, "):
+            ask()
     with pytest.raises(ValueError, match="there is no split 'tset', but train, "):
         posed.records("tset")
+
+
+def test_submissions_that_compare_with_nothing() -> None:
+    baselines = benchmark.BASELINES["diagnosis"]
+    best = max(baselines, key=lambda name: baselines[name]["test"]["recall"][0])
+    # However good, what was scored on fewer records stands below.
+    fewer: benchmark.Scores = {split: {**measures, "records": [96], "recall": [1.0] * 3} for split, measures in baselines[best].items()}
+    undefined: benchmark.Scores = {split: {**measures, "recall": [np.nan] * 3} for split, measures in baselines[best].items()}
+    rows = benchmark.compare("diagnosis", {"mine": fewer, "none": undefined, **baselines}).splitlines()
+    assert rows[2].startswith(f"| {best} |") and rows[-2].startswith("| none |")
+    assert rows[-1].startswith(f"| mine (96 of {benchmark.TASKS['diagnosis'].records['fast']} records of fast) |")
+    assert f"| {benchmark.TASKS['diagnosis'].records['test']} |" in benchmark.compare("diagnosis", baselines, "records").splitlines()[2]
+    for submissions, measures, kind, message in [
+        (baselines[best], (), TypeError, "must be names and what evaluate returned, such as {'mine'"),
+        ([fewer], (), TypeError, "must be names and what evaluate returned"),
+        ({}, (), ValueError, "submissions: there are none"),
+        ({"mine": benchmark.BASELINES["life"]["extra trees"]}, (), ValueError, "'mine': these are no scores of 'diagnosis', which has recall of .*mae"),
+        (baselines, ["acu"], ValueError, "there is no measure 'acu'; did you mean 'auc'.* there are auc, calibration, crps, recall, records"),
+    ]:
+        with pytest.raises(kind, match=message):
+            benchmark.compare("diagnosis", submissions, measures)  # type: ignore[arg-type]
 
 
 def test_roles_are_what_tasks_say(sets: Path) -> None:

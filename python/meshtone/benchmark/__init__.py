@@ -22,21 +22,27 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .._names import hint
+from .._names import absent, hint
 from .._published import PUBLISHED
 from .._warnings import warn
 from ..datasets import Dataset, generate_dataset
 from .measures import BIASED, OF_QUANTILES, interval, measures_of_kinds, measures_of_lives, measures_of_scores
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+    import pyarrow
 
 __all__ = ["BASELINES", "SETS", "TASKS", "Posed", "Scores", "Task", "compare", "evaluate", "open_task"]
 
@@ -45,7 +51,8 @@ Numbers = npt.NDArray[np.float64]
 Columns = Mapping[str, npt.NDArray[Any]]
 
 Scores = dict[str, dict[str, list[float]]]
-"""Of each split and measure the value and the ends of its 90 % interval over units; of a calibration error the value alone."""
+"""Of each split ``records``, how many were scored, and of each measure the value and the ends of its 90 % interval over units; of a calibration
+error the value alone."""
 
 FOLDER = Path(__file__).parent
 
@@ -67,6 +74,18 @@ NOT_SCORED = ("train", RUN_UP)
 
 SUM_TOLERANCE = 0.01
 """That of probabilities which were rounded for a file."""
+
+ELSEWHERE = {
+    "split train test": "records('train') gives the records to learn from, records() those that are scored",
+    "matrix column columns arrays to_torch to_pandas signals": "records('train') and records() give data sets that have it",
+    "labels label y target": "kinds('train') gives the classes, severities('train') how severe, left('train') what is left of a life",
+    "classes answer_columns question measure": "task has it",
+    "evaluate score": "benchmark.evaluate(posed, answers)",
+}
+"""What does what is expected of a :class:`Posed` by these names."""
+
+ROUNDED = 1e-6
+"""As much may numbers of single precision be beyond what they must be."""
 
 Roles = dict[str, npt.NDArray[np.bool_]]
 """Which records a method learns from, "train", and which every other role has; a record may be in several."""
@@ -154,6 +173,15 @@ class Task:
         The measure that ranks: "recall", "auc", or "of_constant", of which less is better.
     roles : callable
         From columns to the records to learn from, "train", and those of each split that is scored.
+
+    Examples
+    --------
+    >>> from meshtone import benchmark
+    >>> task = benchmark.TASKS["bearings"]
+    >>> task.answer_columns
+    ['record', 'healthy', 'inner-race', 'outer-race', 'pits', 'rolling-element', 'tooth-breakage']
+    >>> list(task.records)
+    ['test']
     """
 
     name: str
@@ -161,6 +189,30 @@ class Task:
     question: str
     measure: str
     roles: Callable[[Columns], Roles]
+
+    @property
+    def classes(self) -> list[str]:
+        """Classes whose probabilities are asked for, sorted; none where the answer is one number."""
+        if self.measure != "recall":
+            return []
+        labels = re.findall('^label = "(.+)"$', SETS[self.set].read_text("utf-8"), re.MULTILINE)
+        return sorted(set(_kinds(np.array(labels)).tolist()))
+
+    @property
+    def answer_columns(self) -> list[str]:
+        """Columns that answers must have; quantiles are optional (:func:`evaluate`)."""
+        return ["record", *{"auc": ["score"], "of_constant": ["left"]}.get(self.measure, self.classes)]
+
+    @property
+    def records(self) -> dict[str, int]:
+        """How many records each split has that is scored, in the whole data set; splits of laws of damage share their healthy records."""
+        of_splits = next(iter(BASELINES.get(self.name, {}).values()), {})
+        return {split: int(measures["records"][0]) for split, measures in of_splits.items()}
+
+
+def _kinds(labels: Texts) -> Texts:
+    """Classes of labels, without what tells laws of damage and run-ups apart."""
+    return np.where(labels == RUN_UP, "healthy", np.char.partition(labels, "/")[..., 0]).astype(str)
 
 
 TASKS = {
@@ -213,6 +265,24 @@ class Posed:
         self._roles = task.roles(self._columns)
         self.splits = [role for role in self._roles if role not in NOT_SCORED]
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise absent(self, name, ELSEWHERE)
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{role} ({of.sum()})" for role, of in self._roles.items() if role in NOT_SCORED)
+        return f"<Task '{self.task.name}' on {self.dataset.place}: {self.task.question} Known: {counts}; {self._asked()}>"
+
+    def _asked(self) -> str:
+        """What answers must have."""
+        counts = ", ".join(f"{split} ({self._roles[split].sum()})" for split in self.splits)
+        meaning = " (the probability of each class)" if self.task.classes else ""
+        return (
+            f"'{self.task.name}' asks for the columns {', '.join(self.task.answer_columns)}{meaning}, with one row for each of the "
+            f"{np.count_nonzero(self._places())} records of {counts}, in any order; posed.records()['record'] has their numbers"
+        )
+
     def records(self, *roles: str) -> Dataset:
         """Records by their roles, in the order of :attr:`dataset`.
 
@@ -235,8 +305,7 @@ class Posed:
 
     def kinds(self, *roles: str) -> Texts:
         """What is to be said of each of these records: its class, without what tells laws of damage and run-ups apart."""
-        labels = self._columns["label"][self._places(*roles)].astype(str)
-        return np.where(labels == RUN_UP, "healthy", np.char.partition(labels, "/")[..., 0]).astype(str)
+        return _kinds(self._columns["label"][self._places(*roles)].astype(str))
 
     def second_kinds(self, *roles: str) -> Texts:
         """Kind of a second damage of each of these records, '' of none: to name it is right too."""
@@ -296,9 +365,7 @@ def open_task(name: str, folder: str | PathLike[str], *, records: int | None = N
     MeshtoneWarning
         The data set is not the published one: another version made it.
     """
-    if name not in TASKS:
-        raise ValueError(f"there is no task '{name}'{hint(name, list(TASKS))}; there are {', '.join(TASKS)}")
-    task = TASKS[name]
+    task = _task(name)
     dataset = generate_dataset(SETS[task.set], Path(folder, task.set), records=records, jobs=jobs)
     found = hashlib.sha256((dataset.path / "manifest.json").read_bytes()).hexdigest()
     if records is None and found != PUBLISHED.get(task.set):
@@ -306,7 +373,15 @@ def open_task(name: str, folder: str | PathLike[str], *, records: int | None = N
     return Posed(task, dataset)
 
 
-def evaluate(posed: Posed, answers: str | PathLike[str] | Mapping[str, npt.ArrayLike]) -> Scores:
+def _task(name: str) -> Task:
+    if name not in list(TASKS):
+        raise ValueError(f"there is no task '{name}'{hint(name, list(TASKS))}; there are {', '.join(TASKS)}")
+    return TASKS[name]
+
+
+def evaluate(
+    posed: Posed, answers: str | PathLike[str] | Mapping[str, npt.ArrayLike] | pandas.DataFrame | polars.DataFrame | pyarrow.Table
+) -> Scores:
     """Score what a method answers for the records of every split.
 
     Intervals hold 90 % of the scores of units that are drawn with replacement, because records of one unit are no independent witnesses.
@@ -315,75 +390,131 @@ def evaluate(posed: Posed, answers: str | PathLike[str] | Mapping[str, npt.Array
     ----------
     posed : Posed
         The task.
-    answers : mapping of arrays, or path
-        Columns, or the name of a Parquet or CSV file of them: ``record``, the numbers of all records that are scored, in any order, and
+    answers : mapping of arrays, table of pandas, polars or pyarrow, or path
+        Columns, or the name of a Parquet or CSV file of them, as :attr:`Task.answer_columns` has them: ``record``, the numbers of all records
+        that are scored, in any order, and
 
         * of a kind of damage the probability of each class, in a column of its name
         * of an anomaly ``score``, more for what looks damaged
         * of a life ``left``, the part that is left
 
-        and, where the method knows them, ``quantile_10`` to ``quantile_90``, of the severity or of the life that is left.
+        and, where the method knows them, ``quantile_10``, ``quantile_20`` to ``quantile_90``, of the severity or of the life that is left.
+        Other columns and other records are not looked at.
 
     Returns
     -------
     Scores
-        Of each split: ``auc``, of damaged against healthy; ``recall``, the mean of all classes; ``calibration``, by how much the
-        probability of damage is off on average, over ten equal parts of the records; ``mae``; ``of_constant``, the error over that of
-        the best constant; ``crps``, the continuous ranked probability score, from the quantiles.
+        Of each split: ``records``, how many; ``auc``, of damaged against healthy; ``recall``, the mean of all classes; ``calibration``, by
+        how much the probability of damage is off on average, over ten equal parts of the records; ``mae``; ``of_constant``, the error over
+        that of the best constant; ``crps``, the continuous ranked probability score, from the quantiles.
 
     Raises
     ------
+    TypeError
+        What is no task that :func:`open_task` opened, or no columns.
+    FileNotFoundError
+        There is no such file.
     ValueError
-        Records or columns that are missing or doubled; numbers that are not finite, or but for ``score`` not within 0 to 1; probabilities of a
-        record that do not add up to 1 within 0.01.
+        A file of another kind; records or columns that are missing or doubled; numbers that are not finite, or but for ``score`` not within 0
+        to 1; probabilities of a record that do not add up to 1 within 0.01; quantiles that fall.
     """
-    measure, classes = posed.task.measure, np.unique(posed.kinds("train"))
-    needed = {"of_constant": ["left"], "auc": ["score"], "recall": [str(name) for name in classes]}[measure]
-    columns = _read(answers, ["record", *needed, *OF_QUANTILES]) if isinstance(answers, (str, PathLike)) else answers
-    given = _checked(columns, posed.records()["record"], needed, measure)
-    if measure == "of_constant":
+    if isinstance(posed, str):
+        task = _task(posed)
+        raise TypeError(
+            f"posed = '{posed}': must be what open_task('{posed}', FOLDER) returns; its splits have so many records: "
+            + ", ".join(f"{split} {count}" for split, count in task.records.items())
+        )
+    if not isinstance(posed, Posed):
+        raise TypeError(f"posed = {posed!r}: must be what open_task returns")
+    given = _checked(posed, _columns(answers, posed))
+    if posed.task.measure == "of_constant":
         measures = measures_of_lives(given, posed.left(), float(np.median(posed.left("train"))))
-    elif measure == "auc":
+    elif posed.task.measure == "auc":
         measures = measures_of_scores(given, posed.kinds())
     else:
-        measures = measures_of_kinds(given, posed.kinds(), posed.second_kinds(), posed.severities(), classes)
+        measures = measures_of_kinds(given, posed.kinds(), posed.second_kinds(), posed.severities(), np.array(posed.task.classes))
     places, units = posed._places(), posed.units()
     chosen = {split: np.flatnonzero(posed._roles[split][places]) for split in posed.splits}
     return {
-        split: {name: [round(one(of), 3)] if name == BIASED else interval(one, of, units) for name, one in measures.items()}
+        split: {
+            "records": [len(of)],
+            **{name: [round(one(of), 3)] if name == BIASED else interval(one, of, units) for name, one in measures.items()},
+        }
         for split, of in chosen.items()
     }
 
 
-def _checked(answers: Mapping[str, npt.ArrayLike], records: npt.NDArray[Any], needed: Sequence[str], measure: str) -> dict[str, Numbers]:
-    """The needed columns of answers, and quantiles if there are any, in the order of `records`; others are not read."""
-    numbers = np.asarray(answers.get("record", []))
-    if len(np.unique(numbers)) != len(numbers) or not set(records) <= set(numbers):
-        raise ValueError(f"record: must have each of the {len(records)} records that are scored once")
-    if measure != "auc" and any(name in answers for name in OF_QUANTILES):
-        needed = [*needed, *OF_QUANTILES]
-    if missing := [name for name in needed if name not in answers]:
-        raise ValueError(f"there is no column '{missing[0]}'; this task needs {', '.join(needed)}")
-    place = dict(zip(numbers, range(len(numbers)), strict=True))
-    order = np.array([place[number] for number in records])
+def _columns(answers: Any, posed: Posed) -> Mapping[str, npt.ArrayLike]:
+    """Columns by their names, whatever has them."""
+    import pyarrow
+    import pyarrow.dataset
+
+    if isinstance(answers, Mapping):
+        return answers
+    if isinstance(answers, (str, PathLike)):
+        file = Path(answers)
+        forms = {".csv": "csv", ".parquet": "parquet", ".pq": "parquet"}
+        form = "parquet" if file.is_dir() else forms.get(file.suffix.lower())
+        if form is None:
+            raise ValueError(f"{file}: must be a file of Parquet or CSV, with such an ending: answers.parquet, answers.csv")
+        try:
+            answers = pyarrow.dataset.dataset(fspath(file), format=form).to_table()
+        except ValueError as error:
+            raise ValueError(f"{file} is no file of {form.replace('parquet', 'Parquet').replace('csv', 'CSV')}: {error}") from None
+    elif hasattr(answers, "columns"):
+        answers = pyarrow.table(answers)
+    else:
+        kind = f"an array of the shape {answers.shape}" if isinstance(answers, np.ndarray) else repr(answers)
+        raise TypeError(f"answers: must be columns by their names, or a file of them, and not {kind}; {posed._asked()}")
+    return dict(zip(answers.column_names, answers.columns, strict=True))
+
+
+def _checked(posed: Posed, answers: Mapping[str, npt.ArrayLike]) -> dict[str, Numbers]:
+    """The needed columns of answers, and quantiles if there are any, in the order of the records that are scored; others are not read."""
+    measure, records = posed.task.measure, posed._columns["record"][posed._places()]
+    of_quantiles = OF_QUANTILES if measure != "auc" and any(name in answers for name in OF_QUANTILES) else []
+    needed = [*posed.task.answer_columns[1:], *of_quantiles]
+    if missing := [name for name in ["record", *needed] if name not in answers]:
+        optional = f"; of quantiles all of {OF_QUANTILES[0]}, {OF_QUANTILES[1]} to {OF_QUANTILES[-1]}" if of_quantiles else ""
+        there = f"; there are {', '.join(map(str, answers))}" if answers else ""
+        raise ValueError(f"there is no column '{missing[0]}'{hint(missing[0], map(str, answers))}{there}; {posed._asked()}{optional}")
+    numbers = _numbers("record", answers)
+    found, counts = np.unique(numbers, return_counts=True)
+    if len(lacking := np.setdiff1d(records, found)) or (counts > 1).any():
+        what = f"{len(lacking)} are missing, such as {lacking[0]}" if len(lacking) else f"{found[counts > 1][0]:g} is there more than once"
+        raise ValueError(f"record: of {len(numbers)} numbers {what}; {posed._asked()}")
+    order = np.argsort(numbers, kind="stable")[np.searchsorted(found, records)]
     # A probability of single precision may be above 1 by its rounding.
-    least, most, allowed = (-np.inf, np.inf, "finite") if measure == "auc" else (-1e-6, 1.0 + 1e-6, "within 0 to 1")
+    least, most, allowed = (-np.inf, np.inf, "finite") if measure == "auc" else (-ROUNDED, 1.0 + ROUNDED, "within 0 to 1")
     given: dict[str, Numbers] = {}
     for name in needed:
-        values = np.asarray(answers[name])
+        values = _numbers(name, answers)
         if values.shape != numbers.shape:
-            raise ValueError(f"{name}: has the shape {values.shape}; it must have a number for each of the {len(numbers)} records")
-        try:
-            given[name] = values.astype(np.float64)[order]
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"{name}: {error}; it must have numbers") from None
+            raise ValueError(f"{name}: has the shape {values.shape}; it must have a number for each of the {len(numbers)} of `record`")
+        given[name] = values[order]
         bad = ~np.isfinite(given[name]) | (given[name] < least) | (given[name] > most)
         if bad.any():
-            raise ValueError(f"{name}: is {given[name][bad][0]:g} of record {records[bad][0]}; it must be {allowed}")
-    total = np.sum([given[name] for name in needed if name not in OF_QUANTILES], axis=0)
-    if measure == "recall" and (bad := np.abs(total - 1.0) > SUM_TOLERANCE).any():
-        raise ValueError(f"{', '.join(needed[:2])}, …: add up to {total[bad][0]:g} of record {records[bad][0]}; probabilities must add up to 1")
+            more = f" and not so of {bad.sum() - 1} others" if bad.sum() > 1 else ""
+            raise ValueError(f"{name}: is {given[name][bad][0]:g} of record {records[bad][0]}{more}; it must be {allowed}")
+    if classes := posed.task.classes:
+        total = np.sum([given[name] for name in classes], axis=0)
+        if (bad := np.abs(total - 1.0) > SUM_TOLERANCE).any():
+            raise ValueError(f"{', '.join(classes)}: add up to {total[bad][0]:g} of record {records[bad][0]}; probabilities must add up to 1")
+    for lower, upper in zip(of_quantiles, of_quantiles[1:], strict=False):
+        if (bad := given[upper] < given[lower] - ROUNDED).any():
+            of = [f"{name} is {given[name][bad][0]:g}" for name in (lower, upper)]
+            raise ValueError(f"{' and '.join(of)} of record {records[bad][0]}; quantiles must not fall")
     return given
+
+
+def _numbers(name: str, answers: Mapping[str, npt.ArrayLike]) -> Numbers:
+    try:
+        values: Numbers = np.asarray(answers[name]).astype(np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: {error}; it must have numbers") from None
+    if values.ndim != 1:
+        raise ValueError(f"{name}: has the shape {values.shape}; it must have a number for each record")
+    return values
 
 
 def compare(task: str, submissions: Mapping[str, Scores], measures: Sequence[str] = ()) -> str:
@@ -394,37 +525,65 @@ def compare(task: str, submissions: Mapping[str, Scores], measures: Sequence[str
     task : str
         One of :data:`TASKS`.
     submissions : mapping of str to Scores
-        Names and scores.
+        Names and what :func:`evaluate` returned.
     measures : sequence of str, optional
         Those that are shown; by default the one that ranks.
 
     Returns
     -------
     str
-        In Markdown: a row for each submission, the best first, and a column for each split and measure.
+        In Markdown: a row for each submission, the best first, and a column for each split and measure. What was scored on other numbers of
+        records than the task has, as after ``open_task(…, records=400)``, says so and stands below, since it compares with nothing.
+
+    Raises
+    ------
+    TypeError
+        Submissions without names.
+    ValueError
+        A task or measure that there is not; no submissions; scores that are not those of such a task.
+
+    Examples
+    --------
+    >>> from meshtone import benchmark
+    >>> print(benchmark.compare("bearings", benchmark.BASELINES["bearings"]).splitlines()[0])
+    | bearings | test, recall |
     """
-    main = TASKS[task].measure
+    asked = _task(task)
+    if not isinstance(submissions, Mapping) or not all(_is_scores(scores) for scores in submissions.values()):
+        raise TypeError("submissions: must be names and what evaluate returned, such as {'mine': evaluate(posed, answers)}")
+    if not submissions:
+        raise ValueError("submissions: there are none")
+    shown = [measures] if isinstance(measures, str) else list(measures) or [asked.measure]
     splits = sorted({split for scores in submissions.values() for split in scores}, key=lambda split: (split != "test", split))
-    heads = [(split, measure) for split in splits for measure in measures or [main]]
-    sign = 1 if main == "of_constant" else -1
+    for name, scores in submissions.items():
+        if set(scores) != set(asked.records) or any(asked.measure not in of for of in scores.values()):
+            raise ValueError(
+                f"'{name}': these are no scores of '{task}', which has {asked.measure} of the splits {', '.join(asked.records)}, but "
+                + "; ".join(f"of {split} {', '.join(of)}" for split, of in scores.items())
+            )
+    known = sorted({measure for scores in submissions.values() for of in scores.values() for measure in of})
+    if other := [measure for measure in shown if measure not in known]:
+        raise ValueError(f"there is no measure '{other[0]}'{hint(other[0], known)}; there are {', '.join(known)}")
+    heads = [(split, measure) for split in splits for measure in shown]
+    sign = 1 if asked.measure == "of_constant" else -1
     lines = ["| " + " | ".join([task, *(f"{split}, {measure}" for split, measure in heads)]) + " |", "|---|" + "---:|" * len(heads)]
-    for name, scores in sorted(submissions.items(), key=lambda one: sign * one[1][splits[0]][main][0]):
+    rows = []
+    for name, scores in submissions.items():
+        counts = {split: of["records"][0] for split, of in scores.items() if "records" in of}
+        few = next((f" ({count} of {asked.records[split]} records of {split})" for split, count in counts.items() if count != asked.records[split]), "")
         cells = [_cell(scores.get(split, {}).get(measure)) for split, measure in heads]
-        lines.append("| " + " | ".join([name, *cells]) + " |")
+        value = sign * scores[splits[0]][asked.measure][0]
+        rows.append((bool(few), np.inf if np.isnan(value) else value, [name + few, *cells]))
+    lines += ["| " + " | ".join(cells) + " |" for _, _, cells in sorted(rows, key=lambda row: row[:2])]
     return "\n".join(lines) + "\n"
+
+
+def _is_scores(scores: Any) -> bool:
+    return isinstance(scores, Mapping) and all(isinstance(of, Mapping) for of in scores.values())
 
 
 def _cell(score: list[float] | None) -> str:
     if score is None:
         return "–"
     value, *ends = score
-    return f"{value:.3f}" + (f" ({ends[0]:.3f} to {ends[1]:.3f})" if ends else "")
-
-
-def _read(file: str | PathLike[str], wanted: Sequence[str]) -> dict[str, npt.NDArray[Any]]:
-    import pyarrow.dataset
-
-    form = "csv" if fspath(file).endswith(".csv") else "parquet"
-    answers = pyarrow.dataset.dataset(fspath(file), format=form)
-    table = answers.to_table([name for name in answers.schema.names if name in wanted])
-    return {name: table[name].to_numpy() for name in table.column_names}
+    return f"{value:.3f}".removesuffix(".000" if isinstance(value, int) else "") + (f" ({ends[0]:.3f} to {ends[1]:.3f})" if ends else "")
