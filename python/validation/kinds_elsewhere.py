@@ -46,7 +46,8 @@ def main() -> None:
     """Print how often each kind is named, of all rigs together."""
     warnings.simplefilter("ignore", mt.MeshtoneWarning)
     named: dict[str, Counter[str]] = defaultdict(Counter)
-    squares, damaged_of, missing = [], [], []
+    squares: list[float] = []
+    missing: list[float] = []
     for number in [int(text) for text in sys.argv[1:]] or range(8, 12):
         rig = HiddenRig(number)
         healthy = rig.healthy(16, [30, 30], rig.snr_db)
