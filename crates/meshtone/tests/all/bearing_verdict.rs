@@ -240,9 +240,9 @@ fn least_probabilities(seeds: std::ops::Range<u64>) -> Vec<(u64, f64, bool)> {
 #[test]
 fn chance_is_seldom_named() {
     // The first of those that are counted below.
-    let least = least_probabilities(1000..1060);
+    let least = least_probabilities(1000..1030);
     let below = |limit: f64| least.iter().filter(|of| of.1 < limit).count();
-    assert!(least.len() == 60 && below(0.1) <= 12 && below(0.01) <= 2, "{least:?}");
+    assert!(least.len() == 30 && below(0.1) <= 6 && below(0.01) <= 1, "{least:?}");
 }
 
 /// Prints the table of the book: `cargo test --release -p meshtone-tests --test core -- --ignored two_thousand_recordings_of_nothing --nocapture`.
@@ -273,7 +273,7 @@ fn without_balls(speed_hz: f64, seconds: f64) -> (Vec<f64>, f64, Scenario, f64) 
     gearbox.faults.clear();
     gearbox.operation.pinion_speed_hz = speed_hz;
     gearbox.solver.sampling_rate_hz = RATE_HZ;
-    gearbox.solver.duration_s = Some(seconds);
+    gearbox.solver.discard_and_keep(0.3, seconds);
     let channels = meshtone::simulate(&gearbox).unwrap().channels;
     let signal = channels.signal(&gearbox.leading_channel()).unwrap().to_vec();
     (signal, channels.sampling_rate_hz, gearbox, channels.start_s)

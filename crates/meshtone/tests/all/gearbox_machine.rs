@@ -186,7 +186,7 @@ fn beams_and_meshes_have_the_frequencies_and_responses_of_ross() {
     let (damping_s, places) = (1e-6, [1, 2 * 9 * 6 + 1]);
     let mut largest: f64 = 0.0;
     let stiffness = machine.closed_stiffness(&[3e8, 4e8]);
-    for (row, &frequency_hz) in reference["response_frequency_hz"].iter().enumerate().step_by(10) {
+    for (row, &frequency_hz) in reference["response_frequency_hz"].iter().enumerate().step_by(40) {
         let omega = TAU * frequency_hz;
         let dynamic = stiffness.map(Complex::from) * Complex::new(1.0, omega * damping_s)
             - machine.mass.map(Complex::from) * Complex::from(omega * omega);

@@ -319,7 +319,7 @@ fn ideal_gearbox() -> Scenario {
     for wheel in &mut gearbox.wheels {
         (wheel.iso_class, wheel.tip_chamfer_mm, wheel.active_profile_shortening) = (0, Some(0.0), 0.0);
     }
-    gearbox.solver.duration_s = Some(0.2);
+    gearbox.solver.discard_and_keep(0.1, 0.2);
     gearbox.sensors.clear();
     gearbox
 }
@@ -373,7 +373,7 @@ fn the_number_of_slices_does_not_matter() {
         seats.map(|signal| rms(&signal.values)).collect()
     };
     let expected = of(11);
-    for slices in [5, 21, 41] {
+    for slices in [5, 41] {
         let apart = of(slices).iter().zip(&expected).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         println!("{slices} slices: {apart:.1e}");
         assert!(apart < 5e-3, "{slices}: {apart}");

@@ -22,7 +22,7 @@ pub const STAGE: &str =
 fn rig_a() -> String {
     let toml = RIG_A.replace(
         "sampling_rate_hz = 161120.0\nduration_s = 5.0",
-        "sampling_rate_hz = 10000.0\nduration_s = 9.0",
+        "sampling_rate_hz = 10000.0\nduration_s = 9.0\nsettle_fraction = 0.1",
     );
     assert_ne!(toml, RIG_A);
     toml
@@ -157,9 +157,24 @@ fn simulated_cracks_show_on_their_wheels() {
 }
 
 /// The force of a mesh pushes the ring along its circumference for the most part. On a stiff ring a sensor that measures outwards hears a planet loudest
-/// where it stands beside the sensor, and so its knock in the average of another one; a tangential sensor hears it as it passes, and names it.
+/// where it stands beside the sensor, and so its knock in the average of another one; a tangential sensor hears it as it passes, and names it. The
+/// measurement below counts all planets and a ring that is not stiff.
 #[test]
 fn a_tangential_sensor_names_the_damaged_planet_of_a_stiff_ring() {
+    assert_eq!(named_planets(&[(30, 2), (30, 3)]), [2, 0]);
+}
+
+#[test]
+#[ignore = "a measurement: cargo xtask measure"]
+fn a_tangential_sensor_names_the_damaged_planets() {
+    let [tangential, radial] =
+        named_planets(&[6, 30].map(|rim_mm| [1, 2, 3].map(|planet| (rim_mm, planet))).concat());
+    println!("of 6 named by the tangential sensor {tangential}, by the radial one {radial}");
+    assert!(tangential >= 5 && radial <= 2, "{tangential} {radial}");
+}
+
+/// How many damaged planets of sets with a rim of so many mm are named by the tangential and by the radial sensor.
+fn named_planets(damaged: &[(u32, usize)]) -> [u32; 2] {
     let mut toml = RIG_A.to_owned();
     for (written, other) in [
         (
@@ -170,7 +185,10 @@ fn a_tangential_sensor_names_the_damaged_planet_of_a_stiff_ring() {
         ("thickness_mm = 12.0", "thickness_mm = 30.0"),
         ("coupling_stiffness_nm_per_rad = 1.0\ndamping_ratio = 0.02\n", ""),
         ("brake_inertia_kgm2 = 1000.0\n", ""),
-        ("sampling_rate_hz = 161120.0\nduration_s = 5.0", "sampling_rate_hz = 60000.0\nduration_s = 2.5"),
+        (
+            "sampling_rate_hz = 161120.0\nduration_s = 5.0",
+            "sampling_rate_hz = 60000.0\nduration_s = 2.5\nsettle_fraction = 0.1",
+        ),
         (
             "at = \"ring:p:90\"",
             "at = \"ring:p:90\"\ndirection = \"tangential\"\n\n[[sensor]]\nat = \"ring:p:90\"",
@@ -180,7 +198,7 @@ fn a_tangential_sensor_names_the_damaged_planet_of_a_stiff_ring() {
         toml = toml.replace(written, other);
     }
     let mut named = [0, 0];
-    for (rim_mm, planet) in [6, 30].into_iter().flat_map(|rim_mm| [1, 2, 3].map(|planet| (rim_mm, planet))) {
+    for &(rim_mm, planet) in damaged {
         let toml = toml.replace("thickness_mm = 30.0", &format!("thickness_mm = {rim_mm}.0"));
         let fault = format!(
             "[[fault]]\nkind = \"tooth-breakage\"\nwheel = \"p.planet{planet}\"\ntooth = 6\nseverity = 0.7\n"
@@ -202,9 +220,7 @@ fn a_tangential_sensor_names_the_damaged_planet_of_a_stiff_ring() {
             *named += u32::from(largest + 1 == planet);
         }
     }
-    let [tangential, radial] = named;
-    println!("of 6 named by the tangential sensor {tangential}, by the radial one {radial}");
-    assert!(tangential >= 5 && radial <= 2, "{tangential} {radial}");
+    named
 }
 
 /// With fewer revolutions than bring every tooth before the sensor, the error says how many are needed, and that no number is enough where tooth

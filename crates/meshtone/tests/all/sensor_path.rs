@@ -319,14 +319,14 @@ fn damage_behind_the_path_of_a_long_recording() {
 fn recordings_that_do_not_fit_are_refused() {
     let mut other = rig();
     other.wheels[1].teeth = 37;
-    let refused = estimate(recording(&other, 105, [40.0, 40.0], 3.0), FEW_DRAWS).unwrap_err();
+    let refused = estimate(recording(&other, 105, [40.0, 40.0], 1.5), FEW_DRAWS).unwrap_err();
     assert!(
         matches!(&refused, PathError::Recording { index: 0, problem: RecordingProblem::DoesNotFit(_) })
             && refused.to_string().contains("37 teeth"),
         "{refused}"
     );
     let damaged = rig().with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
-    let refused = estimate(recording(&damaged, 105, [20.0, 60.0], 4.0), FEW_DRAWS).unwrap_err();
+    let refused = estimate(recording(&damaged, 105, [20.0, 60.0], 2.5), FEW_DRAWS).unwrap_err();
     assert!(matches!(refused, PathError::UnlikeSimulations { .. }), "{refused}");
     let short = recording(&rig(), 105, [40.0, 40.0], 0.08);
     let refused = estimate(short, FEW_DRAWS).unwrap_err();
@@ -336,7 +336,7 @@ fn recordings_that_do_not_fit_are_refused() {
     };
     assert!(matches!(problem(refused), RecordingProblem::TooShort { .. }));
     // One value in two mesh periods shows nothing of them.
-    let mut slow = recording(&rig(), 105, [40.0, 40.0], 3.0);
+    let mut slow = recording(&rig(), 105, [40.0, 40.0], 1.5);
     slow.values_g = slow.values_g.into_iter().step_by(100).collect();
     slow.sampling_rate_hz /= 100.0;
     slow.phase = ShaftPhase::constant(40.0, slow.sampling_rate_hz, slow.values_g.len()).unwrap();
@@ -350,53 +350,62 @@ fn recordings_that_do_not_fit_are_refused() {
 }
 
 /// From 3 s of hidden gearboxes at one speed their wander and their random force are found again. The share of the lines differs from wheels to
-/// wheels, so that one recording tells the force within a factor of 1.5.
+/// wheels, so that one recording tells the force within a factor of 1.5. One gearbox; the measurement below has two.
 #[test]
+fn wander_and_random_force_of_a_hidden_gearbox_are_found_again() {
+    assert_drive_is_found(78);
+}
+
+#[test]
+#[ignore = "a measurement: cargo xtask measure"]
 fn wander_and_random_force_of_hidden_gearboxes_are_found_again() {
+    let mean = [77, 78].map(assert_drive_is_found).iter().sum::<f64>() / 2.0;
+    assert!((mean / FORCE_FACTOR - 1.0).abs() < 0.3, "{mean}");
+}
+
+/// The hidden gearboxes' random force over that of the known one.
+const FORCE_FACTOR: f64 = 0.03 / 0.055;
+
+/// Returns the factor of the random force that is found.
+fn assert_drive_is_found(seed: u64) -> f64 {
     let mut known = Scenario::from_toml(&gearbox_template(None)).unwrap();
     known.sensors.truncate(1);
     known.solver.sampling_rate_hz = 51_200.0;
-    let truth = 0.03 / 0.055;
-    let mut mean = 0.0;
-    for seed in [77, 78] {
-        let mut hidden = known.clone().with_seed(seed);
-        hidden.operation.speed_wander_percent = 0.06;
-        hidden.meshes.iter_mut().for_each(|mesh| mesh.random_force = 0.03);
-        let varies_by = if seed == 77 { 1.0 } else { 2.0 };
-        hidden.operation.torque_ripple[0].amplitude *= varies_by;
-        hidden.sensors[0].frequency_response = Some(hidden_response());
-        hidden.solver.duration_s = Some(3.0);
-        let channels = meshtone::simulate(&hidden).unwrap().channels;
-        let input = ShaftPhase::of_simulated_input(&hidden, channels.start_s, channels.len()).unwrap();
-        let signal = &channels.signals[0].values;
-        let healthy = at_rate_of_recordings(signal, &input.revolutions, channels.sampling_rate_hz);
-        let rate_hz = channels.sampling_rate_hz;
-        let second = rate_hz as usize;
-        // The output turns 6 times in a second, of which the first need not be whole.
-        let short = at_rate_of_recordings(&signal[..second], &input.revolutions[..second], rate_hz);
-        let refused = estimate_of(known.clone(), short, FEW_DRAWS).unwrap_err().to_string();
-        assert!(refused.contains("must have at least 1.1"), "{refused}");
-        let drive = estimate_of(known.clone(), healthy, FEW_DRAWS).unwrap().drive;
-        println!("{seed}: {drive:.3?}");
-        let [wander, low, high] = drive.speed_wander_percent.unwrap();
-        assert!((low..high).contains(&0.06) && (0.03..0.12).contains(&wander), "{wander}");
-        let [factor, ..] = drive.random_force_factor.unwrap();
-        assert!((truth / 1.5..truth * 1.5).contains(&factor), "{factor}");
-        mean += factor / 2.0;
-        // Torque that varies three times a revolution of the input is in the scenario, and what is not known of the wheels within its interval.
-        let at = |order: usize| {
-            drive.sidebands.iter().find(|of| of.shaft == "input" && of.order == order).unwrap()
-        };
-        let [factor, low, high] = at(3).factor;
-        assert!(at(3).cause == SidebandCause::Torque && at(1).cause == SidebandCause::Wheels);
-        assert!(
-            (varies_by / 1.5..varies_by * 1.5).contains(&factor) && (low..high).contains(&varies_by),
-            "{factor} {low} {high}"
-        );
-        assert!((at(1).factor[1]..at(1).factor[2]).contains(&1.0), "{:?}", at(1));
-        assert!(drive.failed == 0 && !drive.sidebands.iter().any(RecordedSidebands::is_unexplained));
-        let [recorded, simulated] = drive.line_share.unwrap();
-        assert!(recorded > simulated && recorded < 1.0);
-    }
-    assert!((mean / truth - 1.0).abs() < 0.3, "{mean}");
+    let mut hidden = known.clone().with_seed(seed);
+    hidden.operation.speed_wander_percent = 0.06;
+    hidden.meshes.iter_mut().for_each(|mesh| mesh.random_force = 0.03);
+    let varies_by = if seed == 77 { 1.0 } else { 2.0 };
+    hidden.operation.torque_ripple[0].amplitude *= varies_by;
+    hidden.sensors[0].frequency_response = Some(hidden_response());
+    hidden.solver.discard_and_keep(0.3, 3.0);
+    let channels = meshtone::simulate(&hidden).unwrap().channels;
+    let input = ShaftPhase::of_simulated_input(&hidden, channels.start_s, channels.len()).unwrap();
+    let signal = &channels.signals[0].values;
+    let healthy = at_rate_of_recordings(signal, &input.revolutions, channels.sampling_rate_hz);
+    let rate_hz = channels.sampling_rate_hz;
+    let second = rate_hz as usize;
+    // The output turns 6 times in a second, of which the first need not be whole.
+    let short = at_rate_of_recordings(&signal[..second], &input.revolutions[..second], rate_hz);
+    let refused = estimate_of(known.clone(), short, FEW_DRAWS).unwrap_err().to_string();
+    assert!(refused.contains("must have at least 1.1"), "{refused}");
+    let drive = estimate_of(known.clone(), healthy, FEW_DRAWS).unwrap().drive;
+    println!("{seed}: {drive:.3?}");
+    let [wander, low, high] = drive.speed_wander_percent.unwrap();
+    assert!((low..high).contains(&0.06) && (0.03..0.12).contains(&wander), "{wander}");
+    let [found, ..] = drive.random_force_factor.unwrap();
+    assert!((FORCE_FACTOR / 1.5..FORCE_FACTOR * 1.5).contains(&found), "{found}");
+    // Torque that varies three times a revolution of the input is in the scenario, and what is not known of the wheels within its interval.
+    let at =
+        |order: usize| drive.sidebands.iter().find(|of| of.shaft == "input" && of.order == order).unwrap();
+    let [factor, low, high] = at(3).factor;
+    assert!(at(3).cause == SidebandCause::Torque && at(1).cause == SidebandCause::Wheels);
+    assert!(
+        (varies_by / 1.5..varies_by * 1.5).contains(&factor) && (low..high).contains(&varies_by),
+        "{factor} {low} {high}"
+    );
+    assert!((at(1).factor[1]..at(1).factor[2]).contains(&1.0), "{:?}", at(1));
+    assert!(drive.failed == 0 && !drive.sidebands.iter().any(RecordedSidebands::is_unexplained));
+    let [recorded, simulated] = drive.line_share.unwrap();
+    assert!(recorded > simulated && recorded < 1.0);
+    found
 }

@@ -37,7 +37,7 @@ fn recording(seed: u64) -> Option<Recording> {
     gearbox.sensors = vec![Sensor::at_place(draws.one(&["input:0", "middle:1", "output:0"]))];
     let input_hz = draws.between(10.0, 40.0);
     gearbox.operation.pinion_speed_hz = input_hz;
-    gearbox.solver.duration_s = Some(draws.in_octaves(1.5, 4.0));
+    gearbox.solver.discard_and_keep(0.3, draws.in_octaves(1.5, 4.0));
     let channels = meshtone::simulate(&gearbox).ok()?.channels;
     let mut signal = channels.signals[0].values.clone();
     let rms = (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt();
