@@ -30,8 +30,8 @@ fn fast() -> String {
         ("sampling_rate_hz = 50000.0", "sampling_rate_hz = 20000.0"),
         ("#sampling_rate_hz = 25e3", "records_per_shard = 20\nsampling_rate_hz = 1e4"),
         ("duration_s = 1.0     ", "duration_s = 0.6     "),
-        ("settle_fraction = 0.81", "settle_fraction = 0.5"),
-        ("radius_mm = 20.0\n", "radius_mm = 20.0\nelements = 4\n"),
+        ("settle_fraction = 0.81", "settle_fraction = 0.25"),
+        ("radius_mm = 20.0\n", "radius_mm = 20.0\nelements = 2\n"),
     ] {
         assert!(text.contains(written), "{written}");
         text = text.replace(written, other);
@@ -238,7 +238,7 @@ fn averages_begin_at_the_tooth_that_the_labels_count_from() {
         .replace("settle_tolerance = 1e-2", "settle_tolerance = 1e-6")
         // What is random is no part of the motion that repeats itself.
         .replace("log_uniform = [0.02, 0.2]", "fixed = 0.0");
-    let text = text.replace("settle_fraction = 0.5", "settle_fraction = 0.95");
+    let text = text.replace("settle_fraction = 0.25", "settle_fraction = 0.95");
     let text = &text[..text.find("[[split.shift]]").unwrap()];
     let plan = plan(text);
     let made = made(&plan);
@@ -342,7 +342,10 @@ fn damaged_teeth_of_a_planetary_set_are_where_the_record_says() {
         ("teeth = { sun = 31, planet = 31, ring = 95 }", "teeth = { sun = 20, planet = 25, ring = 70 }"),
         ("profile_shift = { sun = 0.32, planet = 0.32, ring = -0.0611 }  # assumed\n", ""),
         ("iso_class = 5  # assumed\n", ""),
-        ("sampling_rate_hz = 100000.0\nduration_s = 5.0", "sampling_rate_hz = 40000.0\nduration_s = 3.0"),
+        (
+            "sampling_rate_hz = 100000.0\nduration_s = 5.0",
+            "sampling_rate_hz = 40000.0\nsettle_fraction = 0.2\nduration_s = 3.0",
+        ),
         (
             "sampling_rate_hz = 25e3\nduration_s = 5.0",
             "difference = true\nsampling_rate_hz = 2e4\nduration_s = 3.0",
