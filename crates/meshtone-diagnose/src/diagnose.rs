@@ -83,7 +83,7 @@ pub fn diagnose(
         let alone = learned.row(&Question { now: question.healthy, healthy: &[] });
         outside.p_value(&alone.values)
     });
-    let common_change = CommonChange::new(learned, &row.common_db);
+    let common_change = row.alike.as_ref().map(|asked| CommonChange::new(learned, asked));
     let wheels = &learned.reference.prior.train.wheels;
     let of_wheels = learned.wheel_probabilities(&of_class);
     let any_damage = AnyDamage::over(&kinds, &draws_of, &of_wheels);

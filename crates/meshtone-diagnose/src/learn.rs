@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::DiagnoseError;
 use crate::answer::wheel_in_words;
-use crate::mounting::common_db;
+use crate::mounting::Alike;
 use crate::observation::{Observation, SignalKind};
 use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
@@ -115,8 +115,8 @@ pub(crate) struct FeatureRow {
     pub values: Vec<f64>,
     /// (rev) Where the burst of each wheel is.
     pub burst_rev: Vec<f64>,
-    /// (dB) What changed alike in all wheels since the healthy one, see [`common_db`].
-    pub common_db: Vec<f64>,
+    /// What changed alike in all wheels since the healthy one; none without one, or of a single wheel.
+    pub alike: Option<Alike>,
 }
 
 impl Layout {
@@ -227,8 +227,7 @@ impl Layout {
         healthy: Option<&[Option<HealthyWheel>]>,
         speed: f64,
     ) -> FeatureRow {
-        let mut row =
-            FeatureRow { values: vec![speed], burst_rev: vec![0.0; now.len()], common_db: Vec::new() };
+        let mut row = FeatureRow { values: vec![speed], burst_rev: vec![0.0; now.len()], alike: None };
         let regular = self.signal.has_regular_part();
         let mut bands = Vec::new();
         for (wheel, now) in now.iter().enumerate() {
@@ -254,7 +253,7 @@ impl Layout {
             row.values.extend(changed.into_iter().map(|level| level.max(LEAST_CHANGE)));
             row.values.extend(beyond.shapes);
         }
-        row.common_db = common_db(&bands);
+        row.alike = Alike::new(&bands);
         row
     }
 
@@ -276,8 +275,7 @@ impl Layout {
             mean.values.iter_mut().zip(&other.values).for_each(|(sum, value)| *sum += value);
         }
         mean.values.iter_mut().for_each(|value| *value /= count);
-        let common = |band: usize| rows.iter().map(|row| row.common_db[band]).sum::<f64>() / count;
-        mean.common_db = (0..mean.common_db.len()).map(common).collect();
+        mean.alike = Alike::mean(&rows.iter().filter_map(|row| row.alike.as_ref()).collect::<Vec<_>>());
         mean
     }
 }

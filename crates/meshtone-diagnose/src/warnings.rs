@@ -70,9 +70,11 @@ impl Question<'_> {
 pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<DiagnosisWarning> {
     let mounting = answer.common_change.filter(|_| answer.is_remounted()).map(|change| {
         let [least, most] = change.within_db;
+        let why = level::unit_hint(learned, question).unwrap_or_else(|| {
+            "the sensor or its mounting was changed; give a healthy recording of this sensor and mounting".to_owned()
+        });
         format!(
-            "the difference signals of all wheels changed alike since the healthy recording, by {least:.1} to {most:+.1} dB beside their median ({}), as no damage \
-             changes them: the sensor or its mounting was changed; give a healthy recording of this mounting",
+            "the difference signals of all wheels changed alike since the healthy recording, by {least:.1} to {most:.1} dB ({}), as no damage changes them: {why}",
             p_in_words(change.p)
         )
     });
@@ -219,7 +221,7 @@ mod tests {
             let mut remounted = now.clone();
             for wheel in remounted.wheels.iter_mut().flatten() {
                 let teeth = wheel.teeth() as f64;
-                let gain = |order: usize| 10f64.powf((2.0 * order as f64 / teeth).sin());
+                let gain = |order: usize| 10f64.powf(0.6 * (2.0 * order as f64 / teeth).sin());
                 wheel.lines.iter_mut().enumerate().for_each(|(order, line)| *line *= gain(order));
             }
             let answer = ask(&[remounted]);
