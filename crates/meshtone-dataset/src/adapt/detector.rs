@@ -15,6 +15,8 @@ const HEALTHY_WEIGHT: f64 = 0.5;
 pub(super) struct Detector {
     /// Its classes, the healthy one first.
     pub labels: Vec<String>,
+    /// Whether records are compared with healthy ones.
+    is_beside: bool,
     /// Numbers of the features that all records have, and their medians.
     features: Vec<(usize, f64)>,
     trees: ExtraTrees,
@@ -25,10 +27,11 @@ impl Detector {
     ///
     /// # Arguments
     /// * `rows` - the records, with their labels
+    /// * `is_beside` - whether they are compared with healthy ones of their unit, or taken as they are
     ///
     /// # Errors
     /// A single class; records from which nothing can be learnt.
-    pub fn learn(rows: &Rows) -> Result<Self, DatasetError> {
+    pub fn learn(rows: &Rows, is_beside: bool) -> Result<Self, DatasetError> {
         let mut labels: Vec<String> = rows.labels.iter().flatten().cloned().collect();
         labels.sort_unstable_by_key(|label| (label != HEALTHY, label.clone()));
         labels.dedup();
@@ -44,7 +47,7 @@ impl Detector {
             part / count
         };
         let weights: Vec<f64> = (0..labels.len()).map(weight).collect();
-        let values = rows.beside_healthy(&|row| classes[row] == 0);
+        let values = features(rows, is_beside, &|row| classes[row] == 0);
         let width = values.first().map_or(0, Vec::len);
         let column = |feature: usize| values.iter().map(|row| row[feature]).collect::<Vec<f64>>();
         let features = (0..width).filter_map(|feature| {
@@ -58,7 +61,7 @@ impl Detector {
             let problem = format!("nothing can be learnt from the records: {error}");
             DatasetError::refused(problem, "simulate more units")
         })?;
-        Ok(Self { labels, features, trees })
+        Ok(Self { labels, is_beside, features, trees })
     }
 
     /// (-) The probabilities of the classes for some records, each beside the healthy ones of its unit.
@@ -67,9 +70,14 @@ impl Detector {
     /// * `rows` - the records
     /// * `healthy` - whether a record is known to be healthy
     pub fn probabilities(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
-        let beside = rows.beside_healthy(healthy);
-        beside.iter().map(|row| self.trees.probabilities(&known(row, &self.features))).collect()
+        let all = features(rows, self.is_beside, healthy);
+        all.iter().map(|row| self.trees.probabilities(&known(row, &self.features))).collect()
     }
+}
+
+/// The features of all records.
+fn features(rows: &Rows, is_beside: bool, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
+    if is_beside { rows.beside_healthy(healthy) } else { rows.values.clone() }
 }
 
 /// The features of a row that a detector uses; the median for what the row has no value of.

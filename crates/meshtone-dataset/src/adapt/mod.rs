@@ -127,8 +127,9 @@ pub fn adapt(
         &GenerateControl { progress: &shown, cancelled: control.cancelled },
     )?;
     let set = Rows::of_set(&plan, to)?;
-    let detector = Detector::learn(&set)?;
     let known = windows(&plan, scenario, &train, recordings, &set);
+    // Without a window nothing can be compared with it.
+    let detector = Detector::learn(&set, known.len() > 0)?;
     let healthy = of_damage(&detector.probabilities(&known, &|_| true));
     let hidden = Rows::of_set(&hidden, &beside)?;
     let (expected, hidden_healthy) = expected(&detector, &hidden);
