@@ -125,6 +125,8 @@ pub struct Answer {
     pub healthy_outside_model: Option<f64>,
     /// What changed alike in all wheels since the healthy recording; none without one.
     pub common_change: Option<CommonChange>,
+    /// Whether something speaks against what is stated of the recordings, as the warnings say.
+    pub is_misstated: bool,
     /// What a rule says, whatever the simulations do.
     pub rule: Rule,
     /// Warnings.
@@ -148,9 +150,10 @@ impl Answer {
         1.0 - healthy.map_or(0.0, |kind| kind.probability)
     }
 
-    /// Returns whether nothing can be said: the recording is unlike what was simulated, or the sensor was mounted anew since the healthy one.
+    /// Returns whether nothing can be said: the recording is unlike what was simulated, the sensor was mounted anew since the healthy one, or a recording is not
+    /// what is stated.
     pub fn is_outside(&self) -> bool {
-        self.is_recording_outside() || self.is_remounted()
+        self.is_recording_outside() || self.is_remounted() || self.is_misstated
     }
 
     /// Returns whether the recording, beside a healthy one what changed since, is unlike what was simulated: of two tests each has half of the level of one.
@@ -158,10 +161,9 @@ impl Answer {
         self.outside_model < if self.common_change.is_some() { 0.5 * OUTSIDE } else { OUTSIDE }
     }
 
-    /// Returns whether more changed alike in all wheels than damage explains. It also is the likelier reason of two why a recording is unlike what was simulated.
+    /// Returns whether more changed alike in all wheels than in nearly all simulations. What is stated wrongly of a recording is the likelier reason.
     pub fn is_remounted(&self) -> bool {
-        let level = if self.is_recording_outside() { OUTSIDE } else { 0.5 * OUTSIDE };
-        self.common_change.is_some_and(|change| change.p < level)
+        !self.is_misstated && self.common_change.is_some_and(|change| change.p < 0.5 * OUTSIDE)
     }
 
     /// Returns whether the healthy recording is unlike the healthy pairs that were simulated. What changed since may be like them all the same.

@@ -131,10 +131,13 @@ fn likely_wheels(answer: &Answer) -> String {
 /// * `answer` - all but the summary
 pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
-        let why = match (answer.is_remounted(), answer.has_bearing_lines()) {
-            (true, _) => "the sensor or its mounting was changed since the healthy recording",
-            (false, true) => "the recordings are unlike what was simulated, perhaps because of the bearing",
-            (false, false) => "the recordings are unlike what was simulated",
+        let why = match (answer.is_misstated, answer.is_remounted(), answer.has_bearing_lines()) {
+            (true, ..) => "what is stated of the recordings does not fit them",
+            (false, true, _) => "the sensor or its mounting was changed since the healthy recording",
+            (false, false, true) => {
+                "the recordings are unlike what was simulated, perhaps because of the bearing"
+            }
+            (false, false, false) => "the recordings are unlike what was simulated",
         };
         return format!("Nothing can be said of the teeth: {why}.");
     }
@@ -203,6 +206,7 @@ mod tests {
             outside_model,
             healthy_outside_model: None,
             common_change: None,
+            is_misstated: false,
             rule: crate::Rule::default(),
             warnings: Vec::new(),
             shown_wheel: 1,

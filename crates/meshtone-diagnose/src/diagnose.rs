@@ -73,12 +73,10 @@ pub fn diagnose(
     let Asked { row, of_class, .. } = asked;
     kinds.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     // No simulation has what speaks against a recording.
+    let is_misstated = question.all().any(|asked| asked.mismatch.is_some());
+    let is_own = question.now.iter().any(|asked| asked.mismatch.is_some());
     let least = 1.0 / (learned.records.len() + 1) as f64;
-    let of_mismatch = |recordings: &[Observation]| {
-        if recordings.iter().any(|asked| asked.mismatch.is_some()) { least } else { 1.0 }
-    };
-    let mismatch = of_mismatch(question.now).min(of_mismatch(question.healthy));
-    let outside_model = learned.outside.p_value(&row.values).min(mismatch);
+    let outside_model = if is_own { least } else { learned.outside.p_value(&row.values) };
     let healthy_outside_model = learned.healthy_outside.as_ref().map(|outside| {
         let alone = learned.row(&Question { now: question.healthy, healthy: &[] });
         outside.p_value(&alone.values)
@@ -111,6 +109,7 @@ pub fn diagnose(
         outside_model,
         healthy_outside_model,
         common_change,
+        is_misstated,
         rule: Rule::new(question, &layout),
         warnings: Vec::new(),
         difference_g: question.now[0].wheels[shown_wheel]

@@ -9,11 +9,10 @@ use crate::answer::wheel_in_words;
 use crate::learn::{Layout, Question};
 use crate::observation::{Observation, SignalKind};
 
-/// The indicators: keys of `indicators.json`, names in words, and the factor to the healthy recording's value from which on each is above its limit, where
-/// there are too few recordings for a mean and a standard deviation.
+/// The indicators: keys of `indicators.json`, names in words, and the factor to the healthy recordings' mean from which on each is above its limit.
 const INDICATORS: [(&str, &str, f64); 3] =
     [("fm4", "FM4", 1.5), ("fm0", "FM0", 1.5), ("sideband_level_factor", "sidebands", 2.0)];
-/// Healthy recordings from which on the limit is their mean and [`DEVIATIONS`] standard deviations, as of a trend.
+/// Healthy recordings from which on the limit is no less than their mean and [`DEVIATIONS`] standard deviations, as of a trend.
 const ENOUGH: usize = 3;
 const DEVIATIONS: f64 = 3.0;
 
@@ -81,10 +80,13 @@ impl Rule {
     /// # Arguments
     /// * `wheels` - their names
     pub(crate) fn in_words(&self, wheels: &[String]) -> Option<String> {
-        let mut above = Vec::new();
+        let (mut above, mut judged) = (Vec::new(), Vec::new());
         for (place, (_, name, _)) in INDICATORS.iter().enumerate() {
             for (wheel, of) in wheels.iter().zip(&self.wheels) {
                 let Some(RuleValue { now, limit: Some(limit), .. }) = of[place] else { continue };
+                if judged.last() != Some(name) {
+                    judged.push(*name);
+                }
                 if now > limit {
                     above
                         .push(format!("{name} {now:.2} of the {} (limit {limit:.2})", wheel_in_words(wheel)));
@@ -94,7 +96,7 @@ impl Rule {
         Some(match self.is_damaged()? {
             true => format!("by the indicators alone it is damaged: {}", above.join(", ")),
             false => {
-                "by the indicators alone it is healthy: FM4, FM0 and sidebands are below their limits".into()
+                format!("by the indicators alone it is healthy: {} are below their limits", judged.join(", "))
             }
         })
     }
@@ -140,14 +142,15 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Limit of an indicator by its values in healthy recordings.
+/// Limit of an indicator by its values in healthy recordings. Few recordings of one day scatter less than those of another day, so that the factor counts however
+/// many there are.
 fn limit(healthy: &[f64], factor: f64) -> f64 {
     let mean = mean(healthy);
     if healthy.len() < ENOUGH {
         return factor * mean;
     }
     let squares: f64 = healthy.iter().map(|value| (value - mean).powi(2)).sum();
-    mean + DEVIATIONS * (squares / (healthy.len() - 1) as f64).sqrt()
+    (mean + DEVIATIONS * (squares / (healthy.len() - 1) as f64).sqrt()).max(factor * mean)
 }
 
 #[cfg(test)]
@@ -201,7 +204,8 @@ mod tests {
         let values: Vec<f64> = sound.iter().map(|of| fm4(&rule(std::slice::from_ref(of), &[])).now).collect();
         let mean = values.iter().sum::<f64>() / 4.0;
         let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / 3.0).sqrt();
-        assert!((fm4(&rule(&sound[..1], &sound)).limit.unwrap() - mean - 3.0 * deviation).abs() < 1e-9);
+        let expected = (mean + 3.0 * deviation).max(INDICATORS[0].2 * mean);
+        assert!((fm4(&rule(&sound[..1], &sound)).limit.unwrap() - expected).abs() < 1e-9);
 
         // Without a healthy recording nothing has a limit; a burst is above it.
         let alone = rule(&sound[..1], &[]);

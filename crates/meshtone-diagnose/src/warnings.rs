@@ -3,17 +3,14 @@
 use meshtone::damage::damage_kinds;
 
 use crate::answer::{Answer, p_in_words};
-use crate::diagnose::{OUTSIDE, diagnose};
 use crate::learn::{Learned, Question};
+use crate::observation::Observation;
 use crate::prior::Prior;
 use crate::{bearings, consistency, level, speed};
 
 /// (-) Part of the energy from which on tones of no shaft are mentioned where a recording is unlike the simulations. Sound pairs have none; teeth that
 /// part, which depend on the two that meet, make up to a twentieth.
 const NOTICED: f64 = 0.005;
-
-/// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
-const SURELY: f64 = 0.9;
 
 /// Something that deserves attention about a diagnosis.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +42,11 @@ impl Question<'_> {
                     .to_owned(),
             );
         }
-        self.all().filter_map(|asked| asked.mismatch.clone()).for_each(|said| warn("mismatch", said));
+        let mismatches =
+            |of: &[Observation]| of.iter().filter_map(|asked| asked.mismatch.clone()).collect::<Vec<_>>();
+        mismatches(self.now).into_iter().for_each(|said| warn("mismatch", said));
+        let of_healthy = |said| warn("mismatch", format!("healthy recording: {said}"));
+        mismatches(self.healthy).into_iter().for_each(of_healthy);
         self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn("doubt", said));
         bearings::doubts(&prior.train, self).into_iter().for_each(|said| warn("bearing", said));
         speed::doubts(self, prior).into_iter().for_each(|said| warn("speed", said));
@@ -70,15 +71,13 @@ impl Question<'_> {
 pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<DiagnosisWarning> {
     let mounting = answer.common_change.filter(|_| answer.is_remounted()).map(|change| {
         let [least, most] = change.within_db;
-        let why = level::unit_hint(learned, question).unwrap_or_else(|| {
-            "the sensor or its mounting was changed; give a healthy recording of this sensor and mounting".to_owned()
-        });
         format!(
-            "the difference signals of all wheels changed alike since the healthy recording, by {least:.1} to {most:.1} dB ({}), as no damage changes them: {why}",
+            "the difference signals of all wheels changed alike since the healthy recording, by {least:.1} to {most:.1} dB, as in few simulations ({}): the sensor or its \
+             mounting was probably changed; give a healthy recording of this sensor and mounting",
             p_in_words(change.p)
         )
     });
-    let outside = (answer.is_recording_outside() && !answer.is_remounted()).then(|| {
+    let outside = answer.is_recording_outside().then(|| {
         let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
         let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
         let why = if let Some(hint) = level::unit_hint(learned, question) {
@@ -97,8 +96,13 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
         };
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });
-    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside());
-    let healthy = healthy.map(|p| of_healthy(p, learned, question));
+    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside()).map(|p| {
+        format!(
+            "the healthy recording is unlike a healthy rig of the scenario ({}): was it healthy? If it was, changes are judged all the same, the better the more \
+             speed, load, wheels and sensor of the scenario are the rig's",
+            p_in_words(p)
+        )
+    });
     let found = [
         ("mounting", mounting),
         ("outside", outside),
@@ -109,30 +113,6 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     ];
     let found = found.into_iter().filter_map(|(code, said)| Some(DiagnosisWarning { code, message: said? }));
     question.warnings(&learned.reference.prior).into_iter().chain(found).collect()
-}
-
-/// Says why the healthy recording is unlike simulations of healthy pairs: the scenario, or it is of a damaged pair.
-fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
-    let scenario = "check the scenario's speed, load, wheels and the sensor, or tune it (`meshtone tune`)";
-    let given = format!("the healthy recording is unlike a healthy rig of the scenario ({})", p_in_words(p));
-    let alone = Question { now: question.healthy, healthy: &[] };
-    let is_mismatch = question.healthy.iter().any(|asked| asked.mismatch.is_some());
-    if learned.reference.prior.healthy_speed_hz.is_some() {
-        // At its speed nothing is simulated with damage.
-        return format!("{given}: {scenario}");
-    }
-    // No simulation has what speaks against it: nothing is to be learnt.
-    let alone = || Learned::new(learned.reference, &alone).and_then(|of| diagnose(&of, &alone, None)).ok();
-    let damaged = if is_mismatch { None } else { alone() };
-    match damaged.filter(|answer| answer.outside_model >= OUTSIDE && answer.damaged() > SURELY) {
-        Some(answer) => format!(
-            "{given}, but like a damaged one ({}): was it healthy? If it was, {scenario}",
-            answer.likeliest_damage().map_or("", |kind| kind.label)
-        ),
-        None => format!(
-            "{given}, and unlike a damaged one: {scenario}; or is it of something else than these teeth?"
-        ),
-    }
 }
 
 /// Kinds of damage that the answer does not know.
@@ -152,7 +132,7 @@ mod tests {
     use meshtone::signal::AngleZero;
 
     use super::*;
-    use crate::observation::Observation;
+    use crate::diagnose::diagnose;
     use crate::synthetic::{observed, prior, reference};
     use crate::{DiagnoseError, ToothAnswer};
 
@@ -226,7 +206,7 @@ mod tests {
             }
             let answer = ask(&[remounted]);
             assert!(
-                answer.is_outside() && has(&answer, "its mounting was changed"),
+                answer.is_outside() && has(&answer, "its mounting was probably changed"),
                 "{:?}",
                 answer.common_change
             );
@@ -240,7 +220,10 @@ mod tests {
         );
         let other = sound.clone().with_mismatch("another machine");
         let mismatch = said(&learned, broken_alone, &[other]);
-        assert!(mismatch.is_outside() && mismatch.outside_model < 0.01);
+        assert!(
+            mismatch.is_outside() && !mismatch.is_remounted() && mismatch.summary.contains("what is stated")
+        );
+        assert!(has(&mismatch, "healthy recording: another machine"));
 
         let at = |speed_hz| Observation { input_speed_hz: Some(speed_hz), ..broken.clone() };
         assert!(has(&ask(&[at(46.0)]), "the pinion turns at 46.000 Hz"));

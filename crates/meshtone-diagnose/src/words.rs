@@ -86,7 +86,7 @@ fn percent(probability: f64) -> String {
 fn likeness(answer: &Answer) -> String {
     let (means, p) = match answer.common_change.filter(|_| answer.is_remounted()) {
         Some(change) => {
-            ("all wheels changed alike since the healthy recording, as none that was simulated", change.p)
+            ("all wheels changed alike since the healthy recording, as few that were simulated", change.p)
         }
         None if answer.is_outside() => {
             ("the recording is unlike all that was simulated", answer.outside_model)

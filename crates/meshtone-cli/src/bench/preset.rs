@@ -30,7 +30,6 @@ pub struct Preset {
     pub machine: Machine,
     rpm_variable: Option<String>,
     channels: Vec<String>,
-    sampling_rate_hz: Option<f64>,
     unit: Option<String>,
     /// Names of files, with what each is.
     files: Vec<(String, Label)>,
@@ -50,6 +49,8 @@ pub struct Label {
     pub size: Option<String>,
     /// (Hz) Of a bearing's shaft.
     pub shaft_hz: Option<f64>,
+    /// (S/s) Where it is stated.
+    pub sampling_rate_hz: Option<f64>,
 }
 
 /// One channel of a file.
@@ -90,12 +91,14 @@ impl Preset {
                 }
             };
             let shaft_hz = set.read_optional("shaft_hz", TomlValue::numbers)?.unwrap_or_default();
-            let mut files = Vec::new();
+            let (of_set_hz, mut files) = (set.number("sampling_rate_hz")?, Vec::new());
             for group in set.tables("recordings")? {
                 let (is, size) = (text(&group, "is")?, group.read_optional("size", owned)?);
+                let sampling_rate_hz = group.number("sampling_rate_hz")?.or(of_set_hz);
                 for (place, file) in texts(&group, "files")?.into_iter().enumerate() {
                     let shaft_hz = shaft_hz.get(place).or(shaft_hz.last()).copied();
-                    files.push((file, Label { is: is.clone(), size: size.clone(), shaft_hz }));
+                    let label = Label { is: is.clone(), size: size.clone(), shaft_hz, sampling_rate_hz };
+                    files.push((file, label));
                 }
                 group.refuse_unknown(&[])?;
             }
@@ -107,7 +110,6 @@ impl Preset {
                 machine,
                 rpm_variable: set.read_optional("rpm_variable", owned)?,
                 channels: texts(set, "channels")?,
-                sampling_rate_hz: set.number("sampling_rate_hz")?,
                 unit: set.read_optional("unit", owned)?,
                 files,
             })
@@ -179,7 +181,7 @@ impl Preset {
         let channel = numbered(channel, &number);
         let reading = ReadingOptions {
             channel: Some(channel.clone()),
-            sampling_rate_hz: self.sampling_rate_hz,
+            sampling_rate_hz: label.sampling_rate_hz,
             unit: self.unit.clone(),
             ..ReadingOptions::default()
         };
