@@ -102,9 +102,13 @@ pub fn counted(diagnosed: &[(bool, Diagnosed)]) -> (String, Value) {
     let inside = || answers().filter(|(_, answer)| !answer.is_outside());
     let right = inside().filter(|(is_healthy, answer)| (answer.damaged() < 0.5) == *is_healthy).count();
     let (all, answered, inside) = (diagnosed.len(), answers().count(), inside().count());
-    let (outside, refused) = (answered - inside, all - answered);
+    let mounted_anew = answers().filter(|(_, answer)| answer.is_remounted()).count();
+    let (outside, refused) = (answered - inside - mounted_anew, all - answered);
     let words = format!(
-        "diagnosis: {inside} of {all} like what was simulated, of these {right} told rightly as healthy or damaged; {outside} unlike; {refused} refused"
+        "diagnosis: {inside} of {all} like what was simulated, of these {right} told rightly as healthy or damaged; {mounted_anew} mounted anew; {outside} unlike; {refused} refused"
     );
-    (words, json!({ "of": all, "inside": inside, "right": right, "outside": outside, "refused": refused }))
+    (
+        words,
+        json!({ "of": all, "inside": inside, "right": right, "mounted_anew": mounted_anew, "outside": outside, "refused": refused }),
+    )
 }

@@ -10,10 +10,12 @@ use meshtone_dataset::counted;
 use meshtone_dataset::generate::GenerateControl;
 use meshtone_dataset::store::Destination;
 
+use super::dataset::warn_after_generating;
 use crate::failure::Failure;
 use crate::healthy::{HealthyMachine, HealthyRecordings};
 use crate::progress::with_bar;
 use crate::shown::Shown;
+use crate::terminal::warn;
 
 /// Make a labelled data set for a machine from its healthy recordings
 ///
@@ -58,6 +60,13 @@ impl Adapt {
         let adaptation = with_bar("records", !self.shown.quiet, |progress| {
             adapt(&known, &settings, &to, &GenerateControl { progress, cancelled: &AtomicBool::new(false) })
         })?;
+        warn_after_generating(&adaptation.generated);
+        if adaptation.healthy.is_empty() {
+            warn(
+                "no part of a healthy recording is as long as a record at the scenario's speed, with which recordings could be compared: they are judged as they are, which is \
+                 less certain; add a longer recording at one speed, that of the scenario",
+            );
+        }
         self.shown.print(
             &self.output.display(),
             || table(&adaptation, &estimate, &to),

@@ -105,7 +105,9 @@ impl Bench {
     fn files(&self, recordings: &[Recorded], recorded: &mut Checksums, directory: &Path) -> Vec<Value> {
         let mut known: BTreeMap<&Path, Value> = BTreeMap::new();
         let mut of_each = Vec::new();
-        for Recorded { path, channel, label: Label { is, size, shaft_hz }, .. } in recordings {
+        for Recorded { path, channel, label: Label { is, size, shaft_hz, sampling_rate_hz }, .. } in
+            recordings
+        {
             let file = known.entry(path).or_insert_with(|| {
                 let parts = path.strip_prefix(&self.directory).unwrap_or(path).iter();
                 let name = parts.map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
@@ -119,7 +121,7 @@ impl Bench {
                 }
                 json!({ "file": name, "sha256": sha256, "has_changed": has_changed })
             });
-            let label = json!({ "channel": channel, "is": is, "size": size, "shaft_hz": shaft_hz });
+            let label = json!({ "channel": channel, "is": is, "size": size, "shaft_hz": shaft_hz, "stated_sampling_rate_hz": sampling_rate_hz });
             of_each.push(joined(file.clone(), label));
         }
         of_each

@@ -277,7 +277,8 @@ fn warn_before_generating(name: &str, plan: &Plan) {
     }
 }
 
-fn warn_after_generating(generated: &Generated) {
+/// Says what was made again, what failed and what records have.
+pub(super) fn warn_after_generating(generated: &Generated) {
     let remade = generated.remade.iter().map(|file| format!("{} was made again: {}", file.file, file.reason));
     warn_of_first(remade, "more file", "made again for such reasons");
     let failures = &generated.failures;

@@ -117,10 +117,10 @@ pub(super) fn area_under_curve(scores: &[f64], is_damaged: &[bool]) -> f64 {
 /// probability of one over their number and one.
 ///
 /// # Arguments
-/// * `healthy` - scores of healthy records, at least one
+/// * `healthy` - scores of healthy records; of none the threshold is 1
 pub(super) fn threshold(healthy: &[f64]) -> f64 {
     let mut scores = healthy.to_vec();
     scores.sort_by(f64::total_cmp);
     let rank = (0.95 * (scores.len() + 1) as f64).ceil() as usize;
-    scores[rank.clamp(1, scores.len()) - 1]
+    scores.get(rank.clamp(1, scores.len().max(1)) - 1).copied().unwrap_or(1.0)
 }

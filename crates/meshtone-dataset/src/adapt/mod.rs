@@ -36,6 +36,8 @@ const WINDOWS: f64 = 8.0;
 const LEAST_REVOLUTIONS: f64 = 8.0;
 /// (-) How far a window's speed may be beyond those of the set.
 const SPEED_MARGIN: f64 = 0.02;
+/// Windows of the healthy recordings from which on they calibrate the threshold: each is judged beside the others.
+const FEWEST_WINDOWS: usize = 3;
 
 /// A machine, and what its healthy recordings tell.
 #[derive(Debug, Clone, Copy)]
@@ -76,6 +78,8 @@ pub struct Adaptation {
     pub expected: Expected,
     detector: Detector,
     known: Rows,
+    /// (Hz) Least and largest speed of the input that the set has, with a margin.
+    speeds_hz: [f64; 2],
 }
 
 /// Makes a data set for a machine, and learns from it.
@@ -127,16 +131,17 @@ pub fn adapt(
         &GenerateControl { progress: &shown, cancelled: control.cancelled },
     )?;
     let set = Rows::of_set(&plan, to)?;
-    let known = windows(&plan, scenario, &train, recordings, &set);
+    let speeds_hz = set.speeds_hz(SPEED_MARGIN);
+    let known = windows(&plan, scenario, &train, recordings, speeds_hz);
     // Without a window nothing can be compared with it.
     let detector = Detector::learn(&set, known.len() > 0)?;
     let healthy = of_damage(&detector.probabilities(&known, &|_| true));
     let hidden = Rows::of_set(&hidden, &beside)?;
     let (expected, hidden_healthy) = expected(&detector, &hidden);
-    // The recordings may be of one load and one speed, and none may have a window; the simulated machines scatter.
-    let own = if healthy.is_empty() { 0.0 } else { threshold(&healthy) };
+    // The recordings may be of one load and one speed; the simulated machines scatter.
+    let own = if healthy.len() < FEWEST_WINDOWS { 0.0 } else { threshold(&healthy) };
     let threshold = own.max(threshold(&hidden_healthy));
-    let adaptation = Adaptation { plan, generated, threshold, healthy, expected, detector, known };
+    let adaptation = Adaptation { plan, generated, threshold, healthy, expected, detector, known, speeds_hz };
     to.write_bytes(ADAPTATION, format!("{:#}\n", adaptation.to_json()).as_bytes())?;
     Ok(adaptation)
 }
@@ -153,9 +158,18 @@ impl Adaptation {
     /// * `recording` - with the channel of the first sensor
     ///
     /// # Errors
-    /// Those of [`rows_like`].
+    /// Those of [`rows_like`]; a speed beside those of the set.
     pub fn probabilities(&self, recording: &MachineRecording) -> Result<Vec<Vec<f64>>, DatasetError> {
         let now = Rows::of_recordings(&self.plan, rows_like(&self.plan, &[*recording])?.parquet)?;
+        let [slowest, fastest] = self.speeds_hz;
+        if let Some(hz) = now.speed_hz.iter().find(|hz| !(slowest..=fastest).contains(*hz)) {
+            return Err(DatasetError::refused(
+                format!(
+                    "the input turns at {hz:.3} Hz, in the simulations at {slowest:.3} to {fastest:.3} Hz"
+                ),
+                "adapt a set with the scenario at the recording's speed",
+            ));
+        }
         let count = now.len();
         let all = now.with(&self.known);
         let mut probabilities = self.detector.probabilities(&all, &|row| row >= count);
@@ -209,13 +223,9 @@ fn windows(
     scenario: &Scenario,
     train: &GearTrain,
     recordings: &[HealthyRecording],
-    set: &Rows,
+    [slowest, fastest]: [f64; 2],
 ) -> Rows {
     let name = plan.content.keep.analysed.name();
-    let [slowest, fastest] = [
-        set.speed_hz.iter().copied().fold(f64::INFINITY, f64::min) * (1.0 - SPEED_MARGIN),
-        set.speed_hz.iter().copied().fold(0.0, f64::max) * (1.0 + SPEED_MARGIN),
-    ];
     let mut all = Rows::default();
     let steady = recordings.iter().filter(|recording| !recording.phase.is_run_up(recording.sampling_rate_hz));
     for HealthyRecording { values_g, sampling_rate_hz, shaft, phase, .. } in steady {
@@ -237,8 +247,8 @@ fn windows(
     all
 }
 
-/// What a detector finds on machines that differ from its scenario, each by the threshold of its other healthy records; and the scores of all
-/// healthy records.
+/// What a detector finds on machines that differ from its scenario, each by a threshold as that of the machine itself: of its other healthy records, and of
+/// those of the other machines; and the scores of all healthy records.
 fn expected(detector: &Detector, hidden: &Rows) -> (Expected, Vec<f64>) {
     let is_healthy = |row: usize| hidden.labels[row].as_deref() == Some(HEALTHY);
     let probabilities = detector.probabilities(hidden, &is_healthy);
@@ -248,9 +258,16 @@ fn expected(detector: &Detector, hidden: &Rows) -> (Expected, Vec<f64>) {
     units.dedup();
     let of_units: Vec<[f64; 3]> = units
         .iter()
-        .map(|&unit| {
+        .filter_map(|&unit| {
             let rows: Vec<usize> = (0..hidden.len()).filter(|&row| hidden.units[row] == unit).collect();
             let damaged: Vec<bool> = rows.iter().map(|&row| !is_healthy(row)).collect();
+            // Simulations may have failed.
+            if damaged.iter().filter(|is| !**is).count() < FEWEST_WINDOWS || !damaged.contains(&true) {
+                return None;
+            }
+            let of_others = (0..hidden.len()).filter(|&row| hidden.units[row] != unit && is_healthy(row));
+            let of_others: Vec<f64> = of_others.map(|row| scores[row]).collect();
+            let pooled = if of_others.is_empty() { 0.0 } else { threshold(&of_others) };
             let own: Vec<f64> = rows.iter().map(|&row| scores[row]).collect();
             let share = |of: bool, is_right: &dyn Fn(usize) -> bool| {
                 let asked: Vec<usize> = (0..rows.len()).filter(|&at| damaged[at] == of).collect();
@@ -258,7 +275,7 @@ fn expected(detector: &Detector, hidden: &Rows) -> (Expected, Vec<f64>) {
             };
             let limit_without = |at: usize| {
                 let others = (0..rows.len()).filter(|&other| other != at && !damaged[other]);
-                threshold(&others.map(|other| own[other]).collect::<Vec<f64>>())
+                threshold(&others.map(|other| own[other]).collect::<Vec<f64>>()).max(pooled)
             };
             let alarms = [
                 share(false, &|at| own[at] <= limit_without(at)),
@@ -275,7 +292,7 @@ fn expected(detector: &Detector, hidden: &Rows) -> (Expected, Vec<f64>) {
                 of_label.iter().filter(|row| named(row)).count() as f64 / of_label.len().max(1) as f64
             });
             let recall = recalls.sum::<f64>() / detector.labels.len() as f64;
-            [area_under_curve(&own, &damaged), (alarms[0] + alarms[1]) / 2.0, recall]
+            Some([area_under_curve(&own, &damaged), (alarms[0] + alarms[1]) / 2.0, recall])
         })
         .collect();
     let of = |which: usize| {

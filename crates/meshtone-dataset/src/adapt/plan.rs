@@ -142,7 +142,7 @@ impl Machine<'_> {
         let [healthy, damaged] = of_unit.map(|records| records * units);
         let mut text = format!(
             "title = \"Vibration of one machine, simulated\"\n\
-             description = \"Simulations of a machine whose path, drive and noise were estimated from its healthy recordings.\"\n\
+             description = \"Simulations of a machine whose path and drive were estimated from its healthy recordings.\"\n\
              scenario = \"machine.toml\"\nseed = {seed}\nunits = {units}\nvariation = {variation:?}\n\
              questions = [\"detection\", \"diagnosis\", \"severity\"]\n\n\
              [[class]]\nlabel = \"healthy\"\ncount = {healthy}\n"

@@ -131,6 +131,12 @@ impl Rows {
         Ok(())
     }
 
+    /// (Hz) The least and the largest speed, with a margin (-).
+    pub fn speeds_hz(&self, margin: f64) -> [f64; 2] {
+        let all = || self.speed_hz.iter().copied();
+        [all().fold(f64::INFINITY, f64::min) * (1.0 - margin), all().fold(0.0, f64::max) * (1.0 + margin)]
+    }
+
     /// Number of records.
     pub fn len(&self) -> usize {
         self.values.len()
