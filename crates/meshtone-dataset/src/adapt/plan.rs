@@ -9,7 +9,7 @@ use meshtone::tuning::PathEstimate;
 use tempfile::TempDir;
 
 use crate::error::DatasetError;
-use crate::plan::Plan;
+use crate::plan::{Distribution, Plan, Variation};
 
 /// (S/s) Sampling rate of the set, if recordings and scenario have that much.
 const USUAL_RATE_HZ: f64 = 25e3;
@@ -161,6 +161,16 @@ impl Machine<'_> {
              [[vary]]\nkey = \"path.ripple_db\"\nfixed = {ripple_db:?}\nper = \"mounting\"\n\n\
              [keep]\nsampling_rate_hz = {rate_hz:?}\n"
         );
+        // The machine that is asked about later turns as it did and has about its load, however little is known of the rest.
+        for rule in Variation::KnownRig.rules(scenario) {
+            let (Distribution::Uniform(range) | Distribution::LogUniform(range)) = rule.distribution else {
+                continue;
+            };
+            if let Some(key) = rule.keys.iter().find(|key| key.starts_with("operation.")) {
+                let name = rule.distribution.name();
+                let _ = writeln!(text, "\n[[vary]]\nkey = {key:?}\n{name} = {range:?}");
+            }
+        }
         // A plan names its scenario as a file; its copies stand beside the data.
         let folder = TempDir::new().map_err(DatasetError::write("a plan"))?;
         let path = folder.path().join("plan.toml");
