@@ -35,6 +35,13 @@ def sets(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("sets")
 
 
+@pytest.fixture(autouse=True)
+def few_draws(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the units for an interval: the measurements have as many as users."""
+    if "measurement" not in request.keywords:
+        monkeypatch.setattr("meshtone.benchmark.measures.DRAWS", 40)
+
+
 def posed_of(name: str, sets: Path) -> benchmark.Posed:
     with warnings.catch_warnings():
         # So few records leave values of units out of the training.

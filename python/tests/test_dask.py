@@ -25,8 +25,8 @@ distributed = pytest.importorskip("distributed")
 def plan_of_50_files(folder: Path) -> Path:
     plan = write_plan(folder)
     text = plan.read_text(encoding="utf-8")
-    text = text.replace("records = 24", "records = 200").replace("units = 6", "units = 40")
-    text = text.replace("records_per_shard = 8", "records_per_shard = 4")
+    text = text.replace("records = 24", "records = 100").replace("units = 6", "units = 20")
+    text = text.replace("records_per_shard = 8", "records_per_shard = 2")
     plan.write_text(text, encoding="utf-8")
     return plan
 
@@ -136,7 +136,7 @@ def test_a_lost_worker_changes_nothing_in_an_object_store(bucket: Bucket, tmp_pa
     assert bucket.digests("sets/gears/") == digests(local.path)
     # It is read where it is.
     assert made.is_complete and len(made) == len(local) and repr(made) == repr(local)
-    assert made[199]["average_g"].tolist() == local[199]["average_g"].tolist()
+    assert made[99]["average_g"].tolist() == local[99]["average_g"].tolist()
     assert len(datasets.load_dataset(url, verify=True).split("test")) == len(local.split("test"))
     with pytest.raises(ValueError, match=f"{url} is no directory"):
         made.path.exists()

@@ -21,6 +21,8 @@ def repository(folder: Path) -> None:
     for experiment in folder.glob("examples/experiments/*.toml"):
         text = experiment.read_text(encoding="utf-8")
         experiment.write_text(text.replace("candidates = 160", "candidates = 1"), encoding="utf-8")
+    first_look = folder / "examples/datasets/first_look.toml"
+    first_look.write_text(first_look.read_text(encoding="utf-8").replace("records = 200", "records = 100"), encoding="utf-8")
     for rig in folder.glob("examples/experiments/rig_*.toml"):
         text = rig.read_text(encoding="utf-8")
         rig.write_text(text if "[solver]" in text else f"{text}\n[solver]\nduration_s = 0.3\n", encoding="utf-8")
@@ -73,6 +75,7 @@ def test_gallery_includes_its_scripts(script: Path) -> None:
 
 
 SHORTER = {
+    "fault_severity": [("mt.examples.healthy().copy(din_grade=grade)", "mt.examples.healthy().copy(din_grade=grade, duration_s=0.3)")],
     "campbell": [("np.linspace(10, 60, 101)", "np.linspace(10, 60, 21)")],
     "root_crack": [("np.linspace(0, 4.25, 18)", "np.linspace(0, 4.25, 6)")],
     "sensor_path": [
