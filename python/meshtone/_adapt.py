@@ -15,6 +15,7 @@ from . import _core, _progress
 from ._path import FEWEST_DRAWS, Recorded, _healthy
 from .datasets import Dataset, load_dataset
 from .scenario import Scenario, native_scenario
+from ._warnings import warn
 from .signal._arguments import whole
 
 __all__ = ["Adaptation", "Expected", "adapt"]
@@ -53,6 +54,8 @@ class Adaptation:
         (-) Probability of damage of each window of the healthy recordings at the set's speeds, beside the others.
     expected : Expected
         What may be expected of a diagnosis.
+    warnings : list of str
+        What is doubtful about the healthy recordings; :func:`adapt` has warned of it.
     """
 
     def __init__(self, native: _core.Adaptation, path: Path) -> None:
@@ -66,6 +69,7 @@ class Adaptation:
             (expected[key]["mean"], expected[key]["least"], expected[key]["largest"]) for key in Expected._fields[1:]
         )
         self.expected = Expected(expected["machines"], area, detection, recall)
+        self.warnings: list[str] = found["warnings"]
 
     @property
     def dataset(self) -> Dataset:
@@ -139,8 +143,10 @@ def adapt(
 
     Raises
     ------
+    TypeError
+        Classes that are a text.
     ValueError
-        A recording that does not fit the scenario; a class that the machine cannot have; a directory with something else in it.
+        A recording that does not fit the scenario; no class, or one that the machine cannot have; a directory with something else in it.
     OSError
         A file that cannot be written.
     KeyboardInterrupt
@@ -153,9 +159,13 @@ def adapt(
         adapted = mt.adapt(healthy, rig, "set", classes=["pits", "tooth-breakage"])
         adapted.probabilities((signal_g, 25_600.0, phase))
     """
+    if isinstance(classes, str):
+        raise TypeError(f"classes = {classes!r}: must be a list of classes, [{classes!r}]")
     several: list[Any] = recordings if isinstance(recordings, list) else [recordings]
     report = _progress.shown("records") if progress is True else (progress or None)
     numbers = (whole("units", units, FEWEST_UNITS), whole("draws", draws, FEWEST_DRAWS), whole("seed", seed))
     healthy = [_healthy(one) for one in several]
     native = _core.adapt_dataset(native_scenario(scenario), healthy, Path(path), None if classes is None else list(classes), numbers, report)
-    return Adaptation(native, Path(path))
+    adapted = Adaptation(native, Path(path))
+    warn(adapted.warnings)
+    return adapted

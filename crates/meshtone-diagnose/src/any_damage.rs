@@ -133,7 +133,9 @@ pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
         let why = match (answer.is_misstated, answer.is_remounted(), answer.has_bearing_lines()) {
             (true, ..) => "what is stated of the recordings does not fit them",
-            (false, true, _) => "the sensor or its mounting was changed since the healthy recording",
+            (false, true, _) => {
+                "the sensor, its unit or its mounting was changed since the healthy recording"
+            }
             (false, false, true) => {
                 "the recordings are unlike what was simulated, perhaps because of the bearing"
             }

@@ -71,9 +71,11 @@ impl Question<'_> {
 pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<DiagnosisWarning> {
     let mounting = answer.common_change.filter(|_| answer.is_remounted()).map(|change| {
         let [least, most] = change.within_db;
+        let why = level::unit_hint(learned, question).unwrap_or_else(|| {
+            "the sensor or its mounting was probably changed; give a healthy recording of this sensor and mounting".to_owned()
+        });
         format!(
-            "the difference signals of all wheels changed alike since the healthy recording, by {least:.1} to {most:.1} dB, as in few simulations ({}): the sensor or its \
-             mounting was probably changed; give a healthy recording of this sensor and mounting",
+            "the difference signals of all wheels changed alike since the healthy recording, by {least:.1} to {most:.1} dB, as in few simulations ({}): {why}",
             p_in_words(change.p)
         )
     });

@@ -38,10 +38,9 @@ impl Answer {
     /// The answer in words.
     pub fn in_words(&self) -> AnswerInWords {
         let (summary, likeness, learnt) = (self.summary.clone(), likeness(self), learnt(self));
-        let mut first: Vec<String> = self.rule.in_words(&self.wheels).into_iter().collect();
-        first.extend(bearings::notes(&self.bearings));
+        let bearings = bearings::notes(&self.bearings);
         if self.is_outside() {
-            let (kinds, notes) = (Vec::new(), [first, vec![learnt]].concat());
+            let (kinds, notes) = (Vec::new(), [bearings, vec![learnt]].concat());
             return AnswerInWords { summary, damaged: None, likeness, kinds, others: None, notes };
         }
         let (shown, others): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.probability >= SHOWN);
@@ -65,8 +64,11 @@ impl Answer {
             likeness,
             kinds: kinds.collect(),
             others: counted,
-            notes: first
+            notes: self
+                .rule
+                .in_words(&self.wheels)
                 .into_iter()
+                .chain(bearings)
                 .chain([Some(PROBABILITY.to_owned()), counted_from(self), Some(learnt)].into_iter().flatten())
                 .collect(),
         }

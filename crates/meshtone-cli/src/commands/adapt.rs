@@ -61,12 +61,7 @@ impl Adapt {
             adapt(&known, &settings, &to, &GenerateControl { progress, cancelled: &AtomicBool::new(false) })
         })?;
         warn_after_generating(&adaptation.generated);
-        if adaptation.healthy.is_empty() {
-            warn(
-                "no part of a healthy recording is as long as a record at the scenario's speed, with which recordings could be compared: they are judged as they are, which is \
-                 less certain; add a longer recording at one speed, that of the scenario",
-            );
-        }
+        adaptation.doubts.iter().for_each(warn);
         self.shown.print(
             &self.output.display(),
             || table(&adaptation, &estimate, &to),

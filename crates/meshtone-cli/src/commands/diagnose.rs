@@ -101,7 +101,7 @@ impl Diagnose {
         let (now, of_now) = observe(&observer, &self.recordings)?;
         let (reading, phase) = (self.of_healthy.reading(&self.reading), self.of_healthy.phase(&self.phase));
         let observer = Observer::new(&scenario, self.signal, &reading, &phase, &self.shafts)?;
-        let (healthy, of_healthy) = observe(&observer, &self.healthy)?;
+        let (healthy, of_healthy) = observe(&observer, &self.healthy).map_err(HealthyOptions::named)?;
         let question = Question { now: &now, healthy: &healthy };
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.recordings[0], "diagnosis"));
         let recordings = self.recordings.iter().chain(&self.healthy).map(PathBuf::as_path);

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::failure::Failure;
 use crate::indicators::options::{PhaseOptions, ReadingOptions, positive};
 
 /// Options of the healthy recordings, each in place of the option of the others that has its name.
@@ -47,6 +48,15 @@ pub struct HealthyOptions {
 }
 
 impl HealthyOptions {
+    /// A failure with a healthy recording, whose help names the options of the others.
+    pub fn named(failure: Failure) -> Failure {
+        let others = failure.help.as_ref().map_or_else(String::new, |help| format!("{help}; "));
+        failure.with_help(
+            others
+                + "options of the healthy recordings begin with --healthy-, see `meshtone diagnose --help`",
+        )
+    }
+
     /// The options by which the healthy recordings are read.
     ///
     /// # Arguments

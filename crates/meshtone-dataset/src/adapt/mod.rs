@@ -76,6 +76,8 @@ pub struct Adaptation {
     pub healthy: Vec<f64>,
     /// What may be expected.
     pub expected: Expected,
+    /// What is doubtful about the healthy recordings, in words.
+    pub doubts: Vec<String>,
     detector: Detector,
     known: Rows,
     /// (Hz) Least and largest speed of the input that the set has, with a margin.
@@ -141,7 +143,9 @@ pub fn adapt(
     // The recordings may be of one load and one speed; the simulated machines scatter.
     let own = if healthy.len() < FEWEST_WINDOWS { 0.0 } else { threshold(&healthy) };
     let threshold = own.max(threshold(&hidden_healthy));
-    let adaptation = Adaptation { plan, generated, threshold, healthy, expected, detector, known, speeds_hz };
+    let doubts = doubts(recordings, &known, speeds_hz);
+    let adaptation =
+        Adaptation { plan, generated, threshold, healthy, expected, doubts, detector, known, speeds_hz };
     to.write_bytes(ADAPTATION, format!("{:#}\n", adaptation.to_json()).as_bytes())?;
     Ok(adaptation)
 }
@@ -186,6 +190,7 @@ impl Adaptation {
             "records": self.plan.records(),
             "threshold": self.threshold,
             "healthy_windows": self.healthy,
+            "warnings": self.doubts,
             "expected": {
                 "machines": self.expected.machines,
                 "area_under_curve": range(self.expected.area),
@@ -209,6 +214,23 @@ fn shorten(scenario: &mut Scenario, train: &GearTrain, recordings: &[HealthyReco
         let settling_s = grid.first_kept_sample as f64 / grid.sampling_rate_hz;
         scenario.solver.discard_and_keep(settling_s, wanted_s);
     }
+}
+
+/// What is doubtful about healthy recordings.
+fn doubts(recordings: &[HealthyRecording], known: &Rows, [slowest, fastest]: [f64; 2]) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if known.len() == 0 {
+        doubts.push(format!(
+            "no part of a healthy recording is as long as a record at one speed of the simulations (input at {slowest:.3} to {fastest:.3} Hz), with which recordings could be \
+             compared: they are judged as they are, which is less certain; add a longer one at such a speed"
+        ));
+    }
+    if !recordings.iter().any(|of| of.phase.is_run_up(of.sampling_rate_hz)) {
+        doubts.push(
+            "the healthy recordings are at one speed, which does not tell damage from the path: whether the machine is healthy was not checked; add a run-up".to_owned(),
+        );
+    }
+    doubts
 }
 
 /// (-) The probabilities of damage.

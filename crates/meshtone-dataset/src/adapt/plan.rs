@@ -41,8 +41,11 @@ impl AdaptSettings {
     /// * `scenario` - of the machine
     ///
     /// # Errors
-    /// A kind of damage, a wheel or a bearing that there is not.
+    /// No class; a kind of damage, a wheel or a bearing that there is not.
     pub fn check(&self, scenario: &Scenario) -> Result<(), DatasetError> {
+        if self.classes.is_empty() {
+            return Err(DatasetError::refused("there is no class of damage", "name one, such as pits@gear"));
+        }
         self.classes.iter().try_for_each(|class| fault_of(scenario, class).map(drop))
     }
 }
