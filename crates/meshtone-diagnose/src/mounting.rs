@@ -30,7 +30,8 @@ impl CommonChange {
         let mean = |of: fn(&Alike) -> f64| (rows().map(of).sum::<f64>() / count).max(f64::MIN_POSITIVE);
         let scales = [Alike::level_square, Alike::shape_square].map(mean);
         let strange = |of: &Alike| of.level_square() / scales[0] + of.shape_square() / scales[1];
-        let more = rows().filter(|row| strange(row) >= strange(asked)).count();
+        let of_asked = strange(asked);
+        let more = rows().filter(|row| strange(row) >= of_asked).count();
         let [least, most] = [f64::min, f64::max].map(|of| asked.shape_db.iter().copied().fold(0.0, of));
         let within_db = [asked.level_db + least, asked.level_db + most];
         Self { p: (more + 1) as f64 / (count + 1.0), within_db }

@@ -1,4 +1,4 @@
-//! What differs in the healthy recordings.
+//! Options that state how the healthy recordings differ from the others.
 
 use std::path::PathBuf;
 
