@@ -93,8 +93,15 @@ class Adaptation:
         ------
         ValueError
             A recording that is too short, or of a lower sampling rate than the set.
+
+        Warns
+        -----
+        MeshtoneWarning
+            Most windows differ from the healthy recordings as no simulation does: a wrong unit or rate, another mounting, noise.
         """
-        return np.array(self._native.probabilities(_healthy(recording)))
+        probabilities, doubt = self._native.probabilities(_healthy(recording))
+        warn([doubt] if doubt else [])
+        return np.array(probabilities)
 
     def __repr__(self) -> str:
         area = self.expected.area_under_curve[0]

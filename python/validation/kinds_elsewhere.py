@@ -19,13 +19,13 @@ import numpy as np
 import meshtone as mt
 
 sys.path.insert(0, str(Path(__file__).parent))
-from hidden_rigs import KEPT_HZ, KNOWN, WHEELS, HiddenRig  # noqa: E402
+from hidden_rigs import KEPT_HZ, WHEELS, HiddenPair  # noqa: E402
 
 KINDS = ["missing-tooth", "tooth-breakage", "tooth-destruction", "through-face", "partial-face", "pits", "root-crack", "wear"]
 SEVERITIES = (0.5, 0.8)
 
 
-def asked(rig: HiddenRig) -> list[tuple[str, Any]]:
+def asked(rig: HiddenPair) -> list[tuple[str, Any]]:
     """Recordings, each with what it is of."""
     labels = ["healthy"] * 8 + [kind for kind in KINDS for _ in range(2 * len(SEVERITIES))]
     scenarios = []
@@ -49,10 +49,10 @@ def main() -> None:
     squares: list[float] = []
     missing: list[float] = []
     for number in [int(text) for text in sys.argv[1:]] or range(8, 12):
-        rig = HiddenRig(number)
+        rig = HiddenPair(number)
         healthy = rig.healthy(16, [30, 30], rig.snr_db)
         for label, recording in asked(rig):
-            answer = mt.diagnose(recording, KNOWN, healthy, records=2560)
+            answer = mt.diagnose(recording, rig.known, healthy, records=2560)
             squares.append((answer.damaged - (label != "healthy")) ** 2)
             kind = "refused" if answer.is_outside else max(answer.kinds, key=lambda kind: answer.kinds[kind]["probability"])
             named[label][kind] += 1

@@ -8,7 +8,7 @@ use meshtone::Error;
 use meshtone::scenario::Scenario;
 use meshtone::signal::{SignalWarning, StatedFacts, TrainBearing, TrainRecording};
 use meshtone::tuning::{
-    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordingProblem,
+    ExperimentControl, PathError, PathEstimate, PathSettings, RecordingProblem, SensorRecording,
     estimate_path,
 };
 use meshtone_diagnose::other_tone;
@@ -49,13 +49,50 @@ pub struct HealthyRecordings {
     shafts: ShaftOptions,
 }
 
+/// Estimates the path to the sensor, with a progress bar.
+///
+/// # Arguments
+/// * `scenario` - the healthy machine
+/// * `recordings` - of it
+/// * `draws`, `seed` - of the wheels
+/// * `is_quiet` - whether no progress is shown
+pub fn estimated(
+    scenario: &Scenario,
+    recordings: &[SensorRecording],
+    draws: u64,
+    seed: u64,
+    is_quiet: bool,
+) -> Result<PathEstimate, PathError> {
+    let settings = PathSettings { draws: draws as usize, seed };
+    with_bar("simulations", !is_quiet, |show| {
+        let progress = |finished: usize, all: usize| show(finished as u64, all as u64);
+        let cancelled = AtomicBool::new(false);
+        let control = ExperimentControl { progress: &progress, cancelled: &cancelled };
+        estimate_path(scenario, recordings, &settings, &control)
+    })
+}
+
+/// A recording over the angle of the shaft that is known to turn.
+///
+/// # Arguments
+/// * `input` - the recording, in g
+/// * `turned` - how its shafts turned
+pub fn over_shaft(input: Input, turned: &Turned) -> Result<SensorRecording, Failure> {
+    let Input { source, channel, sampling_rate_hz, .. } = input;
+    let what = format!("channel {}", channel.name);
+    let phase = turned.turning.known_phase(&turned.train);
+    let (shaft, phase, stated) =
+        phase.map_err(|error| refuse(&source, &what, RefusedInput::Phase, &error))?;
+    Ok(SensorRecording { values_g: channel.samples, sampling_rate_hz, shaft, phase, stated })
+}
+
 /// A healthy machine and its recordings.
 pub struct HealthyMachine {
     file: ScenarioFile,
     /// The scenario without faults, the sensor that recorded first.
     pub scenario: Scenario,
     /// The recordings, in g.
-    pub recordings: Vec<HealthyRecording>,
+    pub recordings: Vec<SensorRecording>,
 }
 
 impl HealthyRecordings {
@@ -90,17 +127,7 @@ impl HealthyRecordings {
     /// * `machine` - what was read
     /// * `is_quiet` - whether no progress is shown
     pub fn estimate(&self, machine: &HealthyMachine, is_quiet: bool) -> Result<PathEstimate, Failure> {
-        let settings = PathSettings { draws: self.draws as usize, seed: self.seed };
-        let estimate = with_bar("simulations", !is_quiet, |show| {
-            let progress = |finished: usize, all: usize| show(finished as u64, all as u64);
-            let cancelled = AtomicBool::new(false);
-            estimate_path(
-                &machine.scenario,
-                &machine.recordings,
-                &settings,
-                &ExperimentControl { progress: &progress, cancelled: &cancelled },
-            )
-        });
+        let estimate = estimated(&machine.scenario, &machine.recordings, self.draws, self.seed, is_quiet);
         let estimate = estimate.map_err(|error| self.refuse(&machine.file, error))?;
         if estimate.failed_draws + estimate.drive.failed > 0 {
             crate::terminal::warn(format_args!(
@@ -118,17 +145,19 @@ impl HealthyRecordings {
         &self,
         path: &Path,
         scenario: &Scenario,
-    ) -> Result<(HealthyRecording, Vec<WarningEntry>), Failure> {
+    ) -> Result<(SensorRecording, Vec<WarningEntry>), Failure> {
         let mut input = Input::read(path, &self.reading, self.phase.channel())?;
         to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
-        let Turned { train, turning, warnings, .. } =
-            Turned::new(&input, &self.phase, &self.shafts, Some(scenario))?;
-        let Input { source, channel, sampling_rate_hz, .. } = input;
-        let what = format!("channel {}", channel.name);
+        let source = input.source.clone();
+        let what = format!("channel {}", input.channel.name);
+        let turned = Turned::new(&input, &self.phase, &self.shafts, Some(scenario))?;
+        let recording = over_shaft(input, &turned)?;
+        let Turned { train, turning, warnings, .. } = turned;
         let refused = |error| refuse(&source, &what, RefusedInput::Phase, &error);
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
-        let heard =
-            TrainRecording { signal: &channel.samples, sampling_rate_hz, train: &train, turning: &turning };
+        let SensorRecording { values_g, sampling_rate_hz, shaft, phase, stated } = &recording;
+        let (signal, sampling_rate_hz) = (&values_g[..], *sampling_rate_hz);
+        let heard = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
         let heard = heard.bearing_defects(&bearings).map_err(refused)?;
         // The path of a damaged machine would take its bursts for the path's.
         let unsound = heard.races.iter().filter(|race| race.is_detected()).map(|race| {
@@ -142,11 +171,9 @@ impl HealthyRecordings {
             )
         });
         let unsound: Vec<WarningEntry> = unsound.collect();
-        let (shaft, phase, stated) = turning.known_phase(&train).map_err(refused)?;
         if train.meshes.len() == 1
-            && let Some(stated) = StatedFacts::of_shaft(&train, shaft, stated)
-            && let Some(mismatch) =
-                other_tone(&channel.samples, sampling_rate_hz, &phase, &stated).map_err(refused)?
+            && let Some(stated) = StatedFacts::of_shaft(&train, *shaft, *stated)
+            && let Some(mismatch) = other_tone(signal, sampling_rate_hz, phase, &stated).map_err(refused)?
         {
             let problem = RecordingProblem::DoesNotFit(Box::new(SignalWarning::DoesNotFit(mismatch)));
             let problem = format!("{}: {problem}", path.display());
@@ -154,7 +181,7 @@ impl HealthyRecordings {
         }
         let doubtful = phase.warnings.iter().map(|warning| about(&source, warning));
         let warnings = warnings.into_iter().chain(doubtful).chain(unsound).collect();
-        Ok((HealthyRecording { values_g: channel.samples, sampling_rate_hz, shaft, phase, stated }, warnings))
+        Ok((recording, warnings))
     }
 
     /// Names the file that an error is about.

@@ -7,6 +7,7 @@
 //! crate is compiled for speed.
 #![deny(missing_docs)]
 
+mod area;
 mod error;
 mod extra_trees;
 mod features;
@@ -19,6 +20,7 @@ mod quantile;
 mod size;
 mod softmax;
 
+pub use area::area_under_curve;
 pub use error::LearnError;
 pub use extra_trees::ExtraTrees;
 pub use features::{WheelFeatures, wheel_features};

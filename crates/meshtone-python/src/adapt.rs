@@ -7,22 +7,21 @@ use meshtone::tuning::{ExperimentControl, PathSettings, estimate_path};
 use meshtone_dataset::DatasetError;
 use meshtone_dataset::adapt::{self, AdaptSettings, KnownMachine, tooth_classes};
 use meshtone_dataset::generate::GenerateControl;
-use meshtone_dataset::record::MachineRecording;
 use meshtone_dataset::store::Destination;
 use pyo3::prelude::*;
 
-use crate::array::samples;
 use crate::dataset::dataset_error;
 use crate::error::scenario_error;
 use crate::interrupt::interruptible;
 use crate::scenario::Scenario;
-use crate::sensor_path::{Recorded, healthy_recordings, path_error};
+use crate::sensor_path::{Recorded, path_error, sensor_recordings};
 
 /// A data set for a machine, and the classifier that was learnt from it.
 #[pyclass(frozen)]
 pub struct Adaptation {
     adaptation: adapt::Adaptation,
     machine: meshtone::scenario::Scenario,
+    train: GearTrain,
 }
 
 /// Makes a data set for a machine, in a directory.
@@ -38,7 +37,7 @@ pub fn adapt_dataset<'py>(
 ) -> PyResult<Adaptation> {
     let ((units, draws, seed), machine) = (numbers, machine.0.clone());
     let train = GearTrain::of_scenario(&machine).map_err(|error| scenario_error(&error))?;
-    let healthy = healthy_recordings(&machine, &train, &recordings)?;
+    let healthy = sensor_recordings(&machine, &train, &recordings)?;
     let settings = AdaptSettings { classes: classes.unwrap_or_else(|| tooth_classes(&machine)), units, seed };
     settings.check(&machine).map_err(dataset_error)?;
     let to = Destination::directory(to);
@@ -51,7 +50,7 @@ pub fn adapt_dataset<'py>(
             adapt::adapt(&known, &settings, &to, &GenerateControl { progress, cancelled });
         made.map_err(dataset_error)
     })?;
-    Ok(Adaptation { adaptation: made?, machine })
+    Ok(Adaptation { adaptation: made?, machine, train })
 }
 
 #[pymethods]
@@ -61,22 +60,15 @@ impl Adaptation {
         self.adaptation.to_json().to_string()
     }
 
-    /// Probabilities of the classes for each window of a recording.
-    fn probabilities<'py>(&self, py: Python<'py>, recording: Recorded<'py>) -> PyResult<Vec<Vec<f64>>> {
-        let (values, sampling_rate_hz, phase, shaft) = &recording;
-        let values = samples(values)?.iter().map(|&value| value as f32).collect();
-        let channels = [(self.adaptation.plan.content.keep.analysed.name().into_owned(), values)];
-        let phase = phase.0.clone();
-        let (adaptation, machine) = (&self.adaptation, &self.machine);
-        let found = py.detach(|| {
-            adaptation.probabilities(&MachineRecording {
-                channels: &channels,
-                sampling_rate_hz: *sampling_rate_hz,
-                machine,
-                shaft: shaft.as_deref(),
-                phase: &phase,
-            })
-        });
-        found.map_err(dataset_error)
+    /// Probabilities of the classes for each window of a recording, and what is doubtful about it.
+    fn probabilities<'py>(
+        &self,
+        py: Python<'py>,
+        recording: Recorded<'py>,
+    ) -> PyResult<(Vec<Vec<f64>>, Option<String>)> {
+        let recording = &sensor_recordings(&self.machine, &self.train, &[recording])?[0];
+        let judged = py.detach(|| self.adaptation.judge(recording)).map_err(dataset_error)?;
+        let doubt = judged.doubt();
+        Ok((judged.probabilities, doubt))
     }
 }

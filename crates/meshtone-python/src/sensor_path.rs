@@ -2,7 +2,7 @@
 
 use meshtone::Error;
 use meshtone::signal::GearTrain;
-use meshtone::tuning::{self, ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings};
+use meshtone::tuning::{self, ExperimentControl, PathError, PathEstimate, PathSettings, SensorRecording};
 use meshtone_io::path_csv::path_csv;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -32,16 +32,16 @@ pub type Recorded<'py> = (Signal<'py>, f64, PyRef<'py, ShaftPhase>, Option<Strin
 /// # Arguments
 /// * `rig`, `train` - the machine
 /// * `recordings` - as Python gives them
-pub fn healthy_recordings(
+pub fn sensor_recordings(
     rig: &meshtone::scenario::Scenario,
     train: &GearTrain,
     recordings: &[Recorded<'_>],
-) -> PyResult<Vec<HealthyRecording>> {
+) -> PyResult<Vec<SensorRecording>> {
     let healthy = |(values, sampling_rate_hz, phase, shaft): &Recorded<'_>| {
         let values_g = samples(values)?.to_vec();
         let (shaft, stated) = stated_of_rig(rig, train, phase, shaft.as_deref())?;
         let sampling_rate_hz = *sampling_rate_hz;
-        Ok(HealthyRecording { values_g, sampling_rate_hz, shaft, phase: phase.0.clone(), stated })
+        Ok(SensorRecording { values_g, sampling_rate_hz, shaft, phase: phase.0.clone(), stated })
     };
     recordings.iter().map(healthy).collect()
 }
@@ -67,7 +67,7 @@ pub fn estimate_path<'py>(
 ) -> PyResult<Estimated<'py>> {
     let (rig, settings) = (machine.0.clone(), PathSettings { draws, seed });
     let train = GearTrain::of_scenario(&rig).map_err(|error| scenario_error(&error))?;
-    let healthy = healthy_recordings(&rig, &train, &recordings)?;
+    let healthy = sensor_recordings(&rig, &train, &recordings)?;
     let estimate = interruptible(py, progress, 0, |cancelled, report| {
         let progress = |finished: usize, all: usize| report(finished as u64, all as u64);
         tuning::estimate_path(

@@ -5,7 +5,7 @@ use meshtone_diagnose::{Answer, Observation, Prior, Question, ReferenceSet, Sign
 use serde_json::{Value, json};
 
 use super::preset::{HEALTHY, Recorded};
-use super::score::reason;
+use super::score::{Part, read, reason};
 use crate::diagnose::observe::Observer;
 use crate::diagnose::reference::{ReferenceOptions, answer};
 use crate::failure::Failure;
@@ -46,22 +46,17 @@ impl<'s> Diagnoser<'s> {
             return Diagnosed(Err("there is no healthy recording of its load".to_owned()));
         };
         let asked = || {
-            let [mut now, mut before] = [self.read(recording)?, self.read(healthy)?];
-            if recording.label.is == HEALTHY {
-                let middle = now.channel.samples.len() / 2;
-                now.channel.samples.drain(..middle);
-                before.channel.samples.truncate(middle);
-            }
-            let [now, healthy] = [[self.observe(now)?], [self.observe(before)?]];
+            let parts = match recording.label.is == HEALTHY {
+                true => [Part::SecondHalf, Part::FirstHalf],
+                false => [Part::Whole; 2],
+            };
+            let [now, healthy] = [read(recording, parts[0])?, read(healthy, parts[1])?];
+            let [now, healthy] = [[self.observe(now)?], [self.observe(healthy)?]];
             let question = Question { now: &now, healthy: &healthy };
             question.check(&self.prior)?;
             answer(&self.reference, &question, self.quiet)
         };
         Diagnosed(asked().map_err(|failure: Failure| reason(&failure, recording)))
-    }
-
-    fn read(&self, recording: &Recorded) -> Result<Input, Failure> {
-        Input::read(&recording.path, &recording.reading, None)
     }
 
     fn observe(&self, input: Input) -> Result<Observation, Failure> {

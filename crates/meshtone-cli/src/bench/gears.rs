@@ -2,11 +2,13 @@
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::WheelRecords;
+use meshtone_learn::area_under_curve;
 use serde_json::{Map, Value, json};
 
+use super::adaptation::{self, Adapter, ByAdapted};
 use super::diagnosis::{Diagnoser, counted};
 use super::preset::{HEALTHY, Recorded};
-use super::score::{Scored, Scores, area, columns, each, processed};
+use super::score::{Scored, Scores, columns, each, processed};
 use crate::diagnose::reference::ReferenceOptions;
 use crate::failure::Failure;
 use crate::indicators::bearings::BearingOptions;
@@ -21,19 +23,26 @@ type Numbers = Result<Vec<Option<f64>>, String>;
 /// * `recordings` - of the set
 /// * `scenario` - of the machine
 /// * `kept` - where simulations are kept, if each is to be diagnosed
+/// * `adapter` - what adapts sets, if each is to be judged by one
 /// * `quiet` - whether nothing is to be shown
 pub fn score(
     recordings: &[Recorded],
     scenario: &Scenario,
     kept: Option<&ReferenceOptions>,
+    adapter: Option<&Adapter>,
     quiet: bool,
 ) -> Result<Scores, Failure> {
     let mut found: Vec<Numbers> = each(recordings, quiet, |recording| look(recording, scenario));
     let distances: Vec<_> = (0..found.len()).map(|place| distance(place, recordings, &found)).collect();
     found.iter_mut().zip(distances).for_each(|(found, of)| found.iter_mut().for_each(|found| found.push(of)));
+    let adapted = adapter.map(|adapter| by_adapted(recordings, adapter)).unwrap_or_default();
+    for (found, (_, answer)) in found.iter_mut().zip(&adapted) {
+        found.iter_mut().for_each(|found| found.push(answer.as_ref().ok().map(ByAdapted::damaged)));
+    }
     let wheels = || scenario.wheels.iter().map(|wheel| &wheel.name);
     let names = ["FM0", "FM4"].into_iter().flat_map(|of| wheels().map(move |wheel| format!("{of} {wheel}")));
-    let mut heads: Vec<String> = names.chain(["distance".to_owned()]).collect();
+    let own = ["distance", "adapted"].into_iter().take(1 + usize::from(adapter.is_some()));
+    let mut heads: Vec<String> = names.chain(own.map(str::to_owned)).collect();
     let (mut table, areas) = areas(&heads, recordings, &found);
     let mut sums = json!({ "areas": areas });
     let scored = |of: Vec<Option<f64>>| Scored {
@@ -42,6 +51,17 @@ pub fn score(
         value: json!({ "indicators": named(&heads, &of) }),
     };
     let mut each: Vec<_> = found.into_iter().map(|found| found.map(scored)).collect();
+    if adapter.is_some() {
+        let (words, numbers) = adaptation::counted(&adapted);
+        (table, sums["adapted"]) = (format!("{table}\n  {words}\n"), numbers);
+        for (scored, (_, answer)) in each.iter_mut().zip(&adapted) {
+            let Ok(scored) = scored else { continue };
+            scored.value["adapted"] = match answer {
+                Ok(answer) => answer.to_json(),
+                Err(reason) => json!({ "refused": reason }),
+            };
+        }
+    }
     if let Some(kept) = kept.filter(|_| each.iter().any(Result::is_ok)) {
         let diagnoser = Diagnoser::new(scenario, kept, quiet)?;
         let mut answers = Vec::new();
@@ -57,6 +77,22 @@ pub fn score(
         heads.push("diagnosis".to_owned());
     }
     Ok(Scores { heads, each, table, sums })
+}
+
+/// What adapted sets say about the recordings by each channel, and whether each is healthy.
+fn by_adapted(recordings: &[Recorded], adapter: &Adapter) -> Vec<(bool, Result<ByAdapted, String>)> {
+    let mut channels: Vec<&str> = recordings.iter().map(|recording| &*recording.channel).collect();
+    channels.sort_unstable();
+    channels.dedup();
+    let mut judged: Vec<(usize, Result<ByAdapted, String>)> = Vec::new();
+    for channel in channels {
+        let places = (0..recordings.len()).filter(|&at| recordings[at].channel == channel);
+        let places: Vec<usize> = places.collect();
+        let of_channel: Vec<&Recorded> = places.iter().map(|&at| &recordings[at]).collect();
+        judged.extend(places.into_iter().zip(adapter.judge(&of_channel)));
+    }
+    judged.sort_by_key(|(place, _)| *place);
+    judged.into_iter().map(|(place, answer)| (recordings[place].label.is == HEALTHY, answer)).collect()
 }
 
 /// FM0 of each wheel of a recording, then FM4 of each.
@@ -129,5 +165,5 @@ fn area_of(column: usize, channel: &str, recordings: &[Recorded], found: &[Numbe
         let chosen = recordings.iter().zip(found).filter(|(recording, _)| fits(recording));
         chosen.filter_map(|(_, found)| found.as_ref().ok()?[column]).collect()
     });
-    area(&healthy, &damaged)
+    area_under_curve(&healthy, &damaged)
 }

@@ -1,5 +1,6 @@
 //! What Meshtone says about public sets: what `meshtone bench` is made of.
 
+pub mod adaptation;
 pub mod bearings;
 pub mod checksums;
 pub mod diagnosis;

@@ -38,7 +38,8 @@ pub struct Preset {
 /// What the recordings are of.
 pub enum Machine {
     Bearing(NamedChoice),
-    Gearbox(Box<Scenario>),
+    /// With the classes of damage that its recordings may be of.
+    Gearbox(Box<Scenario>, Vec<String>),
 }
 
 /// What the set says of a file.
@@ -84,7 +85,7 @@ impl Preset {
         };
         table.read(|set| {
             let machine = match set.read_optional("rig", rig)? {
-                Some(scenario) => Machine::Gearbox(Box::new(scenario)),
+                Some(scenario) => Machine::Gearbox(Box::new(scenario), texts(set, "classes")?),
                 None => {
                     let named = set.required("bearing", "the bearing")?;
                     Machine::Bearing(bearing(named.string()?).map_err(|problem| named.error(problem))?)

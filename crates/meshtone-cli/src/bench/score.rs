@@ -97,6 +97,27 @@ pub fn each<T: Send>(
     })
 }
 
+/// A part of a recording: a healthy one is compared with its own other half.
+#[derive(Clone, Copy)]
+pub enum Part {
+    Whole,
+    FirstHalf,
+    SecondHalf,
+}
+
+/// Reads a part of a recording.
+pub fn read(recording: &Recorded, part: Part) -> Result<Input, Failure> {
+    let mut input = Input::read(&recording.path, &recording.reading, None)?;
+    let samples = &mut input.channel.samples;
+    let middle = samples.len() / 2;
+    match part {
+        Part::Whole => {}
+        Part::FirstHalf => samples.truncate(middle),
+        Part::SecondHalf => drop(samples.drain(..middle)),
+    }
+    Ok(input)
+}
+
 /// Why something could not be done with a recording, whose row names the file.
 pub fn reason(failure: &Failure, recording: &Recorded) -> String {
     failure.message.replacen(&format!("{}: ", recording.path.display()), "", 1)
@@ -138,24 +159,9 @@ pub fn columns(rows: &[(Vec<String>, String)]) -> String {
     rows.iter().map(line).collect()
 }
 
-/// (-) Area under the curve: in which part of all pairs the damaged one is larger; ties count half. None of none.
-pub fn area(healthy: &[f64], damaged: &[f64]) -> Option<f64> {
-    let orders =
-        healthy.iter().flat_map(|sound| damaged.iter().map(move |broken| broken.total_cmp(sound) as i8));
-    let sum: f64 = orders.map(|order| 0.5 + 0.5 * f64::from(order)).sum();
-    let pairs = healthy.len() * damaged.len();
-    (pairs > 0).then(|| sum / pairs as f64)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_area_counts_pairs() {
-        assert_eq!(area(&[1.0, 2.0], &[2.0, 3.0]), Some(0.875));
-        assert_eq!((area(&[3.0], &[1.0, 2.0]), area(&[], &[1.0])), (Some(0.0), None));
-    }
 
     #[test]
     fn numbers_are_flush_right() {

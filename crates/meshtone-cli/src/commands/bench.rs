@@ -7,6 +7,7 @@ use clap::Args;
 use meshtone_io::own_file::undisturbed;
 use serde_json::{Value, json};
 
+use crate::bench::adaptation::Adapter;
 use crate::bench::checksums::{self, Checksums};
 use crate::bench::preset::{Label, Machine, Preset, Recorded};
 use crate::bench::{bearings, gears};
@@ -46,6 +47,10 @@ pub struct Bench {
     diagnose: bool,
     #[command(flatten)]
     kept: ReferenceOptions,
+    /// Judge the recordings of a gearbox by sets that are adapted to the healthy ones by each channel, to the first halves of these; some minutes
+    /// for each. The sets are kept in the folder adapted
+    #[arg(long)]
+    adapt: bool,
     /// Directory to write to. [default: <name of the folder>_bench in the current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -57,7 +62,8 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone bench cwru
   meshtone bench downloads --set mfpt --json
-  meshtone bench oedi --diagnose --records 2048";
+  meshtone bench oedi --diagnose --records 2048
+  meshtone bench oedi --adapt";
 
 impl Bench {
     /// Finds the set, scores its recordings, and writes and prints what came out. Checksums are taken first, so that a file that changes meanwhile is noticed the
@@ -72,13 +78,18 @@ impl Bench {
         let files = self.files(&recordings, &mut checksums, &directory);
         let quiet = self.shown.quiet;
         let scores = match machine {
-            Machine::Bearing(_) if self.diagnose => {
-                let problem = format!("--diagnose: {name} is of a bearing, which needs no simulations");
+            Machine::Bearing(_) if self.diagnose || self.adapt => {
+                let option = if self.diagnose { "--diagnose" } else { "--adapt" };
+                let problem =
+                    format!("{option}: {name} is of a bearing without gears, which is not simulated");
                 return Failure::refuse(problem, "leave it out");
             }
             Machine::Bearing(bearing) => bearings::score(&recordings, bearing, quiet),
-            Machine::Gearbox(scenario) => {
-                gears::score(&recordings, scenario, self.diagnose.then_some(&self.kept), quiet)?
+            Machine::Gearbox(scenario, classes) => {
+                let folder = output.path.join("adapted");
+                let adapter = self.adapt.then_some(Adapter { scenario, classes, folder, quiet });
+                let kept = self.diagnose.then_some(&self.kept);
+                gears::score(&recordings, scenario, kept, adapter.as_ref(), quiet)?
             }
         };
         let values = files.into_iter().zip(scores.values()).map(|(file, found)| joined(file, found));

@@ -1,6 +1,6 @@
 //! Probabilities of the classes of a data set for records beside healthy ones.
 
-use meshtone_learn::ExtraTrees;
+use meshtone_learn::{ExtraTrees, OutlierTest};
 
 use super::rows::Rows;
 use crate::error::DatasetError;
@@ -11,7 +11,6 @@ pub(super) const HEALTHY: &str = "healthy";
 const HEALTHY_WEIGHT: f64 = 0.5;
 
 /// A classifier of the records of a data set.
-#[derive(Debug, Clone)]
 pub(super) struct Detector {
     /// Its classes, the healthy one first.
     pub labels: Vec<String>,
@@ -20,6 +19,8 @@ pub(super) struct Detector {
     /// Numbers of the features that all records have, and their medians.
     features: Vec<(usize, f64)>,
     trees: ExtraTrees,
+    /// Whether differences from healthy records are like those of simulations; what records are themselves is the machine's own.
+    outside: Option<OutlierTest>,
 }
 
 impl Detector {
@@ -27,11 +28,12 @@ impl Detector {
     ///
     /// # Arguments
     /// * `rows` - the records, with their labels
+    /// * `others` - records of machines that differ from it, which a record may be like, too
     /// * `is_beside` - whether they are compared with healthy ones of their unit, or taken as they are
     ///
     /// # Errors
     /// A single class; records from which nothing can be learnt.
-    pub fn learn(rows: &Rows, is_beside: bool) -> Result<Self, DatasetError> {
+    pub fn learn(rows: &Rows, others: &Rows, is_beside: bool) -> Result<Self, DatasetError> {
         let mut labels: Vec<String> = rows.labels.iter().flatten().cloned().collect();
         labels.sort_unstable_by_key(|label| (label != HEALTHY, label.clone()));
         labels.dedup();
@@ -61,7 +63,15 @@ impl Detector {
             let problem = format!("nothing can be learnt from the records: {error}");
             DatasetError::refused(problem, "simulate more units")
         })?;
-        Ok(Self { labels, is_beside, features, trees })
+        let outside = is_beside.then(|| {
+            let all = rows.with(others);
+            let healthy = |row: usize| all.labels[row].as_deref() == Some(HEALTHY);
+            let known: Vec<Vec<f64>> =
+                all.beside_healthy(&healthy).iter().map(|row| known(row, &features)).collect();
+            let expected = vec![true; known.len()];
+            OutlierTest::new(&known, all.units, expected)
+        });
+        Ok(Self { labels, is_beside, features, trees, outside })
     }
 
     /// (-) The probabilities of the classes for some records, each beside the healthy ones of its unit.
@@ -70,8 +80,20 @@ impl Detector {
     /// * `rows` - the records
     /// * `healthy` - whether a record is known to be healthy
     pub fn probabilities(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
-        let all = features(rows, self.is_beside, healthy);
-        all.iter().map(|row| self.trees.probabilities(&known(row, &self.features))).collect()
+        self.features(rows, healthy).iter().map(|row| self.trees.probabilities(row)).collect()
+    }
+
+    /// (-) The part of the simulations that are as strange as each record, or stranger; of none 1.
+    ///
+    /// # Arguments
+    /// * `rows`, `healthy` - as of [`Self::probabilities`]
+    pub fn p_values(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<f64> {
+        let p_value = |row: &Vec<f64>| self.outside.as_ref().map_or(1.0, |test| test.p_value(row));
+        self.features(rows, healthy).iter().map(p_value).collect()
+    }
+
+    fn features(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
+        features(rows, self.is_beside, healthy).iter().map(|row| known(row, &self.features)).collect()
     }
 }
 
@@ -85,32 +107,6 @@ fn known(row: &[f64], features: &[(usize, f64)]) -> Vec<f64> {
     let value =
         |&(feature, median): &(usize, f64)| if row[feature].is_finite() { row[feature] } else { median };
     features.iter().map(value).collect()
-}
-
-/// (-) The area under the curve: how often a damaged record has a larger score than a healthy one.
-///
-/// # Arguments
-/// * `scores`, `is_damaged` - of each record
-pub(super) fn area_under_curve(scores: &[f64], is_damaged: &[bool]) -> f64 {
-    let of = |damaged: bool| {
-        scores.iter().zip(is_damaged).filter(move |(_, is)| **is == damaged).map(|(score, _)| *score)
-    };
-    let [healthy, damaged] = [of(false).collect::<Vec<f64>>(), of(true).collect()];
-    let above = |score: &f64| {
-        healthy
-            .iter()
-            .map(|other| {
-                if score > other {
-                    1.0
-                } else if score == other {
-                    0.5
-                } else {
-                    0.0
-                }
-            })
-            .sum::<f64>()
-    };
-    damaged.iter().map(above).sum::<f64>() / (healthy.len() * damaged.len()) as f64
 }
 
 /// (-) The score that at most one in twenty healthy records exceeds: of fewer than nineteen the largest, which the next one exceeds with a

@@ -10,7 +10,8 @@ mod rows;
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::GearTrain;
-use meshtone::tuning::{HealthyRecording, PathEstimate};
+use meshtone::tuning::{PathEstimate, SensorRecording};
+use meshtone_learn::area_under_curve;
 use serde_json::{Value, json};
 
 pub use plan::{AdaptSettings, tooth_classes};
@@ -22,7 +23,7 @@ use crate::manifest::ADAPTATION;
 use crate::plan::Plan;
 use crate::record::MachineRecording;
 use crate::store::Destination;
-use detector::{Detector, HEALTHY, area_under_curve, threshold};
+use detector::{Detector, HEALTHY, threshold};
 use plan::Machine;
 use rows::Rows;
 
@@ -34,6 +35,8 @@ const OF_HIDDEN: [u64; 2] = [12, 2];
 /// Windows that the longest recording is to be cut into, as long as a record; and revolutions of the slowest shaft that a record has at least.
 const WINDOWS: f64 = 8.0;
 const LEAST_REVOLUTIONS: f64 = 8.0;
+/// (-) Part of the simulations that are as strange as a window, below which it is like none.
+const LIKE_NONE: f64 = 0.01;
 /// (-) How far a window's speed may be beyond those of the set.
 const SPEED_MARGIN: f64 = 0.02;
 /// Windows of the healthy recordings from which on they calibrate the threshold: each is judged beside the others.
@@ -45,7 +48,7 @@ pub struct KnownMachine<'a> {
     /// Its scenario without faults; the first sensor recorded.
     pub scenario: &'a Scenario,
     /// The recordings.
-    pub recordings: &'a [HealthyRecording],
+    pub recordings: &'a [SensorRecording],
     /// The path to the sensor, estimated from them.
     pub estimate: &'a PathEstimate,
 }
@@ -63,8 +66,16 @@ pub struct Expected {
     pub recall: [f64; 3],
 }
 
+/// What the classifier of a data set says about a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// (-) The probabilities of the classes for each window.
+    pub probabilities: Vec<Vec<f64>>,
+    /// (-) The part of the simulations that are as strange as each window, or stranger.
+    pub p_values: Vec<f64>,
+}
+
 /// A data set for a machine, and the classifier that was learnt from it.
-#[derive(Debug, Clone)]
 pub struct Adaptation {
     /// The plan of the data set.
     pub plan: Plan,
@@ -79,6 +90,8 @@ pub struct Adaptation {
     /// What is doubtful about the healthy recordings, in words.
     pub doubts: Vec<String>,
     detector: Detector,
+    scenario: Scenario,
+    train: GearTrain,
     known: Rows,
     /// (Hz) Least and largest speed of the input that the set has, with a margin.
     speeds_hz: [f64; 2],
@@ -135,17 +148,30 @@ pub fn adapt(
     let set = Rows::of_set(&plan, to)?;
     let speeds_hz = set.speeds_hz(SPEED_MARGIN);
     let known = windows(&plan, scenario, &train, recordings, speeds_hz);
+    let mut hidden = Rows::of_set(&hidden, &beside)?;
+    hidden.units.iter_mut().for_each(|unit| *unit += settings.units);
     // Without a window nothing can be compared with it.
-    let detector = Detector::learn(&set, known.len() > 0)?;
+    let detector = Detector::learn(&set, &hidden, known.len() > 0)?;
     let healthy = of_damage(&detector.probabilities(&known, &|_| true));
-    let hidden = Rows::of_set(&hidden, &beside)?;
     let (expected, hidden_healthy) = expected(&detector, &hidden);
     // The recordings may be of one load and one speed; the simulated machines scatter.
     let own = if healthy.len() < FEWEST_WINDOWS { 0.0 } else { threshold(&healthy) };
     let threshold = own.max(threshold(&hidden_healthy));
     let doubts = doubts(recordings, &known, speeds_hz);
-    let adaptation =
-        Adaptation { plan, generated, threshold, healthy, expected, doubts, detector, known, speeds_hz };
+    let scenario = scenario.clone();
+    let adaptation = Adaptation {
+        plan,
+        generated,
+        threshold,
+        healthy,
+        expected,
+        doubts,
+        detector,
+        scenario,
+        train,
+        known,
+        speeds_hz,
+    };
     to.write_bytes(ADAPTATION, format!("{:#}\n", adaptation.to_json()).as_bytes())?;
     Ok(adaptation)
 }
@@ -156,15 +182,15 @@ impl Adaptation {
         &self.detector.labels
     }
 
-    /// (-) The probabilities of the classes for each window of a recording of the machine, beside its healthy recordings.
+    /// What the classifier says about each window of a recording of the machine, beside its healthy recordings.
     ///
     /// # Arguments
-    /// * `recording` - with the channel of the first sensor
+    /// * `recording` - by the first sensor
     ///
     /// # Errors
     /// Those of [`rows_like`]; a speed beside those of the set.
-    pub fn probabilities(&self, recording: &MachineRecording) -> Result<Vec<Vec<f64>>, DatasetError> {
-        let now = Rows::of_recordings(&self.plan, rows_like(&self.plan, &[*recording])?.parquet)?;
+    pub fn judge(&self, recording: &SensorRecording) -> Result<Judged, DatasetError> {
+        let now = of_recording(&self.plan, &self.scenario, &self.train, recording)?;
         let [slowest, fastest] = self.speeds_hz;
         if let Some(hz) = now.speed_hz.iter().find(|hz| !(slowest..=fastest).contains(*hz)) {
             return Err(DatasetError::refused(
@@ -176,9 +202,12 @@ impl Adaptation {
         }
         let count = now.len();
         let all = now.with(&self.known);
-        let mut probabilities = self.detector.probabilities(&all, &|row| row >= count);
+        let is_known = |row: usize| row >= count;
+        let mut probabilities = self.detector.probabilities(&all, &is_known);
+        let mut p_values = self.detector.p_values(&all, &is_known);
         probabilities.truncate(count);
-        Ok(probabilities)
+        p_values.truncate(count);
+        Ok(Judged { probabilities, p_values })
     }
 
     /// What was found, for programs.
@@ -201,9 +230,27 @@ impl Adaptation {
     }
 }
 
+impl Judged {
+    /// (-) Probability of damage, the mean over the windows.
+    pub fn damaged(&self) -> f64 {
+        self.probabilities.iter().map(|of| 1.0 - of[0]).sum::<f64>() / self.probabilities.len().max(1) as f64
+    }
+
+    /// What is doubtful about the recording, in words: windows that are like no simulation.
+    pub fn doubt(&self) -> Option<String> {
+        let (all, unlike) = (self.p_values.len(), self.p_values.iter().filter(|p| **p < LIKE_NONE).count());
+        (2 * unlike > all).then(|| {
+            format!(
+                "{unlike} of {all} windows differ from the healthy recordings as no simulation does: check unit, sampling rate, speed, load and mounting; or it is \
+                 noise, or damage that is no class"
+            )
+        })
+    }
+}
+
 /// Shortens what is simulated of a machine, so that the longest recording has several windows of that length; but not below some revolutions.
-fn shorten(scenario: &mut Scenario, train: &GearTrain, recordings: &[HealthyRecording]) {
-    let length_s = |of: &HealthyRecording| of.values_g.len() as f64 / of.sampling_rate_hz;
+fn shorten(scenario: &mut Scenario, train: &GearTrain, recordings: &[SensorRecording]) {
+    let length_s = |of: &SensorRecording| of.values_g.len() as f64 / of.sampling_rate_hz;
     let longest_s = recordings.iter().map(length_s).fold(0.0, f64::max);
     let grid = scenario.time_grid();
     let own_s = grid.kept_samples() as f64 / grid.sampling_rate_hz;
@@ -217,7 +264,7 @@ fn shorten(scenario: &mut Scenario, train: &GearTrain, recordings: &[HealthyReco
 }
 
 /// What is doubtful about healthy recordings.
-fn doubts(recordings: &[HealthyRecording], known: &Rows, [slowest, fastest]: [f64; 2]) -> Vec<String> {
+fn doubts(recordings: &[SensorRecording], known: &Rows, [slowest, fastest]: [f64; 2]) -> Vec<String> {
     let mut doubts = Vec::new();
     if known.len() == 0 {
         doubts.push(format!(
@@ -244,29 +291,39 @@ fn windows(
     plan: &Plan,
     scenario: &Scenario,
     train: &GearTrain,
-    recordings: &[HealthyRecording],
+    recordings: &[SensorRecording],
     [slowest, fastest]: [f64; 2],
 ) -> Rows {
-    let name = plan.content.keep.analysed.name();
     let mut all = Rows::default();
     let steady = recordings.iter().filter(|recording| !recording.phase.is_run_up(recording.sampling_rate_hz));
-    for HealthyRecording { values_g, sampling_rate_hz, shaft, phase, .. } in steady {
-        let channels = [(name.clone().into_owned(), values_g.iter().map(|&value| value as f32).collect())];
-        let recording = MachineRecording {
-            channels: &channels,
-            sampling_rate_hz: *sampling_rate_hz,
-            machine: scenario,
-            shaft: Some(&train.shafts[*shaft].name),
-            phase,
-        };
-        let rows = rows_like(plan, &[recording]).and_then(|rows| Rows::of_recordings(plan, rows.parquet));
-        if let Ok(rows) = rows {
+    for recording in steady {
+        if let Ok(rows) = of_recording(plan, scenario, train, recording) {
             let at_speed = rows.filter(|row| (slowest..=fastest).contains(&rows.speed_hz[row]));
             all = all.with(&at_speed);
         }
     }
     all.units.iter_mut().for_each(|unit| *unit = 0);
     all
+}
+
+/// Windows of a recording by the first sensor, as long as a record.
+fn of_recording(
+    plan: &Plan,
+    scenario: &Scenario,
+    train: &GearTrain,
+    recording: &SensorRecording,
+) -> Result<Rows, DatasetError> {
+    let SensorRecording { values_g, sampling_rate_hz, shaft, phase, .. } = recording;
+    let name = plan.content.keep.analysed.name().into_owned();
+    let channels = [(name, values_g.iter().map(|&value| value as f32).collect())];
+    let recording = MachineRecording {
+        channels: &channels,
+        sampling_rate_hz: *sampling_rate_hz,
+        machine: scenario,
+        shaft: Some(&train.shafts[*shaft].name),
+        phase,
+    };
+    Rows::of_recordings(plan, rows_like(plan, &[recording])?.parquet)
 }
 
 /// What a detector finds on machines that differ from its scenario, each by a threshold as that of the machine itself: of its other healthy records, and of
@@ -314,7 +371,10 @@ fn expected(detector: &Detector, hidden: &Rows) -> (Expected, Vec<f64>) {
                 of_label.iter().filter(|row| named(row)).count() as f64 / of_label.len().max(1) as f64
             });
             let recall = recalls.sum::<f64>() / detector.labels.len() as f64;
-            Some([area_under_curve(&own, &damaged), (alarms[0] + alarms[1]) / 2.0, recall])
+            let group = |of: bool| own.iter().zip(&damaged).filter(move |(_, is)| **is == of);
+            let [healthy, broken] =
+                [false, true].map(|of| group(of).map(|(score, _)| *score).collect::<Vec<f64>>());
+            Some([area_under_curve(&healthy, &broken)?, (alarms[0] + alarms[1]) / 2.0, recall])
         })
         .collect();
     let of = |which: usize| {

@@ -4,7 +4,9 @@ use std::fs::File;
 use std::io;
 
 use bytes::Bytes;
-use meshtone::signal::{DefectKind, FrequencyBand, GearTrain, defect_lines, squared_envelope_spectrum};
+use meshtone::signal::{
+    DefectKind, FrequencyBand, GearTrain, cepstral_prewhitening, defect_lines, squared_envelope_spectrum,
+};
 use meshtone_io::table::TableReader;
 use parquet::errors::ParquetError;
 use parquet::file::reader::ChunkReader;
@@ -23,7 +25,7 @@ const PASSED: f64 = 0.4;
 const LINEAR_TO: f64 = 0.01;
 
 /// Logarithms of the lines of each race of the rolling bearings over the medians beside them, the mean of the harmonics, in each band; NaN of a
-/// signal without an envelope.
+/// signal without an envelope. The signal is whitened, or the lines of the meshes would hide those of all but large spalls.
 ///
 /// # Arguments
 /// * `samples`, `rate_hz` - the signal
@@ -31,8 +33,9 @@ const LINEAR_TO: f64 = 0.01;
 /// * `input_hz` - speed of the input
 fn bearing_lines(samples: &[f64], rate_hz: f64, train: &GearTrain, input_hz: f64) -> Vec<f64> {
     let mut found = Vec::new();
+    let white = cepstral_prewhitening(samples).unwrap_or_default();
     for [from_hz, to_hz] in BANDS_HZ.into_iter().filter(|[_, to_hz]| *to_hz <= PASSED * rate_hz) {
-        let spectrum = squared_envelope_spectrum(samples, rate_hz, Some(FrequencyBand { from_hz, to_hz }));
+        let spectrum = squared_envelope_spectrum(&white, rate_hz, Some(FrequencyBand { from_hz, to_hz }));
         for bearing in train.distinct_bearings() {
             let shaft_hz = input_hz * train.speed_ratio(bearing.shaft, train.input()).value();
             let lines = spectrum

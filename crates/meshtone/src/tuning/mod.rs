@@ -42,8 +42,8 @@ pub use moments::{JointMoments, Moments, WindowMoments};
 pub use run::{ExperimentControl, ExperimentResult, TunedKeys, run_experiment};
 pub use search::{EnhancementBounds, Fit, fit};
 pub use sensor_path::{
-    HealthyRecording, PathError, PathEstimate, PathSettings, RecordedDrive, RecordedSidebands,
-    RecordingProblem, SidebandCause, estimate_path,
+    PathError, PathEstimate, PathSettings, RecordedDrive, RecordedSidebands, RecordingProblem,
+    SensorRecording, SidebandCause, estimate_path,
 };
 pub use simulated::SimulatedCases;
 pub use tune::{LeftOutCase, Tuning, TuningWarning, tune};

@@ -11,8 +11,8 @@ use meshtone::scenario::{
 };
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, SimulatedShafts, StatedTurning, resample_to};
 use meshtone::tuning::{
-    ExperimentControl, HealthyRecording, PathError, PathEstimate, PathSettings, RecordedSidebands,
-    RecordingProblem, SidebandCause, estimate_path,
+    ExperimentControl, PathError, PathEstimate, PathSettings, RecordedSidebands, RecordingProblem,
+    SensorRecording, SidebandCause, estimate_path,
 };
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
@@ -51,7 +51,7 @@ fn hidden_response() -> FrequencyResponse {
 }
 
 /// What the hidden machine's sensor records at a speed that changes from one to the other, with a sensor's noise of 2 µg/√Hz.
-fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) -> HealthyRecording {
+fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) -> SensorRecording {
     let mut machine = machine.clone().with_seed(seed);
     machine.sensors[0].frequency_response = Some(hidden_response());
     machine.sensors[0].noise_density_g_per_rthz = 2e-6;
@@ -66,7 +66,7 @@ fn recording(machine: &Scenario, seed: u64, [from_hz, to_hz]: [f64; 2], length_s
 }
 
 /// A signal and the angle of the pinion or the input at the recordings' rate.
-fn at_rate_of_recordings(signal: &[f64], angles: &[f64], rate_hz: f64) -> HealthyRecording {
+fn at_rate_of_recordings(signal: &[f64], angles: &[f64], rate_hz: f64) -> SensorRecording {
     let values_g = resample_to(signal, rate_hz, RATE_HZ, Edge::Zero).unwrap();
     let angle = |sample: usize| {
         let at = sample as f64 * rate_hz / RATE_HZ;
@@ -79,17 +79,17 @@ fn at_rate_of_recordings(signal: &[f64], angles: &[f64], rate_hz: f64) -> Health
 }
 
 /// A recording over the angle of the pinion's shaft or the input, from no source whose mistakes are looked for.
-fn over_input(values_g: Vec<f64>, sampling_rate_hz: f64, phase: ShaftPhase) -> HealthyRecording {
-    HealthyRecording { values_g, sampling_rate_hz, shaft: 0, phase, stated: StatedTurning::Other }
+fn over_input(values_g: Vec<f64>, sampling_rate_hz: f64, phase: ShaftPhase) -> SensorRecording {
+    SensorRecording { values_g, sampling_rate_hz, shaft: 0, phase, stated: StatedTurning::Other }
 }
 
-fn estimate(recording: HealthyRecording, draws: usize) -> Result<PathEstimate, PathError> {
+fn estimate(recording: SensorRecording, draws: usize) -> Result<PathEstimate, PathError> {
     estimate_of(rig(), recording, draws)
 }
 
 fn estimate_of(
     machine: Scenario,
-    recording: HealthyRecording,
+    recording: SensorRecording,
     draws: usize,
 ) -> Result<PathEstimate, PathError> {
     let control = ExperimentControl { progress: &|_, _| {}, cancelled: &AtomicBool::new(false) };
@@ -185,7 +185,7 @@ fn gearbox() -> Scenario {
 }
 
 /// What the sensor of a hidden gearbox records over a run-up.
-fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) -> HealthyRecording {
+fn recording_of_gearbox(seed: u64, [from_hz, to_hz]: [f64; 2], length_s: f64) -> SensorRecording {
     let mut machine = gearbox();
     machine.seed = seed;
     let sensor = &mut machine.sensors[0];

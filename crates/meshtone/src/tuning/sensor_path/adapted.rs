@@ -21,7 +21,8 @@ impl PathEstimate {
     /// * `scenario` - the one that the path was estimated for
     /// * `train` - its shafts and wheels
     pub fn adapted(&self, scenario: &Scenario, train: &GearTrain) -> Scenario {
-        let mut adapted = scenario.clone();
+        // Those that no scenario needs to state have a path, too.
+        let mut adapted = scenario.clone().with_sensors(scenario.all_sensors());
         if let Some(sensor) = adapted.sensors.first_mut() {
             sensor.frequency_response = Some(self.frequency_response());
         }

@@ -14,7 +14,7 @@ mod smoothing;
 
 pub use drive::RecordedDrive;
 pub use error::{PathError, RecordingProblem};
-pub use recording::HealthyRecording;
+pub use recording::SensorRecording;
 pub use sidebands::{RecordedSidebands, SidebandCause};
 
 use std::ops::RangeInclusive;
@@ -126,7 +126,7 @@ impl PathEstimate {
 /// A recording that is too short, or unlike this machine; recordings that no path explains; a scenario that cannot be simulated.
 pub fn estimate_path(
     scenario: &Scenario,
-    recordings: &[HealthyRecording],
+    recordings: &[SensorRecording],
     settings: &PathSettings,
     control: &ExperimentControl,
 ) -> Result<PathEstimate, PathError> {

@@ -20,9 +20,9 @@ const MOST_PIECES: usize = 32;
 /// (-) Part of a piece's first speed from which it is taken to come at least, and to which inverse at most.
 const LEAST_BEFORE: f64 = 0.5;
 
-/// A recording of the healthy machine.
+/// A recording of a machine by one sensor.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HealthyRecording {
+pub struct SensorRecording {
     /// (g) The sensor's signal.
     pub values_g: Vec<f64>,
     /// (S/s) Its sampling rate.
@@ -35,7 +35,7 @@ pub struct HealthyRecording {
     pub stated: StatedTurning,
 }
 
-impl HealthyRecording {
+impl SensorRecording {
     /// Carries the phase to the pinion's shaft or the input.
     ///
     /// # Arguments
