@@ -63,8 +63,8 @@ def Gearbox(
     housing : dict, optional
         ``mass_kg`` and so on; ``{}`` for a housing with the defaults. Without it the bearings' seats stand on the ground.
     faults : sequence of faults or dict, optional
-        Objects as of a pair, with the name of a wheel; or ``wheel``, ``kind`` and the sizes or the ``severity`` of each, for a rolling bearing
-        ``bearing`` and ``kind``.
+        Objects as of a pair, with the name of a wheel; or ``wheel``, ``kind`` and the sizes or the ``severity`` of each. A
+        spall of a rolling bearing is a ``defect`` of its entry in ``bearings``.
     sensors : sequence of Sensor or dict, optional
         ``at``, ``direction`` and so on of each. Without one, a vertical one sits on every bearing's seat.
     solver : dict, optional

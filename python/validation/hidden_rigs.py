@@ -220,7 +220,7 @@ def learnt_from_labels(rig: HiddenPair, asked: list[Recorded], healthy: Recorded
     known = rig.labelled(folder)
     columns = [name for name in known.indicator_columns if name not in known.empty_columns]
     labels = known["label"].astype(str)
-    trees = ExtraTreesClassifier(200, min_samples_leaf=2, class_weight="balanced", random_state=0)
+    trees = ExtraTreesClassifier(200, max_features=0.3, min_samples_leaf=2, class_weight="balanced", random_state=0)
     trees.fit(beside_others(features(rig, known, columns), labels == "healthy", known["unit"]), labels)
     recorded = known.like([values for values, _, _ in asked], [phase for _, _, phase in asked], rig.known, KEPT_HZ)
     first = np.unique(recorded["unit"], return_index=True)[1]

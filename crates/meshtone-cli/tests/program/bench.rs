@@ -119,6 +119,7 @@ fn what_cannot_be_scored_is_refused() {
     fails(&[".", "--set", "mfpt"], &["looked for are mfpt (baseline_*.mat"]);
     fails(&[".", "--records", "512"], &["--diagnose"]);
     fails(&[".", "--diagnose"], &["--diagnose: cwru is of a bearing"]);
+    fails(&[".", "--adapt"], &["--adapt: cwru is of a bearing"]);
     let assert = workplace.command(&["bench", ".", "-o", "out"]).assert().code(1);
     assert!(stderr(&assert).contains("none of 1 recordings could be scored"), "{}", stderr(&assert));
     assert!(stdout(&assert).contains("105.mat    inner race, 7 mil  not scored: "), "{}", stdout(&assert));

@@ -178,7 +178,12 @@ impl Fault {
     /// # Errors
     /// As [`Self::list_from_table`]; a fault that names no wheel.
     pub fn on_named_wheel(table: &TomlTable<'_>) -> ReadResult<Self> {
-        let wheel = table.required("wheel", "the name of the damaged wheel")?.string()?;
+        let wheel = table
+            .required(
+                "wheel",
+                "the name of the damaged wheel; a spall is a [[bearing.defect]] of its bearing",
+            )?
+            .string()?;
         let mut fault = Self { wheel: wheel.to_owned(), ..Self::at_usual_place(Damage::start_of(table)?) };
         read_rows(&rows_but(&["wheel"]), &mut fault, table, &NoFiles)?;
         fault.read_damage(table)
