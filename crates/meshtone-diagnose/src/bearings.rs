@@ -2,7 +2,7 @@
 
 use meshtone::signal::{BearingDefects, DefectKind, GearTrain, RaceTest};
 
-use crate::learn::Question;
+use crate::observation::Question;
 
 /// Answer about one race, or the rolling elements, of one bearing, or of several that cannot be told apart.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,9 +10,9 @@ use crate::answer::{
 };
 use crate::any_damage::sentence;
 use crate::bearings;
-use crate::learn::{FeatureRow, Layout, Learned, Question};
-use crate::mounting::CommonChange;
-use crate::observation::Observation;
+use crate::layout::{FeatureRow, Layout};
+use crate::learn::{Learned, Seen};
+use crate::observation::{Observation, Question};
 use crate::prior::{DrawnFault, Prior};
 use crate::refine::Refined;
 use crate::rule::Rule;
@@ -55,14 +55,12 @@ pub fn diagnose(
     if layout.signal != known.signal || layout.has_healthy != known.has_healthy || is_shorter {
         return Err(DiagnoseError::OtherQuestion);
     }
-    let row = learned.row(question);
-    let features = learned.features(&row);
-    let of_class = learned.probabilities(&features);
-    let healthy = learned.classes.iter().zip(&of_class).filter(|(class, _)| class.is_none());
+    let seen = learned.seen(question);
+    let healthy = learned.classes.iter().zip(&seen.of_class).filter(|(class, _)| class.is_none());
     let probability = healthy.map(|(_, probability)| probability).sum();
     let mut kinds =
         vec![KindAnswer { label: HEALTHY, probability, severity: None, sizes: Vec::new(), place: None }];
-    let asked = Asked { learned, question, refined, row, features, of_class };
+    let asked = Asked { learned, question, refined, seen: &seen };
     let mut draws_of: Vec<(&'static str, Draws)> = Vec::new();
     for kind in 0..=learned.kinds.len() {
         if let Some((answer, severity)) = asked.kind_answer(kind)? {
@@ -70,27 +68,26 @@ pub fn diagnose(
             kinds.push(answer);
         }
     }
-    let Asked { row, of_class, .. } = asked;
+    let Seen { row, of_class, .. } = &seen;
     kinds.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     // No simulation has what speaks against a recording.
-    let is_misstated = question.all().any(|asked| asked.mismatch.is_some());
     let is_own = question.now.iter().any(|asked| asked.mismatch.is_some());
     let least = 1.0 / (learned.records.len() + 1) as f64;
     let outside_model = if is_own { least } else { learned.outside.p_value(&row.values) };
     let healthy_outside_model = learned.healthy_outside.as_ref().map(|outside| {
-        let alone = learned.row(&Question { now: question.healthy, healthy: &[] });
-        outside.p_value(&alone.values)
+        let alone = Question { now: question.healthy, healthy: &[] };
+        outside.p_value(&learned.layout.question(&alone).values)
     });
-    let common_change = row.alike.as_ref().map(|asked| CommonChange::new(learned, asked));
+    let common_change = row.alike.as_ref().map(|asked| learned.common_changes.of(asked));
     let wheels = &learned.reference.prior.train.wheels;
-    let of_wheels = learned.wheel_probabilities(&of_class);
+    let of_wheels = learned.wheel_probabilities(of_class);
     let any_damage = AnyDamage::over(&kinds, &draws_of, &of_wheels);
     let of_any = of_wheels.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     let is_seen = |wheel: &usize| question.now[0].wheels[*wheel].is_some();
     let shown_wheel = any_damage.as_ref().map(|any| any.wheel).filter(is_seen).unwrap_or(wheels.len() - 1);
     let likeliest = kinds.iter().find(|kind| kind.label != HEALTHY).map(|kind| kind.label);
     let severity_draws = draws_of.into_iter().find(|(label, _)| Some(*label) == likeliest);
-    let shown = WheelView::new(learned, question, &row, &of_class, shown_wheel);
+    let shown = WheelView::new(learned, question, &seen, shown_wheel);
     let mut answer = Answer {
         signal: learned.layout.signal,
         has_healthy: learned.layout.has_healthy,
@@ -109,7 +106,7 @@ pub fn diagnose(
         outside_model,
         healthy_outside_model,
         common_change,
-        is_misstated,
+        is_misstated: question.is_misstated(),
         rule: Rule::new(question, &layout),
         warnings: Vec::new(),
         difference_g: question.now[0].wheels[shown_wheel]
@@ -130,11 +127,7 @@ struct Asked<'a> {
     learned: &'a Learned<'a>,
     question: &'a Question<'a>,
     refined: Option<&'a Refined>,
-    row: FeatureRow,
-    /// Features of the row as regressions use them.
-    features: Vec<f64>,
-    /// (-) Probability of each class.
-    of_class: Vec<f64>,
+    seen: &'a Seen,
 }
 
 impl Asked<'_> {
@@ -147,8 +140,8 @@ impl Asked<'_> {
         let (label, size_keys) =
             learned.kinds.get(kind).map_or((SEVERAL, &[][..]), |kind| (kind.name, kind.sizes));
         let wheel_of = |class: usize| learned.classes[class].filter(|(of, _)| *of == kind).map(|of| of.1);
-        let classes = (0..self.of_class.len())
-            .filter_map(|class| Some((class, wheel_of(class)?, self.of_class[class])))
+        let classes = (0..self.seen.of_class.len())
+            .filter_map(|class| Some((class, wheel_of(class)?, self.seen.of_class[class])))
             .collect::<Vec<(usize, usize, f64)>>();
         let Some(&(likeliest, wheel, of_wheel)) = classes.iter().max_by(|a, b| a.2.total_cmp(&b.2)) else {
             return Ok(None);
@@ -176,7 +169,7 @@ impl Asked<'_> {
             probability,
             severity: Some(interval(&severity)),
             sizes: numbers.iter().filter_map(size).collect(),
-            place: Some(place(learned, self.question, &self.row, likeliest, wheel, share(of_wheel))),
+            place: Some(place(learned, self.question, &self.seen.row, likeliest, wheel, share(of_wheel))),
         };
         Ok(Some((answer, severity)))
     }
@@ -193,7 +186,7 @@ impl Asked<'_> {
             None => self.learned.sizes(class)?,
         };
         for (number, model) in models {
-            let draws = model.posterior(&self.features);
+            let draws = model.posterior(&self.seen.features);
             let total: f64 = draws.iter().map(|(_, weight)| weight).sum();
             let draws = draws.into_iter().map(|(value, weight)| (value, share * weight / total));
             match numbers.iter_mut().find(|(known, _)| known == number) {
@@ -282,8 +275,7 @@ impl<'a> WheelView<'a> {
     fn new(
         learned: &'a Learned,
         question: &Question,
-        row: &FeatureRow,
-        of_class: &'a [f64],
+        Seen { row, of_class, .. }: &'a Seen,
         wheel: usize,
     ) -> Self {
         let last = learned.layout.last[wheel];

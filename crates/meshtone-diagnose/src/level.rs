@@ -3,8 +3,8 @@
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone_learn::{WheelLines, quantiles};
 
-use crate::learn::{Learned, Question};
-use crate::observation::Observation;
+use crate::learn::Learned;
+use crate::observation::{Observation, Question};
 use crate::reference::ReferenceRecord;
 
 /// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.

@@ -59,16 +59,6 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Returns the observation with the meaning of angle 0.
-    ///
-    /// # Arguments
-    /// * `zero` - of each wheel
-    #[must_use]
-    pub fn with_zero(mut self, zero: Vec<AngleZero>) -> Self {
-        self.zero = zero;
-        self
-    }
-
     /// Returns the observation with a further mismatch of the recording.
     ///
     /// # Arguments
@@ -77,11 +67,6 @@ impl Observation {
         let also = self.mismatch.take().map_or_else(String::new, |also| format!("; {also}"));
         self.mismatch = Some(format!("{}{also}", against.to_string()));
         self
-    }
-
-    /// The lines of each wheel, where they are known.
-    pub(crate) fn seen(&self) -> Vec<Option<&WheelLines>> {
-        self.wheels.iter().map(Option::as_ref).collect()
     }
 
     /// Observes one revolution of the gear.
@@ -118,6 +103,27 @@ impl Observation {
             doubts: beyond_a_revolution(values_g, gear_teeth).into_iter().collect(),
             bearings: BearingDefects::default(),
         })
+    }
+}
+
+/// A question: recordings of a rig in one state, and of the same rig when it was healthy.
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Recordings of the state in question, at least one.
+    pub now: &'a [Observation],
+    /// Recordings of the same rig when it was healthy; may be empty.
+    pub healthy: &'a [Observation],
+}
+
+impl Question<'_> {
+    /// All recordings, those in question first.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Observation> {
+        self.now.iter().chain(self.healthy)
+    }
+
+    /// Returns whether something speaks against what is stated of a recording.
+    pub(crate) fn is_misstated(&self) -> bool {
+        self.all().any(|asked| asked.mismatch.is_some())
     }
 }
 

@@ -10,7 +10,8 @@ use meshtone::batch::Control;
 use meshtone_learn::{SizeModel, quantiles};
 
 use crate::DiagnoseError;
-use crate::learn::{Learned, Question};
+use crate::learn::{Learned, Seen};
+use crate::observation::Question;
 use crate::prior::{Focus, Prior};
 use crate::reference::{ReferenceSet, build_reference};
 use crate::speed::mean_hz;
@@ -43,7 +44,7 @@ pub fn refine(
     control: &Control,
 ) -> Result<Option<Refined>, DiagnoseError> {
     // What is not of the rig has no likeliest damage.
-    if question.all().any(|asked| asked.mismatch.is_some()) {
+    if question.is_misstated() {
         return Ok(None);
     }
     let Some((class, prior)) = learned.narrowed(question)? else { return Ok(None) };
@@ -76,8 +77,7 @@ impl Learned<'_> {
     /// # Errors
     /// Too few simulations of the kind.
     fn narrowed(&self, question: &Question) -> Result<Option<(usize, Prior)>, DiagnoseError> {
-        let features = self.features(&self.row(question));
-        let of_class = self.probabilities(&features);
+        let Seen { features, of_class, .. } = self.seen(question);
         let damaged = (0..of_class.len()).filter_map(|class| Some((class, self.classes[class]?)));
         let likeliest = damaged.max_by(|(a, _), (b, _)| of_class[*a].total_cmp(&of_class[*b]));
         let Some((class, (kind, wheel))) = likeliest else { return Ok(None) };

@@ -6,8 +6,8 @@ use meshtone_learn::{WheelLines, revolution};
 use serde_json::{Map, Value, json};
 
 use crate::answer::wheel_in_words;
-use crate::learn::{Layout, Question};
-use crate::observation::{Observation, SignalKind};
+use crate::layout::Layout;
+use crate::observation::{Observation, Question, SignalKind};
 
 /// The indicators: keys of `indicators.json`, names in words, and the factor to the healthy recordings' mean from which on each is above its limit.
 const INDICATORS: [(&str, &str, f64); 3] =

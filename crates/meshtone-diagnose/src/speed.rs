@@ -3,8 +3,8 @@
 use meshtone::scenario::{Scenario, ScenarioError};
 
 use crate::DiagnoseError;
-use crate::learn::{Layout, Question};
-use crate::observation::Observation;
+use crate::layout::Layout;
+use crate::observation::{Observation, Question};
 use crate::prior::Prior;
 use crate::reference::ReferenceSet;
 

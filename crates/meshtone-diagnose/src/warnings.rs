@@ -3,8 +3,8 @@
 use meshtone::damage::damage_kinds;
 
 use crate::answer::{Answer, p_in_words};
-use crate::learn::{Learned, Question};
-use crate::observation::Observation;
+use crate::learn::Learned;
+use crate::observation::{Observation, Question};
 use crate::prior::Prior;
 use crate::{bearings, consistency, level, speed};
 
@@ -179,7 +179,7 @@ mod tests {
         }
 
         // Two recordings without a mark in common, and one whose angle means nothing.
-        let turned = |zero| broken.clone().with_zero(vec![zero; 2]);
+        let turned = |zero| Observation { zero: vec![zero; 2], ..broken.clone() };
         for now in [vec![turned(AngleZero::Chance)], vec![turned(AngleZero::FirstSample); 2]] {
             let answer = ask(&now);
             let place = answer.likeliest_damage().unwrap().place.unwrap();
