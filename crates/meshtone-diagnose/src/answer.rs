@@ -5,7 +5,7 @@ use meshtone::wheel::WheelName;
 
 use crate::bearings::BearingAnswer;
 use crate::diagnose::OUTSIDE;
-use meshtone_learn::Interval;
+use meshtone_learn::{Interval, quantiles};
 
 use crate::mounting::CommonChange;
 use crate::observation::SignalKind;
@@ -70,10 +70,21 @@ pub struct KindAnswer {
     pub probability: f64,
     /// (-) How severe it is, if it is of this kind, from 0 to 1; none of a healthy pair.
     pub severity: Option<Interval>,
+    /// (-) Draws of that severity, with their weights.
+    pub(crate) severity_draws: Vec<(f64, f64)>,
     /// Its sizes, likewise; none where they are lists.
     pub sizes: Vec<SizeAnswer>,
     /// Its place, likewise.
     pub place: Option<PlaceAnswer>,
+}
+
+impl KindAnswer {
+    /// (-) Draws of its severity without weights, for a histogram.
+    pub fn severity_draws(&self) -> Vec<f64> {
+        const COUNT: usize = 400;
+        let parts: [f64; COUNT] = std::array::from_fn(|at| (at as f64 + 0.5) / COUNT as f64);
+        quantiles(self.severity_draws.clone(), parts).to_vec()
+    }
 }
 
 /// A simulation that resembles the recording.
@@ -139,8 +150,6 @@ pub struct Answer {
     pub band_g: [Vec<f64>; 2],
     /// The simulations that resemble it most, the likeliest kinds first.
     pub explanations: Vec<Explanation>,
-    /// (-) Draws of the likeliest damage's severity, for a histogram.
-    pub severity_draws: Vec<f64>,
 }
 
 impl Answer {

@@ -16,25 +16,18 @@ impl AnyDamage {
     /// Over all kinds, each as probable as it is said to be.
     ///
     /// Severities are mixed by their kinds' probabilities. The wheel is the likelier one over all kinds, and the tooth is the likeliest one
-    /// of that wheel, given that wheel. It is none where no kind is possible, or where the draws of one are missing, which would leave the
-    /// mixture incomplete.
+    /// of that wheel, given that wheel. It is none where no kind is possible.
     ///
     /// # Arguments
     /// * `kinds` - what is said of each
-    /// * `severities` - draws of each damage's severity with their weights, by its label
     /// * `of_wheel` - (-) probability of damage to each wheel
-    pub(crate) fn over(
-        kinds: &[KindAnswer],
-        severities: &[(&'static str, Vec<(f64, f64)>)],
-        of_wheel: &[f64],
-    ) -> Option<Self> {
+    pub(crate) fn over(kinds: &[KindAnswer], of_wheel: &[f64]) -> Option<Self> {
         let damaged = || kinds.iter().filter(|kind| kind.label != HEALTHY);
         let mut draws = Vec::new();
         for kind in damaged() {
-            let of_kind = severities.iter().find(|(label, _)| *label == kind.label)?;
-            let total: f64 = of_kind.1.iter().map(|(_, weight)| weight).sum();
+            let total: f64 = kind.severity_draws.iter().map(|(_, weight)| weight).sum();
             let share = kind.probability / total.max(f64::MIN_POSITIVE);
-            draws.extend(of_kind.1.iter().map(|(value, weight)| (*value, share * weight)));
+            draws.extend(kind.severity_draws.iter().map(|(value, weight)| (*value, share * weight)));
         }
         let total: f64 = damaged().map(|kind| kind.probability).sum();
         if draws.is_empty() || total <= 0.0 {
@@ -186,7 +179,8 @@ mod tests {
             tooth: tooth.map(|number| ToothAnswer { number, angle_deg: f64::from(number), probability: 1.0 }),
         };
         let place = (label != HEALTHY).then_some(place);
-        KindAnswer { label, probability, severity: None, sizes: Vec::new(), place }
+        let severity_draws = if label == HEALTHY { Vec::new() } else { vec![(1.0, 1.0)] };
+        KindAnswer { label, probability, severity: None, severity_draws, sizes: Vec::new(), place }
     }
 
     /// An answer that holds no more than a sentence says.
@@ -215,35 +209,33 @@ mod tests {
             difference_g: Vec::new(),
             band_g: Default::default(),
             explanations: Vec::new(),
-            severity_draws: Vec::new(),
         }
     }
 
     // Three quarters of the damage is a missing tooth, the rest a pit; both on the gear.
     #[test]
     fn kinds_count_as_they_are_probable() {
+        let with = |draws: &[(f64, f64)], kind| KindAnswer { severity_draws: draws.to_vec(), ..kind };
         let kinds = [
-            kind("missing-tooth", 0.6, Some(8), 1),
+            with(&[(1.0, 5.0)], kind("missing-tooth", 0.6, Some(8), 1)),
             kind(HEALTHY, 0.2, None, 1),
-            kind("pits", 0.2, Some(3), 0),
+            with(&[(0.2, 0.5), (0.4, 0.5)], kind("pits", 0.2, Some(3), 0)),
         ];
-        let draws = [("missing-tooth", vec![(1.0, 5.0)]), ("pits", vec![(0.2, 0.5), (0.4, 0.5)])];
-        let any = AnyDamage::over(&kinds, &draws, &[0.24, 0.56]).unwrap();
+        let any = AnyDamage::over(&kinds, &[0.24, 0.56]).unwrap();
         let tooth = any.tooth.unwrap();
         assert_eq!((any.wheel, tooth.number), (1, 8));
         assert!((any.wheel_probability - 0.7).abs() < 1e-12);
         // Of the gear's 0.7: all of the missing tooth's 0.75 × 0.9.
         assert!((tooth.probability - 0.675 / 0.7).abs() < 1e-12);
         assert!(any.severity.median > 0.8 && any.severity.within_90[0] < 0.3, "{:?}", any.severity);
-        assert!(AnyDamage::over(&kinds[1..2], &draws, &[0.0, 0.0]).is_none());
+        assert!(AnyDamage::over(&kinds[1..2], &[0.0, 0.0]).is_none());
     }
 
     #[test]
     fn a_sentence_says_no_more_than_is_known() {
-        let draws = [("missing-tooth", vec![(1.0, 1.0)]), (SEVERAL, vec![(1.0, 1.0)])];
         let said_of = |label, tooth, damaged: f64, outside_model| {
             let kinds = vec![kind(label, damaged, tooth, 1), kind(HEALTHY, 1.0 - damaged, None, 1)];
-            let any = AnyDamage::over(&kinds, &draws, &[0.0, damaged]);
+            let any = AnyDamage::over(&kinds, &[0.0, damaged]);
             sentence(&answer(kinds, any, outside_model))
         };
         let said = |damaged| said_of("missing-tooth", Some(8), damaged, 1.0);
