@@ -1,6 +1,6 @@
 //! From a question to its answer.
 
-use meshtone::signal::AngleZero;
+use meshtone::signal::{AngleZero, rms};
 use meshtone_fourier::Complex64;
 use meshtone_learn::{WheelLines, interval, quantiles, revolution};
 
@@ -24,6 +24,8 @@ pub const OUTSIDE: f64 = 0.05;
 const IN_BAND: usize = 120;
 /// Simulations that show how far a burst is behind the tooth's first contact.
 const NEAR: usize = 60;
+/// Simulations of a kind among which that is shown whose level is the recording's.
+const ALIKE: usize = 12;
 /// Explanations that are shown.
 const EXPLANATIONS: usize = 3;
 /// (-) Probability below which the size of a damage is said for its likelier wheel alone.
@@ -82,7 +84,8 @@ pub fn diagnose(
     let any_damage = AnyDamage::over(&kinds, &of_wheels);
     let is_seen = |wheel: &usize| question.now[0].wheels[*wheel].is_some();
     let shown_wheel = any_damage.as_ref().map(|any| any.wheel).filter(is_seen).unwrap_or(wheels.len() - 1);
-    let shown = asked.question.now[0].wheels[shown_wheel].as_ref();
+    let shown = question.now[0].wheels[shown_wheel].as_ref();
+    let difference_g = shown.map_or_else(Vec::new, |lines| asked.difference_g(lines, shown_wheel));
     let mut answer = Answer {
         signal: layout.signal,
         has_healthy: layout.has_healthy,
@@ -107,9 +110,9 @@ pub fn diagnose(
         is_misstated: question.is_misstated(),
         rule: Rule::new(question, &layout),
         warnings: Vec::new(),
-        difference_g: shown.map_or_else(Vec::new, |lines| asked.difference_g(lines, shown_wheel)),
         band_g: asked.band_g(shown_wheel),
-        explanations: asked.explanations(shown_wheel),
+        explanations: asked.explanations(shown_wheel, &difference_g),
+        difference_g,
     };
     answer.warnings = warnings(&answer, learned, question);
     let of_bearings = bearings::sentence(&answer.bearings);
@@ -278,19 +281,25 @@ impl Asked<'_> {
         [low, high]
     }
 
-    /// The nearest simulation of each of the likeliest kinds, of either wheel.
-    fn explanations(&self, shown_wheel: usize) -> Vec<Explanation> {
+    /// A simulation of each of the likeliest kinds, of either wheel: of the nearest ones that whose signal is as loud as the recording's, since levels are a small part
+    /// of what makes them near.
+    ///
+    /// # Arguments
+    /// * `shown_wheel`, `difference_g` - the wheel that is shown, and the recording's signal
+    fn explanations(&self, shown_wheel: usize, difference_g: &[f64]) -> Vec<Explanation> {
         let of_class = &self.seen.of_class;
         let mut order: Vec<usize> = (0..of_class.len()).collect();
         order.sort_by(|&a, &b| of_class[b].total_cmp(&of_class[a]));
+        let apart = |signal: &[f64]| (rms(signal) / rms(difference_g)).ln().abs();
         let explain = |class: usize| {
-            let record = self.nearest(class, 1).next()?;
+            let near = self.nearest(class, ALIKE).map(|record| (record, self.of_record(record, shown_wheel)));
+            let (record, difference_g) = near.min_by(|a, b| apart(&a.1).total_cmp(&apart(&b.1)))?;
             let fault = self.learned.records[record].fault.as_ref();
             Some(Explanation {
                 label: fault.map_or(HEALTHY, |fault| Prior::label(&self.learned.kinds, fault.kind)),
                 wheel: fault.map(|fault| fault.wheel),
                 severity: fault.map_or(0.0, |fault| fault.severity),
-                difference_g: self.of_record(record, shown_wheel),
+                difference_g,
             })
         };
         order.into_iter().take(EXPLANATIONS).filter_map(explain).collect()
