@@ -35,7 +35,6 @@ pub struct Learned<'a> {
     pub(crate) rows: Vec<FeatureRow>,
     pub(crate) classes: Vec<Class>,
     pub(crate) class_of: Vec<usize>,
-    folds: Vec<usize>,
     standard: Standardisation,
     random: RandomFeatures,
     features: DMatrix<f64>,
@@ -127,7 +126,6 @@ impl<'a> Learned<'a> {
             rows,
             classes,
             class_of,
-            folds,
             standard,
             random,
             features,
@@ -191,26 +189,24 @@ impl<'a> Learned<'a> {
             focus
                 .is_none_or(|Focus { severity: [least, most], .. }| (least..=most).contains(&&fault.severity))
         };
-        let (rows, mut faults): (Vec<usize>, Vec<&DrawnFault>) = self
-            .rows_of(class)
-            .into_iter()
-            .filter_map(|row| Some((row, self.records[row].fault.as_ref().filter(|fault| is_within(fault))?)))
-            .unzip();
-        let mut folds: Vec<usize> = rows.iter().map(|&row| self.folds[row]).collect();
+        let mut rows = self.rows_of(class);
+        rows.retain(|row| self.records[*row].fault.as_ref().is_some_and(is_within));
+        let mut records: Vec<&ReferenceRecord> = rows.iter().map(|&row| self.records[row]).collect();
         let mut features = self.features.select_columns(&rows);
         if let Some(refined) = refined {
-            let more = self.refined_rows(refined);
+            let more = self.comparable(refined);
             if more.len() < refined.records.len() / 2 {
                 return Err(DiagnoseError::NoReference);
             }
-            let values: Vec<Vec<f64>> =
-                more.iter().map(|(_, row)| self.standard.apply(&row.values)).collect();
+            let (rows, _) = self.layout.simulations(refined, &more);
+            let values: Vec<Vec<f64>> = rows.iter().map(|row| self.standard.apply(&row.values)).collect();
             let known = features.ncols();
             features = features.resize_horizontally(known + more.len(), 0.0);
             features.columns_mut(known, more.len()).copy_from(&self.random.of(&values));
-            folds.extend(more.iter().map(|(record, _)| fold_of(record.unit())));
-            faults.extend(more.iter().filter_map(|(record, _)| record.fault.as_ref()));
+            records.extend(more);
         }
+        let faults: Vec<&DrawnFault> = records.iter().filter_map(|record| record.fault.as_ref()).collect();
+        let folds: Vec<usize> = records.iter().map(|record| fold_of(record.unit())).collect();
         let mut places = vec![None];
         let mut numbers = vec![faults.iter().map(|fault| fault.severity).collect::<Vec<f64>>()];
         for place in 0..faults.first().map_or(0, |fault| fault.sizes.len()) {
@@ -226,8 +222,8 @@ impl<'a> Learned<'a> {
         Ok(places.into_iter().zip(models).collect())
     }
 
-    /// The damaged records of a refined round that can be compared with the question, with what they show.
-    fn refined_rows<'r>(&self, refined: &'r ReferenceSet) -> Vec<(&'r ReferenceRecord, FeatureRow)> {
+    /// The damaged records of a refined round that can be compared with the question.
+    fn comparable<'r>(&self, refined: &'r ReferenceSet) -> Vec<&'r ReferenceRecord> {
         let is_whole = |record: &ReferenceRecord| {
             record.wheels.iter().zip(&self.layout.last).all(|(wheel, last)| wheel.last() >= *last)
         };
@@ -235,9 +231,7 @@ impl<'a> Learned<'a> {
             let has_healthy = || refined.healthy_of(record).is_some_and(is_whole);
             record.fault.is_some() && is_whole(record) && (!self.layout.has_healthy || has_healthy())
         };
-        let records: Vec<&ReferenceRecord> = refined.records.iter().filter(is_compared).collect();
-        let (rows, _) = self.layout.simulations(refined, &records);
-        records.into_iter().zip(rows).collect()
+        refined.records.iter().filter(is_compared).collect()
     }
 }
 
@@ -247,13 +241,11 @@ fn class_of(record: &ReferenceRecord) -> Class {
 
 /// Weights by which half of all records are healthy, and each kind of damage on each wheel is as likely as the next.
 fn weights(class_of: &[usize], classes: &[Class]) -> Vec<f64> {
-    let counts: Vec<f64> =
-        (0..classes.len()).map(|class| class_of.iter().filter(|of| **of == class).count() as f64).collect();
     let damaged = classes.iter().filter(|class| class.is_some()).count().max(1) as f64;
-    let total = class_of.len() as f64;
-    let weight = |class: usize| match classes[class] {
-        None => PRIOR_HEALTHY * total / counts[class],
-        Some(_) => (1.0 - PRIOR_HEALTHY) / damaged * total / counts[class],
+    let weight = |(place, class): (usize, &Class)| {
+        let share = if class.is_some() { (1.0 - PRIOR_HEALTHY) / damaged } else { PRIOR_HEALTHY };
+        share * class_of.len() as f64 / class_of.iter().filter(|of| **of == place).count() as f64
     };
-    class_of.iter().map(|&class| weight(class)).collect()
+    let weights: Vec<f64> = classes.iter().enumerate().map(weight).collect();
+    class_of.iter().map(|&class| weights[class]).collect()
 }
