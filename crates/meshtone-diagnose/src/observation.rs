@@ -1,9 +1,6 @@
 //! Features of the wheels in a recording or a simulation.
 
-use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, BearingDefects, ForeignTones, Mismatch, ShaftPhase, SignalError,
-    StatedFacts, StatedTurning, angular_resample, check_channel, find_mismatch,
-};
+use meshtone::signal::{AngleZero, BearingDefects, ForeignTones, SignalError, check_channel};
 use meshtone_fourier::{Complex64, real_spectrum};
 use meshtone_learn::{MESH_ORDERS, PASSED, WheelLines, separation};
 
@@ -125,32 +122,6 @@ impl Question<'_> {
     pub(crate) fn is_misstated(&self) -> bool {
         self.all().any(|asked| asked.mismatch.is_some())
     }
-}
-
-/// Looks for tooth counts that fit a recording better than those that are stated, at a stated speed: the phase of another tone than the
-/// mesh's hides them.
-///
-/// # Arguments
-/// * `signal`, `sampling_rate_hz` - the recording
-/// * `teeth` - of the wheel whose speed is stated, and of its mate
-/// * `speed_hz` - (Hz) about the speed of that wheel
-///
-/// # Errors
-/// Those of [`angular_resample`].
-pub(crate) fn other_teeth(
-    signal: &[f64],
-    sampling_rate_hz: f64,
-    teeth: [u32; 2],
-    speed_hz: f64,
-) -> Result<Option<Mismatch>, SignalError> {
-    let phase = ShaftPhase::constant(speed_hz, sampling_rate_hz, signal.len())?;
-    let angular = angular_resample(signal, &phase, &AngularSettings::default())?;
-    let turning = StatedTurning::ConstantSpeed { speed_hz };
-    let found =
-        find_mismatch(&angular, &StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning });
-    Ok(found.filter(|found| {
-        matches!(found.alternative, Alternative::Teeth { .. } | Alternative::MateTeeth { .. })
-    }))
 }
 
 /// (-) Part of the energy beyond the orders that are looked at, from which on values are hardly one revolution.

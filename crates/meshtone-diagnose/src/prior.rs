@@ -249,9 +249,9 @@ impl Prior {
         let steps = i64::from(self.grade_steps);
         let step = (common.bits() % (2 * steps as u64 + 1)) as i64 - steps;
         for number in known.iter().filter(|number| number.value > 0.0) {
-            let coarsest = match own_name(&number.key) {
-                "din_grade" => 12.0,
-                "iso_class" => 11.0,
+            let coarsest = match number.key.rsplit('.').next() {
+                Some("din_grade") => 12.0,
+                Some("iso_class") => 11.0,
                 _ => continue,
             };
             numbers.push((&number.key, (number.value + step as f64).clamp(1.0, coarsest)));
@@ -282,19 +282,14 @@ impl Prior {
             scenario.sensors = places.into_iter().skip(at).take(1).map(unstated).collect();
         }
         let within = self.focus.as_ref().map(|focus| focus.severity);
-        let (scenario, fault) = match self.class(kinds, number) {
-            None => (scenario, None),
-            Some((kind, wheel)) if kind < kinds.len() => {
-                let class = (kind, wheel);
-                let (scenario, fault) = self.damaged(&kinds[kind], class, within, &scenario, &mut own)?;
-                (scenario, Some(fault))
-            }
-            Some((_, wheel)) => {
-                let (scenario, fault) = self.twice_damaged(kinds, wheel, &scenario, &mut own)?;
-                (scenario, Some(fault))
-            }
+        let Some((kind, wheel)) = self.class(kinds, number) else {
+            return Ok(Drawn { scenario, fault: None, path, gain_db });
         };
-        Ok(Drawn { scenario, fault, path, gain_db })
+        let (scenario, fault) = match kinds.get(kind) {
+            Some(of_kind) => self.damaged(of_kind, (kind, wheel), within, &scenario, &mut own)?,
+            None => self.twice_damaged(kinds, wheel, &scenario, &mut own)?,
+        };
+        Ok(Drawn { scenario, fault: Some(fault), path, gain_db })
     }
 
     /// (-) Logarithms of the ratios of a record's speed and load to those of its pair.
@@ -344,11 +339,6 @@ impl Drawn {
         let gain = 10f64.powf(self.gain_db / 20.0);
         self.path.at(frequencies_hz).into_iter().map(|path| gain * path.norm()).collect()
     }
-}
-
-/// A key without its sections.
-fn own_name(key: &str) -> &str {
-    key.rsplit('.').next().unwrap_or(key)
 }
 
 /// Revolutions of the slowest shaft of a gearbox that an average needs at least.

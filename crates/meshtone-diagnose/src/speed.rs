@@ -128,30 +128,26 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
 pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let nominal_hz = prior.base.operation.pinion_speed_hz;
     let [least, most] = simulated_hz(nominal_hz, prior);
-    let ((shaft, key), mut doubts) = (driving(prior), Vec::new());
+    let (shaft, key) = driving(prior);
     let healthy = if prior.healthy_speed_hz.is_some() { &[] } else { question.healthy };
-    let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
     let speeds = question.now.iter().chain(healthy).filter_map(|asked| asked.input_speed_hz);
-    for speed_hz in speeds.filter(beside) {
+    let beside = speeds.filter(|speed_hz| !(least..=most).contains(speed_hz)).map(|speed_hz| {
         let reason = reason(speed_hz / nominal_hz, prior);
         let reason = reason.map_or_else(String::new, |reason| format!("; {reason}"));
-        let doubt = format!(
+        format!(
             "{shaft} turns at {speed_hz:.3} Hz, the simulations at {least:.3} to {most:.3} Hz: write the recording's speed into the \
              scenario ({key}){reason}"
-        );
-        if !doubts.contains(&doubt) {
-            doubts.push(doubt);
-        }
-    }
+        )
+    });
     let speeds =
         mean_hz(question.healthy).zip(mean_hz(question.now)).filter(|_| prior.healthy_speed_hz.is_some());
-    doubts.extend(speeds.map(|(healthy_hz, now_hz)| {
+    let apart = speeds.map(|(healthy_hz, now_hz)| {
         format!(
             "{shaft} turns at {healthy_hz:.3} Hz in the healthy recording, at {now_hz:.3} Hz in the other: they are compared with simulations at both \
              speeds, but damage is missed more often than at one; record both at one speed"
         )
-    }));
-    doubts
+    });
+    beside.chain(apart).collect()
 }
 
 #[cfg(test)]

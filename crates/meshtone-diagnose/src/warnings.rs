@@ -27,40 +27,43 @@ impl Question<'_> {
     /// # Arguments
     /// * `prior` - what may be about the rig
     pub fn warnings(&self, prior: &Prior) -> Vec<DiagnosisWarning> {
-        let mut warnings: Vec<DiagnosisWarning> = Vec::new();
-        let mut warn = |code, message: String| {
+        let mismatches = |of: &[Observation], whose: &str| -> Vec<String> {
+            of.iter().filter_map(|asked| Some(format!("{whose}{}", asked.mismatch.as_ref()?))).collect()
+        };
+        let ideal_wheels = prior.base.has_ideal_wheels().then(|| {
+            "wheels of the scenario have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; write the grade of each \
+             wheel"
+                .to_owned()
+        });
+        let no_healthy = self.healthy.is_empty().then(|| {
+            "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own deviations and the sensor's path"
+                .to_owned()
+        });
+        listed([
+            ("ideal-wheels", Vec::from_iter(ideal_wheels)),
+            ("mismatch", mismatches(self.now, "")),
+            ("mismatch", mismatches(self.healthy, "healthy recording: ")),
+            ("doubt", self.all().flat_map(|asked| asked.doubts.clone()).collect()),
+            ("bearing", bearings::doubts(&prior.train, self)),
+            ("speed", speed::doubts(self, prior)),
+            ("several-states", consistency::levels_apart(self)),
+            ("no-healthy", Vec::from_iter(no_healthy)),
+        ])
+    }
+}
+
+/// Warnings by their codes, each once.
+fn listed<const N: usize>(found: [(&'static str, Vec<String>); N]) -> Vec<DiagnosisWarning> {
+    let mut warnings = Vec::new();
+    for (code, messages) in found {
+        for message in messages {
             let warning = DiagnosisWarning { code, message };
             if !warnings.contains(&warning) {
                 warnings.push(warning);
             }
-        };
-        if prior.base.has_ideal_wheels() {
-            warn(
-                "ideal-wheels",
-                "wheels of the scenario have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; \
-                 write the grade of each wheel"
-                    .to_owned(),
-            );
         }
-        let mismatches =
-            |of: &[Observation]| of.iter().filter_map(|asked| asked.mismatch.clone()).collect::<Vec<_>>();
-        mismatches(self.now).into_iter().for_each(|said| warn("mismatch", said));
-        let of_healthy = |said| warn("mismatch", format!("healthy recording: {said}"));
-        mismatches(self.healthy).into_iter().for_each(of_healthy);
-        self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn("doubt", said));
-        bearings::doubts(&prior.train, self).into_iter().for_each(|said| warn("bearing", said));
-        speed::doubts(self, prior).into_iter().for_each(|said| warn("speed", said));
-        consistency::levels_apart(self).into_iter().for_each(|said| warn("several-states", said));
-        if self.healthy.is_empty() {
-            warn(
-                "no-healthy",
-                "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own \
-                 deviations and the sensor's path"
-                    .to_owned(),
-            );
-        }
-        warnings
     }
+    warnings
 }
 
 /// Warnings about an answer.
@@ -113,8 +116,8 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
         ("contradiction", consistency::contradicting_states(learned, question)),
         ("not-simulated", not_simulated(answer)),
     ];
-    let found = found.into_iter().filter_map(|(code, said)| Some(DiagnosisWarning { code, message: said? }));
-    question.warnings(&learned.reference.prior).into_iter().chain(found).collect()
+    let found = listed(found.map(|(code, said)| (code, Vec::from_iter(said))));
+    [question.warnings(&learned.reference.prior), found].concat()
 }
 
 /// Kinds of damage that the answer does not know.
