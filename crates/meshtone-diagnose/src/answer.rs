@@ -175,22 +175,12 @@ impl Answer {
         !self.is_misstated && self.common_change.is_some_and(|change| change.p < 0.5 * OUTSIDE)
     }
 
-    /// Returns whether the healthy recording is unlike the healthy pairs that were simulated. What changed since may be like them all the same.
-    pub fn is_healthy_outside(&self) -> bool {
-        self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
-    }
-
     /// A wheel's name after `the`: gear, or wheel z3 of a gearbox.
     ///
     /// # Arguments
     /// * `wheel` - its place in [`Self::wheels`]
     pub fn wheel_in_words(&self, wheel: usize) -> String {
         wheel_in_words(&self.wheels[wheel])
-    }
-
-    /// Returns whether several damages at once are likelier than any single one.
-    pub fn has_likely_several(&self) -> bool {
-        self.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL)
     }
 
     /// Returns whether the lines of a bearing's race are detected, whether or not they are of a defect.

@@ -1,6 +1,6 @@
 //! The answer about a damage whatever its kind.
 
-use crate::answer::{Answer, AnyDamage, HEALTHY, KindAnswer, ToothAnswer};
+use crate::answer::{Answer, AnyDamage, HEALTHY, KindAnswer, SEVERAL, ToothAnswer};
 use meshtone_learn::interval;
 
 /// (-) Probability of damage from which on it is said to be there, and below which it is not seen.
@@ -107,14 +107,12 @@ fn likely_wheels(answer: &Answer) -> String {
     };
     let likely: Vec<&str> =
         order.into_iter().take_while(is_needed).map(|wheel| &*answer.wheels[wheel]).collect();
-    if likely.len() == answer.wheels.len() {
-        return format!("{} wheels", if likely.len() == 2 { "both" } else { "all" });
-    }
-    match likely.split_last() {
-        Some((last, others)) if !others.is_empty() => {
-            format!("the wheels {} and {last}", others.join(", "))
+    match &likely[..] {
+        all if all.len() == answer.wheels.len() => {
+            format!("{} wheels", if all.len() == 2 { "both" } else { "all" })
         }
-        _ => format!("the wheel {}", likely.concat()),
+        [others @ .., last] if !others.is_empty() => format!("the wheels {} and {last}", others.join(", ")),
+        one => format!("the wheel {}", one.concat()),
     }
 }
 
@@ -124,39 +122,33 @@ fn likely_wheels(answer: &Answer) -> String {
 /// * `answer` - all but the summary
 pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
-        let why = match (answer.is_misstated, answer.is_remounted(), answer.has_bearing_lines()) {
-            (true, ..) => "what is stated of the recordings does not fit them",
-            (false, true, _) => {
-                "the sensor, its unit or its mounting was changed since the healthy recording"
-            }
-            (false, false, true) => {
+        let why = match answer.is_remounted() {
+            _ if answer.is_misstated => "what is stated of the recordings does not fit them",
+            true => "the sensor, its unit or its mounting was changed since the healthy recording",
+            false if answer.has_bearing_lines() => {
                 "the recordings are unlike what was simulated, perhaps because of the bearing"
             }
-            (false, false, false) => "the recordings are unlike what was simulated",
+            false => "the recordings are unlike what was simulated",
         };
         return format!("Nothing can be said of the teeth: {why}.");
     }
     let ([unseen, seen], damaged) = (DECIDED, answer.damaged());
     match &answer.any_damage {
         Some(any) if damaged >= seen => {
-            let what = if any.wheel_probability < NAMED {
-                "One of the wheels".to_owned()
-            } else {
-                format!("The {}", answer.wheel_in_words(any.wheel))
+            let what = match any.wheel_probability < NAMED {
+                true => "One of the wheels".to_owned(),
+                false => format!("The {}", answer.wheel_in_words(any.wheel)),
             };
-            let several = if answer.has_likely_several() {
-                " Two damages at once are likelier than a single one."
-            } else {
-                ""
-            };
+            let has_several = answer.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL);
+            let several =
+                if has_several { " Two damages at once are likelier than a single one." } else { "" };
             format!("{what} is damaged, {}; {}.{several}", any.in_words(), any.where_to_look(answer))
         }
         Some(any) if damaged >= LIKELY[0] => {
             let (how, place) = (any.in_words(), any.where_to_look(answer));
-            let is_likely = if damaged >= LIKELY[1] {
-                "Damage is likely, but not sure"
-            } else {
-                "Damage can neither be excluded nor be shown"
+            let is_likely = match damaged >= LIKELY[1] {
+                true => "Damage is likely, but not sure",
+                false => "Damage can neither be excluded nor be shown",
             };
             format!("{is_likely}; if there is any, {how}; {place}.")
         }
@@ -168,7 +160,7 @@ pub(crate) fn sentence(answer: &Answer) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::answer::{PlaceAnswer, SEVERAL};
+    use crate::answer::PlaceAnswer;
     use crate::observation::SignalKind;
 
     fn kind(label: &'static str, probability: f64, tooth: Option<u32>, wheel: usize) -> KindAnswer {

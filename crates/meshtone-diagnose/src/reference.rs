@@ -55,14 +55,6 @@ impl ReferenceSet {
         let at = self.records.binary_search_by_key(&number, |other| other.number).ok()?;
         Some(&self.records[at])
     }
-
-    /// The records that a healthy recording alone is like: healthy ones, at its speed.
-    pub(crate) fn healthy(&self) -> impl Iterator<Item = &ReferenceRecord> {
-        let is_at_speed = |record: &&ReferenceRecord| {
-            self.prior.healthy_speed_hz.is_none() || record.number.is_multiple_of(RECORDS_PER_UNIT)
-        };
-        self.records.iter().filter(|record| record.fault.is_none()).filter(is_at_speed)
-    }
 }
 
 /// Simulates records of a prior.

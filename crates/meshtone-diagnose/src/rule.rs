@@ -57,9 +57,8 @@ impl Rule {
                     let values: Option<Vec<f64>> = all.iter().map(|one| one[place]).collect();
                     values.filter(|values| !values.is_empty())
                 });
-                let limit = |values: &[f64]| limit(values, INDICATORS[place].2);
-                let [mean_healthy, limit] = [healthy.as_deref().map(mean), healthy.as_deref().map(limit)];
-                Some(RuleValue { now: mean(&now?), healthy: mean_healthy, limit })
+                let limit = healthy.as_deref().map(|values| limit(values, INDICATORS[place].2));
+                Some(RuleValue { now: mean(&now?), healthy: healthy.as_deref().map(mean), limit })
             })
         };
         Self { wheels: (0..layout.last.len()).map(of_wheel).collect() }
@@ -67,12 +66,8 @@ impl Rule {
 
     /// Returns whether an indicator of a wheel is above its limit; none where nothing has a limit.
     pub fn is_damaged(&self) -> Option<bool> {
-        self.wheels
-            .iter()
-            .flatten()
-            .flatten()
-            .filter_map(RuleValue::is_above)
-            .reduce(|any, above| any || above)
+        let above = self.wheels.iter().flatten().flatten().filter_map(RuleValue::is_above);
+        above.reduce(|any, above| any || above)
     }
 
     /// The verdict in words; none without a limit.
@@ -88,8 +83,8 @@ impl Rule {
                     judged.push(*name);
                 }
                 if now > limit {
-                    above
-                        .push(format!("{name} {now:.2} of the {} (limit {limit:.2})", wheel_in_words(wheel)));
+                    let wheel = wheel_in_words(wheel);
+                    above.push(format!("{name} {now:.2} of the {wheel} (limit {limit:.2})"));
                 }
             }
         }
@@ -110,10 +105,8 @@ impl Rule {
             let values = INDICATORS.iter().zip(of).filter_map(|((key, ..), of)| {
                 let RuleValue { now, healthy, limit } = (*of)?;
                 let above = of.and_then(|of| of.is_above());
-                Some((
-                    (*key).to_owned(),
-                    json!({ "now": now, "healthy": healthy, "limit": limit, "is_above": above }),
-                ))
+                let json = json!({ "now": now, "healthy": healthy, "limit": limit, "is_above": above });
+                Some(((*key).to_owned(), json))
             });
             (name.clone(), Value::Object(values.collect()))
         };

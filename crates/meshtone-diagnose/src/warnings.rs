@@ -3,6 +3,7 @@
 use meshtone::damage::damage_kinds;
 
 use crate::answer::{Answer, p_in_words};
+use crate::diagnose::OUTSIDE;
 use crate::learn::Learned;
 use crate::observation::{Observation, Question};
 use crate::prior::Prior;
@@ -101,7 +102,8 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
         };
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });
-    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside()).map(|p| {
+    // What changed since may be like the simulations all the same.
+    let healthy = answer.healthy_outside_model.filter(|p| *p < 0.5 * OUTSIDE).map(|p| {
         format!(
             "the healthy recording is unlike a healthy rig of the scenario ({}): was it healthy? If it was, changes are judged all the same, the better the more \
              speed, load, wheels and sensor of the scenario are the rig's",
