@@ -13,11 +13,11 @@ const DECIDED: [f64; 2] = [0.2, 0.8];
 
 /// Doubts that recordings are of one state, by their levels alone.
 pub(crate) fn levels_apart(question: &Question) -> Vec<String> {
-    let hardly = |which: &str, recordings: &[Observation]| {
+    let both = [("recordings", question.now), ("healthy recordings", question.healthy)];
+    let hardly = |(which, recordings)| {
         Some(format!("the {which} are hardly of one state: {}", much_louder_recording(recordings)?))
     };
-    let now = hardly("recordings", question.now);
-    now.into_iter().chain(hardly("healthy recordings", question.healthy)).collect()
+    both.into_iter().filter_map(hardly).collect()
 }
 
 /// The loudest of several recordings, where it is much louder than the quietest.

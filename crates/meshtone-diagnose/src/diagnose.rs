@@ -1,5 +1,7 @@
 //! From a question to its answer.
 
+use std::collections::BTreeMap;
+
 use meshtone::signal::{AngleZero, rms};
 use meshtone_fourier::Complex64;
 use meshtone_learn::{WheelLines, interval, quantiles, revolution};
@@ -146,20 +148,30 @@ impl Asked<'_> {
         };
         let probability: f64 = classes.iter().map(|(_, _, part)| part).sum();
         let share = |part: f64| part / probability.max(f64::MIN_POSITIVE);
-        // The severity, then the sizes that vary.
-        let mut numbers: Vec<(Option<usize>, Draws)> = Vec::new();
+        // The severity, and by their places the sizes that vary; the weights of a class add up to its share.
+        let mut numbers: BTreeMap<Option<usize>, Draws> = BTreeMap::new();
         if size_keys.is_empty() && kind < learned.kinds.len() {
-            numbers.push((None, vec![(1.0, 1.0)]));
+            numbers.insert(None, vec![(1.0, 1.0)]);
         } else {
             for (class, _, part) in classes {
                 if class != likeliest && part <= NEGLIGIBLE * probability {
                     continue;
                 }
-                self.add_draws(class, share(part), &mut numbers)?;
+                let models = match self.refined.and_then(|refined| refined.of_class(class)) {
+                    Some(models) => models,
+                    None => learned.sizes(class)?,
+                };
+                for (number, model) in models {
+                    let draws = model.posterior(&self.seen.features);
+                    let total: f64 = draws.iter().map(|(_, weight)| weight).sum();
+                    let draws =
+                        draws.into_iter().map(|(value, weight)| (value, share(part) * weight / total));
+                    numbers.entry(*number).or_default().extend(draws);
+                }
             }
         }
-        let severity_draws = numbers.remove(0).1;
-        let size = |(place, draws): &(Option<usize>, Draws)| {
+        let severity_draws = numbers.remove(&None).unwrap_or_default();
+        let size = |(place, draws): (&Option<usize>, &Draws)| {
             Some(SizeAnswer { key: size_keys[(*place)?], interval: interval(draws) })
         };
         Ok(Some(KindAnswer {
@@ -170,29 +182,6 @@ impl Asked<'_> {
             sizes: numbers.iter().filter_map(size).collect(),
             place: Some(self.place(likeliest, wheel, share(of_wheel))),
         }))
-    }
-
-    /// Adds the draws of a class's severity and sizes, whose weights add up to its share.
-    fn add_draws(
-        &self,
-        class: usize,
-        share: f64,
-        numbers: &mut Vec<(Option<usize>, Draws)>,
-    ) -> Result<(), DiagnoseError> {
-        let models = match self.refined.and_then(|refined| refined.of_class(class)) {
-            Some(models) => models,
-            None => self.learned.sizes(class)?,
-        };
-        for (number, model) in models {
-            let draws = model.posterior(&self.seen.features);
-            let total: f64 = draws.iter().map(|(_, weight)| weight).sum();
-            let draws = draws.into_iter().map(|(value, weight)| (value, share * weight / total));
-            match numbers.iter_mut().find(|(known, _)| known == number) {
-                Some((_, all)) => all.extend(draws),
-                None => numbers.push((*number, draws.collect())),
-            }
-        }
-        Ok(())
     }
 
     /// Place of a damage of a class: the angle of its burst, less the distance of the simulations' bursts behind the tooth's first contact.

@@ -48,14 +48,13 @@ impl Question<'_> {
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
         let nominal_hz = prior.base.operation.pinion_speed_hz;
         let [least, most] = simulated_hz(nominal_hz, prior);
-        let now = self.now.iter().map(|asked| (asked, false));
-        for (asked, is_healthy) in now.chain(self.healthy.iter().map(|asked| (asked, true))) {
+        for (place, asked) in self.all().enumerate() {
             let Some(speed_hz) = asked.input_speed_hz else { continue };
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 // Wrong pulses are seen in the recording itself.
                 let reason = reason(speed_hz / nominal_hz, prior).or_else(|| asked.mismatch.clone());
                 let (shaft, key) = driving(prior);
-                let reason = reason.unwrap_or_else(|| match is_healthy {
+                let reason = reason.unwrap_or_else(|| match place >= self.now.len() {
                     true => format!(
                         "a healthy recording that is compared with others turns at {:.1} to {:.1} Hz; record one at their speed",
                         least / FARTHEST,

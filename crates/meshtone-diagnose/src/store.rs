@@ -153,21 +153,15 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
     let mut archive = NpzWriter::stored(file);
     let mut numbers = Vec::with_capacity(records.len() * (COLUMNS + SIZES));
     for record in records {
-        let fault = record.fault.as_ref();
-        let of = |value: &dyn Fn(&DrawnFault) -> f64| fault.map_or(f64::NAN, value);
-        numbers.extend([
-            record.number as f64,
-            of(&|fault| fault.kind as f64),
-            of(&|fault| fault.wheel as f64),
-            of(&|fault| f64::from(fault.tooth)),
-            of(&|fault| f64::from(u8::from(fault.is_on_one_tooth))),
-            of(&|fault| fault.severity),
-            record.input_speed_hz,
-        ]);
-        // One more than there are, so that NaN among them is not the end.
-        let count = fault.map_or(0, |fault| fault.sizes.len());
-        numbers.push(count as f64);
-        let sizes = fault.map_or(&[][..], |fault| &fault.sizes);
+        let of_fault = record.fault.as_ref().map_or([f64::NAN; 5], |fault| {
+            let is_on_one_tooth = f64::from(u8::from(fault.is_on_one_tooth));
+            [fault.kind as f64, fault.wheel as f64, f64::from(fault.tooth), is_on_one_tooth, fault.severity]
+        });
+        let sizes = record.fault.as_ref().map_or(&[][..], |fault| &fault.sizes);
+        numbers.push(record.number as f64);
+        numbers.extend(of_fault);
+        // The number of sizes too, so that NaN among them is not the end.
+        numbers.extend([record.input_speed_hz, sizes.len() as f64]);
         numbers.extend((0..SIZES).map(|size| sizes.get(size).copied().unwrap_or(f64::NAN)));
     }
     let mut hash = Sha256::new();
