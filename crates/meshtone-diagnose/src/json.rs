@@ -1,5 +1,7 @@
 //! The answer of a diagnosis, as JSON.
 
+use std::path::Path;
+
 use meshtone::signal::AngleZero;
 use serde_json::{Map, Value, json};
 
@@ -39,6 +41,21 @@ impl Answer {
             "shown_wheel": wheels[self.shown_wheel],
             "explanations": self.explanations.iter().map(|one| explanation(one, wheels)).collect::<Vec<_>>(),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
+        })
+    }
+
+    /// Writes from how many simulations the answer was learnt, as JSON.
+    ///
+    /// # Arguments
+    /// * `asked` - simulations that were asked for
+    /// * `folder` - where they are kept
+    pub fn reference_json(&self, asked: u64, folder: &Path) -> Value {
+        json!({
+            "asked": asked,
+            "simulated": self.simulated_records,
+            "records": self.reference_records,
+            "refined_records": self.refined_records,
+            "folder": folder.display().to_string(),
         })
     }
 }

@@ -27,16 +27,12 @@ impl Standardisation {
     /// * `rows` - features of the simulations
     pub fn of(rows: &[Vec<f64>]) -> Self {
         let (count, width) = (rows.len().max(1) as f64, rows.first().map_or(0, Vec::len));
-        let mut mean = vec![0.0; width];
-        let mut deviation = vec![0.0; width];
-        for row in rows {
-            mean.iter_mut().zip(row).for_each(|(sum, value)| *sum += value / count);
-        }
-        for row in rows {
-            let squares = deviation.iter_mut().zip(row.iter().zip(&mean));
-            squares.for_each(|(sum, (value, mean))| *sum += (value - mean).powi(2) / count);
-        }
-        deviation.iter_mut().for_each(|value| *value = value.sqrt().max(LEAST_DEVIATION));
+        let of_feature = |at: usize| {
+            let mean: f64 = rows.iter().map(|row| row[at] / count).sum();
+            let variance: f64 = rows.iter().map(|row| (row[at] - mean).powi(2) / count).sum();
+            (mean, variance.sqrt().max(LEAST_DEVIATION))
+        };
+        let (mean, deviation) = (0..width).map(of_feature).unzip();
         Self { mean, deviation }
     }
 

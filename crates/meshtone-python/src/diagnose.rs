@@ -137,13 +137,7 @@ pub fn diagnose<'py>(
         answer(&store, &prior, records, &question, &control)
     })??;
     let mut json = answer.to_json();
-    json["reference"] = serde_json::json!({
-        "asked": records,
-        "simulated": answer.simulated_records,
-        "records": answer.reference_records,
-        "refined_records": answer.refined_records,
-        "folder": store.folder_of(&prior).display().to_string(),
-    });
+    json["reference"] = answer.reference_json(records, &store.folder_of(&prior));
     let band = answer.band_g.map(|end| array(py, end));
     Ok((json.to_string(), array(py, answer.difference_g), band))
 }
