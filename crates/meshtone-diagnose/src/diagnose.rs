@@ -12,10 +12,11 @@ use crate::answer::{
 };
 use crate::any_damage::sentence;
 use crate::bearings;
+use crate::draw::DrawnFault;
 use crate::layout::Layout;
 use crate::learn::{Learned, Seen};
 use crate::observation::{Observation, Question};
-use crate::prior::{DrawnFault, Prior};
+use crate::prior::Prior;
 use crate::refine::Refined;
 use crate::rule::Rule;
 use crate::warnings::warnings;

@@ -7,10 +7,11 @@ use meshtone_learn::{OutlierTest, RandomFeatures, SizeModel, Softmax, Standardis
 use nalgebra::DMatrix;
 
 use crate::DiagnoseError;
+use crate::draw::{DrawnFault, RECORDS_PER_UNIT};
 use crate::layout::{FeatureRow, Layout};
 use crate::mounting::CommonChanges;
 use crate::observation::{Question, SignalKind};
-use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
+use crate::prior::Focus;
 use crate::reference::{ReferenceRecord, ReferenceSet};
 
 /// Random features beside the linear ones.

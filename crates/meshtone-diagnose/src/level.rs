@@ -3,10 +3,10 @@
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone_learn::{WheelLines, quantiles};
 
+use crate::draw::RECORDS_PER_UNIT;
 use crate::layout::Layout;
 use crate::learn::Learned;
 use crate::observation::{Observation, Question};
-use crate::prior::RECORDS_PER_UNIT;
 use crate::reference::ReferenceRecord;
 
 /// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.

@@ -120,10 +120,7 @@ impl Observation {
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
         let bearings = recording.bearing_defects(&bearings)?;
         let observed = Self { zero, bearings, ..observed };
-        Ok(match against {
-            Some(against) => observed.with_mismatch(against),
-            None => observed,
-        })
+        Ok(against.into_iter().fold(observed, Self::with_mismatch))
     }
 
     /// Observes the wheels of a rig in a recording over the angles of their shafts.

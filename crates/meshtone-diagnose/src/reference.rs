@@ -14,7 +14,8 @@ use meshtone::{Error, Stages};
 use meshtone_learn::{WheelLines, separations};
 use rayon::prelude::*;
 
-use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
+use crate::draw::{Drawn, DrawnFault, RECORDS_PER_UNIT};
+use crate::prior::Prior;
 
 /// A simulation of a reference set.
 #[derive(Debug, Clone, PartialEq)]
