@@ -60,7 +60,8 @@ pub fn diagnose(
     let known = &learned.layout;
     let is_shorter = layout.last.iter().zip(&known.last).any(|(asked, known)| asked < known);
     if layout.signal != known.signal || layout.has_healthy != known.has_healthy || is_shorter {
-        return Err(DiagnoseError::OtherQuestion);
+        let problem = "the question is unlike the one that was learnt for: another signal, with or without healthy recordings, or fewer orders";
+        return Err(DiagnoseError::Unfit(problem.to_owned()));
     }
     let asked = Asked { learned, question, refined, seen: learned.seen(question) };
     let Seen { row, of_class, .. } = &asked.seen;

@@ -63,30 +63,38 @@ impl Layout {
     /// before any simulation is looked at. The orders reach as far as the shortest of all averages, since features over other orders would
     /// differ without any damage.
     pub(crate) fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
-        let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
+        let unfit = |problem: String| Err(DiagnoseError::Unfit(problem));
+        let Some(first) = question.now.first() else {
+            return unfit("there is no recording to ask about".to_owned());
+        };
         let rig = &reference.prior.train.wheels;
-        let expected: Vec<u32> = rig.iter().map(|wheel| wheel.teeth).collect();
+        let expected: Vec<String> = rig.iter().map(|wheel| wheel.teeth.to_string()).collect();
         for asked in question.all() {
             // A wheel that is not seen may be the expected one.
-            let teeth = |(place, seen): (usize, &Option<WheelLines>)| {
-                let unseen = || expected.get(place).copied().unwrap_or(0);
-                seen.as_ref().map_or_else(unseen, |wheel| wheel.teeth() as u32)
+            let teeth = |(place, seen): (usize, &Option<WheelLines>)| match seen {
+                Some(wheel) => wheel.teeth().to_string(),
+                None => expected.get(place).cloned().unwrap_or_default(),
             };
-            let given: Vec<u32> = asked.wheels.iter().enumerate().map(teeth).collect();
+            let given: Vec<String> = asked.wheels.iter().enumerate().map(teeth).collect();
             if given != expected {
-                return Err(DiagnoseError::OtherWheels { given, expected });
+                let (given, expected) = (given.join(", "), expected.join(", "));
+                return unfit(format!(
+                    "the recording is of wheels with {given} teeth, the scenario has {expected}, in its order"
+                ));
             }
-            if let Some(value) = asked.input_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
-                let (what, beside) = ("speed (Hz)", " and more than 0");
-                return Err(DiagnoseError::NotFinite { what, value, beside });
+            if let Some(hz) = asked.input_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
+                return unfit(format!("a recording's speed (Hz) is {hz}; must be finite and more than 0"));
             }
             let lines = asked.wheels.iter().flatten().flat_map(|wheel| &wheel.lines);
             if let Some(value) = lines.map(|line| line.norm()).find(|norm| !norm.is_finite()) {
-                return Err(DiagnoseError::NotFinite { what: "average", value, beside: "" });
+                return unfit(format!("a recording's average is {value}; must be finite"));
             }
             if asked.signal != first.signal {
-                let (healthy, asked) = (asked.signal.name(), first.signal.name());
-                return Err(DiagnoseError::OtherSignal { healthy, asked });
+                return unfit(format!(
+                    "one recording is given as `{}`, another as `{}` (whole recording, average or difference signal); all must be the same",
+                    asked.signal.name(),
+                    first.signal.name()
+                ));
             }
         }
         let last = |wheel: usize| {
@@ -98,12 +106,15 @@ impl Layout {
         let train = &reference.prior.train;
         let mesh_order =
             |wheel: &TrainWheel| f64::from(wheel.teeth) * train.speed_ratio(wheel.shaft, 0).value();
-        for ((wheel, &last), _) in rig.iter().zip(&last).zip(&first.wheels).filter(|(_, seen)| seen.is_some())
-        {
+        let seen = rig.iter().zip(&last).zip(&first.wheels).filter(|(_, seen)| seen.is_some());
+        for ((wheel, last), _) in seen {
             let needed = FEWEST_MESH_ORDERS * wheel.teeth as usize + wheel.teeth as usize / 2;
-            if last < needed {
-                let (of, wheel) = (first.signal.name(), wheel_in_words(&wheel.name));
-                return Err(DiagnoseError::TooFewOrders { of, wheel, last, needed });
+            if *last < needed {
+                return Err(DiagnoseError::TooFewOrders(format!(
+                    "the {}, or the simulations, show orders up to {last} of the {}'s shaft; at least {FEWEST_MESH_ORDERS} mesh orders, {needed}, are needed",
+                    first.signal.name(),
+                    wheel_in_words(&wheel.name)
+                )));
             }
         }
         Ok(Self {

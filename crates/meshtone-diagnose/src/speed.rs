@@ -64,14 +64,18 @@ impl Question<'_> {
                         "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed ({key})?"
                     ),
                 });
-                return Err(DiagnoseError::OtherSpeed { shaft, speed_hz, nominal_hz, reason });
+                return Err(DiagnoseError::OtherSpeed(format!(
+                    "{shaft} turns at {speed_hz:.4} Hz by the recording, at {nominal_hz:.4} Hz by the scenario: {reason}"
+                )));
             }
         }
         let healthy_hz = || self.healthy.iter().filter_map(|asked| asked.input_speed_hz);
         let [slowest, fastest] =
             [healthy_hz().fold(f64::INFINITY, f64::min), healthy_hz().fold(0.0, f64::max)];
         if fastest > slowest * STEP.exp() {
-            return Err(DiagnoseError::HealthySpeeds { slowest, fastest });
+            return Err(DiagnoseError::Unfit(format!(
+                "the healthy recordings turn at {slowest:.3} to {fastest:.3} Hz; give those of one speed, best the one at which the recording in question turns"
+            )));
         }
         // A wrong speed moves the orders too, so it is reported before them.
         Layout::of(self, &ReferenceSet { prior: prior.clone(), records: Vec::new() }).map(drop)
