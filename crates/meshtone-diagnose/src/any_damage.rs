@@ -23,19 +23,16 @@ impl AnyDamage {
     /// * `of_wheel` - (-) probability of damage to each wheel
     pub(crate) fn over(kinds: &[KindAnswer], of_wheel: &[f64]) -> Option<Self> {
         let damaged = || kinds.iter().filter(|kind| kind.label != HEALTHY);
-        let mut draws = Vec::new();
-        for kind in damaged() {
+        let draws = damaged().flat_map(|kind| {
             let total: f64 = kind.severity_draws.iter().map(|(_, weight)| weight).sum();
             let share = kind.probability / total.max(f64::MIN_POSITIVE);
-            draws.extend(kind.severity_draws.iter().map(|(value, weight)| (*value, share * weight)));
-        }
+            kind.severity_draws.iter().map(move |(value, weight)| (*value, share * weight))
+        });
+        let draws: Vec<(f64, f64)> = draws.collect();
         let total: f64 = damaged().map(|kind| kind.probability).sum();
         if draws.is_empty() || total <= 0.0 {
             return None;
         }
-        let part = |of: &dyn Fn(&KindAnswer) -> f64| {
-            damaged().map(|kind| kind.probability * of(kind)).sum::<f64>() / total
-        };
         let by_probability = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
         let (wheel, of_likeliest) = of_wheel.iter().enumerate().max_by(by_probability)?;
         let wheel_probability = of_likeliest / total;
@@ -51,14 +48,15 @@ impl AnyDamage {
             }
         }
         let is_on_one_tooth = |kind: &KindAnswer| kind.place.is_some_and(|place| place.is_on_one_tooth);
-        let one_tooth_probability = part(&|kind| f64::from(u8::from(is_on_one_tooth(kind))));
+        let on_one_tooth: f64 =
+            damaged().filter(|kind| is_on_one_tooth(kind)).map(|kind| kind.probability).sum();
         let likeliest = teeth.into_iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
         let given_wheel = |share: f64| (share / (total * wheel_probability)).min(1.0);
         Some(Self {
             severity: interval(&draws),
             wheel,
             wheel_probability,
-            one_tooth_probability,
+            one_tooth_probability: on_one_tooth / total,
             tooth: likeliest
                 .map(|tooth| ToothAnswer { probability: given_wheel(tooth.probability), ..tooth }),
         })

@@ -88,8 +88,7 @@ pub fn build_reference(
         }
     };
     let scenarios: Vec<Scenario> = drawn.iter().map(|(_, drawn)| drawn.scenario.clone()).collect();
-    let keep = KeepAverages { train: &prior.train };
-    simulate_many(scenarios, &keep, control, take);
+    simulate_many(scenarios, &KeepAverages(&prior.train), control, take);
     records
 }
 
@@ -112,9 +111,7 @@ fn record(prior: &Prior, number: u64, drawn: &Drawn, averages: &[SynchronousAver
 }
 
 /// Keeps the averages of all wheels over the first sensor of each of many simulations.
-struct KeepAverages<'a> {
-    train: &'a GearTrain,
-}
+struct KeepAverages<'a>(&'a GearTrain);
 
 /// The channel of the first sensor.
 fn leading(scenario: &Scenario) -> KeepChannels {
@@ -136,7 +133,7 @@ impl Keep for KeepAverages<'_> {
     fn keep(&self, _: usize, stages: Stages, recorder: SignalRecorder) -> Self::Kept {
         let Signals { start_s, channels, .. } = recorder.finish(&stages);
         let signal: Vec<f64> = channels.into_iter().flatten().map(f64::from).collect();
-        averages(&stages, self.train, start_s, signal)
+        averages(&stages, self.0, start_s, signal)
     }
 }
 

@@ -53,7 +53,7 @@ impl Question<'_> {
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 // Wrong pulses are seen in the recording itself.
                 let reason = reason(speed_hz / nominal_hz, prior).or_else(|| asked.mismatch.clone());
-                let (shaft, key) = driving(prior);
+                let (shaft, key) = (prior.base.driven_in_words(), prior.base.speed_key());
                 let reason = reason.unwrap_or_else(|| match place >= self.now.len() {
                     true => format!(
                         "a healthy recording that is compared with others turns at {:.1} to {:.1} Hz; record one at their speed",
@@ -69,9 +69,9 @@ impl Question<'_> {
                 )));
             }
         }
-        let healthy_hz = || self.healthy.iter().filter_map(|asked| asked.input_speed_hz);
-        let [slowest, fastest] =
-            [healthy_hz().fold(f64::INFINITY, f64::min), healthy_hz().fold(0.0, f64::max)];
+        let healthy_hz = self.healthy.iter().filter_map(|asked| asked.input_speed_hz);
+        let (slowest, fastest) =
+            healthy_hz.fold((f64::INFINITY, 0.0f64), |(least, most), hz| (hz.min(least), hz.max(most)));
         if fastest > slowest * STEP.exp() {
             return Err(DiagnoseError::Unfit(format!(
                 "the healthy recordings turn at {slowest:.3} to {fastest:.3} Hz; give those of one speed, best the one at which the recording in question turns"
@@ -80,11 +80,6 @@ impl Question<'_> {
         // A wrong speed moves the orders too, so it is reported before them.
         Layout::of(self, &ReferenceSet { prior: prior.clone(), records: Vec::new() }).map(drop)
     }
-}
-
-/// The shaft that drives in words, and the key of its speed.
-fn driving(prior: &Prior) -> (&'static str, &'static str) {
-    (prior.base.driven_in_words(), prior.base.speed_key())
 }
 
 /// (Hz) Mean speed of the shaft that drives, where it is known.
@@ -131,7 +126,7 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
 pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let nominal_hz = prior.base.operation.pinion_speed_hz;
     let [least, most] = simulated_hz(nominal_hz, prior);
-    let (shaft, key) = driving(prior);
+    let (shaft, key) = (prior.base.driven_in_words(), prior.base.speed_key());
     let healthy = if prior.healthy_speed_hz.is_some() { &[] } else { question.healthy };
     let speeds = question.now.iter().chain(healthy).filter_map(|asked| asked.input_speed_hz);
     let beside = speeds.filter(|speed_hz| !(least..=most).contains(speed_hz)).map(|speed_hz| {
