@@ -201,20 +201,13 @@ impl Prior {
         healthy: &Scenario,
         own: &mut Draws,
     ) -> Result<(Scenario, DrawnFault), ScenarioError> {
-        let mut problem = None;
         for _ in 0..MOST_PAIRS {
             let other = (own.bits() % self.train.wheels.len() as u64) as usize;
             let drawn = [wheel, other].map(|wheel| {
                 let kind = (own.bits() % kinds.len() as u64) as usize;
                 self.damaged(kinds, (kind, wheel), healthy, own)
             });
-            let [(one, first), (other, second)] = match drawn {
-                [Ok(first), Ok(second)] => [first, second],
-                [Err(error), _] | [_, Err(error)] => {
-                    problem = Some(error);
-                    continue;
-                }
-            };
+            let [Ok((one, first)), Ok((other, second))] = drawn else { continue };
             let faults = [one.faults, other.faults].concat();
             let both = healthy.clone().with_faults(faults);
             // Two damages of one tooth may not go together.
@@ -224,8 +217,7 @@ impl Prior {
                 return Ok((both, fault));
             }
         }
-        let none = || ScenarioError::new("fault", SEVERAL, "no two damages that were drawn go together");
-        Err(problem.unwrap_or_else(none))
+        Err(ScenarioError::new("fault", SEVERAL, "no two damages that were drawn go together"))
     }
 
     /// Damages a rig.

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use meshtone::scenario::DamageKind;
-use meshtone_learn::{OutlierTest, RandomFeatures, SizeModel, Softmax, Standardisation, fold_of, ridge};
+use meshtone_learn::{OutlierTest, RandomFeatures, SizeModel, Softmax, fold_of, ridge};
 use nalgebra::DMatrix;
 
 use crate::DiagnoseError;
@@ -36,7 +36,6 @@ pub struct Learned<'a> {
     pub(crate) rows: Vec<FeatureRow>,
     pub(crate) classes: Vec<Class>,
     pub(crate) class_of: Vec<usize>,
-    standard: Standardisation,
     random: RandomFeatures,
     features: DMatrix<f64>,
     coefficients: DMatrix<f64>,
@@ -95,11 +94,8 @@ impl<'a> Learned<'a> {
         let folds: Vec<usize> = records.iter().map(|record| fold_of(record.unit())).collect();
         let weights = weights(&class_of, &classes);
         let values: Vec<Vec<f64>> = rows.iter().map(|row| row.values.clone()).collect();
-        let standard = Standardisation::of(&values);
-        let standardised: Vec<Vec<f64>> = values.iter().map(|row| standard.apply(row)).collect();
-        let width = values.first().map_or(0, Vec::len);
-        let random = RandomFeatures::new(width, RANDOM_FEATURES, reference.prior.seed);
-        let features = random.of(&standardised);
+        let random = RandomFeatures::new(&values, RANDOM_FEATURES, reference.prior.seed);
+        let features = random.of(&values);
         let is_class = |class: usize, row: usize| f64::from(u8::from(class_of[row] == class));
         let targets = DMatrix::from_fn(classes.len(), records.len(), is_class);
         let regression = ridge(&features, &targets, &weights, &folds, PENALTY)?;
@@ -127,7 +123,6 @@ impl<'a> Learned<'a> {
             rows,
             classes,
             class_of,
-            standard,
             random,
             features,
             coefficients: regression.coefficients,
@@ -142,8 +137,7 @@ impl<'a> Learned<'a> {
     /// What is seen in the recordings of a question.
     pub(crate) fn seen(&self, question: &Question) -> Seen {
         let row = self.layout.question(question);
-        let features: Vec<f64> =
-            self.random.of(&[self.standard.apply(&row.values)]).iter().copied().collect();
+        let features: Vec<f64> = self.random.of(std::slice::from_ref(&row.values)).iter().copied().collect();
         let columns = self.coefficients.column_iter();
         let scores = columns.map(|column| column.iter().zip(&features).map(|(a, b)| a * b).sum());
         let of_class = self.softmax.probabilities(&scores.collect::<Vec<f64>>());
@@ -200,7 +194,7 @@ impl<'a> Learned<'a> {
                 return Err(DiagnoseError::NoReference);
             }
             let (rows, _) = self.layout.simulations(refined, &more);
-            let values: Vec<Vec<f64>> = rows.iter().map(|row| self.standard.apply(&row.values)).collect();
+            let values: Vec<Vec<f64>> = rows.into_iter().map(|row| row.values).collect();
             let known = features.ncols();
             features = features.resize_horizontally(known + more.len(), 0.0);
             features.columns_mut(known, more.len()).copy_from(&self.random.of(&values));

@@ -28,18 +28,13 @@ const COLUMNS: usize = 7;
 /// Sizes of a damage, at most.
 const SIZES: usize = 6;
 
+/// All numbers of a record: these, the number of its sizes, and the sizes.
+const WIDTH: usize = COLUMNS + 1 + SIZES;
+
 /// A reference set that could not be kept.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// A file or folder that could not be made.
-    #[error("cannot keep the reference set in {}: {source}", path.display())]
-    Folder {
-        /// Name of the file or folder.
-        path: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// A file that could not be written.
+    /// A file or folder that could not be written.
     #[error(transparent)]
     File(#[from] WriteFileError),
     /// The caller has stopped it; what is finished stays.
@@ -114,8 +109,7 @@ impl ReferenceStore {
     /// A folder that cannot be written; cancelled.
     pub fn get(&self, prior: &Prior, count: u64, control: &Control) -> Result<ReferenceSet, StoreError> {
         let folder = self.folder_of(prior);
-        let failed = |source| StoreError::Folder { path: folder.clone(), source };
-        fs::create_dir_all(&folder).map_err(failed)?;
+        fs::create_dir_all(&folder).map_err(|source| WriteFileError { path: folder.clone(), source })?;
         let is_own =
             |number: &u64| prior.healthy_speed_hz.is_none() || number.is_multiple_of(RECORDS_PER_UNIT);
         let mut records = Vec::new();
@@ -152,7 +146,7 @@ impl ReferenceStore {
 
 fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
     let mut archive = NpzWriter::stored(file);
-    let mut numbers = Vec::with_capacity(records.len() * (COLUMNS + SIZES));
+    let mut numbers = Vec::with_capacity(records.len() * WIDTH);
     for record in records {
         let of_fault = record.fault.as_ref().map_or([f64::NAN; 5], |fault| {
             let is_on_one_tooth = f64::from(u8::from(fault.is_on_one_tooth));
@@ -170,7 +164,7 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
         hash_values(&mut hash, values);
         archive.add(name, shape, values)
     };
-    add("records", &[records.len(), COLUMNS + 1 + SIZES], &numbers)?;
+    add("records", &[records.len(), WIDTH], &numbers)?;
     for wheel in 0..records.first().map_or(0, |record| record.wheels.len()) {
         let lines = || records.iter().map(|record| &record.wheels[wheel].lines);
         let lengths: Vec<f64> = lines().map(|lines| lines.len() as f64).collect();
@@ -204,18 +198,17 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let wrong = || io::Error::other("it is no batch of a reference set");
     let mut archive = NpzReader::new(File::open(path)?)?;
     let rig = &prior.train.wheels;
-    let width = COLUMNS + 1 + SIZES;
     let mut hash = Sha256::new();
     let mut read = |name: &str, most: u64| -> io::Result<Vec<f64>> {
         let numbers = archive.floats(name, most)?.numbers;
         hash_values(&mut hash, &numbers);
         Ok(numbers)
     };
-    let numbers = read("records", BATCH * width as u64)?;
-    if !numbers.len().is_multiple_of(width) {
+    let numbers = read("records", BATCH * WIDTH as u64)?;
+    if !numbers.len().is_multiple_of(WIDTH) {
         return Err(wrong());
     }
-    let mut wheels: Vec<Vec<WheelLines>> = vec![Vec::new(); numbers.len() / width];
+    let mut wheels: Vec<Vec<WheelLines>> = vec![Vec::new(); numbers.len() / WIDTH];
     for (place, separation) in separations(&prior.train).into_iter().enumerate() {
         let lengths = read(&format!("lengths_{place}"), BATCH)?;
         let parts =
@@ -246,7 +239,7 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
         });
         ReferenceRecord { number: row[0] as u64, fault, input_speed_hz: row[6], wheels }
     };
-    let records: Vec<ReferenceRecord> = numbers.chunks_exact(width).zip(wheels).map(record).collect();
+    let records: Vec<ReferenceRecord> = numbers.chunks_exact(WIDTH).zip(wheels).map(record).collect();
     let kinds = prior.kinds();
     let is_known = |fault: &DrawnFault| {
         let sizes = kinds.get(fault.kind).map_or(0, |kind| kind.sizes.len());
@@ -302,7 +295,7 @@ mod tests {
                 let mut archive = NpzWriter::stored(file);
                 for (name, values) in &arrays {
                     let width = match *name {
-                        "records" => COLUMNS + 1 + SIZES,
+                        "records" => WIDTH,
                         name if name.starts_with("lines") => 2,
                         _ => 1,
                     };

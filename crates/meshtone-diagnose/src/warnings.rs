@@ -1,6 +1,7 @@
 //! Warnings about an answer.
 
 use meshtone::damage::damage_kinds;
+use meshtone::signal::ForeignTones;
 
 use crate::answer::{Answer, p_in_words};
 use crate::diagnose::OUTSIDE;
@@ -86,20 +87,20 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     let outside = answer.is_recording_outside().then(|| {
         let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
         let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
-        let why = if let Some(hint) = level::unit_hint(learned, question) {
-            hint
-        } else if answer.has_bearing_lines() {
-            "a damaged bearing may be the reason, since no simulation has one".to_owned()
-        } else if let Some(tones) = foreign {
+        let of_bearing = "a damaged bearing may be the reason, since no simulation has one";
+        let of_tones = |tones: &ForeignTones| {
             format!(
                 "it also has tones at no order of any shaft, {:.1} % of its energy, the strongest at {:.2} Hz: the scenario may be of another \
                  machine, or of one pair of a gearbox, or its teeth or speed are not those of the rig",
                 100.0 * tones.part,
                 tones.strongest.first().map_or(f64::NAN, |tone| tone.frequency_hz)
             )
-        } else {
-            "what is wrong may be none of the kinds that are known here, or the scenario is not this rig".to_owned()
         };
+        let unknown = "what is wrong may be none of the kinds that are known here, or the scenario is not this rig";
+        let why = level::unit_hint(learned, question)
+            .or_else(|| answer.has_bearing_lines().then(|| of_bearing.to_owned()))
+            .or_else(|| foreign.map(of_tones))
+            .unwrap_or_else(|| unknown.to_owned());
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });
     // What changed since may be like the simulations all the same.

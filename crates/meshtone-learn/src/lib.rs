@@ -25,7 +25,7 @@ pub use features::{WheelFeatures, wheel_features};
 pub use fold::{FOLDS, fold_of};
 pub use healthy::beyond_healthy;
 pub use lines::{MESH_ORDERS, PASSED, WheelLines, revolution, separation, separations};
-pub use matrix::{RandomFeatures, Ridge, Standardisation, ridge};
+pub use matrix::{RandomFeatures, Ridge, ridge};
 pub use outlier_test::{OutlierTest, Ranking};
 pub use quantile::{Interval, interval, median, quantiles};
 pub use size::SizeModel;

@@ -6,12 +6,11 @@ use crate::failure::Failure;
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        const HELP: &str = "name another folder for the simulations with --reference DIR";
-        let message = error.to_string();
         match error {
-            StoreError::Folder { source, .. } => Self::of_writing(source.kind(), message).with_help(HELP),
-            StoreError::File(error) => Self::from(error).with_help(HELP),
-            StoreError::Cancelled => Self::failed(message),
+            StoreError::File(error) => {
+                Self::from(error).with_help("name another folder for the simulations with --reference DIR")
+            }
+            StoreError::Cancelled => Self::failed(error.to_string()),
         }
     }
 }
