@@ -201,7 +201,7 @@ impl Asked<'_> {
         // Those that resemble the recording most show how far the burst is behind.
         let behind = self.nearest(class, NEAR).filter_map(|other| {
             let tooth = f64::from(learned.records[other].fault.as_ref()?.tooth) - 1.0;
-            let pitches = learned.rows[other].burst_rev[wheel] * teeth - tooth;
+            let pitches = learned.bursts_rev[other][wheel] * teeth - tooth;
             Some((pitches + teeth / 2.0).rem_euclid(teeth) - teeth / 2.0)
         });
         let behind: Vec<f64> = behind.collect();
@@ -238,7 +238,7 @@ impl Asked<'_> {
     /// (g) A simulation's difference signal of a wheel, its burst where the first recording has it (of what is beyond the healthy recording where there is one),
     /// and as large as behind the recording's path.
     fn of_record(&self, record: usize, wheel: usize) -> Vec<f64> {
-        let turn = self.seen.row.burst_rev[wheel] - self.learned.rows[record].burst_rev[wheel];
+        let turn = self.seen.row.burst_rev[wheel] - self.learned.bursts_rev[record][wheel];
         let record = self.learned.records[record];
         let measured = self.question.healthy.first().and_then(|healthy| healthy.wheels[wheel].as_ref());
         let rms_g = |lines| rms_g(lines, self.learned.layout.last[wheel]);

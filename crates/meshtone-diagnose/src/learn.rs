@@ -33,7 +33,8 @@ pub struct Learned<'a> {
     pub(crate) layout: Layout,
     /// The records that it was learnt from.
     pub(crate) records: Vec<&'a ReferenceRecord>,
-    pub(crate) rows: Vec<FeatureRow>,
+    /// (rev) Where the bursts of their wheels are.
+    pub(crate) bursts_rev: Vec<Vec<f64>>,
     pub(crate) classes: Vec<Class>,
     pub(crate) class_of: Vec<usize>,
     random: RandomFeatures,
@@ -93,7 +94,10 @@ impl<'a> Learned<'a> {
         let class_of: Vec<usize> = records.iter().filter_map(place).collect();
         let folds: Vec<usize> = records.iter().map(|record| fold_of(record.unit())).collect();
         let weights = weights(&class_of, &classes);
-        let values: Vec<Vec<f64>> = rows.iter().map(|row| row.values.clone()).collect();
+        let alike: Vec<_> = rows.iter().filter_map(|row| row.alike.as_ref()).collect();
+        let common_changes = CommonChanges::new(&alike);
+        let (values, bursts_rev): (Vec<Vec<f64>>, _) =
+            rows.into_iter().map(|row| (row.values, row.burst_rev)).unzip();
         let random = RandomFeatures::new(&values, RANDOM_FEATURES, reference.prior.seed);
         let features = random.of(&values);
         let is_class = |class: usize, row: usize| f64::from(u8::from(class_of[row] == class));
@@ -112,15 +116,13 @@ impl<'a> Learned<'a> {
             let rows: Vec<Vec<f64>> = healthy.values().map(|state| layout.row(state, None).values).collect();
             OutlierTest::new(&rows, healthy.keys().copied().collect(), vec![true; rows.len()])
         });
-        let alike: Vec<_> = rows.iter().filter_map(|row| row.alike.as_ref()).collect();
-        let common_changes = CommonChanges::new(&alike);
         let size_models = classes.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
             reference,
             kinds,
             layout,
             records,
-            rows,
+            bursts_rev,
             classes,
             class_of,
             random,

@@ -84,9 +84,7 @@ impl Learned<'_> {
         if of_class[class] < LIKELY || self.kinds.get(kind).is_none_or(|kind| kind.sizes.is_empty()) {
             return Ok(None);
         }
-        let Some((_, severity)) = self.sizes(class)?.iter().find(|(place, _)| place.is_none()) else {
-            return Ok(None);
-        };
+        let Some((None, severity)) = self.sizes(class)?.first() else { return Ok(None) };
         let [least, most] = quantiles(severity.posterior(&features), LEFT_OUT);
         let severity = [(least - MARGIN).max(0.0), (most + MARGIN).min(1.0)];
         if severity[1] - severity[0] > TOO_WIDE {

@@ -101,21 +101,19 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
     let of_shaft = |shaft: usize, other: usize| {
         format!("that is their ratio of speeds: the speed may be of {}, not of {}", name(shaft), name(other))
     };
+    let sixty = [
+        (SIXTY, "it is 60 times as quick: a speed in rpm that was given as Hz? 1 Hz are 60 rpm"),
+        (1.0 / SIXTY, "it is 60 times as slow: has the scenario its speed in rpm? 1 Hz are 60 rpm"),
+    ];
+    let by_unit = sixty.into_iter().find(|(other, _)| is(*other)).map(|(_, why)| why.to_owned());
     let input = train.input();
-    let others = (0..train.shafts.len()).filter(|shaft| *shaft != input);
-    let others = others.map(|shaft| (shaft, train.speed_ratio(shaft, input).value()));
-    let mut others = others.filter(|(_, of_input)| *of_input != 1.0);
-    if is(SIXTY) {
-        Some("it is 60 times as quick: a speed in rpm that was given as Hz? 1 Hz are 60 rpm".to_owned())
-    } else if is(1.0 / SIXTY) {
-        Some("it is 60 times as slow: has the scenario its speed in rpm? 1 Hz are 60 rpm".to_owned())
-    } else {
-        others.find_map(|(shaft, of_input)| match () {
-            () if is(of_input) => Some(of_shaft(shaft, input)),
-            () if is(1.0 / of_input) => Some(of_shaft(input, shaft)),
-            () => None,
-        })
-    }
+    let by_shaft = |shaft: usize| match train.speed_ratio(shaft, input).value() {
+        1.0 => None,
+        of_input if is(of_input) => Some(of_shaft(shaft, input)),
+        of_input if is(1.0 / of_input) => Some(of_shaft(input, shaft)),
+        _ => None,
+    };
+    by_unit.or_else(|| (0..train.shafts.len()).filter(|shaft| *shaft != input).find_map(by_shaft))
 }
 
 /// Warnings about recordings beside the speeds of the simulations, though near them, and about a healthy recording of another speed.
