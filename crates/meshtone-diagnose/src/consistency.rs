@@ -57,7 +57,7 @@ pub(crate) fn contradicting_states(learned: &Learned, question: &Question) -> Op
     let wheels = &learned.reference.prior.train.wheels;
     let of_wheels = |one: &Observation| {
         let alone = Question { now: std::slice::from_ref(one), healthy: question.healthy };
-        learned.wheel_probabilities(&learned.seen(&alone).of_class)
+        learned.seen(&alone).of_wheels
     };
     let of_wheels: Vec<Vec<f64>> = question.now.iter().map(of_wheels).collect();
     let damaged: Vec<f64> = of_wheels.iter().map(|of| of.iter().sum()).collect();

@@ -64,7 +64,7 @@ pub fn diagnose(
         return Err(DiagnoseError::Unfit(problem.to_owned()));
     }
     let asked = Asked { learned, question, refined, seen: learned.seen(question) };
-    let Seen { row, of_class, .. } = &asked.seen;
+    let Seen { row, of_class, of_wheels, .. } = &asked.seen;
     let healthy = learned.classes.iter().zip(of_class).filter(|(class, _)| class.is_none());
     let mut kinds = vec![KindAnswer {
         label: HEALTHY,
@@ -83,9 +83,8 @@ pub fn diagnose(
     let least = 1.0 / (learned.records.len() + 1) as f64;
     let healthy_alone = Question { now: question.healthy, healthy: &[] };
     let wheels = &learned.reference.prior.train.wheels;
-    let of_wheels = learned.wheel_probabilities(of_class);
     let of_any = of_wheels.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let any_damage = AnyDamage::over(&kinds, &of_wheels);
+    let any_damage = AnyDamage::over(&kinds, of_wheels);
     let is_seen = |wheel: &usize| question.now[0].wheels[*wheel].is_some();
     let shown_wheel = any_damage.as_ref().map(|any| any.wheel).filter(is_seen).unwrap_or(wheels.len() - 1);
     let shown = question.now[0].wheels[shown_wheel].as_ref();
@@ -159,8 +158,8 @@ impl Asked<'_> {
                 if class != likeliest && part <= NEGLIGIBLE * probability {
                     continue;
                 }
-                let models = match self.refined.and_then(|refined| refined.of_class(class)) {
-                    Some(models) => models,
+                let models = match self.refined.filter(|refined| refined.class == class) {
+                    Some(refined) => &refined.models,
                     None => learned.sizes(class)?,
                 };
                 for (number, model) in models {

@@ -55,6 +55,8 @@ pub(crate) struct Seen {
     pub features: Vec<f64>,
     /// (-) Probability of each class.
     pub of_class: Vec<f64>,
+    /// (-) Probability of damage to each wheel.
+    pub of_wheels: Vec<f64>,
 }
 
 /// Severity and sizes of a class's damages, by their places among the sizes; none of the severity.
@@ -143,20 +145,13 @@ impl<'a> Learned<'a> {
         let columns = self.coefficients.column_iter();
         let scores = columns.map(|column| column.iter().zip(&features).map(|(a, b)| a * b).sum());
         let of_class = self.softmax.probabilities(&scores.collect::<Vec<f64>>());
-        Seen { row, features, of_class }
-    }
-
-    /// (-) The probability of damage to each wheel.
-    ///
-    /// # Arguments
-    /// * `of_class` - (-) probability of each class
-    pub(crate) fn wheel_probabilities(&self, of_class: &[f64]) -> Vec<f64> {
         let of_wheel = |wheel: usize| {
-            let classes = self.classes.iter().zip(of_class);
+            let classes = self.classes.iter().zip(&of_class);
             let of_wheel = classes.filter(|(class, _)| class.is_some_and(|(_, of)| of == wheel));
             of_wheel.map(|(_, probability)| probability).sum()
         };
-        (0..self.reference.prior.train.wheels.len()).map(of_wheel).collect()
+        let of_wheels = (0..self.reference.prior.train.wheels.len()).map(of_wheel).collect();
+        Seen { row, features, of_class, of_wheels }
     }
 
     /// The rows of a class.

@@ -61,8 +61,8 @@ pub fn refine(
 
 /// Model that is learnt from a refined round about one kind of damage on one wheel.
 pub struct Refined {
-    class: usize,
-    models: Vec<(Option<usize>, SizeModel)>,
+    pub(crate) class: usize,
+    pub(crate) models: Vec<(Option<usize>, SizeModel)>,
     /// Simulations that it was learnt from.
     pub(crate) records: usize,
 }
@@ -108,11 +108,6 @@ impl Refined {
     fn new(learned: &Learned, class: usize, refined: &ReferenceSet) -> Result<Self, DiagnoseError> {
         let models = learned.fit_sizes(class, Some(refined))?;
         Ok(Self { class, models, records: refined.records.len() })
-    }
-
-    /// Numbers of a class as the refined round shows them, where it is the one that was looked at.
-    pub(crate) fn of_class(&self, class: usize) -> Option<&[(Option<usize>, SizeModel)]> {
-        (class == self.class).then_some(&self.models)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use meshtone::signal::{Indicators, separate};
 use meshtone_fourier::Complex64;
-use meshtone_learn::{WheelLines, revolution};
+use meshtone_learn::{WheelLines, mean, revolution};
 use serde_json::{Map, Value, json};
 
 use crate::answer::wheel_in_words;
@@ -129,10 +129,6 @@ fn indicators(wheel: &WheelLines, last: usize, signal: SignalKind) -> [Option<f6
     let Ok(found) = found else { return [None; INDICATORS.len()] };
     let of_regular = |value: Option<f64>| value.filter(|_| signal.has_regular_part());
     [found.fm4, of_regular(found.fm0), of_regular(found.sideband_level_factor)]
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Limit of an indicator by its values in healthy recordings. Few recordings of one day scatter less than those of another day, so that the factor counts however

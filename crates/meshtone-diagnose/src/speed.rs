@@ -1,6 +1,7 @@
 //! A check that simulations of the rig can be compared with a recording, and cover its speed and that of the healthy one.
 
 use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone_learn::mean;
 
 use crate::DiagnoseError;
 use crate::layout::Layout;
@@ -85,7 +86,7 @@ impl Question<'_> {
 /// (Hz) Mean speed of the shaft that drives, where it is known.
 pub(crate) fn mean_hz(recordings: &[Observation]) -> Option<f64> {
     let speeds: Vec<f64> = recordings.iter().filter_map(|asked| asked.input_speed_hz).collect();
-    (!speeds.is_empty()).then(|| speeds.iter().sum::<f64>() / speeds.len() as f64)
+    (!speeds.is_empty()).then(|| mean(&speeds))
 }
 
 /// (Hz) Least and largest speed of simulations about a speed.

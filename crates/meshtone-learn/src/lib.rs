@@ -27,6 +27,6 @@ pub use healthy::beyond_healthy;
 pub use lines::{MESH_ORDERS, PASSED, WheelLines, revolution, separation, separations};
 pub use matrix::{RandomFeatures, Ridge, ridge};
 pub use outlier_test::{OutlierTest, Ranking};
-pub use quantile::{Interval, interval, median, quantiles};
+pub use quantile::{Interval, interval, mean, median, quantiles};
 pub use size::SizeModel;
 pub use softmax::Softmax;

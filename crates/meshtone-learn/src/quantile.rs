@@ -20,6 +20,14 @@ pub fn interval(sample: &[(f64, f64)]) -> Interval {
     Interval { median, within_50: [low, high], within_90: [lowest, highest] }
 }
 
+/// The mean of some values.
+///
+/// # Arguments
+/// * `values` - not empty
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
 /// The middle one of some values, of an even number the mean of the middle two.
 ///
 /// # Arguments
