@@ -5,7 +5,7 @@ use meshtone::wheel::WheelName;
 
 use crate::bearings::BearingAnswer;
 use crate::diagnose::OUTSIDE;
-use meshtone_learn::Interval;
+use meshtone_learn::{Interval, quantiles};
 
 use crate::mounting::CommonChange;
 use crate::observation::SignalKind;
@@ -70,10 +70,21 @@ pub struct KindAnswer {
     pub probability: f64,
     /// (-) How severe it is, if it is of this kind, from 0 to 1; none of a healthy pair.
     pub severity: Option<Interval>,
+    /// (-) Draws of that severity, with their weights.
+    pub(crate) severity_draws: Vec<(f64, f64)>,
     /// Its sizes, likewise; none where they are lists.
     pub sizes: Vec<SizeAnswer>,
     /// Its place, likewise.
     pub place: Option<PlaceAnswer>,
+}
+
+impl KindAnswer {
+    /// (-) Draws of its severity without weights, for a histogram.
+    pub fn severity_draws(&self) -> Vec<f64> {
+        const COUNT: usize = 400;
+        let parts: [f64; COUNT] = std::array::from_fn(|at| (at as f64 + 0.5) / COUNT as f64);
+        quantiles(self.severity_draws.clone(), parts).to_vec()
+    }
 }
 
 /// A simulation that resembles the recording.
@@ -139,8 +150,6 @@ pub struct Answer {
     pub band_g: [Vec<f64>; 2],
     /// The simulations that resemble it most, the likeliest kinds first.
     pub explanations: Vec<Explanation>,
-    /// (-) Draws of the likeliest damage's severity, for a histogram.
-    pub severity_draws: Vec<f64>,
 }
 
 impl Answer {
@@ -166,22 +175,12 @@ impl Answer {
         !self.is_misstated && self.common_change.is_some_and(|change| change.p < 0.5 * OUTSIDE)
     }
 
-    /// Returns whether the healthy recording is unlike the healthy pairs that were simulated. What changed since may be like them all the same.
-    pub fn is_healthy_outside(&self) -> bool {
-        self.healthy_outside_model.is_some_and(|p| p < 0.5 * OUTSIDE)
-    }
-
     /// A wheel's name after `the`: gear, or wheel z3 of a gearbox.
     ///
     /// # Arguments
     /// * `wheel` - its place in [`Self::wheels`]
     pub fn wheel_in_words(&self, wheel: usize) -> String {
         wheel_in_words(&self.wheels[wheel])
-    }
-
-    /// Returns whether several damages at once are likelier than any single one.
-    pub fn has_likely_several(&self) -> bool {
-        self.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL)
     }
 
     /// Returns whether the lines of a bearing's race are detected, whether or not they are of a defect.

@@ -1,6 +1,6 @@
 //! The answer about a damage whatever its kind.
 
-use crate::answer::{Answer, AnyDamage, HEALTHY, KindAnswer, ToothAnswer};
+use crate::answer::{Answer, AnyDamage, HEALTHY, KindAnswer, SEVERAL, ToothAnswer};
 use meshtone_learn::interval;
 
 /// (-) Probability of damage from which on it is said to be there, and below which it is not seen.
@@ -16,33 +16,23 @@ impl AnyDamage {
     /// Over all kinds, each as probable as it is said to be.
     ///
     /// Severities are mixed by their kinds' probabilities. The wheel is the likelier one over all kinds, and the tooth is the likeliest one
-    /// of that wheel, given that wheel. It is none where no kind is possible, or where the draws of one are missing, which would leave the
-    /// mixture incomplete.
+    /// of that wheel, given that wheel. It is none where no kind is possible.
     ///
     /// # Arguments
     /// * `kinds` - what is said of each
-    /// * `severities` - draws of each damage's severity with their weights, by its label
     /// * `of_wheel` - (-) probability of damage to each wheel
-    pub(crate) fn over(
-        kinds: &[KindAnswer],
-        severities: &[(&'static str, Vec<(f64, f64)>)],
-        of_wheel: &[f64],
-    ) -> Option<Self> {
+    pub(crate) fn over(kinds: &[KindAnswer], of_wheel: &[f64]) -> Option<Self> {
         let damaged = || kinds.iter().filter(|kind| kind.label != HEALTHY);
-        let mut draws = Vec::new();
-        for kind in damaged() {
-            let of_kind = severities.iter().find(|(label, _)| *label == kind.label)?;
-            let total: f64 = of_kind.1.iter().map(|(_, weight)| weight).sum();
+        let draws = damaged().flat_map(|kind| {
+            let total: f64 = kind.severity_draws.iter().map(|(_, weight)| weight).sum();
             let share = kind.probability / total.max(f64::MIN_POSITIVE);
-            draws.extend(of_kind.1.iter().map(|(value, weight)| (*value, share * weight)));
-        }
+            kind.severity_draws.iter().map(move |(value, weight)| (*value, share * weight))
+        });
+        let draws: Vec<(f64, f64)> = draws.collect();
         let total: f64 = damaged().map(|kind| kind.probability).sum();
         if draws.is_empty() || total <= 0.0 {
             return None;
         }
-        let part = |of: &dyn Fn(&KindAnswer) -> f64| {
-            damaged().map(|kind| kind.probability * of(kind)).sum::<f64>() / total
-        };
         let by_probability = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
         let (wheel, of_likeliest) = of_wheel.iter().enumerate().max_by(by_probability)?;
         let wheel_probability = of_likeliest / total;
@@ -58,14 +48,15 @@ impl AnyDamage {
             }
         }
         let is_on_one_tooth = |kind: &KindAnswer| kind.place.is_some_and(|place| place.is_on_one_tooth);
-        let one_tooth_probability = part(&|kind| f64::from(u8::from(is_on_one_tooth(kind))));
+        let on_one_tooth: f64 =
+            damaged().filter(|kind| is_on_one_tooth(kind)).map(|kind| kind.probability).sum();
         let likeliest = teeth.into_iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
         let given_wheel = |share: f64| (share / (total * wheel_probability)).min(1.0);
         Some(Self {
             severity: interval(&draws),
             wheel,
             wheel_probability,
-            one_tooth_probability,
+            one_tooth_probability: on_one_tooth / total,
             tooth: likeliest
                 .map(|tooth| ToothAnswer { probability: given_wheel(tooth.probability), ..tooth }),
         })
@@ -114,14 +105,12 @@ fn likely_wheels(answer: &Answer) -> String {
     };
     let likely: Vec<&str> =
         order.into_iter().take_while(is_needed).map(|wheel| &*answer.wheels[wheel]).collect();
-    if likely.len() == answer.wheels.len() {
-        return format!("{} wheels", if likely.len() == 2 { "both" } else { "all" });
-    }
-    match likely.split_last() {
-        Some((last, others)) if !others.is_empty() => {
-            format!("the wheels {} and {last}", others.join(", "))
+    match &likely[..] {
+        all if all.len() == answer.wheels.len() => {
+            format!("{} wheels", if all.len() == 2 { "both" } else { "all" })
         }
-        _ => format!("the wheel {}", likely.concat()),
+        [others @ .., last] if !others.is_empty() => format!("the wheels {} and {last}", others.join(", ")),
+        one => format!("the wheel {}", one.concat()),
     }
 }
 
@@ -131,39 +120,33 @@ fn likely_wheels(answer: &Answer) -> String {
 /// * `answer` - all but the summary
 pub(crate) fn sentence(answer: &Answer) -> String {
     if answer.is_outside() {
-        let why = match (answer.is_misstated, answer.is_remounted(), answer.has_bearing_lines()) {
-            (true, ..) => "what is stated of the recordings does not fit them",
-            (false, true, _) => {
-                "the sensor, its unit or its mounting was changed since the healthy recording"
-            }
-            (false, false, true) => {
+        let why = match answer.is_remounted() {
+            _ if answer.is_misstated => "what is stated of the recordings does not fit them",
+            true => "the sensor, its unit or its mounting was changed since the healthy recording",
+            false if answer.has_bearing_lines() => {
                 "the recordings are unlike what was simulated, perhaps because of the bearing"
             }
-            (false, false, false) => "the recordings are unlike what was simulated",
+            false => "the recordings are unlike what was simulated",
         };
         return format!("Nothing can be said of the teeth: {why}.");
     }
     let ([unseen, seen], damaged) = (DECIDED, answer.damaged());
     match &answer.any_damage {
         Some(any) if damaged >= seen => {
-            let what = if any.wheel_probability < NAMED {
-                "One of the wheels".to_owned()
-            } else {
-                format!("The {}", answer.wheel_in_words(any.wheel))
+            let what = match any.wheel_probability < NAMED {
+                true => "One of the wheels".to_owned(),
+                false => format!("The {}", answer.wheel_in_words(any.wheel)),
             };
-            let several = if answer.has_likely_several() {
-                " Two damages at once are likelier than a single one."
-            } else {
-                ""
-            };
+            let has_several = answer.likeliest_damage().is_some_and(|kind| kind.label == SEVERAL);
+            let several =
+                if has_several { " Two damages at once are likelier than a single one." } else { "" };
             format!("{what} is damaged, {}; {}.{several}", any.in_words(), any.where_to_look(answer))
         }
         Some(any) if damaged >= LIKELY[0] => {
             let (how, place) = (any.in_words(), any.where_to_look(answer));
-            let is_likely = if damaged >= LIKELY[1] {
-                "Damage is likely, but not sure"
-            } else {
-                "Damage can neither be excluded nor be shown"
+            let is_likely = match damaged >= LIKELY[1] {
+                true => "Damage is likely, but not sure",
+                false => "Damage can neither be excluded nor be shown",
             };
             format!("{is_likely}; if there is any, {how}; {place}.")
         }
@@ -175,7 +158,7 @@ pub(crate) fn sentence(answer: &Answer) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::answer::{PlaceAnswer, SEVERAL};
+    use crate::answer::PlaceAnswer;
     use crate::observation::SignalKind;
 
     fn kind(label: &'static str, probability: f64, tooth: Option<u32>, wheel: usize) -> KindAnswer {
@@ -186,7 +169,8 @@ mod tests {
             tooth: tooth.map(|number| ToothAnswer { number, angle_deg: f64::from(number), probability: 1.0 }),
         };
         let place = (label != HEALTHY).then_some(place);
-        KindAnswer { label, probability, severity: None, sizes: Vec::new(), place }
+        let severity_draws = if label == HEALTHY { Vec::new() } else { vec![(1.0, 1.0)] };
+        KindAnswer { label, probability, severity: None, severity_draws, sizes: Vec::new(), place }
     }
 
     /// An answer that holds no more than a sentence says.
@@ -215,35 +199,33 @@ mod tests {
             difference_g: Vec::new(),
             band_g: Default::default(),
             explanations: Vec::new(),
-            severity_draws: Vec::new(),
         }
     }
 
     // Three quarters of the damage is a missing tooth, the rest a pit; both on the gear.
     #[test]
     fn kinds_count_as_they_are_probable() {
+        let with = |draws: &[(f64, f64)], kind| KindAnswer { severity_draws: draws.to_vec(), ..kind };
         let kinds = [
-            kind("missing-tooth", 0.6, Some(8), 1),
+            with(&[(1.0, 5.0)], kind("missing-tooth", 0.6, Some(8), 1)),
             kind(HEALTHY, 0.2, None, 1),
-            kind("pits", 0.2, Some(3), 0),
+            with(&[(0.2, 0.5), (0.4, 0.5)], kind("pits", 0.2, Some(3), 0)),
         ];
-        let draws = [("missing-tooth", vec![(1.0, 5.0)]), ("pits", vec![(0.2, 0.5), (0.4, 0.5)])];
-        let any = AnyDamage::over(&kinds, &draws, &[0.24, 0.56]).unwrap();
+        let any = AnyDamage::over(&kinds, &[0.24, 0.56]).unwrap();
         let tooth = any.tooth.unwrap();
         assert_eq!((any.wheel, tooth.number), (1, 8));
         assert!((any.wheel_probability - 0.7).abs() < 1e-12);
         // Of the gear's 0.7: all of the missing tooth's 0.75 × 0.9.
         assert!((tooth.probability - 0.675 / 0.7).abs() < 1e-12);
         assert!(any.severity.median > 0.8 && any.severity.within_90[0] < 0.3, "{:?}", any.severity);
-        assert!(AnyDamage::over(&kinds[1..2], &draws, &[0.0, 0.0]).is_none());
+        assert!(AnyDamage::over(&kinds[1..2], &[0.0, 0.0]).is_none());
     }
 
     #[test]
     fn a_sentence_says_no_more_than_is_known() {
-        let draws = [("missing-tooth", vec![(1.0, 1.0)]), (SEVERAL, vec![(1.0, 1.0)])];
         let said_of = |label, tooth, damaged: f64, outside_model| {
             let kinds = vec![kind(label, damaged, tooth, 1), kind(HEALTHY, 1.0 - damaged, None, 1)];
-            let any = AnyDamage::over(&kinds, &draws, &[0.0, damaged]);
+            let any = AnyDamage::over(&kinds, &[0.0, damaged]);
             sentence(&answer(kinds, any, outside_model))
         };
         let said = |damaged| said_of("missing-tooth", Some(8), damaged, 1.0);

@@ -2,7 +2,7 @@
 
 use meshtone::signal::{BearingDefects, DefectKind, GearTrain, RaceTest};
 
-use crate::learn::Question;
+use crate::observation::Question;
 
 /// Answer about one race, or the rolling elements, of one bearing, or of several that cannot be told apart.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,10 +36,9 @@ impl BearingAnswer {
 
     /// `the outer race of bearing input:0 or input:1`.
     fn named(&self) -> String {
-        let part = if self.test.race == DefectKind::Element {
-            "a rolling element".to_owned()
-        } else {
-            format!("the {}", self.test.race.name())
+        let part = match self.test.race {
+            DefectKind::Element => "a rolling element".to_owned(),
+            race => format!("the {}", race.name()),
         };
         format!("{part} of bearing {}", self.bearings.join(" or "))
     }
@@ -48,11 +47,8 @@ impl BearingAnswer {
     fn in_words(&self) -> String {
         let healthy =
             self.healthy_depth.map(|healthy| format!(" (depth {healthy:.2} in the healthy recording)"));
-        let alike = if self.bearings.len() > 1 {
-            "; the orders of these bearings differ by less than slip"
-        } else {
-            ""
-        };
+        let alike = "; the orders of these bearings differ by less than slip";
+        let alike = if self.bearings.len() > 1 { alike } else { "" };
         format!("{}: {}{}{alike}", self.named(), self.test.in_words(), healthy.unwrap_or_default())
     }
 }
@@ -64,23 +60,19 @@ impl BearingAnswer {
 /// * `question` - the recordings
 pub(crate) fn answers(train: &GearTrain, question: &Question) -> Vec<BearingAnswer> {
     let mut all: Vec<BearingAnswer> = Vec::new();
-    for BearingDefects { races, .. } in question.now.iter().map(|asked| &asked.bearings) {
-        for test in races {
-            let is_same = |of: &&RaceTest| (of.race, &of.bearings) == (test.race, &test.bearings);
-            let healthy = question.healthy.iter().filter_map(|of| of.bearings.races.iter().find(is_same));
-            let false_alarm_probability = (question.now.len() as f64 * test.false_alarm_probability).min(1.0);
-            let answer = BearingAnswer {
-                bearings: test.bearings.iter().map(|place| train.bearings[*place].0.clone()).collect(),
-                test: RaceTest { false_alarm_probability, ..test.clone() },
-                healthy_depth: healthy.map(|of| of.depth).reduce(f64::max),
-            };
-            let is_same =
-                |of: &&mut BearingAnswer| (of.test.race, &of.test.bearings) == (test.race, &test.bearings);
-            match all.iter_mut().find(is_same) {
-                Some(known) if known.test.false_alarm_probability <= false_alarm_probability => {}
-                Some(known) => *known = answer,
-                None => all.push(answer),
-            }
+    for test in question.now.iter().flat_map(|asked| &asked.bearings.races) {
+        let is_same = |of: &RaceTest| (of.race, &of.bearings) == (test.race, &test.bearings);
+        let healthy = question.healthy.iter().flat_map(|asked| &asked.bearings.races);
+        let false_alarm_probability = (question.now.len() as f64 * test.false_alarm_probability).min(1.0);
+        let answer = BearingAnswer {
+            bearings: test.bearings.iter().map(|place| train.bearings[*place].0.clone()).collect(),
+            test: RaceTest { false_alarm_probability, ..test.clone() },
+            healthy_depth: healthy.filter(|of| is_same(of)).map(|of| of.depth).reduce(f64::max),
+        };
+        match all.iter_mut().find(|of| is_same(&of.test)) {
+            Some(known) if known.test.false_alarm_probability <= false_alarm_probability => {}
+            Some(known) => *known = answer,
+            None => all.push(answer),
         }
     }
     all.sort_by(|one, other| {
@@ -137,21 +129,14 @@ pub(crate) fn sentence(answers: &[BearingAnswer]) -> Option<String> {
 
 /// Notes about the bearings: the detected lines, or that there are none.
 pub(crate) fn notes(answers: &[BearingAnswer]) -> Vec<String> {
-    let detected: Vec<&BearingAnswer> = answers.iter().filter(|of| of.test.is_detected()).collect();
-    let mut notes: Vec<String> = detected
-        .iter()
-        .map(|of| {
-            let is_as_healthy = !of.is_defect() && of.healthy_depth.is_some();
-            let healthy = if is_as_healthy {
-                "; less than twice as deep as in the healthy recording, so no defect is stated"
-            } else {
-                ""
-            };
-            format!("{}{healthy}", of.in_words())
-        })
-        .collect();
+    let detected = answers.iter().filter(|of| of.test.is_detected()).map(|of| {
+        let is_as_healthy = !of.is_defect() && of.healthy_depth.is_some();
+        let healthy = "; less than twice as deep as in the healthy recording, so no defect is stated";
+        format!("{}{}", of.in_words(), if is_as_healthy { healthy } else { "" })
+    });
+    let mut notes: Vec<String> = detected.collect();
     match answers.first() {
-        Some(strongest) if detected.is_empty() => notes.push(format!(
+        Some(strongest) if notes.is_empty() => notes.push(format!(
             "no defect of a bearing is detected in {} races; strongest: {}",
             answers.len(),
             strongest.in_words()

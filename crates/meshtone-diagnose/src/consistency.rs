@@ -3,8 +3,8 @@
 use meshtone_learn::WheelLines;
 
 use crate::answer::{HEALTHY, wheel_in_words};
-use crate::learn::{Learned, Question};
-use crate::observation::Observation;
+use crate::learn::Learned;
+use crate::observation::{Observation, Question};
 
 /// (dB) How much louder one recording's difference signal may be than another's of the same state: loads and mounting move it less.
 const LOUDEST_DB: f64 = 6.0;
@@ -13,11 +13,11 @@ const DECIDED: [f64; 2] = [0.2, 0.8];
 
 /// Doubts that recordings are of one state, by their levels alone.
 pub(crate) fn levels_apart(question: &Question) -> Vec<String> {
-    let hardly = |which: &str, recordings: &[Observation]| {
+    let both = [("recordings", question.now), ("healthy recordings", question.healthy)];
+    let hardly = |(which, recordings)| {
         Some(format!("the {which} are hardly of one state: {}", much_louder_recording(recordings)?))
     };
-    let now = hardly("recordings", question.now);
-    now.into_iter().chain(hardly("healthy recordings", question.healthy)).collect()
+    both.into_iter().filter_map(hardly).collect()
 }
 
 /// The loudest of several recordings, where it is much louder than the quietest.
@@ -57,7 +57,7 @@ pub(crate) fn contradicting_states(learned: &Learned, question: &Question) -> Op
     let wheels = &learned.reference.prior.train.wheels;
     let of_wheels = |one: &Observation| {
         let alone = Question { now: std::slice::from_ref(one), healthy: question.healthy };
-        learned.wheel_probabilities(&learned.probabilities(&learned.features(&learned.row(&alone))))
+        learned.seen(&alone).of_wheels
     };
     let of_wheels: Vec<Vec<f64>> = question.now.iter().map(of_wheels).collect();
     let damaged: Vec<f64> = of_wheels.iter().map(|of| of.iter().sum()).collect();

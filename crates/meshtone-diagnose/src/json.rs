@@ -1,5 +1,7 @@
 //! The answer of a diagnosis, as JSON.
 
+use std::path::Path;
+
 use meshtone::signal::AngleZero;
 use serde_json::{Map, Value, json};
 
@@ -18,18 +20,14 @@ impl Answer {
         let wheels = &self.wheels;
         let kinds: Map<String, Value> =
             self.kinds.iter().map(|kind| (kind.label.to_owned(), kind_json(kind, wheels))).collect();
-        let of_wheels = wheels.iter().zip(&self.wheel_probabilities);
-        let of_wheels: Map<String, Value> = of_wheels.map(|(wheel, of)| (wheel.clone(), json!(of))).collect();
-        let zeros = wheels.iter().zip(&self.counted_from);
-        let counted_from: Map<String, Value> =
-            zeros.map(|(wheel, zero)| (wheel.clone(), json!(zero.map(AngleZero::name)))).collect();
+        let counted_from = self.counted_from.iter().map(|zero| json!(zero.map(AngleZero::name)));
         json!({
             "format_version": FORMAT_VERSION,
             "meshtone_version": env!("CARGO_PKG_VERSION"),
             "signal": self.signal.name(),
             "has_healthy": self.has_healthy,
             "damaged": self.damaged(),
-            "teeth_counted_from": counted_from,
+            "teeth_counted_from": by_wheel(wheels, counted_from),
             "summary": self.summary,
             "rule": self.rule.to_json(wheels),
             "bearings": self.bearings.iter().map(bearing).collect::<Vec<_>>(),
@@ -39,12 +37,31 @@ impl Answer {
             "is_outside": self.is_outside(),
             "healthy_outside_model": self.healthy_outside_model,
             "common_change": self.common_change.map(|of| json!({ "p": of.p, "within_db": of.within_db })),
-            "wheel_probabilities": of_wheels,
+            "wheel_probabilities": by_wheel(wheels, self.wheel_probabilities.iter().map(|of| json!(of))),
             "shown_wheel": wheels[self.shown_wheel],
             "explanations": self.explanations.iter().map(|one| explanation(one, wheels)).collect::<Vec<_>>(),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
         })
     }
+
+    /// Writes from how many simulations the answer was learnt, as JSON.
+    ///
+    /// # Arguments
+    /// * `asked` - simulations that were asked for
+    /// * `folder` - where they are kept
+    pub fn reference_json(&self, asked: u64, folder: &Path) -> Value {
+        json!({
+            "asked": asked,
+            "simulated": self.simulated_records,
+            "records": self.reference_records,
+            "refined_records": self.refined_records,
+            "folder": folder.display().to_string(),
+        })
+    }
+}
+
+fn by_wheel(wheels: &[String], values: impl Iterator<Item = Value>) -> Map<String, Value> {
+    wheels.iter().cloned().zip(values).collect()
 }
 
 fn warning(warning: &DiagnosisWarning) -> Value {

@@ -3,8 +3,10 @@
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone_learn::{WheelLines, quantiles};
 
-use crate::learn::{Learned, Question};
-use crate::observation::Observation;
+use crate::draw::RECORDS_PER_UNIT;
+use crate::layout::Layout;
+use crate::learn::Learned;
+use crate::observation::{Observation, Question};
 use crate::reference::ReferenceRecord;
 
 /// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.
@@ -15,17 +17,19 @@ const BEYOND_DB: f64 = 10.0;
 /// # Arguments
 /// * `learned`, `question` - the simulations, and the recordings
 pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
-    let of = |asked: &Observation| observed_db(learned, asked);
-    // A healthy recording is held against healthy simulations: damage is loud.
-    let (name, asked, is_healthy) = match question.healthy.first() {
-        Some(healthy) => ("healthy recording", of(healthy), true),
-        None => ("recording", of(question.now.first()?), false),
+    let (name, asked) = match question.healthy.first() {
+        Some(healthy) => ("healthy recording", healthy),
+        None => ("recording", question.now.first()?),
     };
-    let level = |record: &ReferenceRecord| (level_db(learned, record.wheels.iter().map(Some)), 1.0);
-    let levels = match is_healthy {
-        true => learned.reference.healthy().map(level).collect(),
-        false => learned.reference.records.iter().map(level).collect(),
+    let asked = observed_db(learned, asked);
+    // A healthy recording is held against healthy simulations, at its speed: damage is loud.
+    let is_alike = |record: &&ReferenceRecord| {
+        let is_at_speed = learned.reference.prior.healthy_speed_hz.is_none()
+            || record.number.is_multiple_of(RECORDS_PER_UNIT);
+        question.healthy.is_empty() || (record.fault.is_none() && is_at_speed)
     };
+    let level = |record: &ReferenceRecord| (level_db(learned, record.wheels.last()), 1.0);
+    let levels = learned.reference.records.iter().filter(is_alike).map(level).collect();
     let [low, median, high] = quantiles(levels, [0.05, 0.5, 0.95]);
     let is_within = (low - BEYOND_DB..=high + BEYOND_DB).contains(&asked);
     (!is_within).then(|| {
@@ -55,16 +59,16 @@ pub(crate) fn unit_hint(learned: &Learned, question: &Question) -> Option<String
 
 /// (dB) Level of a recording.
 fn observed_db(learned: &Learned, asked: &Observation) -> f64 {
-    level_db(learned, asked.wheels.iter().map(Option::as_ref))
+    level_db(learned, asked.wheels.last().and_then(Option::as_ref))
 }
 
 /// (dB) Level of the last wheel's average, of a pair the gear's, or of its difference signal where no more is known.
-fn level_db<'w>(learned: &Learned, wheels: impl Iterator<Item = Option<&'w WheelLines>>) -> f64 {
-    let layout = &learned.layout;
-    let lines = wheels.last().flatten().map_or_else(Vec::new, |wheel| {
-        if layout.signal.has_regular_part() { wheel.lines.clone() } else { wheel.difference() }
+fn level_db(learned: &Learned, wheel: Option<&WheelLines>) -> f64 {
+    let Layout { signal, last, .. } = &learned.layout;
+    let lines = wheel.map_or_else(Vec::new, |wheel| {
+        if signal.has_regular_part() { wheel.lines.clone() } else { wheel.difference() }
     });
-    let last = layout.last.last().copied().unwrap_or(0);
+    let last = last.last().copied().unwrap_or(0);
     let energy: f64 = lines.iter().take(last + 1).skip(1).map(|line| line.norm_sqr()).sum();
     10.0 * energy.max(f64::MIN_POSITIVE).log10()
 }

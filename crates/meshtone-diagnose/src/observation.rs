@@ -1,9 +1,6 @@
 //! Features of the wheels in a recording or a simulation.
 
-use meshtone::signal::{
-    Alternative, AngleZero, AngularSettings, BearingDefects, ForeignTones, Mismatch, ShaftPhase, SignalError,
-    StatedFacts, StatedTurning, angular_resample, check_channel, find_mismatch,
-};
+use meshtone::signal::{AngleZero, BearingDefects, ForeignTones, SignalError, check_channel};
 use meshtone_fourier::{Complex64, real_spectrum};
 use meshtone_learn::{MESH_ORDERS, PASSED, WheelLines, separation};
 
@@ -59,16 +56,6 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Returns the observation with the meaning of angle 0.
-    ///
-    /// # Arguments
-    /// * `zero` - of each wheel
-    #[must_use]
-    pub fn with_zero(mut self, zero: Vec<AngleZero>) -> Self {
-        self.zero = zero;
-        self
-    }
-
     /// Returns the observation with a further mismatch of the recording.
     ///
     /// # Arguments
@@ -77,11 +64,6 @@ impl Observation {
         let also = self.mismatch.take().map_or_else(String::new, |also| format!("; {also}"));
         self.mismatch = Some(format!("{}{also}", against.to_string()));
         self
-    }
-
-    /// The lines of each wheel, where they are known.
-    pub(crate) fn seen(&self) -> Vec<Option<&WheelLines>> {
-        self.wheels.iter().map(Option::as_ref).collect()
     }
 
     /// Observes one revolution of the gear.
@@ -121,30 +103,25 @@ impl Observation {
     }
 }
 
-/// Looks for tooth counts that fit a recording better than those that are stated, at a stated speed: the phase of another tone than the
-/// mesh's hides them.
-///
-/// # Arguments
-/// * `signal`, `sampling_rate_hz` - the recording
-/// * `teeth` - of the wheel whose speed is stated, and of its mate
-/// * `speed_hz` - (Hz) about the speed of that wheel
-///
-/// # Errors
-/// Those of [`angular_resample`].
-pub(crate) fn other_teeth(
-    signal: &[f64],
-    sampling_rate_hz: f64,
-    teeth: [u32; 2],
-    speed_hz: f64,
-) -> Result<Option<Mismatch>, SignalError> {
-    let phase = ShaftPhase::constant(speed_hz, sampling_rate_hz, signal.len())?;
-    let angular = angular_resample(signal, &phase, &AngularSettings::default())?;
-    let turning = StatedTurning::ConstantSpeed { speed_hz };
-    let found =
-        find_mismatch(&angular, &StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning });
-    Ok(found.filter(|found| {
-        matches!(found.alternative, Alternative::Teeth { .. } | Alternative::MateTeeth { .. })
-    }))
+/// A question: recordings of a rig in one state, and of the same rig when it was healthy.
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Recordings of the state in question, at least one.
+    pub now: &'a [Observation],
+    /// Recordings of the same rig when it was healthy; may be empty.
+    pub healthy: &'a [Observation],
+}
+
+impl Question<'_> {
+    /// All recordings, those in question first.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Observation> {
+        self.now.iter().chain(self.healthy)
+    }
+
+    /// Returns whether something speaks against what is stated of a recording.
+    pub(crate) fn is_misstated(&self) -> bool {
+        self.all().any(|asked| asked.mismatch.is_some())
+    }
 }
 
 /// (-) Part of the energy beyond the orders that are looked at, from which on values are hardly one revolution.

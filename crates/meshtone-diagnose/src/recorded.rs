@@ -1,16 +1,17 @@
 //! Observation of recordings by the angles of the shafts.
 
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, BearingDefects, ForeignTones, GearTrain, LinesOffShafts,
-    Mismatch, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning, SynchronousAverage,
-    TrainBearing, TrainRecording, TrainTurning, TrainWheel, find_train_mismatch, foreign_tones, kurtosis,
-    lines_off_shafts, rms, standard_deviation, synchronous_average, synchronous_part,
+    Alternative, AngleZero, AngularSettings, AngularSignal, BearingDefects, ForeignTones, GearTrain,
+    LinesOffShafts, Mismatch, ShaftPhase, SignalError, SignalWarning, StatedFacts, StatedTurning,
+    SynchronousAverage, TrainBearing, TrainRecording, TrainTurning, TrainWheel, angular_resample,
+    find_mismatch, find_train_mismatch, foreign_tones, kurtosis, lines_off_shafts, rms, standard_deviation,
+    synchronous_average, synchronous_part,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum};
 use meshtone_learn::{MESH_ORDERS, PASSED, WheelLines, separations};
 
 use crate::answer::wheel_in_words;
-use crate::observation::{Observation, SignalKind, other_teeth};
+use crate::observation::{Observation, SignalKind};
 
 /// (-) Kurtosis of what belongs to neither shaft, from which on it is impulsive.
 const IMPULSIVE: f64 = 4.5;
@@ -119,10 +120,7 @@ impl Observation {
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
         let bearings = recording.bearing_defects(&bearings)?;
         let observed = Self { zero, bearings, ..observed };
-        Ok(match against {
-            Some(against) => observed.with_mismatch(against),
-            None => observed,
-        })
+        Ok(against.into_iter().fold(observed, Self::with_mismatch))
     }
 
     /// Observes the wheels of a rig in a recording over the angles of their shafts.
@@ -149,10 +147,11 @@ impl Observation {
         let wheel = &train.wheels[slowest];
         let shaft =
             SlowestShaft { angular: &angular[slowest], train, wheel, speed_hz: shaft_hz(wheel.shaft) };
-        let off_shafts = shaft.energy_off_all_shafts();
+        let (foreign, impulses) = shaft.energy_off_all_shafts();
+        let tones = foreign.as_ref().filter(|tones| tones.count());
         let mismatch = nothing_synchronous(angular, &averages, (slowest, wheel.teeth))
             .or_else(|| shaft.silent_part())
-            .or(off_shafts.mismatch);
+            .or_else(|| tones.map(ForeignTones::to_string));
         let separations = separations(train);
         let wheels = averages.iter().zip(separations);
         let wheels = wheels.map(|(average, separation)| Some(WheelLines::of_average(average, separation)));
@@ -164,8 +163,8 @@ impl Observation {
             wheels: wheels.collect(),
             noise: noise.collect(),
             mismatch,
-            foreign: off_shafts.tones,
-            doubts: shaft.too_short().into_iter().chain(off_shafts.impulses).collect(),
+            foreign,
+            doubts: shaft.too_short().into_iter().chain(impulses).collect(),
             bearings: BearingDefects::default(),
         })
     }
@@ -187,16 +186,6 @@ fn mismatch(recording: &TrainRecording, angular: &[AngularSignal]) -> Result<Opt
         None if train.meshes.len() < 2 => other_tone(signal, sampling_rate_hz, phase, &facts),
         found => Ok(found),
     }
-}
-
-/// What a recording has at no order of any shaft.
-#[derive(Default)]
-struct OffShafts {
-    /// Evidence against the recording.
-    mismatch: Option<String>,
-    /// What it has of impulses.
-    impulses: Option<String>,
-    tones: Option<ForeignTones>,
 }
 
 /// The recording over the angle of the slowest shaft, on which what is not of the rig is looked for.
@@ -253,15 +242,15 @@ impl SlowestShaft<'_> {
         })
     }
 
-    /// Looks for what the orders of the shafts do not explain, impulses or tones that repeat with none, and whether it speaks against the recording.
+    /// Looks for what the orders of the shafts do not explain: tones of none, and a doubt about impulses that repeat with none.
     ///
     /// What repeats whenever the same teeth meet again is taken away, and the lines of all shafts are left out of the spectrum of the rest. Of the
     /// others, those that stand out of their surroundings are tones, which speak against the recording; and what they make over time is impulsive where something
     /// strikes. That is a doubt alone: the random part of a real gearbox is impulsive when it is healthy, too, and averages reduce it like noise.
-    fn energy_off_all_shafts(&self) -> OffShafts {
+    fn energy_off_all_shafts(&self) -> (Option<ForeignTones>, Option<String>) {
         let Self { angular, train, wheel, speed_hz } = self;
         if angular.revolutions() < FEWEST_REVOLUTIONS {
-            return OffShafts::default();
+            return (None, None);
         }
         let (unrepeated, kept) = without_cycle(angular, train, wheel.shaft);
         let whole = unrepeated.values.len();
@@ -289,9 +278,7 @@ impl SlowestShaft<'_> {
                 100.0 * part
             )
         });
-        let tones = ForeignTones::of(&tones);
-        let that_count = || tones.as_ref().filter(|tones| tones.count()).map(ForeignTones::to_string);
-        OffShafts { mismatch: that_count(), impulses, tones }
+        (ForeignTones::of(&tones), impulses)
     }
 }
 
@@ -311,12 +298,18 @@ pub fn other_tone(
     shaft: &ShaftPhase,
     stated: &StatedFacts,
 ) -> Result<Option<Mismatch>, SignalError> {
-    match (stated.turning, stated.mate_teeth) {
-        (StatedTurning::MeshTone { nominal_hz }, Some(mate_teeth)) if !shaft.warnings.is_empty() => {
-            other_teeth(signal, sampling_rate_hz, [stated.teeth, mate_teeth], nominal_hz)
-        }
-        _ => Ok(None),
-    }
+    let (StatedTurning::MeshTone { nominal_hz }, Some(_), false) =
+        (stated.turning, stated.mate_teeth, shaft.warnings.is_empty())
+    else {
+        return Ok(None);
+    };
+    let phase = ShaftPhase::constant(nominal_hz, sampling_rate_hz, signal.len())?;
+    let angular = angular_resample(signal, &phase, &AngularSettings::default())?;
+    let turning = StatedTurning::ConstantSpeed { speed_hz: nominal_hz };
+    let is_of_teeth = |found: &Mismatch| {
+        matches!(found.alternative, Alternative::Teeth { .. } | Alternative::MateTeeth { .. })
+    };
+    Ok(find_mismatch(&angular, &StatedFacts { turning, ..*stated }).filter(is_of_teeth))
 }
 
 #[cfg(test)]

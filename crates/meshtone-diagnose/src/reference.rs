@@ -14,7 +14,8 @@ use meshtone::{Error, Stages};
 use meshtone_learn::{WheelLines, separations};
 use rayon::prelude::*;
 
-use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
+use crate::draw::{Drawn, DrawnFault, RECORDS_PER_UNIT};
+use crate::prior::Prior;
 
 /// A simulation of a reference set.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,14 +56,6 @@ impl ReferenceSet {
         let at = self.records.binary_search_by_key(&number, |other| other.number).ok()?;
         Some(&self.records[at])
     }
-
-    /// The records that a healthy recording alone is like: healthy ones, at its speed.
-    pub(crate) fn healthy(&self) -> impl Iterator<Item = &ReferenceRecord> {
-        let is_at_speed = |record: &&ReferenceRecord| {
-            self.prior.healthy_speed_hz.is_none() || record.number.is_multiple_of(RECORDS_PER_UNIT)
-        };
-        self.records.iter().filter(|record| record.fault.is_none()).filter(is_at_speed)
-    }
 }
 
 /// Simulates records of a prior.
@@ -95,8 +88,7 @@ pub fn build_reference(
         }
     };
     let scenarios: Vec<Scenario> = drawn.iter().map(|(_, drawn)| drawn.scenario.clone()).collect();
-    let keep = KeepAverages { train: &prior.train };
-    simulate_many(scenarios, &keep, control, take);
+    simulate_many(scenarios, &KeepAverages(&prior.train), control, take);
     records
 }
 
@@ -119,9 +111,7 @@ fn record(prior: &Prior, number: u64, drawn: &Drawn, averages: &[SynchronousAver
 }
 
 /// Keeps the averages of all wheels over the first sensor of each of many simulations.
-struct KeepAverages<'a> {
-    train: &'a GearTrain,
-}
+struct KeepAverages<'a>(&'a GearTrain);
 
 /// The channel of the first sensor.
 fn leading(scenario: &Scenario) -> KeepChannels {
@@ -143,7 +133,7 @@ impl Keep for KeepAverages<'_> {
     fn keep(&self, _: usize, stages: Stages, recorder: SignalRecorder) -> Self::Kept {
         let Signals { start_s, channels, .. } = recorder.finish(&stages);
         let signal: Vec<f64> = channels.into_iter().flatten().map(f64::from).collect();
-        averages(&stages, self.train, start_s, signal)
+        averages(&stages, self.0, start_s, signal)
     }
 }
 

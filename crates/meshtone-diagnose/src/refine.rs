@@ -10,7 +10,8 @@ use meshtone::batch::Control;
 use meshtone_learn::{SizeModel, quantiles};
 
 use crate::DiagnoseError;
-use crate::learn::{Learned, Question};
+use crate::learn::{Learned, Seen};
+use crate::observation::Question;
 use crate::prior::{Focus, Prior};
 use crate::reference::{ReferenceSet, build_reference};
 use crate::speed::mean_hz;
@@ -43,7 +44,7 @@ pub fn refine(
     control: &Control,
 ) -> Result<Option<Refined>, DiagnoseError> {
     // What is not of the rig has no likeliest damage.
-    if question.all().any(|asked| asked.mismatch.is_some()) {
+    if question.is_misstated() {
         return Ok(None);
     }
     let Some((class, prior)) = learned.narrowed(question)? else { return Ok(None) };
@@ -60,8 +61,8 @@ pub fn refine(
 
 /// Model that is learnt from a refined round about one kind of damage on one wheel.
 pub struct Refined {
-    class: usize,
-    models: Vec<(Option<usize>, SizeModel)>,
+    pub(crate) class: usize,
+    pub(crate) models: Vec<(Option<usize>, SizeModel)>,
     /// Simulations that it was learnt from.
     pub(crate) records: usize,
 }
@@ -76,17 +77,14 @@ impl Learned<'_> {
     /// # Errors
     /// Too few simulations of the kind.
     fn narrowed(&self, question: &Question) -> Result<Option<(usize, Prior)>, DiagnoseError> {
-        let features = self.features(&self.row(question));
-        let of_class = self.probabilities(&features);
+        let Seen { features, of_class, .. } = self.seen(question);
         let damaged = (0..of_class.len()).filter_map(|class| Some((class, self.classes[class]?)));
         let likeliest = damaged.max_by(|(a, _), (b, _)| of_class[*a].total_cmp(&of_class[*b]));
         let Some((class, (kind, wheel))) = likeliest else { return Ok(None) };
         if of_class[class] < LIKELY || self.kinds.get(kind).is_none_or(|kind| kind.sizes.is_empty()) {
             return Ok(None);
         }
-        let Some((_, severity)) = self.sizes(class)?.iter().find(|(place, _)| place.is_none()) else {
-            return Ok(None);
-        };
+        let Some((None, severity)) = self.sizes(class)?.first() else { return Ok(None) };
         let [least, most] = quantiles(severity.posterior(&features), LEFT_OUT);
         let severity = [(least - MARGIN).max(0.0), (most + MARGIN).min(1.0)];
         if severity[1] - severity[0] > TOO_WIDE {
@@ -110,11 +108,6 @@ impl Refined {
     fn new(learned: &Learned, class: usize, refined: &ReferenceSet) -> Result<Self, DiagnoseError> {
         let models = learned.fit_sizes(class, Some(refined))?;
         Ok(Self { class, models, records: refined.records.len() })
-    }
-
-    /// Numbers of a class as the refined round shows them, where it is the one that was looked at.
-    pub(crate) fn of_class(&self, class: usize) -> Option<&[(Option<usize>, SizeModel)]> {
-        (class == self.class).then_some(&self.models)
     }
 }
 

@@ -2,12 +2,12 @@
 
 use meshtone::signal::{Indicators, separate};
 use meshtone_fourier::Complex64;
-use meshtone_learn::{WheelLines, revolution};
+use meshtone_learn::{WheelLines, mean, revolution};
 use serde_json::{Map, Value, json};
 
 use crate::answer::wheel_in_words;
-use crate::learn::{Layout, Question};
-use crate::observation::{Observation, SignalKind};
+use crate::layout::Layout;
+use crate::observation::{Observation, Question, SignalKind};
 
 /// The indicators: keys of `indicators.json`, names in words, and the factor to the healthy recordings' mean from which on each is above its limit.
 const INDICATORS: [(&str, &str, f64); 3] =
@@ -57,9 +57,8 @@ impl Rule {
                     let values: Option<Vec<f64>> = all.iter().map(|one| one[place]).collect();
                     values.filter(|values| !values.is_empty())
                 });
-                let limit = |values: &[f64]| limit(values, INDICATORS[place].2);
-                let [mean_healthy, limit] = [healthy.as_deref().map(mean), healthy.as_deref().map(limit)];
-                Some(RuleValue { now: mean(&now?), healthy: mean_healthy, limit })
+                let limit = healthy.as_deref().map(|values| limit(values, INDICATORS[place].2));
+                Some(RuleValue { now: mean(&now?), healthy: healthy.as_deref().map(mean), limit })
             })
         };
         Self { wheels: (0..layout.last.len()).map(of_wheel).collect() }
@@ -67,12 +66,8 @@ impl Rule {
 
     /// Returns whether an indicator of a wheel is above its limit; none where nothing has a limit.
     pub fn is_damaged(&self) -> Option<bool> {
-        self.wheels
-            .iter()
-            .flatten()
-            .flatten()
-            .filter_map(RuleValue::is_above)
-            .reduce(|any, above| any || above)
+        let above = self.wheels.iter().flatten().flatten().filter_map(RuleValue::is_above);
+        above.reduce(|any, above| any || above)
     }
 
     /// The verdict in words; none without a limit.
@@ -88,8 +83,8 @@ impl Rule {
                     judged.push(*name);
                 }
                 if now > limit {
-                    above
-                        .push(format!("{name} {now:.2} of the {} (limit {limit:.2})", wheel_in_words(wheel)));
+                    let wheel = wheel_in_words(wheel);
+                    above.push(format!("{name} {now:.2} of the {wheel} (limit {limit:.2})"));
                 }
             }
         }
@@ -110,10 +105,8 @@ impl Rule {
             let values = INDICATORS.iter().zip(of).filter_map(|((key, ..), of)| {
                 let RuleValue { now, healthy, limit } = (*of)?;
                 let above = of.and_then(|of| of.is_above());
-                Some((
-                    (*key).to_owned(),
-                    json!({ "now": now, "healthy": healthy, "limit": limit, "is_above": above }),
-                ))
+                let json = json!({ "now": now, "healthy": healthy, "limit": limit, "is_above": above });
+                Some(((*key).to_owned(), json))
             });
             (name.clone(), Value::Object(values.collect()))
         };
@@ -136,10 +129,6 @@ fn indicators(wheel: &WheelLines, last: usize, signal: SignalKind) -> [Option<f6
     let Ok(found) = found else { return [None; INDICATORS.len()] };
     let of_regular = |value: Option<f64>| value.filter(|_| signal.has_regular_part());
     [found.fm4, of_regular(found.fm0), of_regular(found.sideband_level_factor)]
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Limit of an indicator by its values in healthy recordings. Few recordings of one day scatter less than those of another day, so that the factor counts however

@@ -1,10 +1,11 @@
 //! A check that simulations of the rig can be compared with a recording, and cover its speed and that of the healthy one.
 
 use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone_learn::mean;
 
 use crate::DiagnoseError;
-use crate::learn::{Layout, Question};
-use crate::observation::Observation;
+use crate::layout::Layout;
+use crate::observation::{Observation, Question};
 use crate::prior::Prior;
 use crate::reference::ReferenceSet;
 
@@ -48,14 +49,13 @@ impl Question<'_> {
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
         let nominal_hz = prior.base.operation.pinion_speed_hz;
         let [least, most] = simulated_hz(nominal_hz, prior);
-        let now = self.now.iter().map(|asked| (asked, false));
-        for (asked, is_healthy) in now.chain(self.healthy.iter().map(|asked| (asked, true))) {
+        for (place, asked) in self.all().enumerate() {
             let Some(speed_hz) = asked.input_speed_hz else { continue };
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 // Wrong pulses are seen in the recording itself.
                 let reason = reason(speed_hz / nominal_hz, prior).or_else(|| asked.mismatch.clone());
-                let (shaft, key) = driving(prior);
-                let reason = reason.unwrap_or_else(|| match is_healthy {
+                let (shaft, key) = (prior.base.driven_in_words(), prior.base.speed_key());
+                let reason = reason.unwrap_or_else(|| match place >= self.now.len() {
                     true => format!(
                         "a healthy recording that is compared with others turns at {:.1} to {:.1} Hz; record one at their speed",
                         least / FARTHEST,
@@ -65,29 +65,28 @@ impl Question<'_> {
                         "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed ({key})?"
                     ),
                 });
-                return Err(DiagnoseError::OtherSpeed { shaft, speed_hz, nominal_hz, reason });
+                return Err(DiagnoseError::OtherSpeed(format!(
+                    "{shaft} turns at {speed_hz:.4} Hz by the recording, at {nominal_hz:.4} Hz by the scenario: {reason}"
+                )));
             }
         }
-        let healthy_hz = || self.healthy.iter().filter_map(|asked| asked.input_speed_hz);
-        let [slowest, fastest] =
-            [healthy_hz().fold(f64::INFINITY, f64::min), healthy_hz().fold(0.0, f64::max)];
+        let healthy_hz = self.healthy.iter().filter_map(|asked| asked.input_speed_hz);
+        let (slowest, fastest) =
+            healthy_hz.fold((f64::INFINITY, 0.0f64), |(least, most), hz| (hz.min(least), hz.max(most)));
         if fastest > slowest * STEP.exp() {
-            return Err(DiagnoseError::HealthySpeeds { slowest, fastest });
+            return Err(DiagnoseError::Unfit(format!(
+                "the healthy recordings turn at {slowest:.3} to {fastest:.3} Hz; give those of one speed, best the one at which the recording in question turns"
+            )));
         }
         // A wrong speed moves the orders too, so it is reported before them.
         Layout::of(self, &ReferenceSet { prior: prior.clone(), records: Vec::new() }).map(drop)
     }
 }
 
-/// The shaft that drives in words, and the key of its speed.
-fn driving(prior: &Prior) -> (&'static str, &'static str) {
-    (prior.base.driven_in_words(), prior.base.speed_key())
-}
-
 /// (Hz) Mean speed of the shaft that drives, where it is known.
 pub(crate) fn mean_hz(recordings: &[Observation]) -> Option<f64> {
     let speeds: Vec<f64> = recordings.iter().filter_map(|asked| asked.input_speed_hz).collect();
-    (!speeds.is_empty()).then(|| speeds.iter().sum::<f64>() / speeds.len() as f64)
+    (!speeds.is_empty()).then(|| mean(&speeds))
 }
 
 /// (Hz) Least and largest speed of simulations about a speed.
@@ -103,21 +102,19 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
     let of_shaft = |shaft: usize, other: usize| {
         format!("that is their ratio of speeds: the speed may be of {}, not of {}", name(shaft), name(other))
     };
+    let sixty = [
+        (SIXTY, "it is 60 times as quick: a speed in rpm that was given as Hz? 1 Hz are 60 rpm"),
+        (1.0 / SIXTY, "it is 60 times as slow: has the scenario its speed in rpm? 1 Hz are 60 rpm"),
+    ];
+    let by_unit = sixty.into_iter().find(|(other, _)| is(*other)).map(|(_, why)| why.to_owned());
     let input = train.input();
-    let others = (0..train.shafts.len()).filter(|shaft| *shaft != input);
-    let others = others.map(|shaft| (shaft, train.speed_ratio(shaft, input).value()));
-    let mut others = others.filter(|(_, of_input)| *of_input != 1.0);
-    if is(SIXTY) {
-        Some("it is 60 times as quick: a speed in rpm that was given as Hz? 1 Hz are 60 rpm".to_owned())
-    } else if is(1.0 / SIXTY) {
-        Some("it is 60 times as slow: has the scenario its speed in rpm? 1 Hz are 60 rpm".to_owned())
-    } else {
-        others.find_map(|(shaft, of_input)| match () {
-            () if is(of_input) => Some(of_shaft(shaft, input)),
-            () if is(1.0 / of_input) => Some(of_shaft(input, shaft)),
-            () => None,
-        })
-    }
+    let by_shaft = |shaft: usize| match train.speed_ratio(shaft, input).value() {
+        1.0 => None,
+        of_input if is(of_input) => Some(of_shaft(shaft, input)),
+        of_input if is(1.0 / of_input) => Some(of_shaft(input, shaft)),
+        _ => None,
+    };
+    by_unit.or_else(|| (0..train.shafts.len()).filter(|shaft| *shaft != input).find_map(by_shaft))
 }
 
 /// Warnings about recordings beside the speeds of the simulations, though near them, and about a healthy recording of another speed.
@@ -128,30 +125,26 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
 pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let nominal_hz = prior.base.operation.pinion_speed_hz;
     let [least, most] = simulated_hz(nominal_hz, prior);
-    let ((shaft, key), mut doubts) = (driving(prior), Vec::new());
+    let (shaft, key) = (prior.base.driven_in_words(), prior.base.speed_key());
     let healthy = if prior.healthy_speed_hz.is_some() { &[] } else { question.healthy };
-    let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
     let speeds = question.now.iter().chain(healthy).filter_map(|asked| asked.input_speed_hz);
-    for speed_hz in speeds.filter(beside) {
+    let beside = speeds.filter(|speed_hz| !(least..=most).contains(speed_hz)).map(|speed_hz| {
         let reason = reason(speed_hz / nominal_hz, prior);
         let reason = reason.map_or_else(String::new, |reason| format!("; {reason}"));
-        let doubt = format!(
+        format!(
             "{shaft} turns at {speed_hz:.3} Hz, the simulations at {least:.3} to {most:.3} Hz: write the recording's speed into the \
              scenario ({key}){reason}"
-        );
-        if !doubts.contains(&doubt) {
-            doubts.push(doubt);
-        }
-    }
+        )
+    });
     let speeds =
         mean_hz(question.healthy).zip(mean_hz(question.now)).filter(|_| prior.healthy_speed_hz.is_some());
-    doubts.extend(speeds.map(|(healthy_hz, now_hz)| {
+    let apart = speeds.map(|(healthy_hz, now_hz)| {
         format!(
             "{shaft} turns at {healthy_hz:.3} Hz in the healthy recording, at {now_hz:.3} Hz in the other: they are compared with simulations at both \
              speeds, but damage is missed more often than at one; record both at one speed"
         )
-    }));
-    doubts
+    });
+    beside.chain(apart).collect()
 }
 
 #[cfg(test)]

@@ -15,7 +15,8 @@ use meshtone_learn::{MESH_ORDERS, WheelLines, separations};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
+use crate::draw::{DrawnFault, RECORDS_PER_UNIT};
+use crate::prior::Prior;
 use crate::reference::{ReferenceRecord, ReferenceSet, build_reference};
 
 /// Raised when a record of the same number becomes another one, or its file another.
@@ -27,18 +28,13 @@ const COLUMNS: usize = 7;
 /// Sizes of a damage, at most.
 const SIZES: usize = 6;
 
+/// All numbers of a record: these, the number of its sizes, and the sizes.
+const WIDTH: usize = COLUMNS + 1 + SIZES;
+
 /// A reference set that could not be kept.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// A file or folder that could not be made.
-    #[error("cannot keep the reference set in {}: {source}", path.display())]
-    Folder {
-        /// Name of the file or folder.
-        path: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// A file that could not be written.
+    /// A file or folder that could not be written.
     #[error(transparent)]
     File(#[from] WriteFileError),
     /// The caller has stopped it; what is finished stays.
@@ -113,8 +109,7 @@ impl ReferenceStore {
     /// A folder that cannot be written; cancelled.
     pub fn get(&self, prior: &Prior, count: u64, control: &Control) -> Result<ReferenceSet, StoreError> {
         let folder = self.folder_of(prior);
-        let failed = |source| StoreError::Folder { path: folder.clone(), source };
-        fs::create_dir_all(&folder).map_err(failed)?;
+        fs::create_dir_all(&folder).map_err(|source| WriteFileError { path: folder.clone(), source })?;
         let is_own =
             |number: &u64| prior.healthy_speed_hz.is_none() || number.is_multiple_of(RECORDS_PER_UNIT);
         let mut records = Vec::new();
@@ -151,23 +146,17 @@ impl ReferenceStore {
 
 fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
     let mut archive = NpzWriter::stored(file);
-    let mut numbers = Vec::with_capacity(records.len() * (COLUMNS + SIZES));
+    let mut numbers = Vec::with_capacity(records.len() * WIDTH);
     for record in records {
-        let fault = record.fault.as_ref();
-        let of = |value: &dyn Fn(&DrawnFault) -> f64| fault.map_or(f64::NAN, value);
-        numbers.extend([
-            record.number as f64,
-            of(&|fault| fault.kind as f64),
-            of(&|fault| fault.wheel as f64),
-            of(&|fault| f64::from(fault.tooth)),
-            of(&|fault| f64::from(u8::from(fault.is_on_one_tooth))),
-            of(&|fault| fault.severity),
-            record.input_speed_hz,
-        ]);
-        // One more than there are, so that NaN among them is not the end.
-        let count = fault.map_or(0, |fault| fault.sizes.len());
-        numbers.push(count as f64);
-        let sizes = fault.map_or(&[][..], |fault| &fault.sizes);
+        let of_fault = record.fault.as_ref().map_or([f64::NAN; 5], |fault| {
+            let is_on_one_tooth = f64::from(u8::from(fault.is_on_one_tooth));
+            [fault.kind as f64, fault.wheel as f64, f64::from(fault.tooth), is_on_one_tooth, fault.severity]
+        });
+        let sizes = record.fault.as_ref().map_or(&[][..], |fault| &fault.sizes);
+        numbers.push(record.number as f64);
+        numbers.extend(of_fault);
+        // The number of sizes too, so that NaN among them is not the end.
+        numbers.extend([record.input_speed_hz, sizes.len() as f64]);
         numbers.extend((0..SIZES).map(|size| sizes.get(size).copied().unwrap_or(f64::NAN)));
     }
     let mut hash = Sha256::new();
@@ -175,7 +164,7 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
         hash_values(&mut hash, values);
         archive.add(name, shape, values)
     };
-    add("records", &[records.len(), COLUMNS + 1 + SIZES], &numbers)?;
+    add("records", &[records.len(), WIDTH], &numbers)?;
     for wheel in 0..records.first().map_or(0, |record| record.wheels.len()) {
         let lines = || records.iter().map(|record| &record.wheels[wheel].lines);
         let lengths: Vec<f64> = lines().map(|lines| lines.len() as f64).collect();
@@ -209,18 +198,17 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let wrong = || io::Error::other("it is no batch of a reference set");
     let mut archive = NpzReader::new(File::open(path)?)?;
     let rig = &prior.train.wheels;
-    let width = COLUMNS + 1 + SIZES;
     let mut hash = Sha256::new();
     let mut read = |name: &str, most: u64| -> io::Result<Vec<f64>> {
         let numbers = archive.floats(name, most)?.numbers;
         hash_values(&mut hash, &numbers);
         Ok(numbers)
     };
-    let numbers = read("records", BATCH * width as u64)?;
-    if !numbers.len().is_multiple_of(width) {
+    let numbers = read("records", BATCH * WIDTH as u64)?;
+    if !numbers.len().is_multiple_of(WIDTH) {
         return Err(wrong());
     }
-    let mut wheels: Vec<Vec<WheelLines>> = vec![Vec::new(); numbers.len() / width];
+    let mut wheels: Vec<Vec<WheelLines>> = vec![Vec::new(); numbers.len() / WIDTH];
     for (place, separation) in separations(&prior.train).into_iter().enumerate() {
         let lengths = read(&format!("lengths_{place}"), BATCH)?;
         let parts =
@@ -251,7 +239,7 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
         });
         ReferenceRecord { number: row[0] as u64, fault, input_speed_hz: row[6], wheels }
     };
-    let records: Vec<ReferenceRecord> = numbers.chunks_exact(width).zip(wheels).map(record).collect();
+    let records: Vec<ReferenceRecord> = numbers.chunks_exact(WIDTH).zip(wheels).map(record).collect();
     let kinds = prior.kinds();
     let is_known = |fault: &DrawnFault| {
         let sizes = kinds.get(fault.kind).map_or(0, |kind| kind.sizes.len());
@@ -307,7 +295,7 @@ mod tests {
                 let mut archive = NpzWriter::stored(file);
                 for (name, values) in &arrays {
                     let width = match *name {
-                        "records" => COLUMNS + 1 + SIZES,
+                        "records" => WIDTH,
                         name if name.starts_with("lines") => 2,
                         _ => 1,
                     };
@@ -330,7 +318,8 @@ mod tests {
         write_atomically(&of_others, |file| write(file, &healthy)).unwrap();
         write_atomically(&path, |file| write(file, &of_batch)).unwrap();
         let found = store.get(&other, 1, &control).unwrap();
-        assert_eq!((found.records.len(), found.healthy().count()), (of_batch.len(), healthy.len()));
+        let slow = found.records.iter().filter(|record| record.input_speed_hz == 28.0);
+        assert_eq!((found.records.len(), slow.count()), (of_batch.len(), healthy.len()));
         for (record, one_speed) in found.records.iter().zip(&of_batch) {
             assert_eq!(found.healthy_of(record).unwrap().input_speed_hz, 28.0);
             assert!(record == one_speed || record.number % 8 == 0);

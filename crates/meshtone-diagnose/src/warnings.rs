@@ -1,10 +1,12 @@
 //! Warnings about an answer.
 
 use meshtone::damage::damage_kinds;
+use meshtone::signal::ForeignTones;
 
 use crate::answer::{Answer, p_in_words};
-use crate::learn::{Learned, Question};
-use crate::observation::Observation;
+use crate::diagnose::OUTSIDE;
+use crate::learn::Learned;
+use crate::observation::{Observation, Question};
 use crate::prior::Prior;
 use crate::{bearings, consistency, level, speed};
 
@@ -27,40 +29,43 @@ impl Question<'_> {
     /// # Arguments
     /// * `prior` - what may be about the rig
     pub fn warnings(&self, prior: &Prior) -> Vec<DiagnosisWarning> {
-        let mut warnings: Vec<DiagnosisWarning> = Vec::new();
-        let mut warn = |code, message: String| {
+        let mismatches = |of: &[Observation], whose: &str| -> Vec<String> {
+            of.iter().filter_map(|asked| Some(format!("{whose}{}", asked.mismatch.as_ref()?))).collect()
+        };
+        let ideal_wheels = prior.base.has_ideal_wheels().then(|| {
+            "wheels of the scenario have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; write the grade of each \
+             wheel"
+                .to_owned()
+        });
+        let no_healthy = self.healthy.is_empty().then(|| {
+            "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own deviations and the sensor's path"
+                .to_owned()
+        });
+        listed([
+            ("ideal-wheels", Vec::from_iter(ideal_wheels)),
+            ("mismatch", mismatches(self.now, "")),
+            ("mismatch", mismatches(self.healthy, "healthy recording: ")),
+            ("doubt", self.all().flat_map(|asked| asked.doubts.clone()).collect()),
+            ("bearing", bearings::doubts(&prior.train, self)),
+            ("speed", speed::doubts(self, prior)),
+            ("several-states", consistency::levels_apart(self)),
+            ("no-healthy", Vec::from_iter(no_healthy)),
+        ])
+    }
+}
+
+/// Warnings by their codes, each once.
+fn listed<const N: usize>(found: [(&'static str, Vec<String>); N]) -> Vec<DiagnosisWarning> {
+    let mut warnings = Vec::new();
+    for (code, messages) in found {
+        for message in messages {
             let warning = DiagnosisWarning { code, message };
             if !warnings.contains(&warning) {
                 warnings.push(warning);
             }
-        };
-        if prior.base.has_ideal_wheels() {
-            warn(
-                "ideal-wheels",
-                "wheels of the scenario have no deviations (din_grade and iso_class are 0), as none has: the probabilities are far too sure; \
-                 write the grade of each wheel"
-                    .to_owned(),
-            );
         }
-        let mismatches =
-            |of: &[Observation]| of.iter().filter_map(|asked| asked.mismatch.clone()).collect::<Vec<_>>();
-        mismatches(self.now).into_iter().for_each(|said| warn("mismatch", said));
-        let of_healthy = |said| warn("mismatch", format!("healthy recording: {said}"));
-        mismatches(self.healthy).into_iter().for_each(of_healthy);
-        self.all().flat_map(|asked| asked.doubts.clone()).for_each(|said| warn("doubt", said));
-        bearings::doubts(&prior.train, self).into_iter().for_each(|said| warn("bearing", said));
-        speed::doubts(self, prior).into_iter().for_each(|said| warn("speed", said));
-        consistency::levels_apart(self).into_iter().for_each(|said| warn("several-states", said));
-        if self.healthy.is_empty() {
-            warn(
-                "no-healthy",
-                "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own \
-                 deviations and the sensor's path"
-                    .to_owned(),
-            );
-        }
-        warnings
     }
+    warnings
 }
 
 /// Warnings about an answer.
@@ -82,23 +87,24 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     let outside = answer.is_recording_outside().then(|| {
         let foreign = question.now.iter().filter_map(|asked| asked.foreign.as_ref());
         let foreign = foreign.max_by(|a, b| a.part.total_cmp(&b.part)).filter(|tones| tones.part > NOTICED);
-        let why = if let Some(hint) = level::unit_hint(learned, question) {
-            hint
-        } else if answer.has_bearing_lines() {
-            "a damaged bearing may be the reason, since no simulation has one".to_owned()
-        } else if let Some(tones) = foreign {
+        let of_bearing = "a damaged bearing may be the reason, since no simulation has one";
+        let of_tones = |tones: &ForeignTones| {
             format!(
                 "it also has tones at no order of any shaft, {:.1} % of its energy, the strongest at {:.2} Hz: the scenario may be of another \
                  machine, or of one pair of a gearbox, or its teeth or speed are not those of the rig",
                 100.0 * tones.part,
                 tones.strongest.first().map_or(f64::NAN, |tone| tone.frequency_hz)
             )
-        } else {
-            "what is wrong may be none of the kinds that are known here, or the scenario is not this rig".to_owned()
         };
+        let unknown = "what is wrong may be none of the kinds that are known here, or the scenario is not this rig";
+        let why = level::unit_hint(learned, question)
+            .or_else(|| answer.has_bearing_lines().then(|| of_bearing.to_owned()))
+            .or_else(|| foreign.map(of_tones))
+            .unwrap_or_else(|| unknown.to_owned());
         format!("the recording is unlike what was simulated ({}): {why}", p_in_words(answer.outside_model))
     });
-    let healthy = answer.healthy_outside_model.filter(|_| answer.is_healthy_outside()).map(|p| {
+    // What changed since may be like the simulations all the same.
+    let healthy = answer.healthy_outside_model.filter(|p| *p < 0.5 * OUTSIDE).map(|p| {
         format!(
             "the healthy recording is unlike a healthy rig of the scenario ({}): was it healthy? If it was, changes are judged all the same, the better the more \
              speed, load, wheels and sensor of the scenario are the rig's",
@@ -113,8 +119,8 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
         ("contradiction", consistency::contradicting_states(learned, question)),
         ("not-simulated", not_simulated(answer)),
     ];
-    let found = found.into_iter().filter_map(|(code, said)| Some(DiagnosisWarning { code, message: said? }));
-    question.warnings(&learned.reference.prior).into_iter().chain(found).collect()
+    let found = listed(found.map(|(code, said)| (code, Vec::from_iter(said))));
+    [question.warnings(&learned.reference.prior), found].concat()
 }
 
 /// Kinds of damage that the answer does not know.
@@ -179,7 +185,7 @@ mod tests {
         }
 
         // Two recordings without a mark in common, and one whose angle means nothing.
-        let turned = |zero| broken.clone().with_zero(vec![zero; 2]);
+        let turned = |zero| Observation { zero: vec![zero; 2], ..broken.clone() };
         for now in [vec![turned(AngleZero::Chance)], vec![turned(AngleZero::FirstSample); 2]] {
             let answer = ask(&now);
             let place = answer.likeliest_damage().unwrap().place.unwrap();

@@ -27,16 +27,12 @@ impl Standardisation {
     /// * `rows` - features of the simulations
     pub fn of(rows: &[Vec<f64>]) -> Self {
         let (count, width) = (rows.len().max(1) as f64, rows.first().map_or(0, Vec::len));
-        let mut mean = vec![0.0; width];
-        let mut deviation = vec![0.0; width];
-        for row in rows {
-            mean.iter_mut().zip(row).for_each(|(sum, value)| *sum += value / count);
-        }
-        for row in rows {
-            let squares = deviation.iter_mut().zip(row.iter().zip(&mean));
-            squares.for_each(|(sum, (value, mean))| *sum += (value - mean).powi(2) / count);
-        }
-        deviation.iter_mut().for_each(|value| *value = value.sqrt().max(LEAST_DEVIATION));
+        let of_feature = |at: usize| {
+            let mean: f64 = rows.iter().map(|row| row[at] / count).sum();
+            let variance: f64 = rows.iter().map(|row| (row[at] - mean).powi(2) / count).sum();
+            (mean, variance.sqrt().max(LEAST_DEVIATION))
+        };
+        let (mean, deviation) = (0..width).map(of_feature).unzip();
         Self { mean, deviation }
     }
 
@@ -61,11 +57,12 @@ impl Standardisation {
     }
 }
 
-/// Random Fourier features of a Gaussian kernel beside the features themselves.
+/// Random Fourier features of a Gaussian kernel beside the standardised features themselves.
 ///
 /// Source: A. Rahimi, B. Recht, "Random features for large-scale kernel machines", NIPS 20 (2007).
 #[derive(Debug, Clone)]
 pub struct RandomFeatures {
+    standard: Standardisation,
     /// A direction for each feature, in its column.
     directions: DMatrix<f64>,
     phases: DVector<f64>,
@@ -80,10 +77,11 @@ impl RandomFeatures {
     /// Draws the directions.
     ///
     /// # Arguments
-    /// * `width` - number of features that there are
+    /// * `rows` - features of the simulations
     /// * `count` - number of random ones
     /// * `seed` - of the draws
-    pub fn new(width: usize, count: usize, seed: u64) -> Self {
+    pub fn new(rows: &[Vec<f64>], count: usize, seed: u64) -> Self {
+        let width = rows.first().map_or(0, Vec::len);
         let mut directions = DMatrix::zeros(width, count);
         let mut phases = DVector::zeros(count);
         let scale = 1.0 / (Self::WIDTH * (width.max(1) as f64).sqrt());
@@ -92,15 +90,16 @@ impl RandomFeatures {
             phases[index] = draws.uniform(0.0, std::f64::consts::PI);
             directions.column_mut(index).iter_mut().for_each(|value| *value = scale * draws.normal());
         }
-        Self { directions, phases }
+        Self { standard: Standardisation::of(rows), directions, phases }
     }
 
     /// The features of some rows, a column each: random ones, linear ones, and 1.
     ///
     /// # Arguments
-    /// * `rows` - standardised features of signals
+    /// * `rows` - features of signals
     pub fn of(&self, rows: &[Vec<f64>]) -> DMatrix<f64> {
         let (width, count) = self.directions.shape();
+        let rows: Vec<Vec<f64>> = rows.iter().map(|row| self.standard.apply(row)).collect();
         let linear = DMatrix::from_fn(width, rows.len(), |feature, row| rows[row][feature]);
         let projected = self.directions.transpose() * &linear;
         let amplitude = (2.0 * width as f64 / count.max(1) as f64).sqrt();

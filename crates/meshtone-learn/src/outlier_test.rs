@@ -45,23 +45,24 @@ pub struct OutlierTest {
 
 /// Values of which the part is known that are as large as another, or larger.
 #[derive(Default)]
-struct Ranking {
+pub struct Ranking {
     falling: Vec<f64>,
 }
 
 impl Ranking {
     /// # Arguments
-    /// * `values` - of all simulations
-    /// * `counts` - whether each is to be expected
-    fn new(values: &[f64], counts: &[bool]) -> Self {
-        let expected = values.iter().zip(counts).filter(|(_, counts)| **counts);
-        let mut falling: Vec<f64> = expected.map(|(value, _)| *value).collect();
+    /// * `values` - of simulations
+    pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut falling: Vec<f64> = values.into_iter().collect();
         falling.sort_by(|a, b| b.total_cmp(a));
         Self { falling }
     }
 
-    /// (-) The part of the values that are as large, or larger, the asked one being one more.
-    fn p_value(&self, value: f64) -> f64 {
+    /// (-) The part of the values that are as large as another, or larger, which is one more.
+    ///
+    /// # Arguments
+    /// * `value` - of a recording
+    pub fn p_value(&self, value: f64) -> f64 {
         let larger = self.falling.partition_point(|other| *other >= value);
         (larger + 1) as f64 / (self.falling.len() + 1) as f64
     }
@@ -115,10 +116,14 @@ impl OutlierTest {
             places().map(|row| of.distance(&of.points[row], Some(of.units[row]))).collect();
         let beyond: Vec<f64> =
             places().map(|row| of.beyond(&rows[row], 1 - (shuffled(of.units[row]) % 2) as usize)).collect();
-        of.by_distance = Ranking::new(&distances, &of.counts);
-        of.by_feature = Ranking::new(&beyond, &of.counts);
+        let expected = |values: &[f64]| {
+            Ranking::new(
+                values.iter().zip(&of.counts).filter(|(_, counts)| **counts).map(|(value, _)| *value),
+            )
+        };
+        (of.by_distance, of.by_feature) = (expected(&distances), expected(&beyond));
         let rarer: Vec<f64> = places().map(|row| -of.rarer(distances[row], beyond[row])).collect();
-        of.by_rarer = Ranking::new(&rarer, &of.counts);
+        of.by_rarer = expected(&rarer);
         of
     }
 

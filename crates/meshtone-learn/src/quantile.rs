@@ -20,6 +20,22 @@ pub fn interval(sample: &[(f64, f64)]) -> Interval {
     Interval { median, within_50: [low, high], within_90: [lowest, highest] }
 }
 
+/// The mean of some values.
+///
+/// # Arguments
+/// * `values` - not empty
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// The middle one of some values, of an even number the mean of the middle two.
+///
+/// # Arguments
+/// * `values` - in any order; not empty
+pub fn median(values: &[f64]) -> f64 {
+    quantiles(values.iter().map(|value| (*value, 1.0)).collect(), [0.5])[0]
+}
+
 /// The values below which parts of the weight of a sample lie, between its values along straight lines.
 ///
 /// # Arguments

@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 
 use crate::LearnError;
 use crate::matrix::{Ridge, dual_ridge};
+use crate::quantile::mean;
 
 /// Penalties that are tried, as parts of the number of rows; the one that predicts the other wheels best is taken.
 const PENALTIES: [f64; 5] = [0.03, 0.1, 0.3, 1.0, 3.0];
@@ -52,7 +53,6 @@ impl SizeModel {
         if count < FEWEST_TO_LEARN {
             return Err(LearnError::TooFewRows);
         }
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / count as f64;
         let targets = DMatrix::from_fn(numbers.len(), count, |target, row| {
             numbers[target][row] - mean(&numbers[target])
         });

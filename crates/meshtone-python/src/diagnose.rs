@@ -9,11 +9,11 @@ use meshtone_diagnose::{
     StoreError, refine,
 };
 use meshtone_io::experiment::read_tuned;
-use pyo3::exceptions::{PyOSError, PyRuntimeError};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::array::{Array, Signal, array, samples};
-use crate::error::{file_error, read_error, scenario_error, value_error};
+use crate::error::{os_error, read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
 use crate::process::stated_of_rig;
@@ -137,13 +137,7 @@ pub fn diagnose<'py>(
         answer(&store, &prior, records, &question, &control)
     })??;
     let mut json = answer.to_json();
-    json["reference"] = serde_json::json!({
-        "asked": records,
-        "simulated": answer.simulated_records,
-        "records": answer.reference_records,
-        "refined_records": answer.refined_records,
-        "folder": store.folder_of(&prior).display().to_string(),
-    });
+    json["reference"] = answer.reference_json(records, &store.folder_of(&prior));
     let band = answer.band_g.map(|end| array(py, end));
     Ok((json.to_string(), array(py, answer.difference_g), band))
 }
@@ -156,9 +150,8 @@ fn answer(
     control: &Control,
 ) -> PyResult<Answer> {
     let reference = store.get(prior, records, control);
-    let reference = reference.map_err(|error| match &error {
-        StoreError::Folder { path, source } => file_error(path, Some(source), &error),
-        StoreError::File(_) => PyOSError::new_err(error.to_string()),
+    let reference = reference.map_err(|error| match error {
+        StoreError::File(error) => os_error("write", error.path.display().to_string(), &error.source),
         StoreError::Cancelled => PyRuntimeError::new_err(error.to_string()),
     })?;
     let learned = Learned::new(&reference, question).map_err(value_error)?;

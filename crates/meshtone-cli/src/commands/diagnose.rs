@@ -163,13 +163,7 @@ impl Diagnose {
         all["healthy"] = json!(names(&self.healthy));
         all["scenario"] = json!(self.scenario.display().to_string());
         all["tuned"] = json!(self.tuned.as_ref().map(|path| path.display().to_string()));
-        all["reference"] = json!({
-            "asked": self.kept.records,
-            "simulated": answer.simulated_records,
-            "records": answer.reference_records,
-            "refined_records": answer.refined_records,
-            "folder": folder.display().to_string(),
-        });
+        all["reference"] = answer.reference_json(self.kept.records, folder);
         all
     }
 

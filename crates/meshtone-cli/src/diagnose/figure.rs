@@ -1,7 +1,7 @@
 //! The figure of a diagnosis.
 
 use meshtone::signal::TrainWheel;
-use meshtone_diagnose::{Answer, HEALTHY};
+use meshtone_diagnose::{Answer, HEALTHY, KindAnswer};
 use meshtone_plot::Figure;
 use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
 
@@ -31,11 +31,12 @@ pub fn draw(answer: &Answer, title: &str, rig: &[TrainWheel]) -> Figure {
     let shown = &rig[answer.shown_wheel];
     let on_shown =
         damage.and_then(|kind| kind.place).filter(|place| is_damaged && place.wheel == answer.shown_wheel);
+    let draws = damage.map_or_else(Vec::new, KindAnswer::severity_draws);
     let severity = damage.and_then(|kind| {
         let severity = kind.severity?;
         Some(SeverityView {
             kind: kind.label,
-            draws: &answer.severity_draws,
+            draws: &draws,
             median: severity.median,
             within_50: severity.within_50,
             within_90: severity.within_90,

@@ -6,12 +6,11 @@ use crate::failure::Failure;
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        const HELP: &str = "name another folder for the simulations with --reference DIR";
-        let message = error.to_string();
         match error {
-            StoreError::Folder { source, .. } => Self::of_writing(source.kind(), message).with_help(HELP),
-            StoreError::File(error) => Self::from(error).with_help(HELP),
-            StoreError::Cancelled => Self::failed(message),
+            StoreError::File(error) => {
+                Self::from(error).with_help("name another folder for the simulations with --reference DIR")
+            }
+            StoreError::Cancelled => Self::failed(error.to_string()),
         }
     }
 }
@@ -19,18 +18,17 @@ impl From<StoreError> for Failure {
 impl From<DiagnoseError> for Failure {
     fn from(error: DiagnoseError) -> Self {
         let message = error.to_string();
-        match error {
-            DiagnoseError::TooFewOrders { .. } => Self::bad_input(message).with_help(
-                "record at a higher rate, or check --sampling-rate-hz and the scenario's speed and teeth",
-            ),
-            DiagnoseError::OtherSpeed { .. } => Self::bad_input(message).with_help(
-                "check --shaft-hz (revolutions per second), --shaft or --teeth (what speed or pulses are of) and the speed in the scenario",
-            ),
-            DiagnoseError::NoReference => {
-                Self::bad_input(message).with_help("or make more of them, with --records")
+        let help = match error {
+            DiagnoseError::TooFewOrders { .. } => {
+                "record at a higher rate, or check --sampling-rate-hz and the scenario's speed and teeth"
             }
-            DiagnoseError::NotSolved => Self::failed(message),
-            _ => Self::bad_input(message),
-        }
+            DiagnoseError::OtherSpeed { .. } => {
+                "check --shaft-hz (revolutions per second), --shaft or --teeth (what speed or pulses are of) and the speed in the scenario"
+            }
+            DiagnoseError::NoReference => "or make more of them, with --records",
+            DiagnoseError::NotSolved => return Self::failed(message),
+            _ => return Self::bad_input(message),
+        };
+        Self::bad_input(message).with_help(help)
     }
 }

@@ -6,8 +6,9 @@ use meshtone::signal::{AngleZero, BearingDefects};
 use meshtone_fourier::Complex64;
 use meshtone_learn::{WheelLines, separations};
 
+use crate::draw::{DrawnFault, RECORDS_PER_UNIT};
 use crate::observation::{Observation, SignalKind};
-use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
+use crate::prior::Prior;
 use crate::reference::{ReferenceRecord, ReferenceSet};
 
 /// Mesh orders of the lines.
