@@ -1,5 +1,6 @@
 """A data set for a machine of which healthy recordings are known."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -24,5 +25,12 @@ def test_damage_of_a_machine_behind_an_unknown_path_is_found(tmp_path: Path) -> 
     probabilities = adapted.probabilities(missing)
     np.testing.assert_allclose(probabilities.sum(axis=1), 1.0, atol=1e-9)
     assert (1.0 - probabilities[:, 0] > adapted.threshold).all()
+    healthy = mt.simulate(machine.copy(seed=4, duration_s=2.0))
+    turning = mt.ShaftPhase.constant(machine.pinion_speed_hz, healthy.sampling_rate_hz, healthy.sensors["housing"].size)
+    for unit, is_doubted in ((1.0, False), (9.81, True)):
+        with warnings.catch_warnings(record=True) as doubts:
+            warnings.simplefilter("always")
+            adapted.probabilities((unit * healthy.sensors["housing"], healthy.sampling_rate_hz, turning))
+        assert any("no simulation does" in str(doubt.message) for doubt in doubts) == is_doubted
     with pytest.raises(ValueError, match="there are missing-tooth"):
         mt.adapt(mt.simulate(machine), rig, tmp_path / "other", classes=["rust"])

@@ -123,3 +123,26 @@ pub fn counted(judged: &[(bool, Result<ByAdapted, String>)]) -> (String, Value) 
         json!({ "healthy": number(sound), "damaged": number(broken), "unlike": unlike, "refused": refused }),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_threshold_tells_healthy_from_damaged() {
+        let judged = |damaged: f64, p_value: f64| {
+            let judged =
+                Judged { probabilities: vec![vec![1.0 - damaged, damaged]], p_values: vec![p_value] };
+            Ok(ByAdapted { judged, threshold: 0.6 })
+        };
+        let all = [
+            (true, judged(0.6, 0.5)),
+            (true, judged(0.7, 0.5)),
+            (false, judged(0.9, 0.001)),
+            (false, Err("too short".to_owned())),
+        ];
+        let (words, numbers) = counted(&all);
+        assert!(words.contains("1 of 2 healthy, 1 of 1 damaged told rightly; 1 unlike"), "{words}");
+        assert_eq!(numbers["refused"], 1);
+    }
+}

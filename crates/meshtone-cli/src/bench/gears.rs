@@ -2,7 +2,7 @@
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::WheelRecords;
-use meshtone_learn::area_under_curve;
+use meshtone_learn::{area_under_curve, median};
 use serde_json::{Map, Value, json};
 
 use super::adaptation::{self, Adapter, ByAdapted};
@@ -148,10 +148,8 @@ fn beside(place: usize, recordings: &[Recorded], at_its_load: bool) -> impl Iter
 fn distance(place: usize, recordings: &[Recorded], found: &[Numbers]) -> Option<f64> {
     let logarithm = |(column, value): (usize, &Option<f64>)| {
         let there = beside(place, recordings, false).filter_map(|other| found[other].as_ref().ok()?[column]);
-        let mut there: Vec<f64> = there.collect();
-        there.sort_by(f64::total_cmp);
-        let middle = 0.5 * (there.get(there.len().checked_sub(1)? / 2)? + there[there.len() / 2]);
-        Some((value.as_ref()? / middle).ln())
+        let there: Vec<f64> = there.collect();
+        (!there.is_empty()).then(|| Some((value.as_ref()? / median(&there)).ln()))?
     };
     let logarithms: Vec<f64> = found[place].as_ref().ok()?.iter().enumerate().filter_map(logarithm).collect();
     let squares: f64 = logarithms.iter().map(|logarithm| logarithm * logarithm).sum();

@@ -8,6 +8,7 @@ use meshtone::signal::{
     DefectKind, FrequencyBand, GearTrain, cepstral_prewhitening, defect_lines, squared_envelope_spectrum,
 };
 use meshtone_io::table::TableReader;
+use meshtone_learn::median;
 use parquet::errors::ParquetError;
 use parquet::file::reader::ChunkReader;
 use rayon::prelude::*;
@@ -178,14 +179,8 @@ impl Rows {
                 (0..self.len()).filter(|&of| of != row && self.units[of] == self.units[row] && healthy(of));
             let others: Vec<usize> = others.collect();
             let beyond = |(column, value): (usize, &f64)| {
-                let mut known: Vec<f64> = others
-                    .iter()
-                    .map(|&of| self.values[of][column])
-                    .filter(|value| value.is_finite())
-                    .collect();
-                known.sort_by(f64::total_cmp);
-                let middle = |upper: usize| known.get((known.len().saturating_sub(1) + upper) / 2).copied();
-                value - (middle(0).unwrap_or(f64::NAN) + middle(1).unwrap_or(f64::NAN)) / 2.0
+                let known = others.iter().map(|&of| self.values[of][column]);
+                value - median(&known.filter(|value| value.is_finite()).collect::<Vec<f64>>())
             };
             self.values[row].iter().enumerate().map(beyond).collect()
         };
