@@ -38,6 +38,7 @@ class HiddenPair:
     )
     severities = {"tooth-breakage": (0.3, 0.9), "pits": (0.1, 0.6), "root-crack": (0.5, 1.0), "wear": (0.4, 0.9)}
     channel, torque_nm, asked_healthy, asked_of_kind, units = "housing_g", 60, 80, 40, 24
+    tried: str | float = "sqrt"  # Part of the features that a split of the trees for comparison draws from: what is better for them.
 
     def __init__(self, number: int) -> None:
         self.draws = np.random.default_rng(1000 + number)
@@ -147,6 +148,7 @@ class HiddenGearbox(HiddenPair):
     )
     severities = {"tooth-breakage@z2": (0.3, 0.9), "pits@z1": (0.1, 0.6), "outer@input:0": (0.2, 0.9), "inner@input:0": (0.2, 0.9)}
     channel, torque_nm, asked_healthy, asked_of_kind, units = "seat_g", 80, 40, 20, 18
+    tried = 0.3
 
     def drawn(self, path: dict[str, np.ndarray]) -> mt.Scenario:
         factor, draws, known = self.factor, self.draws, self.known.sections
@@ -220,7 +222,7 @@ def learnt_from_labels(rig: HiddenPair, asked: list[Recorded], healthy: Recorded
     known = rig.labelled(folder)
     columns = [name for name in known.indicator_columns if name not in known.empty_columns]
     labels = known["label"].astype(str)
-    trees = ExtraTreesClassifier(200, max_features=0.3, min_samples_leaf=2, class_weight="balanced", random_state=0)
+    trees = ExtraTreesClassifier(200, max_features=rig.tried, min_samples_leaf=2, class_weight="balanced", random_state=0)
     trees.fit(beside_others(features(rig, known, columns), labels == "healthy", known["unit"]), labels)
     recorded = known.like([values for values, _, _ in asked], [phase for _, _, phase in asked], rig.known, KEPT_HZ)
     first = np.unique(recorded["unit"], return_index=True)[1]

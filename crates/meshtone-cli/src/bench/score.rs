@@ -64,7 +64,11 @@ impl Scores {
             (cells, words)
         };
         let rows: Vec<_> = [heads].into_iter().chain(recordings.iter().zip(&self.each).map(row)).collect();
-        format!("{}\n{}", columns(&rows), self.table)
+        let left_out = match self.each.iter().filter(|scored| scored.is_err()).count() {
+            0 => String::new(),
+            left_out => format!("\n  {left_out} of {} not scored\n", self.each.len()),
+        };
+        format!("{}\n{}{left_out}", columns(&rows), self.table)
     }
 
     /// What was found of each recording.

@@ -83,7 +83,8 @@ fn bearings_are_scored_beside_the_rule() {
         [&sums["right"], &sums["wrong_race"], &sums["balanced_accuracy"]],
         [&json!(3), &json!(1), &json!(2.5 / 3.0)]
     );
-    for words in ["inner race, 7 mil", "1 of 2", "not scored: ", "0.83", "-> set_bench"] {
+    for words in ["inner race, 7 mil", "1 of 2", "not scored: ", "2 of 6 not scored", "0.83", "-> set_bench"]
+    {
         assert!(stdout(&output).contains(words), "{words} in {}", stdout(&output));
     }
     assert_eq!(stderr(&output), "");
