@@ -42,41 +42,43 @@ pub fn score(
     let wheels = || scenario.wheels.iter().map(|wheel| &wheel.name);
     let names = ["FM0", "FM4"].into_iter().flat_map(|of| wheels().map(move |wheel| format!("{of} {wheel}")));
     let own = ["distance", "adapted"].into_iter().take(1 + usize::from(adapter.is_some()));
-    let mut heads: Vec<String> = names.chain(own.map(str::to_owned)).collect();
-    let (mut table, areas) = areas(&heads, recordings, &found);
-    let mut sums = json!({ "areas": areas });
+    let heads: Vec<String> = names.chain(own.map(str::to_owned)).collect();
+    let (table, areas) = areas(&heads, recordings, &found);
     let scored = |of: Vec<Option<f64>>| Scored {
         cells: of.iter().map(in_words).collect(),
         words: String::new(),
         value: json!({ "indicators": named(&heads, &of) }),
     };
-    let mut each: Vec<_> = found.into_iter().map(|found| found.map(scored)).collect();
+    let each = found.into_iter().map(|found| found.map(scored)).collect();
+    let mut scores = Scores { each, table, sums: json!({ "areas": areas }), heads };
     if adapter.is_some() {
-        let (words, numbers) = adaptation::counted(&adapted);
-        (table, sums["adapted"]) = (format!("{table}\n  {words}\n"), numbers);
-        for (scored, (_, answer)) in each.iter_mut().zip(&adapted) {
-            let Ok(scored) = scored else { continue };
-            scored.value["adapted"] = match answer {
-                Ok(answer) => answer.to_json(),
-                Err(reason) => json!({ "refused": reason }),
-            };
-        }
+        let of_each = adapted.iter().map(|(_, answer)| match answer {
+            Ok(answer) => answer.to_json(),
+            Err(reason) => json!({ "refused": reason }),
+        });
+        scores.add("adapted", of_each, adaptation::counted(&adapted));
     }
-    if let Some(kept) = kept.filter(|_| each.iter().any(Result::is_ok)) {
-        let diagnoser = Diagnoser::new(scenario, kept, quiet)?;
-        let mut answers = Vec::new();
-        for (place, scored) in each.iter_mut().enumerate() {
-            let Ok(scored) = scored else { continue };
+    if let Some(kept) = kept.filter(|_| scores.each.iter().any(Result::is_ok)) {
+        diagnose(&mut scores, recordings, &Diagnoser::new(scenario, kept, quiet)?);
+    }
+    Ok(scores)
+}
+
+/// Diagnoses the recordings that were scored.
+fn diagnose(scores: &mut Scores, recordings: &[Recorded], diagnoser: &Diagnoser) {
+    let (mut answers, mut of_each) = (Vec::new(), Vec::new());
+    for (place, scored) in scores.each.iter_mut().enumerate() {
+        let mut shown = Value::Null;
+        if let Ok(scored) = scored {
             let healthy = beside(place, recordings, true).map(|other| &recordings[other]).next();
             let answer = diagnoser.diagnose(&recordings[place], healthy);
-            (scored.words, scored.value["diagnosis"]) = answer.shown();
+            (scored.words, shown) = answer.shown();
             answers.push((recordings[place].label.is == HEALTHY, answer));
         }
-        let (words, numbers) = counted(&answers);
-        (table, sums["diagnosis"]) = (format!("{table}\n  {words}\n"), numbers);
-        heads.push("diagnosis".to_owned());
+        of_each.push(shown);
     }
-    Ok(Scores { heads, each, table, sums })
+    scores.add("diagnosis", of_each, counted(&answers));
+    scores.heads.push("diagnosis".to_owned());
 }
 
 /// What adapted sets say about the recordings by each channel, and whether each is healthy.

@@ -38,6 +38,25 @@ pub struct Scored {
 }
 
 impl Scores {
+    /// Adds what one judge says.
+    ///
+    /// # Arguments
+    /// * `key` - its name in the results
+    /// * `of_each` - what it says about each recording
+    /// * `words`, `numbers` - how many it tells rightly
+    pub fn add(
+        &mut self,
+        key: &str,
+        of_each: impl IntoIterator<Item = Value>,
+        (words, numbers): (String, Value),
+    ) {
+        self.table = format!("{}\n  {words}\n", self.table);
+        self.sums[key] = numbers;
+        for (scored, value) in self.each.iter_mut().zip(of_each) {
+            scored.iter_mut().for_each(|scored| scored.value[key] = value.clone());
+        }
+    }
+
     /// A row for each recording, then the sums.
     ///
     /// # Arguments
