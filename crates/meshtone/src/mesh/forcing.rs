@@ -398,10 +398,16 @@ struct TabulatedPairs {
     alike_m: Option<[Vec<Vec<f64>>; 2]>,
     /// (m) Of teeth with corners, deviations by wheel and tooth at single places of the flanks.
     flanks_m: [Vec<Vec<f64>>; 2],
-    /// (√m) Of each class, slice and end the edges of what lies outside the path, near to it and far from it, with the damping's lead.
-    corners: Vec<Vec<[[Vec<f64>; 2]; 2]>>,
-    /// (base pitches) That lead.
-    lead_of_corners: f64,
+    /// Of each class, slice and end what lies outside the path, with the damping's lead.
+    corners: Vec<Vec<[CornerEdges; 2]>>,
+}
+
+/// What lies outside the path at one end of a slice.
+struct CornerEdges {
+    /// (√m) Its edges at the points, near to the path and far from it.
+    edges: [Vec<f64>; 2],
+    /// (m) As of [`CornerParts`].
+    apart_m: f64,
 }
 
 /// The class of sound pairs.
@@ -465,7 +471,11 @@ impl TabulatedPairs {
             })
         };
         let of_corners = |class: &PairTable| {
-            let of_slice = |ends: &[CornerTable; 2]| from_fn(|end| ends[end].roots(end, lead_of_corners));
+            let of_end = |table: &CornerTable, end: usize| CornerEdges {
+                edges: table.roots(end, lead_of_corners),
+                apart_m: table.separation_m - table.deeper_m(lead_of_corners),
+            };
+            let of_slice = |ends: &[CornerTable; 2]| from_fn(|end| of_end(&ends[end], end));
             class.corners.iter().map(of_slice).collect()
         };
         let at_places = |wheel: WheelName| {
@@ -491,7 +501,6 @@ impl TabulatedPairs {
             alike_m: eccentricity.filter(|_| !is_whole).map(alike),
             flanks_m: WheelName::BOTH.map(at_places),
             corners: mesh.classes.iter().map(of_corners).collect(),
-            lead_of_corners,
         }
     }
 
@@ -511,15 +520,15 @@ impl TabulatedPairs {
                 flanks().filter_map(|(tables, tooth)| tables.get(tooth)).map(|table| (&table[..], from));
             let corners = self.corners[class].get(slice).map(|ends| {
                 [0, 1].map(|end| {
-                    let [near, far] = ends[end].each_ref().map(Vec::as_slice);
-                    let table = &mesh.classes[class].corners[slice][end];
+                    let CornerEdges { edges: [near, far], apart_m } = &ends[end];
+                    let place = mesh.classes[class].corners[slice][end].place;
                     let flanks = self.flanks_m.iter().zip(teeth);
                     CornerParts {
                         near,
                         far,
-                        apart_m: table.separation_m - table.deeper_m(self.lead_of_corners),
+                        apart_m: *apart_m,
                         flanks: flanks.filter_map(|(tables, tooth)| Some(&tables.get(tooth)?[..])).collect(),
-                        reading: mesh.corner_reading(slice, end, table.place),
+                        reading: mesh.corner_reading(slice, end, place),
                     }
                 })
             });
@@ -587,7 +596,8 @@ impl CornerParts<'_> {
     fn offset_m(&self, point: f64) -> f64 {
         let [least, most] = self.reading.outside;
         let at = (self.reading.first + point).clamp(least, most);
-        let (index, part) = (at as usize, at - at.floor());
+        let index = at as usize;
+        let part = at - index as f64;
         let read = |table: &[f64]| {
             let [here, next] = [index, index + 1].map(|n| table[n.min(table.len() - 1)]);
             here + part * (next - here)
@@ -771,55 +781,61 @@ impl<'a> MeshForcing<'a> {
             (turning.first_pitch + revolutions * turning.pitches_per_revolution) * per_pitch
                 + mesh.points_before as f64
         };
-        let (Some(&first), Some(&last)) = (revolutions.first(), revolutions.last()) else { return };
-        let [first, last] = [first, last].map(point_at);
+        let points: Vec<f64> = revolutions.iter().map(|revolutions| point_at(*revolutions)).collect();
+        let (Some(&first), Some(&last)) = (points.first(), points.last()) else { return };
         let is_even = self.reading != Reading::AnyMotion;
-        let step = if is_even { (last - first) / (revolutions.len() - 1).max(1) as f64 } else { 0.0 };
+        let step = if is_even { (last - first) / (points.len() - 1).max(1) as f64 } else { 0.0 };
         let reach = mesh.points() as f64 - 1.0;
+        let mut places = Vec::new();
         for pair in ((first - reach) / per_pitch).floor() as i64..=(last / per_pitch).floor() as i64 {
             let begins = pair as f64 * per_pitch;
-            let place = pair.rem_euclid(mesh.pairs_at_once() as i64) as usize;
-            let first_spring = place * mesh.slices();
-            let parts = tables.of_pair(mesh, pair);
-            let mut is_first = true;
             // As many as are certainly in it; each is checked again.
-            let from = if step > 0.0 { ((begins - first) / step - 1.0).max(0.0) as usize } else { 0 };
-            let until = if step > 0.0 {
-                ((begins + reach - first) / step + 2.0).max(0.0) as usize
-            } else {
-                usize::MAX
+            let [from, until] = match step > 0.0 {
+                true => [begins - step, begins + reach + 2.0 * step]
+                    .map(|at| ((at - first) / step).max(0.0) as usize),
+                false => [0, usize::MAX],
             };
-            for (k, revolutions) in revolutions.iter().enumerate().take(until).skip(from) {
-                let point = point_at(*revolutions) - begins;
-                if point < 0.0 || point >= reach {
-                    continue;
+            let parts = tables.of_pair(mesh, pair);
+            let own = points.iter().map(|point| point - begins).enumerate().take(until).skip(from);
+            let own = own.filter(|(_, point)| (0.0..reach).contains(point));
+            places.clear();
+            places.extend(own.map(|(sample, point)| parts.place(sample, point)));
+            let Some(first) = places.first() else { continue };
+            let place = pair.rem_euclid(mesh.pairs_at_once() as i64) as usize;
+            if let Some(classes) = block.classes.get_mut(place) {
+                classes.push((first.sample, parts.class));
+            }
+            let first_spring = place * mesh.slices();
+            for at in &places {
+                block.set_sliding_and_strips(
+                    (mesh, parts.class),
+                    (first_spring, at.sample),
+                    (at.index, at.part),
+                );
+            }
+            // Slice by slice, each along all samples.
+            for (number, slice) in parts.slices.iter().enumerate() {
+                let spring = first_spring + number;
+                let closer_m = mesh.slice_closer_m(number, parts.wobble_m);
+                if let Some(wobble) = block.wobble.get_mut(spring) {
+                    places.iter().for_each(|at| wobble[at.sample] = parts.wobble_m);
                 }
-                let (index, part) = (point as usize, point - point.floor());
-                if let Some(classes) = block.classes.get_mut(place)
-                    && is_first
-                {
-                    classes.push((k, parts.class));
-                    is_first = false;
-                }
-                for (number, slice) in parts.slices.iter().enumerate() {
-                    let closer_m = mesh.slice_closer_m(number, parts.wobble_m);
-                    if let Some(wobble) = block.wobble.get_mut(first_spring + number) {
-                        wobble[k] = parts.wobble_m;
+                for (end, corner) in slice.corners.iter().flatten().enumerate() {
+                    let CornerBlock { offset, near: nears, far: fars } = &mut block.corners[spring][end];
+                    for at in &places {
+                        let [near, far] = [corner.near, corner.far].map(|table| at.of(table, 0));
+                        (nears[at.sample], fars[at.sample]) = (near, far);
+                        if far > near {
+                            offset[at.sample] = corner.offset_m(at.point) + at.alike_m + closer_m;
+                        }
                     }
-                    for (end, corner) in slice.corners.iter().flatten().enumerate() {
-                        let [near, far] = [corner.near, corner.far].map(|table| between(table, index, part));
-                        let CornerBlock { offset: offsets, near: nears, far: fars } =
-                            &mut block.corners[first_spring + number][end];
-                        (nears[k], fars[k]) = (near, far);
-                        offsets[k] = corner.offset_m(point) + parts.alike_between(index, part) + closer_m;
-                    }
                 }
-                block.set_sliding_and_strips((mesh, parts.class), (first_spring, k), (index, part));
-                for (spring, [stiffness, offset]) in
-                    (first_spring..).zip(parts.between_points(mesh, index, part))
-                {
-                    block.stiffness[spring][k] = stiffness;
-                    block.offset[spring][k] =
+                let (stiffness, offsets) = (&mut block.stiffness[spring], &mut block.offset[spring]);
+                for at in &places {
+                    let own_m: f64 = slice.offsets.iter().map(|(table, from)| at.of(table, *from)).sum();
+                    let offset = own_m + at.alike_m + closer_m;
+                    stiffness[at.sample] = at.of(slice.stiffness, 0);
+                    offsets[at.sample] =
                         if is_even { offset } else { self.leading(offset, pair, &mut before[spring]) };
                 }
             }
@@ -890,26 +906,36 @@ impl<'a> MeshForcing<'a> {
 }
 
 impl PairParts<'_> {
-    /// (N/m, m) Stiffness and offset of every slice between two points.
+    /// Where its tables are read at a sample.
     ///
     /// # Arguments
-    /// * `mesh` - whose pair this is
-    /// * `index` - of the point before
-    /// * `part` - (-) of the way to the next one
-    fn between_points(&self, mesh: &Mesh, index: usize, part: f64) -> impl Iterator<Item = [f64; 2]> {
-        let sum = move |terms: &[FromPoint<'_>]| {
-            terms.iter().map(|(table, from)| between(table, index + from, part)).sum::<f64>()
-        };
-        let alike = self.alike_between(index, part);
-        self.slices.iter().enumerate().map(move |(number, slice)| {
-            let closer_m = mesh.slice_closer_m(number, self.wobble_m);
-            [between(slice.stiffness, index, part), sum(&slice.offsets) + alike + closer_m]
-        })
+    /// * `sample` - number of the sample in its block
+    /// * `point` - of the tables, at least 0
+    fn place(&self, sample: usize, point: f64) -> TablePlace {
+        let index = point as usize;
+        let part = point - index as f64;
+        let alike_m = self.alike.iter().map(|(table, from)| between(table, index + from, part)).sum();
+        TablePlace { sample, point, index, part, alike_m }
     }
+}
 
-    /// (m) What all slices add to their offset between two points.
-    fn alike_between(&self, index: usize, part: f64) -> f64 {
-        self.alike.iter().map(|(table, from)| between(table, index + from, part)).sum()
+/// Where the tables of a pair are read at a sample.
+struct TablePlace {
+    /// Number of the sample in its block.
+    sample: usize,
+    point: f64,
+    /// Of the point before.
+    index: usize,
+    /// (-) Of the way to the next one.
+    part: f64,
+    /// (m) What all slices of the pair add to their offset.
+    alike_m: f64,
+}
+
+impl TablePlace {
+    /// A table here, whose point `from` is the first one of the pair.
+    fn of(&self, table: &[f64], from: usize) -> f64 {
+        between(table, self.index + from, self.part)
     }
 }
 

@@ -431,28 +431,25 @@ impl SpringSamples {
         self.springs = block.stiffness.len().next_multiple_of(AT_ONCE);
         let stride = self.per_spring * self.springs;
         self.values.resize(samples * stride, 0.0);
-        for (n, sliding) in block.sliding.iter().enumerate() {
-            for (k, values) in self.values.chunks_exact_mut(stride).enumerate() {
-                values[2 * self.springs + n] = sliding[0][k];
-                values[3 * self.springs + n] = sliding[1][k];
+        let numbers = |number: usize| number * self.springs..;
+        let sliding = [0, 1].map(|number| block.sliding.iter().map(move |sliding| &sliding[number]));
+        let [friction, arms] = sliding;
+        let columns = numbers(0).zip(&block.stiffness).chain(numbers(1).zip(&block.offset));
+        let columns = columns.chain(numbers(2).zip(friction)).chain(numbers(3).zip(arms));
+        let columns = columns.chain(numbers(self.per_spring - 1).zip(&block.wobble));
+        let columns: Vec<(usize, &Vec<f64>)> = columns.collect();
+        // A few samples at a time, whose numbers stay in the cache.
+        for (chunk, rows) in self.values.chunks_mut(CHUNK * stride).enumerate() {
+            for (place, column) in &columns {
+                let values = &column[chunk * CHUNK..];
+                rows.chunks_exact_mut(stride).zip(values).for_each(|(row, value)| row[*place] = *value);
             }
-        }
-        for (n, wobble) in block.wobble.iter().enumerate() {
-            let samples = self.values.chunks_exact_mut(stride).zip(wobble);
-            samples.for_each(|(values, wobble)| values[(self.per_spring - 1) * self.springs + n] = *wobble);
         }
         self.strips_of_samples
             .resize(if block.strips.is_empty() { 0 } else { samples * self.springs }, [0.0; 2]);
         for (n, [places, half_widths]) in block.strips.iter().enumerate() {
             let samples = self.strips_of_samples.chunks_exact_mut(self.springs);
             samples.zip(places.iter().zip(half_widths)).for_each(|(sample, (a, b))| sample[n] = [*a, *b]);
-        }
-        for (n, (stiffness, offset)) in block.stiffness.iter().zip(&block.offset).enumerate() {
-            let at = self.values.chunks_exact_mut(stride).zip(stiffness.iter().zip(offset));
-            for (values, (stiffness, offset)) in at {
-                values[n] = *stiffness;
-                values[self.springs + n] = *offset;
-            }
         }
         self.line_corners_up(block, samples);
     }

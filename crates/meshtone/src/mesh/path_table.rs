@@ -383,8 +383,13 @@ impl CornerTable {
     /// * `lead` - (base pitches) ℓ
     pub(super) fn roots(&self, end: usize, lead: f64) -> [Vec<f64>; 2] {
         let shift = if end == 0 { -lead } else { lead };
-        let shifted =
-            |edges: &[f64]| edges.iter().map(|edge| self.reach.signed_root_at(edge + shift)).collect();
+        // Most edges are on the path, where all are 0.
+        let on_path = self.reach.signed_root_at(shift);
+        let root = |edge: &f64| match *edge == 0.0 {
+            true => on_path,
+            false => self.reach.signed_root_at(edge + shift),
+        };
+        let shifted = |edges: &[f64]| edges.iter().map(root).collect();
         [shifted(&self.near), shifted(&self.far)]
     }
 
