@@ -1,5 +1,6 @@
 //! What sets that were adapted to the healthy recordings of a gearbox say about its recordings.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -35,39 +36,28 @@ pub struct Adapter<'a> {
     pub quiet: bool,
 }
 
-/// What a set says about a recording.
-pub struct ByAdapted {
-    judged: Judged,
-    threshold: f64,
-}
+/// What a set says about a recording, or why it says nothing.
+pub type ByAdapted = Result<Judged, String>;
 
 impl Adapter<'_> {
-    /// Adapts a set to the first halves of the healthy recordings by a channel, and judges by it their second halves and all others.
-    ///
-    /// # Arguments
-    /// * `recordings` - by that channel
-    ///
-    /// Returns what is said about each, or why nothing is.
-    pub fn judge(&self, recordings: &[&Recorded]) -> Vec<Result<ByAdapted, String>> {
-        let healthy = recordings.iter().filter(|recording| recording.label.is == HEALTHY);
-        let healthy = healthy.filter_map(|recording| self.read(recording, Part::FirstHalf).ok()).collect();
-        let adaptation = match self.adapt(recordings, healthy) {
-            Ok(adaptation) => adaptation,
-            Err(failure) => {
-                return recordings.iter().map(|_| Err(failure.message.clone())).collect();
-            }
+    /// Adapts a set to the first halves of the healthy recordings by each channel, and judges by it their second halves and all others.
+    pub fn judge(&self, recordings: &[Recorded]) -> Vec<ByAdapted> {
+        let mut sets: BTreeMap<&str, Result<Adaptation, String>> = BTreeMap::new();
+        let judge = |recording| {
+            let Recorded { channel, label, .. } = recording;
+            let adapt = || self.adapt(channel, recordings).map_err(|failure| failure.message);
+            let set = sets.entry(channel).or_insert_with(adapt).as_ref().map_err(String::clone)?;
+            let part = if label.is == HEALTHY { Part::SecondHalf } else { Part::Whole };
+            let judged = self.read(recording, part).and_then(|of_part| Ok(set.judge(&of_part)?));
+            judged.map_err(|failure| reason(&failure, recording))
         };
-        let judge = |recording: &Recorded| -> Result<ByAdapted, Failure> {
-            let part = if recording.label.is == HEALTHY { Part::SecondHalf } else { Part::Whole };
-            let judged = adaptation.judge(&self.read(recording, part)?)?;
-            Ok(ByAdapted { judged, threshold: adaptation.threshold })
-        };
-        let each = recordings.iter();
-        each.map(|recording| judge(recording).map_err(|failure| reason(&failure, recording))).collect()
+        recordings.iter().map(judge).collect()
     }
 
-    fn adapt(&self, recordings: &[&Recorded], healthy: Vec<SensorRecording>) -> Result<Adaptation, Failure> {
-        let channel = recordings.first().map_or("", |recording| &recording.channel);
+    fn adapt(&self, channel: &str, recordings: &[Recorded]) -> Result<Adaptation, Failure> {
+        let healthy = recordings.iter().filter(|of| of.label.is == HEALTHY && of.channel == channel);
+        let healthy = healthy.filter_map(|recording| self.read(recording, Part::FirstHalf).ok());
+        let healthy: Vec<SensorRecording> = healthy.collect();
         let estimate = estimated(self.scenario, &healthy, DRAWS, SEED, self.quiet);
         let estimate = estimate.map_err(|error| Failure::failed(error.to_string()))?;
         let known = KnownMachine { scenario: self.scenario, recordings: &healthy, estimate: &estimate };
@@ -88,39 +78,37 @@ impl Adapter<'_> {
     }
 }
 
-impl ByAdapted {
-    /// (-) Probability of damage.
-    pub fn damaged(&self) -> f64 {
-        self.judged.damaged()
-    }
-
-    /// What is said, for programs.
-    pub fn to_json(&self) -> Value {
-        json!({ "damaged": self.damaged(), "threshold": self.threshold, "doubt": self.judged.doubt() })
+/// What a set says about a recording, for programs.
+pub fn in_numbers(answer: &ByAdapted) -> Value {
+    match answer {
+        Ok(of) => json!({ "damaged": of.damaged(), "threshold": of.threshold, "doubt": of.doubt() }),
+        Err(reason) => json!({ "refused": reason }),
     }
 }
 
 /// How many recordings are told rightly as healthy or damaged: in words and in numbers.
 ///
 /// # Arguments
-/// * `judged` - whether each is healthy, and what is said about it
-pub fn counted(judged: &[(bool, Result<ByAdapted, String>)]) -> (String, Value) {
-    let of = |healthy: bool| judged.iter().filter(move |(is_healthy, _)| *is_healthy == healthy);
-    let answered = |healthy: bool| of(healthy).filter_map(|(_, answer)| answer.as_ref().ok());
-    let is_right = |healthy: bool, answer: &ByAdapted| (answer.damaged() <= answer.threshold) == healthy;
-    let right = |healthy: bool| answered(healthy).filter(|answer| is_right(healthy, answer)).count();
-    let unlike =
-        judged.iter().flat_map(|(_, answer)| answer).filter(|of| of.judged.doubt().is_some()).count();
-    let refused = judged.iter().filter(|(_, answer)| answer.is_err()).count();
-    let [sound, broken] = [true, false].map(|healthy| (right(healthy), answered(healthy).count()));
-    let words = format!(
-        "adapted sets: {} of {} healthy, {} of {} damaged told rightly; {unlike} unlike all simulations; {refused} refused",
-        sound.0, sound.1, broken.0, broken.1
-    );
-    let number = |(right, of): (usize, usize)| json!({ "right": right, "of": of });
+/// * `answers` - whether each is healthy, and what is said about it
+pub fn counted<'a>(answers: impl Iterator<Item = (bool, &'a ByAdapted)>) -> (String, Value) {
+    let (mut right, mut answered, mut unlike, mut refused) = ([0; 2], [0; 2], 0, 0);
+    for (is_healthy, answer) in answers {
+        let Ok(judged) = answer else {
+            refused += 1;
+            continue;
+        };
+        let is_damaged = judged.damaged() > judged.threshold;
+        answered[usize::from(!is_healthy)] += 1;
+        right[usize::from(!is_healthy)] += usize::from(is_damaged != is_healthy);
+        unlike += usize::from(judged.doubt().is_some());
+    }
+    let [healthy, damaged] = [0, 1].map(|of| format!("{} of {}", right[of], answered[of]));
+    let number = |of: usize| json!({ "right": right[of], "of": answered[of] });
     (
-        words,
-        json!({ "healthy": number(sound), "damaged": number(broken), "unlike": unlike, "refused": refused }),
+        format!(
+            "adapted sets: {healthy} healthy, {damaged} damaged told rightly; {unlike} unlike all simulations; {refused} refused"
+        ),
+        json!({ "healthy": number(0), "damaged": number(1), "unlike": unlike, "refused": refused }),
     )
 }
 
@@ -141,7 +129,7 @@ mod tests {
             (false, judged(0.9, 0.001)),
             (false, Err("too short".to_owned())),
         ];
-        let (words, numbers) = counted(&all);
+        let (words, numbers) = counted(all.iter().map(|(is_healthy, answer)| (*is_healthy, answer)));
         assert!(words.contains("1 of 2 healthy, 1 of 1 damaged told rightly; 1 unlike"), "{words}");
         assert_eq!(numbers["refused"], 1);
     }

@@ -2,10 +2,11 @@
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::WheelRecords;
+use meshtone_dataset::adapt::Judged;
 use meshtone_learn::{area_under_curve, median};
 use serde_json::{Map, Value, json};
 
-use super::adaptation::{self, Adapter, ByAdapted};
+use super::adaptation::{self, Adapter};
 use super::diagnosis::{Diagnoser, counted};
 use super::preset::{HEALTHY, Recorded};
 use super::score::{Scored, Scores, columns, each, processed};
@@ -35,9 +36,9 @@ pub fn score(
     let mut found: Vec<Numbers> = each(recordings, quiet, |recording| look(recording, scenario));
     let distances: Vec<_> = (0..found.len()).map(|place| distance(place, recordings, &found)).collect();
     found.iter_mut().zip(distances).for_each(|(found, of)| found.iter_mut().for_each(|found| found.push(of)));
-    let adapted = adapter.map(|adapter| by_adapted(recordings, adapter)).unwrap_or_default();
-    for (found, (_, answer)) in found.iter_mut().zip(&adapted) {
-        found.iter_mut().for_each(|found| found.push(answer.as_ref().ok().map(ByAdapted::damaged)));
+    let adapted = adapter.map(|adapter| adapter.judge(recordings)).unwrap_or_default();
+    for (found, answer) in found.iter_mut().zip(&adapted) {
+        found.iter_mut().for_each(|found| found.push(answer.as_ref().ok().map(Judged::damaged)));
     }
     let wheels = || scenario.wheels.iter().map(|wheel| &wheel.name);
     let names = ["FM0", "FM4"].into_iter().flat_map(|of| wheels().map(move |wheel| format!("{of} {wheel}")));
@@ -52,11 +53,9 @@ pub fn score(
     let each = found.into_iter().map(|found| found.map(scored)).collect();
     let mut scores = Scores { each, table, sums: json!({ "areas": areas }), heads };
     if adapter.is_some() {
-        let of_each = adapted.iter().map(|(_, answer)| match answer {
-            Ok(answer) => answer.to_json(),
-            Err(reason) => json!({ "refused": reason }),
-        });
-        scores.add("adapted", of_each, adaptation::counted(&adapted));
+        let answers = recordings.iter().map(|recording| recording.label.is == HEALTHY).zip(&adapted);
+        let of_each = adapted.iter().map(adaptation::in_numbers);
+        scores.add("adapted", of_each, adaptation::counted(answers));
     }
     if let Some(kept) = kept.filter(|_| scores.each.iter().any(Result::is_ok)) {
         diagnose(&mut scores, recordings, &Diagnoser::new(scenario, kept, quiet)?);
@@ -79,22 +78,6 @@ fn diagnose(scores: &mut Scores, recordings: &[Recorded], diagnoser: &Diagnoser)
     }
     scores.add("diagnosis", of_each, counted(&answers));
     scores.heads.push("diagnosis".to_owned());
-}
-
-/// What adapted sets say about the recordings by each channel, and whether each is healthy.
-fn by_adapted(recordings: &[Recorded], adapter: &Adapter) -> Vec<(bool, Result<ByAdapted, String>)> {
-    let mut channels: Vec<&str> = recordings.iter().map(|recording| &*recording.channel).collect();
-    channels.sort_unstable();
-    channels.dedup();
-    let mut judged: Vec<(usize, Result<ByAdapted, String>)> = Vec::new();
-    for channel in channels {
-        let places = (0..recordings.len()).filter(|&at| recordings[at].channel == channel);
-        let places: Vec<usize> = places.collect();
-        let of_channel: Vec<&Recorded> = places.iter().map(|&at| &recordings[at]).collect();
-        judged.extend(places.into_iter().zip(adapter.judge(&of_channel)));
-    }
-    judged.sort_by_key(|(place, _)| *place);
-    judged.into_iter().map(|(place, answer)| (recordings[place].label.is == HEALTHY, answer)).collect()
 }
 
 /// FM0 of each wheel of a recording, then FM4 of each.

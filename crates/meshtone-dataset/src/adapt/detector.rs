@@ -1,6 +1,6 @@
 //! Probabilities of the classes of a data set for records beside healthy ones.
 
-use meshtone_learn::{ExtraTrees, OutlierTest};
+use meshtone_learn::{ExtraTrees, OutlierTest, median};
 
 use super::rows::Rows;
 use crate::error::DatasetError;
@@ -53,9 +53,8 @@ impl Detector {
         let width = values.first().map_or(0, Vec::len);
         let column = |feature: usize| values.iter().map(|row| row[feature]).collect::<Vec<f64>>();
         let features = (0..width).filter_map(|feature| {
-            let mut column = column(feature);
-            column.sort_by(f64::total_cmp);
-            column.iter().all(|value| value.is_finite()).then(|| (feature, column[column.len() / 2]))
+            let column = column(feature);
+            column.iter().all(|value| value.is_finite()).then(|| (feature, median(&column)))
         });
         let features: Vec<(usize, f64)> = features.collect();
         let values: Vec<Vec<f64>> = values.iter().map(|row| known(row, &features)).collect();

@@ -11,7 +11,7 @@ mod rows;
 use meshtone::scenario::Scenario;
 use meshtone::signal::GearTrain;
 use meshtone::tuning::{PathEstimate, SensorRecording};
-use meshtone_learn::area_under_curve;
+use meshtone_learn::{area_under_curve, mean};
 use serde_json::{Value, json};
 
 pub use plan::{AdaptSettings, tooth_classes};
@@ -73,6 +73,8 @@ pub struct Judged {
     pub probabilities: Vec<Vec<f64>>,
     /// (-) The part of the simulations that are as strange as each window, or stranger.
     pub p_values: Vec<f64>,
+    /// (-) Probability of damage from which on it is called damaged.
+    pub threshold: f64,
 }
 
 /// A data set for a machine, and the classifier that was learnt from it.
@@ -207,7 +209,7 @@ impl Adaptation {
         let mut p_values = self.detector.p_values(&all, &is_known);
         probabilities.truncate(count);
         p_values.truncate(count);
-        Ok(Judged { probabilities, p_values })
+        Ok(Judged { probabilities, p_values, threshold: self.threshold })
     }
 
     /// What was found, for programs.
@@ -233,7 +235,7 @@ impl Adaptation {
 impl Judged {
     /// (-) Probability of damage, the mean over the windows.
     pub fn damaged(&self) -> f64 {
-        self.probabilities.iter().map(|of| 1.0 - of[0]).sum::<f64>() / self.probabilities.len().max(1) as f64
+        mean(&of_damage(&self.probabilities))
     }
 
     /// What is doubtful about the recording, in words: windows that are like no simulation.
